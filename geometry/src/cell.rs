@@ -1,0 +1,58 @@
+use nalgebra::Point2;
+
+/// A cell by column (`x`, to the right) and row (`y`, upwards). Signed, so that the neighbour of
+/// a border cell is a cell outside the grid and never wraps into another row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Cell {
+    /// Column, counted from the left.
+    pub x: i32,
+    /// Row, counted from the bottom.
+    pub y: i32,
+}
+
+impl Cell {
+    /// The cell in column `x` and row `y`.
+    pub const fn new(x: i32, y: i32) -> Self {
+        Self { x, y }
+    }
+
+    /// The four cells that share a side: right, up, left, down.
+    pub fn neighbours4(self) -> [Self; 4] {
+        [(1, 0), (0, 1), (-1, 0), (0, -1)].map(|(dx, dy)| Self::new(self.x + dx, self.y + dy))
+    }
+
+    /// The eight cells that share a side or a corner, row by row from the bottom.
+    pub fn neighbours8(self) -> [Self; 8] {
+        [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)]
+            .map(|(dx, dy)| Self::new(self.x + dx, self.y + dy))
+    }
+
+    /// The cell nearest to the mean of `cells`; `None` for no cells.
+    pub fn centroid(cells: impl IntoIterator<Item = Self>) -> Option<Self> {
+        let (mut sum, mut count) = (Point2::new(0.0, 0.0), 0.0);
+        for cell in cells {
+            sum.x += f64::from(cell.x);
+            sum.y += f64::from(cell.y);
+            count += 1.0;
+        }
+        (count > 0.0).then(|| Self::new((sum.x / count).round() as i32, (sum.y / count).round() as i32))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_touch() {
+        let cell = Cell::new(0, 0);
+        assert!(cell.neighbours4().iter().all(|n| n.x.abs() + n.y.abs() == 1));
+        assert!(cell.neighbours8().iter().all(|n| n.x.abs().max(n.y.abs()) == 1));
+    }
+
+    #[test]
+    fn centroid_is_the_mean() {
+        assert_eq!(Cell::centroid([]), None);
+        assert_eq!(Cell::centroid([Cell::new(0, 0), Cell::new(4, 2)]), Some(Cell::new(2, 1)));
+    }
+}

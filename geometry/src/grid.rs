@@ -1,0 +1,186 @@
+use crate::Cell;
+use nalgebra::Point2;
+
+/// Where a grid lies in the world: square cells, row-major, row 0 at the lowest y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridFrame {
+    origin: Point2<f64>,
+    resolution_m: f64,
+    width: usize,
+    height: usize,
+}
+
+impl GridFrame {
+    /// A frame of `width` × `height` cells with sides of `resolution_m`, whose lower left corner
+    /// lies at `origin` (m). `None` unless every figure is finite, the resolution positive, and
+    /// the grid has between one and 2²⁸ cells.
+    pub fn new(origin: Point2<f64>, resolution_m: f64, width: usize, height: usize) -> Option<Self> {
+        let cells = width.checked_mul(height)?;
+        let finite = origin.x.is_finite() && origin.y.is_finite() && resolution_m.is_finite();
+        (finite && resolution_m > 0.0 && (1..=1 << 28).contains(&cells)).then_some(Self {
+            origin,
+            resolution_m,
+            width,
+            height,
+        })
+    }
+
+    /// The frame that covers the rectangle from `origin` of `width_m` × `height_m`; `None` as in
+    /// [`GridFrame::new`].
+    pub fn covering(origin: Point2<f64>, width_m: f64, height_m: f64, resolution_m: f64) -> Option<Self> {
+        // A millionth of a cell of slack: 12 m in cells of 0.05 m are 240 cells, not 241.
+        let cells = |length_m: f64| (length_m / resolution_m - 1e-6).ceil() as usize;
+        Self::new(origin, resolution_m, cells(width_m), cells(height_m))
+    }
+
+    /// The lower left corner, m.
+    pub fn origin(&self) -> Point2<f64> {
+        self.origin
+    }
+
+    /// The side of a cell, m.
+    pub fn resolution_m(&self) -> f64 {
+        self.resolution_m
+    }
+
+    /// The number of columns.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// The number of rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// The number of cells; at least one.
+    #[allow(clippy::len_without_is_empty)] // a frame is never empty
+    pub fn len(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// The cell that holds `point` (m), also outside of the grid. A cell owns its lower and left
+    /// border.
+    pub fn cell_at(&self, point: &Point2<f64>) -> Cell {
+        let at = (point - self.origin) / self.resolution_m;
+        Cell::new(at.x.floor() as i32, at.y.floor() as i32)
+    }
+
+    /// The middle of a cell, m, also outside of the grid.
+    pub fn center(&self, cell: Cell) -> Point2<f64> {
+        Point2::new(
+            self.origin.x + (f64::from(cell.x) + 0.5) * self.resolution_m,
+            self.origin.y + (f64::from(cell.y) + 0.5) * self.resolution_m,
+        )
+    }
+
+    /// Whether the cell lies in the grid.
+    pub fn contains(&self, cell: Cell) -> bool {
+        (0..self.width as i32).contains(&cell.x) && (0..self.height as i32).contains(&cell.y)
+    }
+
+    /// The place of a cell in row-major order; `None` outside of the grid.
+    pub fn index(&self, cell: Cell) -> Option<usize> {
+        self.contains(cell).then(|| cell.y as usize * self.width + cell.x as usize)
+    }
+
+    /// The cell at a place in row-major order.
+    pub fn cell(&self, index: usize) -> Cell {
+        Cell::new((index % self.width) as i32, (index / self.width) as i32)
+    }
+}
+
+/// One value for every cell of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid<T> {
+    frame: GridFrame,
+    cells: Vec<T>,
+}
+
+impl<T: Clone> Grid<T> {
+    /// A grid that holds `value` everywhere.
+    pub fn filled(frame: GridFrame, value: T) -> Self {
+        Self { frame, cells: vec![value; frame.len()] }
+    }
+}
+
+impl<T> Grid<T> {
+    /// A grid of `cells` in row-major order; `None` if there are not as many as the frame has.
+    pub fn from_cells(frame: GridFrame, cells: Vec<T>) -> Option<Self> {
+        (cells.len() == frame.len()).then_some(Self { frame, cells })
+    }
+
+    /// Where the grid lies.
+    pub fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    /// The values in row-major order, row 0 at the lowest y.
+    pub fn cells(&self) -> &[T] {
+        &self.cells
+    }
+
+    /// The values in row-major order, to write.
+    pub fn cells_mut(&mut self) -> &mut [T] {
+        &mut self.cells
+    }
+
+    /// The value of a cell; `None` outside of the grid.
+    pub fn get(&self, cell: Cell) -> Option<&T> {
+        Some(&self.cells[self.frame.index(cell)?])
+    }
+
+    /// The value of a cell, to write; `None` outside of the grid.
+    pub fn get_mut(&mut self, cell: Cell) -> Option<&mut T> {
+        Some(&mut self.cells[self.frame.index(cell)?])
+    }
+
+    /// The same grid with every value turned into another.
+    pub fn map<U>(&self, f: impl FnMut(&T) -> U) -> Grid<U> {
+        Grid { frame: self.frame, cells: self.cells.iter().map(f).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame() -> GridFrame {
+        GridFrame::covering(Point2::new(-1.0, 2.0), 12.0, 6.0, 0.05).unwrap()
+    }
+
+    #[test]
+    fn covering_does_not_add_a_cell_for_rounding() {
+        assert_eq!((frame().width(), frame().height()), (240, 120));
+    }
+
+    #[test]
+    fn index_and_cell_are_inverse() {
+        for index in [0, 1, 239, 240, 28_799] {
+            assert_eq!(frame().index(frame().cell(index)), Some(index));
+        }
+    }
+
+    #[test]
+    fn outside_is_outside_on_every_side() {
+        for cell in [Cell::new(-1, 0), Cell::new(0, -1), Cell::new(240, 0), Cell::new(0, 120)] {
+            assert_eq!(frame().index(cell), None);
+        }
+    }
+
+    #[test]
+    fn a_cell_holds_its_center() {
+        let cell = Cell::new(7, 9);
+        assert_eq!(frame().cell_at(&frame().center(cell)), cell);
+    }
+
+    #[test]
+    fn absurd_frames_are_refused() {
+        let origin = Point2::origin();
+        assert_eq!(GridFrame::new(origin, 0.0, 1, 1), None);
+        assert_eq!(GridFrame::new(origin, f64::NAN, 1, 1), None);
+        assert_eq!(GridFrame::new(origin, 1.0, 0, 1), None);
+        assert_eq!(GridFrame::new(origin, 1.0, usize::MAX, 2), None);
+        assert_eq!(GridFrame::covering(origin, 1e9, 1e9, 1e-3), None);
+    }
+}

@@ -1,0 +1,111 @@
+/// One sweep of a planar laser, as ROS `sensor_msgs/LaserScan`, with the meaning of REP-117.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scan {
+    /// The direction of the first beam in the laser's frame, rad.
+    pub angle_min_rad: f64,
+    /// The angle from one beam to the next, rad; beam `i` looks along
+    /// `angle_min_rad + i * angle_increment_rad`.
+    pub angle_increment_rad: f64,
+    /// Ranges below this are not measurements, m.
+    pub range_min_m: f64,
+    /// The laser sees no farther than this, m.
+    pub range_max_m: f64,
+    /// One range per beam, m: +∞ no return, −∞ too close, NaN invalid.
+    pub ranges_m: Vec<f32>,
+}
+
+impl Scan {
+    /// The direction of beam `index` in the laser's frame, rad.
+    pub fn angle_rad(&self, index: usize) -> f64 {
+        self.angle_min_rad + index as f64 * self.angle_increment_rad
+    }
+
+    /// Whether the beams close a full turn, so that the last is a neighbour of the first.
+    pub fn is_full_turn(&self) -> bool {
+        let sweep_rad = self.angle_increment_rad.abs() * self.ranges_m.len() as f64;
+        (sweep_rad - std::f64::consts::TAU).abs() < 0.5 * self.angle_increment_rad.abs()
+    }
+
+    /// Checks the figures that every beam shares. Single ranges are never an error: REP-117 says
+    /// what each value means.
+    ///
+    /// # Errors
+    ///
+    /// When an angle is not finite, the beams sweep more than one turn, or the range limits are
+    /// not `0 <= range_min_m < range_max_m`, finite.
+    pub fn check(&self) -> Result<(), ScanError> {
+        let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ref ranges_m } = *self;
+        if !angle_min_rad.is_finite() || !angle_increment_rad.is_finite() {
+            return Err(ScanError::Angle { angle_min_rad, angle_increment_rad });
+        }
+        let sweep_rad = angle_increment_rad.abs() * ranges_m.len().saturating_sub(1) as f64;
+        if angle_increment_rad == 0.0 && ranges_m.len() > 1 || sweep_rad > std::f64::consts::TAU + 1e-3 {
+            return Err(ScanError::Sweep { beams: ranges_m.len(), angle_increment_rad });
+        }
+        if !(range_min_m >= 0.0 && range_min_m < range_max_m && range_max_m.is_finite()) {
+            return Err(ScanError::Limits { range_min_m, range_max_m });
+        }
+        Ok(())
+    }
+}
+
+/// Why a scan was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ScanError {
+    /// An angle is NaN or infinite.
+    #[error("scan angles must be finite: angle_min {angle_min_rad}, angle_increment {angle_increment_rad}")]
+    Angle {
+        /// As in the scan.
+        angle_min_rad: f64,
+        /// As in the scan.
+        angle_increment_rad: f64,
+    },
+    /// The beams coincide, or sweep more than one turn.
+    #[error("{beams} beams {angle_increment_rad} rad apart do not make a sweep of at most one turn")]
+    Sweep {
+        /// The number of ranges.
+        beams: usize,
+        /// As in the scan.
+        angle_increment_rad: f64,
+    },
+    /// The range limits are not `0 <= min < max`, finite.
+    #[error("range limits must hold 0 <= range_min < range_max, finite: {range_min_m} m, {range_max_m} m")]
+    Limits {
+        /// As in the scan.
+        range_min_m: f64,
+        /// As in the scan.
+        range_max_m: f64,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn scan(beams: usize, angle_increment_rad: f64) -> Scan {
+        Scan {
+            angle_min_rad: 0.0,
+            angle_increment_rad,
+            range_min_m: 0.0,
+            range_max_m: 10.0,
+            ranges_m: vec![1.0; beams],
+        }
+    }
+
+    #[test]
+    fn a_full_turn_is_recognised() {
+        assert!(scan(720, TAU / 720.0).is_full_turn());
+        assert!(!scan(181, TAU / 360.0).is_full_turn());
+    }
+
+    #[test]
+    fn bad_figures_are_refused() {
+        assert_eq!(scan(720, TAU / 720.0).check(), Ok(()));
+        assert!(matches!(scan(2, 0.0).check(), Err(ScanError::Sweep { .. })));
+        assert!(matches!(scan(3, TAU).check(), Err(ScanError::Sweep { .. })));
+        assert!(matches!(scan(2, f64::NAN).check(), Err(ScanError::Angle { .. })));
+        let limits = Scan { range_min_m: 11.0, ..scan(2, 0.1) };
+        assert!(matches!(limits.check(), Err(ScanError::Limits { .. })));
+    }
+}

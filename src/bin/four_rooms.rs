@@ -1,0 +1,3 @@
+fn main() {
+    let _ = rerun::RecordingStreamBuilder::new("x").save("/tmp/x.rrd");
+}
