@@ -1,1 +1,26 @@
-//! placeholder
+//! Features → choice of a strategy → a goal → reward (paper, section 4).
+//!
+//! A [`Strategy`] says how much each cell is worth a visit, a [`Chooser`] which strategy to follow
+//! next, and the [`Agent`] holds them together: it watches every reading, and each time the
+//! controller hands back, it learns from the trajectory just driven and samples the next goal.
+//!
+//! To add a strategy or a chooser: one file under `strategies` or `choosers`, and a line in
+//! [`StrategyChoice`].
+
+mod agent;
+mod choice;
+mod choosers;
+mod draw;
+mod goal;
+mod settings;
+mod situation;
+mod strategies;
+mod tile_coder;
+
+pub use agent::{Agent, Tally};
+pub use choice::{StrategyChoice, UnknownStrategy};
+pub use choosers::{Always, Chooser, Coin, Curious, Trajectory};
+pub use settings::{AgentSettings, CuriousSettings, Reward, SettingsError};
+pub use situation::Situation;
+pub use strategies::{Poisson, Random, Recency, Strategy};
+pub use tile_coder::TileCoder;

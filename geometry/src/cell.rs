@@ -12,16 +12,19 @@ pub struct Cell {
 
 impl Cell {
     /// The cell in column `x` and row `y`.
+    #[inline]
     pub const fn new(x: i32, y: i32) -> Self {
         Self { x, y }
     }
 
     /// The four cells that share a side: right, up, left, down.
+    #[inline]
     pub fn neighbours4(self) -> [Self; 4] {
         [(1, 0), (0, 1), (-1, 0), (0, -1)].map(|(dx, dy)| Self::new(self.x + dx, self.y + dy))
     }
 
     /// The eight cells that share a side or a corner, row by row from the bottom.
+    #[inline]
     pub fn neighbours8(self) -> [Self; 8] {
         [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)]
             .map(|(dx, dy)| Self::new(self.x + dx, self.y + dy))

@@ -34,26 +34,31 @@ impl GridFrame {
     }
 
     /// The lower left corner, m.
+    #[inline]
     pub fn origin(&self) -> Point2<f64> {
         self.origin
     }
 
     /// The side of a cell, m.
+    #[inline]
     pub fn resolution_m(&self) -> f64 {
         self.resolution_m
     }
 
     /// The number of columns.
+    #[inline]
     pub fn width(&self) -> usize {
         self.width
     }
 
     /// The number of rows.
+    #[inline]
     pub fn height(&self) -> usize {
         self.height
     }
 
     /// The number of cells; at least one.
+    #[inline]
     #[allow(clippy::len_without_is_empty)] // a frame is never empty
     pub fn len(&self) -> usize {
         self.width * self.height
@@ -61,12 +66,14 @@ impl GridFrame {
 
     /// The cell that holds `point` (m), also outside of the grid. A cell owns its lower and left
     /// border.
+    #[inline]
     pub fn cell_at(&self, point: &Point2<f64>) -> Cell {
         let at = (point - self.origin) / self.resolution_m;
-        Cell::new(at.x.floor() as i32, at.y.floor() as i32)
+        Cell::new(floor(at.x), floor(at.y))
     }
 
     /// The middle of a cell, m, also outside of the grid.
+    #[inline]
     pub fn center(&self, cell: Cell) -> Point2<f64> {
         Point2::new(
             self.origin.x + (f64::from(cell.x) + 0.5) * self.resolution_m,
@@ -75,19 +82,30 @@ impl GridFrame {
     }
 
     /// Whether the cell lies in the grid.
+    #[inline]
     pub fn contains(&self, cell: Cell) -> bool {
         (0..self.width as i32).contains(&cell.x) && (0..self.height as i32).contains(&cell.y)
     }
 
     /// The place of a cell in row-major order; `None` outside of the grid.
+    #[inline]
     pub fn index(&self, cell: Cell) -> Option<usize> {
         self.contains(cell).then(|| cell.y as usize * self.width + cell.x as usize)
     }
 
     /// The cell at a place in row-major order.
+    #[inline]
     pub fn cell(&self, index: usize) -> Cell {
         Cell::new((index % self.width) as i32, (index / self.width) as i32)
     }
+}
+
+/// The floor of a number, cut to the range of `i32`. The portable instruction set has no rounding
+/// instruction, and this is called for every beam.
+#[inline]
+fn floor(x: f64) -> i32 {
+    let toward_zero = x as i32;
+    toward_zero.saturating_sub(i32::from(x < f64::from(toward_zero)))
 }
 
 /// One value for every cell of a frame.
@@ -111,26 +129,31 @@ impl<T> Grid<T> {
     }
 
     /// Where the grid lies.
+    #[inline]
     pub fn frame(&self) -> &GridFrame {
         &self.frame
     }
 
     /// The values in row-major order, row 0 at the lowest y.
+    #[inline]
     pub fn cells(&self) -> &[T] {
         &self.cells
     }
 
     /// The values in row-major order, to write.
+    #[inline]
     pub fn cells_mut(&mut self) -> &mut [T] {
         &mut self.cells
     }
 
     /// The value of a cell; `None` outside of the grid.
+    #[inline]
     pub fn get(&self, cell: Cell) -> Option<&T> {
         Some(&self.cells[self.frame.index(cell)?])
     }
 
     /// The value of a cell, to write; `None` outside of the grid.
+    #[inline]
     pub fn get_mut(&mut self, cell: Cell) -> Option<&mut T> {
         Some(&mut self.cells[self.frame.index(cell)?])
     }
@@ -166,6 +189,15 @@ mod tests {
         for cell in [Cell::new(-1, 0), Cell::new(0, -1), Cell::new(240, 0), Cell::new(0, 120)] {
             assert_eq!(frame().index(cell), None);
         }
+    }
+
+    #[test]
+    fn floor_is_floor() {
+        for step in -40..40 {
+            let x = f64::from(step) * 0.25;
+            assert_eq!(floor(x), x.floor() as i32, "{x}");
+        }
+        assert_eq!((floor(-1e300), floor(1e300)), (i32::MIN, i32::MAX));
     }
 
     #[test]

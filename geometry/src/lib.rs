@@ -17,7 +17,7 @@ pub use angle::{heading_rad, pose, rotation, wrap_rad};
 pub use cell::Cell;
 pub use command::Twist;
 pub use grid::{Grid, GridFrame};
-pub use reading::{LaserReading, Reading};
+pub use reading::{CellReading, LaserReading, Reading};
 pub use scan::{Scan, ScanError};
 pub use state::{CellState, Event, Transition};
 pub use world::World;

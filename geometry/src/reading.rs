@@ -1,4 +1,4 @@
-use crate::{Scan, Twist};
+use crate::{Cell, Scan, Twist};
 use nalgebra::Isometry2;
 
 /// What every reading tells, whatever the world.
@@ -28,6 +28,27 @@ pub struct LaserReading {
 impl Reading for LaserReading {
     fn time(&self) -> f64 {
         self.time_s
+    }
+
+    fn pose(&self) -> &Isometry2<f64> {
+        &self.pose
+    }
+}
+
+/// The cells that a sensor without error sees.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellReading {
+    /// The time of the reading, in steps.
+    pub time: f64,
+    /// Where the robot is, in the map's frame.
+    pub pose: Isometry2<f64>,
+    /// The cells in view, each with whether it is blocked. Cells outside of the map are ignored.
+    pub cells: Vec<(Cell, bool)>,
+}
+
+impl Reading for CellReading {
+    fn time(&self) -> f64 {
+        self.time
     }
 
     fn pose(&self) -> &Isometry2<f64> {

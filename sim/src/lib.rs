@@ -1,1 +1,25 @@
-//! placeholder
+//! Places for a robot to live in.
+//!
+//! [`physics`] is the two-dimensional world of the paper's section 5 and figures 4 and 5: walls,
+//! robots with real contacts, lasers. It implements [`geometry::World`], and keeps the truth that
+//! metrics (and nothing else) may look at.
+//!
+//! ```
+//! use geometry::{Twist, World};
+//! use sim::physics::{PhysicsWorld, WorldSpec};
+//!
+//! let spec = WorldSpec::parse("four_rooms.toml", include_str!("../../worlds/four_rooms.toml"))?;
+//! let mut world = PhysicsWorld::new(&spec, 7);
+//! let before = world.sense();
+//! world.act(&Twist { linear_mps: 0.5, angular_radps: 0.0 });
+//! let after = world.sense();
+//! assert_eq!(after.scan.ranges_m.len(), 720);
+//! assert!((after.time_s - before.time_s - 0.1).abs() < 1e-9);
+//! assert!(after.pose.translation.x > before.pose.translation.x);
+//! # Ok::<(), sim::WorldError>(())
+//! ```
+
+mod error;
+pub mod physics;
+
+pub use error::WorldError;

@@ -1,0 +1,48 @@
+//! How long the next goal takes on a house of 12 × 12 m in cells of 0.05 m, all of it seen, with
+//! 2000 cells that ever changed: once per goal, so every few seconds of a robot's life.
+
+use agent::{Agent, AgentSettings, StrategyChoice};
+use geometry::{Cell, CellReading, GridFrame};
+use mapper::{Mapper, MapperSettings};
+use nalgebra::{Isometry2, Point2};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+fn main() {
+    divan::main();
+}
+
+const SIDE: i32 = 240;
+
+/// Rooms of 4 × 4 m that were seen one after the other; things come and go in one of them.
+fn house() -> Mapper {
+    let frame = GridFrame::new(Point2::origin(), 0.05, SIDE as usize, SIDE as usize).unwrap();
+    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+    for step in 0..180 {
+        let room = step / 20;
+        let (left, bottom) = (room % 3 * 80, room / 3 * 80);
+        let cells = (bottom..bottom + 80).flat_map(|y| (left..left + 80).map(move |x| Cell::new(x, y)));
+        let is_blocked =
+            |cell: Cell| cell.x % 80 < 2 || cell.y % 80 < 2 || (room == 4 && step % 2 == 0 && cell.x < 105);
+        let cells = cells.map(|cell| (cell, is_blocked(cell))).collect();
+        let time = f64::from(step) * 0.1;
+        mapper.update(&CellReading { time, pose: Isometry2::identity(), cells }).unwrap();
+    }
+    mapper
+}
+
+#[divan::bench(args = ["recency", "poisson", "random", "curious"])]
+fn next_goal(bencher: divan::Bencher, strategy: &str) {
+    let mut mapper = house();
+    let settings = AgentSettings { patch_cells: 10, ..Default::default() };
+    let choice: StrategyChoice = strategy.parse().unwrap();
+    let mut agent = Agent::new(&settings, choice, ChaCha8Rng::seed_from_u64(0)).unwrap();
+    let (features, pose) = (mapper.features(), Isometry2::identity());
+    // A trajectory of 5 s at 10 Hz, learned from in the same call.
+    bencher.bench_local(|| {
+        for _ in 0..50 {
+            agent.watch(features, &[]);
+        }
+        agent.next_goal(&mapper, &pose)
+    });
+}

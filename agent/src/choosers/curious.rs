@@ -1,0 +1,122 @@
+use crate::draw::proportional;
+use crate::{Chooser, CuriousSettings, Situation, TileCoder, Trajectory};
+use mapper::Features;
+use rand_chacha::ChaCha8Rng;
+
+/// The paper's learner (section 4): one value function over (p, r) per strategy, learned from
+/// rewards, and a choice with probability ∝ exp(V/τ). All values start at 0, so the first choice
+/// is uniform.
+#[derive(Clone, Debug)]
+pub struct Curious {
+    learning_rate: f64,
+    temperature: f64,
+    /// One per strategy.
+    values: Vec<TileCoder>,
+}
+
+impl Curious {
+    /// A learner that knows nothing of its strategies. Draws the displacements of the tilings.
+    pub fn new(settings: &CuriousSettings, strategies: usize, rng: &mut ChaCha8Rng) -> Self {
+        Self {
+            learning_rate: settings.learning_rate,
+            temperature: settings.temperature,
+            values: (0..strategies).map(|_| TileCoder::new(settings, rng)).collect(),
+        }
+    }
+
+    /// The probability of each strategy at `features`.
+    pub fn probabilities(&self, features: Features) -> Vec<f64> {
+        let values: Vec<f64> = self.values.iter().map(|coder| coder.value(features)).collect();
+        softmax(&values, self.temperature)
+    }
+}
+
+impl Chooser for Curious {
+    fn choose(&mut self, situation: &Situation, rng: &mut ChaCha8Rng) -> usize {
+        let probabilities = self.probabilities(situation.features);
+        proportional(probabilities.into_iter(), rng).unwrap_or(0)
+    }
+
+    fn learn(&mut self, trajectory: &Trajectory) {
+        let coder = &mut self.values[trajectory.strategy];
+        coder.learn(trajectory.features, trajectory.reward, self.learning_rate);
+    }
+
+    fn value(&self, strategy: usize, features: Features) -> Option<f64> {
+        Some(self.values.get(strategy)?.value(features))
+    }
+}
+
+/// Probabilities ∝ exp(value/temperature). Subtracting the largest value changes nothing but that
+/// no exponential overflows, and that at least one is 1.
+fn softmax(values: &[f64], temperature: f64) -> Vec<f64> {
+    let max = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let odds: Vec<f64> = values.iter().map(|value| libm::exp((value - max) / temperature)).collect();
+    let sum: f64 = odds.iter().sum();
+    odds.into_iter().map(|odds| odds / sum).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::GridFrame;
+    use mapper::{Mapper, MapperSettings};
+    use nalgebra::{Isometry2, Point2};
+    use rand::SeedableRng;
+
+    /// Plays `rounds` rounds of a bandit in which a strategy always earns `rewards[strategy]`;
+    /// gives how often each was chosen.
+    fn bandit(curious: &mut Curious, features: Features, rewards: &[f64], rounds: usize) -> Vec<f64> {
+        let frame = GridFrame::new(Point2::origin(), 1.0, 1, 1).unwrap();
+        let mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+        let (pose, mut rng) = (Isometry2::identity(), ChaCha8Rng::seed_from_u64(8));
+        let situation = Situation::new(&mapper, &pose, features);
+        let mut counts = vec![0.0; rewards.len()];
+        for _ in 0..rounds {
+            let strategy = curious.choose(&situation, &mut rng);
+            counts[strategy] += 1.0;
+            curious.learn(&Trajectory { strategy, features: &[features; 3], reward: rewards[strategy] });
+        }
+        counts
+    }
+
+    fn curious(strategies: usize) -> Curious {
+        Curious::new(&CuriousSettings::default(), strategies, &mut ChaCha8Rng::seed_from_u64(4))
+    }
+
+    #[test]
+    fn a_bandit_is_played_with_the_odds_of_its_rewards() {
+        let (features, rewards, rounds) = (Features { p: 1.0, r: 30.0 }, [1.0, 5.0, 2.0], 40_000);
+        let mut curious = curious(rewards.len());
+        bandit(&mut curious, features, &rewards, 100);
+        let counts = bandit(&mut curious, features, &rewards, rounds);
+        let odds = rewards.map(|reward: f64| (reward / 2.0).exp());
+        for (count, odds) in counts.iter().zip(odds.map(|o| o / odds.iter().sum::<f64>())) {
+            let sigma = (rounds as f64 * odds * (1.0 - odds)).sqrt();
+            assert!((count - rounds as f64 * odds).abs() < 4.0 * sigma, "{counts:?}");
+        }
+    }
+
+    #[test]
+    fn the_better_strategy_depends_on_the_features() {
+        let (calm, busy) = (Features { p: 0.0, r: 500.0 }, Features { p: 20.0, r: 500.0 });
+        let mut curious = curious(2);
+        bandit(&mut curious, calm, &[12.0, 0.0], 500);
+        bandit(&mut curious, busy, &[0.0, 12.0], 500);
+        assert!(curious.probabilities(calm)[0] > 0.99, "{:?}", curious.probabilities(calm));
+        assert!(curious.probabilities(busy)[1] > 0.99, "{:?}", curious.probabilities(busy));
+    }
+
+    #[test]
+    fn what_was_never_tried_is_chosen_evenly() {
+        assert_eq!(curious(4).probabilities(Features { p: 3.0, r: 7.0 }), [0.25; 4]);
+    }
+
+    #[test]
+    fn softmax_takes_any_values() {
+        assert_eq!(softmax(&[1e300, -1e300], 2.0), [1.0, 0.0]);
+        assert_eq!(softmax(&[1e9, 1e9], 1e-6), [0.5, 0.5]);
+        let [low, high] = softmax(&[0.0, 2.0], 2.0)[..] else { panic!("two values") };
+        assert!((high / low - std::f64::consts::E).abs() < 1e-12);
+    }
+}

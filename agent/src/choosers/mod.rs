@@ -1,0 +1,39 @@
+mod always;
+mod coin;
+mod curious;
+
+pub use always::Always;
+pub use coin::Coin;
+pub use curious::Curious;
+
+use crate::Situation;
+use mapper::Features;
+use rand_chacha::ChaCha8Rng;
+
+/// What came of following a strategy to one goal.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Trajectory<'a> {
+    /// The place of the strategy that was followed.
+    pub strategy: usize,
+    /// The features after each reading, at least one; T of section 4.
+    pub features: &'a [Features],
+    /// Map updates per reading, R of section 4; finite, not negative.
+    pub reward: f64,
+}
+
+/// A way to pick the strategy that samples the next goal. Strategies are known by their places in
+/// the agent's list.
+pub trait Chooser: std::fmt::Debug + Send {
+    /// The place of the next strategy.
+    fn choose(&mut self, situation: &Situation, rng: &mut ChaCha8Rng) -> usize;
+
+    /// Learns from what came of the last choice.
+    fn learn(&mut self, _: &Trajectory) {}
+
+    /// What the strategy is believed to bring at `features`, in map updates per reading; `None`
+    /// from a chooser that does not value strategies.
+    fn value(&self, _strategy: usize, _features: Features) -> Option<f64> {
+        None
+    }
+}

@@ -1,0 +1,66 @@
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+/// Draws a place in proportion to its weight; `None` if no weight is above zero. The weights are
+/// finite, not negative, and their sum is finite.
+pub(crate) fn proportional(
+    weights: impl Iterator<Item = f64> + Clone,
+    rng: &mut ChaCha8Rng,
+) -> Option<usize> {
+    let total: f64 = weights.clone().sum();
+    if total <= 0.0 {
+        return None;
+    }
+    let mut left = rng.random::<f64>() * total;
+    let mut drawn = None;
+    for (place, weight) in weights.enumerate().filter(|&(_, weight)| weight > 0.0) {
+        // Where rounding leaves a remainder beyond the last weight, the last one is drawn.
+        drawn = Some(place);
+        if left < weight {
+            break;
+        }
+        left -= weight;
+    }
+    drawn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use rand::SeedableRng;
+
+    #[test]
+    fn frequencies_follow_the_weights() {
+        let weights = [1.0, 0.0, 2.0, 5.0];
+        let mut counts = [0.0; 4];
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let draws = 80_000.0;
+        for _ in 0..draws as usize {
+            counts[proportional(weights.iter().copied(), &mut rng).unwrap()] += 1.0;
+        }
+        assert_eq!(counts[1], 0.0);
+        let chi_square: f64 = [0, 2, 3]
+            .map(|place| {
+                let expected: f64 = draws * weights[place] / 8.0;
+                (counts[place] - expected).powi(2) / expected
+            })
+            .iter()
+            .sum();
+        assert!(chi_square < 13.8, "{counts:?}"); // two degrees of freedom, one in a thousand
+    }
+
+    proptest! {
+        #[test]
+        fn a_weight_of_zero_is_never_drawn(
+            weights in prop::collection::vec(prop_oneof![Just(0.0), 0.0..1e-300, 0.0..1e200], 0..20),
+            seed in any::<u64>(),
+        ) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            match proportional(weights.iter().copied(), &mut rng) {
+                Some(place) => prop_assert!(weights[place] > 0.0),
+                None => prop_assert!(weights.iter().all(|&weight| weight == 0.0)),
+            }
+        }
+    }
+}

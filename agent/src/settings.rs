@@ -1,0 +1,166 @@
+use geometry::{CellState, Transition};
+
+/// What counts as a map update when a trajectory is rewarded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reward {
+    /// Changes of a known cell: free to blocked, blocked to free.
+    #[default]
+    Changes,
+    /// First sightings too. With a laser these come by the thousand at once, and drown the
+    /// temperature.
+    ChangesAndDiscoveries,
+}
+
+impl Reward {
+    /// The number of transitions that count.
+    pub(crate) fn count(self, transitions: &[Transition]) -> usize {
+        let counts = |transition: &&Transition| match self {
+            Self::Changes => transition.event().is_some(),
+            Self::ChangesAndDiscoveries => {
+                transition.event().is_some() || transition.before == CellState::Unknown
+            }
+        };
+        transitions.iter().filter(counts).count()
+    }
+}
+
+/// Settings of an [`Agent`](crate::Agent).
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AgentSettings {
+    /// The side of the square patches that goal weights are averaged over, in cells.
+    pub patch_cells: usize,
+    /// What counts as a map update.
+    pub reward: Reward,
+    /// Settings of the learner over strategies.
+    pub curious: CuriousSettings,
+}
+
+impl Default for AgentSettings {
+    fn default() -> Self {
+        Self { patch_cells: 5, reward: Reward::default(), curious: CuriousSettings::default() }
+    }
+}
+
+/// Settings of [`Curious`](crate::Curious), with the paper's values (section 4).
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CuriousSettings {
+    /// The number of tilings.
+    pub tilings: usize,
+    /// The size of a tile in p, in cells expected to have changed.
+    pub tile_p: f64,
+    /// The size of a tile in r, in seconds, or in steps of a grid world.
+    pub tile_r: f64,
+    /// λ: the share of a tile's weight that one visit replaces by the reward.
+    pub learning_rate: f64,
+    /// τ: the difference in value, in map updates per reading, that makes one strategy e times as
+    /// likely as another.
+    pub temperature: f64,
+}
+
+impl Default for CuriousSettings {
+    fn default() -> Self {
+        Self { tilings: 5, tile_p: 0.5, tile_r: 100.0, learning_rate: 0.9, temperature: 2.0 }
+    }
+}
+
+/// A setting that makes no sense.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("agent setting `{key}` must be {expected}, not {found}")]
+pub struct SettingsError {
+    /// The key.
+    pub key: &'static str,
+    /// What would be right.
+    pub expected: &'static str,
+    /// What was found.
+    pub found: String,
+}
+
+impl AgentSettings {
+    pub(crate) fn check(&self) -> Result<(), SettingsError> {
+        let Self { patch_cells, reward: _, ref curious } = *self;
+        let error = |key, expected, found: String| Err(SettingsError { key, expected, found });
+        if !(1..=1000).contains(&patch_cells) {
+            return error("patch_cells", "from 1 to 1000", patch_cells.to_string());
+        }
+        if !(1..=1000).contains(&curious.tilings) {
+            return error("curious.tilings", "from 1 to 1000", curious.tilings.to_string());
+        }
+        let sizes = [
+            ("curious.tile_p", curious.tile_p),
+            ("curious.tile_r", curious.tile_r),
+            ("curious.temperature", curious.temperature),
+        ];
+        for (key, size) in sizes {
+            if !(1e-9..=1e9).contains(&size) {
+                return error(key, "from 1e-9 to 1e9", size.to_string());
+            }
+        }
+        let learning_rate = curious.learning_rate;
+        if !(learning_rate > 0.0 && learning_rate <= 1.0) {
+            return error("curious.learning_rate", "above 0, and at most 1", learning_rate.to_string());
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::Cell;
+
+    fn message(text: &str) -> String {
+        match toml::from_str::<AgentSettings>(text) {
+            Ok(settings) => settings.check().map_or_else(|error| error.to_string(), |()| "fine".into()),
+            Err(error) => error.message().to_string(),
+        }
+    }
+
+    #[test]
+    fn settings_that_make_no_sense_are_refused() {
+        assert_eq!(message(""), "fine");
+        assert_eq!(message("patch_cells = 10\nreward = 'changes-and-discoveries'"), "fine");
+        assert_eq!(message("patch_cells = 0"), "agent setting `patch_cells` must be from 1 to 1000, not 0");
+        assert_eq!(
+            message("curious.tilings = 0"),
+            "agent setting `curious.tilings` must be from 1 to 1000, not 0"
+        );
+        for (key, value) in [("tile_p", "-0.5"), ("tile_r", "inf"), ("temperature", "0.0"), ("tile_r", "nan")]
+        {
+            assert_eq!(
+                message(&format!("curious.{key} = {value}")),
+                format!(
+                    "agent setting `curious.{key}` must be from 1e-9 to 1e9, not {}",
+                    value.parse::<f64>().unwrap()
+                )
+            );
+        }
+        for value in ["0", "1.1", "NaN"] {
+            assert_eq!(
+                message(&format!("curious.learning_rate = {}", value.to_lowercase())),
+                format!("agent setting `curious.learning_rate` must be above 0, and at most 1, not {value}")
+            );
+        }
+        assert_eq!(
+            message("patches = 3"),
+            "unknown field `patches`, expected one of `patch_cells`, `reward`, `curious`"
+        );
+        assert_eq!(
+            message("reward = 'joy'"),
+            "unknown variant `joy`, expected `changes` or `changes-and-discoveries`"
+        );
+    }
+
+    #[test]
+    fn rewards_count_what_they_say() {
+        use CellState::{Blocked, Free, Unknown};
+        let transitions: Vec<_> = [(Unknown, Free), (Unknown, Blocked), (Free, Blocked), (Blocked, Free)]
+            .map(|(before, after)| Transition { cell: Cell::new(0, 0), before, after })
+            .into();
+        assert_eq!(Reward::Changes.count(&transitions), 2);
+        assert_eq!(Reward::ChangesAndDiscoveries.count(&transitions), 4);
+        assert_eq!(Reward::Changes.count(&[]), 0);
+    }
+}

@@ -1,0 +1,32 @@
+use geometry::Cell;
+use mapper::{Features, Mapper};
+use nalgebra::Isometry2;
+
+/// Everything that strategies and choosers may judge by at the moment when a goal is due.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Situation<'a> {
+    /// The map and what is known of its changes.
+    pub mapper: &'a Mapper,
+    /// Where the robot believes it is, in the map's frame, m and rad.
+    pub pose: &'a Isometry2<f64>,
+    /// The features (p, r) of the last reading.
+    pub features: Features,
+}
+
+impl<'a> Situation<'a> {
+    /// The situation of a robot at `pose`.
+    pub fn new(mapper: &'a Mapper, pose: &'a Isometry2<f64>, features: Features) -> Self {
+        Self { mapper, pose, features }
+    }
+
+    /// The cell that the robot is in; outside of the grid if the robot is.
+    pub fn cell(&self) -> Cell {
+        self.mapper.frame().cell_at(&self.pose.translation.vector.into())
+    }
+
+    /// The cells that can be a goal, by their places in row-major order. A pass over the map.
+    pub fn candidates(&self) -> impl Iterator<Item = usize> {
+        (0..self.mapper.frame().len()).filter(|&index| self.mapper.is_candidate(index))
+    }
+}

@@ -1,0 +1,19 @@
+use crate::{Situation, Strategy};
+
+/// Go where something probably changed unseen: P(E > 0) (equation 2). Random until the first
+/// change is found, then loyal to the areas known to change.
+#[derive(Clone, Copy, Debug)]
+pub struct Poisson;
+
+impl Strategy for Poisson {
+    fn name(&self) -> &'static str {
+        "poisson"
+    }
+
+    fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {
+        // A cell that never changed has rate 0, hence probability 0.
+        for index in situation.mapper.changed() {
+            weights[index] = situation.mapper.change_probability(index);
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! What holds for an agent of every kind, in a small place that changes.
+
+use crate::drawing::{agent, can_be_a_goal, empty, map, reading, rng};
+use agent::{Agent, AgentSettings, Chooser, Random, Recency, Reward, Situation, StrategyChoice, Trajectory};
+use geometry::{Cell, CellReading, CellState, Transition};
+use mapper::{Features, Mapper};
+use nalgebra::Isometry2;
+use rand_chacha::ChaCha8Rng;
+use std::sync::{Arc, Mutex};
+
+const HOUSE: [&str; 9] = [
+    "##############",
+    "#......#.....#",
+    "#......#.....#",
+    "#............#",
+    "#......#.....#",
+    "####.#########",
+    "#............#",
+    "#............#",
+    "##############",
+];
+
+/// What a robot in `cell` sees of the house at `time`: a square of 7 × 7 cells, walls or not.
+/// A block goes along the lower wall, one cell in 3 steps.
+fn look(time: f64, cell: Cell) -> CellReading {
+    let block = Cell::new(1 + (time / 3.0) as i32 % 12, 1);
+    let mut seen = reading(time, &HOUSE);
+    seen.pose = geometry::pose(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5, 0.0);
+    seen.cells.retain(|(other, _)| (other.x - cell.x).abs() <= 3 && (other.y - cell.y).abs() <= 3);
+    for (other, is_blocked) in &mut seen.cells {
+        *is_blocked |= *other == block;
+    }
+    seen
+}
+
+/// Lets a robot that flies one cell per step live for 1500 steps; a goal lasts until it is reached
+/// and 5 steps more. Gives all goals, and calls `check` after each.
+fn live(agent: &mut Agent, mut check: impl FnMut(&Agent, &Mapper, Cell)) -> Vec<Cell> {
+    let mut mapper = empty(14, 9);
+    let (mut cell, mut goal, mut left) = (Cell::new(3, 6), None, 0);
+    let mut goals = Vec::new();
+    for step in 0..1500 {
+        let seen = look(f64::from(step), cell);
+        mapper.update(&seen).unwrap();
+        let features = mapper.features();
+        agent.watch(features, mapper.transitions());
+        let target = *goal.get_or_insert_with(|| {
+            let goal = agent.next_goal(&mapper, &seen.pose);
+            check(agent, &mapper, goal);
+            goals.push(goal);
+            left = 5;
+            goal
+        });
+        cell = Cell::new(cell.x + (target.x - cell.x).signum(), cell.y + (target.y - cell.y).signum());
+        if cell == target {
+            left -= 1;
+            goal = goal.filter(|_| left > 0);
+        }
+    }
+    goals
+}
+
+#[test]
+fn goals_are_free_or_touch_a_free_cell() {
+    for choice in StrategyChoice::ALL {
+        live(&mut agent(choice, 1), |_, mapper, goal| {
+            assert!(can_be_a_goal(mapper, goal), "{choice}: {goal:?}");
+        });
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_life_and_another_seed_another() {
+    for choice in StrategyChoice::ALL {
+        let life = |seed| live(&mut agent(choice, seed), |_, _, _| ());
+        assert_eq!(life(1), life(1), "{choice}");
+        assert_ne!(life(1), life(2), "{choice}");
+    }
+}
+
+#[test]
+fn the_books_are_right() {
+    for choice in StrategyChoice::ALL {
+        let mut agent = agent(choice, 3);
+        assert_eq!(agent.current(), None);
+        assert!(agent.shares().all(|share| share == 0.0));
+        let mut goals = 0;
+        live(&mut agent, |agent, _, _| {
+            goals += 1;
+            assert!(agent.current().is_some_and(|current| current < agent.strategies().len()));
+            assert_eq!(agent.tallies().iter().map(|tally| tally.goals).sum::<usize>(), goals);
+            assert!((agent.shares().sum::<f64>() - 1.0).abs() < 1e-12);
+            assert!((0.0..=49.0).contains(&agent.last_reward()), "at most all cells in view change");
+            assert_eq!(agent.last_length() >= 5, goals > 1);
+        });
+        // The first reading came before the first goal.
+        assert_eq!(agent.tallies().iter().map(|tally| tally.readings).sum::<usize>(), 1499);
+    }
+}
+
+#[test]
+fn learners_know_finite_values_and_others_none() {
+    for choice in StrategyChoice::ALL {
+        let mut agent = agent(choice, 4);
+        let mut learned = false;
+        live(&mut agent, |agent, _, _| {
+            for p in [0.0, 1.0, f64::MAX, f64::INFINITY, f64::NAN] {
+                for r in [0.0, 50.0, f64::MAX, f64::INFINITY, f64::NAN] {
+                    for strategy in 0..agent.strategies().len() {
+                        let value = agent.value(strategy, Features { p, r });
+                        assert_eq!(value.is_some(), choice == StrategyChoice::Curious);
+                        assert!(value.is_none_or(f64::is_finite));
+                        learned |= value.is_some_and(|value| value > 0.0);
+                    }
+                    assert_eq!(agent.value(agent.strategies().len(), Features { p, r }), None);
+                }
+            }
+        });
+        assert_eq!(learned, choice == StrategyChoice::Curious);
+    }
+}
+
+#[test]
+fn the_strategies_of_each_choice() {
+    let names = |choice| agent(choice, 0).strategies().collect::<Vec<_>>();
+    assert_eq!(names(StrategyChoice::Curious), ["recency", "poisson"]);
+    assert_eq!(names(StrategyChoice::Coin), ["recency", "poisson"]);
+    for choice in [StrategyChoice::Recency, StrategyChoice::Poisson, StrategyChoice::Random] {
+        assert_eq!(names(choice), [choice.name()]);
+    }
+}
+
+#[test]
+fn the_first_choice_and_the_coin_are_fair() {
+    let mapper = map(&[(0.0, &["..."])]);
+    for choice in [StrategyChoice::Curious, StrategyChoice::Coin] {
+        let firsts = (0..1000).filter(|&seed| {
+            let mut agent = agent(choice, seed);
+            agent.next_goal(&mapper, &Isometry2::identity());
+            agent.current() == Some(0)
+        });
+        // Four standard deviations.
+        assert!((436..=564).contains(&firsts.count()), "{choice}");
+    }
+    let mut agent = agent(StrategyChoice::Coin, 1);
+    (0..1000).for_each(|_| drop(agent.next_goal(&mapper, &Isometry2::identity())));
+    assert!(agent.shares().all(|share| (0.436..=0.564).contains(&share)));
+}
+
+/// What a chooser was taught: strategy, features, reward.
+type Lessons = Arc<Mutex<Vec<(usize, Vec<Features>, f64)>>>;
+
+/// Takes turns, and notes what it is taught.
+#[derive(Debug, Default)]
+struct Pupil {
+    chosen: usize,
+    lessons: Lessons,
+}
+
+impl Chooser for Pupil {
+    fn choose(&mut self, _: &Situation, _: &mut ChaCha8Rng) -> usize {
+        self.chosen += 1;
+        (self.chosen - 1) % 2
+    }
+
+    fn learn(&mut self, trajectory: &Trajectory) {
+        let lesson = (trajectory.strategy, trajectory.features.to_vec(), trajectory.reward);
+        self.lessons.lock().unwrap().push(lesson);
+    }
+}
+
+#[test]
+fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
+    use CellState::{Blocked, Free, Unknown};
+    let turn = |before, after| Transition { cell: Cell::new(0, 0), before, after };
+    let (found, block, free) = (turn(Unknown, Free), turn(Free, Blocked), turn(Blocked, Free));
+    let at = |p| Features { p, r: 10.0 * p };
+    let mapper = map(&[(0.0, &["..."])]);
+    for (reward, first, second) in [(Reward::Changes, 0.5, 2.0), (Reward::ChangesAndDiscoveries, 1.0, 2.0)] {
+        let pupil = Pupil::default();
+        let lessons = Lessons::clone(&pupil.lessons);
+        let settings = AgentSettings { reward, ..Default::default() };
+        let strategies: Vec<Box<dyn agent::Strategy>> = vec![Box::new(Recency), Box::new(Random)];
+        let mut agent = Agent::with(&settings, strategies, Box::new(pupil), rng(0)).unwrap();
+        let goal = |agent: &mut Agent| {
+            agent.next_goal(&mapper, &Isometry2::identity());
+        };
+        agent.watch(at(9.0), &[found; 50]); // before the first goal: nobody's merit
+        goal(&mut agent);
+        agent.watch(at(1.0), &[block, found]);
+        agent.watch(at(2.0), &[]);
+        agent.watch(at(3.0), &[free, found]);
+        agent.watch(at(4.0), &[]);
+        goal(&mut agent);
+        assert_eq!((agent.last_reward(), agent.last_length()), (first, 4));
+        goal(&mut agent); // no reading since: nothing to learn
+        agent.watch(at(5.0), &[block, free]);
+        goal(&mut agent);
+        assert_eq!((agent.last_reward(), agent.last_length()), (second, 1));
+        assert_eq!(
+            *lessons.lock().unwrap(),
+            [(0, vec![at(1.0), at(2.0), at(3.0), at(4.0)], first), (0, vec![at(5.0)], second)]
+        );
+    }
+}
+
+#[test]
+fn an_agent_without_sense_is_refused() {
+    let settings = AgentSettings { patch_cells: 0, ..Default::default() };
+    let refused = Agent::new(&settings, StrategyChoice::Curious, rng(0)).unwrap_err();
+    assert_eq!(refused.to_string(), "agent setting `patch_cells` must be from 1 to 1000, not 0");
+    let nothing = Agent::with(&AgentSettings::default(), vec![], Box::new(Pupil::default()), rng(0));
+    assert_eq!(nothing.unwrap_err().to_string(), "agent setting `strategies` must be at least one, not none");
+}
+
+/// Trials run on several threads.
+#[test]
+fn an_agent_can_move_to_another_thread() {
+    fn moves<T: Send>() {}
+    moves::<Agent>();
+}

@@ -1,0 +1,59 @@
+//! Maps drawn by hand: `#` blocked, `.` free, a blank not seen; the top line has the highest y.
+
+use agent::{Agent, AgentSettings, Situation, Strategy, StrategyChoice};
+use geometry::{Cell, CellReading, CellState, GridFrame};
+use mapper::{Mapper, MapperSettings};
+use nalgebra::{Isometry2, Point2};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// What a sensor sees at `time`.
+pub(crate) fn reading(time: f64, drawing: &[&str]) -> CellReading {
+    let row = |(y, line): (usize, &&str)| {
+        let cell = |(x, letter)| match letter {
+            '#' | '.' => Some((Cell::new(x as i32, y as i32), letter == '#')),
+            _ => None,
+        };
+        line.chars().enumerate().filter_map(cell).collect::<Vec<_>>()
+    };
+    let cells = drawing.iter().rev().enumerate().flat_map(row).collect();
+    CellReading { time, pose: Isometry2::identity(), cells }
+}
+
+/// An empty map of `width` × `height` cells of 1 m.
+pub(crate) fn empty(width: usize, height: usize) -> Mapper {
+    let frame = GridFrame::new(Point2::origin(), 1.0, width, height).unwrap();
+    Mapper::new(&MapperSettings::default(), frame).unwrap()
+}
+
+/// The map that the drawings leave, seen one after the other at their times.
+pub(crate) fn map(sightings: &[(f64, &[&str])]) -> Mapper {
+    let drawing = sightings[0].1;
+    let mut mapper = empty(drawing[0].len(), drawing.len());
+    for &(time, drawing) in sightings {
+        mapper.update(&reading(time, drawing)).unwrap();
+    }
+    mapper
+}
+
+/// The weights that `strategy` gives, row by row from the top.
+pub(crate) fn weigh(mut strategy: impl Strategy, mapper: &Mapper) -> Vec<Vec<f64>> {
+    let mut weights = vec![0.0; mapper.frame().len()];
+    let pose = Isometry2::identity();
+    strategy.weigh(&Situation::new(mapper, &pose, Default::default()), &mut weights);
+    weights.chunks(mapper.frame().width()).rev().map(<[f64]>::to_vec).collect()
+}
+
+/// What makes a goal: a free cell of the map, or one that touches a free cell by a side.
+pub(crate) fn can_be_a_goal(mapper: &Mapper, cell: Cell) -> bool {
+    let is_free = |cell| mapper.states().get(cell) == Some(&CellState::Free);
+    mapper.frame().contains(cell) && (is_free(cell) || cell.neighbours4().into_iter().any(is_free))
+}
+
+pub(crate) fn rng(seed: u64) -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(seed)
+}
+
+pub(crate) fn agent(choice: StrategyChoice, seed: u64) -> Agent {
+    Agent::new(&AgentSettings::default(), choice, rng(seed)).unwrap()
+}

@@ -1,0 +1,5 @@
+//! The agent as its users see it.
+
+mod contract;
+mod drawing;
+mod goals;

@@ -1,0 +1,156 @@
+//! The set of cells that one scan saw through, each once.
+//!
+//! Between two neighbouring beams the scan sees a triangle. All triangles together are a
+//! star-shaped polygon, which is filled row by row: a cell counts as seen through when its middle
+//! lies inside. That touches each cell once, in memory order, where walking along every beam
+//! touches the cells near the sensor hundreds of times.
+//!
+//! Where neighbouring beams are farther apart than `max_gap_m`, something thin could stand
+//! unseen between them. There the fan ends, and only the cells on the beams themselves count.
+
+use crate::projection::PointCloud;
+use geometry::{Cell, GridFrame};
+use nalgebra::Point2;
+
+/// Scratch space for filling footprints, reused from scan to scan.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Footprint {
+    /// For each row of the grid, where the polygon's border crosses the middle of the row, in
+    /// columns.
+    crossings: Vec<Vec<f64>>,
+}
+
+impl Footprint {
+    /// Calls `run(start, end)` for runs of cells (places in row-major order) that the scan saw
+    /// through; runs of one scan can touch the same cell again only where the beams are sparse.
+    /// `is_joined(beam, next)` tells whether two neighbouring beams ended on one surface.
+    pub(crate) fn fill(
+        &mut self,
+        cloud: &PointCloud,
+        frame: &GridFrame,
+        max_gap_m: f64,
+        is_joined: impl Fn(usize, usize) -> bool,
+        mut run: impl FnMut(usize, usize),
+    ) {
+        let fan_m = max_gap_m / cloud.spacing_rad.max(f64::MIN_POSITIVE);
+        let (low, high) = self.cross(cloud, frame, fan_m, is_joined);
+        for row in low..high {
+            let crossings = &mut self.crossings[row];
+            crossings.sort_unstable_by(f64::total_cmp);
+            for pair in crossings.chunks_exact(2) {
+                let (start, end) = (first_after(pair[0], frame.width()), first_after(pair[1], frame.width()));
+                if start < end {
+                    run(row * frame.width() + start, row * frame.width() + end);
+                }
+            }
+            crossings.clear();
+        }
+        for beam in 0..cloud.len() {
+            let clear_m = cloud.returns[beam].clear_m();
+            if clear_m > fan_m {
+                cells_along(frame, &cloud.point(beam, fan_m), &cloud.point(beam, clear_m), |cell| {
+                    if let Some(index) = frame.index(cell) {
+                        run(index, index + 1);
+                    }
+                });
+            }
+        }
+    }
+
+    /// Notes where the border of the polygon crosses each row; gives the range of rows.
+    fn cross(
+        &mut self,
+        cloud: &PointCloud,
+        frame: &GridFrame,
+        fan_m: f64,
+        is_joined: impl Fn(usize, usize) -> bool,
+    ) -> (usize, usize) {
+        self.crossings.resize_with(frame.height(), Vec::new);
+        let to_cells = |point: Point2<f64>| (point - frame.origin()) / frame.resolution_m();
+        let origin = to_cells(cloud.origin);
+        let (mut low, mut high) = (frame.height(), 0);
+        let mut edge = |from: nalgebra::Vector2<f64>, to: nalgebra::Vector2<f64>| {
+            let (bottom, top) = if from.y <= to.y { (from, to) } else { (to, from) };
+            let (first, end) = (first_after(bottom.y, frame.height()), first_after(top.y, frame.height()));
+            if first < end {
+                let slope = (top.x - bottom.x) / (top.y - bottom.y);
+                for row in first..end {
+                    self.crossings[row].push(bottom.x + (row as f64 + 0.5 - bottom.y) * slope);
+                }
+                (low, high) = (low.min(first), high.max(end));
+            }
+        };
+        let mut last = origin;
+        for beam in 0..cloud.len() {
+            let Some(next) = cloud.next(beam) else { break };
+            let clear = |beam: usize| cloud.returns[beam].clear_m().min(fan_m);
+            let (mut from_m, mut to_m) = (clear(beam), clear(next));
+            if !is_joined(beam, next) {
+                // Where the surface jumps, only the nearer range is known for the whole triangle.
+                from_m = from_m.min(to_m);
+                to_m = from_m;
+            }
+            let (from, to) = (to_cells(cloud.point(beam, from_m)), to_cells(cloud.point(next, to_m)));
+            if beam > 0 || !cloud.is_full_turn {
+                edge(last, from);
+            }
+            edge(from, to);
+            last = to;
+            if next == 0 {
+                // The polygon closes where the first triangle began.
+                let first_m = if is_joined(0, 1) { clear(0) } else { clear(0).min(clear(1)) };
+                edge(last, to_cells(cloud.point(0, first_m)));
+                return (low, high);
+            }
+        }
+        edge(last, origin);
+        (low, high)
+    }
+}
+
+/// The first column (or row) whose middle lies after `at`, at most `count`: column i holds the
+/// middle i + 1/2, so an interval covers the columns from `first_after` its start to before that
+/// of its end.
+#[inline]
+fn first_after(at: f64, count: usize) -> usize {
+    ((at + 0.5) as usize).min(count) // the cast cuts what is negative to 0
+}
+
+/// Calls `visit` for every cell that the segment from `from` to `to` passes through, in order,
+/// once each (Amanatides and Woo's traversal). Cells outside of the grid are visited too.
+pub(crate) fn cells_along(
+    frame: &GridFrame,
+    from: &Point2<f64>,
+    to: &Point2<f64>,
+    mut visit: impl FnMut(Cell),
+) {
+    let scale = 1.0 / frame.resolution_m();
+    let at = (from - frame.origin()) * scale;
+    let delta = (to - from) * scale;
+    let (mut cell, end) = (frame.cell_at(from), frame.cell_at(to));
+    let axis = |at: f64, cell: i32, delta: f64| {
+        // (direction of a step, position along the segment of the next border, and between borders)
+        if delta > 0.0 {
+            (1, (f64::from(cell) + 1.0 - at) / delta, 1.0 / delta)
+        } else if delta < 0.0 {
+            (-1, (f64::from(cell) - at) / delta, -1.0 / delta)
+        } else {
+            (0, f64::INFINITY, f64::INFINITY)
+        }
+    };
+    let (step_x, mut next_x, width_x) = axis(at.x, cell.x, delta.x);
+    let (step_y, mut next_y, width_y) = axis(at.y, cell.y, delta.y);
+    // Counting steps, not comparing positions: rounding can never miss the end.
+    let steps = end.x.abs_diff(cell.x) + end.y.abs_diff(cell.y);
+    visit(cell);
+    for _ in 0..steps {
+        if cell.y == end.y || (cell.x != end.x && next_x < next_y) {
+            cell.x += step_x;
+            next_x += width_x;
+        } else {
+            cell.y += step_y;
+            next_y += width_y;
+        }
+        visit(cell);
+    }
+}

@@ -1,0 +1,343 @@
+//! What is believed and what was seen of every cell. The occupancy models write here; everything
+//! that is read of the map is read from here.
+
+use crate::estimator::change_probability;
+use crate::{CellStatistics, Estimator};
+use geometry::{Cell, CellState, Grid, GridFrame, Transition};
+use std::collections::VecDeque;
+
+/// A reading by its number. Number 0 stands for "never", and its time, 0, is when a cell that was
+/// never seen counts as last seen. Number 1 is left out, so that no first reading follows "never".
+pub(crate) type ReadingIndex = u32;
+const NEVER: ReadingIndex = 0;
+const BEFORE_FIRST: ReadingIndex = 1;
+/// Set in the number of a cell's last sighting while the cell needs a closer look at every
+/// sighting; see [`Ledger::see_run`].
+const UNSETTLED: ReadingIndex = 1 << 31;
+/// Cells that [`Ledger::see_run`] takes at once.
+const BLOCK: usize = 16;
+
+/// The change record of one cell, except for the time of its last sighting, which is written at
+/// every sighting and lies apart.
+#[derive(Clone, Copy, Debug, Default)]
+struct Record {
+    first: ReadingIndex,
+    /// From here to the last sighting the cell was watched in its present state without a gap,
+    /// and that time is not in `watched` yet.
+    since: ReadingIndex,
+    /// Time watched while free and while blocked, over by `since`.
+    watched: [f64; 2],
+    /// Block and free events that happened in view.
+    in_view: [u32; 2],
+    /// Block and free events that were found when the cell came back into view.
+    after_gap: [u32; 2],
+}
+
+/// A cell that changed at least once. Its rate only moves while the cell is in view, so it is kept
+/// from the last sighting on.
+#[derive(Clone, Copy, Debug)]
+struct Changed {
+    index: u32,
+    rate_of: ReadingIndex,
+    rate: f64,
+}
+
+/// The belief of every cell, its change statistics, and the running features over them.
+#[derive(Clone, Debug)]
+pub(crate) struct Ledger {
+    estimator: Estimator,
+    states: Grid<CellState>,
+    times: Vec<f64>,
+    /// The last sighting of every cell, with the mark [`UNSETTLED`].
+    sightings: Vec<ReadingIndex>,
+    records: Vec<Record>,
+    changed: Vec<Changed>,
+    transitions: Vec<Transition>,
+    /// Cells that can be a goal, or are a surface that can be seen again.
+    candidates: Vec<bool>,
+    /// For each reading from `oldest` on, the number of candidates last seen in it: the maximum
+    /// recency without a pass over the map.
+    last_seen_counts: VecDeque<u32>,
+    oldest: ReadingIndex,
+}
+
+const fn slot(state: CellState) -> usize {
+    match state {
+        CellState::Unknown | CellState::Free => 0,
+        CellState::Blocked => 1,
+    }
+}
+
+impl Ledger {
+    pub(crate) fn new(prior: Grid<CellState>, estimator: Estimator) -> Self {
+        let cells = prior.frame().len();
+        let mut ledger = Self {
+            estimator,
+            states: prior,
+            times: vec![0.0, 0.0],
+            sightings: vec![NEVER | UNSETTLED; cells],
+            records: vec![Record::default(); cells],
+            changed: Vec::new(),
+            transitions: Vec::new(),
+            candidates: vec![false; cells],
+            last_seen_counts: VecDeque::from([0, 0]),
+            oldest: NEVER,
+        };
+        for index in 0..cells {
+            ledger.judge_candidate(index);
+        }
+        ledger
+    }
+
+    /// Opens the next reading and gives its number.
+    pub(crate) fn open(&mut self, time: f64) -> ReadingIndex {
+        self.transitions.clear();
+        self.times.push(time);
+        self.last_seen_counts.push_back(0);
+        self.now_index()
+    }
+
+    pub(crate) fn now_index(&self) -> ReadingIndex {
+        (self.times.len() - 1) as ReadingIndex
+    }
+
+    pub(crate) fn now(&self) -> f64 {
+        self.times[self.times.len() - 1]
+    }
+
+    pub(crate) fn readings(&self) -> usize {
+        (self.now_index() - BEFORE_FIRST) as usize
+    }
+
+    pub(crate) fn frame(&self) -> &GridFrame {
+        self.states.frame()
+    }
+
+    pub(crate) fn states(&self) -> &Grid<CellState> {
+        &self.states
+    }
+
+    #[inline]
+    pub(crate) fn state(&self, index: usize) -> CellState {
+        self.states.cells()[index]
+    }
+
+    pub(crate) fn transitions(&self) -> &[Transition] {
+        &self.transitions
+    }
+
+    pub(crate) fn is_candidate(&self, index: usize) -> bool {
+        self.candidates[index]
+    }
+
+    /// Whether the cell was seen in the open reading or the one before it.
+    pub(crate) fn is_in_view(&self, index: usize) -> bool {
+        self.last(index) + 1 >= self.now_index()
+    }
+
+    pub(crate) fn was_seen_now(&self, index: usize) -> bool {
+        self.last(index) == self.now_index()
+    }
+
+    /// The cell was observed in the open reading. Writes one number where the cell was in view
+    /// before; only at a gap is the time up to the gap booked.
+    #[inline]
+    pub(crate) fn see(&mut self, index: usize) {
+        let (now, last) = (self.now_index(), self.last(index));
+        if last == now {
+            return;
+        }
+        if last + 1 != now {
+            self.book(index);
+            self.records[index].since = now;
+        }
+        self.sightings[index] = now | self.sightings[index] & UNSETTLED;
+        if self.candidates[index] {
+            self.count_moved(last, now);
+        }
+    }
+
+    /// The reading that last saw the cell.
+    #[inline]
+    fn last(&self, index: usize) -> ReadingIndex {
+        self.sightings[index] & !UNSETTLED
+    }
+
+    /// Marks a cell as simply free, or as one to look at closer.
+    #[inline]
+    pub(crate) fn set_settled(&mut self, index: usize, is_settled: bool) {
+        let last = self.last(index);
+        self.sightings[index] = if is_settled { last } else { last | UNSETTLED };
+    }
+
+    /// The cells of one row from `start` to `end` (places in row-major order) were seen through in
+    /// the open reading. Where they are settled, and were in view before, one number per cell
+    /// changes; the others are listed in `closer`. Most of a scan is of the first kind, so it goes
+    /// block by block, without a branch per cell.
+    #[inline]
+    pub(crate) fn see_run(&mut self, start: usize, end: usize, closer: &mut Vec<u32>) {
+        let now = self.now_index();
+        let mut again = 0;
+        let mut block_start = start;
+        for block in self.sightings[start..end].chunks_mut(BLOCK) {
+            // No early exit: the comparison of a whole block vectorises.
+            if block.len() == BLOCK && block.iter().fold(true, |all, &last| all & (last == now - 1)) {
+                block.fill(now);
+                again += BLOCK as u32;
+            } else {
+                for (offset, last) in block.iter_mut().enumerate() {
+                    if *last == now - 1 {
+                        *last = now;
+                        again += 1;
+                    } else if *last != now {
+                        closer.push((block_start + offset) as u32);
+                    }
+                }
+            }
+            block_start += BLOCK;
+        }
+        // A settled cell is free, and a free cell is a candidate.
+        let newest = self.last_seen_counts.len() - 1;
+        self.last_seen_counts[newest] += again;
+        self.last_seen_counts[newest - 1] -= again;
+    }
+
+    /// The cell takes another state. `since` is the reading in which the new state was first
+    /// seen, and `in_view` says whether the old one was still seen in the reading before that:
+    /// then the change happened in view, else it was found after a gap.
+    pub(crate) fn turn(&mut self, index: usize, after: CellState, since: ReadingIndex, in_view: bool) {
+        let (before, last) = (self.state(index), self.last(index));
+        let record = &mut self.records[index];
+        if before != CellState::Unknown && record.first != NEVER {
+            if record.in_view == [0; 2] && record.after_gap == [0; 2] {
+                self.changed.push(Changed { index: index as u32, rate_of: NEVER, rate: 0.0 });
+            }
+            // The time since the new state was first seen belongs to the new state.
+            let until = since.clamp(record.since, last.max(record.since));
+            record.watched[slot(before)] += self.times[until as usize] - self.times[record.since as usize];
+            record.since = until;
+            let event = slot(before); // free → blocked is a block event, blocked → free a free event
+            if in_view { record.in_view[event] += 1 } else { record.after_gap[event] += 1 }
+        }
+        let cell = self.frame().cell(index);
+        self.transitions.push(Transition { cell, before, after });
+        self.states.cells_mut()[index] = after;
+        if after == CellState::Blocked {
+            self.set_settled(index, false);
+        }
+        self.see(index);
+        self.judge_candidate(index);
+        for neighbour in cell.neighbours4() {
+            if let Some(neighbour) = self.frame().index(neighbour) {
+                self.judge_candidate(neighbour);
+            }
+        }
+    }
+
+    /// Adds the time watched without a gap to the state's account.
+    fn book(&mut self, index: usize) {
+        let (state, last) = (self.state(index), self.last(index));
+        let record = &mut self.records[index];
+        if record.first == NEVER {
+            record.first = (self.times.len() - 1) as ReadingIndex;
+        } else {
+            record.watched[slot(state)] += self.times[last as usize] - self.times[record.since as usize];
+        }
+    }
+
+    fn count_moved(&mut self, from: ReadingIndex, to: ReadingIndex) {
+        self.last_seen_counts[(from - self.oldest) as usize] -= 1;
+        self.last_seen_counts[(to - self.oldest) as usize] += 1;
+    }
+
+    /// A cell is a candidate when it is free, or touches a free cell by a side: a frontier cell or
+    /// a surface. The inside of a wall never is.
+    fn judge_candidate(&mut self, index: usize) {
+        let frame = self.states.frame();
+        let is_free = |cell: Cell| self.states.get(cell) == Some(&CellState::Free);
+        let cell = frame.cell(index);
+        let is = is_free(cell) || cell.neighbours4().into_iter().any(is_free);
+        if is == self.candidates[index] {
+            return;
+        }
+        self.candidates[index] = is;
+        // A cell seen before every reading that still counts cannot lie before `oldest`: candidates
+        // hold `oldest` back, and a cell that becomes one again is counted where it was last seen.
+        let last = self.last(index);
+        while last < self.oldest {
+            self.last_seen_counts.push_front(0);
+            self.oldest -= 1;
+        }
+        let count = &mut self.last_seen_counts[(last - self.oldest) as usize];
+        if is { *count += 1 } else { *count -= 1 }
+    }
+
+    /// The feature r of section 4: the longest time since a candidate was seen. Forgets readings
+    /// that no candidate was last seen in.
+    pub(crate) fn max_recency(&mut self) -> f64 {
+        while self.last_seen_counts.len() > 2 && self.last_seen_counts[0] == 0 {
+            self.last_seen_counts.pop_front();
+            self.oldest += 1;
+        }
+        let oldest = self.last_seen_counts.iter().position(|&count| count > 0);
+        oldest.map_or(0.0, |offset| self.now() - self.times[self.oldest as usize + offset])
+    }
+
+    /// The feature p of section 4: the expected number of cells that changed since they were
+    /// seen. Costs time in proportion to the cells that ever changed.
+    pub(crate) fn sum_change_probability(&mut self) -> f64 {
+        let mut sum = 0.0;
+        for position in 0..self.changed.len() {
+            let Changed { index, rate_of, mut rate } = self.changed[position];
+            let last = self.last(index as usize);
+            if last == self.now_index() {
+                continue; // in view: nothing can have changed unseen
+            }
+            if rate_of != last {
+                rate = self.estimator.rate(&self.statistics(index as usize));
+                self.changed[position] = Changed { index, rate_of: last, rate };
+            }
+            sum += change_probability(self.now() - self.times[last as usize], rate);
+        }
+        sum
+    }
+
+    /// The places of the cells that ever changed, in the order of their first change.
+    pub(crate) fn changed(&self) -> impl Iterator<Item = usize> {
+        self.changed.iter().map(|changed| changed.index as usize)
+    }
+
+    pub(crate) fn estimator(&self) -> Estimator {
+        self.estimator
+    }
+
+    pub(crate) fn last_seen(&self, index: usize) -> f64 {
+        self.times[self.last(index) as usize]
+    }
+
+    pub(crate) fn ever_seen(&self, index: usize) -> bool {
+        self.records[index].first != NEVER
+    }
+
+    pub(crate) fn statistics(&self, index: usize) -> CellStatistics {
+        let record = &self.records[index];
+        if record.first == NEVER {
+            return CellStatistics::default();
+        }
+        let (first_seen, last_seen) = (self.times[record.first as usize], self.last_seen(index));
+        let mut watched = record.watched;
+        watched[slot(self.state(index))] += last_seen - self.times[record.since as usize];
+        let [watched_free, watched_blocked] = watched;
+        CellStatistics {
+            first_seen,
+            last_seen,
+            unobserved: (last_seen - first_seen - watched_free - watched_blocked).max(0.0),
+            watched_free,
+            watched_blocked,
+            block_events: record.in_view[0],
+            free_events: record.in_view[1],
+            block_events_after_gap: record.after_gap[0],
+            free_events_after_gap: record.after_gap[1],
+        }
+    }
+}

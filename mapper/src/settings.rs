@@ -1,0 +1,132 @@
+use crate::Estimator;
+
+/// How evidence becomes a map.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OccupancyModel {
+    /// Surfaces are remembered to a fraction of a cell, and a cell is cleared only by beams that
+    /// pass through the surface it holds: static walls never change.
+    #[default]
+    Steady,
+    /// Every beam counts on every cell it crosses, and a cell flips at even odds. Walls flicker, as
+    /// in the paper's figure 5.
+    Naive,
+}
+
+impl OccupancyModel {
+    /// The name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Steady => "steady",
+            Self::Naive => "naive",
+        }
+    }
+}
+
+/// Settings of a [`Mapper`](crate::Mapper).
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MapperSettings {
+    /// How rates are estimated.
+    pub estimator: Estimator,
+    /// How evidence becomes a map.
+    pub occupancy: OccupancyModel,
+    /// Settings of the steady occupancy model.
+    pub steady: SteadySettings,
+}
+
+/// Settings of the steady occupancy model.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SteadySettings {
+    /// The standard deviation of the laser's range noise, m. Surfaces are told apart at three of
+    /// these.
+    pub range_noise_std_m: f64,
+    /// A hit counts for the cell this far behind the surface, along its normal, m: a surface on
+    /// the border of two cells belongs to the solid one.
+    pub surface_depth_m: f64,
+    /// Hits nearer than this to each other, m, are one surface: what lies on it is not seen through.
+    pub join_m: f64,
+    /// Where neighbouring beams are farther apart than this, m, the space between them is not
+    /// taken for seen.
+    pub max_gap_m: f64,
+    /// Scans with a hit until a free or unknown cell is blocked.
+    pub hits_to_block: u8,
+    /// Scans that see through an unknown cell until it is free.
+    pub misses_to_discover: u8,
+    /// The same for an unknown cell beside a surface, which can still turn out to be part of it.
+    pub misses_to_discover_beside: u8,
+    /// Scans that see through a blocked cell until it is free, when it was just blocked.
+    pub misses_to_free_fresh: u8,
+    /// The same for a cell that was hit often.
+    pub misses_to_free: u8,
+    /// Hits after which a surface counts as standing: noise around it is taken for the surface
+    /// itself, not for something new.
+    pub hits_to_stand: u16,
+}
+
+impl Default for SteadySettings {
+    fn default() -> Self {
+        Self {
+            range_noise_std_m: 0.01,
+            surface_depth_m: 0.02,
+            join_m: 1.0,
+            max_gap_m: 0.1,
+            hits_to_block: 2,
+            misses_to_discover: 3,
+            misses_to_discover_beside: 20,
+            misses_to_free_fresh: 4,
+            misses_to_free: 10,
+            hits_to_stand: 20,
+        }
+    }
+}
+
+/// A setting that contradicts itself or another.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("mapper setting `{key}` must be {expected}, not {found}")]
+pub struct SettingsError {
+    /// The key.
+    pub key: &'static str,
+    /// What would be right.
+    pub expected: &'static str,
+    /// What was found.
+    pub found: String,
+}
+
+impl SteadySettings {
+    pub(crate) fn check(&self) -> Result<(), SettingsError> {
+        let error = |key, expected, found: String| Err(SettingsError { key, expected, found });
+        let lengths = [
+            ("steady.range_noise_std_m", self.range_noise_std_m),
+            ("steady.surface_depth_m", self.surface_depth_m),
+            ("steady.join_m", self.join_m),
+            ("steady.max_gap_m", self.max_gap_m),
+        ];
+        for (key, length_m) in lengths {
+            if !(0.0..=10.0).contains(&length_m) {
+                return error(key, "from 0 to 10 m", length_m.to_string());
+            }
+        }
+        let counts = [
+            ("steady.hits_to_block", self.hits_to_block),
+            ("steady.misses_to_discover", self.misses_to_discover),
+            ("steady.misses_to_discover_beside", self.misses_to_discover_beside),
+            ("steady.misses_to_free_fresh", self.misses_to_free_fresh),
+            ("steady.misses_to_free", self.misses_to_free),
+        ];
+        for (key, count) in counts {
+            if !(1..=100).contains(&count) {
+                return error(key, "from 1 to 100", count.to_string());
+            }
+        }
+        if self.misses_to_free_fresh > self.misses_to_free {
+            return error(
+                "steady.misses_to_free_fresh",
+                "at most steady.misses_to_free",
+                self.misses_to_free_fresh.to_string(),
+            );
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,154 @@
+//! Rigid bodies and contacts: the only file that knows rapier.
+
+use super::report::Body;
+use super::shape::Rectangle;
+use super::spec::RobotSpec;
+use geometry::{Twist, heading_rad, rotation};
+use nalgebra::{Isometry2, Point2, Translation2, Vector2};
+use rapier2d::prelude as rapier;
+
+/// Bodies farther apart than this no longer touch, m. A contact that rapier keeps open flickers by
+/// less.
+const PART_M: f32 = 0.001;
+
+/// All bodies: walls and obstacles that stand, robots that drive.
+pub(super) struct Bodies {
+    world: rapier::PhysicsWorld,
+    robots: Vec<Robot>,
+}
+
+struct Robot {
+    body: rapier::RigidBodyHandle,
+    collider: rapier::ColliderHandle,
+    /// The heading of the wheels half way through the last step.
+    forward: Vector2<f64>,
+}
+
+/// An obstacle's body, to take it away again.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Handle(rapier::ColliderHandle);
+
+impl Bodies {
+    /// No bodies yet; time goes in steps of `step_s`.
+    pub(super) fn new(step_s: f64) -> Self {
+        let mut world = rapier::PhysicsWorld { gravity: rapier::Vector::ZERO, ..Default::default() };
+        world.integration_parameters.dt = step_s as f32;
+        // Distances of contacts are read at every step, so they must not be stale.
+        world.integration_parameters.contact_recycling = false;
+        Self { world, robots: Vec::new() }
+    }
+
+    /// Adds a body that stands still.
+    pub(super) fn add_box(&mut self, body: Body, shape: &Rectangle) -> Handle {
+        let collider = rapier::ColliderBuilder::cuboid(shape.half_m.x as f32, shape.half_m.y as f32)
+            .position(to_rapier(&shape.pose))
+            .friction(0.0)
+            .user_data(pack(body));
+        Handle(self.world.insert_collider(collider, None))
+    }
+
+    /// Takes such a body away.
+    pub(super) fn remove_box(&mut self, handle: Handle) {
+        self.world.remove_collider(handle.0);
+    }
+
+    /// Adds a robot; robots are numbered in the order in which they are added.
+    pub(super) fn add_robot(&mut self, spec: &RobotSpec, step_s: f64) {
+        // Friction 0: a round robot slides along a wall, as one with a bumper ring does.
+        let collider = rapier::ColliderBuilder::ball(spec.radius_m as f32)
+            .friction(0.0)
+            .user_data(pack(Body::Robot(self.robots.len())));
+        // Contacts are foreseen over a step's way, so that a fast robot does not enter a wall.
+        let body = rapier::RigidBodyBuilder::dynamic()
+            .pose(to_rapier(&spec.pose))
+            .can_sleep(false)
+            .soft_ccd_prediction((2.0 * spec.drive.max_linear_mps * step_s) as f32);
+        let (body, collider) = self.world.insert(body, collider);
+        self.robots.push(Robot { body, collider, forward: Vector2::x() });
+    }
+
+    /// Sets a robot's velocity for the next step: along the heading half way through it, so that
+    /// steps make up an arc.
+    pub(super) fn set_velocity(&mut self, robot: usize, twist: &Twist, step_s: f64) {
+        let own = &mut self.robots[robot];
+        let body = &mut self.world.bodies[own.body];
+        let heading = f64::from(body.rotation().angle()) + twist.angular_radps * step_s / 2.0;
+        own.forward = rotation(heading) * Vector2::x();
+        let velocity = own.forward * twist.linear_mps;
+        body.set_linvel(rapier::Vector::new(velocity.x as f32, velocity.y as f32), true);
+        body.set_angvel(twist.angular_radps as f32, true);
+    }
+
+    /// Lets one step pass.
+    pub(super) fn step(&mut self) {
+        self.world.step();
+    }
+
+    /// Where a robot is.
+    pub(super) fn pose(&self, robot: usize) -> Isometry2<f64> {
+        let pose = self.world.bodies[self.robots[robot].body].position();
+        let at = Translation2::new(f64::from(pose.translation.x), f64::from(pose.translation.y));
+        Isometry2::from_parts(at, rotation(f64::from(pose.rotation.angle())))
+    }
+
+    /// The velocity that the contacts left a robot in the last step.
+    pub(super) fn velocity(&self, robot: usize) -> Twist {
+        let own = &self.robots[robot];
+        let body = &self.world.bodies[own.body];
+        let linear = Vector2::new(f64::from(body.linvel().x), f64::from(body.linvel().y));
+        Twist { linear_mps: linear.dot(&own.forward), angular_radps: f64::from(body.angvel()) }
+    }
+
+    /// Everything near a robot that it presses against (`true`) or has not yet parted from
+    /// (`false`).
+    pub(super) fn touches(&self, robot: usize) -> impl Iterator<Item = (Body, bool)> {
+        let own = self.robots[robot].collider;
+        self.world.narrow_phase.contact_pairs_with(own).filter_map(move |pair| {
+            let gap_m = pair.find_deepest_contact()?.1.dist;
+            let presses = pair.total_impulse_magnitude() > 0.0;
+            let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
+            let body = unpack(self.world.colliders[other].user_data);
+            (presses || gap_m < PART_M).then_some((body, presses))
+        })
+    }
+
+    /// The nearest body that a ray meets, m; the oracle for our own rays.
+    #[cfg(test)]
+    pub(super) fn ray_m(&self, from: &Point2<f64>, along: &Vector2<f64>, own: usize, max_m: f64) -> Option<f64> {
+        let filter = rapier::QueryFilter::default().exclude_rigid_body(self.robots[own].body);
+        let world = &self.world;
+        let query = world.broad_phase.as_query_pipeline(
+            world.narrow_phase.query_dispatcher(),
+            &world.bodies,
+            &world.colliders,
+            filter,
+        );
+        let origin = rapier::Vector::new(from.x as f32, from.y as f32);
+        let ray = rapier::Ray::new(origin, rapier::Vector::new(along.x as f32, along.y as f32));
+        query.cast_ray(&ray, max_m as f32, true).map(|(_, range_m)| f64::from(range_m))
+    }
+}
+
+fn to_rapier(pose: &Isometry2<f64>) -> rapier::Pose {
+    let at = pose.translation.vector;
+    rapier::Pose::new(rapier::Vector::new(at.x as f32, at.y as f32), heading_rad(pose) as f32)
+}
+
+/// A body's name in the 128 bits that rapier keeps for us.
+fn pack(body: Body) -> u128 {
+    let (kind, index) = match body {
+        Body::Wall(index) => (0, index),
+        Body::Obstacle(index) => (1, index),
+        Body::Robot(index) => (2, index),
+    };
+    kind << 64 | index as u128
+}
+
+fn unpack(data: u128) -> Body {
+    let index = data as u64 as usize;
+    match data >> 64 {
+        0 => Body::Wall(index),
+        1 => Body::Obstacle(index),
+        _ => Body::Robot(index),
+    }
+}

@@ -1,0 +1,79 @@
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+/// What a stream of chance is for. One more draw in one stream never changes another.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Purpose {
+    /// The noise of ranges.
+    Laser = 0,
+    /// The drift of odometry.
+    Odometry = 1,
+}
+
+/// Standard normal numbers from a stream of their own, the same on every machine.
+#[derive(Clone, Debug)]
+pub(super) struct Gaussian {
+    stream: ChaCha8Rng,
+    /// The polar method makes numbers in pairs.
+    spare: Option<f64>,
+}
+
+impl Gaussian {
+    /// The stream of a robot (by its place in the world) for one purpose.
+    pub(super) fn new(seed: u64, purpose: Purpose, robot: usize) -> Self {
+        let mut stream = ChaCha8Rng::seed_from_u64(seed);
+        stream.set_stream((purpose as u64) << 32 | robot as u64);
+        Self { stream, spare: None }
+    }
+
+    /// The next number, by Marsaglia's polar method (1964).
+    pub(super) fn draw(&mut self) -> f64 {
+        if let Some(spare) = self.spare.take() {
+            return spare;
+        }
+        loop {
+            let (u, v) = (self.uniform(), self.uniform());
+            let square = u * u + v * v;
+            if square > 0.0 && square < 1.0 {
+                let scale = (-2.0 * libm::log(square) / square).sqrt();
+                self.spare = Some(v * scale);
+                return u * scale;
+            }
+        }
+    }
+
+    /// Uniform in [−1, 1), on a grid of 2⁻⁵².
+    fn uniform(&mut self) -> f64 {
+        (self.stream.next_u64() >> 11) as f64 * 2.0_f64.powi(-52) - 1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn draws_are_standard_normal() {
+        let mut gaussian = Gaussian::new(1, Purpose::Laser, 0);
+        let draws: Vec<f64> = (0..100_000).map(|_| gaussian.draw()).collect();
+        let moment = |power: i32| draws.iter().map(|draw| draw.powi(power)).sum::<f64>() / draws.len() as f64;
+        // Four standard errors of each moment.
+        assert!(moment(1).abs() < 4.0 * 0.0032);
+        assert!((moment(2) - 1.0).abs() < 4.0 * 0.0045);
+        assert!((moment(4) - 3.0).abs() < 4.0 * 0.031);
+    }
+
+    #[test]
+    fn streams_differ_by_seed_purpose_and_robot() {
+        let first = |seed, purpose, robot| Gaussian::new(seed, purpose, robot).draw();
+        let draws = [
+            first(1, Purpose::Laser, 0),
+            first(2, Purpose::Laser, 0),
+            first(1, Purpose::Odometry, 0),
+            first(1, Purpose::Laser, 1),
+        ];
+        assert!((0..4).all(|a| (0..a).all(|b| draws[a] != draws[b])));
+        assert_eq!(draws[0], first(1, Purpose::Laser, 0));
+    }
+}

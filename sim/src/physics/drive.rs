@@ -1,0 +1,59 @@
+use super::spec::DriveLimits;
+use geometry::Twist;
+
+/// A solved velocity this far off the wanted one means that something is in the way, m/s or rad/s:
+/// well above the rounding of the physics.
+const HELD_BACK: f64 = 1e-4;
+
+/// A diff drive's motors: they follow a command as fast as they may, and never faster.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Drive {
+    limits: DriveLimits,
+    /// The present velocity.
+    velocity: Twist,
+}
+
+impl Drive {
+    /// Standing still.
+    pub(super) fn new(limits: DriveLimits) -> Self {
+        Self { limits, velocity: Twist::STOP }
+    }
+
+    /// The velocity of the next physics step towards `wanted`. Not a number stops the robot.
+    pub(super) fn step(&mut self, wanted: &Twist, step_s: f64) -> Twist {
+        let limits = &self.limits;
+        let wanted = if wanted.linear_mps.is_nan() || wanted.angular_radps.is_nan() { &Twist::STOP } else { wanted };
+        let follow = |now: f64, wanted: f64, fastest: f64, gain: f64| {
+            let most = gain * step_s;
+            now + (wanted.clamp(-fastest, fastest) - now).clamp(-most, most)
+        };
+        self.velocity = Twist {
+            linear_mps: follow(
+                self.velocity.linear_mps,
+                wanted.linear_mps,
+                limits.max_linear_mps,
+                limits.max_linear_acceleration_mps2,
+            ),
+            angular_radps: follow(
+                self.velocity.angular_radps,
+                wanted.angular_radps,
+                limits.max_angular_radps,
+                limits.max_angular_acceleration_radps2,
+            ),
+        };
+        self.velocity
+    }
+
+    /// Takes over the velocity that the contacts left, so that a robot held by a wall has to speed
+    /// up again when it comes free.
+    pub(super) fn settle(&mut self, solved: &Twist) -> Twist {
+        let settle = |own: &mut f64, solved: f64, fastest: f64| {
+            if (*own - solved).abs() > HELD_BACK {
+                *own = solved.clamp(-fastest, fastest);
+            }
+        };
+        settle(&mut self.velocity.linear_mps, solved.linear_mps, self.limits.max_linear_mps);
+        settle(&mut self.velocity.angular_radps, solved.angular_radps, self.limits.max_angular_radps);
+        self.velocity
+    }
+}

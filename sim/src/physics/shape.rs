@@ -1,0 +1,158 @@
+use geometry::rotation;
+use nalgebra::{Isometry2, Point2, Rotation2, Translation2, UnitComplex, Vector2};
+
+/// Bodies closer than this touch, but do not overlap, m. Far above rounding, far below anything
+/// that a laser or a map can tell.
+pub(crate) const TOUCH_M: f64 = 1e-6;
+
+/// A rectangle that lies anywhere: a wall or a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// The middle, and the direction of the first side, m and rad.
+    pub pose: Isometry2<f64>,
+    /// Half the length of each side, m.
+    pub half_m: Vector2<f64>,
+}
+
+impl Rectangle {
+    /// The upright rectangle between two opposite corners (m).
+    pub fn between(min: Point2<f64>, max: Point2<f64>) -> Self {
+        let middle = nalgebra::center(&min, &max);
+        Self { pose: Isometry2::from_parts(middle.into(), UnitComplex::identity()), half_m: (max - min) / 2.0 }
+    }
+
+    /// The rectangle of `thickness_m` whose middle line runs from `from` to `to` (m), and ends
+    /// there.
+    pub fn along(from: Point2<f64>, to: Point2<f64>, thickness_m: f64) -> Self {
+        let (along, middle) = (to - from, nalgebra::center(&from, &to));
+        let length_m = along.norm();
+        // Not through an angle: an upright wall stays exactly upright.
+        let turn = UnitComplex::from_cos_sin_unchecked(along.x / length_m, along.y / length_m);
+        let half_m = Vector2::new(length_m, thickness_m) / 2.0;
+        Self { pose: Isometry2::from_parts(middle.into(), turn), half_m }
+    }
+
+    /// The rectangle with its middle at `center` and sides of `size` (m), turned by `heading_rad`.
+    pub fn around(center: Point2<f64>, size: Vector2<f64>, heading_rad: f64) -> Self {
+        Self { pose: Isometry2::from_parts(center.into(), rotation(heading_rad)), half_m: size / 2.0 }
+    }
+
+    /// The corners, counter-clockwise, m.
+    pub fn corners(&self) -> [Point2<f64>; 4] {
+        let Vector2 { x, y, .. } = self.half_m;
+        [(-x, -y), (x, -y), (x, y), (-x, y)].map(|(x, y)| self.pose * Point2::new(x, y))
+    }
+
+    /// How far `point` (m) lies outside, m; 0 inside.
+    pub fn distance_m(&self, point: &Point2<f64>) -> f64 {
+        let local = self.pose.inverse_transform_point(point);
+        let outside = |x: f64, half_m: f64| (x.abs() - half_m).max(0.0);
+        Vector2::new(outside(local.x, self.half_m.x), outside(local.y, self.half_m.y)).norm()
+    }
+
+    /// How far away a ray from `origin` along the unit vector `direction` meets the rectangle, m;
+    /// 0 from inside, `None` if it does not.
+    pub fn ray_m(&self, origin: &Point2<f64>, direction: &Vector2<f64>) -> Option<f64> {
+        let from = self.pose.inverse_transform_point(origin);
+        let along = self.pose.inverse_transform_vector(direction);
+        let (mut enter_m, mut leave_m) = (0.0_f64, f64::INFINITY);
+        for axis in 0..2 {
+            if along[axis] == 0.0 {
+                if from[axis].abs() > self.half_m[axis] {
+                    return None;
+                }
+                continue;
+            }
+            let ends = [-self.half_m[axis], self.half_m[axis]].map(|side| (side - from[axis]) / along[axis]);
+            enter_m = enter_m.max(ends[0].min(ends[1]));
+            leave_m = leave_m.min(ends[0].max(ends[1]));
+        }
+        (enter_m <= leave_m).then_some(enter_m)
+    }
+
+    /// How far the segment from `a` to `b` (m) keeps from the rectangle, m; 0 if it enters.
+    pub(crate) fn segment_distance_m(&self, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
+        let corners = self.corners();
+        let sides = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
+        if sides.into_iter().any(|(p, q)| crosses(a, b, &p, &q)) {
+            return 0.0;
+        }
+        let ends = self.distance_m(a).min(self.distance_m(b));
+        corners.iter().fold(ends, |least, corner| least.min(point_segment_m(corner, a, b)))
+    }
+
+    /// Whether two rectangles overlap by more than a touch, by separating axes.
+    pub(crate) fn overlaps(&self, other: &Self) -> bool {
+        let (ours, theirs) = (self.corners(), other.corners());
+        let axes = [self, other].map(|r| [r.pose.rotation * Vector2::x(), r.pose.rotation * Vector2::y()]);
+        axes.iter().flatten().all(|axis| {
+            let span = |corners: &[Point2<f64>; 4]| {
+                let along = corners.map(|corner| corner.coords.dot(axis));
+                (along.into_iter().fold(f64::MAX, f64::min), along.into_iter().fold(f64::MIN, f64::max))
+            };
+            let ((our_low, our_high), (their_low, their_high)) = (span(&ours), span(&theirs));
+            our_low < their_high - TOUCH_M && their_low < our_high - TOUCH_M
+        })
+    }
+
+    /// The same rectangle after the world has turned about `middle` (m).
+    pub(crate) fn turned(&self, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Self {
+        Self { pose: turned(&self.pose, turn, middle), half_m: self.half_m }
+    }
+
+    /// The corners of the upright box around it, m.
+    pub(crate) fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
+        let turn = Rotation2::from(self.pose.rotation).into_inner().abs();
+        let (middle, reach) = (Point2::from(self.pose.translation.vector), turn * self.half_m);
+        (middle - reach, middle + reach)
+    }
+}
+
+/// The same pose after the world has turned about `middle` (m).
+pub(crate) fn turned(pose: &Isometry2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Isometry2<f64> {
+    let at = turned_point(&pose.translation.vector.into(), turn, middle);
+    Isometry2::from_parts(Translation2::from(at), turn * pose.rotation)
+}
+
+/// The same point after the world has turned about `middle` (m).
+pub(crate) fn turned_point(point: &Point2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Point2<f64> {
+    middle + turn * (point - middle)
+}
+
+/// The distance from a point to a segment, m.
+pub(crate) fn point_segment_m(point: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
+    let (along, to) = (b - a, point - a);
+    let length2 = along.norm_squared();
+    let share = if length2 > 0.0 { (to.dot(&along) / length2).clamp(0.0, 1.0) } else { 0.0 };
+    (to - along * share).norm()
+}
+
+/// Whether two segments cross each other properly.
+fn crosses(a: &Point2<f64>, b: &Point2<f64>, p: &Point2<f64>, q: &Point2<f64>) -> bool {
+    let side = |from: &Point2<f64>, to: &Point2<f64>, point: &Point2<f64>| (to - from).perp(&(point - from));
+    side(a, b, p) * side(a, b, q) < 0.0 && side(p, q, a) * side(p, q, b) < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn touching_is_not_overlapping() {
+        let left = Rectangle::between(Point2::new(0.0, 0.0), Point2::new(1.0, 1.0));
+        let right = Rectangle::between(Point2::new(1.0, 0.0), Point2::new(2.0, 1.0));
+        assert!(!left.overlaps(&right));
+        assert!(left.overlaps(&Rectangle::around(Point2::new(1.2, 0.5), Vector2::new(0.5, 0.5), 0.7)));
+    }
+
+    #[test]
+    fn distances_are_to_the_border() {
+        let wall = Rectangle::along(Point2::new(0.0, 0.0), Point2::new(0.0, 2.0), 0.1);
+        assert!((wall.distance_m(&Point2::new(1.05, 1.0)) - 1.0).abs() < 1e-12);
+        assert_eq!(wall.distance_m(&Point2::new(0.01, 1.0)), 0.0);
+        let (a, b) = (Point2::new(-1.0, 1.0), Point2::new(1.0, 1.0));
+        assert_eq!(wall.segment_distance_m(&a, &b), 0.0);
+        let (a, b) = (Point2::new(-1.0, 2.5), Point2::new(1.0, 2.5));
+        assert!((wall.segment_distance_m(&a, &b) - 0.5).abs() < 1e-12);
+    }
+}

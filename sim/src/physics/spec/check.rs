@@ -1,0 +1,271 @@
+//! From the file as written to a world that makes sense.
+
+use super::file::{MapFile, Number, ObstacleFile, Pair, RobotFile, WallFile, WorldFile};
+use super::numbers::Table;
+use super::robot::robot;
+use super::{Behaviour, ObstacleSpec, RobotSpec, WorldSpec};
+use crate::error::{Source, WorldError};
+use crate::physics::shape::{Rectangle, TOUCH_M, turned, turned_point};
+use geometry::{GridFrame, rotation};
+use nalgebra::Point2;
+use serde_spanned::Spanned;
+use std::ops::Range;
+
+/// More cells than this are refused before anything is allocated for them.
+const MAX_CELLS: f64 = 4e6;
+/// The latest time that a file can name, s: some thirty years.
+const MAX_TIME_S: f64 = 1e9;
+
+/// Something solid, and where the file speaks of it.
+pub(super) struct Solid {
+    pub(super) shape: Rectangle,
+    pub(super) span: Range<usize>,
+}
+
+pub(super) fn check(source: &Source<'_>, file: WorldFile) -> Result<WorldSpec, WorldError> {
+    let name = Table { source, path: "" }.name(&file.name)?;
+    let (size, cell_m, turn_rad) = map(source, &file.map)?;
+    let physics = Table { source, path: "physics" };
+    let step_s = physics.number_or("step_s", &file.physics.step_s, 0.05, 0.001..=0.1)?;
+    let mut solids = Vec::new();
+    for wall in &file.walls {
+        solids.push(Solid { shape: self::wall(source, wall, &size)?, span: wall.span() });
+    }
+    let walls = solids.iter().map(|wall| wall.shape).collect::<Vec<_>>();
+    let mut obstacles = Vec::new();
+    for file in &file.obstacles {
+        let obstacle = obstacle(source, file, &size, &solids[..walls.len()])?;
+        if obstacle.appears_s.is_none() {
+            solids.push(Solid { shape: obstacle.shape, span: file.span() });
+        }
+        obstacles.push(obstacle);
+    }
+    unique(source, "obstacle", file.obstacles.iter().map(|obstacle| &obstacle.get_ref().name))?;
+    unique(source, "robot", file.robots.iter().map(|robot| &robot.get_ref().name))?;
+    let mut robots = Vec::new();
+    for file in &file.robots {
+        robots.push(robot(source, file.get_ref(), &size, step_s, &solids)?);
+    }
+    apart(source, &file.robots, &robots)?;
+    let driven = driven(source, &file, &robots)?;
+
+    let mut spec = WorldSpec {
+        name,
+        description: file.description,
+        frame: covering(&size, cell_m, turn_rad).ok_or_else(|| too_many_cells(source, &file.map))?,
+        step_s,
+        walls,
+        obstacles,
+        robots,
+        driven,
+    };
+    turn(&mut spec, turn_rad, &(size / 2.0));
+    Ok(spec)
+}
+
+fn map(source: &Source<'_>, file: &MapFile) -> Result<(Point2<f64>, f64, f64), WorldError> {
+    let table = Table { source, path: "map" };
+    let size = table.pair("size_m", &file.size_m, 0.1..=1000.0)?;
+    let cell_m = table.number("cell_m", &file.cell_m, 0.005..=10.0)?;
+    let turn_deg = table.number_or("turn_deg", &file.turn_deg, 0.0, -360.0..=360.0)?;
+    Ok((size, cell_m, turn_deg.to_radians()))
+}
+
+/// The cells that cover the map after its turn; `None` if they are too many.
+fn covering(size: &Point2<f64>, cell_m: f64, turn_rad: f64) -> Option<GridFrame> {
+    let half = size.coords / 2.0;
+    let (low, high) = Rectangle::around(size / 2.0, half * 2.0, turn_rad).bounds();
+    let extent = high - low;
+    if (extent.x / cell_m + 1.0) * (extent.y / cell_m + 1.0) > MAX_CELLS {
+        return None;
+    }
+    // Corners that the turn left where they were stay exactly there.
+    let exact = |value: f64, plain: f64| if (value - plain).abs() < TOUCH_M { plain } else { value };
+    let origin = Point2::new(exact(low.x, 0.0), exact(low.y, 0.0));
+    GridFrame::covering(origin, exact(extent.x, size.x), exact(extent.y, size.y), cell_m)
+}
+
+fn too_many_cells(source: &Source<'_>, map: &MapFile) -> WorldError {
+    source.error(
+        "the map has too many cells",
+        (map.cell_m.span(), "cells of this size"),
+        &[(map.size_m.span(), "on a map of this size")],
+        "4 million cells are the most: make the cells larger or the map smaller",
+    )
+}
+
+fn wall(source: &Source<'_>, file: &Spanned<WallFile>, size: &Point2<f64>) -> Result<Rectangle, WorldError> {
+    let table = Table { source, path: "wall" };
+    let wall = match file.get_ref() {
+        WallFile { from_m: Some(from), to_m: Some(to), thickness_m: Some(thickness), min_m: None, max_m: None } => {
+            let thickness_m = table.number("thickness_m", thickness, 0.001..=100.0)?;
+            let (a, b) = (table.point("from_m", from, size)?, table.point("to_m", to, size)?);
+            if (b - a).norm() < 0.001 {
+                let marks = [(from.span(), "from here")];
+                let help = "the two points must be at least 0.001 m apart";
+                return Err(source.error("a wall has no length", (to.span(), "to here"), &marks, help));
+            }
+            Rectangle::along(a, b, thickness_m)
+        }
+        WallFile { min_m: Some(min), max_m: Some(max), from_m: None, to_m: None, thickness_m: None } => {
+            upright(&table, min, max, size)?
+        }
+        _ => {
+            let help = "give either `from_m`, `to_m` and `thickness_m`, or `min_m` and `max_m`";
+            return Err(source.error("a wall needs one shape", (file.span(), "this wall"), &[], help));
+        }
+    };
+    inside(source, "a wall reaches out of the map", file.span(), &wall, size)?;
+    Ok(wall)
+}
+
+/// The rectangle between two corners.
+fn upright(
+    table: &Table<'_>,
+    min: &Pair,
+    max: &Pair,
+    size: &Point2<f64>,
+) -> Result<Rectangle, WorldError> {
+    let (low, high) = (table.point("min_m", min, size)?, table.point("max_m", max, size)?);
+    if (high - low).min() < 0.001 {
+        let what = format!("`{}.max_m` is not above and to the right of `min_m`", table.path);
+        let help = "`min_m` is the lower left corner, `max_m` the upper right one, at least 0.001 m away";
+        return Err(table.source.error(&what, (max.span(), "upper right"), &[(min.span(), "lower left")], help));
+    }
+    Ok(Rectangle::between(low, high))
+}
+
+fn inside(
+    source: &Source<'_>,
+    what: &str,
+    span: Range<usize>,
+    shape: &Rectangle,
+    size: &Point2<f64>,
+) -> Result<(), WorldError> {
+    let (low, high) = shape.bounds();
+    if low.x >= -TOUCH_M && low.y >= -TOUCH_M && high.x <= size.x + TOUCH_M && high.y <= size.y + TOUCH_M {
+        return Ok(());
+    }
+    let help = format!(
+        "it spans [{:.3}, {:.3}] to [{:.3}, {:.3}], the map [0, 0] to [{}, {}]",
+        low.x, low.y, high.x, high.y, size.x, size.y
+    );
+    Err(source.error(what, (span, "this one"), &[], &help))
+}
+
+fn obstacle(
+    source: &Source<'_>,
+    file: &Spanned<ObstacleFile>,
+    size: &Point2<f64>,
+    walls: &[Solid],
+) -> Result<ObstacleSpec, WorldError> {
+    let table = Table { source, path: "obstacle" };
+    let span = file.get_ref().name.span();
+    let ObstacleFile { name, min_m, max_m, center_m, size_m, heading_deg, appears_s, disappears_s } = file.get_ref();
+    let name = table.name(name)?;
+    let shape = match (min_m, max_m, center_m, size_m) {
+        (Some(min), Some(max), None, None) if heading_deg.is_none() => upright(&table, min, max, size)?,
+        (None, None, Some(center), Some(sides)) => {
+            let center = table.point("center_m", center, size)?;
+            let sides = table.pair("size_m", sides, 0.001..=100.0)?;
+            let heading_deg = table.number_or("heading_deg", heading_deg, 0.0, -360.0..=360.0)?;
+            Rectangle::around(center, sides.coords, heading_deg.to_radians())
+        }
+        _ => {
+            let help = "give either `min_m` and `max_m`, or `center_m`, `size_m` and, if it is turned, `heading_deg`";
+            return Err(source.error("an obstacle needs one shape", (span, "this obstacle"), &[], help));
+        }
+    };
+    inside(source, &format!("the obstacle `{name}` reaches out of the map"), span.clone(), &shape, size)?;
+    if let Some(wall) = walls.iter().find(|wall| wall.shape.overlaps(&shape)) {
+        let what = format!("the obstacle `{name}` stands in a wall");
+        let marks = [(wall.span.clone(), "in this wall")];
+        return Err(source.error(&what, (span, "this obstacle"), &marks, "it may touch walls, but not overlap them"));
+    }
+    let time = |key: &str, value: &Option<Number>| {
+        value.as_ref().map(|value| table.number(key, value, 0.001..=MAX_TIME_S)).transpose()
+    };
+    let (appears, disappears) = (time("appears_s", appears_s)?, time("disappears_s", disappears_s)?);
+    if let (Some(from), Some(to), Some(marked)) = (appears, disappears, disappears_s)
+        && to <= from
+    {
+        let what = format!("the obstacle `{name}` disappears before it appears");
+        let help = format!("`disappears_s` must be later than `appears_s`, which is {from}");
+        return Err(source.error(&what, (marked.span(), "too early"), &[], &help));
+    }
+    Ok(ObstacleSpec { name, shape, appears_s: appears, disappears_s: disappears })
+}
+
+/// Refuses a name that two things of a kind share.
+fn unique<'a>(
+    source: &Source<'_>,
+    kind: &str,
+    names: impl Iterator<Item = &'a Spanned<String>>,
+) -> Result<(), WorldError> {
+    let mut seen = std::collections::BTreeMap::new();
+    for name in names {
+        if let Some(first) = seen.insert(name.get_ref(), name.span()) {
+            let what = format!("two {kind}s are called `{}`", name.get_ref());
+            let help = format!("every {kind} needs a name of its own");
+            return Err(source.error(&what, (name.span(), "again here"), &[(first, "first here")], &help));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses robots that start in each other.
+fn apart(source: &Source<'_>, files: &[Spanned<RobotFile>], robots: &[RobotSpec]) -> Result<(), WorldError> {
+    for (b, second) in robots.iter().enumerate() {
+        for (a, first) in robots[..b].iter().enumerate() {
+            let apart_m: f64 = (first.pose.translation.vector - second.pose.translation.vector).norm();
+            let needed_m = first.radius_m + second.radius_m;
+            if apart_m < needed_m - TOUCH_M {
+                let what = format!("the robots `{}` and `{}` overlap", first.name, second.name);
+                let marks = [(files[a].get_ref().pose_m.span(), "the other one")];
+                let help = format!("their middles must be {needed_m:.3} m apart or more, not {apart_m:.3} m");
+                let mark = (files[b].get_ref().pose_m.span(), "one stands here");
+                return Err(source.error(&what, mark, &marks, &help));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The place of the one driven robot.
+fn driven(source: &Source<'_>, file: &WorldFile, robots: &[RobotSpec]) -> Result<usize, WorldError> {
+    let driven: Vec<usize> = (0..robots.len()).filter(|&i| robots[i].behaviour == Behaviour::Driven).collect();
+    let kind = |i: usize| file.robots[i].get_ref().behaviour.get_ref().kind.span();
+    let help = "exactly one robot has `kind = \"driven\"`: the one that explores";
+    match driven[..] {
+        [one] => Ok(one),
+        [] => {
+            let mark = robots.first().map_or(file.name.span(), |_| kind(0));
+            Err(source.error("no robot is driven", (mark, "not driven"), &[], help))
+        }
+        [first, second, ..] => {
+            let marks = [(kind(first), "and so is this one")];
+            Err(source.error("more than one robot is driven", (kind(second), "driven"), &marks, help))
+        }
+    }
+}
+
+/// Turns the whole house about the middle of the map.
+fn turn(spec: &mut WorldSpec, turn_rad: f64, middle: &Point2<f64>) {
+    if turn_rad == 0.0 {
+        return;
+    }
+    let by = rotation(turn_rad);
+    for wall in &mut spec.walls {
+        *wall = wall.turned(&by, middle);
+    }
+    for obstacle in &mut spec.obstacles {
+        obstacle.shape = obstacle.shape.turned(&by, middle);
+    }
+    for robot in &mut spec.robots {
+        robot.pose = turned(&robot.pose, &by, middle);
+        if let Behaviour::WallPatrol(patrol) = &mut robot.behaviour {
+            patrol.from = turned_point(&patrol.from, &by, middle);
+            patrol.to = turned_point(&patrol.to, &by, middle);
+        }
+    }
+}

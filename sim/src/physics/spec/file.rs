@@ -1,0 +1,118 @@
+//! The world file as it is written: every key with its place in the text.
+
+use serde::Deserialize;
+use serde_spanned::Spanned;
+
+pub(super) type Number = Spanned<f64>;
+pub(super) type Pair = Spanned<[f64; 2]>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WorldFile {
+    pub(super) name: Spanned<String>,
+    #[serde(default)]
+    pub(super) description: String,
+    pub(super) map: MapFile,
+    #[serde(default)]
+    pub(super) physics: PhysicsFile,
+    #[serde(default, rename = "wall")]
+    pub(super) walls: Vec<Spanned<WallFile>>,
+    #[serde(default, rename = "obstacle")]
+    pub(super) obstacles: Vec<Spanned<ObstacleFile>>,
+    #[serde(default, rename = "robot")]
+    pub(super) robots: Vec<Spanned<RobotFile>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MapFile {
+    pub(super) size_m: Pair,
+    pub(super) cell_m: Number,
+    pub(super) turn_deg: Option<Number>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PhysicsFile {
+    pub(super) step_s: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WallFile {
+    pub(super) from_m: Option<Pair>,
+    pub(super) to_m: Option<Pair>,
+    pub(super) thickness_m: Option<Number>,
+    pub(super) min_m: Option<Pair>,
+    pub(super) max_m: Option<Pair>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ObstacleFile {
+    pub(super) name: Spanned<String>,
+    pub(super) min_m: Option<Pair>,
+    pub(super) max_m: Option<Pair>,
+    pub(super) center_m: Option<Pair>,
+    pub(super) size_m: Option<Pair>,
+    pub(super) heading_deg: Option<Number>,
+    pub(super) appears_s: Option<Number>,
+    pub(super) disappears_s: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RobotFile {
+    pub(super) name: Spanned<String>,
+    pub(super) radius_m: Number,
+    pub(super) pose_m: Pair,
+    pub(super) heading_deg: Option<Number>,
+    pub(super) drive: DriveFile,
+    #[serde(default)]
+    pub(super) odometry: OdometryFile,
+    pub(super) laser: LaserFile,
+    pub(super) behaviour: Spanned<BehaviourFile>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DriveFile {
+    pub(super) max_linear_mps: Number,
+    pub(super) max_angular_degps: Number,
+    pub(super) max_linear_acceleration_mps2: Number,
+    pub(super) max_angular_acceleration_degps2: Number,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OdometryFile {
+    pub(super) distance_gain: Option<Number>,
+    pub(super) turn_gain: Option<Number>,
+    pub(super) turn_per_m_deg: Option<Number>,
+    pub(super) distance_noise_m: Option<Number>,
+    pub(super) turn_noise_deg: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LaserFile {
+    pub(super) beams: Spanned<u32>,
+    pub(super) fov_deg: Option<Number>,
+    pub(super) range_min_m: Option<Number>,
+    pub(super) range_max_m: Number,
+    pub(super) rate_hz: Number,
+    pub(super) mount_m: Option<Pair>,
+    pub(super) mount_deg: Option<Number>,
+    pub(super) noise_std_m: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BehaviourFile {
+    pub(super) kind: Spanned<String>,
+    pub(super) from_m: Option<Pair>,
+    pub(super) to_m: Option<Pair>,
+    pub(super) speed_mps: Option<Number>,
+    pub(super) wall_side: Option<Spanned<String>>,
+    pub(super) clearance_m: Option<Number>,
+}

@@ -1,0 +1,307 @@
+//! The truth about every cell, for metrics and pictures only: no robot may look at it.
+
+mod cover;
+#[cfg(test)]
+mod tests;
+
+use super::report::Body;
+use super::shape::Rectangle;
+use geometry::{Cell, Grid, GridFrame};
+use nalgebra::Point2;
+
+/// What really is in a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum TrueState {
+    /// No solid overlaps it; touching is not overlapping.
+    #[default]
+    Free,
+    /// Solids cover part of it. Metrics leave such a cell out.
+    Partly,
+    /// Solids cover all of it.
+    Blocked,
+}
+
+/// A cell's state changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrueChange {
+    /// When, s.
+    pub time_s: f64,
+    /// Which cell.
+    pub cell: Cell,
+    /// What was in it.
+    pub before: TrueState,
+    /// What is in it.
+    pub after: TrueState,
+}
+
+/// What really is in every cell, and what has happened there.
+///
+/// The driven robot's own body counts as nothing: it never sees itself, so no map could be right
+/// about it. Walls and boxes may cover a cell together; a round robot covers one only alone, since
+/// solids don't overlap and so leave a gap beside its curve.
+///
+/// Kept up to date at every physics step, at a cost in proportion to the cells under what moved.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    frame: GridFrame,
+    elapsed_s: f64,
+    states: Vec<TrueState>,
+    /// What walls and present obstacles make of a cell.
+    fixed: Vec<TrueState>,
+    /// How many robots overlap a cell, and how many cover all of it.
+    overlapped: Vec<u16>,
+    covered: Vec<u16>,
+    /// Whether the next time the cell is blocked is a new event.
+    armed: Vec<bool>,
+    block_events: Vec<u32>,
+    movers: Vec<Option<Body>>,
+    /// Cells that the driven robot's start is connected with, past obstacles but not walls.
+    reachable: Vec<bool>,
+    changes: Vec<TrueChange>,
+}
+
+impl Truth {
+    /// The truth at the start: walls, and the region around `start` (m).
+    pub(super) fn new(frame: GridFrame, walls: &[Rectangle], start: &Point2<f64>) -> Self {
+        let fixed = walls_cover(&frame, walls);
+        Self {
+            frame,
+            elapsed_s: 0.0,
+            states: fixed.clone(),
+            overlapped: vec![0; frame.len()],
+            covered: vec![0; frame.len()],
+            armed: fixed.iter().map(|state| *state != TrueState::Blocked).collect(),
+            block_events: vec![0; frame.len()],
+            movers: vec![None; frame.len()],
+            reachable: reachable(&frame, &fixed, frame.cell_at(start)),
+            changes: Vec::new(),
+            fixed,
+        }
+    }
+
+    /// The cells.
+    pub fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    /// The time since the start, s.
+    pub fn elapsed_s(&self) -> f64 {
+        self.elapsed_s
+    }
+
+    /// The states of all cells now, row-major, row 0 at the lowest y.
+    pub fn states(&self) -> &[TrueState] {
+        &self.states
+    }
+
+    /// How often each cell was blocked, row-major. A cell that is blocked again without having
+    /// been free in between was blocked once.
+    pub fn block_events(&self) -> &[u32] {
+        &self.block_events
+    }
+
+    /// The first moving thing that ever touched each cell, row-major: another robot, or an
+    /// obstacle that comes or goes. `None` for static cells.
+    pub fn movers(&self) -> &[Option<Body>] {
+        &self.movers
+    }
+
+    /// What changed during the last `act`, in order.
+    pub fn changes(&self) -> &[TrueChange] {
+        &self.changes
+    }
+
+    /// What really is in a cell; `None` outside of the grid.
+    pub fn state(&self, cell: Cell) -> Option<TrueState> {
+        Some(self.states[self.frame.index(cell)?])
+    }
+
+    /// A cell's true cycle rate so far: block events per second, Hz; 0 outside of the grid.
+    pub fn cycle_rate_hz(&self, cell: Cell) -> f64 {
+        let events = self.frame.index(cell).map_or(0, |index| self.block_events[index]);
+        if self.elapsed_s > 0.0 { f64::from(events) / self.elapsed_s } else { 0.0 }
+    }
+
+    /// Whether the cell counts as one that can be seen now: it is free, or it is blocked and
+    /// shares a side with a cell that is not, where no wall parts them from the driven robot's
+    /// start. The grid as a whole is a sum over its cells; a single cell costs a few lookups.
+    pub fn can_be_seen(&self, cell: Cell) -> bool {
+        let Some(index) = self.frame.index(cell) else { return false };
+        match self.states[index] {
+            TrueState::Free => self.reachable[index],
+            TrueState::Partly => false,
+            TrueState::Blocked => cell.neighbours4().into_iter().any(|side| {
+                let open = |index: usize| self.states[index] != TrueState::Blocked && self.reachable[index];
+                self.frame.index(side).is_some_and(open)
+            }),
+        }
+    }
+
+    /// A new stretch of time begins, whose changes are listed apart.
+    pub(super) fn forget_changes(&mut self) {
+        self.changes.clear();
+    }
+
+    /// Time has come to `time_s`.
+    pub(super) fn set_time(&mut self, time_s: f64) {
+        self.elapsed_s = time_s;
+    }
+
+    /// A robot is set down at the start, or moves (m).
+    pub(super) fn move_disc(&mut self, body: Body, from: Option<Point2<f64>>, to: Point2<f64>, radius_m: f64) {
+        if from == Some(to) {
+            return;
+        }
+        let frame = self.frame;
+        cover::disc_cells(&frame, &to, radius_m, |cell, whole| {
+            if let Some(index) = frame.index(cell) {
+                self.overlapped[index] += 1;
+                self.covered[index] += u16::from(whole);
+                self.movers[index].get_or_insert(body);
+            }
+        });
+        if let Some(from) = from {
+            cover::disc_cells(&frame, &from, radius_m, |cell, whole| {
+                if let Some(index) = frame.index(cell) {
+                    self.overlapped[index] -= 1;
+                    self.covered[index] -= u16::from(whole);
+                    self.settle(cell, index);
+                }
+            });
+        }
+        cover::disc_cells(&frame, &to, radius_m, |cell, _| {
+            if let Some(index) = frame.index(cell) {
+                self.settle(cell, index);
+            }
+        });
+    }
+
+    /// An obstacle of `shape` was put down or taken away; `boxes` are the walls and obstacles that
+    /// stand now. Returns the cells it covers, wholly or in part. `mover`: it comes or goes.
+    pub(super) fn change_box(
+        &mut self,
+        shape: &Rectangle,
+        boxes: &[Rectangle],
+        mover: Option<Body>,
+    ) -> Vec<Cell> {
+        let near: Vec<Rectangle> = boxes.iter().filter(|other| may_meet(shape, other)).copied().collect();
+        let mut cells = Vec::new();
+        cover::box_cells(&self.frame, shape, |cell, _| cells.push(cell));
+        for &cell in &cells {
+            if let Some(index) = self.frame.index(cell) {
+                self.fixed[index] = state_of(cover::open_share(&self.frame, cell, near.iter()));
+                if let Some(body) = mover {
+                    self.movers[index].get_or_insert(body);
+                }
+                self.settle(cell, index);
+            }
+        }
+        cells
+    }
+
+    /// Everything stands where it stands at the start: none of that was an event.
+    pub(super) fn begin(&mut self) {
+        self.changes.clear();
+        self.block_events.fill(0);
+        for (armed, state) in self.armed.iter_mut().zip(&self.states) {
+            *armed = *state != TrueState::Blocked;
+        }
+    }
+
+    /// Works out a cell's state, and what its change means.
+    fn settle(&mut self, cell: Cell, index: usize) {
+        let before = self.states[index];
+        let after = match self.fixed[index] {
+            TrueState::Blocked => TrueState::Blocked,
+            _ if self.covered[index] > 0 => TrueState::Blocked,
+            TrueState::Free if self.overlapped[index] == 0 => TrueState::Free,
+            _ => TrueState::Partly,
+        };
+        if before == after {
+            return;
+        }
+        self.states[index] = after;
+        match after {
+            TrueState::Free => self.armed[index] = true,
+            TrueState::Blocked if self.armed[index] => {
+                self.armed[index] = false;
+                self.block_events[index] += 1;
+            }
+            TrueState::Blocked | TrueState::Partly => {}
+        }
+        self.changes.push(TrueChange { time_s: self.elapsed_s, cell, before, after });
+    }
+}
+
+fn state_of(open_share: f64) -> TrueState {
+    match open_share {
+        share if share <= 0.0 => TrueState::Blocked,
+        share if share < 1.0 - 1e-6 => TrueState::Partly,
+        _ => TrueState::Free,
+    }
+}
+
+/// Whether the upright boxes around two rectangles overlap.
+fn may_meet(a: &Rectangle, b: &Rectangle) -> bool {
+    let ((a_low, a_high), (b_low, b_high)) = (a.bounds(), b.bounds());
+    (a_high - b_low).min() > 0.0 && (b_high - a_low).min() > 0.0
+}
+
+/// What the walls alone make of every cell.
+fn walls_cover(frame: &GridFrame, walls: &[Rectangle]) -> Vec<TrueState> {
+    let mut states = vec![TrueState::Free; frame.len()];
+    // Cells that no wall covers alone, with the walls that may cover them together.
+    let mut shared = Vec::new();
+    for (wall, shape) in walls.iter().enumerate() {
+        cover::box_cells(frame, shape, |cell, whole| {
+            if let Some(index) = frame.index(cell) {
+                match whole {
+                    true => states[index] = TrueState::Blocked,
+                    false if states[index] != TrueState::Blocked => shared.push((index, wall)),
+                    false => {}
+                }
+            }
+        });
+    }
+    shared.sort_unstable();
+    for group in shared.chunk_by(|a, b| a.0 == b.0) {
+        let index = group[0].0;
+        if states[index] != TrueState::Blocked {
+            let boxes = group.iter().map(|(_, wall)| &walls[*wall]);
+            states[index] = state_of(cover::open_share(frame, frame.cell(index), boxes));
+        }
+    }
+    states
+}
+
+/// The free cells connected with `start` by their sides, and the partly covered ones that touch
+/// them: a wall that runs aslant has a fringe of these, which leads to the cells inside.
+fn reachable(frame: &GridFrame, walls: &[TrueState], start: Cell) -> Vec<bool> {
+    let mut reached = vec![false; frame.len()];
+    let mut frontier: Vec<Cell> = Vec::new();
+    let mut reach = |cell: Cell, frontier: &mut Vec<Cell>| {
+        if let Some(index) = frame.index(cell)
+            && walls[index] == TrueState::Free
+            && !std::mem::replace(&mut reached[index], true)
+        {
+            frontier.push(cell);
+        }
+    };
+    reach(start, &mut frontier);
+    while let Some(cell) = frontier.pop() {
+        for side in cell.neighbours4() {
+            reach(side, &mut frontier);
+        }
+    }
+    let fringe = |index: usize| {
+        walls[index] == TrueState::Partly
+            && frame.cell(index).neighbours8().into_iter().any(|near| {
+                frame.index(near).is_some_and(|near| walls[near] == TrueState::Free && reached[near])
+            })
+    };
+    let fringe: Vec<usize> = (0..frame.len()).filter(|&index| fringe(index)).collect();
+    for index in fringe {
+        reached[index] = true;
+    }
+    reached
+}
