@@ -2,8 +2,8 @@
 //!
 //! The map is cut into square patches of `patch_cells` × `patch_cells` cells, from its lower left
 //! corner on; those at the right and upper border can be smaller. A patch's weight is the mean over
-//! its candidates, not over all its cells, so that standing beside a wall makes a cell neither more
-//! nor less attractive. A patch is drawn in proportion to that mean, and the goal is uniform over
+//! its candidates, not over all its cells, so that a patch is not worth less for being mostly wall
+//! (and a single cell in it is drawn more often). A patch is drawn in proportion to that mean, and the goal is uniform over
 //! its candidates. Where no candidate has any weight, the goal is uniform over all candidates;
 //! where there is no candidate, it is the robot's own cell.
 

@@ -24,9 +24,4 @@ impl<'a> Situation<'a> {
     pub fn cell(&self) -> Cell {
         self.mapper.frame().cell_at(&self.pose.translation.vector.into())
     }
-
-    /// The cells that can be a goal, by their places in row-major order. A pass over the map.
-    pub fn candidates(&self) -> impl Iterator<Item = usize> {
-        (0..self.mapper.frame().len()).filter(|&index| self.mapper.is_candidate(index))
-    }
 }

@@ -39,7 +39,7 @@ fn run(name: &str, thickness: f64, turn: f64, noise: f64, beams: usize, settings
         let m = Point2::new(6.0, 6.0);
         let mut v: Vec<_> = (0..per.len()).filter(|&i| per[i] > 0).collect();
         v.sort_by_key(|&i| std::cmp::Reverse(per[i]));
-        for &i in v.iter().take(4) {
+        for &i in v.iter().take(9) {
             let p = house.frame.center(house.frame.cell(i));
             let q = m + geometry::rotation(-house.turn_rad) * (p - m);
             println!("   {:.3} {:.3} flips {} {:?}", q.x, q.y, per[i], mapper.statistics(i));
@@ -54,7 +54,12 @@ fn main() {
     let steady = MapperSettings::default();
     let _naive = MapperSettings { occupancy: OccupancyModel::Naive, ..Default::default() };
     for (n, s) in [("steady", &steady)] {
-        if std::env::var("ONLY").is_ok() { for _ in 0..3 { run(&format!("R {n}"), 0.1, 10.0, 0.01, 360, s);} return; }
+        if std::env::var("ONLY").is_ok() {
+            for _ in 0..3 {
+                run(&format!("R {n}"), 0.1, 10.0, 0.01, 360, s);
+            }
+            return;
+        }
         run(&format!("T {n}"), 0.05, 0.0, 0.0, 360, s);
         run(&format!("K {n}"), 0.1, 0.0, 0.0, 360, s);
         run(&format!("R {n}"), 0.1, 10.0, 0.01, 360, s);

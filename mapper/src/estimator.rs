@@ -32,9 +32,9 @@ impl Estimator {
     }
 
     /// The mean time of one cycle, blocked to free and back (equation 1's T), in the unit of the
-    /// statistics' times; ∞ for a cell without an event.
+    /// statistics' times; ∞ for a cell without an event, or that was never in view for any time.
     pub fn interval(self, seen: &CellStatistics) -> f64 {
-        match self {
+        let interval = match self {
             Self::Paper => paper(seen, seen.block_events, seen.free_events),
             Self::PaperAll => paper(
                 seen,
@@ -42,7 +42,9 @@ impl Estimator {
                 seen.free_events + seen.free_events_after_gap,
             ),
             Self::TwoState => two_state(seen),
-        }
+        };
+        // Events of a cell that was never watched tell of a change, but not how often.
+        if interval > 0.0 { interval } else { f64::INFINITY }
     }
 
     /// The number of cycles per unit of time, 1/T; 0 for a cell without an event.

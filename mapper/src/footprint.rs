@@ -10,7 +10,7 @@
 
 use crate::projection::PointCloud;
 use geometry::{Cell, GridFrame};
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 /// Scratch space for filling footprints, reused from scan to scan.
 #[derive(Clone, Debug, Default)]
@@ -21,18 +21,17 @@ pub(crate) struct Footprint {
 }
 
 impl Footprint {
-    /// Calls `run(start, end)` for runs of cells (places in row-major order) that the scan saw
-    /// through; runs of one scan can touch the same cell again only where the beams are sparse.
-    /// `is_joined(beam, next)` tells whether two neighbouring beams ended on one surface.
+    /// Calls `run(start, end)` for the runs of cells (places in row-major order) inside the fan,
+    /// each cell once. `is_joined(beam)` tells whether a beam and the next ended on one surface.
     pub(crate) fn fill(
         &mut self,
         cloud: &PointCloud,
         frame: &GridFrame,
         max_gap_m: f64,
-        is_joined: impl Fn(usize, usize) -> bool,
+        is_joined: impl Fn(usize) -> bool,
         mut run: impl FnMut(usize, usize),
     ) {
-        let fan_m = max_gap_m / cloud.spacing_rad.max(f64::MIN_POSITIVE);
+        let fan_m = fan_m(cloud, max_gap_m);
         let (low, high) = self.cross(cloud, frame, fan_m, is_joined);
         for row in low..high {
             let crossings = &mut self.crossings[row];
@@ -45,16 +44,6 @@ impl Footprint {
             }
             crossings.clear();
         }
-        for beam in 0..cloud.len() {
-            let clear_m = cloud.returns[beam].clear_m();
-            if clear_m > fan_m {
-                cells_along(frame, &cloud.point(beam, fan_m), &cloud.point(beam, clear_m), |cell| {
-                    if let Some(index) = frame.index(cell) {
-                        run(index, index + 1);
-                    }
-                });
-            }
-        }
     }
 
     /// Notes where the border of the polygon crosses each row; gives the range of rows.
@@ -63,13 +52,13 @@ impl Footprint {
         cloud: &PointCloud,
         frame: &GridFrame,
         fan_m: f64,
-        is_joined: impl Fn(usize, usize) -> bool,
+        is_joined: impl Fn(usize) -> bool,
     ) -> (usize, usize) {
         self.crossings.resize_with(frame.height(), Vec::new);
         let to_cells = |point: Point2<f64>| (point - frame.origin()) / frame.resolution_m();
         let origin = to_cells(cloud.origin);
         let (mut low, mut high) = (frame.height(), 0);
-        let mut edge = |from: nalgebra::Vector2<f64>, to: nalgebra::Vector2<f64>| {
+        let mut edge = |from: Vector2<f64>, to: Vector2<f64>| {
             let (bottom, top) = if from.y <= to.y { (from, to) } else { (to, from) };
             let (first, end) = (first_after(bottom.y, frame.height()), first_after(top.y, frame.height()));
             if first < end {
@@ -85,7 +74,7 @@ impl Footprint {
             let Some(next) = cloud.next(beam) else { break };
             let clear = |beam: usize| cloud.returns[beam].clear_m().min(fan_m);
             let (mut from_m, mut to_m) = (clear(beam), clear(next));
-            if !is_joined(beam, next) {
+            if !is_joined(beam) {
                 // Where the surface jumps, only the nearer range is known for the whole triangle.
                 from_m = from_m.min(to_m);
                 to_m = from_m;
@@ -98,13 +87,39 @@ impl Footprint {
             last = to;
             if next == 0 {
                 // The polygon closes where the first triangle began.
-                let first_m = if is_joined(0, 1) { clear(0) } else { clear(0).min(clear(1)) };
+                let first_m = if is_joined(0) { clear(0) } else { clear(0).min(clear(1)) };
                 edge(last, to_cells(cloud.point(0, first_m)));
                 return (low, high);
             }
         }
         edge(last, origin);
         (low, high)
+    }
+}
+
+/// How far the fan reaches, m.
+fn fan_m(cloud: &PointCloud, max_gap_m: f64) -> f64 {
+    max_gap_m / cloud.spacing_rad.max(f64::MIN_POSITIVE)
+}
+
+/// Calls `visit` for the cells (places in row-major order) that single beams saw through beyond
+/// the fan; a cell that two beams cross is visited twice.
+pub(crate) fn beyond_fan(
+    cloud: &PointCloud,
+    frame: &GridFrame,
+    max_gap_m: f64,
+    mut visit: impl FnMut(usize),
+) {
+    let fan_m = fan_m(cloud, max_gap_m);
+    for beam in 0..cloud.len() {
+        let clear_m = cloud.returns[beam].clear_m();
+        if clear_m > fan_m {
+            cells_along(frame, &cloud.point(beam, fan_m), &cloud.point(beam, clear_m), |cell| {
+                if let Some(index) = frame.index(cell) {
+                    visit(index);
+                }
+            });
+        }
     }
 }
 

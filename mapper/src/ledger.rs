@@ -97,10 +97,12 @@ impl Ledger {
         self.now_index()
     }
 
+    #[inline]
     pub(crate) fn now_index(&self) -> ReadingIndex {
         (self.times.len() - 1) as ReadingIndex
     }
 
+    #[inline]
     pub(crate) fn now(&self) -> f64 {
         self.times[self.times.len() - 1]
     }
@@ -126,15 +128,18 @@ impl Ledger {
         &self.transitions
     }
 
+    #[inline]
     pub(crate) fn is_candidate(&self, index: usize) -> bool {
         self.candidates[index]
     }
 
     /// Whether the cell was seen in the open reading or the one before it.
+    #[inline]
     pub(crate) fn is_in_view(&self, index: usize) -> bool {
         self.last(index) + 1 >= self.now_index()
     }
 
+    #[inline]
     pub(crate) fn was_seen_now(&self, index: usize) -> bool {
         self.last(index) == self.now_index()
     }
@@ -234,6 +239,22 @@ impl Ledger {
         }
     }
 
+    /// Whether the cell is still in the state of its first sighting, and was watched in it for less
+    /// than `confirm` (in the unit of the readings' times).
+    pub(crate) fn is_unconfirmed(&self, index: usize, confirm: f64) -> bool {
+        let seen = self.statistics(index);
+        self.ever_seen(index) && seen.events() == 0 && seen.observed() < confirm
+    }
+
+    /// The first sighting of the cell was wrong: nothing changed, it was `after` all along.
+    pub(crate) fn correct(&mut self, index: usize, after: CellState) {
+        let now = self.now_index();
+        self.see(index);
+        self.records[index] = Record { first: now, since: now, ..Record::default() };
+        self.states.cells_mut()[index] = CellState::Unknown;
+        self.turn(index, after, now, false);
+    }
+
     /// Adds the time watched without a gap to the state's account.
     fn book(&mut self, index: usize) {
         let (state, last) = (self.state(index), self.last(index));
@@ -311,6 +332,7 @@ impl Ledger {
         self.estimator
     }
 
+    #[inline]
     pub(crate) fn last_seen(&self, index: usize) -> f64 {
         self.times[self.last(index) as usize]
     }

@@ -10,6 +10,7 @@ mod exact;
 mod footprint;
 mod ledger;
 mod naive;
+mod outline;
 mod projection;
 mod settings;
 mod statistics;
@@ -163,6 +164,7 @@ impl Mapper {
     }
 
     /// The change statistics of the cell at a place in row-major order.
+    #[inline]
     pub fn statistics(&self, index: usize) -> CellStatistics {
         self.ledger.statistics(index)
     }
@@ -173,12 +175,14 @@ impl Mapper {
     }
 
     /// Whether the last reading saw the cell.
+    #[inline]
     pub fn is_in_view(&self, index: usize) -> bool {
         self.ledger.was_seen_now(index)
     }
 
     /// Whether the cell can be a goal: it is free, or touches a free cell by a side. The inside of
     /// a wall never is.
+    #[inline]
     pub fn is_candidate(&self, index: usize) -> bool {
         self.ledger.is_candidate(index)
     }
@@ -189,21 +193,25 @@ impl Mapper {
     }
 
     /// Mean time of a cycle of the cell, T of equation 1; ∞ for a cell that never changed.
+    #[inline]
     pub fn interval(&self, index: usize) -> f64 {
         self.estimator().interval(&self.statistics(index))
     }
 
     /// Cycles of the cell per unit of time, 1/T; 0 for a cell that never changed.
+    #[inline]
     pub fn rate(&self, index: usize) -> f64 {
         self.estimator().rate(&self.statistics(index))
     }
 
     /// The probability that the cell changed since it was last seen (equation 2).
+    #[inline]
     pub fn change_probability(&self, index: usize) -> f64 {
         estimator::change_probability(self.recency(index), self.rate(index))
     }
 
     /// The time since the cell was last seen. A cell never seen counts as last seen at 0.
+    #[inline]
     pub fn recency(&self, index: usize) -> f64 {
         self.ledger.now() - self.ledger.last_seen(index)
     }

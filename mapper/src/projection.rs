@@ -1,7 +1,8 @@
 //! Scan and pose → point cloud, with the meaning of ROS `laser_geometry` and REP-117.
 
 use geometry::{LaserReading, Scan};
-use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
+use nalgebra::{Point2, UnitComplex, Vector2};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 /// What one beam tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +49,6 @@ pub(crate) struct PointCloud {
     pub(crate) is_full_turn: bool,
     /// The angle between neighbouring beams, rad; positive.
     pub(crate) spacing_rad: f64,
-    mount: Isometry2<f64>,
     rotation: UnitComplex<f64>,
     angle_min_rad: f64,
     /// From one beam to the next, counter-clockwise, rad.
@@ -72,7 +72,6 @@ impl PointCloud {
                 .map(|beam| geometry::rotation(scan.angle_rad(beam)) * Vector2::x())
                 .collect();
         }
-        self.mount = reading.mount;
         self.rotation = laser.rotation;
         self.origin = Point2::from(laser.translation.vector);
         self.is_full_turn = scan.is_full_turn();
@@ -113,22 +112,46 @@ impl PointCloud {
     /// The two neighbouring beams that enclose the direction towards `point`, or `None` outside
     /// of the field of view.
     pub(crate) fn enclosing(&self, point: &Point2<f64>) -> Option<(usize, usize)> {
-        let seen = self.rotation.inverse() * (point - self.origin);
-        let turn_rad = geometry::wrap_rad(libm::atan2(seen.y, seen.x) - self.angle_min_rad)
-            * self.increment_rad.signum();
-        let turn_rad = if turn_rad < 0.0 { turn_rad + std::f64::consts::TAU } else { turn_rad };
-        let beam = (turn_rad / self.spacing_rad) as usize;
-        // Rounding can put a direction just before the first beam one turn ahead.
-        let beam = if self.is_full_turn && beam >= self.len() { self.len() - 1 } else { beam };
-        (beam < self.len()).then_some(beam).and_then(|beam| Some((beam, self.next(beam)?)))
+        let beams = self.len();
+        if beams < 2 {
+            return None;
+        }
+        let toward = self.rotation.inverse() * (point - self.origin);
+        let sweep = if self.increment_rad < 0.0 { -1.0 } else { 1.0 };
+        let turn_rad = sweep * (rough_atan2(toward.y, toward.x) - self.angle_min_rad);
+        let turn_rad = turn_rad - TAU * (turn_rad / TAU).floor();
+        // Just before the first beam means at it: the rough angle can fall short.
+        let turn_rad = if turn_rad > TAU - ROUGH_RAD { 0.0 } else { turn_rad };
+        let guess = (turn_rad / self.spacing_rad) as usize;
+        // The exact cross products correct the guess.
+        let off = 1 + (ROUGH_RAD / self.spacing_rad) as usize;
+        let lies_after = |beam: usize| sweep * self.in_laser[beam].perp(&toward) >= 0.0;
+        (guess + beams.saturating_sub(off)..=guess + beams + off).find_map(|candidate| {
+            let beam = if self.is_full_turn { candidate % beams } else { candidate.checked_sub(beams)? };
+            let next = (beam < beams).then(|| self.next(beam))??;
+            (lies_after(beam) && !lies_after(next)).then_some((beam, next))
+        })
     }
+}
+
+/// How far [`rough_atan2`] can be off, rad.
+const ROUGH_RAD: f64 = 0.005;
+
+/// The direction of (x, y) within [`ROUGH_RAD`]: a polynomial where the exact function would take most
+/// of the time of a scan's doubtful cells.
+fn rough_atan2(y: f64, x: f64) -> f64 {
+    let (low, high) = if x.abs() < y.abs() { (x.abs(), y.abs()) } else { (y.abs(), x.abs()) };
+    let ratio = low / high.max(f64::MIN_POSITIVE);
+    let eighth = ratio * (FRAC_PI_4 + 0.273 * (1.0 - ratio));
+    let quarter = if x.abs() < y.abs() { FRAC_PI_2 - eighth } else { eighth };
+    let half = if x < 0.0 { PI - quarter } else { quarter };
+    if y < 0.0 { -half } else { half }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use geometry::Twist;
-    use std::f64::consts::{FRAC_PI_2, TAU};
 
     fn reading(ranges_m: Vec<f32>) -> LaserReading {
         LaserReading {
@@ -173,13 +196,35 @@ mod tests {
     }
 
     #[test]
-    fn enclosing_beams_enclose() {
-        let mut cloud = PointCloud::default();
-        cloud.project(&reading(vec![2.0; 36]));
-        for beam in 0..36 {
-            let next = cloud.next(beam).unwrap();
-            let between = cloud.origin + (cloud.directions[beam] + cloud.directions[next]);
-            assert_eq!(cloud.enclosing(&between), Some((beam, next)));
+    fn the_rough_angle_is_near_the_exact_one() {
+        for step in 0..10_000 {
+            let angle = -PI + TAU * f64::from(step) / 10_000.0;
+            let (y, x) = libm::sincos(angle);
+            let error = geometry::wrap_rad(rough_atan2(3.0 * y, 3.0 * x) - angle);
+            assert!(error.abs() < ROUGH_RAD, "{angle}: {error}");
+        }
+    }
+
+    proptest::proptest! {
+        /// The oracle is the exact angle, for scans of any number of beams, either way round.
+        #[test]
+        fn enclosing_beams_enclose(beams in 3usize..2000, share in 0.1f64..=1.0, start in -PI..PI,
+                                   clockwise: bool, bearing in -PI..PI, distance_m in 0.01f64..30.0) {
+            let mut reading = reading(vec![2.0; beams]);
+            let sweep = if clockwise { -1.0 } else { 1.0 };
+            reading.scan.angle_min_rad = start;
+            reading.scan.angle_increment_rad = sweep * share * TAU / beams as f64;
+            let mut cloud = PointCloud::default();
+            cloud.project(&reading);
+            let laser = reading.pose * reading.mount;
+            let point = laser * (geometry::rotation(bearing) * Point2::new(distance_m, 0.0));
+            let turn = (sweep * (bearing - start)).rem_euclid(TAU) / cloud.spacing_rad;
+            let (beam, rest) = (turn.floor() as usize, turn.fract());
+            if (1e-6..1.0 - 1e-6).contains(&rest) {
+                let last = if cloud.is_full_turn { beams } else { beams - 1 };
+                let expected = (beam < last).then(|| (beam, (beam + 1) % beams));
+                proptest::prop_assert_eq!(cloud.enclosing(&point), expected);
+            }
         }
     }
 }

@@ -63,6 +63,9 @@ pub struct SteadySettings {
     /// Hits after which a surface counts as standing: noise around it is taken for the surface
     /// itself, not for something new.
     pub hits_to_stand: u16,
+    /// A first sighting that is overturned after less than this time in view, s, was wrong: it is
+    /// corrected, and does not count as a change.
+    pub confirm_s: f64,
 }
 
 impl Default for SteadySettings {
@@ -71,13 +74,14 @@ impl Default for SteadySettings {
             range_noise_std_m: 0.01,
             surface_depth_m: 0.02,
             join_m: 1.0,
-            max_gap_m: 0.1,
+            max_gap_m: 0.15,
             hits_to_block: 2,
             misses_to_discover: 3,
             misses_to_discover_beside: 20,
             misses_to_free_fresh: 4,
             misses_to_free: 10,
             hits_to_stand: 20,
+            confirm_s: 2.0,
         }
     }
 }
@@ -95,6 +99,12 @@ pub struct SettingsError {
 }
 
 impl SteadySettings {
+    /// The misses in a row that a blocked cell takes after this many hits.
+    pub(crate) fn misses_to_free_after(&self, hits: u16) -> i8 {
+        let fresh = u16::from(self.misses_to_free_fresh);
+        fresh.saturating_add(hits).min(u16::from(self.misses_to_free)) as i8
+    }
+
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
         let error = |key, expected, found: String| Err(SettingsError { key, expected, found });
         let lengths = [
@@ -107,6 +117,9 @@ impl SteadySettings {
             if !(0.0..=10.0).contains(&length_m) {
                 return error(key, "from 0 to 10 m", length_m.to_string());
             }
+        }
+        if !(0.0..=3600.0).contains(&self.confirm_s) {
+            return error("steady.confirm_s", "from 0 to 3600 s", self.confirm_s.to_string());
         }
         let counts = [
             ("steady.hits_to_block", self.hits_to_block),

@@ -43,11 +43,8 @@ impl Source<'_> {
             .path(self.name)
             .annotation(annotation(AnnotationKind::Primary, &mark))
             .annotations(others.iter().map(|other| annotation(AnnotationKind::Context, other)));
-        let report = [Level::ERROR
-            .no_name()
-            .primary_title(what)
-            .element(snippet)
-            .element(Level::HELP.message(help))];
+        let report =
+            [Level::ERROR.no_name().primary_title(what).element(snippet).element(Level::HELP.message(help))];
         WorldError { message: Renderer::plain().render(&report) }
     }
 
@@ -58,7 +55,7 @@ impl Source<'_> {
         // Without a text to point into, the reader prints the path of the key instead.
         error.set_input(None);
         let place = error.to_string().lines().find_map(|line| line.strip_prefix("in `").map(str::to_owned));
-        let key = place.map(|place| place.trim_end_matches('`').to_owned());
+        let key = place.map_or_else(String::new, |place| place.trim_end_matches('`').to_owned());
         let names = || said.split('`').skip(1).step_by(2);
         if said.starts_with("unknown field") {
             let unknown = names().next().unwrap_or_default();
@@ -70,19 +67,24 @@ impl Source<'_> {
         if said.starts_with("missing field") {
             let missing = names().next().unwrap_or_default();
             let help = format!("add a line `{missing} = …` to this table");
-            return self.error(&format!("the key `{missing}` is missing"), (span, "in this table"), &[], &help);
+            return self.error(
+                &format!("the key `{missing}` is missing"),
+                (span, "in this table"),
+                &[],
+                &help,
+            );
         }
         let typed = ["invalid type: ", "invalid value: ", "invalid length "];
         if let Some((found, expected)) = said.split_once(", expected ")
             && let Some(found) = typed.iter().find_map(|start| found.strip_prefix(start))
         {
-            let what = match key {
-                Some(key) => format!("`{key}` has the wrong type"),
-                None => "a value has the wrong type".to_owned(),
-            };
-            let found = if said.starts_with("invalid length") { format!("{found} values") } else { found.to_owned() };
-            let help = format!("write {} here", plain_type(expected));
+            let what = format!("`{key}` has the wrong type");
+            let found = plain_value(found, said.starts_with("invalid length"));
+            let help = format!("it must be {}", plain_type(expected, &key));
             return self.error(&what, (span, &format!("this is {found}")), &[], &help);
+        }
+        if said.starts_with("duplicate key") {
+            return self.error("a key is given twice", (span, "again here"), &[], "leave one of them out");
         }
         let mut lines = said.splitn(2, ", expected ");
         let what = format!("not a TOML file: {}", lines.next().unwrap_or_default());
@@ -103,16 +105,35 @@ impl Source<'_> {
 }
 
 /// What a newcomer calls the type that serde asks for.
-fn plain_type(expected: &str) -> &str {
+fn plain_type<'a>(expected: &'a str, key: &str) -> &'a str {
     match expected {
         "f64" | "a float" => "a number",
-        "usize" | "u64" | "u32" => "a whole number, not negative",
+        "usize" | "u64" | "u32" => "a whole number of at least 0",
         "a string" | "string" => "a text in quotes",
+        "a sequence" if key.ends_with("_m") => "two numbers, as in `[1.0, 2.0]`",
         "a sequence" => "a list of tables, as in `[[wall]]`",
-        "an array of length 2" | "an array of size 2" => "two numbers, as in `[1.0, 2.0]`",
+        "an array of length 2" => "two numbers, as in `[1.0, 2.0]`",
         other if other.starts_with("struct") || other == "a map" => "a table of keys",
         other => other,
     }
+}
+
+/// What a newcomer calls the value that serde has found.
+fn plain_value(found: &str, is_length: bool) -> String {
+    if is_length {
+        return format!("a list of {found}");
+    }
+    let names = [
+        ("floating point ", "the number "),
+        ("integer ", "the number "),
+        ("string ", "the text "),
+        ("boolean ", ""),
+        ("map", "a single table"),
+        ("sequence", "a list"),
+    ];
+    let plain =
+        names.iter().find_map(|(serde, plain)| Some(format!("{plain}{}", found.strip_prefix(serde)?)));
+    plain.unwrap_or_else(|| found.to_owned())
 }
 
 /// The known key that is close enough to be what was meant.

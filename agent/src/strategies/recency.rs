@@ -11,8 +11,8 @@ impl Strategy for Recency {
     }
 
     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {
-        for index in situation.candidates() {
-            weights[index] = situation.mapper.recency(index);
+        for (index, weight) in weights.iter_mut().enumerate() {
+            *weight = situation.mapper.recency(index);
         }
     }
 }

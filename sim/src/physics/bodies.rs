@@ -4,7 +4,9 @@ use super::report::Body;
 use super::shape::Rectangle;
 use super::spec::RobotSpec;
 use geometry::{Twist, heading_rad, rotation};
-use nalgebra::{Isometry2, Point2, Translation2, Vector2};
+#[cfg(test)]
+use nalgebra::Point2;
+use nalgebra::{Isometry2, Translation2, Vector2};
 use rapier2d::prelude as rapier;
 
 /// Bodies farther apart than this no longer touch, m. A contact that rapier keeps open flickers by
@@ -114,7 +116,13 @@ impl Bodies {
 
     /// The nearest body that a ray meets, m; the oracle for our own rays.
     #[cfg(test)]
-    pub(super) fn ray_m(&self, from: &Point2<f64>, along: &Vector2<f64>, own: usize, max_m: f64) -> Option<f64> {
+    pub(super) fn ray_m(
+        &self,
+        from: &Point2<f64>,
+        along: &Vector2<f64>,
+        own: usize,
+        max_m: f64,
+    ) -> Option<f64> {
         let filter = rapier::QueryFilter::default().exclude_rigid_body(self.robots[own].body);
         let world = &self.world;
         let query = world.broad_phase.as_query_pipeline(

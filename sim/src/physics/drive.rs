@@ -22,7 +22,8 @@ impl Drive {
     /// The velocity of the next physics step towards `wanted`. Not a number stops the robot.
     pub(super) fn step(&mut self, wanted: &Twist, step_s: f64) -> Twist {
         let limits = &self.limits;
-        let wanted = if wanted.linear_mps.is_nan() || wanted.angular_radps.is_nan() { &Twist::STOP } else { wanted };
+        let wanted =
+            if wanted.linear_mps.is_nan() || wanted.angular_radps.is_nan() { &Twist::STOP } else { wanted };
         let follow = |now: f64, wanted: f64, fastest: f64, gain: f64| {
             let most = gain * step_s;
             now + (wanted.clamp(-fastest, fastest) - now).clamp(-most, most)

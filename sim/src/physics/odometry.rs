@@ -39,7 +39,8 @@ impl Odometry {
             self.pose = *after;
             return;
         }
-        let OdometryError { distance_gain, turn_gain, turn_radpm, distance_noise_m, turn_noise_rad } = self.error;
+        let OdometryError { distance_gain, turn_gain, turn_radpm, distance_noise_m, turn_noise_rad } =
+            self.error;
         let turn_rad = wrap_rad(geometry::heading_rad(after) - geometry::heading_rad(before));
         let moved = geometry::rotation(-geometry::heading_rad(before) - turn_rad / 2.0)
             * (after.translation.vector - before.translation.vector);
@@ -49,8 +50,8 @@ impl Odometry {
         let swerve_rad = turn_noise_rad * turn_rad.abs().sqrt() * self.noise.draw();
         let felt = moved * (1.0 + distance_gain) + Vector2::new(slip_m, 0.0);
         let felt_turn_rad = turn_rad * (1.0 + turn_gain) + moved.x * turn_radpm + swerve_rad;
-        let at = self.pose.translation.vector
-            + geometry::rotation(self.heading_rad + felt_turn_rad / 2.0) * felt;
+        let at =
+            self.pose.translation.vector + geometry::rotation(self.heading_rad + felt_turn_rad / 2.0) * felt;
         self.heading_rad = wrap_rad(self.heading_rad + felt_turn_rad);
         self.pose = pose(at.x, at.y, self.heading_rad);
     }

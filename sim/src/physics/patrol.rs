@@ -87,7 +87,8 @@ impl WallPatrol {
             return Twist { linear_mps: 0.0, angular_radps: self.turn_radps(-lean_rad) };
         }
         let Sight { wall_m, gap_m } = self.look(reading, &lean);
-        let needed_m = self.spec.clearance_m + self.stopping_m + if self.blocked { HYSTERESIS_M } else { 0.0 };
+        let needed_m =
+            self.spec.clearance_m + self.stopping_m + if self.blocked { HYSTERESIS_M } else { 0.0 };
         // What lies behind the end of the way is not in the way.
         self.blocked = gap_m < needed_m.min(remaining_m + ARRIVED_M);
         let linear_mps = if self.blocked {

@@ -16,7 +16,7 @@ pub(super) struct Robot {
     index: usize,
     /// Where it truly is.
     pub(super) pose: Isometry2<f64>,
-    velocity: Twist,
+    pub(super) velocity: Twist,
     /// What it was last told to do.
     wanted: Twist,
     drive: Drive,

@@ -18,7 +18,10 @@ impl Rectangle {
     /// The upright rectangle between two opposite corners (m).
     pub fn between(min: Point2<f64>, max: Point2<f64>) -> Self {
         let middle = nalgebra::center(&min, &max);
-        Self { pose: Isometry2::from_parts(middle.into(), UnitComplex::identity()), half_m: (max - min) / 2.0 }
+        Self {
+            pose: Isometry2::from_parts(middle.into(), UnitComplex::identity()),
+            half_m: (max - min) / 2.0,
+        }
     }
 
     /// The rectangle of `thickness_m` whose middle line runs from `from` to `to` (m), and ends
@@ -39,7 +42,7 @@ impl Rectangle {
 
     /// The corners, counter-clockwise, m.
     pub fn corners(&self) -> [Point2<f64>; 4] {
-        let Vector2 { x, y, .. } = self.half_m;
+        let (x, y) = (self.half_m.x, self.half_m.y);
         [(-x, -y), (x, -y), (x, y), (-x, y)].map(|(x, y)| self.pose * Point2::new(x, y))
     }
 
@@ -115,7 +118,11 @@ pub(crate) fn turned(pose: &Isometry2<f64>, turn: &UnitComplex<f64>, middle: &Po
 }
 
 /// The same point after the world has turned about `middle` (m).
-pub(crate) fn turned_point(point: &Point2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Point2<f64> {
+pub(crate) fn turned_point(
+    point: &Point2<f64>,
+    turn: &UnitComplex<f64>,
+    middle: &Point2<f64>,
+) -> Point2<f64> {
     middle + turn * (point - middle)
 }
 

@@ -17,7 +17,7 @@ pub struct PhysicsWorld {
     /// Steps since the start; time is a multiple, so that it never drifts.
     step: u64,
     bodies: Bodies,
-    robots: Vec<Robot>,
+    pub(super) robots: Vec<Robot>,
     obstacles: Vec<Obstacle>,
     scene: Scene,
     truth: Truth,

@@ -97,7 +97,13 @@ fn too_many_cells(source: &Source<'_>, map: &MapFile) -> WorldError {
 fn wall(source: &Source<'_>, file: &Spanned<WallFile>, size: &Point2<f64>) -> Result<Rectangle, WorldError> {
     let table = Table { source, path: "wall" };
     let wall = match file.get_ref() {
-        WallFile { from_m: Some(from), to_m: Some(to), thickness_m: Some(thickness), min_m: None, max_m: None } => {
+        WallFile {
+            from_m: Some(from),
+            to_m: Some(to),
+            thickness_m: Some(thickness),
+            min_m: None,
+            max_m: None,
+        } => {
             let thickness_m = table.number("thickness_m", thickness, 0.001..=100.0)?;
             let (a, b) = (table.point("from_m", from, size)?, table.point("to_m", to, size)?);
             if (b - a).norm() < 0.001 {
@@ -120,17 +126,17 @@ fn wall(source: &Source<'_>, file: &Spanned<WallFile>, size: &Point2<f64>) -> Re
 }
 
 /// The rectangle between two corners.
-fn upright(
-    table: &Table<'_>,
-    min: &Pair,
-    max: &Pair,
-    size: &Point2<f64>,
-) -> Result<Rectangle, WorldError> {
+fn upright(table: &Table<'_>, min: &Pair, max: &Pair, size: &Point2<f64>) -> Result<Rectangle, WorldError> {
     let (low, high) = (table.point("min_m", min, size)?, table.point("max_m", max, size)?);
     if (high - low).min() < 0.001 {
         let what = format!("`{}.max_m` is not above and to the right of `min_m`", table.path);
         let help = "`min_m` is the lower left corner, `max_m` the upper right one, at least 0.001 m away";
-        return Err(table.source.error(&what, (max.span(), "upper right"), &[(min.span(), "lower left")], help));
+        return Err(table.source.error(
+            &what,
+            (max.span(), "upper right"),
+            &[(min.span(), "lower left")],
+            help,
+        ));
     }
     Ok(Rectangle::between(low, high))
 }
@@ -161,7 +167,8 @@ fn obstacle(
 ) -> Result<ObstacleSpec, WorldError> {
     let table = Table { source, path: "obstacle" };
     let span = file.get_ref().name.span();
-    let ObstacleFile { name, min_m, max_m, center_m, size_m, heading_deg, appears_s, disappears_s } = file.get_ref();
+    let ObstacleFile { name, min_m, max_m, center_m, size_m, heading_deg, appears_s, disappears_s } =
+        file.get_ref();
     let name = table.name(name)?;
     let shape = match (min_m, max_m, center_m, size_m) {
         (Some(min), Some(max), None, None) if heading_deg.is_none() => upright(&table, min, max, size)?,
@@ -180,7 +187,12 @@ fn obstacle(
     if let Some(wall) = walls.iter().find(|wall| wall.shape.overlaps(&shape)) {
         let what = format!("the obstacle `{name}` stands in a wall");
         let marks = [(wall.span.clone(), "in this wall")];
-        return Err(source.error(&what, (span, "this obstacle"), &marks, "it may touch walls, but not overlap them"));
+        return Err(source.error(
+            &what,
+            (span, "this obstacle"),
+            &marks,
+            "it may touch walls, but not overlap them",
+        ));
     }
     let time = |key: &str, value: &Option<Number>| {
         value.as_ref().map(|value| table.number(key, value, 0.001..=MAX_TIME_S)).transpose()
@@ -233,7 +245,8 @@ fn apart(source: &Source<'_>, files: &[Spanned<RobotFile>], robots: &[RobotSpec]
 
 /// The place of the one driven robot.
 fn driven(source: &Source<'_>, file: &WorldFile, robots: &[RobotSpec]) -> Result<usize, WorldError> {
-    let driven: Vec<usize> = (0..robots.len()).filter(|&i| robots[i].behaviour == Behaviour::Driven).collect();
+    let driven: Vec<usize> =
+        (0..robots.len()).filter(|&i| robots[i].behaviour == Behaviour::Driven).collect();
     let kind = |i: usize| file.robots[i].get_ref().behaviour.get_ref().kind.span();
     let help = "exactly one robot has `kind = \"driven\"`: the one that explores";
     match driven[..] {

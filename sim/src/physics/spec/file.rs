@@ -4,7 +4,24 @@ use serde::Deserialize;
 use serde_spanned::Spanned;
 
 pub(super) type Number = Spanned<f64>;
-pub(super) type Pair = Spanned<[f64; 2]>;
+pub(super) type Pair = Spanned<Two>;
+
+/// Exactly two numbers: an array would let a third one pass.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "Vec<f64>")]
+pub(super) struct Two(pub(super) [f64; 2]);
+
+impl TryFrom<Vec<f64>> for Two {
+    type Error = String;
+
+    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
+        let count = numbers.len();
+        numbers
+            .try_into()
+            .map(Self)
+            .map_err(|_| format!("invalid length {count}, expected an array of length 2"))
+    }
+}
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

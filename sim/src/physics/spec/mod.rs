@@ -44,7 +44,7 @@
 //! | `robot.behaviour.kind` | | required | `"driven"` (exactly one robot) or `"wall_patrol"` |
 //! | `robot.behaviour.from_m`, `to_m` | m | required² | 0.1 m apart or more; the robot fits all the way and starts on it |
 //! | `robot.behaviour.speed_mps` | m/s | required² | 0.01 to `max_linear_mps` |
-//! | `robot.behaviour.wall_side` | | required² | `"left"` or `"right"`, on the way from `from_m` to `to_m`; the whole way must run along a wall there, at most 2 m away |
+//! | `robot.behaviour.wall_side` | | required² | `"left"` or `"right"`, on the way from `from_m` to `to_m`; the whole way must run along a wall there, its surface 0.05 m beyond the robot or more, and at most 2 m from its middle |
 //! | `robot.behaviour.clearance_m` | m | 0.15 | 0.05 to 10; kept free ahead when it stops |
 //!
 //! ¹ one of the two forms. ² `wall_patrol` only.

@@ -1,9 +1,20 @@
 //! Single values: in range or not.
 
-use super::file::{Number, Pair};
+use super::file::{Number, Pair, Two};
 use crate::error::{Source, WorldError};
 use nalgebra::Point2;
+use std::fmt;
 use std::ops::RangeInclusive;
+
+/// A number as one would write it: 1e300 has no 300 digits.
+struct Figure(f64);
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let plain = self.0 == 0.0 || !self.0.is_finite() || (1e-5..1e7).contains(&self.0.abs());
+        if plain { write!(f, "{}", self.0) } else { write!(f, "{:e}", self.0) }
+    }
+}
 
 /// A table of the file, named as in `robot.laser`.
 pub(super) struct Table<'a> {
@@ -23,8 +34,8 @@ impl Table<'_> {
         if range.contains(&number) {
             return Ok(number);
         }
-        let what = format!("`{}.{key}` is {number}, which is out of range", self.path);
-        let help = format!("it must be a number from {} to {}", range.start(), range.end());
+        let what = format!("`{}.{key}` is {}, which is out of range", self.path, Figure(number));
+        let help = format!("it must be a number from {} to {}", Figure(*range.start()), Figure(*range.end()));
         Err(self.source.error(&what, (value.span(), "out of range"), &[], &help))
     }
 
@@ -46,22 +57,28 @@ impl Table<'_> {
         value: &Pair,
         range: RangeInclusive<f64>,
     ) -> Result<Point2<f64>, WorldError> {
-        let [x, y] = *value.get_ref();
+        let Two([x, y]) = *value.get_ref();
         if range.contains(&x) && range.contains(&y) {
             return Ok(Point2::new(x, y));
         }
-        let what = format!("`{}.{key}` is [{x}, {y}], which is out of range", self.path);
+        let what = format!("`{}.{key}` is [{}, {}], which is out of range", self.path, Figure(x), Figure(y));
         let help = format!("both must be numbers from {} to {}", range.start(), range.end());
         Err(self.source.error(&what, (value.span(), "out of range"), &[], &help))
     }
 
     /// A point (m) in the map of `size` (m).
-    pub(super) fn point(&self, key: &str, value: &Pair, size: &Point2<f64>) -> Result<Point2<f64>, WorldError> {
-        let [x, y] = *value.get_ref();
+    pub(super) fn point(
+        &self,
+        key: &str,
+        value: &Pair,
+        size: &Point2<f64>,
+    ) -> Result<Point2<f64>, WorldError> {
+        let Two([x, y]) = *value.get_ref();
         if (0.0..=size.x).contains(&x) && (0.0..=size.y).contains(&y) {
             return Ok(Point2::new(x, y));
         }
-        let what = format!("`{}.{key}` is [{x}, {y}], which is outside of the map", self.path);
+        let what =
+            format!("`{}.{key}` is [{}, {}], which is outside of the map", self.path, Figure(x), Figure(y));
         let help = format!("the map reaches from [0, 0] to [{}, {}]", size.x, size.y);
         Err(self.source.error(&what, (value.span(), "outside of the map"), &[], &help))
     }
@@ -75,6 +92,11 @@ impl Table<'_> {
             "" => "`name` is empty".to_owned(),
             path => format!("`{path}.name` is empty"),
         };
-        Err(self.source.error(&what, (value.span(), "empty"), &[], "give it a name, as in `name = \"curious\"`"))
+        Err(self.source.error(
+            &what,
+            (value.span(), "empty"),
+            &[],
+            "give it a name, as in `name = \"curious\"`",
+        ))
     }
 }

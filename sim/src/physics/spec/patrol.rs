@@ -5,6 +5,7 @@ use super::file::{BehaviourFile, RobotFile};
 use super::numbers::Table;
 use super::{Behaviour, DriveLimits, PatrolSpec};
 use crate::error::{Source, WorldError};
+use crate::physics::patrol::WALL_RELIEF_M;
 use crate::physics::shape::{TOUCH_M, point_segment_m};
 use nalgebra::{Point2, Vector2};
 use serde_spanned::Spanned;
@@ -34,13 +35,20 @@ pub(super) fn behaviour(
             match numbers.into_iter().chain(points).chain([side]).flatten().next() {
                 Some(span) => {
                     let help = "leave it out: a driven robot goes where it is told to";
-                    Err(source.error("a driven robot has no patrol", (span, "for a `wall_patrol`"), &[], help))
+                    Err(source.error(
+                        "a driven robot has no patrol",
+                        (span, "for a `wall_patrol`"),
+                        &[],
+                        help,
+                    ))
                 }
                 None => Ok(Behaviour::Driven),
             }
         }
         "wall_patrol" => {
-            let (Some(from_m), Some(to_m), Some(speed_mps), Some(side)) = (from_m, to_m, speed_mps, wall_side) else {
+            let (Some(from_m), Some(to_m), Some(speed_mps), Some(side)) =
+                (from_m, to_m, speed_mps, wall_side)
+            else {
                 let what = format!("the patrol of `{}` is not complete", robot.name.get_ref());
                 let help = "it needs `from_m`, `to_m`, `speed_mps` and `wall_side`";
                 return Err(source.error(&what, (kind.span(), "this patrol"), &[], help));
@@ -61,7 +69,14 @@ pub(super) fn behaviour(
             let way = Way { source, robot, from, to, spans: [from_m.span(), to_m.span()] };
             way.is_free(start, solids)?;
             let wall_distance_m = way.wall_distance_m(wall_on_left, solids)?;
-            Ok(Behaviour::WallPatrol(PatrolSpec { from, to, speed_mps, wall_on_left, wall_distance_m, clearance_m }))
+            Ok(Behaviour::WallPatrol(PatrolSpec {
+                from,
+                to,
+                speed_mps,
+                wall_on_left,
+                wall_distance_m,
+                clearance_m,
+            }))
         }
         other => {
             let what = format!("`{other}` is no behaviour");
@@ -129,8 +144,10 @@ impl Way<'_> {
             let side = if on_left { "left" } else { "right" };
             if distance_m > FARTHEST_WALL_M {
                 let what = format!("the patrol of `{name}` has no wall on its {side}");
-                let help =
-                    format!("there is none within {FARTHEST_WALL_M} m of [{:.3}, {:.3}]; check `wall_side`", at.x, at.y);
+                let help = format!(
+                    "there is none within {FARTHEST_WALL_M} m of [{:.3}, {:.3}]; check `wall_side`",
+                    at.x, at.y
+                );
                 return Err(self.error(&what, &[], &help));
             }
             if (distance_m - first_m).abs() > SLACK_M {
@@ -142,6 +159,14 @@ impl Way<'_> {
                 return Err(self.error(&what, &[], &help));
             }
             i += 1.0;
+        }
+        let (name, radius_m) = (self.robot.name.get_ref(), *self.robot.radius_m.get_ref());
+        if first_m < radius_m + WALL_RELIEF_M - TOUCH_M {
+            let what = format!("the patrol of `{name}` is too near to its wall");
+            let help = format!(
+                "the wall is {first_m:.3} m away; a robot of radius {radius_m} m needs {WALL_RELIEF_M} m more"
+            );
+            return Err(self.error(&what, &[], &help));
         }
         Ok(first_m)
     }

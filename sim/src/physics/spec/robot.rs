@@ -87,17 +87,25 @@ fn laser(source: &Source<'_>, file: &LaserFile, step_s: f64, radius_m: f64) -> R
     let rate_hz = table.number("rate_hz", &file.rate_hz, 0.01..=1000.0)?;
     let steps = 1.0 / (rate_hz * step_s);
     if steps.round() < 1.0 || (steps - steps.round()).abs() > 1e-6 * steps {
-        let what = format!("`robot.laser.rate_hz` is {rate_hz}, a scan every {steps:.3} physics steps of {step_s} s");
+        let what = format!(
+            "`robot.laser.rate_hz` is {rate_hz}, a scan every {steps:.3} physics steps of {step_s} s"
+        );
         let whole = steps.floor().max(1.0);
         let near = [whole, whole + 1.0].map(|steps| format!("{:.6}", 1.0 / (steps * step_s)));
         let near = near.map(|hz| hz.trim_end_matches('0').trim_end_matches('.').to_owned());
         let help = format!("scans must be whole steps apart: {} or {} Hz would be", near[0], near[1]);
         return Err(source.error(&what, (file.rate_hz.span(), "not whole steps apart"), &[], &help));
     }
-    let mount = file.mount_m.as_ref().map_or(Ok(Point2::origin()), |m| table.pair("mount_m", m, -10.0..=10.0))?;
+    let mount =
+        file.mount_m.as_ref().map_or(Ok(Point2::origin()), |m| table.pair("mount_m", m, -10.0..=10.0))?;
     if let Some(file) = file.mount_m.as_ref().filter(|_| mount.coords.norm() > radius_m) {
         let help = format!("it must lie within the robot's radius of {radius_m} m");
-        return Err(source.error("a laser is mounted off its robot", (file.span(), "off the robot"), &[], &help));
+        return Err(source.error(
+            "a laser is mounted off its robot",
+            (file.span(), "off the robot"),
+            &[],
+            &help,
+        ));
     }
     let mount_deg = table.number_or("mount_deg", &file.mount_deg, 0.0, -360.0..=360.0)?;
     Ok(LaserSpec {

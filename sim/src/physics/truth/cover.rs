@@ -108,8 +108,9 @@ fn clip(polygon: &[Point2<f64>], p: &Point2<f64>, q: &Point2<f64>) -> Vec<Point2
 
 /// The area of a counter-clockwise polygon, m².
 fn area(polygon: &[Point2<f64>]) -> f64 {
-    let pairs = polygon.iter().zip(polygon.iter().cycle().skip(1));
-    pairs.map(|(a, b)| a.coords.perp(&b.coords)).sum::<f64>() / 2.0
+    let Some(first) = polygon.first() else { return 0.0 };
+    // Seen from a corner of its own, so that nothing is lost far from the origin.
+    polygon.windows(2).map(|pair| (pair[0] - first).perp(&(pair[1] - first))).sum::<f64>() / 2.0
 }
 
 #[cfg(test)]

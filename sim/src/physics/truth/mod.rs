@@ -1,12 +1,13 @@
 //! The truth about every cell, for metrics and pictures only: no robot may look at it.
 
 mod cover;
+mod start;
 #[cfg(test)]
 mod tests;
 
 use super::report::Body;
 use super::shape::Rectangle;
-use geometry::{Cell, Grid, GridFrame};
+use geometry::{Cell, GridFrame};
 use nalgebra::Point2;
 
 /// What really is in a cell.
@@ -63,7 +64,7 @@ pub struct Truth {
 impl Truth {
     /// The truth at the start: walls, and the region around `start` (m).
     pub(super) fn new(frame: GridFrame, walls: &[Rectangle], start: &Point2<f64>) -> Self {
-        let fixed = walls_cover(&frame, walls);
+        let fixed = start::walls_cover(&frame, walls);
         Self {
             frame,
             elapsed_s: 0.0,
@@ -73,7 +74,7 @@ impl Truth {
             armed: fixed.iter().map(|state| *state != TrueState::Blocked).collect(),
             block_events: vec![0; frame.len()],
             movers: vec![None; frame.len()],
-            reachable: reachable(&frame, &fixed, frame.cell_at(start)),
+            reachable: start::reachable(&frame, &fixed, frame.cell_at(start)),
             changes: Vec::new(),
             fixed,
         }
@@ -148,7 +149,13 @@ impl Truth {
     }
 
     /// A robot is set down at the start, or moves (m).
-    pub(super) fn move_disc(&mut self, body: Body, from: Option<Point2<f64>>, to: Point2<f64>, radius_m: f64) {
+    pub(super) fn move_disc(
+        &mut self,
+        body: Body,
+        from: Option<Point2<f64>>,
+        to: Point2<f64>,
+        radius_m: f64,
+    ) {
         if from == Some(to) {
             return;
         }
@@ -189,7 +196,7 @@ impl Truth {
         cover::box_cells(&self.frame, shape, |cell, _| cells.push(cell));
         for &cell in &cells {
             if let Some(index) = self.frame.index(cell) {
-                self.fixed[index] = state_of(cover::open_share(&self.frame, cell, near.iter()));
+                self.fixed[index] = start::state_of(cover::open_share(&self.frame, cell, near.iter()));
                 if let Some(body) = mover {
                     self.movers[index].get_or_insert(body);
                 }
@@ -233,75 +240,8 @@ impl Truth {
     }
 }
 
-fn state_of(open_share: f64) -> TrueState {
-    match open_share {
-        share if share <= 0.0 => TrueState::Blocked,
-        share if share < 1.0 - 1e-6 => TrueState::Partly,
-        _ => TrueState::Free,
-    }
-}
-
 /// Whether the upright boxes around two rectangles overlap.
 fn may_meet(a: &Rectangle, b: &Rectangle) -> bool {
     let ((a_low, a_high), (b_low, b_high)) = (a.bounds(), b.bounds());
     (a_high - b_low).min() > 0.0 && (b_high - a_low).min() > 0.0
-}
-
-/// What the walls alone make of every cell.
-fn walls_cover(frame: &GridFrame, walls: &[Rectangle]) -> Vec<TrueState> {
-    let mut states = vec![TrueState::Free; frame.len()];
-    // Cells that no wall covers alone, with the walls that may cover them together.
-    let mut shared = Vec::new();
-    for (wall, shape) in walls.iter().enumerate() {
-        cover::box_cells(frame, shape, |cell, whole| {
-            if let Some(index) = frame.index(cell) {
-                match whole {
-                    true => states[index] = TrueState::Blocked,
-                    false if states[index] != TrueState::Blocked => shared.push((index, wall)),
-                    false => {}
-                }
-            }
-        });
-    }
-    shared.sort_unstable();
-    for group in shared.chunk_by(|a, b| a.0 == b.0) {
-        let index = group[0].0;
-        if states[index] != TrueState::Blocked {
-            let boxes = group.iter().map(|(_, wall)| &walls[*wall]);
-            states[index] = state_of(cover::open_share(frame, frame.cell(index), boxes));
-        }
-    }
-    states
-}
-
-/// The free cells connected with `start` by their sides, and the partly covered ones that touch
-/// them: a wall that runs aslant has a fringe of these, which leads to the cells inside.
-fn reachable(frame: &GridFrame, walls: &[TrueState], start: Cell) -> Vec<bool> {
-    let mut reached = vec![false; frame.len()];
-    let mut frontier: Vec<Cell> = Vec::new();
-    let mut reach = |cell: Cell, frontier: &mut Vec<Cell>| {
-        if let Some(index) = frame.index(cell)
-            && walls[index] == TrueState::Free
-            && !std::mem::replace(&mut reached[index], true)
-        {
-            frontier.push(cell);
-        }
-    };
-    reach(start, &mut frontier);
-    while let Some(cell) = frontier.pop() {
-        for side in cell.neighbours4() {
-            reach(side, &mut frontier);
-        }
-    }
-    let fringe = |index: usize| {
-        walls[index] == TrueState::Partly
-            && frame.cell(index).neighbours8().into_iter().any(|near| {
-                frame.index(near).is_some_and(|near| walls[near] == TrueState::Free && reached[near])
-            })
-    };
-    let fringe: Vec<usize> = (0..frame.len()).filter(|&index| fringe(index)).collect();
-    for index in fringe {
-        reached[index] = true;
-    }
-    reached
 }

@@ -1,0 +1,110 @@
+//! The surfaces in one scan: which beams ended on the same one, and what lies just behind.
+
+use crate::projection::PointCloud;
+use nalgebra::{Point2, Vector2};
+
+/// The direction of a surface is taken over neighbours about this far away, m, so that range noise
+/// does not turn it.
+const CHORD_M: f64 = 0.075;
+/// A surface whose two sides meet at more than 25° turns a corner.
+const CORNER_COS: f64 = 0.9;
+
+/// The end points of one scan, joined to surfaces.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Outline {
+    /// Per beam the end point if it hit something, m.
+    pub(crate) ends: Vec<Option<Point2<f64>>>,
+    /// Per beam whether the next beam hit the same surface.
+    pub(crate) joined: Vec<bool>,
+    /// Per beam the first and the last beam of its surface. A surface behind the seam of a full
+    /// turn counts as two.
+    surfaces: Vec<(usize, usize)>,
+}
+
+impl Outline {
+    /// Finds the end points, and which neighbours lie on one surface: those nearer than `join_m`.
+    pub(crate) fn trace(&mut self, cloud: &PointCloud, join_m: f64) {
+        self.ends.clear();
+        self.ends.extend((0..cloud.len()).map(|beam| cloud.hit(beam)));
+        self.joined.clear();
+        self.joined.extend((0..cloud.len()).map(|beam| {
+            let next = cloud.next(beam).and_then(|next| self.ends[next]);
+            matches!((self.ends[beam], next), (Some(a), Some(b)) if (b - a).norm_squared() < join_m * join_m)
+        }));
+        self.surfaces.clear();
+        let mut first = 0;
+        for last in 0..cloud.len() {
+            if !self.joined[last] || last + 1 == cloud.len() {
+                self.surfaces.resize(last + 1, (first, last));
+                first = last + 1;
+            }
+        }
+    }
+
+    /// The point that a hit counts for: `depth_m` behind the surface along its normal, or, where a
+    /// neighbouring beam can see that point (the normal led out of a corner), half as deep along
+    /// the beam.
+    pub(crate) fn behind(
+        &self,
+        beam: usize,
+        end: &Point2<f64>,
+        depth_m: f64,
+        cloud: &PointCloud,
+    ) -> Point2<f64> {
+        let point = end - self.normal(beam, end, cloud) * depth_m;
+        let seen = point - cloud.origin;
+        let distance_m = seen.norm();
+        // From the beam to the point's direction, in beams; the angle is small.
+        let turn = cloud.directions[beam].perp(&seen) / (distance_m * cloud.increment_rad);
+        let beams = cloud.len() as i64;
+        let sees = |step: i64| {
+            let at = (beam as i64 + step).rem_euclid(beams) as usize;
+            cloud.returns[at].clear_m() > distance_m + depth_m / 2.0
+        };
+        let step = turn as i64 - i64::from(turn < 0.0);
+        if turn.abs() < beams as f64 && (sees(step) || sees(step + 1)) {
+            end + cloud.directions[beam] * (depth_m / 2.0)
+        } else {
+            point
+        }
+    }
+
+    /// The normal of the surface at a hit, towards the sensor. Where the surface turns a corner,
+    /// that of the straighter side: a normal across the corner would point out of the body.
+    fn normal(&self, beam: usize, end: &Point2<f64>, cloud: &PointCloud) -> Vector2<f64> {
+        let range_m = (end - cloud.origin).norm();
+        let step = (CHORD_M / (range_m * cloud.spacing_rad)) as usize + 1;
+        let (first, last) = self.surfaces[beam];
+        let (before, after) = (beam.saturating_sub(step).max(first), (beam + step).min(last));
+        let chord = |to: usize| self.ends[to].map_or_else(Vector2::zeros, |to| to - end);
+        let (back, ahead) = (chord(before), chord(after));
+        let along = ahead.dot(&back);
+        let turns_corner = along > 0.0
+            || along * along < CORNER_COS * CORNER_COS * ahead.norm_squared() * back.norm_squared();
+        let tangent = if !turns_corner {
+            ahead - back
+        } else if self.bend_m(beam, after) <= self.bend_m(beam, before) {
+            ahead
+        } else {
+            -back
+        };
+        let length_m = tangent.norm();
+        if length_m < 1e-6 {
+            return -cloud.directions[beam];
+        }
+        let normal = Vector2::new(-tangent.y, tangent.x) / length_m;
+        if normal.dot(&cloud.directions[beam]) > 0.0 { -normal } else { normal }
+    }
+
+    /// How far the surface bends away from the chord between two of its hits, m; ∞ where no hit
+    /// between them tells.
+    fn bend_m(&self, from: usize, to: usize) -> f64 {
+        let middle = from.midpoint(to);
+        match (self.ends[from], self.ends[middle], self.ends[to]) {
+            (Some(a), Some(b), Some(c)) if middle != from && middle != to => {
+                (b - a).perp(&(c - a)).abs() / (c - a).norm()
+            }
+            _ => f64::INFINITY,
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! The layout that a viewer opens a recording with.
+//!
+//! Logged component by component, since the SDK's layout types cannot set a view's bounds, the
+//! axis of a plot, or that a trail shows its whole past.
+
+use super::columns::SIM_TIME;
+use super::entity;
+use crate::layer::Layer;
+use crate::view::View;
+use nalgebra::Point2;
+use rerun::blueprint::components::{ContainerKind, Corner2D, PanelState, PlayState};
+use rerun::external::re_log_types::BlueprintActivationCommand;
+use rerun::external::re_sdk_types::blueprint::{archetypes as blueprint, components::VisibleTimeRange};
+use rerun::external::re_sdk_types::datatypes;
+use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
+
+/// Sends the layout for a run that looks like `view`.
+pub(super) fn send(stream: &RecordingStream, application: &'static str, view: &View) -> RecordingStreamResult<()> {
+    let (layout, storage) = RecordingStreamBuilder::new(application).enabled(true).blueprint().memory()?;
+    layout.set_time_sequence("blueprint", 0);
+    let layout = Layout { stream: layout, count: 0.into() };
+
+    let house = layout.house(view)?;
+    let maps = [Layer::Interval, Layer::ChangeProbability, Layer::Recency];
+    let maps = maps.map(|layer| layout.map(view, layer)).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let mut plots = vec![
+        layout.plot("Map: coverage and quality", entity::SCORES, Some([0.0, 1.0]))?,
+        layout.plot("Expected changes out of view, p", entity::P, None)?,
+        layout.plot("Longest time since a cell was seen, r (s)", entity::R, None)?,
+    ];
+    if !view.strategies.is_empty() {
+        plots.push(layout.plot("Strategies: expected map updates per step", entity::VALUES, None)?);
+        plots.push(layout.plot("Strategies: share of the goals", entity::SHARES, Some([0.0, 1.0]))?);
+    }
+    let log = layout.log()?;
+
+    let maps = layout.container(ContainerKind::Vertical, &maps, &[])?;
+    let plots = layout.container(ContainerKind::Vertical, &plots, &[])?;
+    let left = layout.container(ContainerKind::Vertical, &[house, log], &[4.0, 1.0])?;
+    let root = layout.container(ContainerKind::Horizontal, &[left, maps, plots], &[2.4, 1.0, 1.3])?;
+    layout.finish(root)?;
+
+    let id = storage.store_id();
+    if let Some(id) = id {
+        stream.send_blueprint(storage.take(), BlueprintActivationCommand::make_active(id));
+    }
+    Ok(())
+}
+
+struct Layout {
+    stream: RecordingStream,
+    count: std::cell::Cell<u8>,
+}
+
+/// A view or container in the blueprint.
+struct Part {
+    path: String,
+    id: [u8; 16],
+}
+
+impl Layout {
+    fn part(&self, kind: &str) -> Part {
+        // Ids need to be unique within this layout only.
+        self.count.set(self.count.get() + 1);
+        let id = [self.count.get(); 16];
+        Part { path: format!("{kind}/{}", rerun::external::uuid::Uuid::from_bytes(id)), id }
+    }
+
+    fn log(&self) -> RecordingStreamResult<Part> {
+        self.view("TextLog", "What happened", &[entity::LOG.into()])
+    }
+
+    fn view(&self, class: &str, name: &str, contents: &[String]) -> RecordingStreamResult<Part> {
+        let part = self.part("view");
+        let view = blueprint::ViewBlueprint::new(class).with_display_name(name).with_space_origin("/");
+        self.stream.log(part.path.as_str(), &view)?;
+        let queries = contents.iter().map(String::as_str);
+        self.property(&part, "ViewContents", &blueprint::ViewContents::new(queries))?;
+        Ok(part)
+    }
+
+    fn property(&self, view: &Part, name: &str, value: &dyn AsComponents) -> RecordingStreamResult<()> {
+        self.stream.log(format!("{}/{name}", view.path), value)
+    }
+
+    /// A view of a part of the world. The viewer's y points down, the world's is flipped: bounds
+    /// are in the viewer's.
+    fn spatial(&self, name: &str, contents: &[String], from: Point2<f64>, to: Point2<f64>) -> RecordingStreamResult<Part> {
+        let view = self.view("2D", name, contents)?;
+        let bounds = datatypes::Range2D { x_range: [from.x, to.x].into(), y_range: [-to.y, -from.y].into() };
+        self.property(&view, "VisualBounds2D", &blueprint::VisualBounds2D::new(bounds))?;
+        let background = blueprint::Background::new(rerun::blueprint::components::BackgroundKind::SolidColor);
+        self.property(&view, "Background", &background.with_color(rerun::Color::from_rgb(24, 27, 32)))?;
+        Ok(view)
+    }
+
+    fn house(&self, view: &View) -> RecordingStreamResult<Part> {
+        let (from, to) = bounds(view);
+        let margin = nalgebra::Vector2::new(0.02, 0.02) * (to.x - from.x);
+        let contents = ["house/**", "robots/**", "maps/occupancy/**", "goal", "path"];
+        let contents = contents.map(|entity| format!("+ {}/{entity}", entity::WORLD));
+        let part = self.spatial("The house, as the robot maps it", &contents, from - margin, to + margin)?;
+        let whole_past = VisibleTimeRange(datatypes::VisibleTimeRange {
+            timeline: SIM_TIME.into(),
+            range: datatypes::TimeRange {
+                start: datatypes::TimeRangeBoundary::Infinite,
+                end: datatypes::TimeRangeBoundary::AT_CURSOR,
+            },
+        });
+        for robot in view.robots {
+            let trail = entity::robot(robot.name, "trail");
+            let past = blueprint::VisibleTimeRanges::new([whole_past.clone()]);
+            self.property(&part, &format!("ViewContents/overrides{trail}/visualizers"), &past)?;
+        }
+        Ok(part)
+    }
+
+    fn map(&self, view: &View, layer: Layer) -> RecordingStreamResult<Part> {
+        let (from, to) = bounds(view);
+        let legend = nalgebra::Vector2::new(0.0, entity::LEGEND_SHARE * (to.y - from.y));
+        self.spatial(layer.title(), &[format!("+ {}/**", entity::map(layer))], from - legend, to)
+    }
+
+    fn plot(&self, name: &str, entity: &str, range: Option<[f64; 2]>) -> RecordingStreamResult<Part> {
+        let view = self.view("TimeSeries", name, &[format!("+ {entity}/**")])?;
+        self.property(&view, "PlotLegend", &blueprint::PlotLegend::new().with_corner(Corner2D::LeftTop))?;
+        if let Some(range) = range {
+            let range = rerun::components::Range1D::from(range);
+            self.property(&view, "ScalarAxis", &blueprint::ScalarAxis::new().with_range(range))?;
+        }
+        Ok(view)
+    }
+
+    fn container(&self, kind: ContainerKind, parts: &[Part], shares: &[f32]) -> RecordingStreamResult<Part> {
+        let part = self.part("container");
+        let mut container = blueprint::ContainerBlueprint::new(kind)
+            .with_contents(parts.iter().map(|part| part.path.as_str()));
+        let shares = shares.iter().copied();
+        container = match kind {
+            ContainerKind::Horizontal => container.with_col_shares(shares),
+            _ => container.with_row_shares(shares),
+        };
+        self.stream.log(part.path.as_str(), &container)?;
+        Ok(part)
+    }
+
+    fn finish(&self, root: Part) -> RecordingStreamResult<()> {
+        let viewport = blueprint::ViewportBlueprint::new()
+            .with_root_container(datatypes::Uuid { bytes: root.id })
+            .with_auto_layout(false)
+            .with_auto_views(false);
+        self.stream.log("viewport", &viewport)?;
+        let hidden = blueprint::PanelBlueprint::new().with_state(PanelState::Hidden);
+        self.stream.log("blueprint_panel", &hidden)?;
+        self.stream.log("selection_panel", &hidden)?;
+        let time = blueprint::TimePanelBlueprint::new()
+            .with_state(PanelState::Collapsed)
+            .with_timeline(SIM_TIME)
+            .with_play_state(PlayState::Following);
+        self.stream.log("time_panel", &time)
+    }
+}
+
+fn bounds(view: &View) -> (Point2<f64>, Point2<f64>) {
+    let frame = view.mapper.frame();
+    let size = nalgebra::Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
+    (frame.origin(), frame.origin() + size)
+}

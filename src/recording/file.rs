@@ -1,0 +1,71 @@
+//! The file that a recording goes to.
+
+use rerun::external::re_log_encoding::{Encoder, rrd::EncodingOptions};
+use rerun::log::LogMsg;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// An `.rrd` file under its final name from the start, so that a viewer can follow it and a killed
+/// run leaves a readable one.
+///
+/// The SDK's own file sink reports a failed write to its logger only, and drops everything that
+/// comes after it without a word. This one keeps the first error for [`RrdFile::finish`]. Every
+/// message is written at once, without a buffer in between: what was sent is in the hands of the
+/// operating system.
+pub(super) struct RrdFile {
+    path: PathBuf,
+    state: Mutex<State>,
+}
+
+enum State {
+    Open(Box<Encoder<File>>),
+    Failed(String),
+    Finished,
+}
+
+impl RrdFile {
+    /// Creates the file, over an older one, and writes its header.
+    pub(super) fn create(path: &Path) -> Result<Self, String> {
+        let file = File::create(path).map_err(|error| error.to_string())?;
+        let version = rerun::build_info().version;
+        let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, file);
+        let encoder = Box::new(encoder.map_err(|error| error.to_string())?);
+        Ok(Self { path: path.to_owned(), state: Mutex::new(State::Open(encoder)) })
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub(super) fn send(&self, message: &LogMsg) {
+        let mut state = self.state();
+        if let State::Open(encoder) = &mut *state
+            && let Err(error) = encoder.append(message)
+        {
+            *state = State::Failed(error.to_string());
+        }
+    }
+
+    /// Why the file could not be written, if so.
+    pub(super) fn check(&self) -> Result<(), String> {
+        match &*self.state() {
+            State::Failed(error) => Err(error.clone()),
+            State::Open(_) | State::Finished => Ok(()),
+        }
+    }
+
+    /// Writes the footer and closes the file.
+    pub(super) fn finish(&self) -> Result<(), String> {
+        let mut state = self.state();
+        match std::mem::replace(&mut *state, State::Finished) {
+            State::Open(mut encoder) => encoder.finish().map_err(|error| error.to_string()),
+            State::Failed(error) => Err(error),
+            State::Finished => Ok(()),
+        }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

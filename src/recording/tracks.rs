@@ -1,0 +1,237 @@
+//! What changes during a run, and how often each part of it is logged.
+
+use super::columns::{Arrow, Classes, Item, Line, Now, Place, Rows, Strip};
+use super::{entity, outline};
+use crate::layer::Layer;
+use crate::view::{Level, RobotView, Trail, View};
+use nalgebra::{Isometry2, Point2};
+use rerun::RecordingStream;
+
+/// The time between two fields of view, s.
+const FIELD_OF_VIEW_S: f64 = 0.2;
+/// The time between two occupancy maps, s; skipped while nothing changes.
+const OCCUPANCY_S: f64 = 1.0;
+/// The time between two of the other maps, s.
+const MAPS_S: f64 = 10.0;
+/// The time between two points of a curve, s.
+const CURVES_S: f64 = 1.0;
+
+/// Says when something that is logged at a lower rate is due.
+struct Due {
+    period_s: f64,
+    next_s: f64,
+}
+
+impl Due {
+    fn every(period_s: f64) -> Self {
+        Self { period_s, next_s: f64::NEG_INFINITY }
+    }
+
+    fn now(&mut self, time_s: f64) -> bool {
+        // Half a millisecond of slack: 0.1 added ten times is not 1.
+        let is_due = time_s >= self.next_s - 5e-4;
+        if is_due {
+            self.next_s = time_s + self.period_s;
+        }
+        is_due
+    }
+}
+
+/// Everything about one robot.
+struct Robot {
+    body: Rows<Place>,
+    heading: Rows<Arrow>,
+    trail: Rows<Strip>,
+    field_of_view: Rows<Strip>,
+    way: Trail,
+    last: Option<Isometry2<f64>>,
+}
+
+impl Robot {
+    fn new(robot: &RobotView) -> Self {
+        let part = |part| entity::robot(robot.name, part);
+        Self {
+            body: Rows::new(part("body")),
+            heading: Rows::new(part("heading")),
+            trail: Rows::new(part("trail")),
+            field_of_view: Rows::new(part("field_of_view")),
+            way: Trail::new(robot.name, robot.is_curious),
+            last: None,
+        }
+    }
+
+    fn push(&mut self, now: Now, robot: &RobotView, with_field_of_view: bool) {
+        if self.last != Some(robot.pose) {
+            self.last = Some(robot.pose);
+            let at = Point2::from(robot.pose.translation.vector);
+            let nose = robot.pose * nalgebra::Vector2::new(1.4 * robot.radius_m, 0.0);
+            self.body.push(now, [place(&at)]);
+            self.heading.push(now, [Arrow { origin: place(&at), vector: [nose.x as f32, nose.y as f32] }]);
+            if self.way.push(at)
+                && let [.., from, to] = self.way.points()
+            {
+                self.trail.push(now, [Strip(vec![place(from), place(to)])]);
+            }
+        }
+        if with_field_of_view && let Some(reading) = robot.reading {
+            let corners = outline::field_of_view(reading);
+            self.field_of_view.push(now, [Strip(corners.iter().map(place).collect())]);
+        }
+    }
+}
+
+/// A map and the classes that were logged last.
+struct Map {
+    layer: Layer,
+    rows: Rows<Classes>,
+    last: Vec<u8>,
+}
+
+impl Map {
+    fn new(layer: Layer) -> Self {
+        Self { layer, rows: Rows::new(format!("{}/cells", entity::map(layer))), last: Vec::new() }
+    }
+
+    fn push(&mut self, now: Now, view: &View) {
+        let classes = self.layer.classes(view.mapper);
+        if classes != self.last {
+            self.rows.push(now, [Classes(classes.clone())]);
+            self.last = classes;
+        }
+    }
+}
+
+/// All rows of a recording.
+pub(super) struct Tracks {
+    robots: Vec<Robot>,
+    obstacles: Vec<(Rows<Strip>, bool)>,
+    path: (Rows<Strip>, Vec<Point2<f64>>),
+    goal: (Rows<Place>, Option<Point2<f64>>),
+    occupancy: Map,
+    maps: [Map; 3],
+    /// Coverage, map quality.
+    scores: [Rows<f64>; 2],
+    /// p, r.
+    features: [Rows<f64>; 2],
+    /// Value and share of each strategy.
+    strategies: Vec<[Rows<f64>; 2]>,
+    log: Rows<Line>,
+    field_of_view_due: Due,
+    occupancy_due: Due,
+    maps_due: Due,
+    curves_due: Due,
+    scores_due: Due,
+}
+
+impl Tracks {
+    /// Tracks for everyone who takes part in `view`.
+    pub(super) fn new(view: &View) -> Self {
+        let curves = |name: &str| [entity::VALUES, entity::SHARES].map(|of| Rows::new(entity::strategy(of, name)));
+        Self {
+            robots: view.robots.iter().map(Robot::new).collect(),
+            obstacles: view.obstacles.iter().map(|thing| (Rows::new(entity::obstacle(thing.name)), false)).collect(),
+            path: (Rows::new(entity::PATH), Vec::new()),
+            goal: (Rows::new(entity::GOAL), None),
+            occupancy: Map::new(Layer::Occupancy),
+            maps: [Layer::Interval, Layer::ChangeProbability, Layer::Recency].map(Map::new),
+            scores: [entity::COVERAGE, entity::MAP_QUALITY].map(Rows::new),
+            features: [entity::P, entity::R].map(Rows::new),
+            strategies: view.strategies.iter().map(|strategy| curves(strategy.name)).collect(),
+            log: Rows::new(entity::LOG),
+            field_of_view_due: Due::every(FIELD_OF_VIEW_S),
+            occupancy_due: Due::every(OCCUPANCY_S),
+            maps_due: Due::every(MAPS_S),
+            curves_due: Due::every(CURVES_S),
+            scores_due: Due::every(CURVES_S),
+        }
+    }
+
+    /// Appends what is due now; everything in the last view.
+    pub(super) fn push(&mut self, view: &View, is_last: bool) {
+        let now = Now { time_s: view.time_s, step: view.step };
+        let with_field_of_view = self.field_of_view_due.now(view.time_s) || is_last;
+        for (track, robot) in self.robots.iter_mut().zip(view.robots) {
+            track.push(now, robot, with_field_of_view);
+        }
+        for ((track, was_present), thing) in self.obstacles.iter_mut().zip(view.obstacles) {
+            if *was_present != thing.is_present {
+                *was_present = thing.is_present;
+                let closed = thing.outline.iter().chain(thing.outline.first());
+                track.push(now, thing.is_present.then(|| Strip(closed.map(place).collect())));
+            }
+        }
+        if self.path.1 != view.path {
+            self.path.1 = view.path.to_vec();
+            self.path.0.push(now, (view.path.len() > 1).then(|| Strip(view.path.iter().map(place).collect())));
+        }
+        if self.goal.1 != view.goal {
+            self.goal.1 = view.goal;
+            self.goal.0.push(now, view.goal.as_ref().map(place));
+        }
+        for message in view.messages {
+            let level = match message.level {
+                Level::Decision => rerun::TextLogLevel::INFO,
+                Level::Event => rerun::TextLogLevel::DEBUG,
+                Level::Trouble => rerun::TextLogLevel::WARN,
+            };
+            self.log.push(now, [Line { text: message.text.clone(), level }]);
+        }
+        self.push_maps(now, view, is_last);
+        self.push_curves(now, view, is_last);
+    }
+
+    fn push_maps(&mut self, now: Now, view: &View, is_last: bool) {
+        if self.occupancy_due.now(view.time_s) || is_last {
+            self.occupancy.push(now, view);
+        }
+        if self.maps_due.now(view.time_s) || is_last {
+            for map in &mut self.maps {
+                map.push(now, view);
+            }
+        }
+    }
+
+    fn push_curves(&mut self, now: Now, view: &View, is_last: bool) {
+        if self.curves_due.now(view.time_s) || is_last {
+            let [p, r] = &mut self.features;
+            p.push(now, [view.features.p]);
+            r.push(now, [view.features.r]);
+            for ([value, share], strategy) in self.strategies.iter_mut().zip(view.strategies) {
+                value.push(now, [strategy.value]);
+                share.push(now, [strategy.share]);
+            }
+        }
+        if let Some(scores) = view.scores
+            && (self.scores_due.now(view.time_s) || is_last)
+        {
+            let [coverage, map_quality] = &mut self.scores;
+            coverage.push(now, [scores.coverage]);
+            map_quality.push(now, [scores.map_quality]);
+        }
+    }
+
+    /// Hands everything over.
+    pub(super) fn flush(&mut self, stream: &RecordingStream) -> Result<(), String> {
+        fn all<'a, T: Item + 'a>(
+            rows: impl IntoIterator<Item = &'a mut Rows<T>>,
+            stream: &RecordingStream,
+        ) -> Result<(), String> {
+            rows.into_iter().try_for_each(|rows| rows.flush(stream))
+        }
+        for robot in &mut self.robots {
+            all([&mut robot.body], stream)?;
+            all([&mut robot.heading], stream)?;
+            all([&mut robot.trail, &mut robot.field_of_view], stream)?;
+        }
+        all(self.obstacles.iter_mut().map(|(rows, _)| rows).chain([&mut self.path.0]), stream)?;
+        all([&mut self.goal.0], stream)?;
+        all(self.maps.iter_mut().chain([&mut self.occupancy]).map(|map| &mut map.rows), stream)?;
+        let strategies = self.strategies.iter_mut().flatten();
+        all(strategies.chain(&mut self.scores).chain(&mut self.features), stream)?;
+        all([&mut self.log], stream)
+    }
+}
+
+fn place(point: &Point2<f64>) -> Place {
+    [point.x as f32, point.y as f32]
+}
