@@ -82,9 +82,9 @@ impl Layer {
     pub fn title(self) -> &'static str {
         match self {
             Self::Occupancy => "Occupancy",
-            Self::Interval => "Change interval: one cycle takes …",
+            Self::Interval => "Change interval: seconds per cycle",
             Self::ChangeProbability => "Probability of a change since last seen",
-            Self::Recency => "Recency: last seen … ago",
+            Self::Recency => "Recency: seconds since last seen",
         }
     }
 
@@ -104,16 +104,18 @@ impl Layer {
         match self {
             Self::Occupancy => &[],
             Self::Interval => &[
-                (5.0, "≤ 5 s"),
-                (10.0, "10 s"),
-                (20.0, "20 s"),
-                (50.0, "50 s"),
-                (100.0, "100 s"),
-                (200.0, "200 s"),
-                (500.0, "≥ 500 s"),
+                (5.0, "5"),
+                (10.0, "10"),
+                (20.0, "20"),
+                (50.0, "50"),
+                (100.0, "100"),
+                (200.0, "200"),
+                (500.0, "500"),
             ],
-            Self::ChangeProbability => &[(0.0, "0"), (0.25, "0.25"), (0.5, "0.5"), (0.75, "0.75"), (1.0, "1")],
-            Self::Recency => &[(1.0, "≤ 1 s"), (10.0, "10 s"), (100.0, "100 s"), (1000.0, "≥ 1000 s")],
+            Self::ChangeProbability => {
+                &[(0.0, "0"), (0.25, "0.25"), (0.5, "0.5"), (0.75, "0.75"), (1.0, "1")]
+            }
+            Self::Recency => &[(1.0, "1"), (10.0, "10"), (100.0, "100"), (1000.0, "1000")],
         }
     }
 
@@ -125,7 +127,9 @@ impl Layer {
         };
         if self == Self::Recency {
             // Every cell that was seen has one.
-            let class = |index| if mapper.was_ever_seen(index) { scale.class(mapper.recency(index)) } else { UNKNOWN };
+            let class = |index| {
+                if mapper.was_ever_seen(index) { scale.class(mapper.recency(index)) } else { UNKNOWN }
+            };
             return (0..states.len()).map(class).collect();
         }
         let mut classes: Vec<u8> = states.iter().map(|&state| plain(state)).collect();
@@ -171,8 +175,11 @@ impl Layer {
 
     /// Every class that a cell can have, with what it means.
     pub fn legend(self) -> Vec<(u8, String)> {
-        let still = |state: &str| if self.scale().is_some() { format!("{state}, never changed") } else { state.into() };
-        let mut legend = vec![(UNKNOWN, "never seen".into()), (FREE, still("free")), (BLOCKED, still("blocked"))];
+        let still = |state: &str| {
+            if self.scale().is_some() { format!("{state}, never changed") } else { state.into() }
+        };
+        let mut legend =
+            vec![(UNKNOWN, "never seen".into()), (FREE, still("free")), (BLOCKED, still("blocked"))];
         if let Some(scale) = self.scale() {
             legend.extend((0..STEPS).map(|step| {
                 let edge = |step: u8| scale.value(f64::from(step) / f64::from(STEPS));

@@ -1,61 +1,162 @@
-//! How long planning takes on a house of 12×12 m in cells of 0.05 m.
-use controller::*;
-use geometry::{Cell, GridFrame};
-use nalgebra::Point2;
+//! What planning and driving cost in a house of 12×12 m, four rooms, in cells of 0.05 m.
+
+use controller::{
+    Controller, Costmap, DIAGONAL, DiffDrive, DiffDriveSettings, Inflation, InflationSettings, Moves, Path,
+    Planner, STRAIGHT, Settings, Situation, Wavefront,
+};
+use divan::{Bencher, black_box};
+use geometry::{Cell, CellState, Grid, GridFrame, Transition, pose};
+use nalgebra::{Point2, Vector2};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::f64::consts::TAU;
+
+const RADIUS_M: f64 = 0.2;
+
 fn main() {
-    divan::main()
+    divan::main();
 }
-fn house() -> Costmap {
-    let frame = GridFrame::new(Point2::origin(), 0.05, 240, 240).unwrap();
-    let mut map = Costmap::closed(frame);
-    for y in 0..240 {
-        for x in 0..240 {
-            let gap = |v: i32| {
-                let m = v % 120;
-                m.min(119 - m)
-            };
-            let door = |v: i32| {
-                let m = v % 120;
-                (m - 60).abs()
-            };
-            let (gx, gy) = (gap(x), gap(y));
-            let mut price = if gx < 6 || gy < 6 {
-                0
-            } else if gx < 10 || gy < 10 {
-                3
-            } else {
-                1
-            };
-            let inner_x = (x - 120).abs() < 20;
-            let inner_y = (y - 120).abs() < 20;
-            if inner_x {
-                let d = door(y);
-                if d <= 1 {
-                    price = 1
-                } else if d <= 4 {
-                    price = 3
-                }
-            }
-            if inner_y {
-                let d = door(x);
-                if d <= 1 {
-                    price = 1
-                } else if d <= 4 {
-                    price = 3
-                }
-            }
-            map.set_price(Cell::new(x, y), price);
+
+/// Four rooms of 6×6 m, walls of 0.1 m, doors of 1 m.
+fn house() -> Grid<CellState> {
+    let frame = GridFrame::new(Point2::origin(), 0.05, 240, 240).expect("a frame");
+    let mut map = Grid::filled(frame, CellState::Free);
+    for index in 0..frame.len() {
+        let Cell { x, y } = frame.cell(index);
+        let outer = x.min(y).min(239 - x).min(239 - y) < 2;
+        let wall = |across: i32, along: i32| (119..=120).contains(&across) && (along % 120 - 60).abs() > 10;
+        if outer || wall(x, y) || wall(y, x) {
+            map.cells_mut()[index] = CellState::Blocked;
         }
     }
     map
 }
+
+fn inflated() -> Inflation {
+    Inflation::new(&InflationSettings::default(), RADIUS_M, &house())
+}
+
+/// The front of a robot that has gone on by a cell: 8 cells block, 8 free.
+fn passing_by(map: &Grid<CellState>) -> [Vec<Transition>; 2] {
+    let cells = |x: i32| (150..158).map(move |y| Cell::new(x, y));
+    let block = cells(180).map(|cell| (cell, CellState::Free, CellState::Blocked));
+    let free = cells(172).map(|cell| (cell, CellState::Blocked, CellState::Free));
+    assert!(cells(180).all(|cell| map.get(cell) == Some(&CellState::Free)));
+    let there: Vec<_> =
+        block.chain(free).map(|(cell, before, after)| Transition { cell, before, after }).collect();
+    let back = there.iter().map(|t| Transition { cell: t.cell, before: t.after, after: t.before }).collect();
+    [there, back]
+}
+
 #[divan::bench]
-fn full_field(bencher: divan::Bencher) {
-    let map = house();
-    let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
+fn wavefront_full_field(bencher: Bencher) {
+    let inflation = inflated();
+    let mut wave = Wavefront::new(*inflation.costmap().frame(), Moves::Eight);
     bencher.bench_local(|| {
         wave.clear();
-        wave.spread(&map, Cell::new(40, 40), None);
+        wave.spread(inflation.costmap(), black_box(Cell::new(40, 40)), None);
         wave.cost(Cell::new(200, 200))
     });
+}
+
+#[divan::bench]
+fn heap_dijkstra_full_field(bencher: Bencher) {
+    let inflation = inflated();
+    bencher.bench_local(|| dijkstra(inflation.costmap(), black_box(Cell::new(40, 40))));
+}
+
+/// The textbook's algorithm, to compare with.
+fn dijkstra(map: &Costmap, source: Cell) -> Vec<u32> {
+    let frame = *map.frame();
+    let mut costs = vec![u32::MAX; frame.len()];
+    let mut heap = BinaryHeap::from([Reverse((0, source))]);
+    costs[frame.index(source).unwrap_or(0)] = 0;
+    while let Some(Reverse((cost, cell))) = heap.pop() {
+        if frame.index(cell).is_none_or(|index| costs[index] < cost) {
+            continue;
+        }
+        for next in cell.neighbours8() {
+            let straight = next.x == cell.x || next.y == cell.y;
+            let open = map.is_open(next)
+                && (straight
+                    || map.is_open(Cell::new(next.x, cell.y)) && map.is_open(Cell::new(cell.x, next.y)));
+            let next_cost = cost + u32::from(map.price(cell)) * if straight { STRAIGHT } else { DIAGONAL };
+            if let Some(index) = frame.index(next).filter(|index| open && next_cost < costs[*index]) {
+                costs[index] = next_cost;
+                heap.push(Reverse((next_cost, next)));
+            }
+        }
+    }
+    costs
+}
+
+#[divan::bench]
+fn plan_to_the_opposite_room(bencher: Bencher) {
+    let map = house();
+    let mut planner = Planner::new(&InflationSettings::default(), RADIUS_M, Moves::Eight, &map);
+    let mut path = Path::default();
+    let (from, to) = (Point2::new(2.0, 2.0), Point2::new(10.0, 9.0));
+    bencher.bench_local(|| planner.plan(&map, black_box(&from), &to, &mut path));
+}
+
+#[divan::bench]
+fn plan_across_the_room(bencher: Bencher) {
+    let map = house();
+    let mut planner = Planner::new(&InflationSettings::default(), RADIUS_M, Moves::Eight, &map);
+    let mut path = Path::default();
+    let (from, to) = (Point2::new(2.0, 2.0), Point2::new(4.0, 3.0));
+    bencher.bench_local(|| planner.plan(&map, black_box(&from), &to, &mut path));
+}
+
+#[divan::bench]
+fn inflation_update_of_16_cells(bencher: Bencher) {
+    let map = house();
+    let mut inflation = inflated();
+    let [there, back] = passing_by(&map);
+    let mut forth = false;
+    bencher.bench_local(|| {
+        forth = !forth;
+        inflation.update(black_box(if forth { &there } else { &back }), |_| {}, |_| {});
+    });
+}
+
+#[divan::bench]
+fn inflation_of_a_new_map(bencher: Bencher) {
+    let map = house();
+    bencher.bench_local(|| {
+        Inflation::new(&InflationSettings::default(), RADIUS_M, black_box(&map))
+            .costmap()
+            .price(Cell::new(0, 0))
+    });
+}
+
+/// A tick on the way: a scan of 720 beams 0.4 m beside a wall, nothing to plan.
+#[divan::bench]
+fn drive_tick(bencher: Bencher) {
+    let map = house();
+    let robot = pose(2.0, 0.5, 0.0);
+    let points: Vec<_> =
+        (0..720).map(|beam| first_hit(&map, robot.translation.vector.into(), beam)).collect();
+    let situation = |time| Situation { time, pose: &robot, map: &map, transitions: &[], points: &points };
+    let drive = DiffDrive::new(DiffDriveSettings::default()).expect("defaults");
+    let rng = ChaCha8Rng::seed_from_u64(0);
+    let mut controller = Controller::new(Settings::default(), drive, rng).expect("defaults");
+    controller.go_to(Point2::new(5.0, 0.5));
+    (0..10).for_each(|tick| {
+        controller.drive(&situation(0.1 * f64::from(tick)));
+    });
+    bencher
+        .with_inputs(|| controller.clone())
+        .bench_local_values(|mut controller| (controller.drive(&situation(1.0)), controller));
+}
+
+fn first_hit(map: &Grid<CellState>, from: Point2<f64>, beam: u32) -> Point2<f64> {
+    let (sin, cos) = (TAU * f64::from(beam) / 720.0).sin_cos();
+    let mut at = from;
+    while map.get(map.frame().cell_at(&at)) == Some(&CellState::Free) {
+        at += Vector2::new(cos, sin) * 0.005;
+    }
+    at
 }

@@ -139,11 +139,6 @@ impl<D: Drive> Controller<D> {
         self.path.points()
     }
 
-    /// The drive.
-    pub fn drive_ref(&self) -> &D {
-        &self.drive
-    }
-
     /// One tick: what to do now. May be called again with the same situation, but without its
     /// transitions, when it has finished and there is another goal: no tick is lost then.
     pub fn drive(&mut self, situation: &Situation) -> D::Command {

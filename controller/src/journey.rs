@@ -35,6 +35,7 @@ pub(crate) enum Progress<Command> {
 #[derive(Clone, Debug)]
 pub(crate) struct Journey {
     target: Point2<f64>,
+    from: Point2<f64>,
     /// The journey ends when the robot has come this far, m.
     stride_m: f64,
     limit_s: f64,
@@ -43,7 +44,7 @@ pub(crate) struct Journey {
     reach: Option<Reach>,
     /// The nearest to the target that a path has led, m.
     best_short_m: f64,
-    waits_until_s: f64,
+    waits_until_s: Option<f64>,
     /// Where the robot was when it last got somewhere, and when.
     anchor: (Point2<f64>, f64),
     recoveries: u32,
@@ -58,13 +59,14 @@ impl Journey {
         let (position, time) = (situation.position(), situation.time);
         Self {
             target,
+            from: position,
             stride_m,
             limit_s,
             began_s: time,
             planned_at_s: f64::NEG_INFINITY,
             reach: None,
             best_short_m: f64::INFINITY,
-            waits_until_s: f64::NEG_INFINITY,
+            waits_until_s: None,
             anchor: (position, time),
             recoveries: 0,
             recovery_at: position,
@@ -100,7 +102,7 @@ impl Journey {
             self.plan(patience, situation, &mut surroundings.planner, path);
         }
         let scene = surroundings.scene(situation);
-        if situation.time < self.waits_until_s {
+        if self.waits(situation) {
             self.anchor = (position, situation.time);
             let may_stay = scene.costmap.is_open(scene.costmap.frame().cell_at(&position));
             let command = if may_stay { drive.rest(&scene) } else { drive.follow(&scene, path) };
@@ -125,6 +127,16 @@ impl Journey {
         Progress::Underway(drive.follow(&scene, path))
     }
 
+    /// Whether the robot waits for the way to open. Having waited in vain it makes do with what is
+    /// left.
+    fn waits(&mut self, situation: &Situation) -> bool {
+        let waits = self.waits_until_s.is_some_and(|until_s| situation.time < until_s);
+        if !waits && self.waits_until_s.take().is_some() {
+            self.best_short_m = self.reach.map_or(f64::INFINITY, |reach| reach.short_m);
+        }
+        waits
+    }
+
     fn must_plan(
         &self,
         patience: &PatienceSettings,
@@ -147,16 +159,16 @@ impl Journey {
     ) {
         self.planned_at_s = situation.time;
         self.reach = planner.plan(situation.map, &situation.position(), &self.target, path);
-        // Of a step of local exploration only the first plan counts.
-        path.truncate(self.stride_m);
+        let come_m = (situation.position() - self.from).norm();
+        path.truncate((self.stride_m - come_m).max(0.0));
         let Some(reach) = self.reach else { return };
-        if reach.short_m > self.best_short_m + WORSE_M {
-            // What closed the way may open it again. Waits once for each time it got worse.
-            self.waits_until_s = situation.time + patience.patience_s;
-        } else {
-            self.waits_until_s = f64::NEG_INFINITY;
+        if reach.short_m <= self.best_short_m + WORSE_M {
+            self.waits_until_s = None;
+            self.best_short_m = self.best_short_m.min(reach.short_m);
+        } else if self.waits_until_s.is_none() && self.stride_m.is_infinite() {
+            // What closed the way may open it again. A step is not worth the wait.
+            self.waits_until_s = Some(situation.time + patience.wait_s);
         }
-        self.best_short_m = reach.short_m;
     }
 
     /// Notes whether the robot gets anywhere, and starts a recovery if it does not; false when it

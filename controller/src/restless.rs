@@ -46,3 +46,34 @@ impl Restless {
 fn around(cell: Cell) -> impl Iterator<Item = Cell> {
     std::iter::once(cell).chain(cell.neighbours8())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::{find, states};
+    use geometry::Transition;
+
+    #[test]
+    fn walls_are_still_and_what_changed_or_is_new_is_not() {
+        let rows = ["#........", "#....C...", "#........", "W.......N"];
+        let mut map = states(&rows, 1.0);
+        let at = |mark| map.frame().center(find(&rows, mark));
+        let (wall, changed, new) = (at('W'), at('C'), at('N'));
+        let transition =
+            Transition { cell: find(&rows, 'C'), before: CellState::Free, after: CellState::Blocked };
+        *map.get_mut(transition.cell).unwrap() = transition.after;
+        let pose = geometry::pose(0.0, 0.0, 0.0);
+        let mut restless = Restless::new(&map);
+        let situation =
+            |time, transitions| Situation { time, pose: &pose, map: &map, transitions, points: &[] };
+        let transitions = [transition];
+        let now = situation(1.0, &transitions);
+        restless.update(&now);
+        assert!(!restless.is_restless(&now, &wall));
+        assert!(restless.is_restless(&now, &changed));
+        assert!(restless.is_restless(&now, &new));
+        let later = situation(1.0 + MEMORY_S, &[]);
+        assert!(!restless.is_restless(&later, &changed));
+        assert!(restless.is_restless(&later, &new));
+    }
+}

@@ -24,8 +24,10 @@ pub struct PatienceSettings {
     pub replan_s: f64,
     /// A robot farther from its path than this plans anew, m.
     pub off_path_m: f64,
-    /// How long to wait when the way to the goal closes, and until a robot that gets nowhere is
-    /// stuck, s.
+    /// How long to wait where the robot is when the way to the goal closes, s. Longer than a slow
+    /// robot takes to cross a door.
+    pub wait_s: f64,
+    /// A robot that has got nowhere for this long is stuck, s.
     pub patience_s: f64,
     /// A robot that stays within this distance gets nowhere, m.
     pub progress_m: f64,
@@ -41,6 +43,7 @@ impl Default for PatienceSettings {
             replan_closed_s: 0.2,
             replan_s: 0.5,
             off_path_m: 0.3,
+            wait_s: 10.0,
             patience_s: 5.0,
             progress_m: 0.15,
             max_recoveries: 3,
@@ -89,6 +92,7 @@ impl Settings {
         check("replan_closed_s", patience.replan_closed_s, "0 or more", patience.replan_closed_s >= 0.0)?;
         check("replan_s", patience.replan_s, "0 or more", patience.replan_s >= 0.0)?;
         positive("off_path_m", patience.off_path_m)?;
+        check("wait_s", patience.wait_s, "0 or more", patience.wait_s >= 0.0)?;
         positive("patience_s", patience.patience_s)?;
         positive("progress_m", patience.progress_m)?;
         let later = patience.goal_limit_s > patience.patience_s;

@@ -9,7 +9,7 @@
 //! unseen between them. There the fan ends, and only the cells on the beams themselves count.
 
 use crate::projection::PointCloud;
-use geometry::{Cell, GridFrame};
+use geometry::GridFrame;
 use nalgebra::{Point2, Vector2};
 
 /// Scratch space for filling footprints, reused from scan to scan.
@@ -114,11 +114,7 @@ pub(crate) fn beyond_fan(
     for beam in 0..cloud.len() {
         let clear_m = cloud.returns[beam].clear_m();
         if clear_m > fan_m {
-            cells_along(frame, &cloud.point(beam, fan_m), &cloud.point(beam, clear_m), |cell| {
-                if let Some(index) = frame.index(cell) {
-                    visit(index);
-                }
-            });
+            cells_along(frame, &cloud.point(beam, fan_m), &cloud.point(beam, clear_m), &mut visit);
         }
     }
 }
@@ -131,41 +127,59 @@ fn first_after(at: f64, count: usize) -> usize {
     ((at + 0.5) as usize).min(count) // the cast cuts what is negative to 0
 }
 
-/// Calls `visit` for every cell that the segment from `from` to `to` passes through, in order,
-/// once each (Amanatides and Woo's traversal). Cells outside of the grid are visited too.
+/// Calls `visit` for every cell of the grid (places in row-major order) that the segment from
+/// `from` to `to` passes through, in order, once each (Amanatides and Woo's traversal of the part
+/// that Liang and Barsky's clipping leaves).
 pub(crate) fn cells_along(
     frame: &GridFrame,
     from: &Point2<f64>,
     to: &Point2<f64>,
-    mut visit: impl FnMut(Cell),
+    mut visit: impl FnMut(usize),
 ) {
     let scale = 1.0 / frame.resolution_m();
-    let at = (from - frame.origin()) * scale;
-    let delta = (to - from) * scale;
-    let (mut cell, end) = (frame.cell_at(from), frame.cell_at(to));
-    let axis = |at: f64, cell: i32, delta: f64| {
-        // (direction of a step, position along the segment of the next border, and between borders)
-        if delta > 0.0 {
-            (1, (f64::from(cell) + 1.0 - at) / delta, 1.0 / delta)
-        } else if delta < 0.0 {
-            (-1, (f64::from(cell) - at) / delta, -1.0 / delta)
-        } else {
-            (0, f64::INFINITY, f64::INFINITY)
+    let (at, delta) = ((from - frame.origin()) * scale, (to - from) * scale);
+    let (columns, rows) = (frame.width() as i32, frame.height() as i32);
+    // The shares of the segment after which it enters and leaves the grid.
+    let (mut enter, mut leave) = (0.0f64, 1.0f64);
+    for (at, delta, count) in [(at.x, delta.x, f64::from(columns)), (at.y, delta.y, f64::from(rows))] {
+        if delta != 0.0 {
+            let (low, high) = (-at / delta, (count - at) / delta);
+            (enter, leave) = (enter.max(low.min(high)), leave.min(low.max(high)));
+        } else if !(0.0..count).contains(&at) {
+            return;
         }
+    }
+    if enter > leave {
+        return;
+    }
+    let cell_at = |share: f64| {
+        let cell = frame.cell_at(&from.lerp(to, share));
+        (cell.x.clamp(0, columns - 1), cell.y.clamp(0, rows - 1))
     };
-    let (step_x, mut next_x, width_x) = axis(at.x, cell.x, delta.x);
-    let (step_y, mut next_y, width_y) = axis(at.y, cell.y, delta.y);
-    // Counting steps, not comparing positions: rounding can never miss the end.
-    let steps = end.x.abs_diff(cell.x) + end.y.abs_diff(cell.y);
-    visit(cell);
-    for _ in 0..steps {
-        if cell.y == end.y || (cell.x != end.x && next_x < next_y) {
-            cell.x += step_x;
+    let ((mut x, mut y), (end_x, end_y)) = (cell_at(enter), cell_at(leave));
+    // Per axis the direction of a step, and the shares of the segment to the next border and between
+    // borders.
+    let axis = |at: f64, cell: i32, end: i32, delta: f64| {
+        let step = (end - cell).signum();
+        let border = f64::from(cell + i32::from(step > 0));
+        if step == 0 { (0, f64::INFINITY, 0.0) } else { (step, (border - at) / delta, 1.0 / delta.abs()) }
+    };
+    let (step_x, mut next_x, width_x) = axis(at.x, x, end_x, delta.x);
+    let (step_y, mut next_y, width_y) = axis(at.y, y, end_y, delta.y);
+    let mut visit = |x: i32, y: i32| visit(y as usize * columns as usize + x as usize);
+    visit(x, y);
+    // Going by cells, not by comparing positions: rounding can never miss the end.
+    while (x, y) != (end_x, end_y) {
+        if y == end_y || (x != end_x && next_x < next_y) {
+            x += step_x;
             next_x += width_x;
         } else {
-            cell.y += step_y;
+            y += step_y;
             next_y += width_y;
         }
-        visit(cell);
+        visit(x, y);
     }
 }
+
+#[cfg(test)]
+mod tests;

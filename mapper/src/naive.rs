@@ -36,10 +36,9 @@ impl Naive {
             };
             let end = cloud.point(beam, end_m);
             let hit = matches!(cloud.returns[beam], Return::Hit(_)).then(|| frame.cell_at(&end));
-            cells_along(&frame, &cloud.origin, &end, |cell| {
-                if let Some(index) = frame.index(cell) {
-                    self.add(index, if hit == Some(cell) { HIT } else { MISS }, ledger);
-                }
+            let hit = hit.and_then(|cell| frame.index(cell));
+            cells_along(&frame, &cloud.origin, &end, |index| {
+                self.add(index, if hit == Some(index) { HIT } else { MISS }, ledger);
             });
         }
     }

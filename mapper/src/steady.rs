@@ -167,14 +167,10 @@ impl Steady {
         if first.x.abs_diff(last.x) + first.y.abs_diff(last.y) <= 1 {
             return; // the two hits cover the cells between them
         }
-        cells_along(&frame, &from, &to, |cell| {
-            if let Some(index) = frame.index(cell) {
-                match ledger.state(index) {
-                    CellState::Blocked => self.support(index, None, ledger),
-                    CellState::Unknown => self.surfaces[index].surface_at = ledger.now_index(),
-                    CellState::Free => {}
-                }
-            }
+        cells_along(&frame, &from, &to, |index| match ledger.state(index) {
+            CellState::Blocked => self.support(index, None, ledger),
+            CellState::Unknown => self.surfaces[index].surface_at = ledger.now_index(),
+            CellState::Free => {}
         });
     }
 

@@ -34,8 +34,6 @@ fn act(bencher: Bencher<'_, '_>, name: &str) {
 fn sense(bencher: Bencher<'_, '_>, name: &str) {
     let spec = world(name).spec().clone();
     let new = || PhysicsWorld::new(&spec, 0);
-    let spec = world(name).spec().clone();
-    let new = || PhysicsWorld::new(&spec, 0);
     // A look is kept until time goes on, so every sample has a world of its own.
     bencher.with_inputs(new).bench_local_refs(|world| black_box(world.sense()));
 }

@@ -15,7 +15,11 @@ use rerun::external::re_sdk_types::datatypes;
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
 /// Sends the layout for a run that looks like `view`.
-pub(super) fn send(stream: &RecordingStream, application: &'static str, view: &View) -> RecordingStreamResult<()> {
+pub(super) fn send(
+    stream: &RecordingStream,
+    application: &'static str,
+    view: &View,
+) -> RecordingStreamResult<()> {
     let (layout, storage) = RecordingStreamBuilder::new(application).enabled(true).blueprint().memory()?;
     layout.set_time_sequence("blueprint", 0);
     let layout = Layout { stream: layout, count: 0.into() };
@@ -30,6 +34,7 @@ pub(super) fn send(stream: &RecordingStream, application: &'static str, view: &V
     ];
     if !view.strategies.is_empty() {
         plots.push(layout.plot("Strategies: expected map updates per step", entity::VALUES, None)?);
+        plots.push(layout.states("Strategy that chose the goal", entity::STRATEGY)?);
         plots.push(layout.plot("Strategies: share of the goals", entity::SHARES, Some([0.0, 1.0]))?);
     }
     let log = layout.log()?;
@@ -85,7 +90,13 @@ impl Layout {
 
     /// A view of a part of the world. The viewer's y points down, the world's is flipped: bounds
     /// are in the viewer's.
-    fn spatial(&self, name: &str, contents: &[String], from: Point2<f64>, to: Point2<f64>) -> RecordingStreamResult<Part> {
+    fn spatial(
+        &self,
+        name: &str,
+        contents: &[String],
+        from: Point2<f64>,
+        to: Point2<f64>,
+    ) -> RecordingStreamResult<Part> {
         let view = self.view("2D", name, contents)?;
         let bounds = datatypes::Range2D { x_range: [from.x, to.x].into(), y_range: [-to.y, -from.y].into() };
         self.property(&view, "VisualBounds2D", &blueprint::VisualBounds2D::new(bounds))?;
@@ -97,16 +108,12 @@ impl Layout {
     fn house(&self, view: &View) -> RecordingStreamResult<Part> {
         let (from, to) = bounds(view);
         let margin = nalgebra::Vector2::new(0.02, 0.02) * (to.x - from.x);
-        let contents = ["house/**", "robots/**", "maps/occupancy/**", "goal", "path"];
+        let contents =
+            ["house/**", "robots/**", "maps/occupancy/**", "maps/field_of_view/**", "goal", "path"];
         let contents = contents.map(|entity| format!("+ {}/{entity}", entity::WORLD));
         let part = self.spatial("The house, as the robot maps it", &contents, from - margin, to + margin)?;
-        let whole_past = VisibleTimeRange(datatypes::VisibleTimeRange {
-            timeline: SIM_TIME.into(),
-            range: datatypes::TimeRange {
-                start: datatypes::TimeRangeBoundary::Infinite,
-                end: datatypes::TimeRangeBoundary::AT_CURSOR,
-            },
-        });
+        let whole_past =
+            VisibleTimeRange(datatypes::VisibleTimeRange { timeline: SIM_TIME.into(), range: past() });
         for robot in view.robots {
             let trail = entity::robot(robot.name, "trail");
             let past = blueprint::VisibleTimeRanges::new([whole_past.clone()]);
@@ -124,11 +131,22 @@ impl Layout {
     fn plot(&self, name: &str, entity: &str, range: Option<[f64; 2]>) -> RecordingStreamResult<Part> {
         let view = self.view("TimeSeries", name, &[format!("+ {entity}/**")])?;
         self.property(&view, "PlotLegend", &blueprint::PlotLegend::new().with_corner(Corner2D::LeftTop))?;
+        self.whole_past(&view)?;
         if let Some(range) = range {
             let range = rerun::components::Range1D::from(range);
             self.property(&view, "ScalarAxis", &blueprint::ScalarAxis::new().with_range(range))?;
         }
         Ok(view)
+    }
+
+    fn states(&self, name: &str, entity: &str) -> RecordingStreamResult<Part> {
+        let view = self.view("StateTimeline", name, &[format!("+ {entity}/**")])?;
+        self.whole_past(&view)?;
+        Ok(view)
+    }
+
+    fn whole_past(&self, view: &Part) -> RecordingStreamResult<()> {
+        self.property(view, "TimeAxis", &blueprint::TimeAxis::new().with_view_range(past()))
     }
 
     fn container(&self, kind: ContainerKind, parts: &[Part], shares: &[f32]) -> RecordingStreamResult<Part> {
@@ -159,6 +177,12 @@ impl Layout {
             .with_play_state(PlayState::Following);
         self.stream.log("time_panel", &time)
     }
+}
+
+/// From the start to what is shown.
+fn past() -> datatypes::TimeRange {
+    let start = datatypes::TimeRangeBoundary::Absolute(datatypes::TimeInt(0));
+    datatypes::TimeRange { start, end: datatypes::TimeRangeBoundary::AT_CURSOR }
 }
 
 fn bounds(view: &View) -> (Point2<f64>, Point2<f64>) {

@@ -5,8 +5,8 @@
 
 use rerun::components::ImageBuffer;
 use rerun::{
-    Arrows2D, LineStrips2D, Points2D, RecordingStream, Scalars, SegmentationImage,
-    SerializationResult, SerializedComponentColumn, TextLog, TimeColumn,
+    Arrows2D, LineStrips2D, Points2D, RecordingStream, Scalars, SegmentationImage, SerializationResult,
+    SerializedComponentColumn, StateChange, TextLog, TimeColumn,
 };
 
 /// The timeline of the simulated time.
@@ -119,6 +119,16 @@ impl Item for Line {
             .with_many_level(items.iter().map(|line| line.level))
             .with_many_text(items.into_iter().map(|line| line.text));
         Ok(lines.columns(lengths)?.collect())
+    }
+}
+
+/// The state that begins.
+pub(super) struct State(pub(super) String);
+
+impl Item for State {
+    fn columns(items: Vec<Self>, lengths: Vec<usize>) -> SerializationResult<Vec<SerializedComponentColumn>> {
+        let states = items.into_iter().map(|state| state.0);
+        Ok(StateChange::update_fields().with_state(states).columns(lengths)?.collect())
     }
 }
 

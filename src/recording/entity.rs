@@ -14,14 +14,20 @@ pub(super) const P: &str = "/curves/p";
 pub(super) const R: &str = "/curves/r";
 pub(super) const VALUES: &str = "/curves/strategy_value";
 pub(super) const SHARES: &str = "/curves/strategy_share";
+pub(super) const STRATEGY: &str = "/curves/strategy";
 pub(super) const LOG: &str = "/log";
 
 /// The height of the strip below a map that holds its colour bar, as a share of the map's.
-pub(super) const LEGEND_SHARE: f64 = 0.16;
+pub(super) const LEGEND_SHARE: f64 = 0.2;
 
 /// A map; its picture and colour bar lie below.
 pub(super) fn map(layer: Layer) -> String {
     format!("/world/maps/{}", layer.name())
+}
+
+/// What a robot's laser sees.
+pub(super) fn field_of_view(name: &str) -> String {
+    format!("/world/maps/field_of_view/{}", escape(name))
 }
 
 /// A part of a robot.

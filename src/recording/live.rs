@@ -52,7 +52,9 @@ pub enum LiveError {
         status: std::process::ExitStatus,
     },
     /// The address makes no sense.
-    #[error("`{address}` is not the address of a viewer: {why}; right is e.g. rerun+http://127.0.0.1:9876/proxy")]
+    #[error(
+        "`{address}` is not the address of a viewer: {why}; right is e.g. rerun+http://127.0.0.1:9876/proxy"
+    )]
     Address {
         /// As given.
         address: String,
@@ -268,7 +270,10 @@ mod tests {
         let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         let uri = parse(&format!("127.0.0.1:{free}")).unwrap();
         let message = spawn("no-such-viewer-0", &uri).unwrap_err().to_string();
-        assert!(message.starts_with("cannot start the viewer: there is no program `no-such-viewer-0`"), "{message}");
+        assert!(
+            message.starts_with("cannot start the viewer: there is no program `no-such-viewer-0`"),
+            "{message}"
+        );
     }
 
     #[test]

@@ -135,6 +135,7 @@ impl Recorder {
                 let sdk = |error: rerun::RecordingStreamError| error.to_string();
                 scenery::send(&self.stream, &self.scene, view).map_err(sdk)?;
                 blueprint::send(&self.stream, APPLICATION, view).map_err(sdk)?;
+                self.stream.flush_async().map_err(|error| error.to_string())?;
                 none.insert(Tracks::new(view))
             }
         };
@@ -151,3 +152,6 @@ impl Recorder {
         self.sinks.check()
     }
 }
+
+#[cfg(test)]
+mod tests;

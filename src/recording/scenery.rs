@@ -4,6 +4,7 @@ use super::columns::Place;
 use super::entity;
 use crate::layer::{Layer, Rgb};
 use crate::view::{RobotView, Scene, View};
+use geometry::GridFrame;
 use nalgebra::Point2;
 use rerun::external::re_sdk_types::datatypes;
 use rerun::{
@@ -14,6 +15,7 @@ use rerun::{
 /// Drawn in this order, from the bottom up.
 mod order {
     pub(super) const MAP: f32 = -10.0;
+    pub(super) const IN_VIEW: f32 = -9.0;
     pub(super) const WALLS: f32 = 1.0;
     pub(super) const FIELD_OF_VIEW: f32 = 2.0;
     pub(super) const TRAIL: f32 = 3.0;
@@ -26,10 +28,21 @@ mod order {
 const CURIOUS: Rgb = [31, 97, 209];
 /// The colour of the others: green, as in Fig. 4 of the paper.
 const OTHERS: Rgb = [26, 158, 64];
+const LASER: Rgb = [64, 196, 120];
 const WALLS: Rgb = [120, 72, 40];
 const OBSTACLES: Rgb = [200, 90, 20];
 const PATH: Rgb = [224, 122, 20];
 const GOAL: Rgb = [214, 30, 60];
+
+/// The class of the cells in a field of view.
+pub(super) const IN_VIEW: u8 = 1;
+
+/// The cells in which a field of view is filled: a quarter as many as the map's, since there are
+/// five pictures a second.
+pub(super) fn field_of_view_frame(map: &GridFrame) -> GridFrame {
+    let (width, height) = (map.width().div_ceil(2), map.height().div_ceil(2));
+    GridFrame::new(map.origin(), 2.0 * map.resolution_m(), width, height).unwrap_or(*map)
+}
 
 /// Logs everything that stays the same for a run whose first view is `view`.
 pub(super) fn send(stream: &RecordingStream, scene: &Scene, view: &View) -> RecordingStreamResult<()> {
@@ -37,7 +50,7 @@ pub(super) fn send(stream: &RecordingStream, scene: &Scene, view: &View) -> Reco
     stream.log_static(entity::WORLD, &Transform3D::from_scale([1.0, -1.0, 1.0]))?;
     house(stream, scene, view)?;
     for robot in view.robots {
-        self::robot(stream, robot)?;
+        self::robot(stream, robot, view.mapper.frame())?;
     }
     for layer in Layer::ALL {
         map(stream, view, layer)?;
@@ -51,7 +64,8 @@ fn colour([red, green, blue]: Rgb, alpha: u8) -> Color {
 
 fn house(stream: &RecordingStream, scene: &Scene, view: &View) -> RecordingStreamResult<()> {
     let place = |point: &Point2<f64>| -> Place { [point.x as f32, point.y as f32] };
-    let closed = |outline: &Vec<Point2<f64>>| outline.iter().chain(outline.first()).map(place).collect::<Vec<_>>();
+    let closed =
+        |outline: &Vec<Point2<f64>>| outline.iter().chain(outline.first()).map(place).collect::<Vec<_>>();
     let walls = LineStrips2D::new(scene.walls.iter().map(closed))
         .with_colors([colour(WALLS, 255)])
         .with_radii([Radius::new_ui_points(1.0)])
@@ -79,8 +93,9 @@ fn house(stream: &RecordingStream, scene: &Scene, view: &View) -> RecordingStrea
     stream.log_static(entity::GOAL, &goal)
 }
 
-fn robot(stream: &RecordingStream, robot: &RobotView) -> RecordingStreamResult<()> {
-    let (own, part) = (if robot.is_curious { CURIOUS } else { OTHERS }, |part| entity::robot(robot.name, part));
+fn robot(stream: &RecordingStream, robot: &RobotView, map: &GridFrame) -> RecordingStreamResult<()> {
+    let (own, part) =
+        (if robot.is_curious { CURIOUS } else { OTHERS }, |part| entity::robot(robot.name, part));
     let body = Points2D::update_fields()
         .with_colors([colour(own, 255)])
         .with_radii([Radius::new_scene_units(robot.radius_m as f32)])
@@ -99,10 +114,21 @@ fn robot(stream: &RecordingStream, robot: &RobotView) -> RecordingStreamResult<(
         .with_draw_order(order::TRAIL);
     stream.log_static(part("trail"), &trail)?;
     let field_of_view = LineStrips2D::update_fields()
-        .with_colors([colour(own, 170)])
-        .with_radii([Radius::new_ui_points(1.0)])
+        .with_colors([colour(LASER, 220)])
+        .with_radii([Radius::new_ui_points(0.75)])
         .with_draw_order(order::FIELD_OF_VIEW);
-    stream.log_static(part("field_of_view"), &field_of_view)
+    stream.log_static(part("field_of_view"), &field_of_view)?;
+    if robot.reading.is_none() {
+        return Ok(());
+    }
+    let in_view = datatypes::AnnotationInfo {
+        id: IN_VIEW.into(),
+        label: Some("in view".into()),
+        color: Some(*colour(LASER, 255)),
+    };
+    let entity = entity::field_of_view(robot.name);
+    stream.log_static(entity.as_str(), &AnnotationContext::new([in_view]))?;
+    Picture::of_frame(&field_of_view_frame(map)).log(stream, &entity, order::IN_VIEW, 0.2)
 }
 
 fn map(stream: &RecordingStream, view: &View, layer: Layer) -> RecordingStreamResult<()> {
@@ -115,14 +141,8 @@ fn map(stream: &RecordingStream, view: &View, layer: Layer) -> RecordingStreamRe
     let context = AnnotationContext::new(layer.legend().into_iter().map(class));
     stream.log_static(entity.as_str(), &context)?;
 
-    let (origin, cell_m) = (frame.origin(), frame.resolution_m());
-    let cells = Picture { columns: frame.width(), rows: frame.height(), origin, cell_m: [cell_m, cell_m] };
-    cells.log(stream, &format!("{entity}/cells"))?;
-    if layer.scale().is_some() {
-        let size_m = [frame.width() as f64 * cell_m, frame.height() as f64 * cell_m];
-        colour_bar(stream, layer, origin, size_m)?;
-    }
-    Ok(())
+    Picture::of_frame(frame).log(stream, &format!("{entity}/cells"), order::MAP, 1.0)?;
+    if layer.scale().is_some() { colour_bar(stream, layer, frame) } else { Ok(()) }
 }
 
 /// A picture of classes: how many, and where.
@@ -134,8 +154,19 @@ struct Picture {
 }
 
 impl Picture {
+    fn of_frame(frame: &GridFrame) -> Self {
+        let cell_m = [frame.resolution_m(); 2];
+        Self { columns: frame.width(), rows: frame.height(), origin: frame.origin(), cell_m }
+    }
+
     /// Logs everything but the classes.
-    fn log(&self, stream: &RecordingStream, entity: &str) -> RecordingStreamResult<()> {
+    fn log(
+        &self,
+        stream: &RecordingStream,
+        entity: &str,
+        order: f32,
+        opacity: f32,
+    ) -> RecordingStreamResult<()> {
         let [x, y] = [self.origin.x as f32, self.origin.y as f32];
         let [width, height] = self.cell_m.map(|side| side as f32);
         let at = Transform3D::from_translation([x, y, 0.0]).with_scale([width, height, 1.0]);
@@ -143,22 +174,24 @@ impl Picture {
         let size = [self.columns as u32, self.rows as u32];
         let format = SegmentationImage::update_fields()
             .with_format(ImageFormat::segmentation(size, ChannelDatatype::U8))
-            .with_opacity(1.0)
-            .with_draw_order(order::MAP);
+            .with_opacity(opacity)
+            .with_draw_order(order);
         stream.log_static(entity, &format)
     }
 }
 
 /// Draws the colour bar below the map.
-fn colour_bar(stream: &RecordingStream, layer: Layer, origin: Point2<f64>, size_m: [f64; 2]) -> RecordingStreamResult<()> {
+fn colour_bar(stream: &RecordingStream, layer: Layer, frame: &GridFrame) -> RecordingStreamResult<()> {
     let Some(scale) = layer.scale() else { return Ok(()) };
     let entity = format!("{}/colour_bar", entity::map(layer));
-    let [width_m, height_m] = size_m;
+    let origin = frame.origin();
+    let [width_m, height_m] =
+        [frame.width(), frame.height()].map(|cells| cells as f64 * frame.resolution_m());
     let bar = Point2::new(origin.x + 0.06 * width_m, origin.y - 0.07 * height_m);
     let (length_m, thickness_m) = (0.88 * width_m, 0.035 * height_m);
     let classes = layer.scale_classes();
     let cell_m = [length_m / classes.len() as f64, thickness_m];
-    Picture { columns: classes.len(), rows: 1, origin: bar, cell_m }.log(stream, &entity)?;
+    Picture { columns: classes.len(), rows: 1, origin: bar, cell_m }.log(stream, &entity, order::MAP, 1.0)?;
     stream.log_static(entity, &SegmentationImage::update_fields().with_buffer(classes))?;
 
     let at = |value: f64| [(bar.x + scale.place(value) * length_m) as f32, (bar.y - 0.035 * height_m) as f32];

@@ -1,9 +1,10 @@
 //! What changes during a run, and how often each part of it is logged.
 
-use super::columns::{Arrow, Classes, Item, Line, Now, Place, Rows, Strip};
-use super::{entity, outline};
+use super::columns::{Arrow, Classes, Item, Line, Now, Place, Rows, State, Strip};
+use super::{entity, outline, scenery};
 use crate::layer::Layer;
 use crate::view::{Level, RobotView, Trail, View};
+use geometry::GridFrame;
 use nalgebra::{Isometry2, Point2};
 use rerun::RecordingStream;
 
@@ -43,6 +44,7 @@ struct Robot {
     heading: Rows<Arrow>,
     trail: Rows<Strip>,
     field_of_view: Rows<Strip>,
+    in_view: Rows<Classes>,
     way: Trail,
     last: Option<Isometry2<f64>>,
 }
@@ -55,12 +57,13 @@ impl Robot {
             heading: Rows::new(part("heading")),
             trail: Rows::new(part("trail")),
             field_of_view: Rows::new(part("field_of_view")),
+            in_view: Rows::new(entity::field_of_view(robot.name)),
             way: Trail::new(robot.name, robot.is_curious),
             last: None,
         }
     }
 
-    fn push(&mut self, now: Now, robot: &RobotView, with_field_of_view: bool) {
+    fn push(&mut self, now: Now, robot: &RobotView, field_of_view: Option<&GridFrame>) {
         if self.last != Some(robot.pose) {
             self.last = Some(robot.pose);
             let at = Point2::from(robot.pose.translation.vector);
@@ -73,8 +76,9 @@ impl Robot {
                 self.trail.push(now, [Strip(vec![place(from), place(to)])]);
             }
         }
-        if with_field_of_view && let Some(reading) = robot.reading {
+        if let (Some(frame), Some(reading)) = (field_of_view, robot.reading) {
             let corners = outline::field_of_view(reading);
+            self.in_view.push(now, [Classes(outline::fill(&corners, frame, scenery::IN_VIEW))]);
             self.field_of_view.push(now, [Strip(corners.iter().map(place).collect())]);
         }
     }
@@ -115,6 +119,7 @@ pub(super) struct Tracks {
     features: [Rows<f64>; 2],
     /// Value and share of each strategy.
     strategies: Vec<[Rows<f64>; 2]>,
+    strategy: (Rows<State>, String),
     log: Rows<Line>,
     field_of_view_due: Due,
     occupancy_due: Due,
@@ -126,10 +131,15 @@ pub(super) struct Tracks {
 impl Tracks {
     /// Tracks for everyone who takes part in `view`.
     pub(super) fn new(view: &View) -> Self {
-        let curves = |name: &str| [entity::VALUES, entity::SHARES].map(|of| Rows::new(entity::strategy(of, name)));
+        let curves =
+            |name: &str| [entity::VALUES, entity::SHARES].map(|of| Rows::new(entity::strategy(of, name)));
         Self {
             robots: view.robots.iter().map(Robot::new).collect(),
-            obstacles: view.obstacles.iter().map(|thing| (Rows::new(entity::obstacle(thing.name)), false)).collect(),
+            obstacles: view
+                .obstacles
+                .iter()
+                .map(|thing| (Rows::new(entity::obstacle(thing.name)), false))
+                .collect(),
             path: (Rows::new(entity::PATH), Vec::new()),
             goal: (Rows::new(entity::GOAL), None),
             occupancy: Map::new(Layer::Occupancy),
@@ -137,6 +147,7 @@ impl Tracks {
             scores: [entity::COVERAGE, entity::MAP_QUALITY].map(Rows::new),
             features: [entity::P, entity::R].map(Rows::new),
             strategies: view.strategies.iter().map(|strategy| curves(strategy.name)).collect(),
+            strategy: (Rows::new(entity::STRATEGY), String::new()),
             log: Rows::new(entity::LOG),
             field_of_view_due: Due::every(FIELD_OF_VIEW_S),
             occupancy_due: Due::every(OCCUPANCY_S),
@@ -149,9 +160,10 @@ impl Tracks {
     /// Appends what is due now; everything in the last view.
     pub(super) fn push(&mut self, view: &View, is_last: bool) {
         let now = Now { time_s: view.time_s, step: view.step };
-        let with_field_of_view = self.field_of_view_due.now(view.time_s) || is_last;
+        let is_due = self.field_of_view_due.now(view.time_s) || is_last;
+        let field_of_view = is_due.then(|| scenery::field_of_view_frame(view.mapper.frame()));
         for (track, robot) in self.robots.iter_mut().zip(view.robots) {
-            track.push(now, robot, with_field_of_view);
+            track.push(now, robot, field_of_view.as_ref());
         }
         for ((track, was_present), thing) in self.obstacles.iter_mut().zip(view.obstacles) {
             if *was_present != thing.is_present {
@@ -162,17 +174,25 @@ impl Tracks {
         }
         if self.path.1 != view.path {
             self.path.1 = view.path.to_vec();
-            self.path.0.push(now, (view.path.len() > 1).then(|| Strip(view.path.iter().map(place).collect())));
+            self.path
+                .0
+                .push(now, (view.path.len() > 1).then(|| Strip(view.path.iter().map(place).collect())));
         }
         if self.goal.1 != view.goal {
             self.goal.1 = view.goal;
             self.goal.0.push(now, view.goal.as_ref().map(place));
         }
+        if let Some(current) = view.strategies.iter().find(|strategy| strategy.is_current)
+            && current.name != self.strategy.1
+        {
+            self.strategy.1 = current.name.into();
+            self.strategy.0.push(now, [State(current.name.into())]);
+        }
         for message in view.messages {
             let level = match message.level {
                 Level::Decision => rerun::TextLogLevel::INFO,
-                Level::Event => rerun::TextLogLevel::DEBUG,
-                Level::Trouble => rerun::TextLogLevel::WARN,
+                Level::Event => rerun::TextLogLevel::WARN,
+                Level::Trouble => rerun::TextLogLevel::ERROR,
             };
             self.log.push(now, [Line { text: message.text.clone(), level }]);
         }
@@ -221,6 +241,7 @@ impl Tracks {
         for robot in &mut self.robots {
             all([&mut robot.body], stream)?;
             all([&mut robot.heading], stream)?;
+            all([&mut robot.in_view], stream)?;
             all([&mut robot.trail, &mut robot.field_of_view], stream)?;
         }
         all(self.obstacles.iter_mut().map(|(rows, _)| rows).chain([&mut self.path.0]), stream)?;
@@ -228,6 +249,7 @@ impl Tracks {
         all(self.maps.iter_mut().chain([&mut self.occupancy]).map(|map| &mut map.rows), stream)?;
         let strategies = self.strategies.iter_mut().flatten();
         all(strategies.chain(&mut self.scores).chain(&mut self.features), stream)?;
+        all([&mut self.strategy.0], stream)?;
         all([&mut self.log], stream)
     }
 }

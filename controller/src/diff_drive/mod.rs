@@ -8,6 +8,7 @@ use geometry::Twist;
 use guard::{Braking, Guard};
 use nalgebra::Point2;
 pub use settings::DiffDriveSettings;
+use std::f64::consts::PI;
 
 /// It goes on driving when it looks along the path up to this part of the angle at which it had to
 /// turn in place, so that it does not start turning again at once.
@@ -90,7 +91,7 @@ impl Drive for DiffDrive {
             directions: 16,
             step_s,
             // To turn round, to speed up and to brake.
-            step_limit_s: 2.0 * step_s + std::f64::consts::TAU / self.settings.max_angular_radps,
+            step_limit_s: 2.0 * step_s + PI / self.settings.max_angular_radps,
         }
     }
 

@@ -89,9 +89,9 @@ pub(crate) struct House {
     pub(crate) pose: Isometry2<f64>,
     pub(crate) movers: Vec<Mover>,
     pub(crate) map: Grid<CellState>,
-    /// Contacts while the robot drove, in substeps.
+    /// How often the robot drove into something, in substeps.
     pub(crate) contacts: u32,
-    /// The nearest that the robot came to anything while it drove, m.
+    /// The least gap to anything that the robot drove towards, m.
     pub(crate) nearest_m: f64,
     twist: Twist,
     walls: Vec<Rectangle>,
@@ -210,14 +210,21 @@ impl House {
                 towards(self.twist.angular_radps, command.angular_radps.clamp(-1.5, 1.5), 4.0);
             let heading = heading_rad(&self.pose) + self.twist.angular_radps * step_s / 2.0;
             let step = Vector2::new(heading.cos(), heading.sin()) * self.twist.linear_mps * step_s;
-            let at = self.position() + step;
+            let from = self.position();
+            let at = from + step;
             self.pose = pose(at.x, at.y, heading + self.twist.angular_radps * step_s / 2.0);
-            self.movers.iter_mut().for_each(|mover| mover.go(step_s, &at));
             if self.twist.linear_mps != 0.0 {
-                let gap_m = self.bodies().map(|body| body.distance_m(&at)).fold(f64::INFINITY, f64::min);
-                self.nearest_m = self.nearest_m.min(gap_m - RADIUS_M);
-                self.contacts += u32::from(gap_m < RADIUS_M);
+                for body in self.bodies().collect::<Vec<_>>() {
+                    let gap_m = body.distance_m(&at) - RADIUS_M;
+                    // A box that cares for nothing may run the robot over. That is no contact of
+                    // the robot's, as long as it does not drive on into the box.
+                    if gap_m < body.distance_m(&from) - RADIUS_M {
+                        self.nearest_m = self.nearest_m.min(gap_m);
+                        self.contacts += u32::from(gap_m < 0.0);
+                    }
+                }
             }
+            self.movers.iter_mut().for_each(|mover| mover.go(step_s, &at));
         }
         self.time_s += TICK_S;
     }

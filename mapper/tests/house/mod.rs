@@ -9,31 +9,44 @@ use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use std::f64::consts::TAU;
 
-pub const CELL_M: f64 = 0.05;
+pub(crate) const CELL_M: f64 = 0.05;
 
-/// A thing that stands in the house from `from_s` to `until_s`.
+/// A thing with a convex outline, counter-clockwise, that stands in the house from `from_s` to `until_s`.
 #[derive(Clone)]
-pub struct Thing {
-    pub corners: Vec<Point2<f64>>,
-    pub from_s: f64,
-    pub until_s: f64,
+pub(crate) struct Thing {
+    pub(crate) corners: Vec<Point2<f64>>,
+    pub(crate) from_s: f64,
+    pub(crate) until_s: f64,
 }
 
-pub struct House {
-    pub things: Vec<Thing>,
-    pub frame: GridFrame,
-    pub turn_rad: f64,
-    pub noise_std_m: f64,
-    pub beams: usize,
+impl Thing {
+    /// Stands all the time.
+    pub(crate) fn always(corners: Vec<Point2<f64>>) -> Self {
+        Self { corners, from_s: f64::NEG_INFINITY, until_s: f64::INFINITY }
+    }
+
+    fn stands(&self, time_s: f64) -> bool {
+        (self.from_s..self.until_s).contains(&time_s)
+    }
+}
+
+/// The house and the laser in it.
+pub(crate) struct House {
+    pub(crate) things: Vec<Thing>,
+    pub(crate) frame: GridFrame,
+    pub(crate) turn_rad: f64,
+    pub(crate) noise_std_m: f64,
+    pub(crate) beams: usize,
     rng: ChaCha8Rng,
 }
 
-pub fn rectangle(x0: f64, y0: f64, x1: f64, y1: f64) -> Vec<Point2<f64>> {
+/// The corners of a rectangle, counter-clockwise.
+pub(crate) fn rectangle(x0: f64, y0: f64, x1: f64, y1: f64) -> Vec<Point2<f64>> {
     [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| Point2::new(x, y)).to_vec()
 }
 
 /// Outer walls, and a cross of inner walls with a door of 1 m in each arm.
-pub fn walls(thickness_m: f64) -> Vec<Vec<Point2<f64>>> {
+pub(crate) fn walls(thickness_m: f64) -> Vec<Vec<Point2<f64>>> {
     let (t, s) = (thickness_m, 12.0);
     // The inner walls lie on cell borders whatever their thickness.
     let (a, b) = (6.0 - (t / 2.0 / CELL_M).floor() * CELL_M, 6.0 + (t / 2.0 / CELL_M).ceil() * CELL_M);
@@ -53,8 +66,8 @@ pub fn walls(thickness_m: f64) -> Vec<Vec<Point2<f64>>> {
 }
 
 impl House {
-    pub fn new(thickness_m: f64, turn_deg: f64, noise_std_m: f64, beams: usize, seed: u64) -> Self {
-        let standing = |corners| Thing { corners, from_s: f64::NEG_INFINITY, until_s: f64::INFINITY };
+    /// The house with walls of `thickness_m`, turned about its middle, in a grid that holds it.
+    pub(crate) fn new(thickness_m: f64, turn_deg: f64, noise_std_m: f64, beams: usize, seed: u64) -> Self {
         let margin = if turn_deg == 0.0 { 0.0 } else { 2.0 };
         let size = 12.0 + 2.0 * margin;
         let mut house = Self {
@@ -66,26 +79,38 @@ impl House {
             rng: ChaCha8Rng::seed_from_u64(seed),
         };
         for corners in walls(thickness_m) {
-            house.add(standing(corners));
+            house.add(Thing::always(corners));
         }
         house
     }
 
     /// Adds a thing given in the unturned house.
-    pub fn add(&mut self, mut thing: Thing) {
+    pub(crate) fn add(&mut self, mut thing: Thing) {
         for corner in &mut thing.corners {
             *corner = self.turned(*corner);
         }
         self.things.push(thing);
     }
 
-    pub fn turned(&self, point: Point2<f64>) -> Point2<f64> {
+    /// Whether a point lies inside of something that stands at `time_s`; the map's truth.
+    pub(crate) fn is_solid(&self, point: Point2<f64>, time_s: f64) -> bool {
+        self.things.iter().filter(|thing| thing.stands(time_s)).any(|thing| {
+            let corners = &thing.corners;
+            (0..corners.len()).all(|i| {
+                let edge = corners[(i + 1) % corners.len()] - corners[i];
+                edge.perp(&(point - corners[i])) > 0.0
+            })
+        })
+    }
+
+    /// The point of the turned house that belongs to one of the unturned house.
+    pub(crate) fn turned(&self, point: Point2<f64>) -> Point2<f64> {
         let middle = Point2::new(6.0, 6.0);
         middle + geometry::rotation(self.turn_rad) * (point - middle)
     }
 
     /// A round trip through the four rooms at 0.3 m/s, given in the unturned house.
-    pub fn tour(&self, time_s: f64) -> Isometry2<f64> {
+    pub(crate) fn tour(&self, time_s: f64) -> Isometry2<f64> {
         let stops = [
             (3.0, 3.0),
             (5.0, 3.0),
@@ -120,7 +145,7 @@ impl House {
     }
 
     /// The reading at a pose, with discs (middle, radius) that move.
-    pub fn reading(
+    pub(crate) fn reading(
         &mut self,
         time_s: f64,
         pose: Isometry2<f64>,
@@ -129,7 +154,7 @@ impl House {
         let increment = TAU / self.beams as f64;
         let normal = Normal::new(0.0, self.noise_std_m).unwrap();
         let standing: Vec<&Thing> =
-            self.things.iter().filter(|t| (t.from_s..t.until_s).contains(&time_s)).collect();
+            self.things.iter().filter(|thing| thing.stands(time_s)).collect();
         let origin = Point2::from(pose.translation.vector);
         let ranges_m = (0..self.beams)
             .map(|beam| {

@@ -4,6 +4,8 @@ use nalgebra::{Point2, UnitComplex, Vector2};
 
 /// The end of the way counts as reached this far before it, m.
 const ARRIVED_M: f64 = 0.01;
+/// A thing is in the way if less than this is left beside it at the end of the way, m.
+const END_MARGIN_M: f64 = 0.03;
 /// The slowest approach to an end, m/s: a speed that fades with the distance would never arrive.
 const CREEP_MPS: f64 = 0.02;
 /// The robot turns in place beyond the first angle off its way, and drives again within the
@@ -35,6 +37,8 @@ pub(super) struct WallPatrol {
     beams: Vec<Vector2<f64>>,
     /// The way from the order to stop until standing, reaction included, m.
     stopping_m: f64,
+    /// The time until an order takes effect, s.
+    reaction_s: f64,
     braking_mps2: f64,
     turn_braking_radps2: f64,
     max_turn_radps: f64,
@@ -61,6 +65,7 @@ impl WallPatrol {
             radius_m: robot.radius_m,
             beams: beams.map(|(x, y)| mount * Vector2::new(x, y)).collect(),
             stopping_m: spec.speed_mps * (reaction_s + spec.speed_mps / (4.0 * braking_mps2)),
+            reaction_s,
             braking_mps2,
             turn_braking_radps2: robot.drive.max_angular_acceleration_radps2 / 2.0,
             max_turn_radps: robot.drive.max_angular_radps,
@@ -90,11 +95,11 @@ impl WallPatrol {
         let needed_m =
             self.spec.clearance_m + self.stopping_m + if self.blocked { HYSTERESIS_M } else { 0.0 };
         // What lies behind the end of the way is not in the way.
-        self.blocked = gap_m < needed_m.min(remaining_m + ARRIVED_M);
+        self.blocked = gap_m < needed_m.min(remaining_m + END_MARGIN_M);
         let linear_mps = if self.blocked {
             0.0
         } else {
-            self.spec.speed_mps.min((2.0 * self.braking_mps2 * remaining_m).sqrt()).max(CREEP_MPS)
+            self.spec.speed_mps.min(self.fastest_mps(remaining_m)).max(CREEP_MPS)
         };
         let too_far_m = wall_m.map_or(0.0, |wall_m| wall_m - self.spec.wall_distance_m);
         let wanted_rad = self.wall_side() * (LATERAL_GAIN * too_far_m).clamp(-MAX_LEAN_RAD, MAX_LEAN_RAD);
@@ -113,6 +118,13 @@ impl WallPatrol {
     /// +1: the wall is on the left of the present leg; −1: on the right.
     fn wall_side(&self) -> f64 {
         if self.spec.wall_on_left == self.outbound { 1.0 } else { -1.0 }
+    }
+
+    /// As fast as still allows to stop within `way_m`, though the next order comes a reading later:
+    /// the root of v·t + v²/2b = way.
+    fn fastest_mps(&self, way_m: f64) -> f64 {
+        let (t, b) = (self.reaction_s, self.braking_mps2);
+        b * ((t * t + 2.0 * way_m.max(0.0) / b).sqrt() - t)
     }
 
     /// As fast as still allows to brake at `angle_rad`.

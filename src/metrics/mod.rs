@@ -1,0 +1,111 @@
+//! How right the robot is, against the truth of the world. Nothing here is known to the robot.
+//!
+//! A cell that solids cover in part is neither right nor wrong, and is left out at that moment.
+//! Cells that can be seen are the free ones, and the blocked ones with a free side.
+
+mod latency;
+mod rates;
+mod things;
+
+pub use latency::{Delays, Latency};
+pub use rates::{RateScores, rate_scores};
+pub use things::{ThingReport, Things};
+
+use crate::view::Scores;
+use geometry::CellState;
+use mapper::Mapper;
+use serde::Serialize;
+use sim::physics::{TrueState, Truth};
+
+/// Whether the map says what is true; `None` where the cell is covered in part.
+fn is_right(mapped: CellState, truth: TrueState) -> Option<bool> {
+    match truth {
+        TrueState::Free => Some(mapped == CellState::Free),
+        TrueState::Blocked => Some(mapped == CellState::Blocked),
+        TrueState::Partly => None,
+    }
+}
+
+/// Coverage and map quality now, over the cells that can be seen.
+pub fn scores(mapper: &Mapper, truth: &Truth) -> Scores {
+    let (mut cells, mut seen, mut right) = (0, 0, 0);
+    for (index, (&mapped, &true_state)) in mapper.states().cells().iter().zip(truth.states()).enumerate() {
+        if !truth.can_be_seen(truth.frame().cell(index)) {
+            continue;
+        }
+        cells += 1;
+        seen += usize::from(mapper.was_ever_seen(index));
+        right += usize::from(is_right(mapped, true_state) == Some(true));
+    }
+    let share = |count: usize| if cells == 0 { 1.0 } else { count as f64 / cells as f64 };
+    Scores { coverage: share(seen), map_quality: share(right) }
+}
+
+/// Time since the cells that can be seen were seen, s.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Age {
+    /// On average.
+    pub mean_s: f64,
+    /// At most.
+    pub max_s: f64,
+}
+
+/// How old the map is now.
+pub fn age(mapper: &Mapper, truth: &Truth) -> Age {
+    let (mut cells, mut sum_s, mut max_s) = (0, 0.0, 0.0_f64);
+    for index in (0..truth.frame().len()).filter(|&index| truth.can_be_seen(truth.frame().cell(index))) {
+        cells += 1;
+        sum_s += mapper.recency(index);
+        max_s = max_s.max(mapper.recency(index));
+    }
+    Age { mean_s: sum_s / f64::from(cells.max(1)), max_s }
+}
+
+/// Map quality on the cells that truly change: the mean of the accuracy on the truly free and on
+/// the truly blocked ones, counted at every call of [`Changing::count`].
+#[derive(Clone, Debug, Default)]
+pub struct Changing {
+    /// For cells out of view and in view, for free and blocked: how many were right, of how many.
+    counts: [[(u64, u64); 2]; 2],
+}
+
+/// Balanced accuracy on changing cells; `None` where there was nothing to count.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ChangingScores {
+    /// Of cells in view.
+    pub in_view: Option<f64>,
+    /// Of cells out of view.
+    pub out_of_view: Option<f64>,
+}
+
+impl Changing {
+    /// Counts the changing cells as they are now. Unknown cells, and blocked ones that no side
+    /// shows, are left out.
+    pub fn count(&mut self, mapper: &Mapper, truth: &Truth) {
+        for (index, mover) in truth.movers().iter().enumerate() {
+            let mapped = mapper.states().cells()[index];
+            if mover.is_none()
+                || mapped == CellState::Unknown
+                || !truth.can_be_seen(truth.frame().cell(index))
+            {
+                continue;
+            }
+            if let Some(is_right) = is_right(mapped, truth.states()[index]) {
+                let view = usize::from(mapper.is_in_view(index));
+                let blocked = usize::from(truth.states()[index] == TrueState::Blocked);
+                let (right, all) = &mut self.counts[view][blocked];
+                *right += u64::from(is_right);
+                *all += 1;
+            }
+        }
+    }
+
+    /// The scores over all that was counted.
+    pub fn scores(&self) -> ChangingScores {
+        let balanced = |[free, blocked]: [(u64, u64); 2]| {
+            let share = |(right, all): (u64, u64)| (all > 0).then(|| right as f64 / all as f64);
+            Some((share(free)? + share(blocked)?) / 2.0)
+        };
+        ChangingScores { in_view: balanced(self.counts[1]), out_of_view: balanced(self.counts[0]) }
+    }
+}

@@ -1,0 +1,49 @@
+//! The worlds that ship with the program, so that it runs from any folder.
+
+use sim::WorldError;
+use sim::physics::WorldSpec;
+use std::path::Path;
+
+/// The name and the text of every shipped world; the first is the default.
+pub const SHIPPED: [(&str, &str); 3] = [
+    ("four_rooms", include_str!("../worlds/four_rooms.toml")),
+    ("toy_on_the_floor", include_str!("../worlds/toy_on_the_floor.toml")),
+    ("turned_house", include_str!("../worlds/turned_house.toml")),
+];
+
+/// The name and the text of the shipped tour.
+pub const TOUR: (&str, &str) = ("four_rooms.tour.toml", include_str!("../worlds/four_rooms.tour.toml"));
+
+/// The world that `name` stands for: a shipped one by its name, else a file by its path.
+///
+/// # Errors
+///
+/// When there is no such file either, or it is not a world.
+pub fn load(name: &str) -> Result<WorldSpec, WorldError> {
+    match SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
+        Some((name, text)) => WorldSpec::parse(&format!("{name}.toml"), text),
+        None => WorldSpec::load(Path::new(name)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shipped_world_is_right() {
+        for (name, _) in SHIPPED {
+            load(name).unwrap_or_else(|error| panic!("{error}"));
+        }
+    }
+
+    #[test]
+    fn every_world_file_ships() {
+        let files = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/worlds")).unwrap();
+        for file in files.map(|file| file.unwrap().path()) {
+            let name = file.file_stem().unwrap().to_str().unwrap().to_owned();
+            let is_shipped = SHIPPED.iter().any(|(shipped, _)| *shipped == name);
+            assert!(is_shipped || name.ends_with(".tour"), "{name} is not in the list");
+        }
+    }
+}
