@@ -66,9 +66,9 @@ pub struct Summary {
     /// The seed of all chance.
     pub seed: u64,
     /// Who drove.
-    pub drive: String,
-    /// How goals were chosen.
-    pub strategy: String,
+    pub drive: &'static str,
+    /// How the agent chose its goals; `null` where it did not drive.
+    pub strategy: Option<&'static str>,
     /// How rates were estimated.
     pub estimator: &'static str,
     /// How evidence became a map.

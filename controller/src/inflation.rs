@@ -1,9 +1,9 @@
 use crate::costmap::{CLOSED, Costmap, MAX_PRICE, OPEN};
 use geometry::{Cell, CellState, Grid, Transition};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// How far paths keep from what is blocked.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InflationSettings {
     /// A cell is closed where its centre is nearer to a blocked cell than the robot's radius and
@@ -35,6 +35,13 @@ struct Near {
 struct Count {
     closing: u32,
     nearing: u32,
+}
+
+impl Count {
+    /// What of it matters for the price.
+    fn is_zero(self) -> [bool; 2] {
+        [self.closing == 0, self.nearing == 0]
+    }
 }
 
 /// The map as the centre of a round robot meets it: closed where its body would touch something
@@ -119,12 +126,15 @@ impl Inflation {
             let cell = Cell::new(blocked.x + near.dx, blocked.y + near.dy);
             let Some(index) = frame.index(cell) else { continue };
             let count = &mut self.counts[index];
+            let before = *count;
             count.nearing = count.nearing.saturating_add_signed(change);
             if near.closed {
                 count.closing = count.closing.saturating_add_signed(change);
             }
-            let price = price(*count, self.comfort_price);
-            priced(&mut self.costmap, (cell, price));
+            if before.is_zero() != count.is_zero() {
+                let price = price(*count, self.comfort_price);
+                priced(&mut self.costmap, (cell, price));
+            }
         }
     }
 

@@ -1,9 +1,9 @@
 use crate::{InflationSettings, MAX_PRICE};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// How the controller gets to goals, and when it gives up. Times are seconds, or steps in a grid
 /// world.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// How far paths keep from what is blocked.
@@ -15,7 +15,7 @@ pub struct Settings {
 }
 
 /// When to plan again, to wait and to give up.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PatienceSettings {
     /// A path that a change has closed is planned anew, but not sooner after the last plan, s.
@@ -53,7 +53,7 @@ impl Default for PatienceSettings {
 }
 
 /// Local exploration at the goal (paper, section 2).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ExplorationSettings {
     /// At most this many steps, random ones included.

@@ -42,7 +42,7 @@ pub struct Wavefront {
     costs: Vec<u32>,
     /// Slots to expand, by cost modulo the number of buckets. A slot whose cost has since sunk
     /// stays in its old bucket and is skipped there.
-    buckets: Vec<Vec<Front>>,
+    buckets: [Vec<Front>; BUCKETS],
     /// The number of slots in all buckets.
     waiting: usize,
     /// The first and the last slot that a wave expanded since the field was cleared.
@@ -58,7 +58,7 @@ impl Wavefront {
             frame,
             steps: [1, stride, -1, -stride, stride + 1, stride - 1, -stride - 1, -stride + 1],
             costs: vec![UNREACHED; (frame.width() + 2) * (frame.height() + 2)],
-            buckets: vec![Vec::new(); BUCKETS],
+            buckets: std::array::from_fn(|_| Vec::new()),
             waiting: 0,
             expanded: None,
         }

@@ -14,6 +14,9 @@ pub enum OccupancyModel {
 }
 
 impl OccupancyModel {
+    /// Every model.
+    pub const ALL: [Self; 2] = [Self::Steady, Self::Naive];
+
     /// The name on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {

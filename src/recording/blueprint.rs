@@ -10,6 +10,7 @@ use crate::view::View;
 use nalgebra::Point2;
 use rerun::blueprint::components::{ContainerKind, Corner2D, PanelState, PlayState};
 use rerun::external::re_log_types::BlueprintActivationCommand;
+use rerun::external::re_sdk_types::blueprint::datatypes::{self as blueprint_types, TextLogColumnKind};
 use rerun::external::re_sdk_types::blueprint::{archetypes as blueprint, components::VisibleTimeRange};
 use rerun::external::re_sdk_types::datatypes;
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
@@ -28,14 +29,14 @@ pub(super) fn send(
     let maps = [Layer::Interval, Layer::ChangeProbability, Layer::Recency];
     let maps = maps.map(|layer| layout.map(view, layer)).into_iter().collect::<Result<Vec<_>, _>>()?;
     let mut plots = vec![
-        layout.plot("Map: coverage and quality", entity::SCORES, Some([0.0, 1.0]))?,
+        layout.plot("Map: coverage and quality", entity::SCORES, Some([0.0, 1.05]))?,
         layout.plot("Expected changes out of view, p", entity::P, None)?,
         layout.plot("Longest time since a cell was seen, r (s)", entity::R, None)?,
     ];
     if !view.strategies.is_empty() {
         plots.push(layout.plot("Strategies: expected map updates per step", entity::VALUES, None)?);
         plots.push(layout.states("Strategy that chose the goal", entity::STRATEGY)?);
-        plots.push(layout.plot("Strategies: share of the goals", entity::SHARES, Some([0.0, 1.0]))?);
+        plots.push(layout.plot("Strategies: share of the goals", entity::SHARES, Some([0.0, 1.05]))?);
     }
     let log = layout.log()?;
 
@@ -72,7 +73,14 @@ impl Layout {
     }
 
     fn log(&self) -> RecordingStreamResult<Part> {
-        self.view("TextLog", "What happened", &[entity::LOG.into()])
+        let view = self.view("TextLog", "What happened", &[entity::LOG.into()])?;
+        let time = blueprint_types::TimelineColumn { visible: true.into(), timeline: SIM_TIME.into() };
+        let columns = [TextLogColumnKind::LogLevel, TextLogColumnKind::Body];
+        let columns = columns.map(|kind| blueprint_types::TextLogColumn { kind, visible: true.into() });
+        let columns =
+            blueprint::TextLogColumns::new().with_timeline_columns([time]).with_text_log_columns(columns);
+        self.property(&view, "TextLogColumns", &columns)?;
+        Ok(view)
     }
 
     fn view(&self, class: &str, name: &str, contents: &[String]) -> RecordingStreamResult<Part> {

@@ -250,7 +250,7 @@ mod tests {
 
     #[test]
     fn an_address_that_makes_no_sense_is_refused() {
-        for address in ["", "rerun+http://", "ftp://127.0.0.1:1/proxy", "127.0.0.1:99999", "host:"] {
+        for address in ["", "rerun+http://", "ftp://127.0.0.1:1/proxy", "127.0.0.1:99999", "a viewer"] {
             let message = fails(address);
             assert!(message.contains("is not the address of a viewer"), "{address}: {message}");
             assert!(message.contains("rerun+http://127.0.0.1:9876/proxy"), "{message}");

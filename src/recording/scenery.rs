@@ -121,13 +121,14 @@ fn robot(stream: &RecordingStream, robot: &RobotView, map: &GridFrame) -> Record
     if robot.reading.is_none() {
         return Ok(());
     }
-    let in_view = datatypes::AnnotationInfo {
-        id: IN_VIEW.into(),
-        label: Some("in view".into()),
-        color: Some(*colour(LASER, 255)),
+    let class = |id: u8, label: &str, alpha| datatypes::AnnotationInfo {
+        id: id.into(),
+        label: Some(label.into()),
+        color: Some(*colour(LASER, alpha)),
     };
     let entity = entity::field_of_view(robot.name);
-    stream.log_static(entity.as_str(), &AnnotationContext::new([in_view]))?;
+    let classes = [class(0, "out of view", 0), class(IN_VIEW, "in view", 255)];
+    stream.log_static(entity.as_str(), &AnnotationContext::new(classes))?;
     Picture::of_frame(&field_of_view_frame(map)).log(stream, &entity, order::IN_VIEW, 0.2)
 }
 

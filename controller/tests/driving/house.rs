@@ -68,6 +68,13 @@ impl Mover {
         (self.appears_s..self.goes_s).contains(&time_s).then(|| Rectangle::around(self.at, self.half_m))
     }
 
+    /// Whether it may ever cover a point.
+    fn sweeps(&self, point: &Point2<f64>) -> bool {
+        let [a, b] = self.between;
+        let half = Vector2::repeat(self.half_m);
+        Rectangle { low: a.inf(&b) - half, high: a.sup(&b) + half }.distance_m(point) == 0.0
+    }
+
     fn go(&mut self, step_s: f64, robot: &Point2<f64>) {
         let way = self.between[self.heads_for] - self.at;
         if way.norm() <= self.speed_mps * step_s {
@@ -97,6 +104,8 @@ pub(crate) struct House {
     walls: Vec<Rectangle>,
     wall_cells: Grid<bool>,
     disagrees: Grid<u8>,
+    /// The cells that may ever change.
+    swept: Vec<usize>,
     transitions: Vec<Transition>,
     points: Vec<Point2<f64>>,
 }
@@ -108,14 +117,20 @@ impl House {
         let frame =
             GridFrame::new(Point2::origin(), CELL_M, rows[0].len() * side, rows.len() * side).unwrap();
         let mut wall_cells = Grid::filled(frame, false);
-        let (mut walls, mut start) = (Vec::new(), Point2::origin());
+        let (mut walls, mut start) = (Vec::<Rectangle>::new(), Point2::origin());
         for (up, row) in rows.iter().rev().enumerate() {
             for (along, character) in row.chars().enumerate() {
                 let low = Point2::new(along as f64, up as f64) * CHARACTER_M;
                 if character == 'R' {
                     start = low + Vector2::repeat(CHARACTER_M / 2.0);
                 } else if character == '#' {
-                    walls.push(Rectangle { low, high: low + Vector2::repeat(CHARACTER_M) });
+                    let high = low + Vector2::repeat(CHARACTER_M);
+                    match walls.last_mut() {
+                        Some(Rectangle { low: from, high: to }) if from.y == low.y && to.x == low.x => {
+                            *to = high
+                        }
+                        _ => walls.push(Rectangle { low, high }),
+                    }
                     for cell in 0..side * side {
                         let (x, y) = (along * side + cell % side, up * side + cell / side);
                         *wall_cells.get_mut(Cell::new(x as i32, y as i32)).unwrap() = true;
@@ -135,6 +150,7 @@ impl House {
             twist: Twist::STOP,
             walls,
             wall_cells,
+            swept: Vec::new(),
             transitions: Vec::new(),
             points: Vec::new(),
         }
@@ -159,7 +175,12 @@ impl House {
         self.transitions.clear();
         let movers: Vec<_> = self.movers.iter().filter_map(|mover| mover.rectangle(self.time_s)).collect();
         let frame = *self.map.frame();
-        for index in 0..frame.len() {
+        if self.swept.is_empty() {
+            let near =
+                |cell: &usize| self.movers.iter().any(|mover| mover.sweeps(&frame.center(frame.cell(*cell))));
+            self.swept = (0..frame.len()).filter(near).collect();
+        }
+        for &index in &self.swept {
             let cell = frame.cell(index);
             let blocked = self.wall_cells.cells()[index]
                 || movers.iter().any(|mover| mover.distance_m(&frame.center(cell)) == 0.0);

@@ -2,7 +2,7 @@
 //! as simple as can be. It knows nothing of the simulator.
 #![allow(dead_code)] // every test file takes what it needs
 
-use geometry::{GridFrame, LaserReading, Scan, Twist};
+use geometry::{CellState, GridFrame, LaserReading, Scan, Twist};
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -11,7 +11,8 @@ use std::f64::consts::TAU;
 
 pub(crate) const CELL_M: f64 = 0.05;
 
-/// A thing with a convex outline, counter-clockwise, that stands in the house from `from_s` to `until_s`.
+/// A thing with a convex outline, counter-clockwise, that stands in the house from `from_s` until
+/// before `until_s`.
 #[derive(Clone)]
 pub(crate) struct Thing {
     pub(crate) corners: Vec<Point2<f64>>,
@@ -31,6 +32,7 @@ impl Thing {
 }
 
 /// The house and the laser in it.
+#[derive(Clone)]
 pub(crate) struct House {
     pub(crate) things: Vec<Thing>,
     pub(crate) frame: GridFrame,
@@ -92,8 +94,21 @@ impl House {
         self.things.push(thing);
     }
 
-    /// Whether a point lies inside of something that stands at `time_s`; the map's truth.
-    pub(crate) fn is_solid(&self, point: Point2<f64>, time_s: f64) -> bool {
+    /// What a perfect map says of a cell: [`CellState::Unknown`] where things cover a part of it. Walls
+    /// and things are thicker than the points looked at are apart.
+    pub(crate) fn truth(&self, index: usize, time_s: f64) -> CellState {
+        let middle = self.frame.center(self.frame.cell(index));
+        let steps = [-0.499, -0.25, 0.0, 0.25, 0.499].map(|step| step * CELL_M);
+        let points = steps.iter().flat_map(|&x| steps.iter().map(move |&y| middle + Vector2::new(x, y)));
+        match points.filter(|&point| self.is_solid(point, time_s)).count() {
+            0 => CellState::Free,
+            25 => CellState::Blocked,
+            _ => CellState::Unknown,
+        }
+    }
+
+    /// Whether a point lies inside of something that stands at `time_s`.
+    fn is_solid(&self, point: Point2<f64>, time_s: f64) -> bool {
         self.things.iter().filter(|thing| thing.stands(time_s)).any(|thing| {
             let corners = &thing.corners;
             (0..corners.len()).all(|i| {

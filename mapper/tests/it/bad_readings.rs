@@ -1,0 +1,234 @@
+//! What a broken sensor can send: refused with the maps as they were, or taken for what it means.
+
+use crate::house::House;
+use crate::observed::{Observed, assert_sound};
+use geometry::{CellState, GridFrame, LaserReading, Scan, ScanError, Twist};
+use mapper::{Mapper, MapperSettings, OccupancyModel, ReadingError};
+use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
+use proptest::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+const BEAMS: usize = 90;
+
+fn mapper(occupancy: OccupancyModel) -> Mapper {
+    let frame = GridFrame::new(Point2::origin(), 0.1, 40, 40).unwrap();
+    Mapper::new(&MapperSettings { occupancy, ..MapperSettings::default() }, frame).unwrap()
+}
+
+/// A round room of 1.5 m around the middle of the map.
+fn reading(time_s: f64) -> LaserReading {
+    LaserReading {
+        time_s,
+        pose: geometry::pose(2.0, 2.0, 0.3),
+        twist: Twist::STOP,
+        mount: Isometry2::identity(),
+        scan: Scan {
+            angle_min_rad: -PI,
+            angle_increment_rad: TAU / BEAMS as f64,
+            range_min_m: 0.1,
+            range_max_m: 5.0,
+            ranges_m: vec![1.5; BEAMS],
+        },
+    }
+}
+
+fn edited(edit: impl FnOnce(&mut LaserReading)) -> LaserReading {
+    let mut reading = reading(10.0);
+    edit(&mut reading);
+    reading
+}
+
+/// A mapper that has seen the room.
+fn learned(occupancy: OccupancyModel) -> Mapper {
+    let mut mapper = mapper(occupancy);
+    for scan in 0..20 {
+        mapper.update(&reading(f64::from(scan) * 0.1)).unwrap();
+    }
+    mapper
+}
+
+/// The whole state of the mapper, also what is never shown.
+fn inside(mapper: &Mapper) -> String {
+    format!("{mapper:?}")
+}
+
+#[test]
+fn nonsense_is_refused_and_changes_nothing() {
+    let not_unit = UnitComplex::from_cos_sin_unchecked(0.0, 0.0);
+    let turned = UnitComplex::from_cos_sin_unchecked(f64::NAN, 0.0);
+    let at = |x, y| Isometry2::from_parts(Translation2::new(x, y), UnitComplex::identity());
+    let time = |time: f64| (edited(|r| r.time_s = time), "time");
+    let pose = |pose: Isometry2<f64>| (edited(|r| r.pose = pose), "pose");
+    let mount = |mount: Isometry2<f64>| (edited(|r| r.mount = mount), "pose");
+    let cases = [
+        time(f64::NAN),
+        time(f64::INFINITY),
+        time(f64::NEG_INFINITY),
+        time(1.8),
+        time(-1.0),
+        pose(at(f64::NAN, 0.0)),
+        pose(at(0.0, f64::INFINITY)),
+        pose(at(1e300, 0.0)),
+        pose(at(0.0, -1e308)),
+        pose(Isometry2::from_parts(Translation2::new(1.0, 1.0), turned)),
+        pose(Isometry2::from_parts(Translation2::new(1.0, 1.0), not_unit)),
+        mount(at(f64::NAN, 0.0)),
+        mount(at(1e300, 0.0)),
+        mount(Isometry2::from_parts(Translation2::new(1.0, 1.0), turned)),
+        (edited(|r| r.scan.angle_min_rad = f64::NAN), "angle"),
+        (edited(|r| r.scan.angle_increment_rad = f64::INFINITY), "angle"),
+        (edited(|r| r.scan.angle_increment_rad = 0.0), "sweep"),
+        (edited(|r| r.scan.ranges_m.resize(2 * BEAMS, 1.0)), "sweep"),
+        (edited(|r| r.scan.range_max_m = f64::INFINITY), "limits"),
+        (edited(|r| r.scan.range_max_m = 0.05), "limits"),
+        (edited(|r| r.scan.range_min_m = -1.0), "limits"),
+        (edited(|r| r.scan.range_min_m = f64::NAN), "limits"),
+    ];
+    for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
+        let mut mapper = learned(occupancy);
+        let before = inside(&mapper);
+        for (number, (reading, why)) in cases.iter().enumerate() {
+            let found = match mapper.update(reading) {
+                Err(ReadingError::Time { .. }) => "time",
+                Err(ReadingError::Pose { .. }) => "pose",
+                Err(ReadingError::Scan(ScanError::Angle { .. })) => "angle",
+                Err(ReadingError::Scan(ScanError::Sweep { .. })) => "sweep",
+                Err(ReadingError::Scan(ScanError::Limits { .. })) => "limits",
+                Ok(()) => "taken",
+            };
+            assert_eq!(found, *why, "case {number}");
+            assert!(inside(&mapper) == before, "case {number} left a trace");
+        }
+    }
+}
+
+/// The cells that a beam along +x from (2, 2) shows, as a picture: from the sensor to the border.
+fn along_first_beam(range_m: f32) -> String {
+    let mut mapper = mapper(OccupancyModel::Steady);
+    for scan in 0..5 {
+        let mut reading = reading(f64::from(scan) * 0.1);
+        reading.pose = geometry::pose(2.05, 2.05, 0.0);
+        reading.scan.angle_min_rad = 0.0;
+        reading.scan.range_max_m = 1.2;
+        reading.scan.ranges_m = vec![range_m; BEAMS];
+        mapper.update(&reading).unwrap();
+    }
+    (20..40)
+        .map(|x| match mapper.states().cells()[20 * 40 + x] {
+            CellState::Unknown => ' ',
+            CellState::Free => '.',
+            CellState::Blocked => '#',
+        })
+        .collect()
+}
+
+#[test]
+fn ranges_mean_what_rep_117_says() {
+    assert_eq!(along_first_beam(1.0), "..........#         ");
+    assert_eq!(along_first_beam(f32::INFINITY), "............        ", "clear up to range_max");
+    for nothing in [f32::NAN, f32::NEG_INFINITY, 0.05, -1.0, 1.3] {
+        assert_eq!(along_first_beam(nothing), " ".repeat(20), "{nothing}");
+    }
+}
+
+#[test]
+fn a_reading_may_repeat_the_last_time() {
+    let mut mapper = learned(OccupancyModel::Steady);
+    mapper.update(&reading(mapper.time())).unwrap();
+    assert_sound(&mapper);
+}
+
+/// Scans that are odd but lawful.
+#[test]
+fn odd_scans_are_taken() {
+    let far = 1e8;
+    let cases: [(&str, Box<dyn Fn(&mut LaserReading)>); 12] = [
+        ("no beams", Box::new(|r| r.scan.ranges_m.clear())),
+        ("one beam", Box::new(|r| r.scan.ranges_m.truncate(1))),
+        ("one beam, no increment", Box::new(|r| {
+            r.scan.ranges_m.truncate(1);
+            r.scan.angle_increment_rad = 0.0;
+        })),
+        ("two beams", Box::new(|r| r.scan.ranges_m.truncate(2))),
+        ("beams that all but coincide", Box::new(|r| r.scan.angle_increment_rad = f64::MIN_POSITIVE)),
+        ("beams very near to each other", Box::new(|r| r.scan.angle_increment_rad = 1e-9)),
+        ("clockwise", Box::new(|r| r.scan.angle_increment_rad *= -1.0)),
+        ("many turns before the first beam", Box::new(|r| r.scan.angle_min_rad = 1e12)),
+        ("a range of 0", Box::new(|r| {
+            r.scan.range_min_m = 0.0;
+            r.scan.ranges_m.fill(0.0);
+        })),
+        ("endless range", Box::new(|r| {
+            r.scan.range_max_m = f64::MAX;
+            r.scan.ranges_m.fill(f32::INFINITY);
+        })),
+        ("far away", Box::new(move |r| r.pose = geometry::pose(far, -far, 1.0))),
+        ("far away, with a mount that leads back", Box::new(move |r| {
+            r.pose = geometry::pose(far, 0.0, 0.0);
+            r.mount = geometry::pose(2.0 - far, 2.0, 0.0);
+        })),
+    ];
+    for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
+        for (name, edit) in &cases {
+            let mut mapper = learned(occupancy);
+            for scan in 0..30 {
+                let mut reading = reading(3.0 + f64::from(scan) * 0.1);
+                edit(&mut reading);
+                assert_eq!(mapper.update(&reading), Ok(()), "{name}");
+            }
+            assert_sound(&mapper);
+        }
+    }
+}
+
+/// Seen from beside the grid, the map fills as if the grid were larger.
+#[test]
+fn a_laser_outside_of_the_grid_sees_into_it() {
+    let mut house = House::new(0.1, 0.0, 0.0, 360, 1);
+    let whole = house.frame;
+    let part = GridFrame::new(Point2::new(4.0, 1.0), 0.05, 40, 40).unwrap(); // inside of the lower left room
+    let settings = MapperSettings::default();
+    let (mut outside, mut inside) = (Mapper::new(&settings, part).unwrap(), Mapper::new(&settings, whole).unwrap());
+    for scan in 0..100 {
+        let time_s = f64::from(scan) * 0.1;
+        let reading = house.reading(time_s, geometry::pose(1.5, 2.0 + 0.1 * time_s, 0.0), &[]);
+        outside.update(&reading).unwrap();
+        inside.update(&reading).unwrap();
+    }
+    let mut free = 0;
+    for index in 0..part.len() {
+        let cell = whole.cell_at(&part.center(part.cell(index)));
+        assert_eq!(Some(&outside.states().cells()[index]), inside.states().get(cell), "{cell:?}");
+        free += usize::from(outside.states().cells()[index] == CellState::Free);
+    }
+    assert!(free > 1500, "{free} cells of the room are seen");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Any bits in the ranges, from any pose: taken, and the same twice.
+    #[test]
+    fn any_ranges_are_taken(
+        scans in prop::collection::vec(
+            (prop::collection::vec(prop_oneof![any::<u32>().prop_map(f32::from_bits), 0.0..6.0f32], 0..=BEAMS),
+             -1.0..5.0f64, -1.0..5.0f64, -PI..PI, any::<bool>()),
+            1..12),
+        occupancy in prop::sample::select(vec![OccupancyModel::Steady, OccupancyModel::Naive]),
+    ) {
+        let mut mappers = [mapper(occupancy), mapper(occupancy)];
+        for (number, (ranges_m, x_m, y_m, heading_rad, repeated)) in scans.into_iter().enumerate() {
+            let mut reading = reading(number as f64 * 0.1);
+            reading.scan.range_min_m = 0.0;
+            reading.scan.ranges_m = ranges_m;
+            reading.pose = geometry::pose(x_m, y_m, heading_rad);
+            for _ in 0..if repeated { 15 } else { 1 } {
+                for mapper in &mut mappers {
+                    prop_assert_eq!(mapper.update(&reading), Ok(()));
+                }
+            }
+            assert_sound(&mappers[0]);
+            prop_assert!(Observed::of(&mappers[0]) == Observed::of(&mappers[1]));
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! Change statistics and features against a book that keeps every reading and recomputes everything
+//! from the definitions each time.
+
+use crate::observed::assert_sound;
+use geometry::{Cell, CellReading, CellState, Grid, GridFrame, Transition};
+use mapper::{CellStatistics, Estimator, Features, Mapper, MapperSettings};
+use nalgebra::Point2;
+use proptest::prelude::*;
+
+const WIDTH: i32 = 6;
+const HEIGHT: i32 = 4;
+
+fn frame() -> GridFrame {
+    GridFrame::new(Point2::origin(), 1.0, WIDTH as usize, HEIGHT as usize).unwrap()
+}
+
+/// One reading: a window of cells, of which some changed since they were last seen.
+#[derive(Clone, Debug)]
+struct Glance {
+    wait: f64,
+    low: (i32, i32),
+    size: (i32, i32),
+    /// Bit i: the cell at place i changes before this reading.
+    changes: u32,
+}
+
+fn glances() -> impl Strategy<Value = Vec<Glance>> {
+    let wait = prop_oneof![6 => Just(1.0), 2 => 0.01..3.0f64, 1 => Just(0.0), 1 => 10.0..500.0f64];
+    let changes = prop_oneof![2 => Just(0), 3 => any::<u32>().prop_flat_map(|a| any::<u32>().prop_map(move |b| a & b))];
+    // Windows that reach out of the map on every side.
+    let glance = (wait, (-2..WIDTH, -2..HEIGHT), (0..8, 0..6), changes)
+        .prop_map(|(wait, low, size, changes)| Glance { wait, low, size, changes });
+    prop::collection::vec(glance, 1..60)
+}
+
+/// All that was ever seen of a cell: the reading's number, its time, and whether the cell was blocked.
+type Sightings = Vec<(usize, f64, bool)>;
+
+struct Book {
+    sightings: Vec<Sightings>,
+    /// Cells known before the first reading were seen "at time 0", long before it.
+    prior: Vec<CellState>,
+    now: f64,
+}
+
+impl Book {
+    fn known(&self, index: usize) -> CellState {
+        match self.sightings[index].last() {
+            Some((_, _, true)) => CellState::Blocked,
+            Some((_, _, false)) => CellState::Free,
+            None => self.prior[index],
+        }
+    }
+
+    fn statistics(&self, index: usize) -> CellStatistics {
+        let mut all = self.sightings[index].clone();
+        if all.is_empty() {
+            return CellStatistics::default();
+        }
+        let is_adjacent = |a: usize, b: usize| a != usize::MAX && a + 1 == b;
+        if self.prior[index] != CellState::Unknown {
+            all.insert(0, (usize::MAX, 0.0, self.prior[index] == CellState::Blocked));
+        }
+        let mut seen =
+            CellStatistics { first_seen: all[0].1, last_seen: all[all.len() - 1].1, ..Default::default() };
+        for pair in all.windows(2) {
+            let ((number, time, was_blocked), (next_number, next_time, is_blocked)) = (pair[0], pair[1]);
+            let in_view = is_adjacent(number, next_number);
+            match (in_view, is_blocked) {
+                (true, true) => seen.watched_blocked += next_time - time,
+                (true, false) => seen.watched_free += next_time - time,
+                (false, _) => seen.unobserved += next_time - time,
+            }
+            match (was_blocked, is_blocked, in_view) {
+                (false, true, true) => seen.block_events += 1,
+                (true, false, true) => seen.free_events += 1,
+                (false, true, false) => seen.block_events_after_gap += 1,
+                (true, false, false) => seen.free_events_after_gap += 1,
+                _ => {}
+            }
+        }
+        seen
+    }
+
+    /// Cycles per unit of time by the definitions of the estimators.
+    fn rate(&self, index: usize, estimator: Estimator) -> f64 {
+        let seen = self.statistics(index);
+        let (block, free) = (f64::from(seen.block_events), f64::from(seen.free_events));
+        let gaps = (f64::from(seen.block_events_after_gap), f64::from(seen.free_events_after_gap));
+        let observed = seen.last_seen - seen.first_seen - seen.unobserved;
+        let interval = match estimator {
+            Estimator::Paper => (observed / block).min(observed / free),
+            Estimator::PaperAll => (observed / (block + gaps.0)).min(observed / (free + gaps.1)),
+            Estimator::TwoState if block + free == 0.0 => f64::INFINITY,
+            Estimator::TwoState => {
+                let half_if_none = |events: f64| if events == 0.0 { 0.5 } else { events };
+                seen.watched_free / half_if_none(block) + seen.watched_blocked / half_if_none(free)
+            }
+        };
+        // 0/0: events, but no time in which they could be counted.
+        if interval > 1e-9 { 1.0 / interval } else { 0.0 }
+    }
+
+    fn last_seen(&self, index: usize) -> f64 {
+        self.sightings[index].last().map_or(0.0, |sighting| sighting.1)
+    }
+
+    fn is_candidate(&self, index: usize) -> bool {
+        let frame = frame();
+        let is_free = |cell: Cell| frame.index(cell).is_some_and(|at| self.known(at) == CellState::Free);
+        let Cell { x, y } = frame.cell(index);
+        [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].iter().any(|(dx, dy)| is_free(Cell::new(x + dx, y + dy)))
+    }
+
+    fn features(&self, estimator: Estimator) -> Features {
+        let cells = || 0..self.sightings.len();
+        Features {
+            p: cells()
+                .map(|at| 1.0 - (-(self.now - self.last_seen(at)) * self.rate(at, estimator)).exp())
+                .sum(),
+            r: cells()
+                .filter(|&at| self.is_candidate(at))
+                .map(|at| self.now - self.last_seen(at))
+                .fold(0.0, f64::max),
+        }
+    }
+}
+
+fn near(a: f64, b: f64) -> bool {
+    a == b || (a - b).abs() <= 1e-9 * (1.0 + a.abs().max(b.abs()))
+}
+
+fn assert_statistics(mapper: &Mapper, book: &Book, index: usize) {
+    let (found, expected) = (mapper.statistics(index), book.statistics(index));
+    let times = |seen: &CellStatistics| {
+        [seen.first_seen, seen.last_seen, seen.unobserved, seen.watched_free, seen.watched_blocked]
+    };
+    let counts = |seen: &CellStatistics| {
+        [seen.block_events, seen.free_events, seen.block_events_after_gap, seen.free_events_after_gap]
+    };
+    let is_near = times(&found).iter().zip(times(&expected)).all(|(&a, b)| near(a, b));
+    assert!(is_near && counts(&found) == counts(&expected), "found {found:?}, expected {expected:?}");
+}
+
+proptest! {
+    #[test]
+    fn statistics_and_features_are_those_of_the_book(
+        glances in glances(),
+        estimator in prop::sample::select(Estimator::ALL.to_vec()),
+        prior in prop_oneof![
+            Just(vec![CellState::Unknown; 24]),
+            prop::collection::vec(
+                prop::sample::select(vec![CellState::Unknown, CellState::Free, CellState::Blocked]), 24),
+        ],
+    ) {
+        let frame = frame();
+        let settings = MapperSettings { estimator, ..MapperSettings::default() };
+        let grid = Grid::from_cells(frame, prior.clone()).unwrap();
+        let mut mapper = Mapper::with_prior(&settings, grid).unwrap();
+        let mut world: Vec<bool> = prior.iter().map(|&state| state == CellState::Blocked).collect();
+        let mut book = Book { sightings: vec![Vec::new(); frame.len()], prior, now: 0.0 };
+
+        for (number, glance) in glances.iter().enumerate() {
+            book.now += glance.wait;
+            for (index, blocked) in world.iter_mut().enumerate() {
+                *blocked ^= glance.changes >> index & 1 == 1;
+            }
+            let (low, size) = (glance.low, glance.size);
+            let window = (low.1..low.1 + size.1).flat_map(|y| (low.0..low.0 + size.0).map(move |x| Cell::new(x, y)));
+            let cells: Vec<(Cell, bool)> =
+                window.map(|cell| (cell, frame.index(cell).is_some_and(|index| world[index]))).collect();
+            let mut expected = Vec::new();
+            for &(cell, blocked) in &cells {
+                let Some(index) = frame.index(cell) else { continue };
+                let before = book.known(index);
+                book.sightings[index].push((number, book.now, blocked));
+                let after = book.known(index);
+                if before != after {
+                    expected.push(Transition { cell, before, after });
+                }
+            }
+            mapper.update(&CellReading { time: book.now, pose: geometry::pose(0.5, 0.5, 0.0), cells }).unwrap();
+
+            prop_assert_eq!(mapper.transitions(), expected);
+            for index in 0..frame.len() {
+                prop_assert_eq!(mapper.states().cells()[index], book.known(index));
+                prop_assert_eq!(mapper.is_candidate(index), book.is_candidate(index));
+                prop_assert_eq!(mapper.was_ever_seen(index), !book.sightings[index].is_empty());
+                let in_view = book.sightings[index].last().is_some_and(|sighting| sighting.0 == number);
+                prop_assert_eq!(mapper.is_in_view(index), in_view);
+                prop_assert!(near(mapper.recency(index), book.now - book.last_seen(index)));
+                assert_statistics(&mapper, &book, index);
+                prop_assert!(near(mapper.rate(index), book.rate(index, estimator)));
+            }
+            let (found, expected) = (mapper.features(), book.features(estimator));
+            prop_assert!(near(found.p, expected.p) && near(found.r, expected.r), "{:?}, not {:?}", found, expected);
+        }
+    }
+
+    /// Times that stand still, crawl or leap, and cells that are said to be both: figures stay figures.
+    #[test]
+    fn no_stream_makes_a_rate_that_is_not_a_number(
+        readings in prop::collection::vec(
+            (prop::sample::select(vec![0.0, f64::from_bits(1), f64::MIN_POSITIVE, 1e-300, 1.0, 1e300, f64::MAX]),
+             prop::collection::vec((-1..=WIDTH, -1..=HEIGHT, any::<bool>()), 0..30)),
+            1..20),
+        estimator in prop::sample::select(Estimator::ALL.to_vec()),
+    ) {
+        let settings = MapperSettings { estimator, ..MapperSettings::default() };
+        let mut mapper = Mapper::new(&settings, frame()).unwrap();
+        let mut time: f64 = 0.0;
+        for (wait, cells) in readings {
+            time = (time + wait).min(f64::MAX);
+            let cells = cells.into_iter().map(|(x, y, blocked)| (Cell::new(x, y), blocked)).collect();
+            mapper.update(&CellReading { time, pose: geometry::pose(0.5, 0.5, 0.0), cells }).unwrap();
+            assert_sound(&mapper);
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! The estimators on cells that are simulated two-state Markov chains: the truth is known.
+
+use geometry::{Cell, CellReading, GridFrame};
+use mapper::{Estimator, Mapper, MapperSettings};
+use nalgebra::Point2;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, Exp};
+
+/// A cell that gets blocked `block_hz` times per second while free, and free `free_hz` times per
+/// second while blocked.
+#[derive(Clone, Copy)]
+struct Chain {
+    block_hz: f64,
+    free_hz: f64,
+}
+
+impl Chain {
+    fn cycle_rate(self) -> f64 {
+        1.0 / (1.0 / self.block_hz + 1.0 / self.free_hz)
+    }
+
+    fn share_free(self) -> f64 {
+        self.free_hz / (self.block_hz + self.free_hz)
+    }
+
+    /// The probability that a free cell is blocked `gap_s` later (the forward equation's solution).
+    fn blocked_after(self, gap_s: f64) -> f64 {
+        let sum_hz = self.block_hz + self.free_hz;
+        self.block_hz / sum_hz * (1.0 - (-sum_hz * gap_s).exp())
+    }
+}
+
+const SAMPLE_S: f64 = 0.1;
+const CELLS: usize = 8;
+const READINGS: usize = 400_000;
+
+/// The mean rate over some cells that follow `chain`, each of which is looked at whenever
+/// `looks(reading, blocked now, when it was last looked at and blocked)` says so.
+fn estimates(chain: Chain, looks: impl Fn(usize, bool, usize) -> bool) -> [f64; 3] {
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let frame = GridFrame::new(Point2::origin(), 1.0, CELLS, 1).unwrap();
+    let mut mappers = Estimator::ALL.map(|estimator| {
+        Mapper::new(&MapperSettings { estimator, ..MapperSettings::default() }, frame).unwrap()
+    });
+    let dwells = [Exp::new(chain.block_hz).unwrap(), Exp::new(chain.free_hz).unwrap()];
+    let mut cells = [(false, 0.0, 0); CELLS]; // state, when it ends, last seen blocked
+    for cell in &mut cells {
+        cell.1 = dwells[0].sample(&mut random);
+    }
+    for reading in 0..READINGS {
+        let time = reading as f64 * SAMPLE_S;
+        let mut seen = Vec::new();
+        for (x, (blocked, until, seen_blocked)) in cells.iter_mut().enumerate() {
+            while *until <= time {
+                *blocked = !*blocked;
+                *until += dwells[usize::from(*blocked)].sample(&mut random);
+            }
+            if looks(reading, *blocked, *seen_blocked) {
+                if *blocked {
+                    *seen_blocked = reading;
+                }
+                seen.push((Cell::new(x as i32, 0), *blocked));
+            }
+        }
+        let reading = CellReading { time, pose: geometry::pose(0.0, 0.0, 0.0), cells: seen };
+        for mapper in &mut mappers {
+            mapper.update(&reading).unwrap();
+        }
+    }
+    mappers.map(|mapper| (0..CELLS).map(|index| mapper.rate(index)).sum::<f64>() / CELLS as f64)
+}
+
+#[track_caller]
+fn assert_within(found: f64, expected: f64, tolerance: f64) {
+    assert!((found / expected - 1.0).abs() <= tolerance, "{found}, not {expected}");
+}
+
+const FAST: Chain = Chain { block_hz: 0.1, free_hz: 0.25 };
+
+#[test]
+fn in_full_view_every_estimator_finds_the_rate() {
+    for rate in estimates(FAST, |_, _, _| true) {
+        assert_within(rate, FAST.cycle_rate(), 0.04);
+    }
+}
+
+/// In view for 10 of 40 readings: the changes found after a gap are counted by `paper-all`, but not
+/// the time in which they can have happened. The bias follows from the chain.
+#[test]
+fn in_short_visits_counting_changes_after_gaps_biases() {
+    let [paper, paper_all, two_state] = estimates(FAST, |reading, _, _| reading % 40 < 10);
+    assert_within(paper, FAST.cycle_rate(), 0.05);
+    assert_within(two_state, FAST.cycle_rate(), 0.05);
+    let (view_s, gap_s) = (9.0 * SAMPLE_S, 31.0 * SAMPLE_S);
+    let after_gap = FAST.share_free() * FAST.blocked_after(gap_s) / view_s;
+    assert_within(paper_all, FAST.cycle_rate() + after_gap, 0.05);
+    assert!(paper_all > 3.0 * FAST.cycle_rate(), "the bias is large, or this tests nothing");
+}
+
+/// A robot that looks on while the cell is blocked, as one that follows a moving thing does: the
+/// paper's rate is that of the moments it looks at; conditioned on the state, it is right.
+#[test]
+fn looking_where_things_happen_biases_the_paper_and_not_two_state() {
+    let chain = Chain { block_hz: 0.02, free_hz: 0.1 };
+    let looks = |reading: usize, _: bool, seen_blocked: usize| {
+        reading % 200 < 2 || reading < seen_blocked + 3 && seen_blocked > 0
+    };
+    let [paper, _, two_state] = estimates(chain, looks);
+    assert_within(two_state, chain.cycle_rate(), 0.15);
+    assert!(paper > 2.0 * chain.cycle_rate(), "{paper} against {}", chain.cycle_rate());
+}
+
+#[test]
+fn a_cell_that_never_changes_has_no_rate() {
+    let still = Chain { block_hz: 1e-12, free_hz: 1.0 };
+    assert_eq!(estimates(still, |reading, _, _| reading % 7 < 3), [0.0; 3]);
+}

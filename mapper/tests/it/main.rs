@@ -1,0 +1,12 @@
+//! What must hold of the mapper as its users see it.
+
+#[path = "../house/mod.rs"]
+mod house;
+
+mod bad_readings;
+mod bookkeeping;
+mod chains;
+mod observed;
+mod prior;
+mod things;
+mod walls;

@@ -1,0 +1,81 @@
+//! Everything that can be read of a mapper, to compare.
+
+use geometry::{Cell, CellState, Transition};
+use mapper::{CellStatistics, Features, Mapper};
+use nalgebra::Point2;
+
+/// One cell as its readers see it.
+#[derive(Debug, PartialEq)]
+pub(crate) struct ObservedCell {
+    state: CellState,
+    statistics: CellStatistics,
+    is_known: bool,
+    is_in_view: bool,
+    is_candidate: bool,
+    figures: [u64; 4],
+}
+
+/// A mapper as its readers see it; figures are compared bit by bit.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Observed {
+    cells: Vec<ObservedCell>,
+    transitions: Vec<Transition>,
+    points: Vec<Point2<f64>>,
+    changed: Vec<usize>,
+    time: u64,
+    readings: usize,
+    features: [u64; 2],
+}
+
+impl Observed {
+    pub(crate) fn of(mapper: &Mapper) -> Self {
+        let cell = |index: usize| ObservedCell {
+            state: mapper.states().cells()[index],
+            statistics: mapper.statistics(index),
+            is_known: mapper.was_ever_seen(index),
+            is_in_view: mapper.is_in_view(index),
+            is_candidate: mapper.is_candidate(index),
+            figures: [
+                mapper.interval(index),
+                mapper.rate(index),
+                mapper.change_probability(index),
+                mapper.recency(index),
+            ]
+            .map(f64::to_bits),
+        };
+        let Features { p, r } = mapper.clone().features();
+        Self {
+            cells: (0..mapper.frame().len()).map(cell).collect(),
+            transitions: mapper.transitions().to_vec(),
+            points: mapper.points().to_vec(),
+            changed: mapper.changed().collect(),
+            time: mapper.time().to_bits(),
+            readings: mapper.readings(),
+            features: [p.to_bits(), r.to_bits()],
+        }
+    }
+}
+
+/// The changes of known cells in the last update.
+pub(crate) fn changes(mapper: &Mapper) -> impl Iterator<Item = Cell> {
+    mapper.transitions().iter().filter(|transition| transition.event().is_some()).map(|transition| transition.cell)
+}
+
+/// Every figure of every cell makes sense: no NaN, no infinite rate, no negative time.
+pub(crate) fn assert_sound(mapper: &Mapper) {
+    for index in 0..mapper.frame().len() {
+        let seen = mapper.statistics(index);
+        let times = [seen.first_seen, seen.last_seen, seen.unobserved, seen.watched_free, seen.watched_blocked];
+        assert!(times.iter().all(|time| time.is_finite() && *time >= 0.0), "{seen:?}");
+        assert!(mapper.interval(index) > 0.0, "interval {} of {seen:?}", mapper.interval(index));
+        let rate = mapper.rate(index);
+        assert!(rate.is_finite() && rate >= 0.0, "rate {rate} of {seen:?}");
+        let probability = mapper.change_probability(index);
+        assert!((0.0..=1.0).contains(&probability), "P(E > 0) = {probability} of {seen:?}");
+        let recency = mapper.recency(index);
+        assert!(recency.is_finite() && recency >= 0.0, "recency {recency} of {seen:?}");
+    }
+    let Features { p, r } = mapper.clone().features();
+    assert!((0.0..=mapper.frame().len() as f64).contains(&p), "p = {p}");
+    assert!(r.is_finite() && r >= 0.0, "r = {r}");
+}

@@ -1,0 +1,95 @@
+//! A static place never changes, however long one looks.
+
+use crate::house::House;
+use crate::observed::{Observed, assert_sound, changes};
+use geometry::{CellState, LaserReading};
+use mapper::{Mapper, MapperSettings, OccupancyModel};
+
+const SCANS: u32 = 1500;
+
+/// A tour of the house.
+fn tour(house: &mut House) -> Vec<LaserReading> {
+    let time_s = |scan| f64::from(scan) * 0.1;
+    (0..SCANS).map(|scan| house.reading(time_s(scan), house.tour(time_s(scan)), &[])).collect()
+}
+
+/// The mapper after all readings, and how many changes of known cells it reported.
+fn learn(house: &House, readings: &[LaserReading], occupancy: OccupancyModel) -> (Mapper, usize) {
+    let settings = MapperSettings { occupancy, ..MapperSettings::default() };
+    let mut mapper = Mapper::new(&settings, house.frame).unwrap();
+    let mut events = 0;
+    for reading in readings {
+        mapper.update(reading).unwrap();
+        events += changes(&mapper).count();
+    }
+    assert_sound(&mapper);
+    (mapper, events)
+}
+
+fn false_changes(house: &House, readings: &[LaserReading]) -> (usize, usize) {
+    let [steady, naive] =
+        [OccupancyModel::Steady, OccupancyModel::Naive].map(|model| learn(house, readings, model).1);
+    assert!(naive > 1000, "the same scans make other maps flicker, or this tests nothing: {naive}");
+    (steady, naive)
+}
+
+#[test]
+fn thin_walls_on_cell_borders_never_change() {
+    let mut house = House::new(0.05, 0.0, 0.0, 360, 1);
+    let readings = tour(&mut house);
+    assert_eq!(false_changes(&house, &readings).0, 0);
+}
+
+#[test]
+fn thick_walls_on_cell_borders_never_change() {
+    let mut house = House::new(0.1, 0.0, 0.0, 360, 1);
+    let readings = tour(&mut house);
+    assert_eq!(false_changes(&house, &readings).0, 0);
+}
+
+#[test]
+fn turned_walls_and_noise_make_hardly_any_change() {
+    for (thickness_m, turn_deg, beams) in [(0.1, 10.0, 360), (0.1, 37.0, 360), (0.05, 10.0, 360), (0.1, 10.0, 720)] {
+        let mut house = House::new(thickness_m, turn_deg, 0.01, beams, 1);
+        let readings = tour(&mut house);
+        let (steady, naive) = false_changes(&house, &readings);
+        assert!(steady <= 10, "{steady} changes at {turn_deg}° with {beams} beams; naive has {naive}");
+    }
+}
+
+/// Every cell that the map knows is as it really is, and it knows all that can be seen.
+#[test]
+fn the_map_is_the_true_grid() {
+    let mut house = House::new(0.1, 0.0, 0.0, 360, 1);
+    let (mapper, _) = learn(&house, &tour(&mut house.clone()), OccupancyModel::Steady);
+    let states = mapper.states();
+    let (mut wrong, mut unknown) = (Vec::new(), Vec::new());
+    for index in 0..house.frame.len() {
+        let (cell, truth) = (house.frame.cell(index), house.truth(index, 0.0));
+        let is_free = |index| house.truth(index, 0.0) == CellState::Free;
+        let can_be_seen = truth == CellState::Free
+            || cell.neighbours4().into_iter().filter_map(|near| house.frame.index(near)).any(is_free);
+        match states.cells()[index] {
+            CellState::Unknown if can_be_seen => unknown.push(cell),
+            CellState::Unknown => {}
+            state if state != truth => wrong.push(cell),
+            _ => {}
+        }
+    }
+    assert!(wrong.is_empty(), "wrong: {wrong:?}");
+    assert!(unknown.is_empty(), "unknown: {unknown:?}");
+}
+
+#[test]
+fn the_same_readings_make_the_same_mapper() {
+    let mut house = House::new(0.1, 10.0, 0.01, 360, 4);
+    let readings = &tour(&mut house)[..300];
+    for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
+        let [first, second] = [(); 2].map(|()| Observed::of(&learn(&house, readings, occupancy).0));
+        assert!(first == second);
+    }
+    let mut other = House::new(0.1, 10.0, 0.01, 360, 5);
+    let others = &tour(&mut other)[..300];
+    let [first, second] = [readings, others].map(|readings| Observed::of(&learn(&house, readings, OccupancyModel::Steady).0));
+    assert!(first != second, "other noise, other map, or this tests nothing");
+}

@@ -1,3 +1,0 @@
-fn main() {
-    let _ = rerun::RecordingStreamBuilder::new("x").save("/tmp/x.rrd");
-}

@@ -1,0 +1,143 @@
+//! Arguments → parts → loop → what comes out.
+
+mod args;
+mod output;
+mod parts;
+mod progress;
+
+use anyhow::Context;
+use args::{Args, DriveChoice};
+use clap::Parser;
+use curious::observer::Observer;
+use curious::pilot::{Now, Pilot};
+use curious::recording::{Live, Recorder, RecordingOptions};
+use curious::{explore, worlds};
+use geometry::{Reading, Twist};
+use mapper::Mapper;
+use parts::{Failure, Parts};
+use progress::Progress;
+use sim::physics::PhysicsWorld;
+use std::ops::ControlFlow;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    if args.list_worlds {
+        for (name, _) in worlds::SHIPPED {
+            match worlds::load(name) {
+                Ok(spec) => println!("{name:<18} {}", spec.description()),
+                Err(error) => eprintln!("{error}"),
+            }
+        }
+        return ExitCode::SUCCESS;
+    }
+    match run(&args) {
+        Ok(Ended::Interrupted) => ExitCode::from(130),
+        Ok(_) => ExitCode::SUCCESS,
+        Err(Failure::Input(error)) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+        Err(Failure::Run(error)) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ended {
+    Duration,
+    Pilot,
+    Interrupted,
+}
+
+fn run(args: &Args) -> Result<Ended, Failure> {
+    let Parts { world, mapper, settings } = Parts::new(args)?;
+    match args.drive {
+        DriveChoice::Agent => {
+            let pilot = settings.agent(args)?;
+            live(args, world, mapper, pilot, &settings)
+        }
+        DriveChoice::Tour => {
+            let pilot = settings.tour(args)?;
+            live(args, world, mapper, pilot, &settings)
+        }
+        DriveChoice::Keyboard => {
+            let pilot = settings.keyboard()?;
+            live(args, world, mapper, pilot, &settings)
+        }
+    }
+}
+
+/// Lets the robot live in the world, and writes what came of it.
+fn live(
+    args: &Args,
+    mut world: PhysicsWorld,
+    mut mapper: Mapper,
+    mut pilot: impl Pilot<Command = Twist>,
+    settings: &parts::Settings,
+) -> Result<Ended, Failure> {
+    let output = output::Folder::create(&args.out)?;
+    let recorder = recorder(args, &world)?;
+    let mut observer = Observer::new(&world, recorder);
+    if let Some(problem) = observer.live_problem() {
+        eprintln!("note: {problem}");
+    }
+    let is_interrupted = Arc::new(AtomicBool::new(false));
+    let flag = is_interrupted.clone();
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
+
+    let is_keyboard = args.drive == DriveChoice::Keyboard;
+    if is_keyboard && !args.quiet {
+        eprint!("arrows or WASD drive, space stops, Q ends the run\r\n");
+    }
+    let speed = args.speed.unwrap_or(if is_keyboard { 1.0 } else { f64::INFINITY });
+    let mut progress = Progress::new(args.duration, args.quiet, is_keyboard);
+    let mut ended = Ended::Duration;
+    let start = Instant::now();
+    explore(&mut world, &mut mapper, &mut pilot, |world, reading, now, pilot| -> anyhow::Result<_> {
+        observer.watch(world, reading, now, pilot)?;
+        progress.show(reading.time(), observer.scores());
+        if speed.is_finite() {
+            let due = Duration::from_secs_f64(reading.time() / speed);
+            std::thread::sleep(due.saturating_sub(start.elapsed()));
+        }
+        ended = match () {
+            () if is_interrupted.load(Ordering::Relaxed) => Ended::Interrupted,
+            () if pilot.is_done() => Ended::Pilot,
+            () if reading.time() >= args.duration => Ended::Duration,
+            () => return Ok(ControlFlow::Continue(())),
+        };
+        Ok(ControlFlow::Break(()))
+    })?;
+    let wall_s = start.elapsed().as_secs_f64();
+    progress.finish();
+
+    let now = Now { pose: world.true_pose(), features: mapper.features(), mapper: &mapper };
+    observer.finish(&world, &now, &pilot).map_err(anyhow::Error::from)?;
+    let summary = output::summary(args, settings, &world, &mapper, &pilot, &observer, ended, wall_s);
+    drop(pilot); // gives the terminal back before anything is printed
+    output.write(&world, &mapper, &observer, &summary)?;
+    if !args.quiet {
+        println!("{summary}");
+        println!("  files     {}", output.path().display());
+    }
+    Ok(ended)
+}
+
+fn recorder(args: &Args, world: &PhysicsWorld) -> Result<Option<Recorder>, Failure> {
+    let mut live: Vec<Live> = args.connect.clone().map(Live::Connect).into_iter().collect();
+    live.extend(args.view.then_some(Live::Spawn));
+    let file = (!args.no_rrd).then(|| args.rrd.clone().unwrap_or_else(|| args.out.join("four_rooms.rrd")));
+    if file.is_none() && live.is_empty() {
+        return Ok(None);
+    }
+    let options = RecordingOptions { file, live, ..RecordingOptions::default() };
+    let recorder = Recorder::new(&options, Observer::scene(world)).map_err(anyhow::Error::from)?;
+    Ok(Some(recorder))
+}

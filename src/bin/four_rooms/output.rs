@@ -1,0 +1,97 @@
+//! What a run leaves behind.
+
+use crate::Ended;
+use crate::args::{Args, DriveChoice};
+use crate::parts::Settings;
+use anyhow::Context;
+use curious::metrics;
+use curious::observer::Observer;
+use curious::pilot::Pilot;
+use curious::summary::{Collisions, Liveliest, Summary, map_hash};
+use geometry::Twist;
+use mapper::Mapper;
+use sim::physics::PhysicsWorld;
+use std::path::{Path, PathBuf};
+
+/// The output folder.
+pub(crate) struct Folder {
+    path: PathBuf,
+}
+
+impl Folder {
+    pub(crate) fn create(path: &Path) -> anyhow::Result<Self> {
+        std::fs::create_dir_all(path)
+            .with_context(|| format!("cannot make the output folder {}", path.display()))?;
+        Ok(Self { path: path.to_owned() })
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub(crate) fn write(
+        &self,
+        world: &PhysicsWorld,
+        mapper: &Mapper,
+        observer: &Observer,
+        summary: &Summary,
+    ) -> anyhow::Result<()> {
+        std::fs::write(self.path.join("summary.json"), serde_json::to_string_pretty(summary)?)?;
+        Ok(())
+    }
+}
+
+#[allow(clippy::too_many_arguments)] // everything that a run was made of
+pub(crate) fn summary(
+    args: &Args,
+    settings: &Settings,
+    world: &PhysicsWorld,
+    mapper: &Mapper,
+    pilot: &impl Pilot<Command = Twist>,
+    observer: &Observer,
+    ended: Ended,
+    wall_s: f64,
+) -> Summary {
+    let scores = metrics::scores(mapper, world.truth());
+    let findings = observer.findings();
+    let moving = world.contacts().iter().filter(|contact| contact.moving).count();
+    let is_agent = args.drive == DriveChoice::Agent;
+    Summary {
+        version: env!("CARGO_PKG_VERSION"),
+        arguments: std::env::args().skip(1).collect(),
+        settings: serde_json::to_value(settings).unwrap_or_default(),
+        world: world.spec().name().to_owned(),
+        seed: args.seed,
+        drive: match args.drive {
+            DriveChoice::Agent => "agent",
+            DriveChoice::Keyboard => "keyboard",
+            DriveChoice::Tour => "tour",
+        },
+        strategy: is_agent.then(|| args.strategy.name()),
+        estimator: args.estimator.name(),
+        occupancy: args.occupancy.name(),
+        ended_by: match ended {
+            Ended::Duration => "duration",
+            Ended::Pilot if args.drive == DriveChoice::Tour => "tour",
+            Ended::Pilot => "person",
+            Ended::Interrupted => "interrupted",
+        },
+        simulated_s: mapper.time(),
+        wall_s,
+        real_time_factor: mapper.time() / wall_s.max(f64::MIN_POSITIVE),
+        coverage: scores.coverage,
+        map_quality: scores.map_quality,
+        map_quality_changing: findings.map_quality_changing,
+        rates: metrics::rate_scores(mapper, world.truth()),
+        age: metrics::age(mapper, world.truth()),
+        block_latency: findings.block_latency,
+        free_latency: findings.free_latency,
+        collisions: Collisions { moving, standing: world.contacts().len() - moving },
+        goals: pilot.goals(),
+        strategy_share: pilot.strategies(Default::default()).iter().map(|s| (s.name, s.share)).collect(),
+        things: findings.things,
+        curve: findings.curve,
+        map_hash: map_hash(mapper),
+        liveliest: Liveliest::of(mapper),
+    }
+}

@@ -1,0 +1,135 @@
+//! Arguments → the parts of the loop.
+
+use crate::args::Args;
+use agent::{Agent, AgentSettings};
+use anyhow::Context;
+use controller::{Controller, DiffDrive, DiffDriveSettings};
+use curious::pilot::{Autonomous, Keyboard, Tour};
+use curious::worlds;
+use geometry::Twist;
+use mapper::{Mapper, MapperSettings};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use serde::Serialize;
+use sim::physics::{PhysicsWorld, WorldSpec};
+use std::path::Path;
+
+/// Why there is no result.
+pub(crate) enum Failure {
+    /// An argument or a file that was given is wrong.
+    Input(anyhow::Error),
+    /// Everything given was right, and still.
+    Run(anyhow::Error),
+}
+
+impl From<anyhow::Error> for Failure {
+    fn from(error: anyhow::Error) -> Self {
+        Self::Run(error)
+    }
+}
+
+fn input(error: impl Into<anyhow::Error>) -> Failure {
+    Failure::Input(error.into())
+}
+
+/// Streams of chance, apart from those of the world.
+#[derive(Clone, Copy)]
+enum Purpose {
+    Agent = 1,
+    Controller = 2,
+}
+
+fn chance(seed: u64, purpose: Purpose) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream((purpose as u64) << 48);
+    rng
+}
+
+/// The side of the patches in which goals are weighed, m.
+const PATCH_M: f64 = 0.5;
+
+/// All settings, as they go into the summary.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Settings {
+    pub(crate) mapper: MapperSettings,
+    pub(crate) agent: AgentSettings,
+    pub(crate) controller: controller::Settings,
+    pub(crate) drive: DiffDriveSettings,
+}
+
+impl Settings {
+    fn new(args: &Args, spec: &WorldSpec) -> Self {
+        let (robot, defaults) = (spec.driven(), DiffDriveSettings::default());
+        let mut mapper = MapperSettings {
+            estimator: args.estimator,
+            occupancy: args.occupancy,
+            ..MapperSettings::default()
+        };
+        // A laser's data sheet tells its noise.
+        let noise_m = robot.laser.noise_std_m;
+        mapper.steady.range_noise_std_m = mapper.steady.range_noise_std_m.max(noise_m);
+        Self {
+            mapper,
+            agent: AgentSettings {
+                patch_cells: ((PATCH_M / spec.frame().resolution_m()).round() as _),
+                ..AgentSettings::default()
+            },
+            controller: controller::Settings::default(),
+            drive: DiffDriveSettings {
+                radius_m: robot.radius_m,
+                max_linear_mps: robot.drive.max_linear_mps,
+                max_angular_radps: robot.drive.max_angular_radps,
+                acceleration_mps2: robot.drive.max_linear_acceleration_mps2,
+                angular_acceleration_radps2: robot.drive.max_angular_acceleration_radps2,
+                reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s(),
+                ..defaults
+            },
+        }
+    }
+
+    fn controller(&self, seed: u64) -> Result<Controller<DiffDrive>, Failure> {
+        let drive = DiffDrive::new(self.drive).map_err(input)?;
+        Controller::new(self.controller, drive, chance(seed, Purpose::Controller)).map_err(input)
+    }
+
+    pub(crate) fn agent(&self, args: &Args) -> Result<Autonomous<Agent, DiffDrive>, Failure> {
+        let agent =
+            Agent::new(&self.agent, args.strategy, chance(args.seed, Purpose::Agent)).map_err(input)?;
+        Ok(Autonomous::new(agent, self.controller(args.seed)?))
+    }
+
+    pub(crate) fn tour(&self, args: &Args) -> Result<Autonomous<Tour, DiffDrive>, Failure> {
+        let (name, text) = worlds::TOUR;
+        let tour = match &args.tour {
+            Some(path) => Tour::load(path),
+            None => Tour::parse(Path::new(name), text),
+        };
+        Ok(Autonomous::new(tour.map_err(input)?, self.controller(args.seed)?))
+    }
+
+    pub(crate) fn keyboard(&self) -> Result<Keyboard, Failure> {
+        let max =
+            Twist { linear_mps: self.drive.max_linear_mps, angular_radps: self.drive.max_angular_radps };
+        Keyboard::new(max).map_err(input)
+    }
+}
+
+/// The world and the mind, before the run.
+pub(crate) struct Parts {
+    pub(crate) world: PhysicsWorld,
+    pub(crate) mapper: Mapper,
+    pub(crate) settings: Settings,
+}
+
+impl Parts {
+    pub(crate) fn new(args: &Args) -> Result<Self, Failure> {
+        let spec = worlds::load(&args.world).map_err(input)?;
+        let settings = Settings::new(args, &spec);
+        let mapper = match &args.map {
+            None => Mapper::new(&settings.mapper, *spec.frame()),
+            Some(path) => return Err(input(anyhow::anyhow!("{}", path.display()))),
+        };
+        let mapper = mapper.context("cannot make the mapper").map_err(input)?;
+        Ok(Self { world: PhysicsWorld::new(&spec, args.seed), mapper, settings })
+    }
+}
