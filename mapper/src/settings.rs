@@ -55,6 +55,9 @@ pub struct SteadySettings {
     pub max_gap_m: f64,
     /// Scans with a hit until a free or unknown cell is blocked.
     pub hits_to_block: u8,
+    /// The same in the open, away from every standing surface. One hit is enough for a laser without
+    /// spurious returns, and sees things that pass.
+    pub hits_to_block_in_open: u8,
     /// Scans that see through an unknown cell until it is free.
     pub misses_to_discover: u8,
     /// The same for an unknown cell beside a surface, which can still turn out to be part of it.
@@ -79,6 +82,7 @@ impl Default for SteadySettings {
             join_m: 1.0,
             max_gap_m: 0.15,
             hits_to_block: 2,
+            hits_to_block_in_open: 1,
             misses_to_discover: 3,
             misses_to_discover_beside: 20,
             misses_to_free_fresh: 4,
@@ -126,6 +130,7 @@ impl SteadySettings {
         }
         let counts = [
             ("steady.hits_to_block", self.hits_to_block),
+            ("steady.hits_to_block_in_open", self.hits_to_block_in_open),
             ("steady.misses_to_discover", self.misses_to_discover),
             ("steady.misses_to_discover_beside", self.misses_to_discover_beside),
             ("steady.misses_to_free_fresh", self.misses_to_free_fresh),

@@ -25,6 +25,8 @@ use crate::projection::PointCloud;
 use geometry::{Cell, CellState, GridFrame};
 use nalgebra::{Point2, Vector2};
 
+/// A hit farther than this from every standing surface, m, is in the open: something came.
+const OPEN_M: f64 = 0.1;
 /// The mean of the points hit forgets at this pace, in hits.
 const SURFACE_MEMORY: u16 = 32;
 
@@ -103,31 +105,41 @@ impl Steady {
         if ledger.state(index) == CellState::Blocked {
             self.support(index, Some(point), ledger);
         } else {
-            // A free cell beside a surface stays so once that stands. An unknown cell can be part of
-            // the surface, but it takes more hits to say so.
-            let is_unknown = ledger.state(index) == CellState::Unknown;
-            let near =
-                self.surface_near(&end, if is_unknown { 0 } else { self.settings.hits_to_stand }, ledger);
-            if let Some(near) = near {
-                self.support(near, None, ledger);
-            }
-            if near.is_none() {
-                self.add_hit(index, point, u16::from(self.settings.hits_to_block), ledger);
-            } else if is_unknown {
-                self.add_hit(index, point, self.settings.hits_to_stand, ledger);
-            }
+            self.hit_open(index, &end, point, ledger);
         }
         if self.outline.joined[beam] {
             self.support_between(beam, point, cloud, ledger);
         }
     }
 
-    /// The surface that a hit can come from by range noise (rule 3): of the blocked cells with
-    /// `min_hits` within three standard deviations, the nearest.
-    fn surface_near(&self, end: &Point2<f64>, min_hits: u16, ledger: &Ledger) -> Option<usize> {
+    /// Counts a hit for a cell that is not blocked.
+    fn hit_open(&mut self, index: usize, end: &Point2<f64>, point: Point2<f64>, ledger: &mut Ledger) {
+        let SteadySettings { hits_to_stand, hits_to_block, hits_to_block_in_open, .. } = self.settings;
+        let noise_m = 3.0 * self.settings.range_noise_std_m;
+        let is_free = ledger.state(index) == CellState::Free;
+        let near = self.surface_near(end, noise_m, if is_free { hits_to_stand } else { 0 }, ledger);
+        if let Some(near) = near {
+            self.support(near, None, ledger);
+        }
+        let hits_to_block = match near {
+            // A free cell beside a standing surface stays so. An unknown one can be part of the
+            // surface, but it takes more hits to say so.
+            Some(_) if is_free => return,
+            Some(_) => hits_to_stand,
+            None if is_free && self.surface_near(end, OPEN_M, hits_to_stand, ledger).is_none() => {
+                u16::from(hits_to_block_in_open)
+            }
+            None => u16::from(hits_to_block),
+        };
+        self.add_hit(index, point, hits_to_block, ledger);
+    }
+
+    /// Of the blocked cells with `min_hits` that lie within `reach_m` along both axes, the nearest:
+    /// within three standard deviations of the noise, the surface that the hit comes from (rule 3).
+    fn surface_near(&self, end: &Point2<f64>, reach_m: f64, min_hits: u16, ledger: &Ledger) -> Option<usize> {
         let frame = ledger.frame();
-        let reach_m = Vector2::repeat(3.0 * self.settings.range_noise_std_m);
-        let (low, high) = (frame.cell_at(&(end - reach_m)), frame.cell_at(&(end + reach_m)));
+        let reach = Vector2::repeat(reach_m);
+        let (low, high) = (frame.cell_at(&(end - reach)), frame.cell_at(&(end + reach)));
         let cells = (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| Cell::new(x, y)));
         cells
             .filter_map(|cell| {

@@ -211,7 +211,13 @@ fn beams_reach_beyond_the_fan_on_their_own() {
     let (frame, cloud) = (Case::frame(), case.cloud());
     let mut picture = vec![b'.'; frame.len()];
     let mark = |picture: &mut Vec<u8>, cells: std::ops::Range<usize>, with| picture[cells].fill(with);
-    Footprint::default().fill(&cloud, &frame, 0.2, |_| true, |start, end| mark(&mut picture, start..end, b'o'));
+    Footprint::default().fill(
+        &cloud,
+        &frame,
+        0.2,
+        |_| true,
+        |start, end| mark(&mut picture, start..end, b'o'),
+    );
     beyond_fan(&cloud, &frame, 0.2, |index| {
         if picture[index] == b'.' {
             picture[index] = b'+';

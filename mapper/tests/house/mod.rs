@@ -168,8 +168,7 @@ impl House {
     ) -> LaserReading {
         let increment = TAU / self.beams as f64;
         let normal = Normal::new(0.0, self.noise_std_m).unwrap();
-        let standing: Vec<&Thing> =
-            self.things.iter().filter(|thing| thing.stands(time_s)).collect();
+        let standing: Vec<&Thing> = self.things.iter().filter(|thing| thing.stands(time_s)).collect();
         let origin = Point2::from(pose.translation.vector);
         let ranges_m = (0..self.beams)
             .map(|beam| {

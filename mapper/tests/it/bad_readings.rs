@@ -145,28 +145,40 @@ fn odd_scans_are_taken() {
     let cases: [(&str, Box<dyn Fn(&mut LaserReading)>); 12] = [
         ("no beams", Box::new(|r| r.scan.ranges_m.clear())),
         ("one beam", Box::new(|r| r.scan.ranges_m.truncate(1))),
-        ("one beam, no increment", Box::new(|r| {
-            r.scan.ranges_m.truncate(1);
-            r.scan.angle_increment_rad = 0.0;
-        })),
+        (
+            "one beam, no increment",
+            Box::new(|r| {
+                r.scan.ranges_m.truncate(1);
+                r.scan.angle_increment_rad = 0.0;
+            }),
+        ),
         ("two beams", Box::new(|r| r.scan.ranges_m.truncate(2))),
         ("beams that all but coincide", Box::new(|r| r.scan.angle_increment_rad = f64::MIN_POSITIVE)),
         ("beams very near to each other", Box::new(|r| r.scan.angle_increment_rad = 1e-9)),
         ("clockwise", Box::new(|r| r.scan.angle_increment_rad *= -1.0)),
         ("many turns before the first beam", Box::new(|r| r.scan.angle_min_rad = 1e12)),
-        ("a range of 0", Box::new(|r| {
-            r.scan.range_min_m = 0.0;
-            r.scan.ranges_m.fill(0.0);
-        })),
-        ("endless range", Box::new(|r| {
-            r.scan.range_max_m = f64::MAX;
-            r.scan.ranges_m.fill(f32::INFINITY);
-        })),
+        (
+            "a range of 0",
+            Box::new(|r| {
+                r.scan.range_min_m = 0.0;
+                r.scan.ranges_m.fill(0.0);
+            }),
+        ),
+        (
+            "endless range",
+            Box::new(|r| {
+                r.scan.range_max_m = f64::MAX;
+                r.scan.ranges_m.fill(f32::INFINITY);
+            }),
+        ),
         ("far away", Box::new(move |r| r.pose = geometry::pose(far, -far, 1.0))),
-        ("far away, with a mount that leads back", Box::new(move |r| {
-            r.pose = geometry::pose(far, 0.0, 0.0);
-            r.mount = geometry::pose(2.0 - far, 2.0, 0.0);
-        })),
+        (
+            "far away, with a mount that leads back",
+            Box::new(move |r| {
+                r.pose = geometry::pose(far, 0.0, 0.0);
+                r.mount = geometry::pose(2.0 - far, 2.0, 0.0);
+            }),
+        ),
     ];
     for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
         for (name, edit) in &cases {
@@ -188,7 +200,8 @@ fn a_laser_outside_of_the_grid_sees_into_it() {
     let whole = house.frame;
     let part = GridFrame::new(Point2::new(4.0, 1.0), 0.05, 40, 40).unwrap(); // inside of the lower left room
     let settings = MapperSettings::default();
-    let (mut outside, mut inside) = (Mapper::new(&settings, part).unwrap(), Mapper::new(&settings, whole).unwrap());
+    let (mut outside, mut inside) =
+        (Mapper::new(&settings, part).unwrap(), Mapper::new(&settings, whole).unwrap());
     for scan in 0..100 {
         let time_s = f64::from(scan) * 0.1;
         let reading = house.reading(time_s, geometry::pose(1.5, 2.0 + 0.1 * time_s, 0.0), &[]);

@@ -26,7 +26,8 @@ struct Glance {
 
 fn glances() -> impl Strategy<Value = Vec<Glance>> {
     let wait = prop_oneof![6 => Just(1.0), 2 => 0.01..3.0f64, 1 => Just(0.0), 1 => 10.0..500.0f64];
-    let changes = prop_oneof![2 => Just(0), 3 => any::<u32>().prop_flat_map(|a| any::<u32>().prop_map(move |b| a & b))];
+    let changes =
+        prop_oneof![2 => Just(0), 3 => any::<u32>().prop_flat_map(|a| any::<u32>().prop_map(move |b| a & b))];
     // Windows that reach out of the map on every side.
     let glance = (wait, (-2..WIDTH, -2..HEIGHT), (0..8, 0..6), changes)
         .prop_map(|(wait, low, size, changes)| Glance { wait, low, size, changes });

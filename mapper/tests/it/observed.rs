@@ -58,14 +58,19 @@ impl Observed {
 
 /// The changes of known cells in the last update.
 pub(crate) fn changes(mapper: &Mapper) -> impl Iterator<Item = Cell> {
-    mapper.transitions().iter().filter(|transition| transition.event().is_some()).map(|transition| transition.cell)
+    mapper
+        .transitions()
+        .iter()
+        .filter(|transition| transition.event().is_some())
+        .map(|transition| transition.cell)
 }
 
 /// Every figure of every cell makes sense: no NaN, no infinite rate, no negative time.
 pub(crate) fn assert_sound(mapper: &Mapper) {
     for index in 0..mapper.frame().len() {
         let seen = mapper.statistics(index);
-        let times = [seen.first_seen, seen.last_seen, seen.unobserved, seen.watched_free, seen.watched_blocked];
+        let times =
+            [seen.first_seen, seen.last_seen, seen.unobserved, seen.watched_free, seen.watched_blocked];
         assert!(times.iter().all(|time| time.is_finite() && *time >= 0.0), "{seen:?}");
         assert!(mapper.interval(index) > 0.0, "interval {} of {seen:?}", mapper.interval(index));
         let rate = mapper.rate(index);

@@ -42,11 +42,17 @@ fn changes_are_found_against_it_and_nothing_else() {
             let place = house.frame.center(transition.cell);
             match transition.event() {
                 Some(Event::Free) => {
-                    assert!((1.5..1.9).contains(&place.x) && (3.0..3.4).contains(&place.y), "{place} is not free");
+                    assert!(
+                        (1.5..1.9).contains(&place.x) && (3.0..3.4).contains(&place.y),
+                        "{place} is not free"
+                    );
                     went += 1;
                 }
                 Some(Event::Block) => {
-                    assert!((4.0..4.4).contains(&place.x) && (3.0..3.4).contains(&place.y), "{place} is not blocked");
+                    assert!(
+                        (4.0..4.4).contains(&place.x) && (3.0..3.4).contains(&place.y),
+                        "{place} is not blocked"
+                    );
                     came += 1;
                 }
                 None => {}

@@ -59,7 +59,10 @@ fn a_box_that_goes_is_cleared_soon() {
                 }
             });
             assert!(cells.len() >= 10, "the box was on the map: {} cells", cells.len());
-            assert!(half_s <= 2.0 && most_s <= 3.0, "box at {x}, {y}: half after {half_s} s, 90 % after {most_s} s");
+            assert!(
+                half_s <= 2.0 && most_s <= 3.0,
+                "box at {x}, {y}: half after {half_s} s, 90 % after {most_s} s"
+            );
         }
     }
 }
@@ -101,9 +104,8 @@ fn cells_are_free_again_behind_a_disc_that_passes_along_a_wall() {
             let mut blocked = Vec::new();
             for index in 0..house.frame.len() {
                 let middle = house.frame.center(house.frame.cell(index));
-                let path = (0..(time_s - 22.0) as usize * 10).map(|tick| {
-                    house.turned(Point2::new(0.5 + 0.03 * tick as f64, 0.1 + 0.05 + radius_m))
-                });
+                let path = (0..(time_s - 22.0) as usize * 10)
+                    .map(|tick| house.turned(Point2::new(0.5 + 0.03 * tick as f64, 0.1 + 0.05 + radius_m)));
                 let was_covered = path.into_iter().any(|at| (at - middle).norm() < radius_m);
                 if was_covered && house.truth(index, time_s) == CellState::Free {
                     swept += 1;
@@ -114,7 +116,10 @@ fn cells_are_free_again_behind_a_disc_that_passes_along_a_wall() {
             }
             assert!(blocked.len() <= 2, "at {time_s} s still blocked: {blocked:?}");
         }
-        assert!(swept > 500 && noticed > 200, "the disc was seen: {noticed} changes, {swept} cells behind it");
+        assert!(
+            swept > 500 && noticed > 200,
+            "the disc was seen: {noticed} changes, {swept} cells behind it"
+        );
     }
 }
 
@@ -128,7 +133,8 @@ fn a_single_scan_of_noise_changes_nothing() {
         let time_s = f64::from(scan) * PERIOD_S;
         let pose = circle(&house, time_s);
         let is_wild = scan >= 300 && scan % 30 == 0;
-        let reading = if is_wild { wild.reading(time_s, pose, &[]) } else { house.reading(time_s, pose, &[]) };
+        let reading =
+            if is_wild { wild.reading(time_s, pose, &[]) } else { house.reading(time_s, pose, &[]) };
         mapper.update(&reading).unwrap();
         let changed: Vec<_> = changes(&mapper).collect();
         assert!(changed.is_empty(), "at {time_s} s: {changed:?}");

@@ -49,7 +49,9 @@ fn thick_walls_on_cell_borders_never_change() {
 
 #[test]
 fn turned_walls_and_noise_make_hardly_any_change() {
-    for (thickness_m, turn_deg, beams) in [(0.1, 10.0, 360), (0.1, 37.0, 360), (0.05, 10.0, 360), (0.1, 10.0, 720)] {
+    for (thickness_m, turn_deg, beams) in
+        [(0.1, 10.0, 360), (0.1, 37.0, 360), (0.05, 10.0, 360), (0.1, 10.0, 720)]
+    {
         let mut house = House::new(thickness_m, turn_deg, 0.01, beams, 1);
         let readings = tour(&mut house);
         let (steady, naive) = false_changes(&house, &readings);
@@ -90,6 +92,7 @@ fn the_same_readings_make_the_same_mapper() {
     }
     let mut other = House::new(0.1, 10.0, 0.01, 360, 5);
     let others = &tour(&mut other)[..300];
-    let [first, second] = [readings, others].map(|readings| Observed::of(&learn(&house, readings, OccupancyModel::Steady).0));
+    let [first, second] =
+        [readings, others].map(|readings| Observed::of(&learn(&house, readings, OccupancyModel::Steady).0));
     assert!(first != second, "other noise, other map, or this tests nothing");
 }
