@@ -9,13 +9,17 @@
 //! the agent and the controller never learn which world they run in, and none of them knows that
 //! a recording or a screen exists. Whoever watches does it from outside.
 
+pub mod cell_statistics;
 #[cfg(test)]
 mod fake;
 pub mod layer;
 pub mod metrics;
 pub mod observer;
+pub mod output;
+pub mod pictures;
 pub mod pilot;
 pub mod recording;
+pub mod ros_map;
 pub mod summary;
 pub mod view;
 pub mod worlds;

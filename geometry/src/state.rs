@@ -21,19 +21,20 @@ pub enum Event {
     Free,
 }
 
-/// A cell that took another state in an update: a first sighting or a change.
+/// A cell that took another state in an update: a first sighting, a change, or a first sighting that
+/// turned out wrong (the cell becomes unknown again, before it takes its right state).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Transition {
     /// The cell.
     pub cell: Cell,
     /// What the map said before.
     pub before: CellState,
-    /// What the map says now; never [`CellState::Unknown`].
+    /// What the map says now.
     pub after: CellState,
 }
 
 impl Transition {
-    /// The change of a known cell; `None` for a first sighting.
+    /// The change of a known cell; `None` for a first sighting, right or wrong.
     pub fn event(&self) -> Option<Event> {
         match (self.before, self.after) {
             (CellState::Free, CellState::Blocked) => Some(Event::Block),

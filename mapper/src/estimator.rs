@@ -43,8 +43,9 @@ impl Estimator {
             ),
             Self::TwoState => two_state(seen),
         };
-        // Events of a cell that was never watched tell of a change, but not how often.
-        if interval > 0.0 { interval } else { f64::INFINITY }
+        // Events of a cell that was never watched, or not for any time that has an inverse, tell of a
+        // change, but not how often.
+        if interval >= f64::MIN_POSITIVE { interval } else { f64::INFINITY }
     }
 
     /// The number of cycles per unit of time, 1/T; 0 for a cell without an event.

@@ -7,10 +7,11 @@ use geometry::{Cell, CellState, Grid, GridFrame, Transition};
 use std::collections::VecDeque;
 
 /// A reading by its number. Number 0 stands for "never", and its time, 0, is when a cell that was
-/// never seen counts as last seen. Number 1 is left out, so that no first reading follows "never".
+/// never seen counts as last seen. Number 1 stands for the prior map, also at time 0; no cell counts
+/// as last seen in it, so that no first reading follows without a gap.
 pub(crate) type ReadingIndex = u32;
 const NEVER: ReadingIndex = 0;
-const BEFORE_FIRST: ReadingIndex = 1;
+const PRIOR: ReadingIndex = 1;
 /// Set in the number of a cell's last sighting while the cell needs a closer look at every
 /// sighting; see [`Ledger::see_run`].
 const UNSETTLED: ReadingIndex = 1 << 31;
@@ -46,6 +47,8 @@ struct Changed {
 #[derive(Clone, Debug)]
 pub(crate) struct Ledger {
     estimator: Estimator,
+    /// A time without a sighting up to this does not interrupt the view of a cell.
+    max_gap: f64,
     states: Grid<CellState>,
     times: Vec<f64>,
     /// The last sighting of every cell, with the mark [`UNSETTLED`].
@@ -69,10 +72,11 @@ const fn slot(state: CellState) -> usize {
 }
 
 impl Ledger {
-    pub(crate) fn new(prior: Grid<CellState>, estimator: Estimator) -> Self {
+    pub(crate) fn new(prior: Grid<CellState>, estimator: Estimator, max_gap: f64) -> Self {
         let cells = prior.frame().len();
         let mut ledger = Self {
             estimator,
+            max_gap,
             states: prior,
             times: vec![0.0, 0.0],
             sightings: vec![NEVER | UNSETTLED; cells],
@@ -84,6 +88,9 @@ impl Ledger {
             oldest: NEVER,
         };
         for index in 0..cells {
+            if ledger.state(index) != CellState::Unknown {
+                ledger.records[index] = Record { first: PRIOR, since: PRIOR, ..Record::default() };
+            }
             ledger.judge_candidate(index);
         }
         ledger
@@ -108,7 +115,7 @@ impl Ledger {
     }
 
     pub(crate) fn readings(&self) -> usize {
-        (self.now_index() - BEFORE_FIRST) as usize
+        (self.now_index() - PRIOR) as usize
     }
 
     pub(crate) fn frame(&self) -> &GridFrame {
@@ -133,10 +140,16 @@ impl Ledger {
         self.candidates[index]
     }
 
-    /// Whether the cell was seen in the open reading or the one before it.
+    /// Whether the cell was in view when the open reading came: it was seen in the one before, or not
+    /// longer ago than the gap that does not count as one.
     #[inline]
     pub(crate) fn is_in_view(&self, index: usize) -> bool {
-        self.last(index) + 1 >= self.now_index()
+        let (now, last) = (self.now_index(), self.last(index));
+        if last == now {
+            return self.records[index].since < now; // its watch did not begin just now
+        }
+        last + 1 == now
+            || self.max_gap > 0.0 && last > PRIOR && self.now() - self.times[last as usize] <= self.max_gap
     }
 
     #[inline]
@@ -152,7 +165,7 @@ impl Ledger {
         if last == now {
             return;
         }
-        if last + 1 != now {
+        if !self.is_in_view(index) {
             self.book(index);
             self.records[index].since = now;
         }
@@ -239,11 +252,11 @@ impl Ledger {
         }
     }
 
-    /// Whether the cell is still in the state of its first sighting, and was watched in it for less
-    /// than `confirm` (in the unit of the readings' times).
+    /// Whether the cell is still in the state of its first sighting, which was not that of a prior map,
+    /// and was watched in it for less than `confirm` (in the unit of the readings' times).
     pub(crate) fn is_unconfirmed(&self, index: usize, confirm: f64) -> bool {
         let seen = self.statistics(index);
-        self.ever_seen(index) && seen.events() == 0 && seen.observed() < confirm
+        self.records[index].first > PRIOR && seen.events() == 0 && seen.observed() < confirm
     }
 
     /// The first sighting of the cell was wrong: nothing changed, it was `after` all along.
@@ -251,6 +264,8 @@ impl Ledger {
         let now = self.now_index();
         self.see(index);
         self.records[index] = Record { first: now, since: now, ..Record::default() };
+        let (cell, before) = (self.frame().cell(index), self.state(index));
+        self.transitions.push(Transition { cell, before, after: CellState::Unknown });
         self.states.cells_mut()[index] = CellState::Unknown;
         self.turn(index, after, now, false);
     }
@@ -338,7 +353,7 @@ impl Ledger {
     }
 
     pub(crate) fn ever_seen(&self, index: usize) -> bool {
-        self.records[index].first != NEVER
+        self.last(index) != NEVER
     }
 
     pub(crate) fn statistics(&self, index: usize) -> CellStatistics {

@@ -23,8 +23,8 @@ pub use statistics::CellStatistics;
 use geometry::{CellState, Grid, GridFrame, LaserReading, Reading, ScanError, Transition};
 use ledger::Ledger;
 use naive::Naive;
-use nalgebra::Point2;
-use projection::PointCloud;
+use nalgebra::{Isometry2, Point2};
+use projection::{FARTHEST_M, PointCloud};
 use steady::Steady;
 
 /// Why a reading was refused. The maps stay as they were.
@@ -41,12 +41,20 @@ pub enum ReadingError {
         /// The time of the last reading that was taken.
         last: f64,
     },
-    /// The pose is not a number.
-    #[error("the pose of the reading at {time} is not a number")]
+    /// A pose is not a number, or farther away than a million metres.
+    #[error("the pose of the reading at {time} is not a place on the map's plane")]
     Pose {
         /// The refused reading's time.
         time: f64,
     },
+}
+
+/// Refuses what cannot be a pose: a figure that is not finite, a rotation that is none, a place beyond
+/// every map.
+fn check_pose(pose: &Isometry2<f64>, time: f64) -> Result<(), ReadingError> {
+    let is_near = [pose.translation.x, pose.translation.y].iter().all(|at| at.abs() <= FARTHEST_M);
+    let is_rotation = (pose.rotation.norm_sqr() - 1.0).abs() < 1e-3;
+    if is_near && is_rotation { Ok(()) } else { Err(ReadingError::Pose { time }) }
 }
 
 /// A reading that a mapper can learn from.
@@ -99,8 +107,8 @@ impl Mapper {
     ///
     /// When a setting contradicts itself or another.
     pub fn with_prior(settings: &MapperSettings, prior: Grid<CellState>) -> Result<Self, SettingsError> {
-        settings.steady.check()?;
-        let mut ledger = Ledger::new(prior, settings.estimator);
+        settings.check()?;
+        let mut ledger = Ledger::new(prior, settings.estimator, settings.max_gap);
         let occupancy = match settings.occupancy {
             OccupancyModel::Steady => {
                 Occupancy::Steady(Box::new(Steady::new(settings.steady.clone(), &mut ledger)))
@@ -120,11 +128,7 @@ impl Mapper {
         if !time.is_finite() || time < last {
             return Err(ReadingError::Time { time, last });
         }
-        let pose = reading.pose();
-        let figures = [pose.translation.x, pose.translation.y, pose.rotation.re, pose.rotation.im];
-        if !figures.iter().all(|figure| figure.is_finite()) {
-            return Err(ReadingError::Pose { time });
-        }
+        check_pose(reading.pose(), time)?;
         reading.enter(self)
     }
 
@@ -224,6 +228,7 @@ impl Mapper {
 
 impl Evidence for LaserReading {
     fn enter(&self, mapper: &mut Mapper) -> Result<(), ReadingError> {
+        check_pose(&self.mount, self.time_s)?;
         self.scan.check()?;
         let Mapper { ledger, occupancy, cloud, points } = mapper;
         ledger.open(self.time_s);

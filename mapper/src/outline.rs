@@ -2,6 +2,7 @@
 
 use crate::projection::PointCloud;
 use nalgebra::{Point2, Vector2};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The direction of a surface is taken over neighbours about this far away, m, so that range noise
 /// does not turn it.
@@ -41,9 +42,10 @@ impl Outline {
         }
     }
 
-    /// The point that a hit counts for: `depth_m` behind the surface along its normal, or, where a
-    /// neighbouring beam can see that point (the normal led out of a corner), half as deep along
-    /// the beam.
+    /// The point that a hit counts for: `depth_m` behind the surface along its normal; at the edge of
+    /// what can be seen of the surface, as far inward along the surface too, since the body may end
+    /// right behind the edge. Where a neighbouring beam can see that point (the normal led out of a
+    /// corner), half as deep along the beam.
     pub(crate) fn behind(
         &self,
         beam: usize,
@@ -51,7 +53,12 @@ impl Outline {
         depth_m: f64,
         cloud: &PointCloud,
     ) -> Point2<f64> {
-        let point = end - self.normal(beam, end, cloud) * depth_m;
+        let inward = self.inward(beam, end, cloud);
+        let direction = inward.map_or_else(
+            || -self.normal(beam, end, cloud),
+            |inward| (inward - self.normal(beam, end, cloud)) * FRAC_1_SQRT_2,
+        );
+        let point = end + direction * depth_m;
         let seen = point - cloud.origin;
         let distance_m = seen.norm();
         // From the beam to the point's direction, in beams; the angle is small.
@@ -61,11 +68,27 @@ impl Outline {
             let at = (beam as i64 + step).rem_euclid(beams) as usize;
             cloud.returns[at].clear_m() > distance_m + depth_m / 2.0
         };
-        let step = turn as i64 - i64::from(turn < 0.0);
-        if turn.abs() < beams as f64 && (sees(step) || sees(step + 1)) {
-            end + cloud.directions[beam] * (depth_m / 2.0)
+        let is_seen = turn.abs() < beams as f64 && {
+            let step = turn as i64 - i64::from(turn < 0.0);
+            sees(step) || sees(step + 1)
+        };
+        if is_seen { end + cloud.directions[beam] * (depth_m / 2.0) } else { point }
+    }
+
+    /// At a hit beyond which a neighbouring beam passes: the direction along the surface, away from
+    /// that edge.
+    fn inward(&self, beam: usize, end: &Point2<f64>, cloud: &PointCloud) -> Option<Vector2<f64>> {
+        let (first, last) = self.surfaces[beam];
+        let passes = |neighbour: usize| cloud.returns[neighbour].clear_m() > cloud.returns[beam].clear_m();
+        let toward = |neighbour: usize| (self.ends[neighbour]? - end).try_normalize(1e-6);
+        if first == last {
+            None
+        } else if beam == first && beam > 0 && passes(beam - 1) {
+            toward(beam + 1)
+        } else if beam == last && beam + 1 < cloud.len() && passes(beam + 1) {
+            toward(beam - 1)
         } else {
-            point
+            None
         }
     }
 
@@ -73,7 +96,7 @@ impl Outline {
     /// that of the straighter side: a normal across the corner would point out of the body.
     fn normal(&self, beam: usize, end: &Point2<f64>, cloud: &PointCloud) -> Vector2<f64> {
         let range_m = (end - cloud.origin).norm();
-        let step = (CHORD_M / (range_m * cloud.spacing_rad)) as usize + 1;
+        let step = 1 + ((CHORD_M / (range_m * cloud.spacing_rad)) as usize).min(cloud.len());
         let (first, last) = self.surfaces[beam];
         let (before, after) = (beam.saturating_sub(step).max(first), (beam + step).min(last));
         let chord = |to: usize| self.ends[to].map_or_else(Vector2::zeros, |to| to - end);

@@ -4,6 +4,9 @@ use geometry::{LaserReading, Scan};
 use nalgebra::{Point2, UnitComplex, Vector2};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
+/// No laser sees farther, m, and no map is larger: what lies beyond would only lose its digits.
+pub(crate) const FARTHEST_M: f64 = 1e6;
+
 /// What one beam tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Return {
@@ -27,8 +30,8 @@ impl Return {
     fn of(range_m: f32, scan: &Scan) -> Self {
         let range_m = f64::from(range_m);
         if range_m == f64::INFINITY {
-            Self::Clear(scan.range_max_m)
-        } else if range_m >= scan.range_min_m && range_m <= scan.range_max_m {
+            Self::Clear(scan.range_max_m.min(FARTHEST_M))
+        } else if range_m >= scan.range_min_m && range_m <= scan.range_max_m.min(FARTHEST_M) {
             Self::Hit(range_m)
         } else {
             Self::Nothing // also NaN and −∞
@@ -122,9 +125,9 @@ impl PointCloud {
         let turn_rad = turn_rad - TAU * (turn_rad / TAU).floor();
         // Just before the first beam means at it: the rough angle can fall short.
         let turn_rad = if turn_rad > TAU - ROUGH_RAD { 0.0 } else { turn_rad };
-        let guess = (turn_rad / self.spacing_rad) as usize;
+        let guess = ((turn_rad / self.spacing_rad) as usize).min(beams);
         // The exact cross products correct the guess.
-        let off = 1 + (ROUGH_RAD / self.spacing_rad) as usize;
+        let off = 1 + ((ROUGH_RAD / self.spacing_rad) as usize).min(beams - 1);
         let lies_after = |beam: usize| sweep * self.in_laser[beam].perp(&toward) >= 0.0;
         (guess + beams.saturating_sub(off)..=guess + beams + off).find_map(|candidate| {
             let beam = if self.is_full_turn { candidate % beams } else { candidate.checked_sub(beams)? };

@@ -34,20 +34,38 @@ pub struct MapperSettings {
     pub estimator: Estimator,
     /// How evidence becomes a map.
     pub occupancy: OccupancyModel,
+    /// A time without a sighting up to this does not interrupt the view of a cell, s (steps in a
+    /// grid world). What moves hides the cells that it is about to enter: where a sensor has to look
+    /// past things, a gap as long as a thing takes to pass is part of watching. By default a cell is
+    /// in view only between consecutive readings, as in the paper.
+    pub max_gap: f64,
     /// Settings of the steady occupancy model.
     pub steady: SteadySettings,
+}
+
+impl MapperSettings {
+    pub(crate) fn check(&self) -> Result<(), SettingsError> {
+        if !(self.max_gap >= 0.0 && self.max_gap.is_finite()) {
+            let (key, expected) = ("max_gap", "0 or more");
+            return Err(SettingsError { key, expected, found: self.max_gap.to_string() });
+        }
+        self.steady.check()
+    }
 }
 
 /// Settings of the steady occupancy model.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SteadySettings {
-    /// The standard deviation of the laser's range noise, m. Surfaces are told apart at three of
+    /// The standard deviation of the laser's range noise, m. Surfaces are told apart at four of
     /// these.
     pub range_noise_std_m: f64,
     /// A hit counts for the cell this far behind the surface, along its normal, m: a surface on
     /// the border of two cells belongs to the solid one.
     pub surface_depth_m: f64,
+    /// Things that come are at least this thick, m: so far behind a hit on them cells are blocked. 0
+    /// marks surfaces only.
+    pub body_m: f64,
     /// Hits nearer than this to each other, m, are one surface: what lies on it is not seen through.
     pub join_m: f64,
     /// Where neighbouring beams are farther apart than this, m, the space between them is not
@@ -79,6 +97,7 @@ impl Default for SteadySettings {
         Self {
             range_noise_std_m: 0.01,
             surface_depth_m: 0.02,
+            body_m: 0.2,
             join_m: 1.0,
             max_gap_m: 0.15,
             hits_to_block: 2,
@@ -117,6 +136,7 @@ impl SteadySettings {
         let lengths = [
             ("steady.range_noise_std_m", self.range_noise_std_m),
             ("steady.surface_depth_m", self.surface_depth_m),
+            ("steady.body_m", self.body_m),
             ("steady.join_m", self.join_m),
             ("steady.max_gap_m", self.max_gap_m),
         ];

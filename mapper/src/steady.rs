@@ -2,7 +2,7 @@
 //!
 //! What makes a static wall look as if it changed is the grazing beam: it crosses the cells of a
 //! surface that steeper beams hit, many scans in a row. Counting hits and misses cannot tell that
-//! from a thing that went. Three rules can, because they remember *where in the cell* the surface
+//! from a thing that went. Four rules can, because they remember *where in the cell* the surface
 //! is:
 //!
 //! 1. **A hit belongs behind the surface.** Surfaces lie on the borders of cells; the hit counts
@@ -11,8 +11,11 @@
 //!    that were hit. A scan contradicts it only when *both* beams that enclose this point pass
 //!    beyond it. The point lies inside of the body, so next to a standing body one of the two
 //!    always ends before it, however flat they come in.
-//! 3. **Noise belongs to the surface it comes from.** A hit within three standard deviations of a
+//! 3. **Noise belongs to the surface it comes from.** A hit within four standard deviations of a
 //!    standing surface is a hit on that surface, not something new beside it.
+//!
+//! 4. **A thing that comes has a body.** What it hides at once is blocked too, a little way behind
+//!    its surface.
 //!
 //! A hit beats a miss: a cell that was hit takes no miss from the same scan. And a first sighting
 //! from afar can be wrong: what is overturned before it was confirmed is corrected, not a change.
@@ -25,6 +28,9 @@ use crate::projection::PointCloud;
 use geometry::{Cell, CellState, GridFrame};
 use nalgebra::{Point2, Vector2};
 
+/// Range noise stays within so many standard deviations. At three, one hit in 700 would not, and a
+/// wall takes a hundred hits per scan.
+const NOISE_STDS: f64 = 4.0;
 /// A hit farther than this from every standing surface, m, is in the open: something came.
 const OPEN_M: f64 = 0.1;
 /// The mean of the points hit forgets at this pace, in hits.
@@ -44,6 +50,8 @@ struct Surface {
     hit_at: ReadingIndex,
     /// The last reading in which a surface between two hits went through the cell.
     surface_at: ReadingIndex,
+    /// Whether the cell was free before: the surface is that of a thing that came.
+    came: bool,
     /// When the evidence against the present state began, and whether the cell was in view then.
     doubted_since: ReadingIndex,
     doubted_in_view: bool,
@@ -101,11 +109,19 @@ impl Steady {
         let frame = *ledger.frame();
         let point = self.outline.behind(beam, &end, self.settings.surface_depth_m, cloud);
         let place = |point: Point2<f64>| frame.index(frame.cell_at(&point));
+        // A surface in a cell is a sight of it, even where the hit counts for the cell behind: a cell
+        // that something moves into stays in view.
+        if let Some(index) = place(end).filter(|&index| ledger.state(index) != CellState::Unknown) {
+            ledger.see(index);
+        }
         let Some(index) = place(point) else { return };
         if ledger.state(index) == CellState::Blocked {
             self.support(index, Some(point), ledger);
         } else {
             self.hit_open(index, &end, point, ledger);
+        }
+        if self.surfaces[index].came && self.surfaces[index].hits < self.settings.hits_to_stand {
+            self.fill_body(&end, &point, ledger);
         }
         if self.outline.joined[beam] {
             self.support_between(beam, point, cloud, ledger);
@@ -115,7 +131,7 @@ impl Steady {
     /// Counts a hit for a cell that is not blocked.
     fn hit_open(&mut self, index: usize, end: &Point2<f64>, point: Point2<f64>, ledger: &mut Ledger) {
         let SteadySettings { hits_to_stand, hits_to_block, hits_to_block_in_open, .. } = self.settings;
-        let noise_m = 3.0 * self.settings.range_noise_std_m;
+        let noise_m = NOISE_STDS * self.settings.range_noise_std_m;
         let is_free = ledger.state(index) == CellState::Free;
         let near = self.surface_near(end, noise_m, if is_free { hits_to_stand } else { 0 }, ledger);
         if let Some(near) = near {
@@ -135,7 +151,7 @@ impl Steady {
     }
 
     /// Of the blocked cells with `min_hits` that lie within `reach_m` along both axes, the nearest:
-    /// within three standard deviations of the noise, the surface that the hit comes from (rule 3).
+    /// within the noise, the surface that the hit comes from (rule 3).
     fn surface_near(&self, end: &Point2<f64>, reach_m: f64, min_hits: u16, ledger: &Ledger) -> Option<usize> {
         let frame = ledger.frame();
         let reach = Vector2::repeat(reach_m);
@@ -150,6 +166,28 @@ impl Steady {
             })
             .min_by(|(a, _), (b, _)| a.total_cmp(b))
             .map(|(_, index)| index)
+    }
+
+    /// What came into the open has a body (rule 4): the free cells behind a hit on it are blocked, as
+    /// deep as things are thick. They are hidden now, and nothing else would tell.
+    fn fill_body(&mut self, end: &Point2<f64>, point: &Point2<f64>, ledger: &mut Ledger) {
+        let frame = *ledger.frame();
+        let inward = (point - end).normalize();
+        let layers = (self.settings.body_m / frame.resolution_m() + 1e-6) as usize;
+        for layer in 1..=layers {
+            let inside = point + inward * (layer as f64 * frame.resolution_m());
+            let Some(index) = frame.index(frame.cell_at(&inside)) else { return };
+            if ledger.state(index) == CellState::Free && !ledger.was_seen_now(index) {
+                let in_view = ledger.is_in_view(index);
+                self.surfaces[index] = Surface {
+                    hit_at: ledger.now_index(),
+                    evidence: self.settings.misses_to_free_fresh as i8,
+                    ..Surface::default()
+                };
+                self.remember(index, inside, ledger);
+                ledger.turn(index, CellState::Blocked, ledger.now_index(), in_view);
+            }
+        }
     }
 
     /// A blocked cell was hit, or lies on a surface that was.
@@ -182,7 +220,7 @@ impl Steady {
         cells_along(&frame, &from, &to, |index| match ledger.state(index) {
             CellState::Blocked => self.support(index, None, ledger),
             CellState::Unknown => self.surfaces[index].surface_at = ledger.now_index(),
-            CellState::Free => {}
+            CellState::Free => ledger.see(index),
         });
     }
 
@@ -214,6 +252,7 @@ impl Steady {
             if ledger.is_unconfirmed(index, self.settings.confirm_s) {
                 ledger.correct(index, CellState::Blocked);
             } else {
+                surface.came = ledger.state(index) == CellState::Free;
                 ledger.turn(index, CellState::Blocked, surface.doubted_since, surface.doubted_in_view);
             }
         }
@@ -310,7 +349,8 @@ impl Steady {
         let [x, y] = self.surfaces[index].point_m;
         let surface = frame.origin() + Vector2::new(f64::from(x), f64::from(y));
         let distance_m = (surface - cloud.origin).norm();
-        let passes = |beam: usize| cloud.returns[beam].clear_m() > distance_m + self.settings.surface_depth_m;
+        let margin_m = self.settings.surface_depth_m.max(2.0 * self.settings.range_noise_std_m);
+        let passes = |beam: usize| cloud.returns[beam].clear_m() > distance_m + margin_m;
         let Some((left, right)) = cloud.enclosing(&surface) else { return false };
         if cloud.spacing_rad * distance_m <= self.settings.max_gap_m {
             return passes(left) && passes(right);

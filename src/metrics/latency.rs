@@ -21,12 +21,18 @@ pub struct Delays {
     pub p95_s: Option<f64>,
 }
 
-/// A true change that the map does not have yet.
+/// A true change of a cell, from when the old state ends.
 #[derive(Clone, Copy, Debug)]
 struct Open {
     event: Event,
+    /// Whether the new state is complete: a cell that is only ever covered in part counts for nothing.
+    is_complete: bool,
+    /// Whether the new state is ending again: what is shown now shows the end.
+    is_ending: bool,
     /// When a beam first showed it, s.
     shown_s: Option<f64>,
+    /// When the map had it, s.
+    noticed_s: Option<f64>,
 }
 
 /// Watches the truth and the map side by side.
@@ -47,37 +53,63 @@ impl Latency {
         for change in truth.changes() {
             let Some(index) = frame.index(change.cell) else { continue };
             let mapped = mapper.states().cells()[index];
-            let event = match change.after {
-                TrueState::Blocked => Event::Block,
-                TrueState::Free => Event::Free,
-                TrueState::Partly => continue, // neither the one nor the other yet
-            };
-            let is_old = mapped == if event == Event::Block { CellState::Free } else { CellState::Blocked };
-            let open = self.open.remove(&index);
-            if let Some(Open { event: before, shown_s: Some(_) }) = open
-                && before != event
-            {
-                self.missed[before as usize] += 1;
-            }
-            if let Some(same) = open.filter(|open| open.event == event) {
-                self.open.insert(index, same);
-            } else if is_old {
-                self.open.insert(index, Open { event, shown_s: None });
+            match (change.before, change.after) {
+                // Something comes; the cell is covered in part at first.
+                (TrueState::Free, _) => {
+                    self.close(index);
+                    let is_complete = change.after == TrueState::Blocked;
+                    self.start(index, Event::Block, is_complete, mapped == CellState::Free);
+                }
+                (_, TrueState::Blocked) => {
+                    if let Some(open) = self.open.get_mut(&index).filter(|open| open.event == Event::Block) {
+                        (open.is_complete, open.is_ending) = (true, false);
+                    }
+                }
+                (_, TrueState::Partly) => {
+                    if let Some(open) = self.open.get_mut(&index) {
+                        open.is_ending = true;
+                    }
+                }
+                (_, TrueState::Free) => {
+                    self.close(index);
+                    self.start(index, Event::Free, true, mapped == CellState::Blocked);
+                }
             }
         }
-        let now_s = reading.time_s;
-        let (delays_s, beams) = (&mut self.delays_s, Beams { reading, laser, frame });
-        self.open.retain(|&index, open| {
-            if open.shown_s.is_none() && beams.shows(frame.cell(index), open.event) {
-                open.shown_s = Some(now_s);
+        let beams = Beams { reading, laser, frame };
+        for (&index, open) in &mut self.open {
+            let can_show = open.shown_s.is_none() && !open.is_ending;
+            if can_show && beams.shows(frame.cell(index), open.event) {
+                open.shown_s = Some(reading.time_s);
             }
             let after = if open.event == Event::Block { CellState::Blocked } else { CellState::Free };
-            let is_noticed = mapper.states().cells()[index] == after;
-            if let (true, Some(shown_s)) = (is_noticed, open.shown_s) {
-                delays_s[open.event as usize].push(now_s - shown_s);
+            if open.noticed_s.is_none() && mapper.states().cells()[index] == after {
+                open.noticed_s = Some(reading.time_s);
             }
-            !is_noticed
-        });
+        }
+        // A free event that the map has is done with; a block event still has to prove complete.
+        let done = |open: &Open| open.noticed_s.is_some() && open.event == Event::Free;
+        let noticed: Vec<usize> = self.open.iter().filter(|(_, open)| done(open)).map(|(&i, _)| i).collect();
+        noticed.into_iter().for_each(|index| self.close(index));
+    }
+
+    fn start(&mut self, index: usize, event: Event, is_complete: bool, map_is_old: bool) {
+        if map_is_old {
+            let (shown_s, noticed_s) = (None, None);
+            self.open.insert(index, Open { event, is_complete, is_ending: false, shown_s, noticed_s });
+        }
+    }
+
+    /// The new state of a cell is over, or known: counts it.
+    fn close(&mut self, index: usize) {
+        if let Some(Open { event, is_complete: true, shown_s: Some(shown_s), noticed_s, .. }) =
+            self.open.remove(&index)
+        {
+            match noticed_s {
+                Some(noticed_s) => self.delays_s[event as usize].push((noticed_s - shown_s).max(0.0)),
+                None => self.missed[event as usize] += 1,
+            }
+        }
     }
 
     /// The delays of block events and of free events so far.

@@ -3,6 +3,7 @@
 use rerun::external::re_log_encoding::{Encoder, rrd::EncodingOptions};
 use rerun::log::LogMsg;
 use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -18,8 +19,10 @@ pub(super) struct RrdFile {
     state: Mutex<State>,
 }
 
+type Output = Box<dyn Write + Send>;
+
 enum State {
-    Open(Box<Encoder<File>>),
+    Open(Box<Encoder<Output>>),
     Failed(String),
     Finished,
 }
@@ -28,8 +31,13 @@ impl RrdFile {
     /// Creates the file, over an older one, and writes its header.
     pub(super) fn create(path: &Path) -> Result<Self, String> {
         let file = File::create(path).map_err(|error| error.to_string())?;
+        Self::with_output(path, Box::new(file))
+    }
+
+    /// As [`RrdFile::create`], into `output`; `path` is only what errors name.
+    pub(super) fn with_output(path: &Path, output: Output) -> Result<Self, String> {
         let version = rerun::build_info().version;
-        let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, file);
+        let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, output);
         let encoder = Box::new(encoder.map_err(|error| error.to_string())?);
         Ok(Self { path: path.to_owned(), state: Mutex::new(State::Open(encoder)) })
     }

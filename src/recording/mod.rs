@@ -65,6 +65,8 @@ const APPLICATION: &str = "curious";
 const FLUSH_FILE: Duration = Duration::from_secs(1);
 /// The same while a viewer watches.
 const FLUSH_LIVE: Duration = Duration::from_millis(50);
+/// How much simulated time may wait, s: maps at hundreds of times real time fill the memory.
+const FLUSH_SIMULATED_S: f64 = 60.0;
 
 /// A recording being made.
 pub struct Recorder {
@@ -74,6 +76,7 @@ pub struct Recorder {
     /// Built at the first view, which tells who takes part.
     tracks: Option<Tracks>,
     flushed: Instant,
+    flushed_s: f64,
     live_problem: Option<String>,
 }
 
@@ -94,7 +97,8 @@ impl Recorder {
         let stream =
             RecordingStream::new(info, properties, batching, Default::default(), Box::new(sinks.clone()))
                 .map_err(|error| RecordingError::Sdk(error.to_string()))?;
-        Ok(Self { stream, sinks, scene, tracks: None, flushed: Instant::now(), live_problem })
+        let flushed = Instant::now();
+        Ok(Self { stream, sinks, scene, tracks: None, flushed, flushed_s: 0.0, live_problem })
     }
 
     /// Records the run as it is now.
@@ -105,7 +109,8 @@ impl Recorder {
     pub fn log(&mut self, view: &View) -> Result<(), RecordingError> {
         self.record(view, false).map_err(RecordingError::Sdk)?;
         let wait = if self.sinks.is_live() { FLUSH_LIVE } else { FLUSH_FILE };
-        if self.flushed.elapsed() >= wait {
+        if self.flushed.elapsed() >= wait || view.time_s - self.flushed_s >= FLUSH_SIMULATED_S {
+            self.flushed_s = view.time_s;
             self.flush()?;
         }
         Ok(())

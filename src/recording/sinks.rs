@@ -35,6 +35,11 @@ impl Sinks {
         Ok((Self { file, live }, problem))
     }
 
+    #[cfg(test)]
+    pub(super) fn of_file(file: RrdFile) -> Self {
+        Self { file: Some(Arc::new(file)), live: Vec::new() }
+    }
+
     /// Whether a viewer watches.
     pub(super) fn is_live(&self) -> bool {
         self.live.iter().any(|feed| !feed.is_lost())

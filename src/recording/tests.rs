@@ -1,33 +1,308 @@
 use super::*;
 use crate::fake::FakeRun;
+use crate::layer::Layer;
+use nalgebra::Point2;
+use rerun::components::{ImageBuffer, Position2D, Scalar, Text};
+use rerun::external::re_log_encoding::Decoder;
+use rerun::{
+    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, Points2D, Scalars,
+    SegmentationImage, StoreKind, TextLog,
+};
+use std::io::{self, Write};
+use std::path::Path;
+
+fn to(file: &Path) -> RecordingOptions {
+    RecordingOptions { file: Some(file.to_owned()), ..Default::default() }
+}
+
+/// Records `ticks` of a made-up run into a file.
+fn record(file: &Path, ticks: u64) -> FakeRun {
+    let mut run = FakeRun::new();
+    let mut recorder = Recorder::new(&to(file), run.scene.clone()).unwrap();
+    for _ in 0..ticks {
+        run.step();
+        run.with_view(|view| recorder.log(view)).unwrap();
+    }
+    run.with_view(|view| recorder.finish(view)).unwrap();
+    run
+}
+
+fn store(bytes: &[u8], kind: StoreKind) -> ChunkStore {
+    let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut &*bytes).unwrap();
+    let mut stores = stores.into_values().filter(|store| store.id().kind() == kind);
+    let store = stores.next().unwrap();
+    assert!(stores.next().is_none());
+    store
+}
+
+/// The rows of a component of an entity in the order of their simulated time, ns.
+fn rows<C: Component + Clone>(
+    store: &ChunkStore,
+    entity: &str,
+    component: ComponentIdentifier,
+) -> Vec<(i64, Vec<C>)> {
+    let entity = EntityPath::parse_forgiving(entity);
+    let mut rows = Vec::new();
+    for chunk in store.iter_physical_chunks() {
+        if chunk.entity_path() == &entity && !chunk.is_static() {
+            let time = chunk.timelines().values().find(|time| time.name() == columns::SIM_TIME);
+            let times = time.unwrap().times_raw();
+            let items = chunk.iter_component::<C>(component).map(|items| items.as_slice().to_vec());
+            rows.extend(times.iter().copied().zip(items));
+        }
+    }
+    rows.sort_by_key(|row: &(i64, Vec<C>)| row.0);
+    rows
+}
+
+#[test]
+fn everything_that_a_newcomer_looks_for_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    record(&file, 300);
+    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+    let entities: Vec<String> =
+        store.all_entities_sorted().iter().map(|path| path.to_string()).filter(|path| !path.starts_with("/__")).collect();
+    let expected = [
+        "/curves/p",
+        "/curves/r",
+        "/curves/scores/coverage",
+        "/curves/scores/map_quality",
+        "/curves/strategy",
+        "/curves/strategy_share/poisson",
+        "/curves/strategy_share/random",
+        "/curves/strategy_share/recency",
+        "/curves/strategy_value/poisson",
+        "/curves/strategy_value/random",
+        "/curves/strategy_value/recency",
+        "/log",
+        "/world",
+        "/world/goal",
+        "/world/house/obstacles/toy",
+        "/world/house/walls",
+        "/world/maps/change_probability",
+        "/world/maps/change_probability/cells",
+        "/world/maps/change_probability/colour_bar",
+        "/world/maps/change_probability/marks",
+        "/world/maps/field_of_view/curious",
+        "/world/maps/interval",
+        "/world/maps/interval/cells",
+        "/world/maps/interval/colour_bar",
+        "/world/maps/interval/marks",
+        "/world/maps/occupancy",
+        "/world/maps/occupancy/cells",
+        "/world/maps/recency",
+        "/world/maps/recency/cells",
+        "/world/maps/recency/colour_bar",
+        "/world/maps/recency/marks",
+        "/world/path",
+        "/world/robots/curious/body",
+        "/world/robots/curious/field_of_view",
+        "/world/robots/curious/heading",
+        "/world/robots/curious/trail",
+        "/world/robots/dummy/body",
+        "/world/robots/dummy/field_of_view",
+        "/world/robots/dummy/heading",
+        "/world/robots/dummy/trail",
+    ];
+    assert_eq!(entities, expected);
+    let mut timelines: Vec<_> = store.schema().timelines().keys().map(|name| name.to_string()).collect();
+    timelines.sort();
+    assert_eq!(timelines, ["sim_time", "step"]);
+}
+
+#[test]
+fn what_is_read_back_is_what_happened() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let run = record(&file, 305);
+    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+
+    let position = Points2D::descriptor_positions().component;
+    for (name, _, at) in run.places() {
+        let body = rows::<Position2D>(&store, &entity::robot(name, "body"), position);
+        assert!(body.len() > 250, "{name}: {}", body.len());
+        let (time, places) = body.last().unwrap();
+        assert_eq!(*time, 30_500_000_000);
+        let last = Point2::new(f64::from(places[0].x()), f64::from(places[0].y()));
+        assert!((last - at).norm() < 1e-5);
+    }
+    let buffer = SegmentationImage::descriptor_buffer().component;
+    for layer in Layer::ALL {
+        let maps = rows::<ImageBuffer>(&store, &format!("{}/cells", entity::map(layer)), buffer);
+        let most = if layer == Layer::Occupancy { 32 } else { 5 };
+        assert!((2..=most).contains(&maps.len()), "{layer:?}: {}", maps.len());
+        let last = maps.last().unwrap().1[0].0.to_vec();
+        assert_eq!(last, layer.classes(&run.mapper), "{layer:?} at the end");
+    }
+    let coverage = rows::<Scalar>(&store, entity::COVERAGE, Scalars::descriptor_scalars().component);
+    assert_eq!(coverage.len(), 32); // once a second, and at the end
+    assert!(coverage.windows(2).all(|pair| pair[0].1[0].0 <= pair[1].1[0].0));
+    let log = rows::<Text>(&store, entity::LOG, TextLog::descriptor_text().component);
+    assert!(log.iter().any(|(_, text)| text[0].0.as_str().starts_with("goal reached; poisson chooses")));
+    let toy = rows::<rerun::LineStrip2D>(
+        &store,
+        &entity::obstacle("toy"),
+        rerun::LineStrips2D::descriptor_strips().component,
+    );
+    assert_eq!(toy.len(), 1);
+    assert_eq!(toy[0].0, 20_100_000_000);
+}
+
+#[test]
+fn the_layout_shows_every_view() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    record(&file, 3);
+    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Blueprint);
+    let name = rerun::external::re_sdk_types::blueprint::archetypes::ViewBlueprint::descriptor_display_name();
+    let mut names: Vec<String> = Vec::new();
+    for chunk in store.iter_physical_chunks() {
+        let found = chunk.iter_component::<rerun::components::Name>(name.component);
+        names.extend(found.flat_map(|names| names.as_slice().to_vec()).map(|name| name.0.to_string()));
+    }
+    names.sort();
+    assert_eq!(
+        names,
+        [
+            "Change interval: seconds per cycle",
+            "Expected changes out of view, p",
+            "Longest time since a cell was seen, r (s)",
+            "Map: coverage and quality",
+            "Probability of a change since last seen",
+            "Recency: seconds since last seen",
+            "Strategies: expected map updates per step",
+            "Strategies: share of the goals",
+            "Strategy that chose the goal",
+            "The house, as the robot maps it",
+            "What happened",
+        ]
+    );
+}
+
+#[test]
+fn a_minute_is_small() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    record(&file, 600);
+    // 30 MB are allowed for twenty of them.
+    assert!(std::fs::metadata(&file).unwrap().len() < 1_500_000);
+}
+
+#[test]
+fn a_killed_run_leaves_what_was_handed_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let mut run = FakeRun::new();
+    let mut recorder = Recorder::new(&to(&file), run.scene.clone()).unwrap();
+    for _ in 0..100 {
+        run.step();
+        run.with_view(|view| recorder.log(view)).unwrap();
+    }
+    recorder.flush().unwrap();
+    recorder.stream.flush_blocking().unwrap();
+    // What the disk has now, whole and with the last message torn.
+    let killed = std::fs::read(&file).unwrap();
+    let whole = store(&killed, StoreKind::Recording);
+    let position = Points2D::descriptor_positions().component;
+    let body = rows::<Position2D>(&whole, &entity::robot("curious", "body"), position);
+    assert_eq!(body.last().unwrap().0, 10_000_000_000);
+    let messages = |bytes: &[u8]| {
+        Decoder::<rerun::log::LogMsg>::decode_eager(io::Cursor::new(bytes.to_vec())).unwrap().take_while(Result::is_ok).count()
+    };
+    let all = messages(&killed);
+    assert!(all > 50, "{all}");
+    assert_eq!(messages(&killed[..killed.len() - 5]), all - 1);
+    drop(recorder);
+}
+
+#[test]
+fn a_file_that_cannot_be_made_is_one_clear_error() {
+    let error = |file: &str| Recorder::new(&to(Path::new(file)), Scene::default()).err().unwrap().to_string();
+    let missing = error("no/such/folder/run.rrd");
+    assert!(missing.starts_with("cannot write the recording no/such/folder/run.rrd: "), "{missing}");
+    if Path::new("/dev/full").exists() {
+        let full = error("/dev/full");
+        assert!(full.starts_with("cannot write the recording /dev/full: ") && full.contains("No space left"), "{full}");
+    }
+}
+
+/// A disk with room for so many bytes.
+struct SmallDisk(usize);
+
+impl Write for SmallDisk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 = self.0.checked_sub(bytes.len()).ok_or(io::ErrorKind::StorageFull)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_disk_that_fills_up_is_told_at_the_next_tick_and_at_the_end() {
+    let mut run = FakeRun::new();
+    for _ in 0..2 {
+        run.step();
+    }
+    let record = |room: usize, run: &mut FakeRun| {
+        let mut recorder = Recorder::new(&RecordingOptions::default(), run.scene.clone()).unwrap();
+        let sinks = Sinks::of_file(file::RrdFile::with_output(Path::new("run.rrd"), Box::new(SmallDisk(room))).unwrap());
+        recorder.stream.set_sink(Box::new(sinks.clone()));
+        recorder.sinks = sinks;
+        run.with_view(|view| recorder.log(view)).unwrap();
+        recorder.flush().unwrap();
+        recorder.stream.flush_blocking().unwrap();
+        let at_the_next_flush = recorder.flush();
+        (at_the_next_flush, run.with_view(|view| recorder.finish(view)))
+    };
+    let message = |result: Result<(), RecordingError>| result.unwrap_err().to_string();
+    let expected = "cannot write the recording run.rrd: Failed to write: no storage space";
+    let (next, end) = record(20_000, &mut run);
+    assert_eq!(message(next), expected);
+    assert_eq!(message(end), expected);
+    // Room for all but the end: found when the recording is closed.
+    let (next, end) = record(10_000_000, &mut run);
+    assert!(next.is_ok() && end.is_ok());
+    let mut room = 20_000;
+    let late = loop {
+        match record(room, &mut run) {
+            (Ok(()), Err(error)) => break error.to_string(),
+            (Err(_), _) => room += 1000,
+            (Ok(()), Ok(())) => panic!("never failed at the end only"),
+        }
+    };
+    assert_eq!(late, expected);
+}
+
+#[test]
+fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
+    let free = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let live = vec![Live::Connect(free.to_string())];
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let mut recorder =
+        Recorder::new(&RecordingOptions { live: live.clone(), ..to(&file) }, Scene::default()).unwrap();
+    let problem = recorder.live_problem().unwrap();
+    assert!(problem.starts_with("no viewer answers at "), "{problem}");
+    let mut run = FakeRun::new();
+    run.step();
+    run.with_view(|view| recorder.log(view)).unwrap();
+    run.with_view(|view| recorder.finish(view)).unwrap();
+    store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+
+    let options = RecordingOptions { live, ..Default::default() };
+    assert_eq!(Recorder::new(&options, Scene::default()).err().unwrap().to_string(), problem);
+}
 
 #[test]
 #[ignore = "writes a recording to look at, and says what it cost"]
 fn look() {
     let file = std::env::temp_dir().join("look.rrd");
-    let ticks: u64 = std::env::var("TICKS").map_or(12_000, |ticks| ticks.parse().unwrap());
-    let mut run = FakeRun::new();
-    let options = RecordingOptions { file: Some(file.clone()), ..Default::default() };
-    let mut recorder = Recorder::new(&options, run.scene.clone()).unwrap();
-    let (mut logging, start) = (Duration::ZERO, Instant::now());
-    for _ in 0..ticks {
-        run.step();
-        run.with_view(|view| {
-            let start = Instant::now();
-            if std::env::var("NO").is_err() {
-                recorder.log(view).unwrap();
-            }
-            logging += start.elapsed();
-        });
-    }
-    let end = Instant::now();
-    let cpu = || {
-        let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
-        let fields: Vec<&str> = stat.split(' ').collect();
-        (fields[13].parse::<f64>().unwrap() + fields[14].parse::<f64>().unwrap()) / 100.0
-    };
-    println!("cpu {} s", cpu());
-    run.with_view(|view| recorder.finish(view)).unwrap();
-    println!("{ticks} ticks in {:?}, logging {logging:?}, finish {:?}", start.elapsed(), end.elapsed());
-    println!("{} MB", std::fs::metadata(&file).unwrap().len() as f64 / 1e6);
+    let start = Instant::now();
+    record(&file, std::env::var("TICKS").map_or(12_000, |ticks| ticks.parse().unwrap()));
+    let bytes = std::fs::metadata(&file).unwrap().len();
+    println!("{}: {} MB in {:?}", file.display(), bytes as f64 / 1e6, start.elapsed());
 }

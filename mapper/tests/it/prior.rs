@@ -64,7 +64,7 @@ fn changes_are_found_against_it_and_nothing_else() {
     // Nobody watched these changes happen.
     for index in mapper.changed() {
         let seen = mapper.statistics(index);
-        assert_eq!((seen.block_events + seen.free_events, seen.events()), (0, 1));
+        assert_eq!((seen.block_events + seen.free_events, seen.events()), (0, 1), "{seen:?}");
     }
     assert_sound(&mapper);
 }

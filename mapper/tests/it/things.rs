@@ -3,7 +3,7 @@
 use crate::house::{House, Thing, rectangle};
 use crate::observed::changes;
 use geometry::CellState;
-use mapper::{Mapper, MapperSettings};
+use mapper::{Mapper, MapperSettings, SteadySettings};
 use nalgebra::{Isometry2, Point2};
 
 const PERIOD_S: f64 = 0.1;
@@ -123,12 +123,14 @@ fn cells_are_free_again_behind_a_disc_that_passes_along_a_wall() {
     }
 }
 
-/// One scan of nonsense among good ones.
+/// One scan of nonsense among good ones, for a mapper that is told of spurious returns.
 #[test]
 fn a_single_scan_of_noise_changes_nothing() {
     let mut house = House::new(0.1, 0.0, 0.0, 360, 2);
     let mut wild = House::new(0.1, 0.0, 1.0, 360, 9);
-    let mut mapper = Mapper::new(&MapperSettings::default(), house.frame).unwrap();
+    let steady = SteadySettings { hits_to_block_in_open: 2, ..SteadySettings::default() };
+    let settings = MapperSettings { steady, ..MapperSettings::default() };
+    let mut mapper = Mapper::new(&settings, house.frame).unwrap();
     for scan in 0..600 {
         let time_s = f64::from(scan) * PERIOD_S;
         let pose = circle(&house, time_s);

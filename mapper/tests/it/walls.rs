@@ -62,7 +62,7 @@ fn turned_walls_and_noise_make_hardly_any_change() {
 /// Every cell that the map knows is as it really is, and it knows all that can be seen.
 #[test]
 fn the_map_is_the_true_grid() {
-    let mut house = House::new(0.1, 0.0, 0.0, 360, 1);
+    let house = House::new(0.1, 0.0, 0.0, 360, 1);
     let (mapper, _) = learn(&house, &tour(&mut house.clone()), OccupancyModel::Steady);
     let states = mapper.states();
     let (mut wrong, mut unknown) = (Vec::new(), Vec::new());

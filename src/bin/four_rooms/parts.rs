@@ -63,8 +63,10 @@ impl Settings {
         let mut mapper = MapperSettings {
             estimator: args.estimator,
             occupancy: args.occupancy,
+            max_gap: std::env::var("GAP").unwrap_or("0".into()).parse().unwrap(),
             ..MapperSettings::default()
         };
+        mapper.steady.body_m = std::env::var("BODY").unwrap_or("0.1".into()).parse().unwrap();
         // A laser's data sheet tells its noise.
         let noise_m = robot.laser.noise_std_m;
         mapper.steady.range_noise_std_m = mapper.steady.range_noise_std_m.max(noise_m);
@@ -74,7 +76,7 @@ impl Settings {
                 patch_cells: ((PATCH_M / spec.frame().resolution_m()).round() as _),
                 ..AgentSettings::default()
             },
-            controller: controller::Settings::default(),
+            controller: { let mut c = controller::Settings::default(); c.exploration.max_steps = std::env::var("STEPS").unwrap_or("42".into()).parse().unwrap(); c },
             drive: DiffDriveSettings {
                 radius_m: robot.radius_m,
                 max_linear_mps: robot.drive.max_linear_mps,

@@ -1,0 +1,89 @@
+//! A picture in memory and its way into a file.
+
+use crate::layer::Rgb;
+use crate::output::{OutputError, write_file};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::{TextStyle, register_font};
+use std::path::Path;
+
+/// A part of a picture to draw on.
+pub(super) type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
+
+/// Pictures are drawn this many times larger, and made smaller at the end: slanted lines and
+/// letters get smooth edges.
+const OVERSAMPLING: u32 = 2;
+
+/// A length in pixels of the finished picture, in pixels to draw with.
+pub(super) const fn px(length: u32) -> i32 {
+    (length * OVERSAMPLING) as i32
+}
+
+/// Text of a height in pixels of the finished picture.
+pub(super) fn text(height: u32) -> TextStyle<'static> {
+    (FONT, px(height)).into_font().color(&INK)
+}
+
+pub(super) const INK: RGBColor = RGBColor(40, 44, 52);
+const FONT: &str = "sans-serif";
+
+/// The plotting library's colour.
+pub(super) fn ink([red, green, blue]: Rgb) -> RGBColor {
+    RGBColor(red, green, blue)
+}
+
+/// Makes an error of the plotting library a sentence.
+pub(super) fn why(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+/// A finished picture: rows from the top, three bytes per pixel.
+pub(super) struct Canvas {
+    size: [u32; 2],
+    pixels: Vec<u8>,
+}
+
+impl Canvas {
+    /// A white picture of `size`, width and height in pixels, with what `draw` puts on it.
+    pub(super) fn draw(size: [u32; 2], draw: impl FnOnce(&Area) -> Result<(), String>) -> Result<Self, String> {
+        // A machine may have no fonts at all.
+        register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
+            .map_err(|_| "the font cannot be read")?;
+        let [width, height] = size.map(|length| length * OVERSAMPLING);
+        let mut pixels = vec![255; width as usize * height as usize * 3];
+        let area = BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area();
+        draw(&area)?;
+        area.present().map_err(why)?;
+        drop(area);
+        Ok(Self { size, pixels: shrink(&pixels, width as usize) })
+    }
+
+    /// Writes a PNG file.
+    pub(super) fn write(&self, path: &Path) -> Result<(), OutputError> {
+        let [width, height] = self.size;
+        write_file(path, |file| {
+            let encoder = PngEncoder::new(file);
+            let written = encoder.write_image(&self.pixels, width, height, ExtendedColorType::Rgb8);
+            written.map_err(std::io::Error::other)
+        })
+    }
+}
+
+/// The mean of every square of pixels.
+fn shrink(pixels: &[u8], width: usize) -> Vec<u8> {
+    let by = OVERSAMPLING as usize;
+    let stride = 3 * width;
+    let mut small = Vec::with_capacity(pixels.len() / (by * by));
+    for rows in pixels.chunks_exact(by * stride) {
+        for left in (0..stride).step_by(3 * by) {
+            for channel in 0..3 {
+                let square = (0..by).flat_map(|y| (0..by).map(move |x| y * stride + left + 3 * x + channel));
+                let sum: usize = square.map(|at| usize::from(rows[at])).sum();
+                small.push((sum / (by * by)) as u8);
+            }
+        }
+    }
+    small
+}

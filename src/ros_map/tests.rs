@@ -1,0 +1,175 @@
+use super::*;
+use geometry::Cell;
+
+/// A map drawn with the highest row first: `.` free, `#` blocked, ` ` unknown.
+fn drawn(origin: (f64, f64), resolution_m: f64, rows: &[&str]) -> Grid<CellState> {
+    let origin = Point2::new(origin.0, origin.1);
+    let frame = GridFrame::new(origin, resolution_m, rows[0].len(), rows.len()).unwrap();
+    let state = |drawn| match drawn {
+        '.' => CellState::Free,
+        '#' => CellState::Blocked,
+        _ => CellState::Unknown,
+    };
+    Grid::from_cells(frame, rows.iter().rev().flat_map(|row| row.chars().map(state)).collect()).unwrap()
+}
+
+fn draw(map: &Grid<CellState>) -> Vec<String> {
+    let symbol = |state: &CellState| match state {
+        CellState::Free => '.',
+        CellState::Blocked => '#',
+        CellState::Unknown => ' ',
+    };
+    map.cells().chunks(map.frame().width()).rev().map(|row| row.iter().map(symbol).collect()).collect()
+}
+
+const YAML: &str = "image: map.pgm\nresolution: 0.5\norigin: [1.0, -2.0, 0.0]\nnegate: 0\n\
+                    occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+
+/// A folder with a picture of one row of pixels and a YAML file.
+fn folder(yaml: &str, pixels: &[u8]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let header = format!("P5\n# a comment\n{} 1\n255\n", pixels.len());
+    fs::write(folder.path().join("map.pgm"), [header.as_bytes(), pixels].concat()).unwrap();
+    fs::write(folder.path().join("map.yaml"), yaml).unwrap();
+    folder
+}
+
+fn states(yaml: &str, pixels: &[u8]) -> String {
+    let folder = folder(yaml, pixels);
+    let map = RosMap::read(&folder.path().join("map.yaml")).unwrap();
+    draw(&map.cells).concat()
+}
+
+fn refused(yaml: &str) -> String {
+    let folder = folder(yaml, &[0, 255]);
+    let path = folder.path().join("map.yaml");
+    let error = RosMap::read(&path).unwrap_err().to_string();
+    assert!(error.contains(&path.display().to_string()), "{error}");
+    error
+}
+
+#[test]
+fn what_is_written_comes_back() {
+    let map = drawn((-1.25, 3.0), 0.25, &["#####", "#.. #", "#.###"]);
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), &map).unwrap();
+    let read = RosMap::read(&folder.path().join("map.yaml")).unwrap();
+    assert_eq!(read.onto(map.frame()), map);
+}
+
+#[test]
+fn the_files_are_as_ros_writes_them() {
+    let map = drawn((-6.0, 0.5), 0.05, &[".#", " ."]);
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), &map).unwrap();
+    assert_eq!(fs::read(folder.path().join("map.pgm")).unwrap(), b"P5\n2 2\n255\n\xfe\x00\xcd\xfe");
+    let yaml = fs::read_to_string(folder.path().join("map.yaml")).unwrap();
+    assert_eq!(
+        yaml,
+        "image: map.pgm\nmode: trinary\nresolution: 0.05\norigin: [-6.0, 0.5, 0.0]\nnegate: 0\n\
+         occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    );
+}
+
+#[test]
+fn thresholds_are_strict() {
+    assert_eq!(states(YAML, &[0, 89, 90, 204, 205, 206, 254, 255]), "##   ...");
+    // 153/255 is 0.6 to the last bit: neither more nor less.
+    let yaml = YAML.replace("0.65", "0.6").replace("0.196", "0.6");
+    assert_eq!(states(&yaml, &[101, 102, 103]), "# .");
+    // With the customary threshold, what was saved as unknown is free.
+    assert_eq!(states(&YAML.replace("0.196", "0.25"), &[205]), ".");
+}
+
+#[test]
+fn negate_turns_bright_into_blocked() {
+    for negate in ["1", "true"] {
+        let yaml = YAML.replace("negate: 0", &format!("negate: {negate}"));
+        assert_eq!(states(&yaml, &[0, 49, 50, 51, 254]), "..  #");
+    }
+    assert_eq!(states(&YAML.replace("negate: 0\n", ""), &[0, 255]), "#.");
+}
+
+#[test]
+fn a_colour_picture_counts_by_its_mean() {
+    let folder = folder(&YAML.replace("map.pgm", "map.png"), &[]);
+    let pixels = [[0, 0, 0], [255, 255, 255], [255, 100, 0], [60, 60, 0]].concat();
+    let picture = image::RgbImage::from_raw(4, 1, pixels).unwrap();
+    picture.save(folder.path().join("map.png")).unwrap();
+    let map = RosMap::read(&folder.path().join("map.yaml")).unwrap();
+    assert_eq!(draw(&map.cells), ["#. #"]);
+}
+
+#[test]
+fn resampling_asks_at_the_middle_of_each_cell() {
+    let folder = folder(YAML, &[0, 255, 0]); // x from 1 to 2.5 m, y from −2 to −1.5 m
+    let map = RosMap::read(&folder.path().join("map.yaml")).unwrap();
+    let finer = GridFrame::new(Point2::new(0.75, -2.25), 0.25, 9, 4).unwrap();
+    assert_eq!(draw(&map.onto(&finer)), ["         ", " ##..##  ", " ##..##  ", "         "]);
+    let coarser = GridFrame::new(Point2::new(0.9, -2.1), 0.7, 2, 1).unwrap(); // middles at 1.25 and 1.95
+    assert_eq!(draw(&map.onto(&coarser)), ["#."]);
+}
+
+#[test]
+fn a_turned_map_is_turned_back() {
+    // A quarter turn: the picture's columns run upwards from (1, −2).
+    let folder = folder(&YAML.replace("-2.0, 0.0]", "-2.0, 1.5707963267948966]"), &[0, 255, 0]);
+    let map = RosMap::read(&folder.path().join("map.yaml")).unwrap();
+    let frame = GridFrame::new(Point2::new(0.0, -2.0), 0.5, 3, 3).unwrap();
+    assert_eq!(draw(&map.onto(&frame)), [" # ", " . ", " # "]);
+    assert_eq!(map.onto(&frame).get(Cell::new(1, 1)), Some(&CellState::Free));
+}
+
+#[test]
+fn a_value_that_makes_no_sense_is_named_with_what_would_be_right() {
+    let cases = [
+        ("resolution: 0.5", "resolution: 0", "`resolution` is 0, but must be the side of a pixel in metres, above 0"),
+        ("resolution: 0.5", "resolution: .inf", "`resolution` is inf, but must be"),
+        ("-2.0, 0.0]", "-2.0, .nan]", "`origin` is [1.0, -2.0, NaN], but must be [x, y, yaw]"),
+        ("negate: 0", "negate: 2", "`negate` is 2, but must be 0 or 1"),
+        ("free_thresh: 0.196", "free_thresh: 0.7", "`free_thresh` is 0.7, but must be between 0 and `occupied_thresh`"),
+        ("occupied_thresh: 0.65", "occupied_thresh: 65", "`occupied_thresh` is 65, but must be between 0 and 1"),
+        ("negate: 0", "mode: scale", "`mode` is `scale`, but must be `trinary`"),
+    ];
+    for (from, to, message) in cases {
+        assert!(YAML.contains(from));
+        let error = refused(&YAML.replace(from, to));
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+#[test]
+fn a_file_that_is_not_a_map_says_where_and_shows_a_right_one() {
+    let cases = [
+        (YAML.replace("resolution: 0.5", "resolution: abc"), "resolution: abc"),
+        (YAML.replace("resolution: 0.5\n", ""), "missing field `resolution`"),
+        (YAML.replace("1.0, -2.0, 0.0", "1.0, -2.0"), "array of length 3"),
+        (YAML.replace("negate: 0", "negate: maybe"), "`negate` must be 0 or 1"),
+        ("- 1".into(), "line 1"),
+        (String::new(), "unexpected end of input"),
+    ];
+    for (yaml, what) in cases {
+        let error = refused(&yaml);
+        assert!(error.contains(what) && error.contains("`occupied_thresh: 0.65`"), "{error}");
+    }
+}
+
+#[test]
+fn a_missing_or_damaged_picture_is_named() {
+    let error = refused(&YAML.replace("map.pgm", "none.pgm"));
+    assert!(error.contains("none.pgm") && error.contains("No such file"), "{error}");
+    let error = refused(&YAML.replace("map.pgm", "map.yaml"));
+    assert!(error.contains("cannot read the picture"), "{error}");
+    let error = RosMap::read(Path::new("no/map.yaml")).unwrap_err().to_string();
+    assert!(error.starts_with("cannot read no/map.yaml: "), "{error}");
+}
+
+#[test]
+fn an_absurd_picture_is_refused_by_its_header() {
+    let folder = folder(YAML, &[]);
+    for size in ["100000 100000", "4294967295 4294967295", "0 0"] {
+        fs::write(folder.path().join("map.pgm"), format!("P5\n{size}\n255\n")).unwrap();
+        let error = RosMap::read(&folder.path().join("map.yaml")).unwrap_err().to_string();
+        assert!(error.contains("cannot read the picture"), "{error}");
+    }
+}
