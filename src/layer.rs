@@ -189,11 +189,9 @@ impl Layer {
         match self {
             Self::Occupancy => plain(&[(FREE, "free"), (BLOCKED, "blocked"), (UNKNOWN, "never seen")]),
             Self::Recency => plain(&[(UNKNOWN, "never seen")]),
-            Self::Interval | Self::ChangeProbability => plain(&[
-                (FREE, "free, no change"),
-                (BLOCKED, "blocked, no change"),
-                (UNKNOWN, "never seen"),
-            ]),
+            Self::Interval | Self::ChangeProbability => {
+                plain(&[(FREE, "free, no change"), (BLOCKED, "blocked, no change"), (UNKNOWN, "never seen")])
+            }
         }
     }
 

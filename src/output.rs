@@ -82,7 +82,10 @@ mod tests {
             file.write_all(&[b'x'; 100_000])?;
             Err(io::ErrorKind::StorageFull.into())
         });
-        assert_eq!(error.unwrap_err().to_string(), format!("cannot write {}: no storage space", path.display()));
+        assert_eq!(
+            error.unwrap_err().to_string(),
+            format!("cannot write {}: no storage space", path.display())
+        );
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(names(folder.path()), ["a.txt"]);
     }

@@ -115,15 +115,14 @@ impl RosMap {
     /// When a file cannot be read, a key is missing or makes no sense, or the picture is absurdly
     /// large; nothing of its size is allocated then.
     pub fn read(yaml: &Path) -> Result<Self, RosMapError> {
-        let text = fs::read_to_string(yaml)
-            .map_err(|source| RosMapError::File { path: yaml.to_owned(), source })?;
+        let text =
+            fs::read_to_string(yaml).map_err(|source| RosMapError::File { path: yaml.to_owned(), source })?;
         let keys: Keys = serde_saphyr::from_str(&text)
             .map_err(|what| RosMapError::Yaml { path: yaml.to_owned(), what: Box::new(what) })?;
         let is_negated = keys.check(yaml)?;
 
         let path = yaml.parent().unwrap_or(Path::new("")).join(&keys.image);
-        let picture =
-            |what: String| RosMapError::Picture { path: path.clone(), yaml: yaml.to_owned(), what };
+        let picture = |what: String| RosMapError::Picture { path: path.clone(), yaml: yaml.to_owned(), what };
         let pixels = read_picture(&path).map_err(picture)?;
         let (width, height) = (pixels.width() as usize, pixels.height() as usize);
         let frame = GridFrame::new(Point2::origin(), keys.resolution, width, height)
@@ -164,12 +163,15 @@ impl RosMap {
 impl Keys {
     /// Checks what the types cannot. Returns whether bright means blocked.
     fn check(&self, yaml: &Path) -> Result<bool, RosMapError> {
-        let wrong = |key, value: String, right| {
-            Err(RosMapError::Value { path: yaml.to_owned(), key, value, right })
-        };
+        let wrong =
+            |key, value: String, right| Err(RosMapError::Value { path: yaml.to_owned(), key, value, right });
         let [free, occupied] = [self.free_thresh, self.occupied_thresh];
         if !(self.resolution.is_finite() && self.resolution > 0.0) {
-            return wrong("resolution", self.resolution.to_string(), "the side of a pixel in metres, above 0");
+            return wrong(
+                "resolution",
+                self.resolution.to_string(),
+                "the side of a pixel in metres, above 0",
+            );
         }
         if !self.origin.iter().all(|figure| figure.is_finite()) {
             return wrong("origin", format!("{:?}", self.origin), "[x, y, yaw] in m and rad, finite");
@@ -229,9 +231,10 @@ pub fn write(folder: &Path, map: &Grid<CellState>) -> Result<(), OutputError> {
             CellState::Unknown => UNKNOWN,
             CellState::Blocked => BLOCKED,
         };
-        map.cells().chunks(width).rev().try_for_each(|row| {
-            file.write_all(&row.iter().map(value).collect::<Vec<u8>>())
-        })
+        map.cells()
+            .chunks(width)
+            .rev()
+            .try_for_each(|row| file.write_all(&row.iter().map(value).collect::<Vec<u8>>()))
     })?;
     let (origin, resolution_m) = (frame.origin(), frame.resolution_m());
     write_file(&folder.join("map.yaml"), |file| {

@@ -124,7 +124,8 @@ pub(crate) fn beyond_fan(
 /// of its end.
 #[inline]
 fn first_after(at: f64, count: usize) -> usize {
-    ((at + 0.5) as usize).min(count) // the cast cuts what is negative to 0
+    // A cast from f64 to usize is slow where there is no instruction for it.
+    (at + 0.5).max(0.0).min(count as f64) as u32 as usize
 }
 
 /// Calls `visit` for every cell of the grid (places in row-major order) that the segment from

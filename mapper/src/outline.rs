@@ -42,6 +42,12 @@ impl Outline {
         }
     }
 
+    /// Whether a hit is the first or the last of its surface, where the normal says little.
+    pub(crate) fn is_edge(&self, beam: usize) -> bool {
+        let (first, last) = self.surfaces[beam];
+        beam == first || beam == last
+    }
+
     /// The point that a hit counts for: `depth_m` behind the surface along its normal; at the edge of
     /// what can be seen of the surface, as far inward along the surface too, since the body may end
     /// right behind the edge. Where a neighbouring beam can see that point (the normal led out of a
@@ -58,21 +64,27 @@ impl Outline {
             || -self.normal(beam, end, cloud),
             |inward| (inward - self.normal(beam, end, cloud)) * FRAC_1_SQRT_2,
         );
-        let point = end + direction * depth_m;
-        let seen = point - cloud.origin;
-        let distance_m = seen.norm();
+        let along_beam = cloud.directions[beam];
+        let distance_m = cloud.returns[beam].clear_m() + direction.dot(&along_beam) * depth_m;
         // From the beam to the point's direction, in beams; the angle is small.
-        let turn = cloud.directions[beam].perp(&seen) / (distance_m * cloud.increment_rad);
-        let beams = cloud.len() as i64;
-        let sees = |step: i64| {
-            let at = (beam as i64 + step).rem_euclid(beams) as usize;
-            cloud.returns[at].clear_m() > distance_m + depth_m / 2.0
+        let turn = along_beam.perp(&direction) * depth_m / (distance_m * cloud.increment_rad);
+        let beams = cloud.len() as i32;
+        let sees = |step: i32| {
+            let at = beam as i32 + step;
+            let at = if at < 0 {
+                at + beams
+            } else if at >= beams {
+                at - beams
+            } else {
+                at
+            };
+            cloud.returns[at as usize].clear_m() > distance_m + depth_m / 2.0
         };
-        let is_seen = turn.abs() < beams as f64 && {
-            let step = turn as i64 - i64::from(turn < 0.0);
+        let is_seen = turn.abs() < f64::from(beams - 1) && {
+            let step = turn as i32 - i32::from(turn < 0.0);
             sees(step) || sees(step + 1)
         };
-        if is_seen { end + cloud.directions[beam] * (depth_m / 2.0) } else { point }
+        end + if is_seen { along_beam * (depth_m / 2.0) } else { direction * depth_m }
     }
 
     /// At a hit beyond which a neighbouring beam passes: the direction along the surface, away from
@@ -95,8 +107,8 @@ impl Outline {
     /// The normal of the surface at a hit, towards the sensor. Where the surface turns a corner,
     /// that of the straighter side: a normal across the corner would point out of the body.
     fn normal(&self, beam: usize, end: &Point2<f64>, cloud: &PointCloud) -> Vector2<f64> {
-        let range_m = (end - cloud.origin).norm();
-        let step = 1 + ((CHORD_M / (range_m * cloud.spacing_rad)) as usize).min(cloud.len());
+        let range_m = cloud.returns[beam].clear_m();
+        let step = 1 + ((CHORD_M / (range_m * cloud.spacing_rad)) as u32 as usize).min(cloud.len());
         let (first, last) = self.surfaces[beam];
         let (before, after) = (beam.saturating_sub(step).max(first), (beam + step).min(last));
         let chord = |to: usize| self.ends[to].map_or_else(Vector2::zeros, |to| to - end);

@@ -105,7 +105,7 @@ impl Default for SteadySettings {
             misses_to_discover: 3,
             misses_to_discover_beside: 20,
             misses_to_free_fresh: 4,
-            misses_to_free: 10,
+            misses_to_free: 8,
             hits_to_stand: 20,
             confirm_s: 2.0,
         }

@@ -120,7 +120,8 @@ impl Steady {
         } else {
             self.hit_open(index, &end, point, ledger);
         }
-        if self.surfaces[index].came && self.surfaces[index].hits < self.settings.hits_to_stand {
+        let has_come = self.surfaces[index].came && self.surfaces[index].hits < self.settings.hits_to_stand;
+        if has_come && !self.outline.is_edge(beam) {
             self.fill_body(&end, &point, ledger);
         }
         if self.outline.joined[beam] {

@@ -57,14 +57,14 @@ pub fn rate_scores(mapper: &Mapper, truth: &Truth) -> RateScores {
             continue;
         }
         if truth.movers()[index].is_none() {
-            scores.static_cells += 1; if seen.events()>0 { let c=truth.frame().center(cell); eprintln!("FALSE {:.3} {:.3} {seen:?}", c.x,c.y); }
+            scores.static_cells += 1;
             scores.false_change_events += u64::from(seen.events());
             scores.false_rate_hz += estimate;
         }
         let is_touched = |cell| truth.frame().index(cell).is_some_and(|near| truth.movers()[near].is_some());
         let touched_around = cell.neighbours8().into_iter().filter(|&near| is_touched(near)).count();
         match (is_touched(cell), touched_around) {
-            (true, 8) if true_rate > 0.0 => {if estimate==0.0 {let c=truth.frame().center(cell); eprintln!("ZERO {:.3} {:.3} n {} {seen:?}", c.x,c.y, truth.block_events()[index]);} changing_rates.push(estimate)},
+            (true, 8) if true_rate > 0.0 => changing_rates.push(estimate),
             (false, 0) => static_rates.push(estimate),
             _ => {}
         }

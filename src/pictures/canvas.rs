@@ -47,7 +47,10 @@ pub(super) struct Canvas {
 
 impl Canvas {
     /// A white picture of `size`, width and height in pixels, with what `draw` puts on it.
-    pub(super) fn draw(size: [u32; 2], draw: impl FnOnce(&Area) -> Result<(), String>) -> Result<Self, String> {
+    pub(super) fn draw(
+        size: [u32; 2],
+        draw: impl FnOnce(&Area) -> Result<(), String>,
+    ) -> Result<Self, String> {
         // A machine may have no fonts at all.
         register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
             .map_err(|_| "the font cannot be read")?;

@@ -25,7 +25,8 @@ pub(super) fn draw(area: &Area, pictures: &Pictures) -> Result<(), String> {
         plot.draw(&Polygon::new(corners, ink(WALL).filled())).map_err(why)?;
     }
     let mut colours = OTHERS.into_iter().cycle();
-    let mut colour = |trail: &Trail| if trail.is_curious { CURIOUS } else { colours.next().unwrap_or(OTHERS[0]) };
+    let mut colour =
+        |trail: &Trail| if trail.is_curious { CURIOUS } else { colours.next().unwrap_or(OTHERS[0]) };
     let trails: Vec<(&Trail, Rgb)> = pictures.trails.iter().map(|trail| (trail, colour(trail))).collect();
     for (trail, colour) in &trails {
         line(&chart, trail, *colour)?;
@@ -38,7 +39,8 @@ pub(super) fn draw(area: &Area, pictures: &Pictures) -> Result<(), String> {
     }
     panel::frame(&chart, map)?;
 
-    let mut lines: Vec<(Rgb, String)> = trails.iter().map(|(trail, colour)| (*colour, trail.name.clone())).collect();
+    let mut lines: Vec<(Rgb, String)> =
+        trails.iter().map(|(trail, colour)| (*colour, trail.name.clone())).collect();
     if !pictures.goals.is_empty() {
         lines.push((GOAL, format!("{} goals", pictures.goals.len())));
     }

@@ -15,6 +15,9 @@ use rerun::external::re_sdk_types::blueprint::{archetypes as blueprint, componen
 use rerun::external::re_sdk_types::datatypes;
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
+/// How much of the curious robot's way is shown, s.
+const RECENT_S: i64 = 300;
+
 /// Sends the layout for a run that looks like `view`.
 pub(super) fn send(
     stream: &RecordingStream,
@@ -116,16 +119,17 @@ impl Layout {
     fn house(&self, view: &View) -> RecordingStreamResult<Part> {
         let (from, to) = bounds(view);
         let margin = nalgebra::Vector2::new(0.02, 0.02) * (to.x - from.x);
-        let contents =
-            ["house/**", "robots/**", "maps/occupancy/**", "maps/field_of_view/**", "goal", "path"];
+        let contents = ["house/**", "robots/**", "maps/occupancy/**", "field_of_view/**", "goal", "path"];
         let contents = contents.map(|entity| format!("+ {}/{entity}", entity::WORLD));
         let part = self.spatial("The house, as the robot maps it", &contents, from - margin, to + margin)?;
-        let whole_past =
-            VisibleTimeRange(datatypes::VisibleTimeRange { timeline: SIM_TIME.into(), range: past() });
         for robot in view.robots {
+            // The curious robot goes everywhere: all of its way would hide the house.
+            let start = if robot.is_curious { back(RECENT_S) } else { past().start };
+            let range = datatypes::TimeRange { start, ..past() };
+            let range = VisibleTimeRange(datatypes::VisibleTimeRange { timeline: SIM_TIME.into(), range });
             let trail = entity::robot(robot.name, "trail");
-            let past = blueprint::VisibleTimeRanges::new([whole_past.clone()]);
-            self.property(&part, &format!("ViewContents/overrides{trail}/visualizers"), &past)?;
+            let property = format!("ViewContents/overrides{trail}/visualizers");
+            self.property(&part, &property, &blueprint::VisibleTimeRanges::new([range]))?;
         }
         Ok(part)
     }
@@ -191,6 +195,11 @@ impl Layout {
 fn past() -> datatypes::TimeRange {
     let start = datatypes::TimeRangeBoundary::Absolute(datatypes::TimeInt(0));
     datatypes::TimeRange { start, end: datatypes::TimeRangeBoundary::AT_CURSOR }
+}
+
+/// So many seconds before what is shown.
+fn back(seconds: i64) -> datatypes::TimeRangeBoundary {
+    datatypes::TimeRangeBoundary::CursorRelative(datatypes::TimeInt(-seconds * 1_000_000_000))
 }
 
 fn bounds(view: &View) -> (Point2<f64>, Point2<f64>) {

@@ -5,6 +5,10 @@ use rerun::EntityPathPart;
 
 pub(super) const WORLD: &str = "/world";
 pub(super) const HOUSE: &str = "/world/house";
+/// What the curious robot's laser sees: the line around it.
+pub(super) const SIGHT_OUTLINE: &str = "/world/field_of_view/outline";
+/// The same, filled.
+pub(super) const SIGHT_CELLS: &str = "/world/field_of_view/cells";
 pub(super) const PATH: &str = "/world/path";
 pub(super) const GOAL: &str = "/world/goal";
 pub(super) const SCORES: &str = "/curves/scores";
@@ -23,11 +27,6 @@ pub(super) const LEGEND_SHARE: f64 = 0.2;
 /// A map; its picture and colour bar lie below.
 pub(super) fn map(layer: Layer) -> String {
     format!("/world/maps/{}", layer.name())
-}
-
-/// What a robot's laser sees.
-pub(super) fn field_of_view(name: &str) -> String {
-    format!("/world/maps/field_of_view/{}", escape(name))
 }
 
 /// A part of a robot.

@@ -1,6 +1,6 @@
 //! The file that a recording goes to.
 
-use rerun::external::re_log_encoding::{Encoder, rrd::EncodingOptions};
+use rerun::external::re_log_encoding::rrd::{EncodeError, Encoder, EncodingOptions};
 use rerun::log::LogMsg;
 use std::fs::File;
 use std::io::Write;
@@ -38,7 +38,7 @@ impl RrdFile {
     pub(super) fn with_output(path: &Path, output: Output) -> Result<Self, String> {
         let version = rerun::build_info().version;
         let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, output);
-        let encoder = Box::new(encoder.map_err(|error| error.to_string())?);
+        let encoder = Box::new(encoder.map_err(why)?);
         Ok(Self { path: path.to_owned(), state: Mutex::new(State::Open(encoder)) })
     }
 
@@ -51,7 +51,7 @@ impl RrdFile {
         if let State::Open(encoder) = &mut *state
             && let Err(error) = encoder.append(message)
         {
-            *state = State::Failed(error.to_string());
+            *state = State::Failed(why(error));
         }
     }
 
@@ -67,7 +67,7 @@ impl RrdFile {
     pub(super) fn finish(&self) -> Result<(), String> {
         let mut state = self.state();
         match std::mem::replace(&mut *state, State::Finished) {
-            State::Open(mut encoder) => encoder.finish().map_err(|error| error.to_string()),
+            State::Open(mut encoder) => encoder.finish().map_err(why),
             State::Failed(error) => Err(error),
             State::Finished => Ok(()),
         }
@@ -75,5 +75,13 @@ impl RrdFile {
 
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What the operating system says, without what it was doing.
+fn why(error: EncodeError) -> String {
+    match error {
+        EncodeError::Write(error) => error.to_string(),
+        other => other.to_string(),
     }
 }

@@ -5,7 +5,7 @@ use rerun::external::re_uri::ProxyUri;
 use rerun::log::LogMsg;
 use rerun::sink::{GrpcSink, LogSink};
 use std::io;
-use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
+use std::net::{TcpStream, ToSocketAddrs};
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -181,10 +181,15 @@ fn reach(uri: &ProxyUri) -> io::Result<()> {
     // In a thread, because the search for a name has no timeout of its own.
     thread::spawn(move || {
         let host = host.trim_matches(['[', ']']);
-        let connect = |address: SocketAddr| TcpStream::connect_timeout(&address, ANSWER_TIMEOUT);
         let reached = (host, port).to_socket_addrs().and_then(|addresses| {
-            let nowhere = io::Error::new(io::ErrorKind::NotFound, "the name has no address");
-            addresses.fold(Err(nowhere), |reached, address| reached.or_else(|_| connect(address).map(drop)))
+            let mut reached = Err(io::Error::new(io::ErrorKind::NotFound, "the name has no address"));
+            for address in addresses {
+                reached = TcpStream::connect_timeout(&address, ANSWER_TIMEOUT).map(drop);
+                if reached.is_ok() {
+                    break;
+                }
+            }
+            reached
         });
         report.send(reached)
     });

@@ -15,9 +15,9 @@ use rerun::{
 /// Drawn in this order, from the bottom up.
 mod order {
     pub(super) const MAP: f32 = -10.0;
-    pub(super) const IN_VIEW: f32 = -9.0;
+    pub(super) const SIGHT: f32 = -9.0;
     pub(super) const WALLS: f32 = 1.0;
-    pub(super) const FIELD_OF_VIEW: f32 = 2.0;
+    pub(super) const SIGHT_OUTLINE: f32 = 2.0;
     pub(super) const TRAIL: f32 = 3.0;
     pub(super) const PATH: f32 = 4.0;
     pub(super) const BODY: f32 = 5.0;
@@ -34,12 +34,12 @@ const OBSTACLES: Rgb = [200, 90, 20];
 const PATH: Rgb = [224, 122, 20];
 const GOAL: Rgb = [214, 30, 60];
 
-/// The class of the cells in a field of view.
+/// The class of the cells in the field of view.
 pub(super) const IN_VIEW: u8 = 1;
 
-/// The cells in which a field of view is filled: a quarter as many as the map's, since there are
+/// The cells in which the field of view is filled: a quarter as many as the map's, since there are
 /// five pictures a second.
-pub(super) fn field_of_view_frame(map: &GridFrame) -> GridFrame {
+pub(super) fn sight_frame(map: &GridFrame) -> GridFrame {
     let (width, height) = (map.width().div_ceil(2), map.height().div_ceil(2));
     GridFrame::new(map.origin(), 2.0 * map.resolution_m(), width, height).unwrap_or(*map)
 }
@@ -50,8 +50,9 @@ pub(super) fn send(stream: &RecordingStream, scene: &Scene, view: &View) -> Reco
     stream.log_static(entity::WORLD, &Transform3D::from_scale([1.0, -1.0, 1.0]))?;
     house(stream, scene, view)?;
     for robot in view.robots {
-        self::robot(stream, robot, view.mapper.frame())?;
+        self::robot(stream, robot)?;
     }
+    sight(stream, view.mapper.frame())?;
     for layer in Layer::ALL {
         map(stream, view, layer)?;
     }
@@ -93,7 +94,7 @@ fn house(stream: &RecordingStream, scene: &Scene, view: &View) -> RecordingStrea
     stream.log_static(entity::GOAL, &goal)
 }
 
-fn robot(stream: &RecordingStream, robot: &RobotView, map: &GridFrame) -> RecordingStreamResult<()> {
+fn robot(stream: &RecordingStream, robot: &RobotView) -> RecordingStreamResult<()> {
     let (own, part) =
         (if robot.is_curious { CURIOUS } else { OTHERS }, |part| entity::robot(robot.name, part));
     let body = Points2D::update_fields()
@@ -112,24 +113,24 @@ fn robot(stream: &RecordingStream, robot: &RobotView, map: &GridFrame) -> Record
         .with_colors([colour(own, 140)])
         .with_radii([Radius::new_ui_points(1.0)])
         .with_draw_order(order::TRAIL);
-    stream.log_static(part("trail"), &trail)?;
-    let field_of_view = LineStrips2D::update_fields()
+    stream.log_static(part("trail"), &trail)
+}
+
+/// What the curious robot's laser sees.
+fn sight(stream: &RecordingStream, map: &GridFrame) -> RecordingStreamResult<()> {
+    let outline = LineStrips2D::update_fields()
         .with_colors([colour(LASER, 220)])
         .with_radii([Radius::new_ui_points(0.75)])
-        .with_draw_order(order::FIELD_OF_VIEW);
-    stream.log_static(part("field_of_view"), &field_of_view)?;
-    if robot.reading.is_none() {
-        return Ok(());
-    }
+        .with_draw_order(order::SIGHT_OUTLINE);
+    stream.log_static(entity::SIGHT_OUTLINE, &outline)?;
     let class = |id: u8, label: &str, alpha| datatypes::AnnotationInfo {
         id: id.into(),
         label: Some(label.into()),
         color: Some(*colour(LASER, alpha)),
     };
-    let entity = entity::field_of_view(robot.name);
     let classes = [class(0, "out of view", 0), class(IN_VIEW, "in view", 255)];
-    stream.log_static(entity.as_str(), &AnnotationContext::new(classes))?;
-    Picture::of_frame(&field_of_view_frame(map)).log(stream, &entity, order::IN_VIEW, 0.2)
+    stream.log_static(entity::SIGHT_CELLS, &AnnotationContext::new(classes))?;
+    Picture::of_frame(&sight_frame(map)).log(stream, entity::SIGHT_CELLS, order::SIGHT, 0.2)
 }
 
 fn map(stream: &RecordingStream, view: &View, layer: Layer) -> RecordingStreamResult<()> {

@@ -10,6 +10,7 @@ use rerun::{
 };
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::{Arc, Mutex};
 
 fn to(file: &Path) -> RecordingOptions {
     RecordingOptions { file: Some(file.to_owned()), ..Default::default() }
@@ -61,8 +62,12 @@ fn everything_that_a_newcomer_looks_for_is_there() {
     let file = folder.path().join("run.rrd");
     record(&file, 300);
     let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
-    let entities: Vec<String> =
-        store.all_entities_sorted().iter().map(|path| path.to_string()).filter(|path| !path.starts_with("/__")).collect();
+    let entities: Vec<String> = store
+        .all_entities_sorted()
+        .iter()
+        .map(|path| path.to_string())
+        .filter(|path| !path.starts_with("/__"))
+        .collect();
     let expected = [
         "/curves/p",
         "/curves/r",
@@ -77,6 +82,8 @@ fn everything_that_a_newcomer_looks_for_is_there() {
         "/curves/strategy_value/recency",
         "/log",
         "/world",
+        "/world/field_of_view/cells",
+        "/world/field_of_view/outline",
         "/world/goal",
         "/world/house/obstacles/toy",
         "/world/house/walls",
@@ -84,7 +91,6 @@ fn everything_that_a_newcomer_looks_for_is_there() {
         "/world/maps/change_probability/cells",
         "/world/maps/change_probability/colour_bar",
         "/world/maps/change_probability/marks",
-        "/world/maps/field_of_view/curious",
         "/world/maps/interval",
         "/world/maps/interval/cells",
         "/world/maps/interval/colour_bar",
@@ -97,11 +103,9 @@ fn everything_that_a_newcomer_looks_for_is_there() {
         "/world/maps/recency/marks",
         "/world/path",
         "/world/robots/curious/body",
-        "/world/robots/curious/field_of_view",
         "/world/robots/curious/heading",
         "/world/robots/curious/trail",
         "/world/robots/dummy/body",
-        "/world/robots/dummy/field_of_view",
         "/world/robots/dummy/heading",
         "/world/robots/dummy/trail",
     ];
@@ -208,7 +212,10 @@ fn a_killed_run_leaves_what_was_handed_on() {
     let body = rows::<Position2D>(&whole, &entity::robot("curious", "body"), position);
     assert_eq!(body.last().unwrap().0, 10_000_000_000);
     let messages = |bytes: &[u8]| {
-        Decoder::<rerun::log::LogMsg>::decode_eager(io::Cursor::new(bytes.to_vec())).unwrap().take_while(Result::is_ok).count()
+        Decoder::<rerun::log::LogMsg>::decode_eager(io::Cursor::new(bytes.to_vec()))
+            .unwrap()
+            .take_while(Result::is_ok)
+            .count()
     };
     let all = messages(&killed);
     assert!(all > 50, "{all}");
@@ -223,16 +230,21 @@ fn a_file_that_cannot_be_made_is_one_clear_error() {
     assert!(missing.starts_with("cannot write the recording no/such/folder/run.rrd: "), "{missing}");
     if Path::new("/dev/full").exists() {
         let full = error("/dev/full");
-        assert!(full.starts_with("cannot write the recording /dev/full: ") && full.contains("No space left"), "{full}");
+        assert!(
+            full.starts_with("cannot write the recording /dev/full: ") && full.contains("No space left"),
+            "{full}"
+        );
     }
 }
 
 /// A disk with room for so many bytes.
-struct SmallDisk(usize);
+#[derive(Clone)]
+struct SmallDisk(Arc<Mutex<usize>>);
 
 impl Write for SmallDisk {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0 = self.0.checked_sub(bytes.len()).ok_or(io::ErrorKind::StorageFull)?;
+        let mut room = self.0.lock().unwrap();
+        *room = room.checked_sub(bytes.len()).ok_or(io::ErrorKind::StorageFull)?;
         Ok(bytes.len())
     }
 
@@ -242,39 +254,33 @@ impl Write for SmallDisk {
 }
 
 #[test]
-fn a_disk_that_fills_up_is_told_at_the_next_tick_and_at_the_end() {
+fn a_disk_that_fills_up_is_told_while_it_goes_on_and_at_the_end() {
     let mut run = FakeRun::new();
-    for _ in 0..2 {
-        run.step();
-    }
-    let record = |room: usize, run: &mut FakeRun| {
+    run.step();
+    let mut record = |room: usize| {
         let mut recorder = Recorder::new(&RecordingOptions::default(), run.scene.clone()).unwrap();
-        let sinks = Sinks::of_file(file::RrdFile::with_output(Path::new("run.rrd"), Box::new(SmallDisk(room))).unwrap());
-        recorder.stream.set_sink(Box::new(sinks.clone()));
-        recorder.sinks = sinks;
+        let disk = SmallDisk(Arc::new(room.into()));
+        let file = file::RrdFile::with_output(Path::new("run.rrd"), Box::new(disk.clone())).unwrap();
+        recorder.sinks = Sinks::of_file(file);
+        recorder.stream.set_sink(Box::new(recorder.sinks.clone()));
         run.with_view(|view| recorder.log(view)).unwrap();
-        recorder.flush().unwrap();
+        recorder.flush().ok(); // the SDK writes in its own time
         recorder.stream.flush_blocking().unwrap();
-        let at_the_next_flush = recorder.flush();
-        (at_the_next_flush, run.with_view(|view| recorder.finish(view)))
+        let meanwhile = recorder.flush().map_err(|error| error.to_string());
+        let end = run.with_view(|view| recorder.finish(view)).map_err(|error| error.to_string());
+        (meanwhile, end, *disk.0.lock().unwrap())
     };
-    let message = |result: Result<(), RecordingError>| result.unwrap_err().to_string();
-    let expected = "cannot write the recording run.rrd: Failed to write: no storage space";
-    let (next, end) = record(20_000, &mut run);
-    assert_eq!(message(next), expected);
-    assert_eq!(message(end), expected);
-    // Room for all but the end: found when the recording is closed.
-    let (next, end) = record(10_000_000, &mut run);
-    assert!(next.is_ok() && end.is_ok());
-    let mut room = 20_000;
-    let late = loop {
-        match record(room, &mut run) {
-            (Ok(()), Err(error)) => break error.to_string(),
-            (Err(_), _) => room += 1000,
-            (Ok(()), Ok(())) => panic!("never failed at the end only"),
-        }
-    };
-    assert_eq!(late, expected);
+    let full = Err("cannot write the recording run.rrd: no storage space".to_owned());
+    let (meanwhile, end, _) = record(20_000);
+    assert_eq!((meanwhile, end), (full.clone(), full.clone()));
+
+    const AMPLE: usize = 10_000_000;
+    let (meanwhile, end, left) = record(AMPLE);
+    assert_eq!((meanwhile, end), (Ok(()), Ok(())));
+
+    // Room for all but the end, which is more than a thousand bytes long.
+    let (meanwhile, end, _) = record(AMPLE - left - 1000);
+    assert_eq!((meanwhile, end), (Ok(()), full));
 }
 
 #[test]

@@ -4,12 +4,11 @@ use super::columns::{Arrow, Classes, Item, Line, Now, Place, Rows, State, Strip}
 use super::{entity, outline, scenery};
 use crate::layer::Layer;
 use crate::view::{Level, RobotView, Trail, View};
-use geometry::GridFrame;
 use nalgebra::{Isometry2, Point2};
 use rerun::RecordingStream;
 
 /// The time between two fields of view, s.
-const FIELD_OF_VIEW_S: f64 = 0.2;
+const SIGHT_S: f64 = 0.2;
 /// The time between two occupancy maps, s; skipped while nothing changes.
 const OCCUPANCY_S: f64 = 1.0;
 /// The time between two of the other maps, s.
@@ -43,8 +42,6 @@ struct Robot {
     body: Rows<Place>,
     heading: Rows<Arrow>,
     trail: Rows<Strip>,
-    field_of_view: Rows<Strip>,
-    in_view: Rows<Classes>,
     way: Trail,
     last: Option<Isometry2<f64>>,
 }
@@ -56,14 +53,12 @@ impl Robot {
             body: Rows::new(part("body")),
             heading: Rows::new(part("heading")),
             trail: Rows::new(part("trail")),
-            field_of_view: Rows::new(part("field_of_view")),
-            in_view: Rows::new(entity::field_of_view(robot.name)),
             way: Trail::new(robot.name, robot.is_curious),
             last: None,
         }
     }
 
-    fn push(&mut self, now: Now, robot: &RobotView, field_of_view: Option<&GridFrame>) {
+    fn push(&mut self, now: Now, robot: &RobotView) {
         if self.last != Some(robot.pose) {
             self.last = Some(robot.pose);
             let at = Point2::from(robot.pose.translation.vector);
@@ -76,10 +71,30 @@ impl Robot {
                 self.trail.push(now, [Strip(vec![place(from), place(to)])]);
             }
         }
-        if let (Some(frame), Some(reading)) = (field_of_view, robot.reading) {
+    }
+}
+
+/// What the curious robot's laser sees.
+struct Sight {
+    outline: Rows<Strip>,
+    cells: Rows<Classes>,
+    due: Due,
+}
+
+impl Sight {
+    fn new() -> Self {
+        let outline = Rows::new(entity::SIGHT_OUTLINE);
+        Self { outline, cells: Rows::new(entity::SIGHT_CELLS), due: Due::every(SIGHT_S) }
+    }
+
+    fn push(&mut self, now: Now, view: &View, is_last: bool) {
+        let curious = view.robots.iter().find(|robot| robot.is_curious);
+        let Some(reading) = curious.and_then(|robot| robot.reading) else { return };
+        if self.due.now(now.time_s) || is_last {
             let corners = outline::field_of_view(reading);
-            self.in_view.push(now, [Classes(outline::fill(&corners, frame, scenery::IN_VIEW))]);
-            self.field_of_view.push(now, [Strip(corners.iter().map(place).collect())]);
+            let frame = scenery::sight_frame(view.mapper.frame());
+            self.cells.push(now, [Classes(outline::fill(&corners, &frame, scenery::IN_VIEW))]);
+            self.outline.push(now, [Strip(corners.iter().map(place).collect())]);
         }
     }
 }
@@ -108,6 +123,7 @@ impl Map {
 /// All rows of a recording.
 pub(super) struct Tracks {
     robots: Vec<Robot>,
+    sight: Sight,
     obstacles: Vec<(Rows<Strip>, bool)>,
     path: (Rows<Strip>, Vec<Point2<f64>>),
     goal: (Rows<Place>, Option<Point2<f64>>),
@@ -121,7 +137,6 @@ pub(super) struct Tracks {
     strategies: Vec<[Rows<f64>; 2]>,
     strategy: (Rows<State>, String),
     log: Rows<Line>,
-    field_of_view_due: Due,
     occupancy_due: Due,
     maps_due: Due,
     curves_due: Due,
@@ -135,6 +150,7 @@ impl Tracks {
             |name: &str| [entity::VALUES, entity::SHARES].map(|of| Rows::new(entity::strategy(of, name)));
         Self {
             robots: view.robots.iter().map(Robot::new).collect(),
+            sight: Sight::new(),
             obstacles: view
                 .obstacles
                 .iter()
@@ -149,7 +165,6 @@ impl Tracks {
             strategies: view.strategies.iter().map(|strategy| curves(strategy.name)).collect(),
             strategy: (Rows::new(entity::STRATEGY), String::new()),
             log: Rows::new(entity::LOG),
-            field_of_view_due: Due::every(FIELD_OF_VIEW_S),
             occupancy_due: Due::every(OCCUPANCY_S),
             maps_due: Due::every(MAPS_S),
             curves_due: Due::every(CURVES_S),
@@ -160,11 +175,10 @@ impl Tracks {
     /// Appends what is due now; everything in the last view.
     pub(super) fn push(&mut self, view: &View, is_last: bool) {
         let now = Now { time_s: view.time_s, step: view.step };
-        let is_due = self.field_of_view_due.now(view.time_s) || is_last;
-        let field_of_view = is_due.then(|| scenery::field_of_view_frame(view.mapper.frame()));
         for (track, robot) in self.robots.iter_mut().zip(view.robots) {
-            track.push(now, robot, field_of_view.as_ref());
+            track.push(now, robot);
         }
+        self.sight.push(now, view, is_last);
         for ((track, was_present), thing) in self.obstacles.iter_mut().zip(view.obstacles) {
             if *was_present != thing.is_present {
                 *was_present = thing.is_present;
@@ -241,10 +255,11 @@ impl Tracks {
         for robot in &mut self.robots {
             all([&mut robot.body], stream)?;
             all([&mut robot.heading], stream)?;
-            all([&mut robot.in_view], stream)?;
-            all([&mut robot.trail, &mut robot.field_of_view], stream)?;
+            all([&mut robot.trail], stream)?;
         }
-        all(self.obstacles.iter_mut().map(|(rows, _)| rows).chain([&mut self.path.0]), stream)?;
+        all([&mut self.sight.cells], stream)?;
+        let obstacles = self.obstacles.iter_mut().map(|(rows, _)| rows);
+        all(obstacles.chain([&mut self.sight.outline, &mut self.path.0]), stream)?;
         all([&mut self.goal.0], stream)?;
         all(self.maps.iter_mut().chain([&mut self.occupancy]).map(|map| &mut map.rows), stream)?;
         let strategies = self.strategies.iter_mut().flatten();

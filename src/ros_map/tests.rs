@@ -123,12 +123,24 @@ fn a_turned_map_is_turned_back() {
 #[test]
 fn a_value_that_makes_no_sense_is_named_with_what_would_be_right() {
     let cases = [
-        ("resolution: 0.5", "resolution: 0", "`resolution` is 0, but must be the side of a pixel in metres, above 0"),
+        (
+            "resolution: 0.5",
+            "resolution: 0",
+            "`resolution` is 0, but must be the side of a pixel in metres, above 0",
+        ),
         ("resolution: 0.5", "resolution: .inf", "`resolution` is inf, but must be"),
         ("-2.0, 0.0]", "-2.0, .nan]", "`origin` is [1.0, -2.0, NaN], but must be [x, y, yaw]"),
         ("negate: 0", "negate: 2", "`negate` is 2, but must be 0 or 1"),
-        ("free_thresh: 0.196", "free_thresh: 0.7", "`free_thresh` is 0.7, but must be between 0 and `occupied_thresh`"),
-        ("occupied_thresh: 0.65", "occupied_thresh: 65", "`occupied_thresh` is 65, but must be between 0 and 1"),
+        (
+            "free_thresh: 0.196",
+            "free_thresh: 0.7",
+            "`free_thresh` is 0.7, but must be between 0 and `occupied_thresh`",
+        ),
+        (
+            "occupied_thresh: 0.65",
+            "occupied_thresh: 65",
+            "`occupied_thresh` is 65, but must be between 0 and 1",
+        ),
         ("negate: 0", "mode: scale", "`mode` is `scale`, but must be `trinary`"),
     ];
     for (from, to, message) in cases {

@@ -10,6 +10,9 @@ use plotters::style::{FontStyle, register_font};
 const MISSES: [u8; 11] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20];
 const SEEDS: u64 = 5;
 
+/// A logarithm has no zero: fewer changes than this are drawn here.
+const FLOOR: f64 = 0.1;
+
 /// One setting, averaged over the seeds.
 pub(crate) struct Point {
     pub(crate) misses_to_free: u8,
@@ -51,17 +54,16 @@ pub(crate) fn draw(points: &[Point], path: &str) -> anyhow::Result<()> {
         .margin(16)
         .x_label_area_size(44)
         .y_label_area_size(60)
-        .build_cartesian_2d(0.0..right_s, (1.0..top).log_scale())?;
+        .build_cartesian_2d(0.0..right_s, (FLOOR..top).log_scale())?;
     chart
         .configure_mesh()
         .x_desc("seconds until half of a removed box is free")
         .y_desc("false changes in 6000 scans of a static house")
         .label_style(("sans-serif", 14))
-        .y_label_formatter(&|changes| format!("{changes:.0}"))
+        .y_label_formatter(&|changes| format!("{changes}"))
         .light_line_style(BLACK.mix(0.05))
         .draw()?;
-    // A logarithm has no zero: no change at all is drawn on the lower border.
-    let at = |point: &Point| (point.half_cleared_s, point.false_changes.max(1.0));
+    let at = |point: &Point| (point.half_cleared_s, point.false_changes.max(FLOOR));
     chart.draw_series([PathElement::new(points.iter().map(at).collect::<Vec<_>>(), BLUE.stroke_width(2))])?;
     chart.draw_series(points.iter().map(|point| Circle::new(at(point), 4, BLUE.filled())))?;
     chart.draw_series(points.iter().map(|point| {

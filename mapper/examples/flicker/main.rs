@@ -23,6 +23,9 @@ use things::{cleared_after, latencies, median};
 const SCANS: u32 = 6000;
 const PERIOD_S: f64 = 0.1;
 
+const HEADER: &str = "| house | map | false changes | repeated | box in the open: half, 90 % free | \
+                      box at a wall | block event | free event | missed % |";
+
 /// A house to tour.
 #[derive(Clone, Copy)]
 struct Bench {
@@ -121,10 +124,7 @@ fn row(bench: Bench, occupancy: OccupancyModel) -> anyhow::Result<String> {
 }
 
 fn main() -> anyhow::Result<()> {
-    println!(
-        "| house | map | false changes | repeated | open box: half, 90 % | box at wall: half, 90 % | block | free | missed % |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("{HEADER}\n|---|---|---|---|---|---|---|---|---|");
     for bench in BENCHES {
         for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
             println!("{}", row(bench, occupancy)?);

@@ -39,6 +39,7 @@ pub(crate) fn cleared_after(
         if cells.is_empty() && time_s >= GOES_S {
             cells = (0..house.frame.len())
                 .filter(|&index| is_blocked(&mapper, index) && house.truth(index, time_s) == CellState::Free)
+                .filter(|&index| house.truth(index, 0.0) != CellState::Free)
                 .collect();
         }
         mapper.update(&house.reading(time_s, pose(&house, time_s), &[]))?;

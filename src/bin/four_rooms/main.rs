@@ -115,8 +115,6 @@ fn live(
         };
         Ok(ControlFlow::Break(()))
     })?;
-    for r in world.robots() { eprintln!("ROBOT {} {:?}", r.name, (r.pose.translation.vector, geometry::heading_rad(&r.pose))); }
-    { let f=mapper.frame(); let c=f.cell_at(&nalgebra::Point2::from(world.true_pose().translation.vector)); for y in (c.y-14..c.y+15).rev() { let mut l=String::new(); for x in c.x-24..c.x+25 { let cell=geometry::Cell::new(x,y); let m=mapper.states().get(cell); let t=world.truth().state(cell); l.push(match (m,t) { _ if cell==c=>'R', (None,_)=>' ', (Some(geometry::CellState::Blocked),Some(sim::physics::TrueState::Free))=>'X', (Some(geometry::CellState::Blocked),_)=>'#', (Some(geometry::CellState::Unknown),_)=>'?', (_,Some(sim::physics::TrueState::Blocked))=>'o', (_,Some(sim::physics::TrueState::Partly))=>',', _=>'.'}); } eprintln!("{l}"); } }
     let wall_s = start.elapsed().as_secs_f64();
     progress.finish();
 

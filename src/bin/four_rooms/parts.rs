@@ -47,6 +47,13 @@ fn chance(seed: u64, purpose: Purpose) -> ChaCha8Rng {
 
 /// The side of the patches in which goals are weighed, m.
 const PATCH_M: f64 = 0.5;
+/// How long something can hide a cell before that interrupts its view, s: what a slow robot and its
+/// shadow take to pass. Without this, the robot would only count the changes that it happens to see
+/// from the right side, one in five.
+const HIDING_S: f64 = 8.0;
+/// Steps of local exploration. The paper's 42 suit a block that moves a cell per step; here a step
+/// is a robot's diameter, and following the dummy for longer leaves other rooms unseen.
+const LOCAL_STEPS: u32 = 15;
 
 /// All settings, as they go into the summary.
 #[derive(Clone, Debug, Serialize)]
@@ -63,20 +70,24 @@ impl Settings {
         let mut mapper = MapperSettings {
             estimator: args.estimator,
             occupancy: args.occupancy,
-            max_gap: std::env::var("GAP").unwrap_or("0".into()).parse().unwrap(),
+            max_gap: HIDING_S,
             ..MapperSettings::default()
         };
-        mapper.steady.body_m = std::env::var("BODY").unwrap_or("0.1".into()).parse().unwrap();
         // A laser's data sheet tells its noise.
         let noise_m = robot.laser.noise_std_m;
         mapper.steady.range_noise_std_m = mapper.steady.range_noise_std_m.max(noise_m);
+        let cell_m = spec.frame().resolution_m();
+        let mut agent =
+            AgentSettings { patch_cells: (PATCH_M / cell_m).round() as _, ..AgentSettings::default() };
+        // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many
+        // cells wide, and each of its moves changes as many.
+        agent.curious.temperature *= (2.0 * robot.radius_m / cell_m).max(1.0);
+        let mut controller = controller::Settings::default();
+        controller.exploration.max_steps = LOCAL_STEPS;
         Self {
             mapper,
-            agent: AgentSettings {
-                patch_cells: ((PATCH_M / spec.frame().resolution_m()).round() as _),
-                ..AgentSettings::default()
-            },
-            controller: { let mut c = controller::Settings::default(); c.exploration.max_steps = std::env::var("STEPS").unwrap_or("42".into()).parse().unwrap(); c },
+            agent,
+            controller,
             drive: DiffDriveSettings {
                 radius_m: robot.radius_m,
                 max_linear_mps: robot.drive.max_linear_mps,
