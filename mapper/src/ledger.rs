@@ -16,7 +16,7 @@ const PRIOR: ReadingIndex = 1;
 /// sighting; see [`Ledger::see_run`].
 const UNSETTLED: ReadingIndex = 1 << 31;
 /// Cells that [`Ledger::see_run`] takes at once.
-const BLOCK: usize = 8;
+const BLOCK: usize = 16;
 
 /// The change record of one cell, except for the time of its last sighting, which is written at
 /// every sighting and lies apart.

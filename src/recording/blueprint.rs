@@ -152,9 +152,7 @@ impl Layout {
     }
 
     fn states(&self, name: &str, entity: &str) -> RecordingStreamResult<Part> {
-        let view = self.view("StateTimeline", name, &[format!("+ {entity}/**")])?;
-        self.whole_past(&view)?;
-        Ok(view)
+        self.view("StateTimeline", name, &[format!("+ {entity}/**")])
     }
 
     fn whole_past(&self, view: &Part) -> RecordingStreamResult<()> {

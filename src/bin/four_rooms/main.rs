@@ -9,6 +9,7 @@ use anyhow::Context;
 use args::{Args, DriveChoice};
 use clap::Parser;
 use curious::observer::Observer;
+use curious::output::make_folder;
 use curious::pilot::{Now, Pilot};
 use curious::recording::{Live, Recorder, RecordingOptions};
 use curious::{explore, worlds};
@@ -82,7 +83,7 @@ fn live(
     mut pilot: impl Pilot<Command = Twist>,
     settings: &parts::Settings,
 ) -> Result<Ended, Failure> {
-    let output = output::Folder::create(&args.out)?;
+    make_folder(&args.out).map_err(anyhow::Error::from)?;
     let recorder = recorder(args, &world)?;
     let mut observer = Observer::new(&world, recorder);
     if let Some(problem) = observer.live_problem() {
@@ -122,10 +123,10 @@ fn live(
     observer.finish(&world, &now, &pilot).map_err(anyhow::Error::from)?;
     let summary = output::summary(args, settings, &world, &mapper, &pilot, &observer, ended, wall_s);
     drop(pilot); // gives the terminal back before anything is printed
-    output.write(&world, &mapper, &observer, &summary)?;
+    output::write(&args.out, &world, &mapper, &observer, &summary)?;
     if !args.quiet {
         println!("{summary}");
-        println!("  files     {}", output.path().display());
+        println!("  files     {}", args.out.display());
     }
     Ok(ended)
 }

@@ -3,42 +3,35 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use crate::parts::Settings;
-use anyhow::Context;
+use curious::cell_statistics;
 use curious::metrics;
 use curious::observer::Observer;
+use curious::output::write_file;
+use curious::pictures::{self, Pictures};
 use curious::pilot::Pilot;
+use curious::ros_map;
 use curious::summary::{Collisions, Liveliest, Summary, map_hash};
 use geometry::Twist;
 use mapper::Mapper;
 use sim::physics::PhysicsWorld;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// The output folder.
-pub(crate) struct Folder {
-    path: PathBuf,
-}
-
-impl Folder {
-    pub(crate) fn create(path: &Path) -> anyhow::Result<Self> {
-        std::fs::create_dir_all(path)
-            .with_context(|| format!("cannot make the output folder {}", path.display()))?;
-        Ok(Self { path: path.to_owned() })
-    }
-
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    pub(crate) fn write(
-        &self,
-        world: &PhysicsWorld,
-        mapper: &Mapper,
-        observer: &Observer,
-        summary: &Summary,
-    ) -> anyhow::Result<()> {
-        std::fs::write(self.path.join("summary.json"), serde_json::to_string_pretty(summary)?)?;
-        Ok(())
-    }
+/// Writes everything but the recording, which is written while the run goes on.
+pub(crate) fn write(
+    folder: &Path,
+    world: &PhysicsWorld,
+    mapper: &Mapper,
+    observer: &Observer,
+    summary: &Summary,
+) -> anyhow::Result<()> {
+    let (trails, goals) = observer.ways();
+    let scene = &Observer::scene(world);
+    pictures::write_all(folder, &Pictures { scene, mapper, trails, goals })?;
+    ros_map::write(folder, mapper.states())?;
+    cell_statistics::write(&folder.join("cell_statistics.csv"), mapper)?;
+    let text = serde_json::to_string_pretty(summary)?;
+    write_file(&folder.join("summary.json"), |file| writeln!(file, "{text}"))?;
+    Ok(())
 }
 
 #[allow(clippy::too_many_arguments)] // everything that a run was made of

@@ -5,6 +5,7 @@ use agent::{Agent, AgentSettings};
 use anyhow::Context;
 use controller::{Controller, DiffDrive, DiffDriveSettings};
 use curious::pilot::{Autonomous, Keyboard, Tour};
+use curious::ros_map::RosMap;
 use curious::worlds;
 use geometry::Twist;
 use mapper::{Mapper, MapperSettings};
@@ -140,7 +141,10 @@ impl Parts {
         let settings = Settings::new(args, &spec);
         let mapper = match &args.map {
             None => Mapper::new(&settings.mapper, *spec.frame()),
-            Some(path) => return Err(input(anyhow::anyhow!("{}", path.display()))),
+            Some(path) => {
+                let map = RosMap::read(path).map_err(input)?;
+                Mapper::with_prior(&settings.mapper, map.onto(spec.frame()))
+            }
         };
         let mapper = mapper.context("cannot make the mapper").map_err(input)?;
         Ok(Self { world: PhysicsWorld::new(&spec, args.seed), mapper, settings })
