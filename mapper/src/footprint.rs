@@ -55,8 +55,9 @@ impl Footprint {
         is_joined: impl Fn(usize) -> bool,
     ) -> (usize, usize) {
         self.crossings.resize_with(frame.height(), Vec::new);
-        let to_cells = |point: Point2<f64>| (point - frame.origin()) / frame.resolution_m();
-        let origin = to_cells(cloud.origin);
+        let scale = 1.0 / frame.resolution_m();
+        let origin = (cloud.origin - frame.origin()) * scale;
+        let point = |beam: usize, range_m: f64| origin + cloud.directions[beam] * (range_m * scale);
         let (mut low, mut high) = (frame.height(), 0);
         let mut edge = |from: Vector2<f64>, to: Vector2<f64>| {
             let (bottom, top) = if from.y <= to.y { (from, to) } else { (to, from) };
@@ -69,7 +70,8 @@ impl Footprint {
                 (low, high) = (low.min(first), high.max(end));
             }
         };
-        let mut last = origin;
+        // The end of the border so far, on a beam at this range.
+        let (mut last, mut last_m) = (origin, f64::NAN);
         for beam in 0..cloud.len() {
             let Some(next) = cloud.next(beam) else { break };
             let clear = |beam: usize| cloud.returns[beam].clear_m().min(fan_m);
@@ -79,16 +81,20 @@ impl Footprint {
                 from_m = from_m.min(to_m);
                 to_m = from_m;
             }
-            let (from, to) = (to_cells(cloud.point(beam, from_m)), to_cells(cloud.point(next, to_m)));
-            if beam > 0 || !cloud.is_full_turn {
-                edge(last, from);
+            if from_m != last_m {
+                let from = point(beam, from_m);
+                if beam > 0 || !cloud.is_full_turn {
+                    edge(last, from);
+                }
+                last = from;
             }
-            edge(from, to);
-            last = to;
+            let to = point(next, to_m);
+            edge(last, to);
+            (last, last_m) = (to, to_m);
             if next == 0 {
                 // The polygon closes where the first triangle began.
                 let first_m = if is_joined(0) { clear(0) } else { clear(0).min(clear(1)) };
-                edge(last, to_cells(cloud.point(0, first_m)));
+                edge(last, point(0, first_m));
                 return (low, high);
             }
         }
