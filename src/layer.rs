@@ -7,6 +7,11 @@ use mapper::Mapper;
 /// A colour: red, green, blue.
 pub type Rgb = [u8; 3];
 
+/// The colour of the curious robot and all that is its own.
+pub const CURIOUS: Rgb = [31, 97, 209];
+/// The colour of the other robots: green, as in Figure 4.
+pub const OTHERS: Rgb = [26, 158, 64];
+
 /// A map to look at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {

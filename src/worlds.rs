@@ -14,16 +14,37 @@ pub const SHIPPED: [(&str, &str); 3] = [
 /// The name and the text of the shipped tour.
 pub const TOUR: (&str, &str) = ("four_rooms.tour.toml", include_str!("../worlds/four_rooms.tour.toml"));
 
+/// Why there is no world.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// Neither a shipped world nor a file.
+    #[error("there is no world `{name}`: it is neither a file nor one of those that ship ({shipped})")]
+    Unknown {
+        /// As given.
+        name: String,
+        /// The names of the shipped worlds.
+        shipped: String,
+    },
+    /// The file is not a world.
+    #[error(transparent)]
+    World(#[from] WorldError),
+}
+
 /// The world that `name` stands for: a shipped one by its name, else a file by its path.
 ///
 /// # Errors
 ///
 /// When there is no such file either, or it is not a world.
-pub fn load(name: &str) -> Result<WorldSpec, WorldError> {
-    match SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
-        Some((name, text)) => WorldSpec::parse(&format!("{name}.toml"), text),
-        None => WorldSpec::load(Path::new(name)),
+pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
+    if let Some((name, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
+        return Ok(WorldSpec::parse(&format!("{name}.toml"), text)?);
     }
+    let path = Path::new(name);
+    if !path.exists() {
+        let shipped = SHIPPED.map(|(name, _)| name).join(", ");
+        return Err(LoadError::Unknown { name: name.to_owned(), shipped });
+    }
+    Ok(WorldSpec::load(path)?)
 }
 
 #[cfg(test)]

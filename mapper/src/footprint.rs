@@ -9,7 +9,7 @@
 //! unseen between them. There the fan ends, and only the cells on the beams themselves count.
 
 use crate::projection::PointCloud;
-use geometry::GridFrame;
+use geometry::{Cell, GridFrame};
 use nalgebra::{Point2, Vector2};
 
 /// Scratch space for filling footprints, reused from scan to scan.
@@ -134,9 +134,25 @@ fn first_after(at: f64, count: usize) -> usize {
     (at + 0.5).max(0.0).min(count as f64) as u32 as usize
 }
 
+/// The shares of the segment from `at`, `delta` long, after which it enters and leaves the grid (Liang
+/// and Barsky's clipping; all in cells). `None` beside the grid.
+fn clip(frame: &GridFrame, at: Vector2<f64>, delta: Vector2<f64>) -> Option<(f64, f64)> {
+    let (mut enter, mut leave) = (0.0f64, 1.0f64);
+    for (at, delta, count) in [(at.x, delta.x, frame.width()), (at.y, delta.y, frame.height())] {
+        let count = count as f64;
+        if delta != 0.0 {
+            let (low, high) = (-at / delta, (count - at) / delta);
+            (enter, leave) = (enter.max(low.min(high)), leave.min(low.max(high)));
+        } else if !(0.0..count).contains(&at) {
+            return None;
+        }
+    }
+    (enter <= leave).then_some((enter, leave))
+}
+
 /// Calls `visit` for every cell of the grid (places in row-major order) that the segment from
-/// `from` to `to` passes through, in order, once each (Amanatides and Woo's traversal of the part
-/// that Liang and Barsky's clipping leaves).
+/// `from` to `to` passes through, in order, once each (Amanatides and Woo's traversal).
+#[inline]
 pub(crate) fn cells_along(
     frame: &GridFrame,
     from: &Point2<f64>,
@@ -145,25 +161,15 @@ pub(crate) fn cells_along(
 ) {
     let scale = 1.0 / frame.resolution_m();
     let (at, delta) = ((from - frame.origin()) * scale, (to - from) * scale);
-    let (columns, rows) = (frame.width() as i32, frame.height() as i32);
-    // The shares of the segment after which it enters and leaves the grid.
-    let (mut enter, mut leave) = (0.0f64, 1.0f64);
-    for (at, delta, count) in [(at.x, delta.x, f64::from(columns)), (at.y, delta.y, f64::from(rows))] {
-        if delta != 0.0 {
-            let (low, high) = (-at / delta, (count - at) / delta);
-            (enter, leave) = (enter.max(low.min(high)), leave.min(low.max(high)));
-        } else if !(0.0..count).contains(&at) {
-            return;
-        }
+    let (mut cell, mut end) = (frame.cell_at(from), frame.cell_at(to));
+    if !frame.contains(cell) || !frame.contains(end) {
+        let Some((enter, leave)) = clip(frame, at, delta) else { return };
+        let inside = |share: f64| {
+            let Cell { x, y } = frame.cell_at(&from.lerp(to, share));
+            Cell::new(x.clamp(0, frame.width() as i32 - 1), y.clamp(0, frame.height() as i32 - 1))
+        };
+        (cell, end) = (inside(enter), inside(leave));
     }
-    if enter > leave {
-        return;
-    }
-    let cell_at = |share: f64| {
-        let cell = frame.cell_at(&from.lerp(to, share));
-        (cell.x.clamp(0, columns - 1), cell.y.clamp(0, rows - 1))
-    };
-    let ((mut x, mut y), (end_x, end_y)) = (cell_at(enter), cell_at(leave));
     // Per axis the direction of a step, and the shares of the segment to the next border and between
     // borders.
     let axis = |at: f64, cell: i32, end: i32, delta: f64| {
@@ -171,20 +177,20 @@ pub(crate) fn cells_along(
         let border = f64::from(cell + i32::from(step > 0));
         if step == 0 { (0, f64::INFINITY, 0.0) } else { (step, (border - at) / delta, 1.0 / delta.abs()) }
     };
-    let (step_x, mut next_x, width_x) = axis(at.x, x, end_x, delta.x);
-    let (step_y, mut next_y, width_y) = axis(at.y, y, end_y, delta.y);
-    let mut visit = |x: i32, y: i32| visit(y as usize * columns as usize + x as usize);
-    visit(x, y);
+    let (step_x, mut next_x, width_x) = axis(at.x, cell.x, end.x, delta.x);
+    let (step_y, mut next_y, width_y) = axis(at.y, cell.y, end.y, delta.y);
+    let mut visit = |cell: Cell| visit(cell.y as usize * frame.width() + cell.x as usize);
+    visit(cell);
     // Going by cells, not by comparing positions: rounding can never miss the end.
-    while (x, y) != (end_x, end_y) {
-        if y == end_y || (x != end_x && next_x < next_y) {
-            x += step_x;
+    while cell != end {
+        if cell.y == end.y || (cell.x != end.x && next_x < next_y) {
+            cell.x += step_x;
             next_x += width_x;
         } else {
-            y += step_y;
+            cell.y += step_y;
             next_y += width_y;
         }
-        visit(x, y);
+        visit(cell);
     }
 }
 

@@ -173,7 +173,7 @@ impl Steady {
     /// deep as things are thick. They are hidden now, and nothing else would tell.
     fn fill_body(&mut self, end: &Point2<f64>, point: &Point2<f64>, ledger: &mut Ledger) {
         let frame = *ledger.frame();
-        let inward = (point - end).normalize();
+        let Some(inward) = (point - end).try_normalize(1e-9) else { return };
         let layers = (self.settings.body_m / frame.resolution_m() + 1e-6) as usize;
         for layer in 1..=layers {
             let inside = point + inward * (layer as f64 * frame.resolution_m());

@@ -162,8 +162,9 @@ impl Beams<'_> {
                 let along = self.laser.rotation * geometry::rotation(scan.angle_rad(index));
                 match event {
                     Event::Block => {
+                        // A hair behind the surface: one on a border belongs to the solid cell.
                         let end = Point2::from(self.laser.translation.vector)
-                            + along * nalgebra::Vector2::new(f64::from(range_m), 0.0);
+                            + along * nalgebra::Vector2::new(f64::from(range_m) + 1e-3, 0.0);
                         range_m.is_finite() && self.frame.cell_at(&end) == cell
                     }
                     Event::Free => {

@@ -3,15 +3,12 @@
 use super::Pictures;
 use super::canvas::{Area, ink, px, why};
 use super::panel::{self, Chart};
-use crate::layer::Rgb;
+use crate::layer::{CURIOUS, OTHERS, Rgb};
 use crate::view::Trail;
 use nalgebra::Point2;
 use plotters::prelude::*;
 
 const WALL: Rgb = [70, 74, 82];
-const CURIOUS: Rgb = [31, 97, 209];
-/// The dummy's trace is green in the paper, and so are the others here.
-const OTHERS: [Rgb; 3] = [[26, 158, 64], [12, 128, 120], [128, 160, 20]];
 const GOAL: Rgb = [214, 30, 60];
 
 /// Draws the walls, every trail with its start, and the goals.
@@ -24,10 +21,10 @@ pub(super) fn draw(area: &Area, pictures: &Pictures) -> Result<(), String> {
         let corners: Vec<(f64, f64)> = wall.iter().map(pair).collect();
         plot.draw(&Polygon::new(corners, ink(WALL).filled())).map_err(why)?;
     }
-    let mut colours = OTHERS.into_iter().cycle();
-    let mut colour =
-        |trail: &Trail| if trail.is_curious { CURIOUS } else { colours.next().unwrap_or(OTHERS[0]) };
-    let trails: Vec<(&Trail, Rgb)> = pictures.trails.iter().map(|trail| (trail, colour(trail))).collect();
+    // The others' on top: the curious robot goes everywhere.
+    let curious = pictures.trails.iter().filter(|trail| trail.is_curious).map(|trail| (trail, CURIOUS));
+    let others = pictures.trails.iter().filter(|trail| !trail.is_curious).map(|trail| (trail, OTHERS));
+    let trails: Vec<(&Trail, Rgb)> = curious.chain(others).collect();
     for (trail, colour) in &trails {
         line(&chart, trail, *colour)?;
     }

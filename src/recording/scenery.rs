@@ -2,7 +2,7 @@
 
 use super::columns::Place;
 use super::entity;
-use crate::layer::{Layer, Rgb};
+use crate::layer::{CURIOUS, Layer, OTHERS, Rgb};
 use crate::view::{RobotView, Scene, View};
 use geometry::GridFrame;
 use nalgebra::Point2;
@@ -19,15 +19,12 @@ mod order {
     pub(super) const WALLS: f32 = 1.0;
     pub(super) const SIGHT_OUTLINE: f32 = 2.0;
     pub(super) const TRAIL: f32 = 3.0;
+    pub(super) const OTHERS_TRAIL: f32 = 3.5;
     pub(super) const PATH: f32 = 4.0;
     pub(super) const BODY: f32 = 5.0;
     pub(super) const HEADING: f32 = 6.0;
 }
 
-/// The colour of the curious robot and all that is its own.
-const CURIOUS: Rgb = [31, 97, 209];
-/// The colour of the others: green, as in Fig. 4 of the paper.
-const OTHERS: Rgb = [26, 158, 64];
 const LASER: Rgb = [64, 196, 120];
 const WALLS: Rgb = [120, 72, 40];
 const OBSTACLES: Rgb = [200, 90, 20];
@@ -95,8 +92,9 @@ fn house(stream: &RecordingStream, scene: &Scene, view: &View) -> RecordingStrea
 }
 
 fn robot(stream: &RecordingStream, robot: &RobotView) -> RecordingStreamResult<()> {
-    let (own, part) =
-        (if robot.is_curious { CURIOUS } else { OTHERS }, |part| entity::robot(robot.name, part));
+    let part = |part| entity::robot(robot.name, part);
+    let (own, trail_order) =
+        if robot.is_curious { (CURIOUS, order::TRAIL) } else { (OTHERS, order::OTHERS_TRAIL) };
     let body = Points2D::update_fields()
         .with_colors([colour(own, 255)])
         .with_radii([Radius::new_scene_units(robot.radius_m as f32)])
@@ -112,7 +110,7 @@ fn robot(stream: &RecordingStream, robot: &RobotView) -> RecordingStreamResult<(
     let trail = LineStrips2D::update_fields()
         .with_colors([colour(own, 140)])
         .with_radii([Radius::new_ui_points(1.0)])
-        .with_draw_order(order::TRAIL);
+        .with_draw_order(trail_order);
     stream.log_static(part("trail"), &trail)
 }
 

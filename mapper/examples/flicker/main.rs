@@ -136,5 +136,5 @@ fn main() -> anyhow::Result<()> {
     for point in &points {
         println!("| {} | {:.1} | {:.2} |", point.misses_to_free, point.false_changes, point.half_cleared_s);
     }
-    curve::draw(&points, "docs/flicker.svg")
+    curve::draw(&points, concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/flicker.svg"))
 }

@@ -1,9 +1,9 @@
 //! What a broken sensor can send: refused with the maps as they were, or taken for what it means.
 
-use crate::house::House;
+use crate::house::{House, Thing, rectangle};
 use crate::observed::{Observed, assert_sound};
 use geometry::{CellState, GridFrame, LaserReading, Scan, ScanError, Twist};
-use mapper::{Mapper, MapperSettings, OccupancyModel, ReadingError};
+use mapper::{Mapper, MapperSettings, OccupancyModel, ReadingError, SteadySettings};
 use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -138,11 +138,14 @@ fn a_reading_may_repeat_the_last_time() {
     assert_sound(&mapper);
 }
 
+/// What is odd about a reading.
+type Edit = Box<dyn Fn(&mut LaserReading)>;
+
 /// Scans that are odd but lawful.
 #[test]
 fn odd_scans_are_taken() {
     let far = 1e5;
-    let cases: [(&str, Box<dyn Fn(&mut LaserReading)>); 12] = [
+    let cases: [(&str, Edit); 12] = [
         ("no beams", Box::new(|r| r.scan.ranges_m.clear())),
         ("one beam", Box::new(|r| r.scan.ranges_m.truncate(1))),
         (
@@ -215,6 +218,60 @@ fn a_laser_outside_of_the_grid_sees_into_it() {
         free += usize::from(outside.states().cells()[index] == CellState::Free);
     }
     assert!(free > 1500, "{free} cells of the room are seen");
+}
+
+#[test]
+fn settings_that_contradict_are_refused() {
+    let with = |edit: fn(&mut SteadySettings)| {
+        let mut settings = MapperSettings::default();
+        edit(&mut settings.steady);
+        let frame = GridFrame::new(Point2::origin(), 0.1, 4, 4).unwrap();
+        Mapper::new(&settings, frame).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(with(|_| {}), Ok(()));
+    let refused = |what: &str| Err(format!("mapper setting `steady.{what}"));
+    assert_eq!(with(|s| s.misses_to_free = 0), refused("misses_to_free` must be from 1 to 100, not 0"));
+    assert_eq!(with(|s| s.join_m = f64::NAN), refused("join_m` must be from 0 to 10 m, not NaN"));
+    assert_eq!(with(|s| s.confirm_s = -1.0), refused("confirm_s` must be from 0 to 3600 s, not -1"));
+    assert_eq!(
+        with(|s| s.misses_to_free_fresh = 50),
+        refused("misses_to_free_fresh` must be at most steady.misses_to_free, not 50")
+    );
+}
+
+/// Every setting at its limits, in a house where a box comes and goes.
+#[test]
+fn lawful_settings_are_lived_with() {
+    let edits: [fn(&mut SteadySettings); 9] = [
+        |s| s.range_noise_std_m = 0.0,
+        |s| s.surface_depth_m = 0.0,
+        |s| s.surface_depth_m = 10.0,
+        |s| s.body_m = 10.0,
+        |s| (s.join_m, s.max_gap_m) = (0.0, 0.0),
+        |s| (s.join_m, s.max_gap_m) = (10.0, 10.0),
+        |s| (s.hits_to_block, s.misses_to_free, s.misses_to_free_fresh) = (1, 1, 1),
+        |s| {
+            (s.hits_to_block, s.hits_to_block_in_open, s.misses_to_discover, s.misses_to_free) =
+                (100, 100, 100, 100)
+        },
+        |s| (s.hits_to_stand, s.confirm_s) = (u16::MAX, 0.0),
+    ];
+    for (number, edit) in edits.into_iter().enumerate() {
+        let mut house = House::new(0.1, 10.0, 0.01, 90, 1);
+        house.add(Thing { corners: rectangle(4.0, 3.0, 4.4, 3.4), from_s: 3.0, until_s: 6.0 });
+        let mut settings = MapperSettings::default();
+        edit(&mut settings.steady);
+        let mut mapper = Mapper::new(&settings, house.frame).unwrap();
+        for scan in 0..100 {
+            let time_s = f64::from(scan) * 0.1;
+            assert_eq!(
+                mapper.update(&house.reading(time_s, house.tour(time_s), &[])),
+                Ok(()),
+                "case {number}"
+            );
+        }
+        assert_sound(&mapper);
+    }
 }
 
 proptest! {

@@ -41,6 +41,8 @@ struct Book {
     sightings: Vec<Sightings>,
     /// Cells known before the first reading were seen "at time 0", long before it.
     prior: Vec<CellState>,
+    /// Gaps up to this do not count.
+    max_gap: f64,
     now: f64,
 }
 
@@ -58,15 +60,17 @@ impl Book {
         if all.is_empty() {
             return CellStatistics::default();
         }
-        let is_adjacent = |a: usize, b: usize| a != usize::MAX && a + 1 == b;
+        let is_gapless = |a: (usize, f64, bool), b: (usize, f64, bool)| {
+            a.0 != usize::MAX && (a.0 + 1 == b.0 || self.max_gap > 0.0 && b.1 - a.1 <= self.max_gap)
+        };
         if self.prior[index] != CellState::Unknown {
             all.insert(0, (usize::MAX, 0.0, self.prior[index] == CellState::Blocked));
         }
         let mut seen =
             CellStatistics { first_seen: all[0].1, last_seen: all[all.len() - 1].1, ..Default::default() };
         for pair in all.windows(2) {
-            let ((number, time, was_blocked), (next_number, next_time, is_blocked)) = (pair[0], pair[1]);
-            let in_view = is_adjacent(number, next_number);
+            let ((_, time, was_blocked), (_, next_time, is_blocked)) = (pair[0], pair[1]);
+            let in_view = is_gapless(pair[0], pair[1]);
             match (in_view, is_blocked) {
                 (true, true) => seen.watched_blocked += next_time - time,
                 (true, false) => seen.watched_free += next_time - time,
@@ -148,6 +152,7 @@ proptest! {
     fn statistics_and_features_are_those_of_the_book(
         glances in glances(),
         estimator in prop::sample::select(Estimator::ALL.to_vec()),
+        max_gap in prop::sample::select(vec![0.0, 2.5]),
         prior in prop_oneof![
             Just(vec![CellState::Unknown; 24]),
             prop::collection::vec(
@@ -155,11 +160,11 @@ proptest! {
         ],
     ) {
         let frame = frame();
-        let settings = MapperSettings { estimator, ..MapperSettings::default() };
+        let settings = MapperSettings { estimator, max_gap, ..MapperSettings::default() };
         let grid = Grid::from_cells(frame, prior.clone()).unwrap();
         let mut mapper = Mapper::with_prior(&settings, grid).unwrap();
         let mut world: Vec<bool> = prior.iter().map(|&state| state == CellState::Blocked).collect();
-        let mut book = Book { sightings: vec![Vec::new(); frame.len()], prior, now: 0.0 };
+        let mut book = Book { sightings: vec![Vec::new(); frame.len()], prior, max_gap, now: 0.0 };
 
         for (number, glance) in glances.iter().enumerate() {
             book.now += glance.wait;
