@@ -6,18 +6,18 @@ use std::path::{Path, PathBuf};
 
 /// A file or folder that could not be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {source}", path.display())]
+#[error("cannot write {}: {why}", path.display())]
 pub struct OutputError {
     /// The file or folder.
     pub path: PathBuf,
     /// Why not.
-    pub source: io::Error,
+    pub why: io::Error,
 }
 
 impl OutputError {
     /// What went wrong with `path`.
-    pub fn new(path: &Path, source: impl Into<io::Error>) -> Self {
-        Self { path: path.to_owned(), source: source.into() }
+    pub fn new(path: &Path, why: impl Into<io::Error>) -> Self {
+        Self { path: path.to_owned(), why: why.into() }
     }
 }
 
@@ -39,9 +39,9 @@ pub fn write_file(
         file.flush()?;
         fs::rename(&partial, path)
     });
-    outcome.map_err(|source| {
+    outcome.map_err(|why| {
         fs::remove_file(&partial).ok(); // the first error is the one to tell
-        OutputError::new(path, source)
+        OutputError::new(path, why)
     })
 }
 
@@ -51,7 +51,7 @@ pub fn write_file(
 ///
 /// When it cannot be made.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
-    fs::create_dir_all(path).map_err(|source| OutputError::new(path, source))
+    fs::create_dir_all(path).map_err(|why| OutputError::new(path, why))
 }
 
 #[cfg(test)]

@@ -27,12 +27,12 @@ const MAX_PIXELS: u64 = 1 << 26;
 #[derive(Debug, thiserror::Error)]
 pub enum RosMapError {
     /// A file cannot be opened.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {why}", path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// Why not.
-        source: io::Error,
+        why: io::Error,
     },
     /// The YAML file does not hold what it should.
     #[error(
@@ -116,7 +116,7 @@ impl RosMap {
     /// large; nothing of its size is allocated then.
     pub fn read(yaml: &Path) -> Result<Self, RosMapError> {
         let text =
-            fs::read_to_string(yaml).map_err(|source| RosMapError::File { path: yaml.to_owned(), source })?;
+            fs::read_to_string(yaml).map_err(|why| RosMapError::File { path: yaml.to_owned(), why })?;
         let keys: Keys = serde_saphyr::from_str(&text)
             .map_err(|what| RosMapError::Yaml { path: yaml.to_owned(), what: Box::new(what) })?;
         let is_negated = keys.check(yaml)?;

@@ -134,6 +134,8 @@ impl Steady {
         let SteadySettings { hits_to_stand, hits_to_block, hits_to_block_in_open, .. } = self.settings;
         let noise_m = NOISE_STDS * self.settings.range_noise_std_m;
         let is_free = ledger.state(index) == CellState::Free;
+        let frame = *ledger.frame();
+        let is_inside = |point: Point2<f64>| frame.index(frame.cell_at(&point)) == Some(index);
         let near = self.surface_near(end, noise_m, if is_free { hits_to_stand } else { 0 }, ledger);
         if let Some(near) = near {
             self.support(near, None, ledger);
@@ -143,7 +145,11 @@ impl Steady {
             // surface, but it takes more hits to say so.
             Some(_) if is_free => return,
             Some(_) => hits_to_stand,
-            None if is_free && self.surface_near(end, OPEN_M, hits_to_stand, ledger).is_none() => {
+            // In the open one hit is enough, unless it is noise that puts it into this cell.
+            None if is_free
+                && self.surface_near(end, OPEN_M, hits_to_stand, ledger).is_none()
+                && is_inside(end + (point - end).normalize() * noise_m) =>
+            {
                 u16::from(hits_to_block_in_open)
             }
             None => u16::from(hits_to_block),

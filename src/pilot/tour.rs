@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum TourError {
     /// The file cannot be read.
-    #[error("cannot read the tour {}: {source}", path.display())]
+    #[error("cannot read the tour {}: {why}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// What the operating system says.
-        source: std::io::Error,
+        why: std::io::Error,
     },
     /// The text is not a tour.
     #[error("{}: {what}", path.display())]
@@ -49,7 +49,7 @@ impl Tour {
     ///
     /// When the file cannot be read, is not TOML, or has a key or value that makes no sense.
     pub fn load(path: &Path) -> Result<Self, TourError> {
-        let read = |source| TourError::Read { path: path.to_owned(), source };
+        let read = |why| TourError::Read { path: path.to_owned(), why };
         Self::parse(path, &std::fs::read_to_string(path).map_err(read)?)
     }
 

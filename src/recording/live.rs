@@ -36,12 +36,12 @@ pub enum LiveError {
         version: String,
     },
     /// The viewer cannot be started.
-    #[error("cannot start the viewer `{program}`: {source}")]
+    #[error("cannot start the viewer `{program}`: {why}")]
     Start {
         /// The program that was started.
         program: String,
         /// Why not.
-        source: io::Error,
+        why: io::Error,
     },
     /// The viewer came and went.
     #[error("the viewer `{program}` ended at once ({status}); run it by itself to see why")]
@@ -224,10 +224,10 @@ fn spawn(program: &str, uri: &ProxyUri) -> Result<(), LiveError> {
     let program = program.to_owned();
     let mut viewer = match command.spawn() {
         Ok(viewer) => viewer,
-        Err(source) if source.kind() == io::ErrorKind::NotFound => {
+        Err(why) if why.kind() == io::ErrorKind::NotFound => {
             return Err(LiveError::Missing { program, version: rerun::build_info().version.to_string() });
         }
-        Err(source) => return Err(LiveError::Start { program, source }),
+        Err(why) => return Err(LiveError::Start { program, why }),
     };
     let deadline = Instant::now() + START_TIMEOUT;
     while reach(uri).is_err() {

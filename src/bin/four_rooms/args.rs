@@ -15,6 +15,7 @@ use std::path::PathBuf;
 /// summary.json.
 #[derive(Clone, Debug, Parser)]
 #[command(
+    name = "four_rooms",
     version,
     max_term_width = 100,
     after_help = "Exit codes: 0 done, 1 the run failed, 2 wrong arguments or input, 130 interrupted (Ctrl-C; \

@@ -1,8 +1,8 @@
 //! Arguments → the parts of the loop.
 
-use crate::args::Args;
+use crate::args::{Args, DriveChoice};
 use agent::{Agent, AgentSettings};
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
 use curious::pilot::{Autonomous, Keyboard, Tour};
 use curious::ros_map::RosMap;
@@ -137,6 +137,9 @@ pub(crate) struct Parts {
 
 impl Parts {
     pub(crate) fn new(args: &Args) -> Result<Self, Failure> {
+        if args.tour.is_some() && args.drive != DriveChoice::Tour {
+            return Err(input(anyhow!("--tour is for --drive tour")));
+        }
         let spec = worlds::load(&args.world).map_err(input)?;
         let settings = Settings::new(args, &spec);
         let mapper = match &args.map {

@@ -1,0 +1,161 @@
+//! Bad input is one message that says where, what is wrong and what would be right; the exit code
+//! is 2, and nothing is written.
+
+use crate::run::Run;
+
+const WORLD: &str = include_str!("../../worlds/four_rooms.toml");
+const MAP: &str = "image: gone.pgm\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\nnegate: 0\n\
+                   occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+
+/// What the program says to `arguments`, with a file `name` to read.
+#[track_caller]
+fn refused_file(name: &str, text: &str, arguments: &str) -> String {
+    let run = Run::new();
+    run.write(name, text);
+    refuses(&run, arguments, &[name])
+}
+
+#[track_caller]
+fn refused(arguments: &str) -> String {
+    refuses(&Run::new(), arguments, &[])
+}
+
+#[track_caller]
+fn refuses(run: &Run, arguments: &str, files: &[&str]) -> String {
+    let ended = run.ends(arguments);
+    assert_eq!(ended.code, Some(2), "{ended:?}");
+    assert_eq!(ended.stdout, "");
+    assert_eq!(
+        ended.stderr.lines().filter(|line| line.starts_with("error: ")).count(),
+        1,
+        "{}",
+        ended.stderr
+    );
+    assert_eq!(run.names(), files, "something was written");
+    ended.stderr
+}
+
+#[track_caller]
+fn refused_world(right: &str, wrong: &str) -> String {
+    assert!(WORLD.contains(right), "{right} is not in the world");
+    refused_file("house.toml", &WORLD.replacen(right, wrong, 1), "--world house.toml")
+}
+
+#[test]
+fn worlds() {
+    insta::assert_snapshot!(refused("--world nowhere"), @"error: there is no world `nowhere`: it is neither a file nor one of those that ship (four_rooms, toy_on_the_floor, turned_house)");
+    insta::assert_snapshot!(refused_world("cell_m = 0.05", "cell_m = = 0.05"), @"
+    error: not a TOML file: extra `=`
+     --> house.toml:9:10
+      |
+    9 | cell_m = = 0.05           # side of a cell of the truth that maps are measured by
+      |          ^
+      |
+      = help: expected nothing
+    ");
+    insta::assert_snapshot!(refused_world("max_linear_mps", "max_liner_mps"), @"
+    error: unknown key `max_liner_mps`
+      --> house.toml:75:1
+       |
+    75 | max_liner_mps = 0.8
+       | ^^^^^^^^^^^^^ not known here
+       |
+       = help: did you mean `max_linear_mps`? the keys here are: max_linear_mps, max_angular_degps, max_linear_acceleration_mps2, max_angular_acceleration_degps2
+    ");
+    insta::assert_snapshot!(refused_world("radius_m = 0.2 ", "radius_m = \"big\""), @r#"
+    error: `robot.radius_m` has the wrong type
+      --> house.toml:70:12
+       |
+    70 | radius_m = "big"         # robots are round
+       |            ^^^^^ this is the text "big"
+       |
+       = help: it must be a number
+    "#);
+    insta::assert_snapshot!(refused_world("pose_m = [2.0, 2.0]", "pose_m = [6.0, 2.0]"), @"
+    error: the robot `curious` starts in a wall or an obstacle
+      --> house.toml:71:10
+       |
+    38 | [[wall]]
+       | -------- in this one
+    ...
+    71 | pose_m = [6.0, 2.0]     # where its middle starts
+       |          ^^^^^^^^^^ stands here
+       |
+       = help: its middle must keep its radius of 0.2 m away
+    ");
+    for wrong in ["nan", "inf", "-0.1", "1e300"] {
+        let message = refused_world("noise_std_m = 0.0 ", &format!("noise_std_m = {wrong}"));
+        let parts = ["robot.laser.noise_std_m", "house.toml:96:15", "it must be a number from 0 to 1"];
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+    let folder = Run::new();
+    std::fs::create_dir(folder.path("house")).unwrap();
+    insta::assert_snapshot!(refuses(&folder, "--world house", &["house"]), @"error: cannot read the world file `house`: Is a directory (os error 21)");
+}
+
+#[test]
+fn maps() {
+    insta::assert_snapshot!(refused("--map no.yaml"), @"error: cannot read no.yaml: No such file or directory (os error 2)");
+    insta::assert_snapshot!(refused_file("m.yaml", MAP, "--map m.yaml"), @"error: cannot read the picture gone.pgm, which `image` in m.yaml names: No such file or directory (os error 2)");
+    let negative = MAP.replace("resolution: 0.05", "resolution: -1");
+    insta::assert_snapshot!(refused_file("m.yaml", &negative, "--map m.yaml"), @"error: cannot read the map m.yaml: `resolution` is -1, but must be the side of a pixel in metres, above 0");
+    for broken in ["image: [", "resolution: 0.05", "", "\u{0}"] {
+        let message = refused_file("m.yaml", broken, "--map m.yaml");
+        assert!(message.contains("cannot read the map m.yaml") && message.contains("line 1"), "{message}");
+    }
+    let picture = Run::new();
+    picture.write("m.yaml", MAP);
+    picture.write("gone.pgm", "P5\n1000000 1000000\n255\n");
+    insta::assert_snapshot!(refuses(&picture, "--map m.yaml", &["gone.pgm", "m.yaml"]), @"error: cannot read the picture gone.pgm, which `image` in m.yaml names: 1000000 × 1000000 pixels are too many: at most 67108864");
+}
+
+#[test]
+fn tours() {
+    insta::assert_snapshot!(refused("--drive tour --tour no.toml"), @"error: cannot read the tour no.toml: No such file or directory (os error 2)");
+    insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [\n  [1, 2],\n  [3]\n]", "--drive tour --tour t.toml"), @"
+    error: t.toml: TOML parse error at line 3, column 3
+      |
+    3 |   [3]
+      |   ^^^
+    invalid length 1, expected an array of length 2
+    ");
+    insta::assert_snapshot!(refused_file("t.toml", "waypoint_m = [[1, 2]]", "--drive tour --tour t.toml"), @"
+    error: t.toml: TOML parse error at line 1, column 1
+      |
+    1 | waypoint_m = [[1, 2]]
+      | ^^^^^^^^^^
+    unknown field `waypoint_m`, expected `repeat` or `waypoints_m`
+    ");
+    insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [[1, 2]]", "--tour t.toml"), @"error: --tour is for --drive tour");
+}
+
+#[test]
+fn command_lines() {
+    for (arguments, says) in [
+        ("--duration=0", "a time above 0"),
+        ("--duration=-1", "a time above 0"),
+        ("--duration=nan", "a time above 0"),
+        ("--duration=1001h", "at most 1000h"),
+        ("--duration=ten", "as in 90s, 20m, 1h"),
+        ("--speed=0", "a factor above 0, or max"),
+        ("--speed=-2", "a factor above 0, or max"),
+        ("--speed=inf", "a factor above 0, or max"),
+        ("--seed=-1", "--seed <SEED>"),
+        ("--seed=1.5", "--seed <SEED>"),
+        ("--strategy=clever", "[possible values: curious, recency, poisson, random, coin]"),
+        ("--estimator=guess", "[possible values: paper, paper-all, two-state]"),
+        ("--occupancy=loose", "[possible values: steady, naive]"),
+        ("--drive=train", "[possible values: agent, keyboard, tour]"),
+        ("--rrd a.rrd --no-rrd", "'--rrd <FILE>' cannot be used with '--no-rrd'"),
+        ("--connect=", "a value is required for '--connect [<ADDRESS>]'"),
+        ("--sped=2", "a similar argument exists: '--speed'"),
+    ] {
+        let message = refused(arguments);
+        assert!(message.contains(says), "{arguments}: {message}");
+    }
+}
+
+#[test]
+fn a_keyboard_without_a_terminal() {
+    insta::assert_snapshot!(refused("--drive keyboard"), @"error: --drive keyboard needs a terminal to read keys from; use --drive agent or --drive tour here");
+}

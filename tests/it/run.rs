@@ -1,0 +1,157 @@
+//! One run of the program, in a folder of its own.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use tempfile::TempDir;
+
+/// A folder to run in. Everything that comes out goes to `out` in it, unless the arguments say
+/// otherwise.
+pub(crate) struct Run {
+    folder: TempDir,
+}
+
+/// How a run ended, and what it said.
+#[derive(Debug)]
+pub(crate) struct Ended {
+    pub(crate) code: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl From<Output> for Ended {
+    fn from(output: Output) -> Self {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Self { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    }
+}
+
+impl Run {
+    pub(crate) fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    /// A finished run without a recording, which has to go well; arguments are separated by spaces.
+    pub(crate) fn quiet(arguments: &str) -> Self {
+        let run = Self::new();
+        run.goes_well(&format!("--quiet --no-rrd {arguments}"));
+        run
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// A file in the output folder.
+    pub(crate) fn out(&self, name: &str) -> PathBuf {
+        self.path("out").join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path(name), text).unwrap();
+    }
+
+    /// The program, ready to run.
+    pub(crate) fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_four_rooms"));
+        command.current_dir(self.folder.path()).args(arguments.split_whitespace());
+        if !arguments.contains("--out") {
+            command.args(["--out", "out"]);
+        }
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    pub(crate) fn ends(&self, arguments: &str) -> Ended {
+        self.command(arguments).output().unwrap().into()
+    }
+
+    pub(crate) fn goes_well(&self, arguments: &str) -> Ended {
+        let ended = self.ends(arguments);
+        assert_eq!(ended.code, Some(0), "{arguments}: {ended:?}");
+        ended
+    }
+
+    pub(crate) fn starts(&self, arguments: &str) -> Child {
+        self.command(arguments).spawn().unwrap()
+    }
+
+    pub(crate) fn summary(&self) -> Summary {
+        Summary(serde_json::from_slice(&std::fs::read(self.out("summary.json")).unwrap()).unwrap())
+    }
+
+    /// The names of what lies in the run's folder, sorted.
+    pub(crate) fn names(&self) -> Vec<String> {
+        names(self.folder.path())
+    }
+
+    /// The rows of cell_statistics.csv.
+    pub(crate) fn cells(&self) -> Vec<CellRow> {
+        let mut table = csv::Reader::from_path(self.out("cell_statistics.csv")).unwrap();
+        table.deserialize().map(|row| row.unwrap()).collect()
+    }
+}
+
+/// The names of what lies in a folder, sorted.
+pub(crate) fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// What the tests read of a row of cell_statistics.csv.
+#[derive(serde::Deserialize)]
+pub(crate) struct CellRow {
+    pub(crate) x_m: f64,
+    pub(crate) y_m: f64,
+    pub(crate) column: usize,
+    pub(crate) row: usize,
+    pub(crate) state: String,
+    block_events: u32,
+    free_events: u32,
+    block_events_after_gap: u32,
+    free_events_after_gap: u32,
+    pub(crate) interval_s: f64,
+    pub(crate) rate_hz: f64,
+    pub(crate) recency_s: f64,
+}
+
+impl CellRow {
+    /// How often something came, and how often it went, in view or found later.
+    pub(crate) fn events(&self) -> [u32; 2] {
+        let (blocked, freed) = (self.block_events, self.free_events);
+        [blocked + self.block_events_after_gap, freed + self.free_events_after_gap]
+    }
+}
+
+/// summary.json.
+#[derive(Clone, Debug)]
+pub(crate) struct Summary(Value);
+
+impl Summary {
+    /// The value at a path such as `/goals/reached`.
+    pub(crate) fn at(&self, path: &str) -> &Value {
+        self.0.pointer(path).unwrap_or_else(|| panic!("{path} is not in the summary"))
+    }
+
+    pub(crate) fn number(&self, path: &str) -> f64 {
+        self.at(path).as_f64().unwrap_or_else(|| panic!("{path} is {}", self.at(path)))
+    }
+
+    pub(crate) fn text(&self, path: &str) -> &str {
+        self.at(path).as_str().unwrap_or_else(|| panic!("{path} is {}", self.at(path)))
+    }
+
+    pub(crate) fn hash(&self) -> &str {
+        self.text("/map_hash")
+    }
+
+    /// Time, coverage and map quality.
+    pub(crate) fn curve(&self) -> Vec<[f64; 3]> {
+        let points = self.at("/curve").as_array().unwrap();
+        let numbers =
+            |point: &Value| ["time_s", "coverage", "map_quality"].map(|k| point[k].as_f64().unwrap());
+        points.iter().map(numbers).collect()
+    }
+}

@@ -1,0 +1,77 @@
+//! What the program says, and to whom.
+
+use crate::recording::Recording;
+use crate::run::Run;
+use std::net::TcpListener;
+
+#[test]
+fn quiet_is_silent() {
+    let ended = Run::new().goes_well("--quiet --no-rrd --duration 30");
+    assert_eq!((ended.stdout.as_str(), ended.stderr.as_str()), ("", ""));
+}
+
+#[test]
+fn the_end_is_told_in_sentences_and_progress_in_plain_lines() {
+    let ended = Run::new().goes_well("--no-rrd --duration 120");
+    let lines: Vec<&str> = ended.stdout.lines().collect();
+    assert!(lines[0].starts_with("agent in four rooms: 2.0 simulated minutes in "), "{}", lines[0]);
+    for word in ["seen", "map", "changes", "goals", "chose", "contacts", "files"] {
+        assert!(lines.iter().any(|line| line.trim_start().starts_with(word)), "{word}: {}", ended.stdout);
+    }
+    let progress: Vec<&str> = ended.stderr.lines().collect();
+    assert!(!progress.is_empty());
+    for line in progress {
+        assert!(line.contains(" of 120 s, ") && line.contains(" x real time"), "{line:?}");
+        assert!(line.chars().all(|character| !character.is_control()), "{line:?}");
+    }
+}
+
+#[test]
+fn worlds_are_listed() {
+    insta::assert_snapshot!(Run::new().goes_well("--list-worlds").stdout, @"
+    four_rooms         Four rooms joined by doors; a dummy robot goes back and forth along a wall of the upper right one.
+    toy_on_the_floor   The four rooms, where one box appears after five minutes and another goes after ten.
+    turned_house       The four rooms turned by 10 degrees, with 1 cm of range noise and a box that goes: a bench for false changes.
+    ");
+}
+
+#[test]
+fn the_version_is_told() {
+    let expected = concat!("four_rooms ", env!("CARGO_PKG_VERSION"), "\n");
+    assert_eq!(Run::new().goes_well("--version").stdout, expected);
+}
+
+#[test]
+fn help_names_every_choice() {
+    let help = Run::new().goes_well("--help").stdout;
+    let choices = "--world --map --seed --duration --drive --tour --strategy --speed --estimator --occupancy \
+                   --out --rrd --no-rrd --view --connect --quiet --list-worlds";
+    for choice in choices.split_whitespace() {
+        assert!(help.contains(choice), "{choice} is not in\n{help}");
+    }
+    assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
+}
+
+/// A port where nobody listens.
+fn free_port() -> u16 {
+    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+}
+
+#[test]
+fn a_missing_viewer_is_one_note_and_the_run_goes_on() {
+    let (run, port) = (Run::new(), free_port());
+    let ended = run.goes_well(&format!("--duration 30 --connect 127.0.0.1:{port}"));
+    let notes: Vec<&str> = ended.stderr.lines().filter(|line| line.starts_with("note: ")).collect();
+    assert_eq!(notes.len(), 1, "{}", ended.stderr);
+    let says = format!("note: no viewer answers at rerun+http://127.0.0.1:{port}/proxy: ");
+    assert!(notes[0].starts_with(&says), "{}", notes[0]);
+    assert!((Recording::read(&run.out("four_rooms.rrd")).end_s() - 30.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_missing_viewer_without_a_recording_is_an_error() {
+    let ended = Run::new().ends(&format!("--no-rrd --duration 30 --connect 127.0.0.1:{}", free_port()));
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(ended.stderr.starts_with("error: no viewer answers at "), "{ended:?}");
+    assert_eq!(ended.stderr.lines().count(), 1, "{ended:?}");
+}

@@ -1,0 +1,52 @@
+//! What the robot must achieve in the shipped four rooms in twenty minutes, whatever the seed.
+
+use crate::run::Run;
+
+#[track_caller]
+fn at_least(what: &str, value: f64, bound: f64) {
+    assert!(value >= bound, "{what} is {value}, less than {bound}");
+}
+
+#[track_caller]
+fn at_most(what: &str, value: f64, bound: f64) {
+    assert!(value <= bound, "{what} is {value}, more than {bound}");
+}
+
+fn holds(seed: u64) {
+    let summary = Run::quiet(&format!("--seed {seed}")).summary();
+    for [time_s, coverage, map_quality] in summary.curve() {
+        if time_s >= 600.0 {
+            at_least(&format!("coverage at {time_s} s"), coverage, 0.99);
+            at_least(&format!("map quality at {time_s} s"), map_quality, 0.99);
+        }
+    }
+    at_least("map quality", summary.number("/map_quality"), 0.995);
+    at_least("balanced accuracy in view", summary.number("/map_quality_changing/in_view"), 0.9);
+    at_most("false changes", summary.number("/false_change_events"), 0.0);
+    at_least("rate AUC", summary.number("/rate_auc"), 0.985);
+    at_most("rate error", summary.number("/rate_error"), 0.30);
+    at_most("collisions", summary.number("/collisions/moving"), 0.0);
+    let [reached, given_up] = ["/goals/reached", "/goals/given_up"].map(|path| summary.number(path));
+    at_least("goals reached", reached, 30.0);
+    at_most("share of goals given up", given_up / (reached + given_up), 0.02);
+    for (kind, bound_s) in [("block", 0.4), ("free", 1.2)] {
+        at_least(kind, summary.number(&format!("/{kind}_latency/shown")), 1000.0);
+        at_most(kind, summary.number(&format!("/{kind}_latency/median_s")), bound_s);
+        at_most(kind, summary.number(&format!("/{kind}_latency/never_noticed")), 0.05);
+    }
+}
+
+#[test]
+fn targets_hold_with_seed_0() {
+    holds(0);
+}
+
+#[test]
+fn targets_hold_with_seed_1() {
+    holds(1);
+}
+
+#[test]
+fn targets_hold_with_seed_2() {
+    holds(2);
+}

@@ -1,0 +1,47 @@
+//! A scripted tour: the paper's Figure 5 comes of it.
+
+use crate::run::Run;
+
+#[test]
+fn the_shipped_tour_finds_high_rates_on_the_dummys_way_and_none_on_walls() {
+    let run = Run::quiet("--drive tour");
+    let summary = run.summary();
+    assert_eq!((summary.text("/drive"), summary.text("/ended_by")), ("tour", "duration"));
+    assert!(summary.number("/coverage") > 0.99);
+    assert_eq!(summary.number("/collisions/moving"), 0.0);
+
+    // The dummy goes between (7.2, 11.5) and (11.2, 11.5) and is 0.2 m in radius.
+    let (mut way, mut changing_on_way, mut elsewhere) = (0, 0, 0);
+    let mut rates_hz = Vec::new();
+    for cell in run.cells() {
+        let off_x_m = (cell.x_m - cell.x_m.clamp(7.2, 11.2)).abs();
+        let off_m = off_x_m.hypot(cell.y_m - 11.5);
+        if off_m < 0.15 {
+            way += 1;
+            changing_on_way += usize::from(cell.rate_hz > 0.0);
+            if off_x_m == 0.0 && (8.0..10.4).contains(&cell.x_m) {
+                rates_hz.push(cell.rate_hz);
+            }
+        } else if off_m > 0.3 {
+            elsewhere += usize::from(cell.rate_hz > 0.0 || cell.events() != [0, 0]);
+        }
+    }
+    assert!(way > 400, "{way}");
+    assert!(changing_on_way as f64 > 0.95 * way as f64, "{changing_on_way} of {way} cells on the way change");
+    assert_eq!(elsewhere, 0, "cells change where nothing moves");
+    // Back and forth over 4 m at 0.3 m/s takes about 30 s with the turns, and passes twice.
+    rates_hz.sort_by(f64::total_cmp);
+    let median_hz = rates_hz[rates_hz.len() / 2];
+    assert!((0.04..0.1).contains(&median_hz), "{median_hz} Hz");
+}
+
+#[test]
+fn a_tour_of_ones_own_ends_the_run() {
+    let run = Run::new();
+    run.write("mine.toml", "waypoints_m = [[4.0, 2.0], [4.0, 4.0]]\nrepeat = false\n");
+    run.goes_well("--quiet --no-rrd --drive tour --tour mine.toml");
+    let summary = run.summary();
+    assert_eq!(summary.text("/ended_by"), "tour");
+    assert_eq!(summary.number("/goals/reached"), 2.0);
+    assert!((4.0..30.0).contains(&summary.number("/simulated_s")), "{}", summary.number("/simulated_s"));
+}

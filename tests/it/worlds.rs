@@ -1,0 +1,37 @@
+//! The other worlds that ship.
+
+use crate::run::Run;
+
+#[test]
+fn things_that_come_and_go_are_noticed() {
+    let summary = Run::quiet("--world toy_on_the_floor").summary();
+    let things = summary.at("/things").as_array().unwrap();
+    let told: Vec<_> = things.iter().map(|t| (t["name"].as_str(), t["appeared"].as_bool())).collect();
+    assert_eq!(told, [(Some("toy"), Some(true)), (Some("parcel"), Some(false))]);
+    for (thing, happened_s) in things.iter().zip([300.0, 600.0]) {
+        let time_s = |key: &str| thing[key].as_f64().unwrap_or_else(|| panic!("{key} never: {thing}"));
+        assert!((time_s("happened_s") - happened_s).abs() < 0.2, "{thing}");
+        assert!(time_s("in_view_s") >= time_s("happened_s"), "{thing}");
+        assert!(time_s("noticed_s") >= time_s("in_view_s"), "{thing}");
+        assert!(time_s("right_s") >= time_s("noticed_s"), "{thing}");
+        assert!(time_s("right_s") <= time_s("in_view_s") + 3.0, "{thing}");
+    }
+    assert!(summary.number("/map_quality") > 0.99);
+}
+
+#[test]
+fn walls_that_stand_askew_and_a_noisy_laser_make_few_false_changes() {
+    let summary = Run::quiet("--world turned_house --duration 10m").summary();
+    assert!(summary.number("/coverage") >= 0.98, "{}", summary.number("/coverage"));
+    assert!(summary.number("/static_cells") > 40_000.0);
+    assert!(summary.number("/false_change_events") <= 20.0, "{}", summary.number("/false_change_events"));
+    assert_eq!(summary.number("/collisions/moving"), 0.0);
+}
+
+#[test]
+fn a_world_file_runs_as_the_shipped_world_does() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/four_rooms.toml");
+    let [by_name, by_path] = ["four_rooms", file]
+        .map(|world| Run::quiet(&format!("--duration 20 --world {world}")).summary().hash().to_owned());
+    assert_eq!(by_name, by_path);
+}
