@@ -9,7 +9,7 @@
 
 // The program's own way from arguments to parts: the bench must not measure another robot.
 #[path = "../src/bin/four_rooms/args.rs"]
-#[expect(dead_code, reason = "a bench reads only some of the arguments")]
+#[expect(unused_imports, reason = "its tests run with the program")]
 mod args;
 #[path = "../src/bin/four_rooms/parts.rs"]
 #[expect(dead_code, reason = "a bench is driven by the agent alone")]

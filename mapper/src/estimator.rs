@@ -74,7 +74,9 @@ fn two_state(seen: &CellStatistics) -> f64 {
 /// The probability that a cell changed since it was last seen (equation 2, with the λ of the
 /// text): 1 − e^(−elapsed/T).
 pub(crate) fn change_probability(elapsed: f64, rate: f64) -> f64 {
-    -libm::expm1(-elapsed * rate)
+    // Summed over thousands of cells at every reading: `exp` takes half the time of `expm1`, and its
+    // error of 1e-16 is nothing beside the error of any rate.
+    1.0 - libm::exp(-elapsed * rate)
 }
 
 #[cfg(test)]

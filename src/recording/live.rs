@@ -21,6 +21,17 @@ pub enum Live {
     Connect(String),
 }
 
+impl Live {
+    /// The running viewer at `address`.
+    ///
+    /// # Errors
+    ///
+    /// When the address makes no sense. Nobody has to be there yet.
+    pub fn at(address: &str) -> Result<Self, LiveError> {
+        parse(address).map(|_| Self::Connect(address.into()))
+    }
+}
+
 /// Why a viewer cannot be shown anything.
 #[derive(Debug, thiserror::Error)]
 pub enum LiveError {

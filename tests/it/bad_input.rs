@@ -147,7 +147,8 @@ fn command_lines() {
         ("--occupancy=loose", "[possible values: steady, naive]"),
         ("--drive=train", "[possible values: agent, keyboard, tour]"),
         ("--rrd a.rrd --no-rrd", "'--rrd <FILE>' cannot be used with '--no-rrd'"),
-        ("--connect=", "a value is required for '--connect [<ADDRESS>]'"),
+        ("--connect=", "'--connect [<ADDRESS>]'"),
+        ("--connect=viewer:here", "`viewer:here` is not the address of a viewer: "),
         ("--sped=2", "a similar argument exists: '--speed'"),
     ] {
         let message = refused(arguments);

@@ -3,6 +3,7 @@
 
 mod recording;
 mod run;
+mod terminal;
 
 mod bad_input;
 mod choices;

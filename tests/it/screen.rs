@@ -75,3 +75,29 @@ fn a_missing_viewer_without_a_recording_is_an_error() {
     assert!(ended.stderr.starts_with("error: no viewer answers at "), "{ended:?}");
     assert_eq!(ended.stderr.lines().count(), 1, "{ended:?}");
 }
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_terminal_shows_a_bar_that_goes_away() {
+    let run = Run::new();
+    let ended = crate::terminal::run(&run, "--no-rrd --duration 300", |_| ());
+    let Some(ended) = ended else { return };
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    let (before, after) = ended.stdout.split_once("agent in four rooms: 5.0").unwrap();
+    assert!(before.contains("█") && before.contains(" of 300 s, "), "{before:?}");
+    assert!(!after.contains("█"), "{after:?}");
+}
+
+/// As behind `| head`: both ends of the pipe are there, and then one is not.
+#[test]
+fn a_run_goes_on_when_nobody_listens() {
+    let run = Run::new();
+    let mut child = run.starts("--no-rrd --duration 30");
+    drop((child.stdout.take(), child.stderr.take()));
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    assert_eq!(run.summary().number("/simulated_s"), 30.0);
+
+    let mut child = run.starts("--list-worlds");
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}

@@ -1,8 +1,9 @@
 //! The command line.
 
 use agent::StrategyChoice;
-use clap::builder::{NonEmptyStringValueParser, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
+use curious::recording::Live;
 use mapper::{Estimator, OccupancyModel};
 use std::path::PathBuf;
 
@@ -85,8 +86,8 @@ pub(crate) struct Args {
     pub(crate) view: bool,
 
     /// Watch live in a viewer that runs already, here or elsewhere
-    #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "127.0.0.1:9876", value_parser = NonEmptyStringValueParser::new(), help_heading = "What comes out")]
-    pub(crate) connect: Option<String>,
+    #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "127.0.0.1:9876", value_parser = Live::at, help_heading = "What comes out")]
+    pub(crate) connect: Option<Live>,
 
     /// Print nothing but errors
     #[arg(long, short, help_heading = "What comes out")]

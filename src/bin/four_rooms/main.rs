@@ -18,6 +18,8 @@ use mapper::Mapper;
 use parts::{Failure, Parts};
 use progress::Progress;
 use sim::physics::PhysicsWorld;
+use std::fmt::Display;
+use std::io::{Write, stderr, stdout};
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -29,8 +31,8 @@ fn main() -> ExitCode {
     if args.list_worlds {
         for (name, _) in worlds::SHIPPED {
             match worlds::load(name) {
-                Ok(spec) => println!("{name:<18} {}", spec.description()),
-                Err(error) => eprintln!("{error}"),
+                Ok(spec) => say(stdout(), format_args!("{name:<18} {}", spec.description())),
+                Err(error) => say(stderr(), error),
             }
         }
         return ExitCode::SUCCESS;
@@ -39,14 +41,19 @@ fn main() -> ExitCode {
         Ok(Ended::Interrupted) => ExitCode::from(130),
         Ok(_) => ExitCode::SUCCESS,
         Err(Failure::Input(error)) => {
-            eprintln!("error: {error:#}");
+            say(stderr(), format_args!("error: {error:#}"));
             ExitCode::from(2)
         }
         Err(Failure::Run(error)) => {
-            eprintln!("error: {error:#}");
+            say(stderr(), format_args!("error: {error:#}"));
             ExitCode::FAILURE
         }
     }
+}
+
+/// Says `what` to whoever listens. When nobody does any more, as behind `| head`, the run goes on.
+fn say(mut to: impl Write, what: impl Display) {
+    let _ = writeln!(to, "{what}");
 }
 
 /// Why a run ended.
@@ -87,7 +94,7 @@ fn live(
     let recorder = recorder(args, &world)?;
     let mut observer = Observer::new(&world, recorder);
     if let Some(problem) = observer.live_problem() {
-        eprintln!("note: {problem}");
+        say(stderr(), format_args!("note: {problem}"));
     }
     let is_interrupted = Arc::new(AtomicBool::new(false));
     let flag = is_interrupted.clone();
@@ -95,7 +102,7 @@ fn live(
 
     let is_keyboard = args.drive == DriveChoice::Keyboard;
     if is_keyboard && !args.quiet {
-        eprint!("arrows or WASD drive, space stops, Q ends the run\r\n");
+        say(stderr(), "arrows or WASD drive, space stops, Q ends the run\r");
     }
     let speed = args.speed.unwrap_or(if is_keyboard { 1.0 } else { f64::INFINITY });
     let mut progress = Progress::new(args.duration, args.quiet, is_keyboard);
@@ -125,14 +132,13 @@ fn live(
     drop(pilot); // gives the terminal back before anything is printed
     output::write(&args.out, &world, &mapper, &observer, &summary)?;
     if !args.quiet {
-        println!("{summary}");
-        println!("  files     {}", args.out.display());
+        say(stdout(), format_args!("{summary}\n  files     {}", args.out.display()));
     }
     Ok(ended)
 }
 
 fn recorder(args: &Args, world: &PhysicsWorld) -> Result<Option<Recorder>, Failure> {
-    let mut live: Vec<Live> = args.connect.clone().map(Live::Connect).into_iter().collect();
+    let mut live = Vec::from_iter(args.connect.clone());
     live.extend(args.view.then_some(Live::Spawn));
     let file = (!args.no_rrd).then(|| args.rrd.clone().unwrap_or_else(|| args.out.join("four_rooms.rrd")));
     if file.is_none() && live.is_empty() {

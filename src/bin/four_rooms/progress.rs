@@ -62,7 +62,7 @@ impl Progress {
                 self.bar.set_position(time_s as u64);
                 self.bar.set_message(line);
             }
-            _ => eprint!("{line}\r\n"), // raw terminals need the return
+            _ => crate::say(std::io::stderr(), format_args!("{line}\r")), // raw terminals need the return
         }
     }
 
