@@ -133,16 +133,17 @@ impl SteadySettings {
 
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
         let error = |key, expected, found: String| Err(SettingsError { key, expected, found });
+        // Every hit looks around as far as the noise reaches.
         let lengths = [
-            ("steady.range_noise_std_m", self.range_noise_std_m),
-            ("steady.surface_depth_m", self.surface_depth_m),
-            ("steady.body_m", self.body_m),
-            ("steady.join_m", self.join_m),
-            ("steady.max_gap_m", self.max_gap_m),
+            ("steady.range_noise_std_m", self.range_noise_std_m, 0.5, "from 0 to 0.5 m"),
+            ("steady.surface_depth_m", self.surface_depth_m, 0.5, "from 0 to 0.5 m"),
+            ("steady.body_m", self.body_m, 10.0, "from 0 to 10 m"),
+            ("steady.join_m", self.join_m, 10.0, "from 0 to 10 m"),
+            ("steady.max_gap_m", self.max_gap_m, 10.0, "from 0 to 10 m"),
         ];
-        for (key, length_m) in lengths {
-            if !(0.0..=10.0).contains(&length_m) {
-                return error(key, "from 0 to 10 m", length_m.to_string());
+        for (key, length_m, most_m, expected) in lengths {
+            if !(0.0..=most_m).contains(&length_m) {
+                return error(key, expected, length_m.to_string());
             }
         }
         if !(0.0..=3600.0).contains(&self.confirm_s) {

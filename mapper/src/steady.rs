@@ -107,8 +107,18 @@ impl Steady {
     fn hit(&mut self, beam: usize, cloud: &PointCloud, ledger: &mut Ledger) {
         let Some(end) = self.outline.ends[beam] else { return };
         let frame = *ledger.frame();
-        let point = self.outline.behind(beam, &end, self.settings.surface_depth_m, cloud);
         let place = |point: Point2<f64>| frame.index(frame.cell_at(&point));
+        // Most beams end on walls that are long known. Where the beam ends in a cell whose surface has
+        // settled, or right before it, the normal has nothing to add.
+        let ahead = end + cloud.directions[beam] * (self.settings.surface_depth_m / 4.0);
+        if let Some(index) = place(ahead).filter(|&index| self.has_settled(index, ledger)) {
+            self.support(index, None, ledger);
+            if self.outline.joined[beam] {
+                self.support_between(beam, ahead, cloud, ledger);
+            }
+            return;
+        }
+        let point = self.outline.behind(beam, &end, self.settings.surface_depth_m, cloud);
         // A surface in a cell is a sight of it, even where the hit counts for the cell behind: a cell
         // that something moves into stays in view.
         if let Some(index) = place(end).filter(|&index| ledger.state(index) != CellState::Unknown) {
@@ -127,6 +137,12 @@ impl Steady {
         if self.outline.joined[beam] {
             self.support_between(beam, point, cloud, ledger);
         }
+    }
+
+    /// Whether a cell holds a standing surface that further hits would hardly move.
+    fn has_settled(&self, index: usize, ledger: &Ledger) -> bool {
+        let settled = self.settings.hits_to_stand.max(2 * SURFACE_MEMORY);
+        self.surfaces[index].hits >= settled && ledger.state(index) == CellState::Blocked
     }
 
     /// Counts a hit for a cell that is not blocked.

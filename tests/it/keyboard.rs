@@ -10,6 +10,7 @@ const DRIVE: &str = "--drive keyboard --no-rrd --speed 4";
 fn keys_drive_and_q_ends() {
     let run = Run::new();
     let ended = terminal::run(&run, DRIVE, |keys| {
+        starts(&run);
         (0..20).for_each(|_| keys.press("w"));
         keys.press("q");
     });
@@ -26,6 +27,7 @@ fn keys_drive_and_q_ends() {
 fn without_a_key_it_stands_and_ctrl_c_is_a_key() {
     let run = Run::new();
     let ended = terminal::run(&run, &format!("{DRIVE} --quiet"), |keys| {
+        starts(&run);
         wait(1000);
         keys.press("\u{3}");
     });
@@ -34,6 +36,15 @@ fn without_a_key_it_stands_and_ctrl_c_is_a_key() {
     let summary = run.summary();
     assert_eq!(summary.text("/ended_by"), "person");
     assert_eq!(summary.hash(), stands(summary.number("/simulated_s")), "it moved by itself");
+}
+
+/// Waits until the program has taken over the keys: its folder comes next.
+fn starts(run: &Run) {
+    let is_there = (0..600).any(|_| {
+        wait(50);
+        run.path("out").exists()
+    });
+    assert!(is_there, "it does not start");
 }
 
 /// The hash of a robot that stands for as long.

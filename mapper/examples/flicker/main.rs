@@ -24,7 +24,7 @@ const SCANS: u32 = 6000;
 const PERIOD_S: f64 = 0.1;
 
 const HEADER: &str = "| house | map | false changes | repeated | box in the open: half, 90 % free | \
-                      box at a wall | block event | free event | missed % |";
+                      box at a wall | free event | missed % |";
 
 /// A house to tour.
 #[derive(Clone, Copy)]
@@ -118,13 +118,12 @@ fn row(bench: Bench, occupancy: OccupancyModel) -> anyhow::Result<String> {
         write!(row, " {half_s:.1}, {most_s:.1} |")?;
     }
     let mut latency = latencies(bench.house(3), &settings)?;
-    let (block_s, free_s) = (median(&mut latency.block_s), median(&mut latency.free_s));
-    write!(row, " {block_s:.1} | {free_s:.1} | {:.1} |", 100.0 * latency.missed_share())?;
+    write!(row, " {:.1} | {:.1} |", median(&mut latency.free_s), 100.0 * latency.missed_share())?;
     Ok(row)
 }
 
 fn main() -> anyhow::Result<()> {
-    println!("{HEADER}\n|---|---|---|---|---|---|---|---|---|");
+    println!("{HEADER}\n|---|---|---|---|---|---|---|---|");
     for bench in BENCHES {
         for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
             println!("{}", row(bench, occupancy)?);

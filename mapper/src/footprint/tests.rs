@@ -90,7 +90,7 @@ impl Case {
         if off_beam_m < TIE_M {
             return None;
         }
-        let is_full = self.increment_rad.abs() * beams as f64 > TAU - 1e-9;
+        let is_full = self.increment_rad.abs() * (beams as f64 + 1e-3) > TAU;
         if beam + 1 >= beams && !is_full {
             return Some(false);
         }

@@ -245,7 +245,7 @@ fn lawful_settings_are_lived_with() {
     let edits: [fn(&mut SteadySettings); 9] = [
         |s| s.range_noise_std_m = 0.0,
         |s| s.surface_depth_m = 0.0,
-        |s| s.surface_depth_m = 10.0,
+        |s| (s.range_noise_std_m, s.surface_depth_m) = (0.5, 0.5),
         |s| s.body_m = 10.0,
         |s| (s.join_m, s.max_gap_m) = (0.0, 0.0),
         |s| (s.join_m, s.max_gap_m) = (10.0, 10.0),

@@ -93,9 +93,8 @@ fn live(
     make_folder(&args.out).map_err(anyhow::Error::from)?;
     let recorder = recorder(args, &world)?;
     let mut observer = Observer::new(&world, recorder);
-    if let Some(problem) = observer.live_problem() {
-        say(stderr(), format_args!("note: {problem}"));
-    }
+    let told = observer.live_problem();
+    told.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
     let is_interrupted = Arc::new(AtomicBool::new(false));
     let flag = is_interrupted.clone();
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
@@ -125,6 +124,9 @@ fn live(
     })?;
     let wall_s = start.elapsed().as_secs_f64();
     progress.finish();
+    if let Some(problem) = observer.live_problem().filter(|problem| Some(problem) != told.as_ref()) {
+        say(stderr(), format_args!("note: {problem}"));
+    }
 
     let now = Now { pose: world.true_pose(), features: mapper.features(), mapper: &mapper };
     observer.finish(&world, &now, &pilot).map_err(anyhow::Error::from)?;
