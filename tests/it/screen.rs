@@ -12,7 +12,7 @@ fn quiet_is_silent() {
 
 #[test]
 fn the_end_is_told_in_sentences_and_progress_in_plain_lines() {
-    let ended = Run::new().goes_well("--no-rrd --duration 120");
+    let ended = Run::new().goes_well("--no-rrd --duration 120 --speed 100");
     let lines: Vec<&str> = ended.stdout.lines().collect();
     assert!(lines[0].starts_with("agent in four rooms: 2.0 simulated minutes in "), "{}", lines[0]);
     for word in ["seen", "map", "changes", "goals", "chose", "contacts", "files"] {

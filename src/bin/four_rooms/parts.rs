@@ -56,6 +56,9 @@ const HIDING_S: f64 = 8.0;
 /// is a robot's diameter, and following the dummy for longer leaves other rooms unseen.
 const LOCAL_STEPS: u32 = 15;
 
+/// Noise beyond this is no laser's; the mapper takes no more.
+const MAX_NOISE_M: f64 = 0.5;
+
 /// All settings, as they go into the summary.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Settings {
@@ -75,11 +78,13 @@ impl Settings {
             ..MapperSettings::default()
         };
         // A laser's data sheet tells its noise.
-        let noise_m = robot.laser.noise_std_m;
-        mapper.steady.range_noise_std_m = mapper.steady.range_noise_std_m.max(noise_m);
+        let noise_m = &mut mapper.steady.range_noise_std_m;
+        *noise_m = noise_m.max(robot.laser.noise_std_m).min(MAX_NOISE_M);
         let cell_m = spec.frame().resolution_m();
-        let mut agent =
-            AgentSettings { patch_cells: (PATCH_M / cell_m).round() as _, ..AgentSettings::default() };
+        let mut agent = AgentSettings {
+            patch_cells: (PATCH_M / cell_m).round().max(1.0) as _,
+            ..AgentSettings::default()
+        };
         // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many
         // cells wide, and each of its moves changes as many.
         agent.curious.temperature *= (2.0 * robot.radius_m / cell_m).max(1.0);
@@ -95,6 +100,7 @@ impl Settings {
                 max_angular_radps: robot.drive.max_angular_radps,
                 acceleration_mps2: robot.drive.max_linear_acceleration_mps2,
                 angular_acceleration_radps2: robot.drive.max_angular_acceleration_radps2,
+                tolerance_m: defaults.tolerance_m.min(robot.radius_m / 2.0),
                 reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s(),
                 ..defaults
             },

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 
 /// Between two plain lines, in wall time.
 const LINE_EVERY: Duration = Duration::from_secs(5);
+/// Before that there is nothing to tell.
+const FIRST: Duration = Duration::from_millis(500);
 /// The bar is not drawn more often.
 const BAR_HZ: u8 = 10;
 
@@ -43,7 +45,7 @@ impl Progress {
             ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()),
         );
         let start = Instant::now();
-        Self { bar, kind, start, duration_s, next: start }
+        Self { bar, kind, start, duration_s, next: start + FIRST }
     }
 
     /// Shows that the run has come to `time_s`.
