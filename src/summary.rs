@@ -1,6 +1,6 @@
 //! What a run showed, in numbers: `summary.json`, and a few sentences for a person.
 
-use crate::metrics::{Age, ChangingScores, Delays, RateScores, ThingReport};
+use crate::metrics::{Age, Delays, RateScores, ThingReport};
 use crate::pilot::GoalCount;
 use mapper::Mapper;
 use serde::Serialize;
@@ -30,15 +30,6 @@ pub fn map_hash(mapper: &Mapper) -> String {
         events.iter().for_each(|count| hash.update(&count.to_le_bytes()));
     }
     format!("{:032x}", hash.digest128())
-}
-
-/// Contacts of the curious robot.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Collisions {
-    /// Begun while it moved: its own doing.
-    pub moving: usize,
-    /// Begun while it stood: it was run into.
-    pub standing: usize,
 }
 
 /// Coverage and map quality at one time.
@@ -85,8 +76,11 @@ pub struct Summary {
     pub coverage: f64,
     /// Share of the cells that can be seen whose mapped state is true now.
     pub map_quality: f64,
-    /// Balanced accuracy on the cells that truly change, over the run.
-    pub map_quality_changing: ChangingScores,
+    /// Balanced accuracy on the cells that truly change and are in view, over the run; `null` where
+    /// there was nothing to count.
+    pub map_quality_changing: Option<f64>,
+    /// The same for those out of view.
+    pub map_quality_changing_out_of_view: Option<f64>,
     /// The rates of change against those that really happened.
     #[serde(flatten)]
     pub rates: RateScores,
@@ -96,8 +90,10 @@ pub struct Summary {
     pub block_latency: Delays,
     /// The same for free events.
     pub free_latency: Delays,
-    /// Contacts.
-    pub collisions: Collisions,
+    /// Contacts of the curious robot that began while it moved.
+    pub collisions: usize,
+    /// Contacts that began while it stood: it was run into.
+    pub contacts_while_standing: usize,
     /// How goals ended.
     pub goals: GoalCount,
     /// Share of the goals that each strategy chose.
@@ -216,7 +212,7 @@ impl fmt::Display for Summary {
         write!(
             f,
             "  contacts  {} while it moved, {} while it stood",
-            self.collisions.moving, self.collisions.standing
+            self.collisions, self.contacts_while_standing
         )
     }
 }

@@ -70,7 +70,7 @@ pub struct Changing {
 }
 
 /// Balanced accuracy on changing cells; `None` where there was nothing to count.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug)]
 pub struct ChangingScores {
     /// Of cells in view.
     pub in_view: Option<f64>,

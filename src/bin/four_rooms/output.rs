@@ -10,7 +10,7 @@ use curious::output::write_file;
 use curious::pictures::{self, Pictures};
 use curious::pilot::Pilot;
 use curious::ros_map;
-use curious::summary::{Collisions, Liveliest, Summary, map_hash};
+use curious::summary::{Liveliest, Summary, map_hash};
 use geometry::Twist;
 use mapper::Mapper;
 use sim::physics::PhysicsWorld;
@@ -74,12 +74,14 @@ pub(crate) fn summary(
         real_time_factor: mapper.time() / wall_s.max(f64::MIN_POSITIVE),
         coverage: scores.coverage,
         map_quality: scores.map_quality,
-        map_quality_changing: findings.map_quality_changing,
+        map_quality_changing: findings.map_quality_changing.in_view,
+        map_quality_changing_out_of_view: findings.map_quality_changing.out_of_view,
         rates: metrics::rate_scores(mapper, world.truth()),
         age: metrics::age(mapper, world.truth()),
         block_latency: findings.block_latency,
         free_latency: findings.free_latency,
-        collisions: Collisions { moving, standing: world.contacts().len() - moving },
+        collisions: moving,
+        contacts_while_standing: world.contacts().len() - moving,
         goals: pilot.goals(),
         strategy_share: pilot.strategies(Default::default()).iter().map(|s| (s.name, s.share)).collect(),
         things: findings.things,
