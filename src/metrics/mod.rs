@@ -109,3 +109,59 @@ impl Changing {
         ChangingScores { in_view: balanced(self.counts[1]), out_of_view: balanced(self.counts[0]) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::{CellReading, Grid};
+    use mapper::MapperSettings;
+    use sim::physics::PhysicsWorld;
+
+    fn world() -> PhysicsWorld {
+        PhysicsWorld::new(&crate::worlds::load("four_rooms").unwrap(), 0)
+    }
+
+    /// The map that says what is true, and what `otherwise` where a cell is covered in part.
+    fn true_map(truth: &Truth, otherwise: CellState) -> Grid<CellState> {
+        let state = |state: &TrueState| match state {
+            TrueState::Free => CellState::Free,
+            TrueState::Blocked => CellState::Blocked,
+            TrueState::Partly => otherwise,
+        };
+        Grid::from_cells(*truth.frame(), truth.states().iter().map(state).collect()).unwrap()
+    }
+
+    #[test]
+    fn the_true_map_is_right_and_the_empty_one_is_not() {
+        let world = world();
+        for otherwise in [CellState::Free, CellState::Blocked, CellState::Unknown] {
+            let map = true_map(world.truth(), otherwise);
+            let known = Mapper::with_prior(&MapperSettings::default(), map).unwrap();
+            assert_eq!(scores(&known, world.truth()), Scores { coverage: 0.0, map_quality: 1.0 });
+        }
+        let unknown = Mapper::new(&MapperSettings::default(), *world.truth().frame()).unwrap();
+        assert_eq!(scores(&unknown, world.truth()), Scores::default());
+    }
+
+    #[test]
+    fn coverage_and_age_count_the_cells_that_can_be_seen() {
+        let world = world();
+        let truth = world.truth();
+        let visible: Vec<_> = (0..truth.frame().len())
+            .map(|i| truth.frame().cell(i))
+            .filter(|&c| truth.can_be_seen(c))
+            .collect();
+        let mut mapper = Mapper::new(&MapperSettings::default(), *truth.frame()).unwrap();
+        let half = visible.len() / 2;
+        for (time, seen) in [(10.0, &visible[..half]), (30.0, &visible[..0])] {
+            let cells = seen.iter().map(|&cell| (cell, truth.state(cell) == Some(TrueState::Blocked)));
+            let reading = CellReading { time, pose: *world.true_pose(), cells: cells.collect() };
+            mapper.update(&reading).unwrap();
+        }
+        let share = half as f64 / visible.len() as f64;
+        assert_eq!(scores(&mapper, truth), Scores { coverage: share, map_quality: share });
+        let Age { mean_s, max_s } = age(&mapper, truth);
+        assert_eq!(max_s, 30.0);
+        assert!((mean_s - (20.0 * share + 30.0 * (1.0 - share))).abs() < 1e-9, "{mean_s}");
+    }
+}

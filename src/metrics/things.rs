@@ -131,3 +131,32 @@ fn right_at(in_view_s: Option<f64>, now_s: f64, cells: &[(usize, Option<f64>, Op
     let enough = (RIGHT_SHARE * f64::from(shown)).ceil() as usize;
     right_s.get(enough.checked_sub(1)?).copied()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten cells, shown at 10 s and right a tenth of a second apart, but for the last.
+    fn cells(shown: usize) -> Vec<(usize, Option<f64>, Option<f64>)> {
+        let right_s = |cell: usize| (cell < 9).then(|| 10.0 + 0.1 * (cell + 1) as f64);
+        (0..10).map(|cell| (cell, (cell < shown).then_some(10.0), right_s(cell))).collect()
+    }
+
+    #[test]
+    fn nine_of_ten_shown_cells_make_a_thing_right() {
+        assert_eq!(right_at(Some(10.0), 20.0, &cells(10)), Some(10.0 + 0.1 * 9.0));
+    }
+
+    #[test]
+    fn cells_that_were_not_shown_do_not_count() {
+        assert_eq!(right_at(Some(10.0), 20.0, &cells(5)), Some(10.0 + 0.1 * 5.0));
+    }
+
+    #[test]
+    fn nothing_is_right_before_it_is_settled_which_cells_count() {
+        assert_eq!(right_at(None, 20.0, &cells(10)), None);
+        assert_eq!(right_at(Some(10.0), 12.0, &cells(10)), None);
+        let wrong: Vec<_> = cells(10).into_iter().map(|(cell, shown, _)| (cell, shown, None)).collect();
+        assert_eq!(right_at(Some(10.0), 20.0, &wrong), None);
+    }
+}
