@@ -19,6 +19,7 @@ pub mod output;
 pub mod pictures;
 pub mod pilot;
 pub mod recording;
+pub mod report;
 pub mod ros_map;
 pub mod summary;
 pub mod view;

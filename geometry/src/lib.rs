@@ -15,7 +15,7 @@ mod world;
 
 pub use angle::{heading_rad, pose, rotation, wrap_rad};
 pub use cell::Cell;
-pub use command::Twist;
+pub use command::{Step, Twist};
 pub use grid::{Grid, GridFrame};
 pub use reading::{CellReading, LaserReading, Reading};
 pub use scan::{Scan, ScanError};
