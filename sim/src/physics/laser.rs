@@ -1,50 +1,37 @@
 use super::chance::Gaussian;
-use super::fan::Fan;
+use super::rays::{Beams, Scene};
 use super::spec::LaserSpec;
 use geometry::Scan;
-use nalgebra::{Isometry2, Point2};
-
-/// Everything that a laser can see.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Scene {
-    /// Walls and the obstacles that stand now, corners counter-clockwise, m.
-    pub(super) boxes: Vec<[Point2<f64>; 4]>,
-    /// The bodies of the robots, by the robots' order: middle (m) and radius (m).
-    pub(super) discs: Vec<(Point2<f64>, f64)>,
-}
+use nalgebra::Isometry2;
+use std::sync::Arc;
 
 /// A laser at work.
 #[derive(Clone, Debug)]
 pub(super) struct Laser {
     spec: LaserSpec,
-    fan: Fan,
+    beams: Arc<Beams>,
     noise: Gaussian,
 }
 
 impl Laser {
     pub(super) fn new(spec: &LaserSpec, noise: Gaussian) -> Self {
-        let (start, step) = (spec.angle_min_rad(), spec.angle_increment_rad());
-        Self { spec: *spec, fan: Fan::new(start, step, spec.beams, spec.range_max_m), noise }
+        Self { spec: *spec, beams: Arc::new(beams(spec)), noise }
     }
 
     /// The unit vectors of the beams in the laser's frame.
     pub(super) fn directions(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.fan.directions()
+        self.beams.directions()
     }
 
     /// The scan from a laser at `pose` on the robot in place `own`, which it never sees.
     pub(super) fn scan(&mut self, pose: &Isometry2<f64>, scene: &Scene, own: usize, into: &mut Scan) {
-        self.fan.clear();
-        for corners in &scene.boxes {
-            self.fan.add_polygon(pose, corners);
-        }
-        for (_, (center, radius_m)) in scene.discs.iter().enumerate().filter(|(robot, _)| *robot != own) {
-            self.fan.add_disc(pose, center, *radius_m);
-        }
+        let mut inverse = Vec::new();
+        scene.look(&self.beams, pose, own, &mut inverse);
         let LaserSpec { range_min_m, range_max_m, noise_std_m, .. } = self.spec;
         let noise = &mut self.noise;
         into.ranges_m.clear();
-        into.ranges_m.extend(self.fan.ranges_m().map(|range_m| {
+        into.ranges_m.extend(inverse.iter().map(|inverse| {
+            let range_m = 1.0 / inverse;
             // One draw per beam, hit or not: what one beam meets never changes another's noise.
             let measured_m = if noise_std_m > 0.0 { range_m + noise_std_m * noise.draw() } else { range_m };
             // REP-117: too far is +∞, too close −∞.
@@ -57,4 +44,9 @@ impl Laser {
             }
         }));
     }
+}
+
+/// The beams of a laser.
+pub(super) fn beams(spec: &LaserSpec) -> Beams {
+    Beams::new(spec.angle_min_rad(), spec.angle_increment_rad(), spec.beams, spec.range_max_m)
 }

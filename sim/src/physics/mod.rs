@@ -6,11 +6,11 @@
 mod bodies;
 mod chance;
 mod drive;
-mod fan;
 mod laser;
 mod obstacles;
 mod odometry;
 mod patrol;
+mod rays;
 mod report;
 mod robot;
 mod shape;

@@ -1,9 +1,10 @@
 use super::bodies::Bodies;
 use super::chance::{Gaussian, Purpose};
 use super::drive::Drive;
-use super::laser::{Laser, Scene};
+use super::laser::Laser;
 use super::odometry::Odometry;
 use super::patrol::WallPatrol;
+use super::rays::Scene;
 use super::report::Sweep;
 use super::spec::{Behaviour, RobotSpec};
 use geometry::{LaserReading, Twist};

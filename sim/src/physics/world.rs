@@ -1,13 +1,13 @@
 use super::bodies::Bodies;
-use super::laser::Scene;
 use super::obstacles::{Move, Obstacle};
+use super::rays::{Disc, Scene};
 use super::report::{Body, Contact, ObstacleEvent, ObstacleView, RobotView};
 use super::robot::Robot;
 use super::shape::Rectangle;
 use super::spec::WorldSpec;
 use super::truth::Truth;
-use geometry::{LaserReading, Twist, World};
-use nalgebra::{Isometry2, Point2};
+use geometry::{GridFrame, LaserReading, Twist, World};
+use nalgebra::{Isometry2, Point2, Vector2};
 
 /// A house in which robots drive and look around.
 ///
@@ -43,6 +43,9 @@ impl PhysicsWorld {
         let obstacles: Vec<Obstacle> =
             spec.obstacles.iter().enumerate().map(|(i, o)| Obstacle::new(o, i, &mut bodies)).collect();
         let start = robots[spec.driven].at();
+        let discs = robots.iter().map(|robot| Disc { center: robot.at(), radius_m: robot.spec.radius_m });
+        let range_m = spec.robots.iter().fold(0.0, |most: f64, robot| most.max(robot.laser.range_max_m));
+        let scene = Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), range_m);
         let mut world = Self {
             truth: Truth::new(spec.frame, &spec.walls, &start),
             spec: spec.clone(),
@@ -50,7 +53,7 @@ impl PhysicsWorld {
             bodies,
             robots,
             obstacles,
-            scene: Scene::default(),
+            scene,
             contacts: Vec::new(),
             touching: Vec::new(),
             obstacle_events: Vec::new(),
@@ -115,6 +118,7 @@ impl PhysicsWorld {
     /// Lets one physics step pass.
     fn advance(&mut self) {
         let (time_s, step_s) = (self.time_s(), self.spec.step_s);
+        self.scene.sort();
         for robot in &mut self.robots {
             robot.think(self.step, time_s, &self.scene);
         }
@@ -127,7 +131,7 @@ impl PhysicsWorld {
         self.truth.set_time(self.time_s());
         for (index, robot) in self.robots.iter_mut().enumerate() {
             let before = robot.follow(&self.bodies);
-            self.scene.discs[index].0 = robot.at();
+            self.scene.move_disc(index, robot.at());
             if index != self.spec.driven {
                 self.truth.move_disc(Body::Robot(index), Some(before), robot.at(), robot.spec.radius_m);
             }
@@ -181,8 +185,8 @@ impl PhysicsWorld {
 
     /// Shows the lasers what stands now.
     fn set_scene(&mut self) {
-        self.scene.boxes = self.standing_boxes().iter().map(Rectangle::corners).collect();
-        self.scene.discs = self.robots.iter().map(|robot| (robot.at(), robot.spec.radius_m)).collect();
+        let standing = self.obstacles.iter().filter(|obstacle| obstacle.is_standing());
+        self.scene.set_boxes(standing.map(|obstacle| &obstacle.spec.shape));
     }
 
     /// Tells the truth what stands at the start.
@@ -207,6 +211,7 @@ impl World for PhysicsWorld {
     /// the same time gives the same reading.
     fn sense(&mut self) -> LaserReading {
         let time_s = self.time_s();
+        self.scene.sort();
         self.robots[self.spec.driven].look(time_s, &self.scene).clone()
     }
 
@@ -219,4 +224,10 @@ impl World for PhysicsWorld {
             self.advance();
         }
     }
+}
+
+/// The lower left and the upper right corner of a grid, m.
+pub(super) fn corners(frame: &GridFrame) -> (Point2<f64>, Point2<f64>) {
+    let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
+    (frame.origin(), frame.origin() + size)
 }

@@ -1,11 +1,15 @@
 //! Our rays against rapier's.
 
 use super::*;
-use crate::physics::laser::{Laser, Scene};
+use crate::physics::laser::Laser;
+use crate::physics::rays::{Disc, Scene};
+use crate::physics::world::corners;
 use crate::physics::{bodies::Bodies, chance};
 use geometry::{pose, rotation};
 use nalgebra::{Isometry2, Point2, Vector2};
-use proptest::prelude::*;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
 
 /// A beam whose target does not survive a turn of this much is grazing, rad.
 const GRAZE_RAD: f64 = 1e-6;
@@ -36,83 +40,130 @@ fn cluttered() -> WorldSpec {
     four_rooms_but(&[("turn_deg = 0.0", "turn_deg = 10.0")], &obstacles.collect::<String>())
 }
 
-/// What a scan from `laser` on robot `own` shows against both oracles; counts grazing beams.
-fn compare(spec: &WorldSpec, laser: &mut Laser, at: &Isometry2<f64>, own: usize, grazing: &mut usize) {
-    let mut bodies = Bodies::new(spec.step_s);
-    let mut scene = Scene::default();
-    for (i, shape) in spec.walls.iter().chain(spec.obstacles.iter().map(|o| &o.shape)).enumerate() {
-        bodies.add_box(Body::Wall(i), shape);
-        scene.boxes.push(shape.corners());
-    }
-    for (i, robot) in spec.robots.iter().enumerate() {
-        bodies.add_robot(robot, spec.step_s);
-        // As rapier has it, so that both see the same.
-        scene.discs.push((bodies.pose(i).translation.vector.into(), f64::from(robot.radius_m as f32)));
-    }
-    bodies.step();
-    let mut scan = spec.robots[own].laser.empty_scan();
-    laser.scan(at, &scene, own, &mut scan);
-    let from = Point2::from(at.translation.vector);
-    let others: Vec<_> =
-        scene.discs.iter().enumerate().filter(|(i, _)| *i != own).map(|(_, disc)| *disc).collect();
-    let max_m = scan.range_max_m;
-    for (beam, range_m) in scan.ranges_m.iter().enumerate() {
-        let direction =
-            |turn_rad: f64| rotation(scan.angle_rad(beam) + turn_rad) * (at.rotation * Vector2::x());
-        let exact = |turn_rad: f64| brute_force_m(&from, &direction(turn_rad), spec, &others);
-        let [low, range, high] = [-GRAZE_RAD, 0.0, GRAZE_RAD].map(exact);
-        // Where the target stays the same, so does the range, within what a turn can shift it.
-        if (low - range).abs() > 1e-3 || (high - range).abs() > 1e-3 || (range - max_m).abs() < 1e-3 {
-            *grazing += 1;
-            let near =
-                [low, range, high].iter().any(|e| (e.min(1e9) - f64::from(*range_m).min(1e9)).abs() < 1e-3);
-            assert!(
-                near || *range_m == f32::INFINITY && range > max_m - 1e-3,
-                "grazing beam {beam}: {range_m}"
-            );
-            continue;
+/// A place with what is in it, for our rays and for both oracles.
+struct Place {
+    spec: WorldSpec,
+    scene: Scene,
+    bodies: Bodies,
+    discs: Vec<(Point2<f64>, f64)>,
+}
+
+/// What became of the beams that were compared.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally {
+    beams: usize,
+    /// Those whose target a turn of ±[`GRAZE_RAD`] changes. Each was as one of these three turns
+    /// has it.
+    grazing: usize,
+}
+
+impl Place {
+    fn new(spec: WorldSpec) -> Self {
+        let mut bodies = Bodies::new(spec.step_s);
+        for (i, shape) in spec.walls.iter().chain(spec.obstacles.iter().map(|o| &o.shape)).enumerate() {
+            bodies.add_box(Body::Wall(i), shape);
         }
-        let expected = if range > max_m { f32::INFINITY } else { range as f32 };
-        assert!(
-            *range_m == expected || (range_m - expected).abs() < 1e-5,
-            "beam {beam}: {range_m}, not {expected}"
-        );
-        let rapier = bodies.ray_m(&from, &direction(0.0), own, max_m);
-        let rapier = rapier.map_or(f64::INFINITY, |range| range);
-        let ours = f64::from(*range_m);
-        assert!(
-            ours == rapier || (ours - rapier).abs() < 1e-3,
-            "beam {beam}: ours {ours} m, rapier's {rapier} m"
-        );
+        let mut discs = Vec::new();
+        for (i, robot) in spec.robots.iter().enumerate() {
+            bodies.add_robot(robot, spec.step_s);
+            // As rapier has it, so that both see the same.
+            discs.push((bodies.pose(i).translation.vector.into(), f64::from(robot.radius_m as f32)));
+        }
+        bodies.step();
+        let round = discs.iter().map(|&(center, radius_m)| Disc { center, radius_m });
+        let mut scene = Scene::new(corners(&spec.frame), &spec.walls, round.collect(), 10.0);
+        scene.set_boxes(spec.obstacles.iter().map(|obstacle| &obstacle.shape));
+        scene.sort();
+        Self { spec, scene, bodies, discs }
+    }
+
+    /// Whether a laser there is outside of everything.
+    fn is_free(&self, at: &Point2<f64>, own: usize) -> bool {
+        let boxes = self.spec.walls.iter().chain(self.spec.obstacles.iter().map(|o| &o.shape));
+        let mut others = self.discs.iter().enumerate().filter(|(i, _)| *i != own);
+        boxes.into_iter().all(|shape| shape.distance_m(at) > 1e-3)
+            && others.all(|(_, (center, radius_m))| (center - at).norm() > radius_m + 1e-3)
+    }
+
+    /// Holds a scan from `at` on robot `own` against both oracles.
+    fn compare(&self, spec: &LaserSpec, at: &Isometry2<f64>, own: usize, tally: &mut Tally) {
+        let mut laser = Laser::new(spec, chance::Gaussian::new(0, chance::Purpose::Laser, 0));
+        let mut scan = spec.empty_scan();
+        laser.scan(at, &self.scene, own, &mut scan);
+        let from = Point2::from(at.translation.vector);
+        let others: Vec<_> =
+            self.discs.iter().enumerate().filter(|(i, _)| *i != own).map(|(_, disc)| *disc).collect();
+        let max_m = scan.range_max_m;
+        tally.beams += scan.ranges_m.len();
+        for (beam, range_m) in scan.ranges_m.iter().enumerate() {
+            let direction =
+                |turn_rad: f64| rotation(scan.angle_rad(beam) + turn_rad) * (at.rotation * Vector2::x());
+            let exact = |turn_rad: f64| brute_force_m(&from, &direction(turn_rad), &self.spec, &others);
+            let [low, range, high] = [-GRAZE_RAD, 0.0, GRAZE_RAD].map(exact);
+            // Where the target stays the same, so does the range, within what a turn can shift it.
+            if (low - range).abs() > 1e-3 || (high - range).abs() > 1e-3 || (range - max_m).abs() < 1e-3 {
+                tally.grazing += 1;
+                let near = [low, range, high]
+                    .iter()
+                    .any(|e| (e.min(1e9) - f64::from(*range_m).min(1e9)).abs() < 1e-3);
+                assert!(
+                    near || *range_m == f32::INFINITY && range > max_m - 1e-3,
+                    "grazing beam {beam} at {at:?}: {range_m}, not {low}, {range} or {high}"
+                );
+                continue;
+            }
+            let expected = if range > max_m { f32::INFINITY } else { range as f32 };
+            assert!(
+                *range_m == expected || (range_m - expected).abs() < 1e-5,
+                "beam {beam} at {at:?}: {range_m}, not {expected}"
+            );
+            let rapier = self.bodies.ray_m(&from, &direction(0.0), own, max_m);
+            let rapier = rapier.map_or(f64::INFINITY, |range| range);
+            let ours = f64::from(*range_m);
+            assert!(
+                ours == rapier || (ours - rapier).abs() < 1e-3,
+                "beam {beam} at {at:?}: ours {ours} m, rapier's {rapier} m"
+            );
+        }
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..Default::default() })]
+/// A number in a range, the same for everyone.
+fn uniform(stream: &mut ChaCha8Rng, range: std::ops::Range<f64>) -> f64 {
+    range.start + (range.end - range.start) * (stream.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
+}
 
-    #[test]
-    fn every_beam_is_where_rapier_has_it(x in 0.2..11.8_f64, y in 0.2..11.8_f64, heading in -4.0..4.0_f64) {
-        let spec = cluttered();
-        let middle = Point2::new(6.0, 6.0);
+#[test]
+fn a_million_beams_are_where_rapier_has_them() {
+    let place = Place::new(cluttered());
+    let laser = place.spec.driven().laser;
+    let mut stream = ChaCha8Rng::seed_from_u64(1);
+    let mut tally = Tally::default();
+    let middle = Point2::new(6.0, 6.0);
+    while tally.beams < 1_000_000 {
+        let [x, y] = [(); 2].map(|()| uniform(&mut stream, 0.1..11.9));
         let at = middle + rotation(10.0_f64.to_radians()) * (Point2::new(x, y) - middle);
-        let free_m = spec.walls.iter().chain(spec.obstacles.iter().map(|o| &o.shape)).map(|s| s.distance_m(&at));
-        prop_assume!(free_m.fold(f64::INFINITY, f64::min) > 0.001);
-        prop_assume!(spec.robots.iter().skip(1).all(|r| (r.pose.translation.vector - at.coords).norm() > 0.201));
-        let mut laser = Laser::new(&spec.driven().laser, chance::Gaussian::new(0, chance::Purpose::Laser, 0));
-        let mut grazing = 0;
-        compare(&spec, &mut laser, &pose(at.x, at.y, heading), 0, &mut grazing);
-        prop_assert!(grazing < 8, "{grazing} of 720 beams graze");
+        if place.is_free(&at, 0) {
+            let heading = uniform(&mut stream, -4.0..4.0);
+            place.compare(&laser, &pose(at.x, at.y, heading), 0, &mut tally);
+        }
     }
+    // Every grazing beam was looked at above; a change of their number is a change of the rays.
+    assert_eq!((tally.beams, tally.grazing), (1_000_080, 19), "of them grazing");
+}
 
-    #[test]
-    fn narrow_lasers_see_the_same(fov in 1.0..360.0_f64, beams in 2_usize..50, heading in -4.0..4.0_f64) {
-        let mut spec = cluttered();
-        spec.robots[0].laser.fov_rad = fov.to_radians();
-        spec.robots[0].laser.beams = beams;
-        spec.robots[0].laser.range_max_m = 4.0;
-        let at = spec.robots[0].pose.translation.vector;
-        let mut laser = Laser::new(&spec.driven().laser, chance::Gaussian::new(0, chance::Purpose::Laser, 0));
-        compare(&spec, &mut laser, &pose(at.x, at.y, heading), 0, &mut 0);
+#[test]
+fn narrow_lasers_see_the_same() {
+    let place = Place::new(cluttered());
+    let at = place.spec.driven().pose.translation.vector;
+    let mut stream = ChaCha8Rng::seed_from_u64(2);
+    for _ in 0..300 {
+        let mut laser = place.spec.driven().laser;
+        laser.fov_rad = uniform(&mut stream, 1.0..360.0).to_radians();
+        laser.beams = uniform(&mut stream, 2.0..50.0) as usize;
+        laser.range_max_m = 4.0;
+        let heading = uniform(&mut stream, -4.0..4.0);
+        place.compare(&laser, &pose(at.x, at.y, heading), 0, &mut Tally::default());
     }
 }
 
@@ -148,7 +199,8 @@ fn a_laser_inside_of_a_solid_sees_nothing_else() {
     let mut spec = four_rooms();
     spec.robots[0].pose = pose(6.0, 1.0, 0.3);
     let mut laser = Laser::new(&spec.driven().laser, chance::Gaussian::new(0, chance::Purpose::Laser, 0));
-    let scene = Scene { boxes: spec.walls.iter().map(Rectangle::corners).collect(), discs: Vec::new() };
+    let mut scene = Scene::new(corners(&spec.frame), &spec.walls, Vec::new(), 10.0);
+    scene.sort();
     let mut scan = spec.driven().laser.empty_scan();
     laser.scan(&spec.robots[0].pose, &scene, 0, &mut scan);
     assert!(scan.ranges_m.iter().all(|range| *range == 0.0));

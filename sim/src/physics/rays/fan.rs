@@ -1,0 +1,257 @@
+//! All beams of a scan at once.
+//!
+//! All is done in the laser's frame, where the directions of the beams never change, and in inverse
+//! ranges, where a straight edge is a plain dot product: the ray `t·d` meets the line `n·x = c` at
+//! `1/t = (n/c)·d`, and the nearest hit is the largest value.
+
+use super::outline::Edge;
+use nalgebra::{Isometry2, Point2, Vector2};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::Range;
+
+/// An edge whose line passes the laser closer than this is seen edge-on, m.
+const EDGE_ON_M: f64 = 1e-9;
+
+/// [`rough_atan2`] is no farther off than this, rad.
+const ROUGH_RAD: f64 = 1.2e-5;
+
+/// The directions of a laser's beams.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::physics) struct Beams {
+    count: usize,
+    angle_min_rad: f64,
+    per_rad: f64,
+    range_max_m: f64,
+    /// The unit vectors in the laser's frame. Of a full turn the first stands once more at the end.
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl Beams {
+    /// `count` beams, the first along `angle_min_rad`, `angle_increment_rad` apart, symmetrical to
+    /// straight ahead; bodies beyond `range_max_m` may be left out.
+    pub(in crate::physics) fn new(
+        angle_min_rad: f64,
+        angle_increment_rad: f64,
+        count: usize,
+        range_max_m: f64,
+    ) -> Self {
+        let angle = |i: usize| angle_min_rad + i as f64 * angle_increment_rad;
+        let (mut y, mut x): (Vec<f64>, Vec<f64>) = (0..count).map(|i| libm::sincos(angle(i))).unzip();
+        if angle_min_rad <= -PI {
+            x.push(x[0]);
+            y.push(y[0]);
+        }
+        Self { count, angle_min_rad, per_rad: 1.0 / angle_increment_rad, range_max_m, x, y }
+    }
+
+    /// The unit vectors of the beams in the laser's frame.
+    pub(in crate::physics) fn directions(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.x.iter().copied().zip(self.y.iter().copied()).take(self.count)
+    }
+
+    /// The first beam that lies counter-clockwise of `v`, which a laser sees at about `angle_rad`;
+    /// a beam along `v` itself counts if `inclusive`. Counted from beam 0 on, which of a full turn
+    /// comes once more at the end.
+    ///
+    /// Sides are told by cross products, the same for every edge that ends in `v`: no beam passes
+    /// between two of them.
+    fn first_after(&self, v: &Vector2<f64>, angle_rad: f64, inclusive: bool) -> usize {
+        let is_after = |i: usize| {
+            let cross = v.x * self.y[i] - v.y * self.x[i];
+            if inclusive { cross >= 0.0 } else { cross > 0.0 }
+        };
+        let place = (angle_rad - self.angle_min_rad) * self.per_rad;
+        let mut i = if place < 0.0 { 0 } else { (place as usize + 1).min(self.x.len()) };
+        // The rough angle may be wrong about beams as near as this, and about no other.
+        let near = ROUGH_RAD * self.per_rad;
+        while i > 0 && place - ((i - 1) as f64) < near && is_after(i - 1) {
+            i -= 1;
+        }
+        while i < self.x.len() && i as f64 - place < near && !is_after(i) {
+            i += 1;
+        }
+        i
+    }
+
+    /// The beams from `from` to `to`, counter-clockwise, less than half a turn apart, both
+    /// included: one run, or two where they pass the back.
+    fn between(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> [Range<usize>; 2] {
+        let (from_rad, to_rad) = (rough_atan2(from.y, from.x), rough_atan2(to.y, to.x));
+        let mut first = self.first_after(from, from_rad, true);
+        let mut end = self.first_after(to, to_rad, false);
+        if to_rad - from_rad < -PI {
+            end += self.count;
+        } else if to_rad - from_rad > PI {
+            // Both are at the back, on one line of sight but for rounding.
+            first += self.count;
+        }
+        self.runs(first, end)
+    }
+
+    /// The beams that are less than `half_rad` away from `angle_rad`, and a few more perhaps.
+    fn around(&self, angle_rad: f64, half_rad: f64) -> [Range<usize>; 2] {
+        let place = |angle_rad: f64| (angle_rad - self.angle_min_rad) * self.per_rad;
+        let (low, high) = (angle_rad - half_rad, angle_rad + half_rad);
+        let (first, end) = (place(low) as usize, place(high) as usize + 1);
+        if low < -PI {
+            // The back, seen from the right: that is the end of the beams.
+            let first = place(low + 2.0 * PI) as usize;
+            self.runs(first, end + self.count)
+        } else if high > PI {
+            let end = place(high - 2.0 * PI) as usize + 1;
+            self.runs(first, end + self.count)
+        } else {
+            self.runs(first, end)
+        }
+    }
+
+    /// What of `first..end`, counted on past the last beam, are beams.
+    fn runs(&self, first: usize, end: usize) -> [Range<usize>; 2] {
+        let count = self.count;
+        let (low, high) = (first.min(count), end.min(count));
+        let (again, last) = (first.saturating_sub(count), end.saturating_sub(count));
+        [low..high.max(low), again..last.max(again).min(count)]
+    }
+}
+
+/// The nearest hit on each beam of a laser at some place.
+pub(super) struct Hits<'a> {
+    beams: &'a Beams,
+    /// One over the range, 1/m; 0 where there is no hit.
+    inverse: &'a mut [f64],
+    laser: Isometry2<f64>,
+}
+
+impl<'a> Hits<'a> {
+    /// No hits yet.
+    pub(super) fn new(beams: &'a Beams, laser: &Isometry2<f64>, inverse: &'a mut Vec<f64>) -> Self {
+        inverse.clear();
+        inverse.resize(beams.count, 0.0);
+        Self { beams, inverse, laser: *laser }
+    }
+
+    /// The laser is inside of something: that is all it sees.
+    pub(super) fn add_inside(&mut self) {
+        self.inverse.fill(f64::INFINITY);
+    }
+
+    /// Adds an edge of a solid, if it can be seen from here.
+    pub(super) fn add_edge(&mut self, edge: &Edge) {
+        let gap_m = edge.gap_m(&self.laser.translation.vector.into());
+        if gap_m < EDGE_ON_M || gap_m > self.beams.range_max_m {
+            return;
+        }
+        let seen = |point: &Point2<f64>| self.laser.inverse_transform_point(point).coords;
+        let normal = self.laser.rotation.inverse() * edge.normal;
+        let (m, n) = (-normal.x / gap_m, -normal.y / gap_m);
+        // Seen from outside, the sides of a counter-clockwise body run clockwise.
+        for run in self.beams.between(&seen(&edge.to), &seen(&edge.from)) {
+            let directions = self.beams.x[run.clone()].iter().zip(&self.beams.y[run.clone()]);
+            for (inverse, (x, y)) in self.inverse[run].iter_mut().zip(directions) {
+                let hit = m * x + n * y;
+                *inverse = if hit > *inverse { hit } else { *inverse };
+            }
+        }
+    }
+
+    /// Adds a round body.
+    pub(super) fn add_disc(&mut self, center: &Point2<f64>, radius_m: f64) {
+        let to = center - self.laser.translation.vector;
+        let power = to.coords.norm_squared() - radius_m * radius_m;
+        if power <= 0.0 {
+            return self.add_inside();
+        }
+        let reach_m = self.beams.range_max_m + radius_m;
+        if power > reach_m * reach_m {
+            return;
+        }
+        let center = self.laser.rotation.inverse() * to.coords;
+        let toward_rad = rough_atan2(center.y, center.x);
+        let half_rad = rough_atan2(radius_m, power.sqrt()) + 2.0 * ROUGH_RAD;
+        let per_power = 1.0 / power;
+        for run in self.beams.around(toward_rad, half_rad) {
+            let directions = self.beams.x[run.clone()].iter().zip(&self.beams.y[run.clone()]);
+            for (inverse, (x, y)) in self.inverse[run].iter_mut().zip(directions) {
+                // The nearer root of t² − 2bt + power = 0 is power / (b + √(b² − power)).
+                let b = center.x * x + center.y * y;
+                let root2 = b * b - power;
+                if root2 >= 0.0 {
+                    let hit = (b + root2.sqrt()) * per_power;
+                    *inverse = if hit > *inverse { hit } else { *inverse };
+                }
+            }
+        }
+    }
+}
+
+/// The direction of a vector to within [`ROUGH_RAD`], in [−π, π]: where to begin to look.
+/// Abramowitz & Stegun (1964), 4.4.49.
+fn rough_atan2(y: f64, x: f64) -> f64 {
+    let (along, across) = (x.abs(), y.abs());
+    let (low, high) = if across > along { (along, across) } else { (across, along) };
+    // 0/0 at the laser itself: the comparisons below make it 0.
+    let t = low / high.max(f64::MIN_POSITIVE);
+    let t2 = t * t;
+    let series =
+        0.999_866_0 + t2 * (-0.330_299_5 + t2 * (0.180_141_0 + t2 * (-0.085_133_0 + t2 * 0.020_835_1)));
+    let mut angle = t * series;
+    if across > along {
+        angle = FRAC_PI_2 - angle;
+    }
+    if x < 0.0 {
+        angle = PI - angle;
+    }
+    if y < 0.0 { -angle } else { angle }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rough_angles_are_near_the_right_ones() {
+        for step in -3141..=3141 {
+            let (y, x) = libm::sincos(f64::from(step) * 1e-3);
+            assert!((rough_atan2(y * 7.0, x * 7.0) - libm::atan2(y, x)).abs() < ROUGH_RAD, "{step}");
+        }
+        assert_eq!(rough_atan2(0.0, 0.0), 0.0);
+    }
+
+    /// Every beam lies on one side of a direction, exactly, wherever the direction is.
+    #[test]
+    fn the_beams_between_two_directions_are_those_that_lie_there() {
+        for (fov_rad, count, full) in
+            [(2.0 * PI, 360, true), (2.0 * PI, 7, true), (1.0, 11, false), (6.2, 50, false)]
+        {
+            let gaps = if full { count } else { count - 1 };
+            let step_rad = fov_rad / gaps as f64;
+            let beams = Beams::new(-fov_rad / 2.0, step_rad, count, 10.0);
+            for start in -700..700 {
+                for width in [0.0, 1e-9, 1e-5, 0.02, 0.5, 3.1] {
+                    // Every seventh starts exactly on a beam, or on the back.
+                    let from_rad = if start % 7 == 0 {
+                        f64::from(start / 7) * step_rad
+                    } else {
+                        f64::from(start) * 0.009
+                    };
+                    let vector = |angle_rad: f64| {
+                        let (y, x) = libm::sincos(angle_rad);
+                        Vector2::new(x, y) * 3.0
+                    };
+                    let (from, to) = (vector(from_rad), vector(from_rad + width));
+                    let mut chosen = vec![false; count];
+                    beams.between(&from, &to).into_iter().flatten().for_each(|beam| chosen[beam] = true);
+                    let expected: Vec<bool> = beams
+                        .directions()
+                        .map(|(x, y)| {
+                            let d = Vector2::new(x, y);
+                            from.perp(&d) >= 0.0 && d.perp(&to) >= 0.0 && d.dot(&(from + to)) > 0.0
+                        })
+                        .collect();
+                    assert_eq!(chosen, expected, "{count} beams, {from_rad} rad, {width} rad wide");
+                }
+            }
+        }
+    }
+}

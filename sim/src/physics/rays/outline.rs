@@ -1,0 +1,129 @@
+//! What a ray can meet of a set of boxes.
+
+use crate::physics::shape::Rectangle;
+use nalgebra::{Point2, Vector2};
+
+/// Edges and corners closer than this lie on each other, m: far above rounding, far below anything
+/// that a range could show.
+const ON_M: f64 = 1e-9;
+/// What lies this far outside of an edge is beside it, m.
+const BESIDE_M: f64 = 1e-7;
+
+/// A side of a solid, which lies on its left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Edge {
+    pub(super) from: Point2<f64>,
+    pub(super) to: Point2<f64>,
+    /// The unit vector that points out of the solid.
+    pub(super) normal: Vector2<f64>,
+}
+
+impl Edge {
+    pub(super) fn new(from: Point2<f64>, to: Point2<f64>) -> Self {
+        let along = to - from;
+        Self { from, to, normal: Vector2::new(along.y, -along.x) / along.norm() }
+    }
+
+    /// How far outside of the edge's line a point lies, m; negative on the side of the solid.
+    pub(super) fn gap_m(&self, point: &Point2<f64>) -> f64 {
+        self.normal.dot(&(point - self.from))
+    }
+
+    /// The sides of a box.
+    pub(super) fn of_box(shape: &Rectangle) -> [Self; 4] {
+        let corners = shape.corners();
+        [0, 1, 2, 3].map(|i| Self::new(corners[i], corners[(i + 1) % 4]))
+    }
+}
+
+/// The sides of all boxes that a ray from outside can meet first: without those that another box
+/// covers, and with those that continue each other made one.
+pub(super) fn outline(boxes: &[Rectangle]) -> Vec<Edge> {
+    let sides: Vec<(usize, [Edge; 4])> = boxes.iter().map(Edge::of_box).enumerate().collect();
+    let open = sides.iter().flat_map(|(own, edges)| {
+        let others = sides.iter().filter(move |(other, _)| other != own);
+        edges.iter().filter(move |edge| !others.clone().any(|(_, cover)| covers(cover, edge)))
+    });
+    merged(open.copied().collect())
+}
+
+/// Whether an edge, and what lies outside of it, lies in the box with the given sides: a ray then
+/// meets the box first.
+fn covers(sides: &[Edge; 4], edge: &Edge) -> bool {
+    let contains = |point: Point2<f64>| sides.iter().all(|side| side.gap_m(&point) <= ON_M);
+    let beside = edge.normal * BESIDE_M;
+    contains(edge.from) && contains(edge.to) && contains(edge.from + beside) && contains(edge.to + beside)
+}
+
+/// Joins edges that lie on one line, face the same way, and touch or overlap.
+fn merged(edges: Vec<Edge>) -> Vec<Edge> {
+    // Edges of one line get one key; rounding may part some, which then stay as they are.
+    let key = |edge: &Edge| {
+        let offset_m = edge.normal.dot(&edge.from.coords);
+        [edge.normal.x, edge.normal.y, offset_m].map(|value| (value / (8.0 * ON_M)).round() as i64)
+    };
+    let start_m = |edge: &Edge, line: &Edge| along(line).dot(&edge.from.coords);
+    let end_m = |edge: &Edge, line: &Edge| along(line).dot(&edge.to.coords);
+    let mut keyed: Vec<([i64; 3], Edge)> = edges.iter().map(|edge| (key(edge), *edge)).collect();
+    keyed.sort_by(|(a_key, a), (b_key, b)| {
+        a_key.cmp(b_key).then_with(|| start_m(a, a).total_cmp(&start_m(b, a)))
+    });
+    let mut whole: Vec<([i64; 3], Edge)> = Vec::new();
+    for (key, edge) in keyed {
+        match whole.last_mut() {
+            Some((last_key, last))
+                if *last_key == key && start_m(&edge, last) <= end_m(last, last) + ON_M =>
+            {
+                if end_m(&edge, last) > end_m(last, last) {
+                    *last = Edge::new(last.from, edge.to);
+                }
+            }
+            _ => whole.push((key, edge)),
+        }
+    }
+    whole.into_iter().map(|(_, edge)| edge).collect()
+}
+
+/// The direction of an edge: its solid is on the left.
+fn along(edge: &Edge) -> Vector2<f64> {
+    Vector2::new(-edge.normal.y, edge.normal.x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn between(min: [f64; 2], max: [f64; 2]) -> Rectangle {
+        Rectangle::between(min.into(), max.into())
+    }
+
+    #[test]
+    fn what_is_inside_of_walls_is_left_out_and_what_goes_on_is_one() {
+        // Two walls end to end, a third that ends at their side: an upside-down T.
+        let boxes = [
+            between([0.0, 0.0], [2.0, 0.1]),
+            between([2.0, 0.0], [5.0, 0.1]),
+            between([1.0, 0.1], [1.1, 3.0]),
+        ];
+        let edges = outline(&boxes);
+        // Bottom and top (each one edge of 5 m), two ends, and three sides of the standing wall.
+        assert_eq!(edges.len(), 7, "{edges:#?}");
+        let long = edges.iter().filter(|edge| ((edge.to - edge.from).norm() - 5.0).abs() < 1e-12);
+        assert_eq!(long.count(), 2);
+    }
+
+    #[test]
+    fn flush_sides_are_seen() {
+        // The small box stands in the large one, on its border.
+        let boxes = [between([0.0, 0.0], [3.0, 3.0]), between([1.0, 0.0], [2.0, 1.0])];
+        assert_eq!(outline(&boxes), outline(&boxes[..1]));
+    }
+
+    #[test]
+    fn apart_and_turned_boxes_keep_their_sides() {
+        let turned = Rectangle::around(Point2::new(1.0, 1.0), Vector2::new(1.0, 0.3), 0.4);
+        assert_eq!(outline(&[turned, between([4.0, 0.0], [5.0, 1.0])]).len(), 8);
+        // The same box twice: each would hide the other if covers were not about what lies outside.
+        assert_eq!(outline(&[turned, turned]).len(), 4);
+    }
+}

@@ -1,0 +1,143 @@
+use super::fan::{Beams, Hits};
+use super::outline::{Edge, outline};
+use super::sight::{Reach, Sight};
+use crate::physics::shape::Rectangle;
+use nalgebra::{Isometry2, Point2};
+use std::sync::Arc;
+
+/// A round body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::physics) struct Disc {
+    /// Its middle, m.
+    pub(in crate::physics) center: Point2<f64>,
+    /// Its radius, m.
+    pub(in crate::physics) radius_m: f64,
+}
+
+/// Everything that a laser can see.
+#[derive(Clone, Debug)]
+pub(in crate::physics) struct Scene {
+    walls: Arc<Walls>,
+    /// The sides of the boxes that stand now.
+    boxes: Vec<[Edge; 4]>,
+    /// The robots, in their order.
+    discs: Vec<Disc>,
+    /// The robots by the cell in which their middles are; last those beyond the borders.
+    sorted: Vec<(u32, Disc)>,
+    /// Where each cell's robots start in `sorted`.
+    starts: Vec<u32>,
+    is_sorted: bool,
+}
+
+/// What never moves.
+#[derive(Debug)]
+struct Walls {
+    solids: Vec<[Edge; 4]>,
+    edges: Vec<Edge>,
+    sight: Sight,
+}
+
+impl Scene {
+    /// The walls between two corners (m), for lasers that see `range_m` far and robots no larger
+    /// than `radius_m`.
+    pub(in crate::physics) fn new(
+        (low, high): (Point2<f64>, Point2<f64>),
+        walls: &[Rectangle],
+        discs: Vec<Disc>,
+        range_m: f64,
+    ) -> Self {
+        let edges = outline(walls);
+        let radius_m = discs.iter().fold(0.0, |most: f64, disc| most.max(disc.radius_m));
+        let sight = Sight::new(low, high, walls, &edges, &Reach { range_m, radius_m });
+        let solids = walls.iter().map(Edge::of_box).collect();
+        Self {
+            starts: vec![0; sight.len() + 2],
+            walls: Arc::new(Walls { solids, edges, sight }),
+            boxes: Vec::new(),
+            discs,
+            sorted: Vec::new(),
+            is_sorted: false,
+        }
+    }
+
+    /// Shows the boxes that stand now.
+    pub(in crate::physics) fn set_boxes<'a>(&mut self, boxes: impl Iterator<Item = &'a Rectangle>) {
+        self.boxes = boxes.map(Edge::of_box).collect();
+    }
+
+    /// A robot is somewhere else (m).
+    pub(in crate::physics) fn move_disc(&mut self, robot: usize, center: Point2<f64>) {
+        self.discs[robot].center = center;
+        self.is_sorted = false;
+    }
+
+    /// Sorts the robots into cells, if any has moved; to be called before [`Scene::look`].
+    pub(in crate::physics) fn sort(&mut self) {
+        if self.is_sorted {
+            return;
+        }
+        let outside = self.walls.sight.len();
+        let cell = |disc: &Disc| self.walls.sight.cell_at(&disc.center).unwrap_or(outside);
+        // Counting sort: the number of robots per cell, summed up to where each cell ends; filled
+        // from the back, ends become starts.
+        self.starts.fill(0);
+        self.discs.iter().for_each(|disc| self.starts[cell(disc)] += 1);
+        let mut end = 0;
+        for start in &mut self.starts {
+            end += *start;
+            *start = end;
+        }
+        let nothing = Disc { center: Point2::origin(), radius_m: 0.0 };
+        self.sorted.resize(self.discs.len(), (0, nothing));
+        for (robot, disc) in self.discs.iter().enumerate().rev() {
+            let start = &mut self.starts[cell(disc)];
+            *start -= 1;
+            self.sorted[*start as usize] = (robot as u32, *disc);
+        }
+        self.is_sorted = true;
+    }
+
+    /// What `beams` at `laser` hit, on the robot in place `own`, which they never see: one over the
+    /// range for each beam, 1/m; 0 where there is no hit.
+    pub(in crate::physics) fn look(
+        &self,
+        beams: &Beams,
+        laser: &Isometry2<f64>,
+        own: usize,
+        inverse: &mut Vec<f64>,
+    ) {
+        debug_assert!(self.is_sorted);
+        let Walls { solids, edges, sight } = &*self.walls;
+        let mut hits = Hits::new(beams, laser, inverse);
+        let at = Point2::from(laser.translation.vector);
+        let contains = |sides: &[Edge; 4]| sides.iter().all(|side| side.gap_m(&at) <= 0.0);
+        let mut is_inside = self.boxes.iter().any(contains);
+        match sight.cell_at(&at) {
+            Some(cell) => {
+                is_inside |= sight.boxes(cell).iter().any(|&i| contains(&solids[i as usize]));
+                sight.edges(cell).iter().for_each(|&i| hits.add_edge(&edges[i as usize]));
+                let cells = sight.cells(cell).iter().map(|&cell| cell as usize);
+                for seen in cells.chain([sight.len()]) {
+                    self.add_robots(&mut hits, self.starts[seen]..self.starts[seen + 1], own);
+                }
+            }
+            None => {
+                is_inside |= solids.iter().any(contains);
+                edges.iter().for_each(|edge| hits.add_edge(edge));
+                self.add_robots(&mut hits, 0..self.sorted.len() as u32, own);
+            }
+        }
+        self.boxes.iter().flatten().for_each(|edge| hits.add_edge(edge));
+        if is_inside {
+            hits.add_inside();
+        }
+    }
+
+    fn add_robots(&self, hits: &mut Hits<'_>, sorted: std::ops::Range<u32>, own: usize) {
+        for (robot, disc) in &self.sorted[sorted.start as usize..sorted.end as usize] {
+            if *robot as usize != own {
+                hits.add_disc(&disc.center, disc.radius_m);
+            }
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! What can be seen from where, worked out once for walls that never move.
+//!
+//! The place is cut into square cells. For each cell there are two lists: the edges that some point
+//! of the cell may see, and the cells in which a robot may be seen. Left out is what is too far,
+//! what is turned away, and what one single edge hides from the whole cell: then every line of
+//! sight crosses that edge. All margins are on the safe side, so leaving these out never changes a
+//! range.
+
+use super::lists::Lists;
+use super::outline::Edge;
+use crate::physics::shape::{Rectangle, point_segment_m};
+use nalgebra::{Point2, Vector2};
+
+/// The most cells: more would see less each, but cost more to work out.
+const MAX_CELLS: f64 = 1024.0;
+/// Smaller cells would be no better, m.
+const LEAST_CELL_M: f64 = 1.0;
+/// Only so many edges per cell are tried as what hides others: those that look largest from there.
+const HIDERS: usize = 24;
+/// Points this near to a cell or an edge may count as on it, m.
+const MARGIN_M: f64 = 1e-6;
+
+/// How far the users of an index see, and how large what they see is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// The longest range of any laser, m.
+    pub(super) range_m: f64,
+    /// The largest radius of any robot, m.
+    pub(super) radius_m: f64,
+}
+
+/// The cells and what can be seen from each.
+#[derive(Clone, Debug)]
+pub(super) struct Sight {
+    low: Point2<f64>,
+    cell_m: f64,
+    columns: usize,
+    rows: usize,
+    edges: Lists,
+    cells: Lists,
+    /// The boxes that reach into each cell.
+    boxes: Lists,
+}
+
+impl Sight {
+    /// Works out the lists for everything between two corners (m).
+    pub(super) fn new(
+        low: Point2<f64>,
+        high: Point2<f64>,
+        boxes: &[Rectangle],
+        edges: &[Edge],
+        reach: &Reach,
+    ) -> Self {
+        let extent = high - low;
+        let cell_m = (extent.x * extent.y / MAX_CELLS).sqrt().max(LEAST_CELL_M);
+        let count = |length_m: f64| (length_m / cell_m) as usize + 1;
+        let mut sight = Self {
+            low,
+            cell_m,
+            columns: count(extent.x),
+            rows: count(extent.y),
+            edges: Lists::new(),
+            cells: Lists::new(),
+            boxes: Lists::new(),
+        };
+        for cell in 0..sight.len() {
+            let own = sight.square(cell, MARGIN_M);
+            let inside = (0..boxes.len()).filter(|&i| boxes[i].overlaps(&own));
+            sight.boxes.push(inside.map(|i| i as u32));
+            let view = View::new(&own, edges, reach);
+            sight.edges.push(view.edges(edges));
+            let robots = (0..sight.len()).map(|i| sight.square(i, reach.radius_m + MARGIN_M));
+            let visible: Vec<u32> =
+                robots.enumerate().filter(|(_, square)| view.sees(square)).map(|(i, _)| i as u32).collect();
+            sight.cells.push(visible.into_iter());
+        }
+        sight
+    }
+
+    /// The number of cells.
+    pub(super) fn len(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// The cell in which a point lies; `None` beyond the borders.
+    pub(super) fn cell_at(&self, point: &Point2<f64>) -> Option<usize> {
+        let place = (point - self.low) / self.cell_m;
+        if place.x >= 0.0 && place.y >= 0.0 {
+            let (column, row) = (place.x as usize, place.y as usize);
+            (column < self.columns && row < self.rows).then_some(row * self.columns + column)
+        } else {
+            None
+        }
+    }
+
+    /// The edges that may be seen from a cell.
+    pub(super) fn edges(&self, cell: usize) -> &[u32] {
+        self.edges.get(cell)
+    }
+
+    /// The cells in which a robot may be seen from a cell.
+    pub(super) fn cells(&self, cell: usize) -> &[u32] {
+        self.cells.get(cell)
+    }
+
+    /// The boxes that reach into a cell.
+    pub(super) fn boxes(&self, cell: usize) -> &[u32] {
+        self.boxes.get(cell)
+    }
+
+    /// A cell with a border around it.
+    fn square(&self, cell: usize, border_m: f64) -> Rectangle {
+        let place = Vector2::new((cell % self.columns) as f64, (cell / self.columns) as f64);
+        let low = self.low + place * self.cell_m;
+        let border = Vector2::repeat(border_m);
+        Rectangle::between(low - border, low + Vector2::repeat(self.cell_m) + border)
+    }
+}
+
+/// What may be seen from somewhere in a cell.
+struct View {
+    corners: [Point2<f64>; 4],
+    middle: Point2<f64>,
+    /// From the middle to a corner, m.
+    half_m: f64,
+    range_m: f64,
+    hiders: Vec<Edge>,
+}
+
+impl View {
+    fn new(cell: &Rectangle, edges: &[Edge], reach: &Reach) -> Self {
+        let middle = Point2::from(cell.pose.translation.vector);
+        let mut view = Self {
+            corners: cell.corners(),
+            middle,
+            half_m: cell.half_m.norm(),
+            range_m: reach.range_m,
+            hiders: Vec::new(),
+        };
+        let size = |edge: &Edge| {
+            (edge.to - edge.from).norm() / (point_segment_m(&middle, &edge.from, &edge.to) + view.half_m)
+        };
+        let near = edges.iter().enumerate().filter(|(_, edge)| view.is_near(edge));
+        let mut hiders: Vec<(f64, usize)> = near.map(|(i, edge)| (-size(edge), i)).collect();
+        hiders.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        view.hiders = hiders.into_iter().take(HIDERS).map(|(_, i)| edges[i]).collect();
+        view
+    }
+
+    /// Whether an edge is within the range of some point of the cell.
+    fn is_near(&self, edge: &Edge) -> bool {
+        point_segment_m(&self.middle, &edge.from, &edge.to) <= self.range_m + self.half_m + MARGIN_M
+    }
+
+    /// The edges that may be seen.
+    fn edges(&self, edges: &[Edge]) -> impl Iterator<Item = u32> {
+        let is_seen = |edge: &&(usize, &Edge)| {
+            self.is_near(edge.1)
+                && self.corners.iter().any(|corner| edge.1.gap_m(corner) > 0.0)
+                && !self.is_hidden(&[edge.1.from, edge.1.to])
+        };
+        edges.iter().enumerate().filter(move |edge| is_seen(&edge)).map(|(i, _)| i as u32)
+    }
+
+    /// Whether some point of a square may be seen.
+    fn sees(&self, square: &Rectangle) -> bool {
+        let apart_m: f64 = (square.pose.translation.vector - self.middle.coords).norm();
+        apart_m - square.half_m.norm() <= self.range_m + self.half_m + MARGIN_M
+            && !self.is_hidden(&square.corners())
+    }
+
+    /// Whether one edge crosses every line of sight from the cell to the convex hull of `points`.
+    fn is_hidden(&self, points: &[Point2<f64>]) -> bool {
+        self.hiders.iter().any(|hider| {
+            let gap_m = hider.gap_m(&self.corners[0]);
+            if gap_m.abs() < MARGIN_M {
+                return false;
+            }
+            // +1: the cell is outside of the hider's line.
+            let side = gap_m.signum();
+            self.corners.iter().all(|corner| hider.gap_m(corner) * side > MARGIN_M)
+                && points.iter().all(|point| hider.gap_m(point) * side < -MARGIN_M)
+                && self.corners.iter().all(|corner| points.iter().all(|point| crosses(corner, point, hider)))
+        })
+    }
+}
+
+/// Whether the line of sight from `a` to `b`, whose ends lie on both sides of the line of `hider`,
+/// passes between the ends of that by more than a margin.
+fn crosses(a: &Point2<f64>, b: &Point2<f64>, hider: &Edge) -> bool {
+    let along = b - a;
+    let least = MARGIN_M * along.norm();
+    let (from, to) = (along.perp(&(hider.from - a)), along.perp(&(hider.to - a)));
+    from > least && to < -least || from < -least && to > least
+}
