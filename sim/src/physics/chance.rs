@@ -1,6 +1,7 @@
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use std::ops::Range;
 
 /// What a stream of chance is for. One more draw in one stream never changes another.
 #[derive(Clone, Copy, Debug)]
@@ -9,6 +10,34 @@ pub(super) enum Purpose {
     Laser = 0,
     /// The drift of odometry.
     Odometry = 1,
+    /// What a robot does by itself.
+    Behaviour = 2,
+}
+
+/// The stream of a robot (by its place in the world) for one purpose.
+fn stream(seed: u64, purpose: Purpose, robot: usize) -> ChaCha8Rng {
+    let mut stream = ChaCha8Rng::seed_from_u64(seed);
+    stream.set_stream((purpose as u64) << 32 | robot as u64);
+    stream
+}
+
+/// Uniform numbers from a stream of their own, the same on every machine.
+#[derive(Clone, Debug)]
+pub(super) struct Uniform {
+    stream: ChaCha8Rng,
+}
+
+impl Uniform {
+    /// The stream of a robot (by its place in the world) for one purpose.
+    pub(super) fn new(seed: u64, purpose: Purpose, robot: usize) -> Self {
+        Self { stream: stream(seed, purpose, robot) }
+    }
+
+    /// The next number, in `range`.
+    pub(super) fn between(&mut self, range: Range<f64>) -> f64 {
+        let share = (self.stream.next_u64() >> 11) as f64 * 2.0_f64.powi(-53);
+        range.start + (range.end - range.start) * share
+    }
 }
 
 /// Standard normal numbers from a stream of their own, the same on every machine.
@@ -22,9 +51,7 @@ pub(super) struct Gaussian {
 impl Gaussian {
     /// The stream of a robot (by its place in the world) for one purpose.
     pub(super) fn new(seed: u64, purpose: Purpose, robot: usize) -> Self {
-        let mut stream = ChaCha8Rng::seed_from_u64(seed);
-        stream.set_stream((purpose as u64) << 32 | robot as u64);
-        Self { stream, spare: None }
+        Self { stream: stream(seed, purpose, robot), spare: None }
     }
 
     /// The next number, by Marsaglia's polar method (1964).

@@ -11,12 +11,14 @@ pub(super) struct Drive {
     limits: DriveLimits,
     /// The present velocity.
     velocity: Twist,
+    /// Whether contacts held it back in the last step.
+    is_stalled: bool,
 }
 
 impl Drive {
     /// Standing still.
     pub(super) fn new(limits: DriveLimits) -> Self {
-        Self { limits, velocity: Twist::STOP }
+        Self { limits, velocity: Twist::STOP, is_stalled: false }
     }
 
     /// The velocity of the next physics step towards `wanted`. Not a number stops the robot.
@@ -49,12 +51,21 @@ impl Drive {
     /// up again when it comes free.
     pub(super) fn settle(&mut self, solved: &Twist) -> Twist {
         let settle = |own: &mut f64, solved: f64, fastest: f64| {
-            if (*own - solved).abs() > HELD_BACK {
+            let is_off = (*own - solved).abs() > HELD_BACK;
+            if is_off {
                 *own = solved.clamp(-fastest, fastest);
             }
+            is_off
         };
-        settle(&mut self.velocity.linear_mps, solved.linear_mps, self.limits.max_linear_mps);
-        settle(&mut self.velocity.angular_radps, solved.angular_radps, self.limits.max_angular_radps);
+        let is_held = settle(&mut self.velocity.linear_mps, solved.linear_mps, self.limits.max_linear_mps);
+        let is_turned =
+            settle(&mut self.velocity.angular_radps, solved.angular_radps, self.limits.max_angular_radps);
+        self.is_stalled = is_held || is_turned;
         self.velocity
+    }
+
+    /// Whether contacts changed its velocity in the last step.
+    pub(super) fn is_stalled(&self) -> bool {
+        self.is_stalled
     }
 }

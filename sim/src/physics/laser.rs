@@ -1,5 +1,5 @@
 use super::chance::Gaussian;
-use super::rays::{Beams, Scene};
+use super::rays::{Beams, Scene, Scratch};
 use super::spec::LaserSpec;
 use geometry::Scan;
 use nalgebra::Isometry2;
@@ -14,23 +14,26 @@ pub(super) struct Laser {
 }
 
 impl Laser {
-    pub(super) fn new(spec: &LaserSpec, noise: Gaussian) -> Self {
-        Self { spec: *spec, beams: Arc::new(beams(spec)), noise }
+    /// A laser with `beams`, which are [`beams`] of its spec.
+    pub(super) fn new(spec: &LaserSpec, beams: Arc<Beams>, noise: Gaussian) -> Self {
+        Self { spec: *spec, beams, noise }
     }
 
-    /// The unit vectors of the beams in the laser's frame.
-    pub(super) fn directions(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.beams.directions()
-    }
-
-    /// The scan from a laser at `pose` on the robot in place `own`, which it never sees.
-    pub(super) fn scan(&mut self, pose: &Isometry2<f64>, scene: &Scene, own: usize, into: &mut Scan) {
-        let mut inverse = Vec::new();
-        scene.look(&self.beams, pose, own, &mut inverse);
+    /// The scan from a laser at `pose` on the robot in place `own`, which it never sees. `scratch`
+    /// is overwritten.
+    pub(super) fn scan(
+        &mut self,
+        pose: &Isometry2<f64>,
+        scene: &Scene,
+        own: usize,
+        scratch: &mut Scratch,
+        into: &mut Scan,
+    ) {
+        scene.look(&self.beams, pose, own, scratch);
         let LaserSpec { range_min_m, range_max_m, noise_std_m, .. } = self.spec;
         let noise = &mut self.noise;
         into.ranges_m.clear();
-        into.ranges_m.extend(inverse.iter().map(|inverse| {
+        into.ranges_m.extend(scratch.inverse.iter().map(|inverse| {
             let range_m = 1.0 / inverse;
             // One draw per beam, hit or not: what one beam meets never changes another's noise.
             let measured_m = if noise_std_m > 0.0 { range_m + noise_std_m * noise.draw() } else { range_m };

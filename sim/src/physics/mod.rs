@@ -1,15 +1,18 @@
 //! The physics world: a house with robots that have bodies and lasers (paper, section 5).
 //!
-//! [`WorldSpec`] reads a world file, [`PhysicsWorld`] lets time pass in it. Bodies and contacts
-//! are rapier's; rays are our own, exact to the geometry. [`Truth`] is for metrics.
+//! [`FleetSpec`] reads a world file with any number of robots, and [`Fleet`] lets time pass in it.
+//! [`WorldSpec`] and [`PhysicsWorld`] are the same for a place in which one robot is driven, with the
+//! [`Truth`] about every cell, for metrics. Bodies and contacts are rapier's; rays are our own, exact
+//! to the geometry.
 
 mod bodies;
 mod chance;
 mod drive;
+mod fleet;
 mod laser;
+mod minds;
 mod obstacles;
 mod odometry;
-mod patrol;
 mod rays;
 mod report;
 mod robot;
@@ -20,10 +23,12 @@ mod tests;
 mod truth;
 mod world;
 
+pub use fleet::{Controller, Fleet};
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView, RobotView, Sweep};
 pub use shape::Rectangle;
 pub use spec::{
-    Behaviour, DriveLimits, LaserSpec, ObstacleSpec, OdometryError, PatrolSpec, RobotSpec, WorldSpec,
+    Behaviour, CircleSpec, DriveLimits, FleetSpec, LaserSpec, ObstacleSpec, OdometryError, PatrolSpec,
+    Repeat, RobotSpec, WanderSpec, WaypointsSpec, WorldSpec,
 };
 pub use truth::{TrueChange, TrueState, Truth};
 pub use world::PhysicsWorld;

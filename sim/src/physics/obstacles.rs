@@ -1,5 +1,5 @@
 use super::bodies::{Bodies, Handle};
-use super::report::Body;
+use super::report::{Body, Move};
 use super::spec::ObstacleSpec;
 use nalgebra::Point2;
 
@@ -17,13 +17,6 @@ enum State {
     Due,
     Standing(Handle),
     Gone,
-}
-
-/// What an obstacle did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Move {
-    Appeared,
-    Disappeared,
 }
 
 impl Obstacle {

@@ -1,6 +1,6 @@
 //! What happened, and what there is to draw.
 
-use geometry::{Cell, LaserReading};
+use geometry::{Cell, LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
 
 /// Something solid, by its place in the world file.
@@ -14,16 +14,27 @@ pub enum Body {
     Robot(usize),
 }
 
-/// The driven robot began to touch something. It has to part from it by a millimetre before a
-/// touch counts again.
+/// A robot began to touch something. It has to part from it by a millimetre before a touch counts
+/// again. Two robots that touch each other have a contact each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// When, s.
     pub time_s: f64,
+    /// Which robot, by its place in the world file.
+    pub robot: usize,
     /// What it touched.
     pub with: Body,
     /// Whether the robot itself moved: a collision. `false`: it stood, and was run into.
     pub moving: bool,
+}
+
+/// What an obstacle did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Move {
+    /// It was put down.
+    Appeared,
+    /// It was taken away.
+    Disappeared,
 }
 
 /// An obstacle was put somewhere, or taken away.
@@ -50,8 +61,12 @@ pub struct RobotView<'a> {
     pub pose: Isometry2<f64>,
     /// The radius of its body, m.
     pub radius_m: f64,
-    /// Whether it obeys the world's commands.
+    /// Whether it obeys commands.
     pub is_driven: bool,
+    /// Its true velocity.
+    pub twist: Twist,
+    /// Whether it was held back in the last step: by a wall that it drives against, or another robot.
+    pub is_stalled: bool,
     /// What it saw last, if it has looked yet.
     pub sweep: Option<&'a Sweep>,
 }

@@ -1,14 +1,15 @@
 use super::bodies::Bodies;
-use super::chance::{Gaussian, Purpose};
+use super::chance::{Gaussian, Purpose, Uniform};
 use super::drive::Drive;
 use super::laser::Laser;
+use super::minds::Mind;
 use super::odometry::Odometry;
-use super::patrol::WallPatrol;
-use super::rays::Scene;
-use super::report::Sweep;
-use super::spec::{Behaviour, RobotSpec};
+use super::rays::{Beams, Scene, Scratch};
+use super::report::{Body, Sweep};
+use super::spec::RobotSpec;
 use geometry::{LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
+use std::sync::Arc;
 
 /// A robot at work: laser, mind, motors, odometry. Its body is rapier's.
 pub(super) struct Robot {
@@ -17,32 +18,45 @@ pub(super) struct Robot {
     index: usize,
     /// Where it truly is.
     pub(super) pose: Isometry2<f64>,
+    /// Where its middle was before the last step, m.
+    pub(super) was_at: Point2<f64>,
     pub(super) velocity: Twist,
+    /// Whether it drove by itself in the last step.
+    pub(super) drove: bool,
+    /// What it touches now.
+    pub(super) touching: Vec<Body>,
     /// What it was last told to do.
     wanted: Twist,
-    drive: Drive,
+    pub(super) drive: Drive,
     odometry: Odometry,
     laser: Laser,
-    patrol: Option<WallPatrol>,
+    mind: Mind,
     pub(super) sweep: Option<Sweep>,
 }
 
 impl Robot {
-    pub(super) fn new(spec: &RobotSpec, index: usize, pose: Isometry2<f64>, step_s: f64, seed: u64) -> Self {
-        let laser = Laser::new(&spec.laser, Gaussian::new(seed, Purpose::Laser, index));
-        let patrol = match spec.behaviour {
-            Behaviour::Driven => None,
-            Behaviour::WallPatrol(way) => Some(WallPatrol::new(way, spec, step_s, laser.directions())),
-        };
+    /// A robot in place `index` of the file, at `pose`. `beams` are its laser's.
+    pub(super) fn new(
+        spec: &RobotSpec,
+        index: usize,
+        pose: Isometry2<f64>,
+        step_s: f64,
+        seed: u64,
+        beams: Arc<Beams>,
+    ) -> Self {
+        let gaussian = |purpose| Gaussian::new(seed, purpose, index);
         Self {
             index,
             pose,
+            was_at: pose.translation.vector.into(),
             velocity: Twist::STOP,
+            drove: false,
+            touching: Vec::new(),
             wanted: Twist::STOP,
             drive: Drive::new(spec.drive),
-            odometry: Odometry::new(spec.odometry, Gaussian::new(seed, Purpose::Odometry, index), pose),
-            laser,
-            patrol,
+            odometry: Odometry::new(spec.odometry, gaussian(Purpose::Odometry), pose),
+            mind: Mind::new(spec, step_s, &beams, Uniform::new(seed, Purpose::Behaviour, index)),
+            laser: Laser::new(&spec.laser, beams, gaussian(Purpose::Laser)),
             sweep: None,
             spec: spec.clone(),
         }
@@ -53,9 +67,14 @@ impl Robot {
         self.pose.translation.vector.into()
     }
 
-    /// Whether it moves by itself, rather than being pushed.
-    pub(super) fn is_moving(&self) -> bool {
-        self.velocity != Twist::STOP
+    /// Whether it obeys commands.
+    pub(super) fn is_driven(&self) -> bool {
+        matches!(self.mind, Mind::Driven)
+    }
+
+    /// Whether its next scan is due at a step.
+    pub(super) fn is_due(&self, step: u64) -> bool {
+        step.is_multiple_of(self.spec.laser.period_steps)
     }
 
     /// Tells it what to do.
@@ -64,7 +83,7 @@ impl Robot {
     }
 
     /// Looks around at `time_s`, unless it has done so already at that time.
-    pub(super) fn look(&mut self, time_s: f64, scene: &Scene) -> &LaserReading {
+    pub(super) fn look(&mut self, time_s: f64, scene: &Scene, scratch: &mut Scratch) -> &LaserReading {
         let laser_pose = self.pose * self.spec.laser.mount;
         let sweep = self.sweep.get_or_insert_with(|| Sweep {
             reading: LaserReading {
@@ -82,33 +101,33 @@ impl Robot {
             sweep.reading.time_s = time_s;
             sweep.reading.pose = *self.odometry.pose();
             sweep.reading.twist = self.odometry.twist(&self.velocity);
-            self.laser.scan(&laser_pose, scene, self.index, &mut sweep.reading.scan);
+            self.laser.scan(&laser_pose, scene, self.index, scratch, &mut sweep.reading.scan);
         }
         &sweep.reading
     }
 
-    /// Lets a robot with a mind of its own look and decide, where its next scan is due.
-    pub(super) fn think(&mut self, step: u64, time_s: f64, scene: &Scene) {
-        if self.patrol.is_none() || !step.is_multiple_of(self.spec.laser.period_steps) {
-            return;
-        }
-        self.look(time_s, scene);
-        if let (Some(patrol), Some(sweep)) = (&mut self.patrol, &self.sweep) {
-            self.wanted = patrol.decide(&sweep.reading);
+    /// Looks around and, with a mind of its own, decides what to do.
+    pub(super) fn think(&mut self, time_s: f64, scene: &Scene, scratch: &mut Scratch) {
+        self.look(time_s, scene, scratch);
+        if let Some(sweep) = &self.sweep
+            && let Some(wanted) = self.mind.decide(&sweep.reading)
+        {
+            self.wanted = wanted;
         }
     }
 
     /// Sets its wheels in motion for the next step.
     pub(super) fn push(&mut self, bodies: &mut Bodies, step_s: f64) {
         self.velocity = self.drive.step(&self.wanted, step_s);
+        self.drove = self.velocity != Twist::STOP;
         bodies.set_velocity(self.index, &self.velocity, step_s);
     }
 
-    /// Takes over where the step brought it. Returns where it was, m.
-    pub(super) fn follow(&mut self, bodies: &Bodies) -> Point2<f64> {
+    /// Takes over where the step brought it.
+    pub(super) fn follow(&mut self, bodies: &Bodies) {
         let before = std::mem::replace(&mut self.pose, bodies.pose(self.index));
         self.velocity = self.drive.settle(&bodies.velocity(self.index));
         self.odometry.feel(&before, &self.pose);
-        before.translation.vector.into()
+        self.was_at = before.translation.vector.into();
     }
 }

@@ -1,71 +1,44 @@
-use super::bodies::Bodies;
-use super::obstacles::{Move, Obstacle};
-use super::rays::{Disc, Scene};
-use super::report::{Body, Contact, ObstacleEvent, ObstacleView, RobotView};
-use super::robot::Robot;
-use super::shape::Rectangle;
+use super::fleet::Fleet;
+use super::report::{Body, Contact, Move, ObstacleEvent, ObstacleView, RobotView};
 use super::spec::WorldSpec;
 use super::truth::Truth;
-use geometry::{GridFrame, LaserReading, Twist, World};
-use nalgebra::{Isometry2, Point2, Vector2};
+use geometry::{LaserReading, Twist, World};
+use nalgebra::{Isometry2, Point2};
 
-/// A house in which robots drive and look around.
+/// A house in which one robot is driven, with the truth about every cell.
 ///
 /// The same spec, seed and commands give the same bits, on every machine.
 pub struct PhysicsWorld {
     spec: WorldSpec,
-    /// Steps since the start; time is a multiple, so that it never drifts.
-    step: u64,
-    bodies: Bodies,
-    pub(super) robots: Vec<Robot>,
-    obstacles: Vec<Obstacle>,
-    scene: Scene,
+    fleet: Fleet,
     truth: Truth,
     contacts: Vec<Contact>,
-    /// What the driven robot touches now.
-    touching: Vec<Body>,
     obstacle_events: Vec<ObstacleEvent>,
 }
 
 impl PhysicsWorld {
-    /// The world of `spec` at its start. `seed` starts all chance: the noise of lasers and of
-    /// odometry, each in a stream of its own.
+    /// The world of `spec` at its start. `seed` starts all chance: the noise of lasers, that of
+    /// odometry, and what robots do by themselves, each in a stream of its own.
     pub fn new(spec: &WorldSpec, seed: u64) -> Self {
-        let mut bodies = Bodies::new(spec.step_s);
-        for (index, wall) in spec.walls.iter().enumerate() {
-            bodies.add_box(Body::Wall(index), wall);
+        let fleet = Fleet::new(&spec.fleet, seed);
+        let start = fleet.robot(spec.driven).at();
+        let mut truth = Truth::new(spec.fleet.frame, &spec.fleet.walls, &start);
+        let boxes = fleet.standing_boxes();
+        for (index, obstacle) in spec.obstacles().iter().enumerate().filter(|(i, _)| fleet.is_standing(*i)) {
+            let mover = obstacle.is_mover().then_some(Body::Obstacle(index));
+            truth.change_box(&obstacle.shape, &boxes, mover);
         }
-        let mut robots = Vec::new();
-        for (index, robot) in spec.robots.iter().enumerate() {
-            bodies.add_robot(robot, spec.step_s);
-            robots.push(Robot::new(robot, index, bodies.pose(index), spec.step_s, seed));
+        for index in others(spec) {
+            let robot = fleet.robot(index);
+            truth.move_disc(Body::Robot(index), None, robot.at(), robot.spec.radius_m);
         }
-        let obstacles: Vec<Obstacle> =
-            spec.obstacles.iter().enumerate().map(|(i, o)| Obstacle::new(o, i, &mut bodies)).collect();
-        let start = robots[spec.driven].at();
-        let discs = robots.iter().map(|robot| Disc { center: robot.at(), radius_m: robot.spec.radius_m });
-        let range_m = spec.robots.iter().fold(0.0, |most: f64, robot| most.max(robot.laser.range_max_m));
-        let scene = Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), range_m);
-        let mut world = Self {
-            truth: Truth::new(spec.frame, &spec.walls, &start),
-            spec: spec.clone(),
-            step: 0,
-            bodies,
-            robots,
-            obstacles,
-            scene,
-            contacts: Vec::new(),
-            touching: Vec::new(),
-            obstacle_events: Vec::new(),
-        };
-        world.set_scene();
-        world.set_truth();
-        world
+        truth.begin();
+        Self { spec: spec.clone(), fleet, truth, contacts: Vec::new(), obstacle_events: Vec::new() }
     }
 
     /// The time since the start, s.
     pub fn time_s(&self) -> f64 {
-        self.step as f64 * self.spec.step_s
+        self.fleet.time_s()
     }
 
     /// What the world was made from.
@@ -80,7 +53,7 @@ impl PhysicsWorld {
 
     /// Where the driven robot truly is, for metrics only.
     pub fn true_pose(&self) -> &Isometry2<f64> {
-        &self.robots[self.spec.driven].pose
+        &self.fleet.robot(self.spec.driven).pose
     }
 
     /// Every contact of the driven robot that has begun since the start, in order.
@@ -95,112 +68,44 @@ impl PhysicsWorld {
 
     /// All robots, in the order of the file.
     pub fn robots(&self) -> impl ExactSizeIterator<Item = RobotView<'_>> {
-        self.robots.iter().enumerate().map(|(index, robot)| RobotView {
-            name: &robot.spec.name,
-            pose: robot.pose,
-            radius_m: robot.spec.radius_m,
-            is_driven: index == self.spec.driven,
-            sweep: robot.sweep.as_ref(),
-        })
+        self.fleet.robots()
     }
 
     /// The corners of all walls, counter-clockwise, m.
     pub fn walls(&self) -> impl ExactSizeIterator<Item = [Point2<f64>; 4]> {
-        self.spec.walls.iter().map(Rectangle::corners)
+        self.fleet.walls()
     }
 
     /// The obstacles that stand now.
     pub fn obstacles(&self) -> impl Iterator<Item = ObstacleView<'_>> {
-        let standing = self.obstacles.iter().filter(|obstacle| obstacle.is_standing());
-        standing.map(|o| ObstacleView { name: &o.spec.name, corners: o.spec.shape.corners() })
+        self.fleet.obstacles()
     }
 
     /// Lets one physics step pass.
     fn advance(&mut self) {
-        let (time_s, step_s) = (self.time_s(), self.spec.step_s);
-        self.scene.sort();
-        for robot in &mut self.robots {
-            robot.think(self.step, time_s, &self.scene);
-        }
-        for robot in &mut self.robots {
-            robot.push(&mut self.bodies, step_s);
-        }
-        let moving = self.robots[self.spec.driven].is_moving();
-        self.bodies.step();
-        self.step += 1;
-        self.truth.set_time(self.time_s());
-        for (index, robot) in self.robots.iter_mut().enumerate() {
-            let before = robot.follow(&self.bodies);
-            self.scene.move_disc(index, robot.at());
-            if index != self.spec.driven {
-                self.truth.move_disc(Body::Robot(index), Some(before), robot.at(), robot.spec.radius_m);
-            }
-        }
-        self.note_contacts(moving);
-        self.move_obstacles();
-    }
-
-    /// Notes what the driven robot has begun to touch. `moving`: it drove in this step.
-    fn note_contacts(&mut self, moving: bool) {
+        self.fleet.think(|robot| !robot.is_driven());
+        self.fleet.advance();
         let time_s = self.time_s();
-        let mut touching = Vec::new();
-        for (with, presses) in self.bodies.touches(self.spec.driven) {
-            let touched_before = self.touching.contains(&with);
-            if presses && !touched_before {
-                self.contacts.push(Contact { time_s, with, moving });
-            }
-            if presses || touched_before {
-                touching.push(with);
-            }
+        self.truth.set_time(time_s);
+        for index in others(&self.spec) {
+            let robot = self.fleet.robot(index);
+            self.truth.move_disc(Body::Robot(index), Some(robot.was_at), robot.at(), robot.spec.radius_m);
         }
-        self.touching = touching;
+        let own = self.fleet.contacts().iter().filter(|contact| contact.robot == self.spec.driven);
+        self.contacts.extend(own);
+        self.fleet.move_obstacles(|obstacle, what, standing| {
+            let spec = &self.spec.fleet.obstacles[obstacle];
+            let cells = self.truth.change_box(&spec.shape, standing, Some(Body::Obstacle(obstacle)));
+            let (name, appeared) = (spec.name.clone(), what == Move::Appeared);
+            self.obstacle_events.push(ObstacleEvent { time_s, obstacle, name, appeared, cells });
+        });
     }
+}
 
-    fn move_obstacles(&mut self) {
-        let time_s = self.time_s();
-        for index in 0..self.obstacles.len() {
-            let robots = self.robots.iter().map(|robot| (robot.at(), robot.spec.radius_m));
-            let Some(what) = self.obstacles[index].step(index, time_s, &mut self.bodies, robots) else {
-                continue;
-            };
-            self.set_scene();
-            let boxes = self.standing_boxes();
-            let spec = &self.obstacles[index].spec;
-            let cells = self.truth.change_box(&spec.shape, &boxes, Some(Body::Obstacle(index)));
-            self.obstacle_events.push(ObstacleEvent {
-                time_s,
-                obstacle: index,
-                name: spec.name.clone(),
-                appeared: what == Move::Appeared,
-                cells,
-            });
-        }
-    }
-
-    /// Walls, and the obstacles that stand now.
-    fn standing_boxes(&self) -> Vec<Rectangle> {
-        let standing = self.obstacles.iter().filter(|obstacle| obstacle.is_standing());
-        self.spec.walls.iter().copied().chain(standing.map(|obstacle| obstacle.spec.shape)).collect()
-    }
-
-    /// Shows the lasers what stands now.
-    fn set_scene(&mut self) {
-        let standing = self.obstacles.iter().filter(|obstacle| obstacle.is_standing());
-        self.scene.set_boxes(standing.map(|obstacle| &obstacle.spec.shape));
-    }
-
-    /// Tells the truth what stands at the start.
-    fn set_truth(&mut self) {
-        let boxes = self.standing_boxes();
-        for (index, obstacle) in self.obstacles.iter().enumerate().filter(|(_, o)| o.is_standing()) {
-            let mover = obstacle.spec.is_mover().then_some(Body::Obstacle(index));
-            self.truth.change_box(&obstacle.spec.shape, &boxes, mover);
-        }
-        for (index, robot) in self.robots.iter().enumerate().filter(|(i, _)| *i != self.spec.driven) {
-            self.truth.move_disc(Body::Robot(index), None, robot.at(), robot.spec.radius_m);
-        }
-        self.truth.begin();
-    }
+/// The robots that are not driven.
+fn others(spec: &WorldSpec) -> impl Iterator<Item = usize> + use<> {
+    let driven = spec.driven;
+    (0..spec.robots().len()).filter(move |&index| index != driven)
 }
 
 impl World for PhysicsWorld {
@@ -210,24 +115,14 @@ impl World for PhysicsWorld {
     /// The driven robot's scan, with its pose by odometry at the same instant. Looking twice at
     /// the same time gives the same reading.
     fn sense(&mut self) -> LaserReading {
-        let time_s = self.time_s();
-        self.scene.sort();
-        self.robots[self.spec.driven].look(time_s, &self.scene).clone()
+        self.fleet.look(self.spec.driven).clone()
     }
 
     fn act(&mut self, command: &Twist) {
         self.truth.forget_changes();
-        let driven = &mut self.robots[self.spec.driven];
-        driven.command(command);
-        let period_steps = driven.spec.laser.period_steps;
-        for _ in 0..period_steps {
+        self.fleet.command(self.spec.driven, command);
+        for _ in 0..self.spec.driven().laser.period_steps {
             self.advance();
         }
     }
-}
-
-/// The lower left and the upper right corner of a grid, m.
-pub(super) fn corners(frame: &GridFrame) -> (Point2<f64>, Point2<f64>) {
-    let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
-    (frame.origin(), frame.origin() + size)
 }

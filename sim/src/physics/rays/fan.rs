@@ -13,7 +13,7 @@ use std::ops::Range;
 const EDGE_ON_M: f64 = 1e-9;
 
 /// [`rough_atan2`] is no farther off than this, rad.
-const ROUGH_RAD: f64 = 1.2e-5;
+pub(super) const ROUGH_RAD: f64 = 1.2e-5;
 
 /// The directions of a laser's beams.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,31 +155,42 @@ impl<'a> Hits<'a> {
         }
     }
 
-    /// Adds a round body.
-    pub(super) fn add_disc(&mut self, center: &Point2<f64>, radius_m: f64) {
-        let to = center - self.laser.translation.vector;
-        let power = to.coords.norm_squared() - radius_m * radius_m;
-        if power <= 0.0 {
-            return self.add_inside();
-        }
-        let reach_m = self.beams.range_max_m + radius_m;
-        if power > reach_m * reach_m {
+    /// Where the laser is.
+    pub(super) fn laser(&self) -> &Isometry2<f64> {
+        &self.laser
+    }
+
+    /// Bodies beyond this may be left out, m.
+    pub(super) fn range_max_m(&self) -> f64 {
+        self.beams.range_max_m
+    }
+
+    /// Adds a round body with its middle at `center` (m, in the laser's frame). It is seen less than
+    /// `half_rad` away from `angle_rad`, and nothing of it has an inverse range above `nearest`.
+    pub(super) fn add_disc(
+        &mut self,
+        center: &Vector2<f64>,
+        power: f64,
+        angle_rad: f64,
+        half_rad: f64,
+        nearest: f64,
+    ) {
+        let runs = self.beams.around(angle_rad, half_rad);
+        let is_hidden = |run: &Range<usize>| {
+            self.inverse[run.clone()].iter().fold(true, |all, &inverse| all & (inverse >= nearest))
+        };
+        if runs.iter().all(is_hidden) {
             return;
         }
-        let center = self.laser.rotation.inverse() * to.coords;
-        let toward_rad = rough_atan2(center.y, center.x);
-        let half_rad = rough_atan2(radius_m, power.sqrt()) + 2.0 * ROUGH_RAD;
         let per_power = 1.0 / power;
-        for run in self.beams.around(toward_rad, half_rad) {
+        for run in runs {
             let directions = self.beams.x[run.clone()].iter().zip(&self.beams.y[run.clone()]);
             for (inverse, (x, y)) in self.inverse[run].iter_mut().zip(directions) {
                 // The nearer root of t² − 2bt + power = 0 is power / (b + √(b² − power)).
                 let b = center.x * x + center.y * y;
                 let root2 = b * b - power;
-                if root2 >= 0.0 {
-                    let hit = (b + root2.sqrt()) * per_power;
-                    *inverse = if hit > *inverse { hit } else { *inverse };
-                }
+                let hit = if root2 >= 0.0 { (b + root2.max(0.0).sqrt()) * per_power } else { 0.0 };
+                *inverse = if hit > *inverse { hit } else { *inverse };
             }
         }
     }

@@ -5,6 +5,7 @@
 //! they fill, not their product. Walls are [`outline`]s, from which what no ray can meet is left
 //! out, and [`sight`] knows, for every place, the few of them that can be seen from there.
 
+mod discs;
 mod fan;
 mod lists;
 mod outline;
@@ -12,4 +13,4 @@ mod scene;
 mod sight;
 
 pub(super) use fan::Beams;
-pub(super) use scene::{Disc, Scene};
+pub(super) use scene::{Disc, Scene, Scratch};

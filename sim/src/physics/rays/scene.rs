@@ -1,8 +1,10 @@
+use super::discs::Discs;
 use super::fan::{Beams, Hits};
 use super::outline::{Edge, outline};
 use super::sight::{Reach, Sight};
 use crate::physics::shape::Rectangle;
 use nalgebra::{Isometry2, Point2};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A round body.
@@ -12,6 +14,14 @@ pub(in crate::physics) struct Disc {
     pub(in crate::physics) center: Point2<f64>,
     /// Its radius, m.
     pub(in crate::physics) radius_m: f64,
+}
+
+/// Memory to look with, kept from look to look.
+#[derive(Clone, Debug, Default)]
+pub(in crate::physics) struct Scratch {
+    /// What was seen: one over the range for each beam, 1/m; 0 where there is no hit.
+    pub(in crate::physics) inverse: Vec<f64>,
+    discs: Discs,
 }
 
 /// Everything that a laser can see.
@@ -97,18 +107,19 @@ impl Scene {
         self.is_sorted = true;
     }
 
-    /// What `beams` at `laser` hit, on the robot in place `own`, which they never see: one over the
-    /// range for each beam, 1/m; 0 where there is no hit.
+    /// What `beams` at `laser` hit, on the robot in place `own`, which they never see.
     pub(in crate::physics) fn look(
         &self,
         beams: &Beams,
         laser: &Isometry2<f64>,
         own: usize,
-        inverse: &mut Vec<f64>,
+        scratch: &mut Scratch,
     ) {
         debug_assert!(self.is_sorted);
         let Walls { solids, edges, sight } = &*self.walls;
+        let Scratch { inverse, discs } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);
+        discs.clear();
         let at = Point2::from(laser.translation.vector);
         let contains = |sides: &[Edge; 4]| sides.iter().all(|side| side.gap_m(&at) <= 0.0);
         let mut is_inside = self.boxes.iter().any(contains);
@@ -118,25 +129,27 @@ impl Scene {
                 sight.edges(cell).iter().for_each(|&i| hits.add_edge(&edges[i as usize]));
                 let cells = sight.cells(cell).iter().map(|&cell| cell as usize);
                 for seen in cells.chain([sight.len()]) {
-                    self.add_robots(&mut hits, self.starts[seen]..self.starts[seen + 1], own);
+                    self.note_robots(discs, &mut hits, self.starts[seen]..self.starts[seen + 1], own);
                 }
             }
             None => {
                 is_inside |= solids.iter().any(contains);
                 edges.iter().for_each(|edge| hits.add_edge(edge));
-                self.add_robots(&mut hits, 0..self.sorted.len() as u32, own);
+                self.note_robots(discs, &mut hits, 0..self.sorted.len() as u32, own);
             }
         }
         self.boxes.iter().flatten().for_each(|edge| hits.add_edge(edge));
+        // Last, since most are hidden by what has been added before.
+        discs.add_to(&mut hits);
         if is_inside {
             hits.add_inside();
         }
     }
 
-    fn add_robots(&self, hits: &mut Hits<'_>, sorted: std::ops::Range<u32>, own: usize) {
+    fn note_robots(&self, discs: &mut Discs, hits: &mut Hits<'_>, sorted: Range<u32>, own: usize) {
         for (robot, disc) in &self.sorted[sorted.start as usize..sorted.end as usize] {
             if *robot as usize != own {
-                hits.add_disc(&disc.center, disc.radius_m);
+                discs.push(disc, hits);
             }
         }
     }

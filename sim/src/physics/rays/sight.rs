@@ -70,8 +70,14 @@ impl Sight {
             let view = View::new(&own, edges, reach);
             sight.edges.push(view.edges(edges));
             let robots = (0..sight.len()).map(|i| sight.square(i, reach.radius_m + MARGIN_M));
-            let visible: Vec<u32> =
+            let mut visible: Vec<u32> =
                 robots.enumerate().filter(|(_, square)| view.sees(square)).map(|(i, _)| i as u32).collect();
+            // The nearest first: they hide the others.
+            let apart_m = |&other: &u32| {
+                let other = sight.square(other as usize, 0.0).pose.translation.vector;
+                (other - own.pose.translation.vector).norm()
+            };
+            visible.sort_by(|a, b| apart_m(a).total_cmp(&apart_m(b)).then(a.cmp(b)));
             sight.cells.push(visible.into_iter());
         }
         sight
@@ -98,7 +104,7 @@ impl Sight {
         self.edges.get(cell)
     }
 
-    /// The cells in which a robot may be seen from a cell.
+    /// The cells in which a robot may be seen from a cell, the nearest first.
     pub(super) fn cells(&self, cell: usize) -> &[u32] {
         self.cells.get(cell)
     }

@@ -3,9 +3,9 @@
 use super::file::{MapFile, Number, ObstacleFile, Pair, RobotFile, WallFile, WorldFile};
 use super::numbers::Table;
 use super::robot::robot;
-use super::{Behaviour, ObstacleSpec, RobotSpec, WorldSpec};
+use super::{Behaviour, FleetSpec, ObstacleSpec, RobotSpec};
 use crate::error::{Source, WorldError};
-use crate::physics::shape::{Rectangle, TOUCH_M, turned, turned_point};
+use crate::physics::shape::{Rectangle, TOUCH_M, turned};
 use geometry::{GridFrame, rotation};
 use nalgebra::Point2;
 use serde_spanned::Spanned;
@@ -22,7 +22,13 @@ pub(super) struct Solid {
     pub(super) span: Range<usize>,
 }
 
-pub(super) fn check(source: &Source<'_>, file: WorldFile) -> Result<WorldSpec, WorldError> {
+/// The file as it is written.
+pub(super) fn file(source: &Source<'_>) -> Result<WorldFile, WorldError> {
+    toml::from_str(source.text).map_err(|error| source.toml_error(error))
+}
+
+/// Checks everything but who is driven.
+pub(super) fn check(source: &Source<'_>, file: &WorldFile) -> Result<FleetSpec, WorldError> {
     let name = Table { source, path: "" }.name(&file.name)?;
     let (size, cell_m, turn_rad) = map(source, &file.map)?;
     let physics = Table { source, path: "physics" };
@@ -47,17 +53,15 @@ pub(super) fn check(source: &Source<'_>, file: WorldFile) -> Result<WorldSpec, W
         robots.push(robot(source, file.get_ref(), &size, step_s, &solids)?);
     }
     apart(source, &file.robots, &robots)?;
-    let driven = driven(source, &file, &robots)?;
 
-    let mut spec = WorldSpec {
+    let mut spec = FleetSpec {
         name,
-        description: file.description,
+        description: file.description.clone(),
         frame: covering(&size, cell_m, turn_rad).ok_or_else(|| too_many_cells(source, &file.map))?,
         step_s,
         walls,
         obstacles,
         robots,
-        driven,
     };
     turn(&mut spec, turn_rad, &(size / 2.0));
     Ok(spec)
@@ -244,7 +248,11 @@ fn apart(source: &Source<'_>, files: &[Spanned<RobotFile>], robots: &[RobotSpec]
 }
 
 /// The place of the one driven robot.
-fn driven(source: &Source<'_>, file: &WorldFile, robots: &[RobotSpec]) -> Result<usize, WorldError> {
+pub(super) fn driven(
+    source: &Source<'_>,
+    file: &WorldFile,
+    robots: &[RobotSpec],
+) -> Result<usize, WorldError> {
     let driven: Vec<usize> =
         (0..robots.len()).filter(|&i| robots[i].behaviour == Behaviour::Driven).collect();
     let kind = |i: usize| file.robots[i].get_ref().behaviour.get_ref().kind.span();
@@ -263,7 +271,7 @@ fn driven(source: &Source<'_>, file: &WorldFile, robots: &[RobotSpec]) -> Result
 }
 
 /// Turns the whole house about the middle of the map.
-fn turn(spec: &mut WorldSpec, turn_rad: f64, middle: &Point2<f64>) {
+fn turn(spec: &mut FleetSpec, turn_rad: f64, middle: &Point2<f64>) {
     if turn_rad == 0.0 {
         return;
     }
@@ -276,9 +284,6 @@ fn turn(spec: &mut WorldSpec, turn_rad: f64, middle: &Point2<f64>) {
     }
     for robot in &mut spec.robots {
         robot.pose = turned(&robot.pose, &by, middle);
-        if let Behaviour::WallPatrol(patrol) = &mut robot.behaviour {
-            patrol.from = turned_point(&patrol.from, &by, middle);
-            patrol.to = turned_point(&patrol.to, &by, middle);
-        }
+        robot.behaviour.turn(&by, middle);
     }
 }

@@ -132,4 +132,8 @@ pub(super) struct BehaviourFile {
     pub(super) speed_mps: Option<Number>,
     pub(super) wall_side: Option<Spanned<String>>,
     pub(super) clearance_m: Option<Number>,
+    pub(super) turn_radius_m: Option<Number>,
+    pub(super) direction: Option<Spanned<String>>,
+    pub(super) points_m: Option<Spanned<Vec<Pair>>>,
+    pub(super) repeat: Option<Spanned<String>>,
 }

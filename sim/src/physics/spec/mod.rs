@@ -41,14 +41,33 @@
 //! | `robot.laser.mount_m` | m | `[0, 0]` | within the robot's radius |
 //! | `robot.laser.mount_deg` | ° | 0 | −360 to 360 |
 //! | `robot.laser.noise_std_m` | m | 0 | 0 to 1 |
-//! | `robot.behaviour.kind` | | required | `"driven"` (exactly one robot) or `"wall_patrol"` |
-//! | `robot.behaviour.from_m`, `to_m` | m | required² | 0.1 m apart or more; the robot fits all the way and starts on it |
-//! | `robot.behaviour.speed_mps` | m/s | required² | 0.01 to `max_linear_mps` |
-//! | `robot.behaviour.wall_side` | | required² | `"left"` or `"right"`, on the way from `from_m` to `to_m`; the whole way must run along a wall there, its surface 0.05 m beyond the robot or more, and at most 2 m from its middle |
-//! | `robot.behaviour.clearance_m` | m | 0.15 | 0.05 to 10; kept free ahead when it stops |
+//! | `robot.behaviour.kind` | | required | one of the behaviours below |
 //!
-//! ¹ one of the two forms. ² `wall_patrol` only.
+//! ¹ one of the two forms.
+//!
+//! # Behaviours
+//!
+//! A key that a behaviour does not have is an error.
+//!
+//! | `kind` | the robot | key | unit | default | range |
+//! |---|---|---|---|---|---|
+//! | `"driven"` | obeys commands; exactly one in a [`WorldSpec`], any number in a [`FleetSpec`] | | | | |
+//! | `"standing"` | stands | | | | |
+//! | `"circle"` | drives a circle, blindly | `speed_mps` | m/s | required | 0.01 to `max_linear_mps` |
+//! | | | `turn_radius_m` | m | required | 0.01 to 1000; turns within `max_angular_degps` |
+//! | | | `direction` | | `"left"` | `"left"` or `"right"` |
+//! | `"wander"` | drives about, and turns away from what it sees ahead | `speed_mps` | m/s | required | 0.01 to `max_linear_mps` |
+//! | | | `clearance_m` | m | 0.15 | 0.05 to 10; kept free ahead |
+//! | `"waypoints"` | drives straight from point to point, and waits while something is in its way | `points_m` | m | required | 1 to 1000 points in the map, 0.1 m apart or more; the way to each keeps 0.05 m more than the radius away from walls |
+//! | | | `speed_mps` | m/s | required | 0.01 to `max_linear_mps` |
+//! | | | `repeat` | | `"loop"` | `"loop"`: from the last to the first; `"back_and_forth"`; `"once"` |
+//! | | | `clearance_m` | m | 0.15 | 0.05 to 10; kept free ahead when it stops |
+//! | `"wall_patrol"` | follows a wall back and forth, and waits while something is in its way | `from_m`, `to_m` | m | required | 0.1 m apart or more; the robot fits all the way and starts on it |
+//! | | | `speed_mps` | m/s | required | 0.01 to `max_linear_mps` |
+//! | | | `wall_side` | | required | `"left"` or `"right"`, on the way from `from_m` to `to_m`; the whole way must run along a wall there, its surface 0.05 m beyond the robot or more, and at most 2 m from its middle |
+//! | | | `clearance_m` | m | 0.15 | 0.05 to 10; kept free ahead when it stops |
 
+mod behaviour;
 mod check;
 mod file;
 mod numbers;
@@ -57,16 +76,19 @@ mod robot;
 #[cfg(test)]
 mod tests;
 
+pub use behaviour::{Behaviour, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
+
 use super::shape::Rectangle;
 use crate::error::{Source, WorldError};
 use geometry::{GridFrame, Scan};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Isometry2;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
-/// A physics world as its file describes it: every figure in range, every relation checked.
+/// A place with any number of robots, as its file describes it: every figure in range, every
+/// relation checked.
 #[derive(Clone, Debug, PartialEq)]
-pub struct WorldSpec {
+pub struct FleetSpec {
     pub(super) name: String,
     pub(super) description: String,
     pub(super) frame: GridFrame,
@@ -74,18 +96,16 @@ pub struct WorldSpec {
     pub(super) walls: Vec<Rectangle>,
     pub(super) obstacles: Vec<ObstacleSpec>,
     pub(super) robots: Vec<RobotSpec>,
-    pub(super) driven: usize,
 }
 
-impl WorldSpec {
-    /// Reads and checks a world file.
+impl FleetSpec {
+    /// Reads and checks a world file, in which any number of robots may be driven, or none.
     ///
     /// # Errors
     ///
-    /// When the file cannot be read, or as in [`WorldSpec::parse`].
+    /// When the file cannot be read, or as in [`FleetSpec::parse`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self, WorldError> {
-        let name = path.as_ref().display().to_string();
-        let text = std::fs::read_to_string(&path).map_err(|error| WorldError::unreadable(&name, &error))?;
+        let (name, text) = read(path.as_ref())?;
         Self::parse(&name, &text)
     }
 
@@ -97,8 +117,7 @@ impl WorldSpec {
     /// in the world contradict each other. The message says where, and what would be right.
     pub fn parse(name: &str, text: &str) -> Result<Self, WorldError> {
         let source = Source { name, text };
-        let file = toml::from_str(text).map_err(|error| source.toml_error(error))?;
-        check::check(&source, file)
+        check::check(&source, &check::file(&source)?)
     }
 
     /// What the world is called.
@@ -135,11 +154,90 @@ impl WorldSpec {
     pub fn robots(&self) -> &[RobotSpec] {
         &self.robots
     }
+}
+
+/// A place in which exactly one robot is driven: the one that explores.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorldSpec {
+    pub(super) fleet: FleetSpec,
+    pub(super) driven: usize,
+}
+
+impl WorldSpec {
+    /// Reads and checks a world file.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be read, or as in [`WorldSpec::parse`].
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, WorldError> {
+        let (name, text) = read(path.as_ref())?;
+        Self::parse(&name, &text)
+    }
+
+    /// Checks the text of a world file; `name` is what messages call the file.
+    ///
+    /// # Errors
+    ///
+    /// As [`FleetSpec::parse`], and when not exactly one robot is driven.
+    pub fn parse(name: &str, text: &str) -> Result<Self, WorldError> {
+        let source = Source { name, text };
+        let file = check::file(&source)?;
+        let fleet = check::check(&source, &file)?;
+        let driven = check::driven(&source, &file, &fleet.robots)?;
+        Ok(Self { fleet, driven })
+    }
+
+    /// The same place for the simulator of fleets.
+    pub fn fleet(&self) -> &FleetSpec {
+        &self.fleet
+    }
+
+    /// What the world is called.
+    pub fn name(&self) -> &str {
+        &self.fleet.name
+    }
+
+    /// What the world shows, in a sentence or two.
+    pub fn description(&self) -> &str {
+        &self.fleet.description
+    }
+
+    /// The cells of the truth grid, which cover the house, turned or not.
+    pub fn frame(&self) -> &GridFrame {
+        &self.fleet.frame
+    }
+
+    /// The physics step, s.
+    pub fn step_s(&self) -> f64 {
+        self.fleet.step_s
+    }
+
+    /// The walls, in the order of the file.
+    pub fn walls(&self) -> &[Rectangle] {
+        &self.fleet.walls
+    }
+
+    /// The obstacles, in the order of the file.
+    pub fn obstacles(&self) -> &[ObstacleSpec] {
+        &self.fleet.obstacles
+    }
+
+    /// The robots, in the order of the file.
+    pub fn robots(&self) -> &[RobotSpec] {
+        &self.fleet.robots
+    }
 
     /// The one robot that commands drive.
     pub fn driven(&self) -> &RobotSpec {
-        &self.robots[self.driven]
+        &self.fleet.robots[self.driven]
     }
+}
+
+/// What messages call a world file, and its text.
+fn read(path: &Path) -> Result<(String, String), WorldError> {
+    let name = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|error| WorldError::unreadable(&name, &error))?;
+    Ok((name, text))
 }
 
 /// A box, which may come and go.
@@ -257,31 +355,4 @@ impl LaserSpec {
     fn is_full_turn(&self) -> bool {
         self.fov_rad > TAU - 1e-9
     }
-}
-
-/// What a robot does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Behaviour {
-    /// It obeys the commands given to the world.
-    Driven,
-    /// It follows a wall between two points, back and forth.
-    WallPatrol(PatrolSpec),
-}
-
-/// A way along a wall, back and forth (paper, section 5).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PatrolSpec {
-    /// One end of the way of the robot's middle, m.
-    pub from: Point2<f64>,
-    /// The other end, m.
-    pub to: Point2<f64>,
-    /// The speed on the way, m/s.
-    pub speed_mps: f64,
-    /// Whether the wall is on the left on the way from `from` to `to`.
-    pub wall_on_left: bool,
-    /// The distance from the robot's middle to the wall's surface, m, measured in the file's
-    /// house.
-    pub wall_distance_m: f64,
-    /// The free space that the robot keeps ahead when it stops for something, m.
-    pub clearance_m: f64,
 }

@@ -1,14 +1,13 @@
-//! What a robot is told to do: a patrol must be possible.
+//! A patrol must be possible.
 
+use super::behaviour::Context;
 use super::check::Solid;
 use super::file::{BehaviourFile, RobotFile};
-use super::numbers::Table;
-use super::{Behaviour, DriveLimits, PatrolSpec};
+use super::{Behaviour, PatrolSpec};
 use crate::error::{Source, WorldError};
-use crate::physics::patrol::WALL_RELIEF_M;
+use crate::physics::minds::WALL_RELIEF_M;
 use crate::physics::shape::{TOUCH_M, point_segment_m};
 use nalgebra::{Point2, Vector2};
-use serde_spanned::Spanned;
 
 /// A wall farther away than this is none to follow, m.
 const FARTHEST_WALL_M: f64 = 2.0;
@@ -17,73 +16,30 @@ const SLACK_M: f64 = 0.05;
 /// The way's distance to its wall is looked at in steps of this, m.
 const LOOK_EVERY_M: f64 = 0.1;
 
-pub(super) fn behaviour(
-    source: &Source<'_>,
-    robot: &RobotFile,
-    start: &Point2<f64>,
-    drive: &DriveLimits,
-    size: &Point2<f64>,
-    solids: &[Solid],
-) -> Result<Behaviour, WorldError> {
-    let file = robot.behaviour.get_ref();
-    let BehaviourFile { kind, from_m, to_m, speed_mps, wall_side, clearance_m } = file;
-    match kind.get_ref().as_str() {
-        "driven" => {
-            let numbers = [speed_mps, clearance_m].map(|key| key.as_ref().map(Spanned::span));
-            let points = [from_m, to_m].map(|key| key.as_ref().map(Spanned::span));
-            let side = wall_side.as_ref().map(Spanned::span);
-            match numbers.into_iter().chain(points).chain([side]).flatten().next() {
-                Some(span) => {
-                    let help = "leave it out: a driven robot goes where it is told to";
-                    Err(source.error(
-                        "a driven robot has no patrol",
-                        (span, "for a `wall_patrol`"),
-                        &[],
-                        help,
-                    ))
-                }
-                None => Ok(Behaviour::Driven),
-            }
-        }
-        "wall_patrol" => {
-            let (Some(from_m), Some(to_m), Some(speed_mps), Some(side)) =
-                (from_m, to_m, speed_mps, wall_side)
-            else {
-                let what = format!("the patrol of `{}` is not complete", robot.name.get_ref());
-                let help = "it needs `from_m`, `to_m`, `speed_mps` and `wall_side`";
-                return Err(source.error(&what, (kind.span(), "this patrol"), &[], help));
-            };
-            let table = Table { source, path: "robot.behaviour" };
-            let (from, to) = (table.point("from_m", from_m, size)?, table.point("to_m", to_m, size)?);
-            let wall_on_left = match side.get_ref().as_str() {
-                "left" => true,
-                "right" => false,
-                other => {
-                    let what = format!("`robot.behaviour.wall_side` is `{other}`");
-                    let help = "it must be \"left\" or \"right\", seen on the way from `from_m` to `to_m`";
-                    return Err(source.error(&what, (side.span(), "no side"), &[], help));
-                }
-            };
-            let speed_mps = table.number("speed_mps", speed_mps, 0.01..=drive.max_linear_mps)?;
-            let clearance_m = table.number_or("clearance_m", clearance_m, 0.15, 0.05..=10.0)?;
-            let way = Way { source, robot, from, to, spans: [from_m.span(), to_m.span()] };
-            way.is_free(start, solids)?;
-            let wall_distance_m = way.wall_distance_m(wall_on_left, solids)?;
-            Ok(Behaviour::WallPatrol(PatrolSpec {
-                from,
-                to,
-                speed_mps,
-                wall_on_left,
-                wall_distance_m,
-                clearance_m,
-            }))
-        }
+pub(super) fn patrol(context: &Context<'_>, file: &BehaviourFile) -> Result<Behaviour, WorldError> {
+    let Context { source, robot, start, size, solids, .. } = context;
+    let BehaviourFile { kind, from_m, to_m, speed_mps, wall_side, .. } = file;
+    let (Some(from_m), Some(to_m), Some(_), Some(side)) = (from_m, to_m, speed_mps, wall_side) else {
+        let what = format!("the patrol of `{}` is not complete", robot.name.get_ref());
+        let help = "it needs `from_m`, `to_m`, `speed_mps` and `wall_side`";
+        return Err(source.error(&what, (kind.span(), "this patrol"), &[], help));
+    };
+    let table = context.table();
+    let (from, to) = (table.point("from_m", from_m, size)?, table.point("to_m", to_m, size)?);
+    let wall_on_left = match side.get_ref().as_str() {
+        "left" => true,
+        "right" => false,
         other => {
-            let what = format!("`{other}` is no behaviour");
-            let help = "it must be \"driven\" or \"wall_patrol\"";
-            Err(source.error(&what, (kind.span(), "not known"), &[], help))
+            let what = format!("`robot.behaviour.wall_side` is `{other}`");
+            let help = "it must be \"left\" or \"right\", seen on the way from `from_m` to `to_m`";
+            return Err(source.error(&what, (side.span(), "no side"), &[], help));
         }
-    }
+    };
+    let (speed_mps, clearance_m) = (context.speed_mps(file)?, context.clearance_m(file)?);
+    let way = Way { source, robot, from, to, spans: [from_m.span(), to_m.span()] };
+    way.is_free(start, solids)?;
+    let wall_distance_m = way.wall_distance_m(wall_on_left, solids)?;
+    Ok(Behaviour::WallPatrol(PatrolSpec { from, to, speed_mps, wall_on_left, wall_distance_m, clearance_m }))
 }
 
 /// The way of a patrol, and where the file speaks of its ends.

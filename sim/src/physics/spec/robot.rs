@@ -1,9 +1,10 @@
 //! A robot: its body, drive, odometry and laser.
 
+use super::behaviour::Context;
 use super::check::Solid;
 use super::file::{LaserFile, OdometryFile, RobotFile};
 use super::numbers::Table;
-use super::{DriveLimits, LaserSpec, OdometryError, RobotSpec, patrol};
+use super::{DriveLimits, LaserSpec, OdometryError, RobotSpec};
 use crate::error::{Source, WorldError};
 use crate::physics::shape::TOUCH_M;
 use geometry::pose;
@@ -33,7 +34,7 @@ pub(super) fn robot(
     }
     let drive = drive(source, file, radius_m / step_s)?;
     let laser = laser(source, &file.laser, step_s, radius_m)?;
-    let behaviour = patrol::behaviour(source, file, &at, &drive, size, solids)?;
+    let behaviour = Context { source, robot: file, start: at, drive: &drive, size, solids }.behaviour()?;
     let pose = pose(at.x, at.y, heading_deg.to_radians());
     let odometry = odometry(source, &file.odometry)?;
     Ok(RobotSpec { name, radius_m, pose, drive, odometry, laser, behaviour })

@@ -1,4 +1,4 @@
-use super::WorldSpec;
+use super::{FleetSpec, WorldSpec};
 
 /// A small world in which every line can be made wrong.
 const GOOD: &str = r#"name = "closet"
@@ -193,7 +193,7 @@ fn robots() {
                 "kind = \"driven\"",
             ),
             ("driven robot with a patrol", "kind = \"driven\"", "kind = \"driven\"\nspeed_mps = 0.3"),
-            ("unknown behaviour", "kind = \"driven\"", "kind = \"wander\""),
+            ("unknown behaviour", "kind = \"driven\"", "kind = \"dance\""),
             ("no robots", all_robots, ""),
         ],
     );
@@ -215,6 +215,38 @@ fn patrols() {
             ("patrol too near to its wall", "max_m = [2.1, 3.0]", "max_m = [2.27, 3.0]"),
         ],
     );
+}
+
+#[test]
+fn behaviours() {
+    let kind = "kind = \"driven\"";
+    let drives = |keys: &str| format!("kind = {keys}");
+    let waypoints = |keys: &str| format!("kind = \"waypoints\"\nspeed_mps = 0.3\n{keys}");
+    let cases = [
+        ("wander without a speed", drives("\"wander\"")),
+        ("wander with a wall", drives("\"wander\"\nspeed_mps = 0.3\nwall_side = \"left\"")),
+        ("wander too fast", drives("\"wander\"\nspeed_mps = 3.0")),
+        ("circle too tight", drives("\"circle\"\nspeed_mps = 0.5\nturn_radius_m = 0.1")),
+        ("circle to nowhere", drives("\"circle\"\nspeed_mps = 0.5\nturn_radius_m = 1.0\ndirection = \"up\"")),
+        ("standing with a speed", drives("\"standing\"\nspeed_mps = 0.5")),
+        ("waypoints without points", waypoints("points_m = []")),
+        ("waypoints of three numbers", waypoints("points_m = [[1.0, 2.0, 3.0]]")),
+        ("waypoints outside", waypoints("points_m = [[1.0, 2.0], [9.0, 2.0]]")),
+        ("waypoints that coincide", waypoints("points_m = [[1.0, 2.0], [1.0, 2.0]]")),
+        ("waypoints through a wall", waypoints("points_m = [[1.0, 2.0], [3.5, 1.5]]")),
+        ("waypoints repeated oddly", waypoints("points_m = [[1.0, 2.0]]\nrepeat = \"often\"")),
+    ];
+    let cases: Vec<_> = cases.iter().map(|(case, to)| (*case, kind, to.as_str())).collect();
+    compare("behaviours", &cases);
+}
+
+#[test]
+fn a_fleet_may_have_any_number_of_driven_robots() {
+    let standing = GOOD.replace("kind = \"driven\"", "kind = \"standing\"");
+    assert!(WorldSpec::parse("closet.toml", &standing).is_err());
+    for text in [GOOD, &standing, &GOOD[..GOOD.find("[[robot]]").unwrap()]] {
+        assert_eq!(FleetSpec::parse("closet.toml", text).map(|_| ()), Ok(()));
+    }
 }
 
 #[test]

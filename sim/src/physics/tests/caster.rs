@@ -1,9 +1,9 @@
 //! Our rays against rapier's.
 
 use super::*;
-use crate::physics::laser::Laser;
-use crate::physics::rays::{Disc, Scene};
-use crate::physics::world::corners;
+use crate::physics::fleet::corners;
+use crate::physics::laser::{Laser, beams};
+use crate::physics::rays::{Disc, Scene, Scratch};
 use crate::physics::{bodies::Bodies, chance};
 use geometry::{pose, rotation};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -18,7 +18,7 @@ const GRAZE_RAD: f64 = 1e-6;
 fn brute_force_m(
     from: &Point2<f64>,
     along: &Vector2<f64>,
-    spec: &WorldSpec,
+    spec: &FleetSpec,
     discs: &[(Point2<f64>, f64)],
 ) -> f64 {
     let boxes = spec.walls().iter().chain(spec.obstacles().iter().map(|obstacle| &obstacle.shape));
@@ -42,7 +42,7 @@ fn cluttered() -> WorldSpec {
 
 /// A place with what is in it, for our rays and for both oracles.
 struct Place {
-    spec: WorldSpec,
+    spec: FleetSpec,
     scene: Scene,
     bodies: Bodies,
     discs: Vec<(Point2<f64>, f64)>,
@@ -58,28 +58,28 @@ struct Tally {
 }
 
 impl Place {
-    fn new(spec: WorldSpec) -> Self {
-        let mut bodies = Bodies::new(spec.step_s);
-        for (i, shape) in spec.walls.iter().chain(spec.obstacles.iter().map(|o| &o.shape)).enumerate() {
+    fn new(spec: FleetSpec) -> Self {
+        let mut bodies = Bodies::new(spec.step_s());
+        for (i, shape) in spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).enumerate() {
             bodies.add_box(Body::Wall(i), shape);
         }
         let mut discs = Vec::new();
-        for (i, robot) in spec.robots.iter().enumerate() {
-            bodies.add_robot(robot, spec.step_s);
+        for (i, robot) in spec.robots().iter().enumerate() {
+            bodies.add_robot(robot, spec.step_s());
             // As rapier has it, so that both see the same.
             discs.push((bodies.pose(i).translation.vector.into(), f64::from(robot.radius_m as f32)));
         }
         bodies.step();
         let round = discs.iter().map(|&(center, radius_m)| Disc { center, radius_m });
-        let mut scene = Scene::new(corners(&spec.frame), &spec.walls, round.collect(), 10.0);
-        scene.set_boxes(spec.obstacles.iter().map(|obstacle| &obstacle.shape));
+        let mut scene = Scene::new(corners(spec.frame()), spec.walls(), round.collect(), 10.0);
+        scene.set_boxes(spec.obstacles().iter().map(|obstacle| &obstacle.shape));
         scene.sort();
         Self { spec, scene, bodies, discs }
     }
 
     /// Whether a laser there is outside of everything.
     fn is_free(&self, at: &Point2<f64>, own: usize) -> bool {
-        let boxes = self.spec.walls.iter().chain(self.spec.obstacles.iter().map(|o| &o.shape));
+        let boxes = self.spec.walls().iter().chain(self.spec.obstacles().iter().map(|o| &o.shape));
         let mut others = self.discs.iter().enumerate().filter(|(i, _)| *i != own);
         boxes.into_iter().all(|shape| shape.distance_m(at) > 1e-3)
             && others.all(|(_, (center, radius_m))| (center - at).norm() > radius_m + 1e-3)
@@ -87,9 +87,10 @@ impl Place {
 
     /// Holds a scan from `at` on robot `own` against both oracles.
     fn compare(&self, spec: &LaserSpec, at: &Isometry2<f64>, own: usize, tally: &mut Tally) {
-        let mut laser = Laser::new(spec, chance::Gaussian::new(0, chance::Purpose::Laser, 0));
+        let mut laser =
+            Laser::new(spec, beams(spec).into(), chance::Gaussian::new(0, chance::Purpose::Laser, 0));
         let mut scan = spec.empty_scan();
-        laser.scan(at, &self.scene, own, &mut scan);
+        laser.scan(at, &self.scene, own, &mut Scratch::default(), &mut scan);
         let from = Point2::from(at.translation.vector);
         let others: Vec<_> =
             self.discs.iter().enumerate().filter(|(i, _)| *i != own).map(|(_, disc)| *disc).collect();
@@ -135,8 +136,8 @@ fn uniform(stream: &mut ChaCha8Rng, range: std::ops::Range<f64>) -> f64 {
 
 #[test]
 fn a_million_beams_are_where_rapier_has_them() {
-    let place = Place::new(cluttered());
-    let laser = place.spec.driven().laser;
+    let place = Place::new(cluttered().fleet);
+    let laser = place.spec.robots()[0].laser;
     let mut stream = ChaCha8Rng::seed_from_u64(1);
     let mut tally = Tally::default();
     let middle = Point2::new(6.0, 6.0);
@@ -152,13 +153,50 @@ fn a_million_beams_are_where_rapier_has_them() {
     assert_eq!((tally.beams, tally.grazing), (1_000_080, 19), "of them grazing");
 }
 
+/// Houses side by side with many robots: what the cells hide must be hidden.
+#[test]
+fn in_a_crowd_of_houses_every_beam_is_right() {
+    let rooms = &FOUR_ROOMS[FOUR_ROOMS.find("\n[[wall]]\n").unwrap()..FOUR_ROOMS.find("[[robot]]").unwrap()];
+    let robot = FOUR_ROOMS[FOUR_ROOMS.find("[[robot]]").unwrap()..].replace("wall_patrol", "standing");
+    let robot = &robot[..robot.find("# The dummy").unwrap()];
+    let mut text =
+        "name = \"houses\"\n[map]\nsize_m = [24.0, 24.0]\ncell_m = 0.1\nturn_deg = 10.0\n".to_owned();
+    for (x, y) in [(0.0, 0.0), (12.0, 0.0), (0.0, 12.0), (12.0, 12.0)] {
+        let moved = rooms.lines().filter(|line| !line.starts_with('#')).map(|line| {
+            let Some((key, pair)) = line.split_once(" = [") else { return format!("{line}\n") };
+            let numbers: Vec<f64> =
+                pair.split(']').next().unwrap().split(',').map(|n| n.trim().parse().unwrap()).collect();
+            format!("{key} = [{}, {}]\n", numbers[0] + x, numbers[1] + y)
+        });
+        text.extend(moved);
+    }
+    let mut stream = ChaCha8Rng::seed_from_u64(3);
+    for i in 0..64 {
+        // On a grid, but none in a wall.
+        let at = [i % 8, i / 8].map(|k| 1.5 + 3.0 * f64::from(k) + uniform(&mut stream, -1.0..1.0));
+        let robot = robot.replace("curious", &format!("r{i}")).replace("[2.0, 2.0]", &format!("{at:?}"));
+        text.push_str(&robot);
+    }
+    let spec = FleetSpec::parse("houses.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+    let place = Place::new(spec);
+    let (mut tally, own) = (Tally::default(), 0);
+    let laser = LaserSpec { beams: 359, ..place.spec.robots()[0].laser };
+    while tally.beams < 150_000 {
+        let at = Point2::new(uniform(&mut stream, -1.0..25.0), uniform(&mut stream, -1.0..25.0));
+        if place.is_free(&at, own) {
+            place.compare(&laser, &pose(at.x, at.y, uniform(&mut stream, -4.0..4.0)), own, &mut tally);
+        }
+    }
+    assert!(tally.grazing < tally.beams / 10_000, "{tally:?}");
+}
+
 #[test]
 fn narrow_lasers_see_the_same() {
-    let place = Place::new(cluttered());
-    let at = place.spec.driven().pose.translation.vector;
+    let place = Place::new(cluttered().fleet);
+    let at = place.spec.robots()[0].pose.translation.vector;
     let mut stream = ChaCha8Rng::seed_from_u64(2);
     for _ in 0..300 {
-        let mut laser = place.spec.driven().laser;
+        let mut laser = place.spec.robots()[0].laser;
         laser.fov_rad = uniform(&mut stream, 1.0..360.0).to_radians();
         laser.beams = uniform(&mut stream, 2.0..50.0) as usize;
         laser.range_max_m = 4.0;
@@ -197,11 +235,12 @@ fn a_robot_sees_the_other_but_not_itself() {
 #[test]
 fn a_laser_inside_of_a_solid_sees_nothing_else() {
     let mut spec = four_rooms();
-    spec.robots[0].pose = pose(6.0, 1.0, 0.3);
-    let mut laser = Laser::new(&spec.driven().laser, chance::Gaussian::new(0, chance::Purpose::Laser, 0));
-    let mut scene = Scene::new(corners(&spec.frame), &spec.walls, Vec::new(), 10.0);
+    spec.fleet.robots[0].pose = pose(6.0, 1.0, 0.3);
+    let noise = chance::Gaussian::new(0, chance::Purpose::Laser, 0);
+    let mut laser = Laser::new(&spec.driven().laser, beams(&spec.driven().laser).into(), noise);
+    let mut scene = Scene::new(corners(spec.frame()), spec.walls(), Vec::new(), 10.0);
     scene.sort();
     let mut scan = spec.driven().laser.empty_scan();
-    laser.scan(&spec.robots[0].pose, &scene, 0, &mut scan);
+    laser.scan(&spec.driven().pose, &scene, 0, &mut Scratch::default(), &mut scan);
     assert!(scan.ranges_m.iter().all(|range| *range == 0.0));
 }

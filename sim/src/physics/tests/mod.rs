@@ -3,6 +3,7 @@
 mod caster;
 mod contacts;
 mod contract;
+mod fleet;
 mod obstacles;
 mod patrol;
 

@@ -1,4 +1,5 @@
 use super::*;
+use nalgebra::Point2;
 use proptest::prelude::*;
 
 const FAR: &str = "pose_m = [2.0, 2.0]";
@@ -97,7 +98,7 @@ fn it_stops_for_an_obstacle_and_goes_on_when_that_has_gone() {
         );
         let mut world = PhysicsWorld::new(&four_rooms_but(&[], &obstacle), 0);
         drive(&mut world, Twist::STOP, 20.0, |world| {
-            let at = world.robots[1].at();
+            let at = Point2::from(world.robots().nth(1).unwrap().pose.translation.vector);
             let standing = world.obstacles().count() == 1;
             let gap_m = world.spec().obstacles()[0].shape.distance_m(&at) - 0.2;
             assert!(!standing || gap_m > 0.02, "{gap_m} m from the box at {min}");

@@ -1,4 +1,6 @@
-use super::spec::{PatrolSpec, RobotSpec};
+use super::pace::{HEADING_GAIN, Pace};
+use crate::physics::rays::Beams;
+use crate::physics::spec::{PatrolSpec, RobotSpec};
 use geometry::{LaserReading, Twist};
 use nalgebra::{Point2, UnitComplex, Vector2};
 
@@ -6,8 +8,6 @@ use nalgebra::{Point2, UnitComplex, Vector2};
 const ARRIVED_M: f64 = 0.01;
 /// A thing is in the way if less than this is left beside it at the end of the way, m.
 const END_MARGIN_M: f64 = 0.03;
-/// The slowest approach to an end, m/s: a speed that fades with the distance would never arrive.
-const CREEP_MPS: f64 = 0.02;
 /// The robot turns in place beyond the first angle off its way, and drives again within the
 /// second, rad.
 const TURN_BEYOND_RAD: f64 = 0.5;
@@ -15,7 +15,7 @@ const TURNED_RAD: f64 = 0.03;
 /// End points this near to where the wall should be are the wall, m.
 const WALL_SLACK_M: f64 = 0.1;
 /// Things that stand out from the wall by more than this are in the way, m.
-pub(super) const WALL_RELIEF_M: f64 = 0.05;
+pub(in crate::physics) const WALL_RELIEF_M: f64 = 0.05;
 /// Free space kept on the open side, m.
 const SIDE_MARGIN_M: f64 = 0.05;
 /// Once stopped, so much more space must be free to go on, m: no stop and go at the limit.
@@ -23,25 +23,17 @@ const HYSTERESIS_M: f64 = 0.05;
 /// Steering towards the wall's distance, rad per m, and its bound, rad.
 const LATERAL_GAIN: f64 = 2.0;
 const MAX_LEAN_RAD: f64 = 0.25;
-/// Steering towards a heading, 1/s.
-const HEADING_GAIN: f64 = 3.0;
 
 /// The dummy robot's mind (paper, section 5): it goes back and forth between two points, keeps its
 /// distance to the wall beside it by laser and its heading by odometry, turns in place at the
 /// ends, and stops for anything else in its way until that is gone.
 #[derive(Clone, Debug)]
-pub(super) struct WallPatrol {
+pub(in crate::physics) struct WallPatrol {
     spec: PatrolSpec,
     radius_m: f64,
     /// The unit vectors of the laser's beams in the robot's frame.
     beams: Vec<Vector2<f64>>,
-    /// The way from the order to stop until standing, reaction included, m.
-    stopping_m: f64,
-    /// The time until an order takes effect, s.
-    reaction_s: f64,
-    braking_mps2: f64,
-    turn_braking_radps2: f64,
-    max_turn_radps: f64,
+    pace: Pace,
     /// Whether it is on its way to `to`; else to `from`.
     outbound: bool,
     turning: bool,
@@ -50,25 +42,12 @@ pub(super) struct WallPatrol {
 
 impl WallPatrol {
     /// The mind of `robot`, whose laser has `beams` in its own frame.
-    pub(super) fn new(
-        spec: PatrolSpec,
-        robot: &RobotSpec,
-        step_s: f64,
-        beams: impl Iterator<Item = (f64, f64)>,
-    ) -> Self {
-        let mount = robot.laser.mount.rotation;
-        // Speeds are commanded at scans: brake at half the bound, so that late orders suffice.
-        let braking_mps2 = robot.drive.max_linear_acceleration_mps2 / 2.0;
-        let reaction_s = (robot.laser.period_steps + 1) as f64 * step_s;
+    pub(super) fn new(spec: PatrolSpec, robot: &RobotSpec, step_s: f64, beams: &Beams) -> Self {
         Self {
             spec,
             radius_m: robot.radius_m,
-            beams: beams.map(|(x, y)| mount * Vector2::new(x, y)).collect(),
-            stopping_m: spec.speed_mps * (reaction_s + spec.speed_mps / (4.0 * braking_mps2)),
-            reaction_s,
-            braking_mps2,
-            turn_braking_radps2: robot.drive.max_angular_acceleration_radps2 / 2.0,
-            max_turn_radps: robot.drive.max_angular_radps,
+            beams: super::in_robot_frame(robot, beams),
+            pace: Pace::new(robot, spec.speed_mps, step_s),
             outbound: true,
             turning: false,
             blocked: false,
@@ -89,18 +68,14 @@ impl WallPatrol {
         let lean_rad = libm::atan2(lean.im, lean.re);
         self.turning = lean_rad.abs() > if self.turning { TURNED_RAD } else { TURN_BEYOND_RAD };
         if self.turning {
-            return Twist { linear_mps: 0.0, angular_radps: self.turn_radps(-lean_rad) };
+            return Twist { linear_mps: 0.0, angular_radps: self.pace.turn_radps(-lean_rad) };
         }
         let Sight { wall_m, gap_m } = self.look(reading, &lean);
         let needed_m =
-            self.spec.clearance_m + self.stopping_m + if self.blocked { HYSTERESIS_M } else { 0.0 };
+            self.spec.clearance_m + self.pace.stopping_m + if self.blocked { HYSTERESIS_M } else { 0.0 };
         // What lies behind the end of the way is not in the way.
         self.blocked = gap_m < needed_m.min(remaining_m + END_MARGIN_M);
-        let linear_mps = if self.blocked {
-            0.0
-        } else {
-            self.spec.speed_mps.min(self.fastest_mps(remaining_m)).max(CREEP_MPS)
-        };
+        let linear_mps = if self.blocked { 0.0 } else { self.pace.approach_mps(remaining_m) };
         let too_far_m = wall_m.map_or(0.0, |wall_m| wall_m - self.spec.wall_distance_m);
         let wanted_rad = self.wall_side() * (LATERAL_GAIN * too_far_m).clamp(-MAX_LEAN_RAD, MAX_LEAN_RAD);
         let angular_radps = if self.blocked { 0.0 } else { HEADING_GAIN * (wanted_rad - lean_rad) };
@@ -118,21 +93,6 @@ impl WallPatrol {
     /// +1: the wall is on the left of the present leg; −1: on the right.
     fn wall_side(&self) -> f64 {
         if self.spec.wall_on_left == self.outbound { 1.0 } else { -1.0 }
-    }
-
-    /// As fast as still allows to stop within `way_m`, though the next order comes a reading later:
-    /// the root of v·t + v²/2b = way.
-    fn fastest_mps(&self, way_m: f64) -> f64 {
-        let (t, b) = (self.reaction_s, self.braking_mps2);
-        b * ((t * t + 2.0 * way_m.max(0.0) / b).sqrt() - t)
-    }
-
-    /// As fast as still allows to brake at `angle_rad`.
-    fn turn_radps(&self, angle_rad: f64) -> f64 {
-        let fastest = (2.0 * self.turn_braking_radps2 * angle_rad.abs()).sqrt();
-        // Proportional at the end: the root would overshoot between two readings.
-        let rate = fastest.min(self.max_turn_radps).min(HEADING_GAIN * angle_rad.abs());
-        rate.copysign(angle_rad)
     }
 
     /// Sorts what the laser sees into the wall beside and things ahead; `lean` turns the robot's

@@ -1,0 +1,269 @@
+use super::bodies::Bodies;
+use super::laser::beams;
+use super::obstacles::Obstacle;
+use super::rays::{Beams, Disc, Scene, Scratch};
+use super::report::{Body, Contact, Move, ObstacleView, RobotView};
+use super::robot::Robot;
+use super::shape::Rectangle;
+use super::spec::{FleetSpec, LaserSpec};
+use geometry::{GridFrame, LaserReading, Twist};
+use nalgebra::{Point2, Vector2};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// What tells driven robots where to go: any type, or a closure from a robot (by its place in the
+/// world file) and its reading to a command.
+pub trait Controller {
+    /// What the robot is to do from this reading on until its next one. Not a number stops it;
+    /// what is beyond its bounds is cut to them.
+    fn command(&mut self, robot: usize, reading: &LaserReading) -> Twist;
+}
+
+impl<F: FnMut(usize, &LaserReading) -> Twist> Controller for F {
+    fn command(&mut self, robot: usize, reading: &LaserReading) -> Twist {
+        self(robot, reading)
+    }
+}
+
+/// A place with any number of robots.
+///
+/// The same spec, seed and commands give the same bits, on every machine and any number of threads.
+pub struct Fleet {
+    spec: FleetSpec,
+    /// Steps since the start; time is a multiple, so that it never drifts.
+    step: u64,
+    bodies: Bodies,
+    robots: Vec<Robot>,
+    obstacles: Vec<Obstacle>,
+    scene: Scene,
+    contacts: Vec<Contact>,
+    parallel_lasers: bool,
+    scratch: Scratch,
+}
+
+impl Fleet {
+    /// The place of `spec` at its start. `seed` starts all chance: the noise of lasers, that of
+    /// odometry, and what robots do by themselves, each in a stream of its own.
+    pub fn new(spec: &FleetSpec, seed: u64) -> Self {
+        let mut bodies = Bodies::new(spec.step_s);
+        for (index, wall) in spec.walls.iter().enumerate() {
+            bodies.add_box(Body::Wall(index), wall);
+        }
+        let mut lasers = Lasers::default();
+        let mut robots = Vec::with_capacity(spec.robots.len());
+        for (index, robot) in spec.robots.iter().enumerate() {
+            bodies.add_robot(robot, spec.step_s);
+            let beams = lasers.beams(&robot.laser);
+            robots.push(Robot::new(robot, index, bodies.pose(index), spec.step_s, seed, beams));
+        }
+        let obstacles = spec.obstacles.iter().enumerate().map(|(i, o)| Obstacle::new(o, i, &mut bodies));
+        let obstacles = obstacles.collect();
+        let discs = robots.iter().map(|robot| Disc { center: robot.at(), radius_m: robot.spec.radius_m });
+        let range_m = spec.robots.iter().fold(0.0, |most: f64, robot| most.max(robot.laser.range_max_m));
+        let scene = Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), range_m);
+        let mut fleet = Self {
+            spec: spec.clone(),
+            step: 0,
+            bodies,
+            robots,
+            obstacles,
+            scene,
+            contacts: Vec::new(),
+            parallel_lasers: false,
+            scratch: Scratch::default(),
+        };
+        fleet.show_obstacles();
+        fleet
+    }
+
+    /// The time since the start, s.
+    pub fn time_s(&self) -> f64 {
+        self.step as f64 * self.spec.step_s
+    }
+
+    /// What the place was made from.
+    pub fn spec(&self) -> &FleetSpec {
+        &self.spec
+    }
+
+    /// All robots, in the order of the file.
+    pub fn robots(&self) -> impl ExactSizeIterator<Item = RobotView<'_>> {
+        self.robots.iter().map(|robot| RobotView {
+            name: &robot.spec.name,
+            pose: robot.pose,
+            radius_m: robot.spec.radius_m,
+            is_driven: robot.is_driven(),
+            twist: robot.velocity,
+            is_stalled: robot.drive.is_stalled(),
+            sweep: robot.sweep.as_ref(),
+        })
+    }
+
+    /// The corners of all walls, counter-clockwise, m.
+    pub fn walls(&self) -> impl ExactSizeIterator<Item = [Point2<f64>; 4]> {
+        self.spec.walls.iter().map(Rectangle::corners)
+    }
+
+    /// The obstacles that stand now.
+    pub fn obstacles(&self) -> impl Iterator<Item = ObstacleView<'_>> {
+        let standing = self.obstacles.iter().filter(|obstacle| obstacle.is_standing());
+        standing.map(|o| ObstacleView { name: &o.spec.name, corners: o.spec.shape.corners() })
+    }
+
+    /// The contacts that began in the last step, robot by robot.
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// Whether lasers look around on all threads of rayon's pool, or on this one alone, as at
+    /// first. The result is the same; a step must take some 0.1 ms for it to be worth it.
+    pub fn set_parallel_lasers(&mut self, parallel: bool) {
+        self.parallel_lasers = parallel;
+    }
+
+    /// Lets one physics step pass. Robots whose scan is due look around first, and decide; those
+    /// that are driven ask `controller`.
+    pub fn step(&mut self, controller: &mut impl Controller) {
+        self.think(|_| true);
+        for (index, robot) in self.robots.iter_mut().enumerate() {
+            if robot.is_driven()
+                && robot.is_due(self.step)
+                && let Some(sweep) = &robot.sweep
+            {
+                let wanted = controller.command(index, &sweep.reading);
+                robot.command(&wanted);
+            }
+        }
+        self.advance();
+        self.move_obstacles(|_, _, _| ());
+    }
+
+    /// Steps until `time_s` has come, s.
+    pub fn run_until(&mut self, time_s: f64, controller: &mut impl Controller) {
+        // Half a microsecond of slack: times are multiples of the step.
+        while self.time_s() < time_s - 5e-7 {
+            self.step(controller);
+        }
+    }
+
+    /// Tells a driven robot what to do.
+    pub(super) fn command(&mut self, robot: usize, wanted: &Twist) {
+        self.robots[robot].command(wanted);
+    }
+
+    /// One robot.
+    pub(super) fn robot(&self, robot: usize) -> &Robot {
+        &self.robots[robot]
+    }
+
+    /// What a robot sees now.
+    pub(super) fn look(&mut self, robot: usize) -> &LaserReading {
+        let time_s = self.time_s();
+        self.scene.sort();
+        self.robots[robot].look(time_s, &self.scene, &mut self.scratch)
+    }
+
+    /// Lets the robots that `is_meant` look and decide, where their next scan is due.
+    pub(super) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
+        let (step, time_s) = (self.step, self.time_s());
+        let is_due = |robot: &&mut Robot| robot.is_due(step) && is_meant(robot);
+        if !self.robots.iter_mut().any(|robot| is_due(&robot)) {
+            return;
+        }
+        self.scene.sort();
+        let scene = &self.scene;
+        if self.parallel_lasers {
+            let due = self.robots.par_iter_mut().filter(is_due);
+            due.for_each_init(Scratch::default, |scratch, robot| robot.think(time_s, scene, scratch));
+        } else {
+            let due = self.robots.iter_mut().filter(is_due);
+            due.for_each(|robot| robot.think(time_s, scene, &mut self.scratch));
+        }
+    }
+
+    /// Lets everything that drives do so for one physics step.
+    pub(super) fn advance(&mut self) {
+        for robot in &mut self.robots {
+            robot.push(&mut self.bodies, self.spec.step_s);
+        }
+        self.bodies.step();
+        self.step += 1;
+        for (index, robot) in self.robots.iter_mut().enumerate() {
+            robot.follow(&self.bodies);
+            self.scene.move_disc(index, robot.at());
+        }
+        self.note_contacts();
+    }
+
+    /// Notes what robots have begun to touch.
+    fn note_contacts(&mut self) {
+        let time_s = self.time_s();
+        self.contacts.clear();
+        for (index, robot) in self.robots.iter_mut().enumerate() {
+            let mut touching = Vec::new();
+            for (with, presses) in self.bodies.touches(index) {
+                let touched_before = robot.touching.contains(&with);
+                if presses && !touched_before {
+                    self.contacts.push(Contact { time_s, robot: index, with, moving: robot.drove });
+                }
+                if presses || touched_before {
+                    touching.push(with);
+                }
+            }
+            robot.touching = touching;
+        }
+    }
+
+    /// Lets obstacles come and go; `tell` hears of each at once: which it is, what it did, and
+    /// the walls and obstacles that stand now.
+    pub(super) fn move_obstacles(&mut self, mut tell: impl FnMut(usize, Move, &[Rectangle])) {
+        let time_s = self.time_s();
+        for index in 0..self.obstacles.len() {
+            let robots = self.robots.iter().map(|robot| (robot.at(), robot.spec.radius_m));
+            if let Some(what) = self.obstacles[index].step(index, time_s, &mut self.bodies, robots) {
+                self.show_obstacles();
+                tell(index, what, &self.standing_boxes());
+            }
+        }
+    }
+
+    /// Walls, and the obstacles that stand now.
+    pub(super) fn standing_boxes(&self) -> Vec<Rectangle> {
+        let standing = self.obstacles.iter().filter(|obstacle| obstacle.is_standing());
+        self.spec.walls.iter().copied().chain(standing.map(|obstacle| obstacle.spec.shape)).collect()
+    }
+
+    /// Whether an obstacle stands now.
+    pub(super) fn is_standing(&self, obstacle: usize) -> bool {
+        self.obstacles[obstacle].is_standing()
+    }
+
+    /// Shows the lasers what stands now.
+    fn show_obstacles(&mut self) {
+        let standing = self.obstacles.iter().filter(|obstacle| obstacle.is_standing());
+        self.scene.set_boxes(standing.map(|obstacle| &obstacle.spec.shape));
+    }
+}
+
+/// The beams of all lasers, each kind once.
+#[derive(Default)]
+struct Lasers {
+    known: Vec<(LaserSpec, Arc<Beams>)>,
+}
+
+impl Lasers {
+    fn beams(&mut self, spec: &LaserSpec) -> Arc<Beams> {
+        if let Some((_, beams)) = self.known.iter().find(|(known, _)| known == spec) {
+            return Arc::clone(beams);
+        }
+        let beams = Arc::new(beams(spec));
+        self.known.push((*spec, Arc::clone(&beams)));
+        beams
+    }
+}
+
+/// The lower left and the upper right corner of a grid, m.
+pub(super) fn corners(frame: &GridFrame) -> (Point2<f64>, Point2<f64>) {
+    let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
+    (frame.origin(), frame.origin() + size)
+}

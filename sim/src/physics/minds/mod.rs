@@ -1,0 +1,66 @@
+//! What robots do by themselves, from what they see and feel.
+
+mod pace;
+mod patrol;
+mod wander;
+mod waypoints;
+
+use super::chance::Uniform;
+use super::rays::Beams;
+use super::spec::{Behaviour, RobotSpec};
+use geometry::{LaserReading, Twist};
+use nalgebra::Vector2;
+pub(super) use patrol::WALL_RELIEF_M;
+use patrol::WallPatrol;
+use wander::Wander;
+use waypoints::Waypoints;
+
+/// A robot's mind.
+#[derive(Clone, Debug)]
+pub(super) enum Mind {
+    /// It obeys commands.
+    Driven,
+    /// It always does the same.
+    Steady(Twist),
+    /// See [`Wander`].
+    Wander(Box<Wander>),
+    /// See [`Waypoints`].
+    Waypoints(Waypoints),
+    /// See [`WallPatrol`].
+    WallPatrol(WallPatrol),
+}
+
+impl Mind {
+    /// The mind of `robot`, whose laser has `beams`; `chance` is its own.
+    pub(super) fn new(robot: &RobotSpec, step_s: f64, beams: &Beams, chance: Uniform) -> Self {
+        match &robot.behaviour {
+            Behaviour::Driven => Self::Driven,
+            Behaviour::Standing => Self::Steady(Twist::STOP),
+            Behaviour::Circle(circle) => {
+                Self::Steady(Twist { linear_mps: circle.speed_mps, angular_radps: circle.turn_radps })
+            }
+            Behaviour::Wander(spec) => {
+                Self::Wander(Box::new(Wander::new(*spec, robot, step_s, beams, chance)))
+            }
+            Behaviour::Waypoints(spec) => Self::Waypoints(Waypoints::new(spec.clone(), robot, step_s, beams)),
+            Behaviour::WallPatrol(spec) => Self::WallPatrol(WallPatrol::new(*spec, robot, step_s, beams)),
+        }
+    }
+
+    /// What to do until the next reading; `None`: whatever it was told.
+    pub(super) fn decide(&mut self, reading: &LaserReading) -> Option<Twist> {
+        match self {
+            Self::Driven => None,
+            Self::Steady(twist) => Some(*twist),
+            Self::Wander(wander) => Some(wander.decide(reading)),
+            Self::Waypoints(waypoints) => Some(waypoints.decide(reading)),
+            Self::WallPatrol(patrol) => Some(patrol.decide(reading)),
+        }
+    }
+}
+
+/// The unit vectors of a laser's beams in its robot's frame.
+fn in_robot_frame(robot: &RobotSpec, beams: &Beams) -> Vec<Vector2<f64>> {
+    let mount = robot.laser.mount.rotation;
+    beams.directions().map(|(x, y)| mount * Vector2::new(x, y)).collect()
+}

@@ -1,0 +1,285 @@
+//! What a robot does by itself.
+
+use super::check::Solid;
+use super::file::{BehaviourFile, Number, Pair, RobotFile};
+use super::numbers::Table;
+use super::{DriveLimits, patrol};
+use crate::error::{Source, WorldError};
+use crate::physics::shape::{TOUCH_M, turned_point};
+use nalgebra::{Point2, UnitComplex};
+use serde_spanned::Spanned;
+use std::ops::Range;
+
+/// What a robot does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Behaviour {
+    /// It obeys commands.
+    Driven,
+    /// It stands.
+    Standing,
+    /// It drives a circle and looks at nothing.
+    Circle(CircleSpec),
+    /// It drives about, and turns away from what is ahead.
+    Wander(WanderSpec),
+    /// It drives straight from point to point.
+    Waypoints(WaypointsSpec),
+    /// It follows a wall between two points, back and forth.
+    WallPatrol(PatrolSpec),
+}
+
+/// A circle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CircleSpec {
+    /// The speed, m/s.
+    pub speed_mps: f64,
+    /// The turn, counter-clockwise, rad/s.
+    pub turn_radps: f64,
+}
+
+/// A way without a goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WanderSpec {
+    /// The speed while nothing is ahead, m/s.
+    pub speed_mps: f64,
+    /// The free space that the robot keeps ahead, m.
+    pub clearance_m: f64,
+}
+
+/// A way from point to point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WaypointsSpec {
+    /// The points, at least one, m.
+    pub points: Vec<Point2<f64>>,
+    /// The speed on the way, m/s.
+    pub speed_mps: f64,
+    /// What comes after the last point.
+    pub repeat: Repeat,
+    /// The free space that the robot keeps ahead when it stops for something, m.
+    pub clearance_m: f64,
+}
+
+/// What comes after the last waypoint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Repeat {
+    /// The first one.
+    Loop,
+    /// The same way back.
+    BackAndForth,
+    /// Nothing: the robot stands.
+    Once,
+}
+
+/// A way along a wall, back and forth (paper, section 5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatrolSpec {
+    /// One end of the way of the robot's middle, m.
+    pub from: Point2<f64>,
+    /// The other end, m.
+    pub to: Point2<f64>,
+    /// The speed on the way, m/s.
+    pub speed_mps: f64,
+    /// Whether the wall is on the left on the way from `from` to `to`.
+    pub wall_on_left: bool,
+    /// The distance from the robot's middle to the wall's surface, m, measured in the file's
+    /// house.
+    pub wall_distance_m: f64,
+    /// The free space that the robot keeps ahead when it stops for something, m.
+    pub clearance_m: f64,
+}
+
+impl Behaviour {
+    /// The same after the world has turned about `middle` (m).
+    pub(super) fn turn(&mut self, turn: &UnitComplex<f64>, middle: &Point2<f64>) {
+        let points: Vec<&mut Point2<f64>> = match self {
+            Self::WallPatrol(patrol) => vec![&mut patrol.from, &mut patrol.to],
+            Self::Waypoints(way) => way.points.iter_mut().collect(),
+            Self::Driven | Self::Standing | Self::Circle(_) | Self::Wander(_) => Vec::new(),
+        };
+        for point in points {
+            *point = turned_point(point, turn, middle);
+        }
+    }
+}
+
+/// A robot of the file, and what it could run into.
+pub(super) struct Context<'a> {
+    pub(super) source: &'a Source<'a>,
+    pub(super) robot: &'a RobotFile,
+    pub(super) start: Point2<f64>,
+    pub(super) drive: &'a DriveLimits,
+    pub(super) size: &'a Point2<f64>,
+    pub(super) solids: &'a [Solid],
+}
+
+/// The keys of each behaviour, and what it is.
+const KINDS: [(&str, &[&str], &str); 6] = [
+    ("driven", &[], "goes where it is told to"),
+    ("standing", &[], "stands"),
+    ("circle", &["speed_mps", "turn_radius_m", "direction"], "drives a circle"),
+    ("wander", &["speed_mps", "clearance_m"], "drives about"),
+    ("waypoints", &["points_m", "speed_mps", "repeat", "clearance_m"], "drives from point to point"),
+    ("wall_patrol", &["from_m", "to_m", "speed_mps", "wall_side", "clearance_m"], "follows a wall"),
+];
+
+impl Context<'_> {
+    pub(super) fn behaviour(&self) -> Result<Behaviour, WorldError> {
+        let file = self.robot.behaviour.get_ref();
+        let kind = file.kind.get_ref().as_str();
+        let Some((_, known, does)) = KINDS.iter().find(|(name, _, _)| *name == kind) else {
+            let what = format!("`{kind}` is no behaviour");
+            let names = KINDS.map(|(name, _, _)| format!("\"{name}\""));
+            let help = format!("it must be one of {}", names.join(", "));
+            return Err(self.source.error(&what, (file.kind.span(), "not known"), &[], &help));
+        };
+        if let Some((key, span)) = keys(file).into_iter().find(|(key, _)| !known.contains(key)) {
+            let what = format!("a robot that is `{kind}` has no `{key}`");
+            let keys =
+                if known.is_empty() { String::new() } else { format!("; its keys are {}", known.join(", ")) };
+            let help = format!("leave it out: such a robot {does}{keys}");
+            return Err(self.source.error(&what, (span, "not for this robot"), &[], &help));
+        }
+        match kind {
+            "driven" => Ok(Behaviour::Driven),
+            "standing" => Ok(Behaviour::Standing),
+            "circle" => self.circle(file),
+            "wander" => Ok(Behaviour::Wander(WanderSpec {
+                speed_mps: self.speed_mps(file)?,
+                clearance_m: self.clearance_m(file)?,
+            })),
+            "waypoints" => self.waypoints(file),
+            _ => patrol::patrol(self, file),
+        }
+    }
+
+    pub(super) const TABLE: &'static str = "robot.behaviour";
+
+    pub(super) fn table(&self) -> Table<'_> {
+        Table { source: self.source, path: Self::TABLE }
+    }
+
+    /// A key that this behaviour cannot do without.
+    fn needed<'f, T>(&self, key: &str, value: &'f Option<Spanned<T>>) -> Result<&'f Spanned<T>, WorldError> {
+        value.as_ref().ok_or_else(|| {
+            let (name, kind) = (self.robot.name.get_ref(), &self.robot.behaviour.get_ref().kind);
+            let what = format!("the behaviour of `{name}` has no `{key}`");
+            let help = format!("a robot that is `{}` needs a line `{key} = …`", kind.get_ref());
+            self.source.error(&what, (kind.span(), "this behaviour"), &[], &help)
+        })
+    }
+
+    pub(super) fn speed_mps(&self, file: &BehaviourFile) -> Result<f64, WorldError> {
+        let speed = self.needed("speed_mps", &file.speed_mps)?;
+        self.table().number("speed_mps", speed, 0.01..=self.drive.max_linear_mps)
+    }
+
+    pub(super) fn clearance_m(&self, file: &BehaviourFile) -> Result<f64, WorldError> {
+        self.table().number_or("clearance_m", &file.clearance_m, 0.15, 0.05..=10.0)
+    }
+
+    fn circle(&self, file: &BehaviourFile) -> Result<Behaviour, WorldError> {
+        let speed_mps = self.speed_mps(file)?;
+        let radius = self.needed("turn_radius_m", &file.turn_radius_m)?;
+        let radius_m = self.table().number("turn_radius_m", radius, 0.01..=1000.0)?;
+        let fastest_radps = self.drive.max_angular_radps;
+        if speed_mps / radius_m > fastest_radps {
+            let marks = [(file.speed_mps.as_ref().map_or(radius.span(), Spanned::span), "at this speed")];
+            let help = format!(
+                "its drive turns at {:.1} °/s at most: at {speed_mps} m/s a circle has a radius of {:.3} m or more",
+                fastest_radps.to_degrees(),
+                speed_mps / fastest_radps
+            );
+            return Err(self.source.error(
+                "a circle is too tight",
+                (radius.span(), "too small"),
+                &marks,
+                &help,
+            ));
+        }
+        let is_left = self.choice("direction", &file.direction, &[("left", true), ("right", false)])?;
+        let turn_radps = speed_mps / radius_m * if is_left { 1.0 } else { -1.0 };
+        Ok(Behaviour::Circle(CircleSpec { speed_mps, turn_radps }))
+    }
+
+    fn waypoints(&self, file: &BehaviourFile) -> Result<Behaviour, WorldError> {
+        /// Kept free beside the way, m.
+        const BESIDE_M: f64 = 0.05;
+        let list = self.needed("points_m", &file.points_m)?;
+        if !(1..=1000).contains(&list.get_ref().len()) {
+            let what = format!("`robot.behaviour.points_m` has {} points", list.get_ref().len());
+            let help = "it must have 1 to 1000, as in `[[1.0, 2.0], [3.0, 2.0]]`";
+            return Err(self.source.error(&what, (list.span(), "these points"), &[], help));
+        }
+        let speed_mps = self.speed_mps(file)?;
+        let repeats =
+            [("loop", Repeat::Loop), ("back_and_forth", Repeat::BackAndForth), ("once", Repeat::Once)];
+        let repeat = self.choice("repeat", &file.repeat, &repeats)?;
+        let mut points: Vec<(Point2<f64>, Range<usize>)> = Vec::new();
+        for point in list.get_ref() {
+            points.push((self.table().point("points_m", point, self.size)?, point.span()));
+        }
+        let start = (self.start, self.robot.pose_m.span());
+        let back = (repeat == Repeat::Loop && points.len() > 1).then(|| points[0].clone());
+        let way: Vec<_> = [start].into_iter().chain(points.iter().cloned()).chain(back).collect();
+        let keep_m = *self.robot.radius_m.get_ref() + BESIDE_M;
+        for (leg, pair) in way.windows(2).enumerate() {
+            let [(a, from), (b, to)] = pair else { continue };
+            let marks = |label| (to.clone(), label);
+            // The robot may start on its first point.
+            if leg > 0 && (b - a).norm() < 0.1 {
+                let others = [(from.clone(), "from here")];
+                let help = "they must be at least 0.1 m apart";
+                return Err(self.source.error("two waypoints coincide", marks("to here"), &others, help));
+            }
+            let near = |solid: &&Solid| solid.shape.segment_distance_m(a, b) < keep_m - TOUCH_M;
+            if let Some(solid) = self.solids.iter().find(near) {
+                let what =
+                    format!("the way of `{}` leads through a wall or an obstacle", self.robot.name.get_ref());
+                let others = [(from.clone(), "from here"), (solid.span.clone(), "too near to this one")];
+                let help =
+                    format!("the way must keep {keep_m:.3} m away, 0.05 m more than the robot's radius");
+                return Err(self.source.error(&what, marks("to here"), &others, &help));
+            }
+        }
+        let clearance_m = self.clearance_m(file)?;
+        let points = points.into_iter().map(|(point, _)| point).collect();
+        Ok(Behaviour::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m }))
+    }
+
+    /// One of some words; the first if it is left out.
+    pub(super) fn choice<T: Copy>(
+        &self,
+        key: &str,
+        value: &Option<Spanned<String>>,
+        choices: &[(&str, T)],
+    ) -> Result<T, WorldError> {
+        let Some(value) = value else { return Ok(choices[0].1) };
+        let found = choices.iter().find(|(word, _)| word == value.get_ref());
+        found.map(|(_, choice)| *choice).ok_or_else(|| {
+            let what = format!("`{}.{key}` is `{}`", Self::TABLE, value.get_ref());
+            let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+            let help = format!("it must be {}", words.join(" or "));
+            self.source.error(&what, (value.span(), "not known"), &[], &help)
+        })
+    }
+}
+
+/// The keys that the file has, besides the kind, with their places.
+fn keys(file: &BehaviourFile) -> Vec<(&'static str, Range<usize>)> {
+    let number = |key: &'static str, value: &Option<Number>| value.as_ref().map(|value| (key, value.span()));
+    let pair = |key: &'static str, value: &Option<Pair>| value.as_ref().map(|value| (key, value.span()));
+    let text =
+        |key: &'static str, value: &Option<Spanned<String>>| value.as_ref().map(|value| (key, value.span()));
+    let points = file.points_m.as_ref().map(|points| ("points_m", points.span()));
+    let found = [
+        number("speed_mps", &file.speed_mps),
+        number("clearance_m", &file.clearance_m),
+        number("turn_radius_m", &file.turn_radius_m),
+        pair("from_m", &file.from_m),
+        pair("to_m", &file.to_m),
+        points,
+        text("wall_side", &file.wall_side),
+        text("direction", &file.direction),
+        text("repeat", &file.repeat),
+    ];
+    found.into_iter().flatten().collect()
+}
