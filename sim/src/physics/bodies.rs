@@ -2,6 +2,7 @@
 
 use super::report::Body;
 use super::shape::Rectangle;
+use super::snapshot::{Played, Tape, Torn};
 use super::spec::RobotSpec;
 use geometry::{Twist, heading_rad, rotation};
 #[cfg(test)]
@@ -19,6 +20,7 @@ pub(super) struct Bodies {
     robots: Vec<Robot>,
 }
 
+#[derive(Clone)]
 struct Robot {
     body: rapier::RigidBodyHandle,
     collider: rapier::ColliderHandle,
@@ -27,8 +29,36 @@ struct Robot {
 }
 
 /// An obstacle's body, to take it away again.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Handle(rapier::ColliderHandle);
+
+impl Handle {
+    /// Writes or reads it.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        let (mut index, mut generation) = self.0.into_raw_parts();
+        tape.u32(&mut index)?;
+        tape.u32(&mut generation)?;
+        self.0 = rapier::ColliderHandle::from_raw_parts(index, generation);
+        Ok(())
+    }
+}
+
+impl Clone for Bodies {
+    fn clone(&self) -> Self {
+        // Of what rapier has no copy, there is only workspace, and what is not used here.
+        let world = rapier::PhysicsWorld {
+            gravity: self.world.gravity,
+            integration_parameters: self.world.integration_parameters,
+            islands: self.world.islands.clone(),
+            broad_phase: self.world.broad_phase.clone(),
+            narrow_phase: self.world.narrow_phase.clone(),
+            bodies: self.world.bodies.clone(),
+            colliders: self.world.colliders.clone(),
+            ..Default::default()
+        };
+        Self { world, robots: self.robots.clone() }
+    }
+}
 
 impl Bodies {
     /// No bodies yet; time goes in steps of `step_s`.
@@ -38,6 +68,23 @@ impl Bodies {
         // Distances of contacts are read at every step, so they must not be stale.
         world.integration_parameters.contact_recycling = false;
         Self { world, robots: Vec::new() }
+    }
+
+    /// Writes or reads all that moves and touches. The same bodies must have been added before.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        let mut bytes = match tape {
+            Tape::Writing(_) => postcard::to_stdvec(&self.world).map_err(|_| Torn)?,
+            Tape::Reading(_) => Vec::new(),
+        };
+        tape.bytes(&mut bytes)?;
+        if let Tape::Reading(_) = tape {
+            self.world = postcard::from_bytes(&bytes).map_err(|_| Torn)?;
+        }
+        for robot in &mut self.robots {
+            tape.f64(&mut robot.forward.x)?;
+            tape.f64(&mut robot.forward.y)?;
+        }
+        Ok(())
     }
 
     /// Adds a body that stands still.

@@ -1,3 +1,4 @@
+use super::snapshot::{Played, Tape};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -21,6 +22,13 @@ fn stream(seed: u64, purpose: Purpose, robot: usize) -> ChaCha8Rng {
     stream
 }
 
+fn play_stream(stream: &mut ChaCha8Rng, tape: &mut Tape<'_>) -> Played {
+    let mut place = stream.get_word_pos();
+    tape.u128(&mut place)?;
+    stream.set_word_pos(place);
+    Ok(())
+}
+
 /// Uniform numbers from a stream of their own, the same on every machine.
 #[derive(Clone, Debug)]
 pub(super) struct Uniform {
@@ -31,6 +39,11 @@ impl Uniform {
     /// The stream of a robot (by its place in the world) for one purpose.
     pub(super) fn new(seed: u64, purpose: Purpose, robot: usize) -> Self {
         Self { stream: stream(seed, purpose, robot) }
+    }
+
+    /// Writes or reads how far the stream has come.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        play_stream(&mut self.stream, tape)
     }
 
     /// The next number, in `range`.
@@ -52,6 +65,12 @@ impl Gaussian {
     /// The stream of a robot (by its place in the world) for one purpose.
     pub(super) fn new(seed: u64, purpose: Purpose, robot: usize) -> Self {
         Self { stream: stream(seed, purpose, robot), spare: None }
+    }
+
+    /// Writes or reads how far the stream has come.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        play_stream(&mut self.stream, tape)?;
+        tape.option(&mut self.spare, || 0.0, Tape::f64)
     }
 
     /// The next number, by Marsaglia's polar method (1964).

@@ -1,3 +1,4 @@
+use super::snapshot::{Played, Tape};
 use super::spec::DriveLimits;
 use geometry::Twist;
 
@@ -19,6 +20,12 @@ impl Drive {
     /// Standing still.
     pub(super) fn new(limits: DriveLimits) -> Self {
         Self { limits, velocity: Twist::STOP, is_stalled: false }
+    }
+
+    /// Writes or reads what has become of it.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        tape.twist(&mut self.velocity)?;
+        tape.bool(&mut self.is_stalled)
     }
 
     /// The velocity of the next physics step towards `wanted`. Not a number stops the robot.

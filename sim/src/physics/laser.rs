@@ -1,5 +1,6 @@
 use super::chance::Gaussian;
 use super::rays::{Beams, Scene, Scratch};
+use super::snapshot::{Played, Tape};
 use super::spec::LaserSpec;
 use geometry::Scan;
 use nalgebra::Isometry2;
@@ -17,6 +18,11 @@ impl Laser {
     /// A laser with `beams`, which are [`beams`] of its spec.
     pub(super) fn new(spec: &LaserSpec, beams: Arc<Beams>, noise: Gaussian) -> Self {
         Self { spec: *spec, beams, noise }
+    }
+
+    /// Writes or reads what has become of it.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        self.noise.play(tape)
     }
 
     /// The scan from a laser at `pose` on the robot in place `own`, which it never sees. `scratch`

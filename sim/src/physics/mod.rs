@@ -17,6 +17,7 @@ mod rays;
 mod report;
 mod robot;
 mod shape;
+mod snapshot;
 mod spec;
 #[cfg(test)]
 mod tests;
@@ -26,6 +27,7 @@ mod world;
 pub use fleet::{Controller, Fleet};
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView, RobotView, Sweep};
 pub use shape::Rectangle;
+pub use snapshot::SnapshotError;
 pub use spec::{
     Behaviour, CircleSpec, DriveLimits, FleetSpec, LaserSpec, ObstacleSpec, OdometryError, PatrolSpec,
     Repeat, RobotSpec, WanderSpec, WaypointsSpec, WorldSpec,

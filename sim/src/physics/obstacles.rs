@@ -1,5 +1,6 @@
 use super::bodies::{Bodies, Handle};
 use super::report::{Body, Move};
+use super::snapshot::{Played, Tape, Torn};
 use super::spec::ObstacleSpec;
 use nalgebra::Point2;
 
@@ -8,11 +9,13 @@ use nalgebra::Point2;
 const ROOM_M: f64 = 0.005;
 
 /// An obstacle and what has become of it.
+#[derive(Clone)]
 pub(super) struct Obstacle {
     pub(super) spec: ObstacleSpec,
     state: State,
 }
 
+#[derive(Clone, Copy)]
 enum State {
     Due,
     Standing(Handle),
@@ -27,6 +30,24 @@ impl Obstacle {
             Some(_) => State::Due,
         };
         Self { spec: spec.clone(), state }
+    }
+
+    /// Writes or reads what has become of it.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        let (mut state, mut handle) = match self.state {
+            State::Due => (0, Handle::default()),
+            State::Standing(handle) => (1, handle),
+            State::Gone => (2, Handle::default()),
+        };
+        tape.u32(&mut state)?;
+        handle.play(tape)?;
+        self.state = match state {
+            0 => State::Due,
+            1 => State::Standing(handle),
+            2 => State::Gone,
+            _ => return Err(Torn),
+        };
+        Ok(())
     }
 
     pub(super) fn is_standing(&self) -> bool {

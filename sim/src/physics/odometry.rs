@@ -1,4 +1,5 @@
 use super::chance::Gaussian;
+use super::snapshot::{Played, Tape};
 use super::spec::OdometryError;
 use geometry::{Twist, pose, wrap_rad};
 use nalgebra::{Isometry2, Vector2};
@@ -18,6 +19,13 @@ impl Odometry {
     /// A robot knows where it starts.
     pub(super) fn new(error: OdometryError, noise: Gaussian, start: Isometry2<f64>) -> Self {
         Self { error, noise, pose: start, heading_rad: geometry::heading_rad(&start) }
+    }
+
+    /// Writes or reads what has become of it.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        self.noise.play(tape)?;
+        tape.pose(&mut self.pose)?;
+        tape.f64(&mut self.heading_rad)
     }
 
     pub(super) fn pose(&self) -> &Isometry2<f64> {

@@ -6,12 +6,14 @@ use super::minds::Mind;
 use super::odometry::Odometry;
 use super::rays::{Beams, Scene, Scratch};
 use super::report::{Body, Sweep};
+use super::snapshot::{Played, Tape};
 use super::spec::RobotSpec;
 use geometry::{LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
 use std::sync::Arc;
 
 /// A robot at work: laser, mind, motors, odometry. Its body is rapier's.
+#[derive(Clone)]
 pub(super) struct Robot {
     pub(super) spec: RobotSpec,
     /// Its place among the robots.
@@ -62,6 +64,22 @@ impl Robot {
         }
     }
 
+    /// Writes or reads what has become of it.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        tape.pose(&mut self.pose)?;
+        tape.point(&mut self.was_at)?;
+        tape.twist(&mut self.velocity)?;
+        tape.bool(&mut self.drove)?;
+        tape.list(&mut self.touching, Body::Wall(0), Tape::body)?;
+        tape.twist(&mut self.wanted)?;
+        self.drive.play(tape)?;
+        self.odometry.play(tape)?;
+        self.laser.play(tape)?;
+        self.mind.play(tape)?;
+        let unseen = || unseen(&self.spec, self.pose);
+        tape.option(&mut self.sweep, unseen, Tape::sweep)
+    }
+
     /// Its middle, m.
     pub(super) fn at(&self) -> Point2<f64> {
         self.pose.translation.vector.into()
@@ -85,17 +103,7 @@ impl Robot {
     /// Looks around at `time_s`, unless it has done so already at that time.
     pub(super) fn look(&mut self, time_s: f64, scene: &Scene, scratch: &mut Scratch) -> &LaserReading {
         let laser_pose = self.pose * self.spec.laser.mount;
-        let sweep = self.sweep.get_or_insert_with(|| Sweep {
-            reading: LaserReading {
-                // Before any time, so that the first look is a new one.
-                time_s: f64::NEG_INFINITY,
-                pose: self.pose,
-                twist: Twist::STOP,
-                mount: self.spec.laser.mount,
-                scan: self.spec.laser.empty_scan(),
-            },
-            laser_pose,
-        });
+        let sweep = self.sweep.get_or_insert_with(|| unseen(&self.spec, self.pose));
         if sweep.reading.time_s != time_s {
             sweep.laser_pose = laser_pose;
             sweep.reading.time_s = time_s;
@@ -130,4 +138,12 @@ impl Robot {
         self.odometry.feel(&before, &self.pose);
         self.was_at = before.translation.vector.into();
     }
+}
+
+/// What a robot has seen before its first look.
+fn unseen(spec: &RobotSpec, pose: Isometry2<f64>) -> Sweep {
+    let mount = spec.laser.mount;
+    // Before any time, so that the first look is a new one.
+    let (time_s, twist, scan) = (f64::NEG_INFINITY, Twist::STOP, spec.laser.empty_scan());
+    Sweep { reading: LaserReading { time_s, pose, twist, mount, scan }, laser_pose: pose * mount }
 }

@@ -7,6 +7,7 @@ mod waypoints;
 
 use super::chance::Uniform;
 use super::rays::Beams;
+use super::snapshot::{Played, Tape};
 use super::spec::{Behaviour, RobotSpec};
 use geometry::{LaserReading, Twist};
 use nalgebra::Vector2;
@@ -44,6 +45,16 @@ impl Mind {
             }
             Behaviour::Waypoints(spec) => Self::Waypoints(Waypoints::new(spec.clone(), robot, step_s, beams)),
             Behaviour::WallPatrol(spec) => Self::WallPatrol(WallPatrol::new(*spec, robot, step_s, beams)),
+        }
+    }
+
+    /// Writes or reads what has become of it.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        match self {
+            Self::Driven | Self::Steady(_) => Ok(()),
+            Self::Wander(wander) => wander.play(tape),
+            Self::Waypoints(waypoints) => waypoints.play(tape),
+            Self::WallPatrol(patrol) => patrol.play(tape),
         }
     }
 

@@ -1,5 +1,6 @@
 use super::pace::{HEADING_GAIN, Pace};
 use crate::physics::rays::Beams;
+use crate::physics::snapshot::{Played, Tape};
 use crate::physics::spec::{PatrolSpec, RobotSpec};
 use geometry::{LaserReading, Twist};
 use nalgebra::{Point2, UnitComplex, Vector2};
@@ -52,6 +53,13 @@ impl WallPatrol {
             turning: false,
             blocked: false,
         }
+    }
+
+    /// Writes or reads what has become of it.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        [&mut self.outbound, &mut self.turning, &mut self.blocked]
+            .into_iter()
+            .try_for_each(|flag| tape.bool(flag))
     }
 
     /// What to do until the next reading.

@@ -1,6 +1,7 @@
 use super::pace::Pace;
 use crate::physics::chance::Uniform;
 use crate::physics::rays::Beams;
+use crate::physics::snapshot::{Played, Tape};
 use crate::physics::spec::{RobotSpec, WanderSpec};
 use geometry::{LaserReading, Twist};
 use nalgebra::Vector2;
@@ -63,6 +64,14 @@ impl Wander {
             curve_radps: 0.0,
             scans_left: 0,
         }
+    }
+
+    /// Writes or reads what has become of it.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        self.chance.play(tape)?;
+        tape.option(&mut self.turning, || 0.0, Tape::f64)?;
+        tape.f64(&mut self.curve_radps)?;
+        tape.u32(&mut self.scans_left)
     }
 
     pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {

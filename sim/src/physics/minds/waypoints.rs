@@ -1,5 +1,6 @@
 use super::pace::{HEADING_GAIN, Pace};
 use crate::physics::rays::Beams;
+use crate::physics::snapshot::{Played, Tape, Torn};
 use crate::physics::spec::{Repeat, RobotSpec, WaypointsSpec};
 use geometry::{LaserReading, Twist};
 use nalgebra::{Point2, UnitComplex, Vector2};
@@ -44,6 +45,17 @@ impl Waypoints {
             turning: false,
             blocked: false,
         }
+    }
+
+    /// Writes or reads what has become of it.
+    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
+        tape.option(&mut self.next, || 0, Tape::usize)?;
+        if self.next.is_some_and(|next| next >= self.spec.points.len()) {
+            return Err(Torn);
+        }
+        [&mut self.is_back, &mut self.turning, &mut self.blocked]
+            .into_iter()
+            .try_for_each(|flag| tape.bool(flag))
     }
 
     pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {

@@ -9,20 +9,20 @@ const ROBOT: &str = "radius_m = 0.2\n[robot.drive]\nmax_linear_mps = 0.5\nmax_an
     [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\nnoise_std_m = 0.005\n";
 
 /// A robot of the file.
-fn robot(name: &str, pose_m: [f64; 2], heading_deg: f64, behaviour: &str) -> String {
+pub(super) fn robot(name: &str, pose_m: [f64; 2], heading_deg: f64, behaviour: &str) -> String {
     let place = format!("pose_m = {pose_m:?}\nheading_deg = {heading_deg:?}\n");
     format!("[[robot]]\nname = \"{name}\"\n{place}{ROBOT}[robot.behaviour]\n{behaviour}\n")
 }
 
 /// The house of the four rooms with these robots and no others.
-fn house(robots: &[String], more: &str) -> FleetSpec {
+pub(super) fn house(robots: &[String], more: &str) -> FleetSpec {
     let rooms = &FOUR_ROOMS[..FOUR_ROOMS.find("[[robot]]").unwrap()];
     let text = format!("{rooms}\n{}\n{more}", robots.concat());
     FleetSpec::parse("test.toml", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Wandering robots in all rooms.
-fn crowd() -> FleetSpec {
+pub(super) fn crowd() -> FleetSpec {
     let places = (0..36).map(|i| [1.0 + 2.0 * f64::from(i % 6), 1.0 + 2.0 * f64::from(i / 6)]);
     let wander = "kind = \"wander\"\nspeed_mps = 0.4";
     let robots = places
@@ -32,7 +32,7 @@ fn crowd() -> FleetSpec {
 }
 
 /// No robot obeys commands.
-fn nobody(robot: usize, _: &LaserReading) -> Twist {
+pub(super) fn nobody(robot: usize, _: &LaserReading) -> Twist {
     panic!("robot {robot} is not driven")
 }
 
@@ -45,7 +45,7 @@ fn at(fleet: &Fleet, robot: usize) -> Point2<f64> {
 }
 
 /// Every bit of where the robots are and what they see.
-fn hash(fleet: &Fleet) -> u64 {
+pub(super) fn hash(fleet: &Fleet) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64; // FNV-1a
     let mut eat = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
     for robot in fleet.robots() {

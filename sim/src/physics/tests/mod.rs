@@ -6,6 +6,7 @@ mod contract;
 mod fleet;
 mod obstacles;
 mod patrol;
+mod snapshot;
 
 use super::*;
 use geometry::{Twist, World};

@@ -1,0 +1,111 @@
+//! Snapshots, forks and new starts.
+
+use super::fleet::{crowd, hash, nobody, robot};
+use super::*;
+use geometry::LaserReading;
+use proptest::prelude::*;
+
+/// Every kind of robot and obstacle, and two robots that collide.
+fn zoo() -> FleetSpec {
+    let kinds = [
+        ("\"wander\"\nspeed_mps = 0.4", [2.0, 2.0]),
+        ("\"circle\"\nspeed_mps = 0.4\nturn_radius_m = 1.0", [3.0, 3.0]),
+        ("\"waypoints\"\nspeed_mps = 0.4\npoints_m = [[1.0, 1.0], [5.0, 1.0]]", [1.0, 1.0]),
+        ("\"standing\"", [4.0, 2.5]),
+        ("\"driven\"", [8.0, 2.0]),
+        ("\"driven\"", [8.0, 4.0]),
+        (
+            "\"wall_patrol\"\nspeed_mps = 0.3\nfrom_m = [7.2, 11.5]\nto_m = [11.2, 11.5]\nwall_side = \"left\"",
+            [8.0, 11.5],
+        ),
+    ];
+    let robots = kinds.iter().enumerate().map(|(i, (kind, at))| {
+        let noisy = "[robot.odometry]\ndistance_noise_m = 0.01\n[robot.laser]";
+        robot(&format!("r{i}"), *at, 45.0, &format!("kind = {kind}")).replace("[robot.laser]", noisy)
+    });
+    let boxes = "[[obstacle]]\nname = \"one\"\nmin_m = [9.0, 8.0]\nmax_m = [9.2, 8.2]\nappears_s = 2.0\ndisappears_s = 9.0\n\
+        [[obstacle]]\nname = \"two\"\nmin_m = [9.5, 8.0]\nmax_m = [9.7, 8.2]\ndisappears_s = 12.0\n";
+    fleet::house(&robots.collect::<Vec<_>>(), boxes)
+}
+
+/// The two driven robots go for each other.
+fn drivers(robot: usize, reading: &LaserReading) -> Twist {
+    let turn = libm::sin(reading.time_s) * 0.3;
+    Twist { linear_mps: if robot == 4 { 0.4 } else { -0.4 }, angular_radps: turn }
+}
+
+#[test]
+fn a_restored_fleet_and_a_fork_live_on_bit_by_bit() {
+    let (zoo, crowd) = (zoo(), crowd());
+    for spec in [&zoo, &crowd] {
+        // Before the first step, between two scans, and after contacts.
+        for at_s in [0.0, 0.05, 5.0, 10.0, 31.25] {
+            let mut fleet = Fleet::new(spec, 4);
+            fleet.run_until(at_s, &mut drivers);
+            let snapshot = fleet.snapshot();
+            assert_eq!(fleet.snapshot(), snapshot);
+            let mut fork = fleet.clone();
+            let mut restored = Fleet::restored(spec, &snapshot).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(restored.snapshot(), snapshot, "at {at_s} s");
+            for _ in 0..10 {
+                for other in [&mut fleet, &mut fork, &mut restored] {
+                    other.run_until(other.time_s() + 3.0, &mut drivers);
+                }
+                assert_eq!(hash(&fork), hash(&fleet), "the fork of {at_s} s");
+                assert_eq!(hash(&restored), hash(&fleet), "restored from {at_s} s");
+                assert_eq!(restored.contacts(), fleet.contacts());
+            }
+            assert_eq!(restored.snapshot(), fleet.snapshot());
+        }
+    }
+}
+
+#[test]
+fn a_fork_goes_its_own_way() {
+    let mut fleet = Fleet::new(&zoo(), 4);
+    fleet.run_until(5.0, &mut drivers);
+    let (mut fork, before) = (fleet.clone(), hash(&fleet));
+    fork.run_until(6.0, &mut |_: usize, _: &LaserReading| Twist::STOP);
+    assert_eq!(hash(&fleet), before);
+    fleet.run_until(6.0, &mut drivers);
+    assert_ne!(hash(&fleet), hash(&fork));
+}
+
+#[test]
+fn a_reset_is_a_new_start() {
+    let mut fleet = Fleet::new(&crowd(), 1);
+    fleet.run_until(3.0, &mut nobody);
+    fleet.reset(2);
+    let mut new = Fleet::new(&crowd(), 2);
+    assert_eq!(fleet.snapshot(), new.snapshot());
+    for fleet in [&mut fleet, &mut new] {
+        fleet.run_until(3.0, &mut nobody);
+    }
+    assert_eq!(hash(&fleet), hash(&new));
+}
+
+#[test]
+fn snapshots_of_other_places_are_refused() {
+    let snapshot = Fleet::new(&crowd(), 1).snapshot();
+    assert_eq!(Fleet::restored(&zoo(), &snapshot).err(), Some(SnapshotError::OtherSpec));
+    assert_eq!(Fleet::restored(&zoo(), b"").err(), Some(SnapshotError::Unknown));
+    assert_eq!(Fleet::restored(&zoo(), b"something else").err(), Some(SnapshotError::Unknown));
+    assert_eq!(Fleet::restored(&zoo(), &snapshot[..8]).err(), Some(SnapshotError::Damaged));
+    assert_eq!(
+        Fleet::restored(&crowd(), &snapshot[..snapshot.len() - 1]).err(),
+        Some(SnapshotError::Damaged)
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn a_changed_byte_is_noticed(place in 8_usize..40_000, change in 1_u8..=255) {
+        let spec = zoo();
+        let mut snapshot = Fleet::new(&spec, 1).snapshot();
+        let place = 8 + place % (snapshot.len() - 8);
+        snapshot[place] ^= change;
+        prop_assert_eq!(Fleet::restored(&spec, &snapshot).err(), Some(SnapshotError::Damaged));
+    }
+}
