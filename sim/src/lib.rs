@@ -18,8 +18,16 @@
 //! assert!(after.pose.translation.x > before.pose.translation.x);
 //! # Ok::<(), sim::WorldError>(())
 //! ```
+//!
+#![doc = include_str!("hello.md")]
 
 mod error;
+mod files;
+mod findings;
+pub mod floor_plan;
 pub mod physics;
+pub mod stage;
 
 pub use error::WorldError;
+pub use files::{Disk, Files};
+pub use findings::{Finding, Findings, Severity};

@@ -1,0 +1,208 @@
+//! What a reader has to say about a file: everything at once, each with its place.
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use std::fmt;
+use std::ops::Range;
+use std::path::Path;
+
+/// So many findings of each severity are kept; further ones are only counted.
+const MOST_KEPT: usize = 100;
+/// Of a longer line only the part around the place is shown, in bytes.
+const LONG_LINE: usize = 200;
+
+/// How bad a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The world can be made, but something in the file means nothing here, or not quite the same.
+    Warning,
+    /// The world cannot be made.
+    Error,
+}
+
+/// One thing that is wrong with a file, or that the reader does otherwise than the file asks.
+///
+/// Its `Display` is a message of several lines, without colour, that names the file and the line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// How bad it is.
+    pub severity: Severity,
+    /// The file.
+    pub file: String,
+    /// The line, from 1 on; 0 stands for the file as a whole.
+    pub line: usize,
+    /// What is wrong.
+    pub what: String,
+    /// What would be right, or what is done instead.
+    pub help: String,
+    message: String,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+/// All findings of a reader, in the order in which they were made.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Findings {
+    kept: Vec<Finding>,
+    errors: usize,
+    warnings: usize,
+}
+
+impl Findings {
+    /// The findings that were kept: the first hundred errors and the first hundred warnings.
+    pub fn iter(&self) -> impl Iterator<Item = &Finding> {
+        self.kept.iter()
+    }
+
+    /// How many errors there are, kept or not.
+    pub fn errors(&self) -> usize {
+        self.errors
+    }
+
+    /// How many warnings there are, kept or not.
+    pub fn warnings(&self) -> usize {
+        self.warnings
+    }
+
+    /// Adds a finding about a place in a text. The same finding at the same place, as in a
+    /// definition that is used often, is made once.
+    pub(crate) fn add(
+        &mut self,
+        severity: Severity,
+        source: &SourceText,
+        what: &str,
+        mark: Mark<'_>,
+        help: &str,
+    ) {
+        let (line, text, span) = source.line(&mark.0);
+        let new = Finding {
+            severity,
+            file: source.name.clone(),
+            line,
+            what: what.to_owned(),
+            help: help.to_owned(),
+            message: String::new(),
+        };
+        self.keep(new, |_| {
+            let snippet = Snippet::source(text).path(&source.name).line_start(line);
+            let label = (!mark.1.is_empty()).then(|| mark.1.to_owned());
+            let snippet = snippet.annotation(AnnotationKind::Primary.span(span).label(label));
+            let level = if severity == Severity::Error { Level::ERROR } else { Level::WARNING };
+            let report = [level.primary_title(what).element(snippet).element(Level::HELP.message(help))];
+            Renderer::plain().render(&report)
+        });
+    }
+
+    /// Adds a finding about a file as a whole.
+    pub(crate) fn add_file(&mut self, severity: Severity, path: &Path, what: &str, help: &str) {
+        let file = path.display().to_string();
+        let new = Finding {
+            severity,
+            file,
+            line: 0,
+            what: what.to_owned(),
+            help: help.to_owned(),
+            message: String::new(),
+        };
+        self.keep(new, |new| {
+            let name = if severity == Severity::Error { "error" } else { "warning" };
+            format!("{name}: {}: {}\n  = help: {}", new.file, new.what, new.help)
+        });
+    }
+
+    fn keep(&mut self, new: Finding, message: impl FnOnce(&Finding) -> String) {
+        let same = |old: &Finding| (old.line, &old.file, &old.what) == (new.line, &new.file, &new.what);
+        if self.kept.iter().any(same) {
+            return;
+        }
+        let count = match new.severity {
+            Severity::Error => &mut self.errors,
+            Severity::Warning => &mut self.warnings,
+        };
+        *count += 1;
+        if *count <= MOST_KEPT {
+            let message = message(&new);
+            self.kept.push(Finding { message, ..new });
+        }
+    }
+}
+
+impl fmt::Display for Findings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, finding) in self.kept.iter().enumerate() {
+            let gap = if place == 0 { "" } else { "\n\n" };
+            write!(f, "{gap}{finding}")?;
+        }
+        let left_out = self.errors + self.warnings - self.kept.len();
+        if left_out > 0 {
+            write!(f, "\n\n… and {left_out} more")?;
+        }
+        Ok(())
+    }
+}
+
+/// A place in a text, as a range of bytes, with what is to be said of it.
+pub(crate) type Mark<'a> = (Range<usize>, &'a str);
+
+/// A text to point into.
+#[derive(Clone, Debug)]
+pub(crate) struct SourceText {
+    /// What the file is called in messages.
+    pub(crate) name: String,
+    /// All of its text.
+    pub(crate) text: String,
+    /// Where its lines start.
+    line_starts: Vec<usize>,
+}
+
+impl SourceText {
+    /// The text of a file, as UTF-8 or, where it is none, as Latin-1: old files have accents in
+    /// their comments.
+    pub(crate) fn new(name: String, bytes: Vec<u8>) -> Self {
+        let text = String::from_utf8(bytes)
+            .unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect());
+        let starts = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
+        let line_starts = std::iter::once(0).chain(starts).collect();
+        Self { name, text, line_starts }
+    }
+
+    /// The number of the line where a place begins, from 1 on.
+    pub(crate) fn line_number(&self, at: usize) -> usize {
+        self.line_starts.partition_point(|start| *start <= at)
+    }
+
+    /// The part of a line from a column (both from 1 on, in characters) to its end.
+    pub(crate) fn place(&self, line: usize, column: usize) -> Range<usize> {
+        let whole = self.whole_line(line);
+        let text = &self.text[whole.clone()];
+        let skipped = text.char_indices().nth(column.saturating_sub(1)).map_or(text.len(), |(at, _)| at);
+        let end = text.trim_end().len().max(skipped);
+        whole.start + skipped..whole.start + end
+    }
+
+    /// A line, from 1 on, without its end.
+    pub(crate) fn whole_line(&self, line: usize) -> Range<usize> {
+        let line = line.clamp(1, self.line_starts.len());
+        let end = self.line_starts.get(line).map_or(self.text.len(), |next| next - 1);
+        self.line_starts[line - 1]..end
+    }
+
+    /// The line where a place begins: its number, its text, and the place in this text. Of a long
+    /// line only a part.
+    fn line(&self, place: &Range<usize>) -> (usize, &str, Range<usize>) {
+        let number = self.line_number(place.start.min(self.text.len()));
+        let Range { mut start, mut end } = self.whole_line(number);
+        let from = place.start.clamp(start, end);
+        let to = place.end.clamp(from, end);
+        if end - start > LONG_LINE {
+            start = self.text.floor_char_boundary(start.max(from.saturating_sub(LONG_LINE / 2)));
+            end = self.text.ceil_char_boundary(end.min(from + LONG_LINE / 2));
+        }
+        let to = self.text.floor_char_boundary(to.min(end));
+        let from = self.text.floor_char_boundary(from.min(to));
+        (number, &self.text[start..end], from - start..to - start)
+    }
+}

@@ -1,0 +1,3 @@
+mod geometry;
+mod pictures;
+mod ros;

@@ -1,0 +1,119 @@
+//! `map.yaml`, right and wrong.
+
+use crate::floor_plan::{FloorPlan, ros};
+use crate::{Files, Findings};
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+const GOOD: &str = "\
+image: house.pgm
+mode: trinary
+resolution: 0.05
+origin: [-6.0, -5.0, 0.0]
+negate: 0
+occupied_thresh: 0.65
+free_thresh: 0.196
+";
+
+/// Blocked, unknown, free; the last three are the first three with `negate`.
+const HOUSE: &[u8] = b"P5 6 1 255 \x00\xcd\xfe\xff\x32\x01";
+
+fn read(yaml: &str) -> (Option<FloorPlan>, Findings) {
+    let mut files = BTreeMap::new();
+    files.insert(PathBuf::from("maps/house.yaml"), yaml.as_bytes().to_vec());
+    files.insert(PathBuf::from("maps/house.pgm"), HOUSE.to_vec());
+    let mut findings = Findings::default();
+    let plan = ros::read(Path::new("maps/house.yaml"), &files, &mut findings);
+    assert_eq!(plan.is_none(), findings.errors() > 0);
+    (plan, findings)
+}
+
+fn blocked(yaml: &str) -> String {
+    let (plan, findings) = read(yaml);
+    let plan = plan.unwrap_or_else(|| panic!("{findings}"));
+    (0..6).map(|x| if plan.bitmap.is_blocked(x, 0) { '#' } else { '.' }).collect()
+}
+
+#[test]
+fn a_map_is_read() {
+    let (plan, findings) = read(GOOD);
+    let plan = plan.unwrap();
+    assert_eq!(plan.origin, geometry::pose(-6.0, -5.0, 0.0));
+    assert_eq!(plan.pixel_m.x, 0.05);
+    // 0xcd is 205, p = 0.19608; 0x32 is 50, p = 0.804.
+    assert_eq!(blocked(GOOD), "#...##");
+    insta::assert_snapshot!(findings, @"
+    warning: 1 of the 6 pixels are unknown
+     --> maps/house.yaml:1:8
+      |
+    1 | image: house.pgm
+      |        ^^^^^^^^^ in this picture
+      |
+      = help: they are taken as free: no walls, and lasers look through
+    ");
+}
+
+#[test]
+fn modes_and_negation() {
+    assert_eq!(blocked(&GOOD.replace("negate: 0", "negate: 1")), ".###..");
+    assert_eq!(blocked(&GOOD.replace("negate: 0", "negate: true")), ".###..");
+    assert_eq!(blocked(&GOOD.replace("trinary", "scale")), "#...##");
+    // In percent: 0, 205 (unknown), …, 50, 1.
+    assert_eq!(blocked(&GOOD.replace("trinary", "raw").replace("0.65", "0.3")), "....#.");
+    // Strictly: p = 1 is not above 1.
+    assert_eq!(blocked(&GOOD.replace("0.65", "1.0")), "......");
+}
+
+#[test]
+fn everything_that_is_wrong_is_said_at_once() {
+    let bad = "image: [1, 2]\nresolution: -0.05\norigin: [0.0, 0.0]\nnegate: 2\noccupied_thresh: high\n\
+               free_thres: 0.1\nmode: fancy\n";
+    insta::assert_snapshot!(read(bad).1);
+}
+
+#[test]
+fn other_faults() {
+    let cases = [
+        ("no map at all", "- a\n- b\n".to_owned()),
+        ("not YAML", "image: [house.pgm\n".to_owned()),
+        ("a key twice", format!("{GOOD}negate: 1\n")),
+        ("no picture", GOOD.replace("house.pgm", "home.pgm")),
+        ("not a picture", GOOD.replace("house.pgm", "house.yaml")),
+        ("thresholds crossed", GOOD.replace("0.196", "0.7")),
+        ("not finite", GOOD.replace("-6.0", ".inf")),
+        ("empty", String::new()),
+    ];
+    let messages = cases.iter().map(|(case, yaml)| format!("# {case}\n\n{}\n\n", read(yaml).1));
+    let messages: String = messages.collect();
+    insta::with_settings!({ omit_expression => true }, { insta::assert_snapshot!(messages) });
+}
+
+#[test]
+fn missing_and_strange_files() {
+    let mut findings = Findings::default();
+    assert!(ros::read(Path::new("no/map.yaml"), &crate::Disk, &mut findings).is_none());
+    insta::assert_snapshot!(findings.iter().next().unwrap().what, @"cannot read this file: No such file or directory (os error 2)");
+    assert!(crate::Disk.read(Path::new("/dev/zero"), 10).is_err());
+}
+
+proptest! {
+    #[test]
+    fn no_text_makes_it_panic(at in 0..GOOD.len(), length in 0..40_usize, text in "[ -~\n]{0,12}") {
+        let end = (at + length).min(GOOD.len());
+        read(&format!("{}{text}{}", &GOOD[..at], &GOOD[end..]));
+    }
+
+    #[test]
+    fn no_bytes_make_it_panic(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        let mut files = BTreeMap::new();
+        files.insert(PathBuf::from("m.yaml"), bytes);
+        ros::read(Path::new("m.yaml"), &files, &mut Findings::default());
+    }
+
+    /// Aliases of aliases, deep lists and long lines.
+    #[test]
+    fn no_yaml_makes_it_panic(text in "([&*][ab] |[-?:\\[\\]{},\"'|>#!%@`~ \n]|[a-z0-9.]){0,200}") {
+        read(&text);
+    }
+}

@@ -1,0 +1,66 @@
+//! Stage's world has heights, this one has not: where they matter, it is said.
+
+use super::sources::{Place, Sources};
+use std::collections::BTreeSet;
+
+/// After so many comparisons, further ones are left out.
+const MAX_COMPARISONS: usize = 10_000_000;
+
+/// Something that takes up room.
+pub(super) struct Solid {
+    pub(super) name: String,
+    /// The robot that it is a part of.
+    pub(super) robot: Option<usize>,
+    pub(super) place: Place,
+    /// Its lowest and highest point, m.
+    pub(super) z_m: [f64; 2],
+}
+
+/// A laser's height, and where the file speaks of it.
+pub(super) struct Beam {
+    pub(super) robot: usize,
+    pub(super) place: Place,
+    pub(super) z_m: f64,
+}
+
+/// Everything that has a height.
+#[derive(Default)]
+pub(super) struct Heights {
+    pub(super) solids: Vec<Solid>,
+    pub(super) beams: Vec<Beam>,
+}
+
+impl Heights {
+    /// Warns of beams that pass over things in Stage, and of robots that do.
+    pub(super) fn compare(&self, sources: &mut Sources<'_>) {
+        let mut left = MAX_COMPARISONS;
+        for beam in &self.beams {
+            let misses = |solid: &&Solid| {
+                solid.robot != Some(beam.robot) && !(solid.z_m[0]..=solid.z_m[1]).contains(&beam.z_m)
+            };
+            if let Some(missed) = self.solids.iter().take(left).find(misses) {
+                let what = format!("in Stage these beams, {:.3} m high, miss `{}`", beam.z_m, missed.name);
+                let help = format!(
+                    "it reaches from {:.3} to {:.3} m; here there are no heights, and they meet it",
+                    missed.z_m[0], missed.z_m[1]
+                );
+                sources.warning(beam.place, &what, "", &help);
+            }
+            left = left.saturating_sub(self.solids.len());
+        }
+        let mut told: BTreeSet<(u32, u32)> = BTreeSet::new();
+        for a in self.solids.iter().filter(|solid| solid.robot.is_some()) {
+            // The parts of one definition share its height: one of them is enough.
+            if !told.insert((a.place.file, a.place.start)) {
+                continue;
+            }
+            let passes = |b: &&Solid| b.robot != a.robot && (a.z_m[1] < b.z_m[0] || b.z_m[1] < a.z_m[0]);
+            if let Some(b) = self.solids.iter().take(left).find(passes) {
+                let what = format!("in Stage `{}` passes over or under `{}`", a.name, b.name);
+                let help = "here there are no heights, and they bump into each other";
+                sources.warning(a.place, &what, "", help);
+            }
+            left = left.saturating_sub(self.solids.len());
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! The physics step of a world that does not say one.
+
+use super::StageRobot;
+use super::sources::{Place, Sources};
+
+/// No physics step is longer, ms.
+const LONGEST_MS: f64 = 50.0;
+/// Nor shorter.
+const SHORTEST_MS: f64 = 1.0;
+
+/// A step that is not too long for any robot, and of which the intervals of all lasers are
+/// multiples, s.
+pub(super) fn step_s(
+    sources: &mut Sources<'_>,
+    longest_ms: Option<f64>,
+    robots: &[StageRobot],
+) -> Option<f64> {
+    let lasers = robots.iter().flat_map(|robot| &robot.lasers);
+    let common_ms =
+        lasers.map(|laser| laser.interval_ms).reduce(common_divisor).map_or(LONGEST_MS, f64::from);
+    let mut longest_ms = longest_ms.unwrap_or(LONGEST_MS).min(LONGEST_MS);
+    for robot in robots {
+        let bounds = robot.velocity.x.iter().chain(&robot.velocity.y);
+        let fastest_mps = bounds.fold(0.0, |most: f64, bound| most.max(bound.abs()));
+        // No robot goes farther than its radius in a step, so that none can pass through another.
+        longest_ms = longest_ms.min(0.999 * 1000.0 * robot.radius_m() / fastest_mps);
+    }
+    let step_ms = common_ms / (common_ms / longest_ms).ceil().max(1.0);
+    if step_ms >= SHORTEST_MS {
+        return Some(step_ms / 1000.0);
+    }
+    let place = Place { file: 0, start: 0, end: 0 };
+    let help = "a step may not be shorter than 1 ms, a robot may not go farther than its radius in it, and \
+                lasers scan at whole numbers of steps";
+    sources.error(place, "no physics step suits this world", "", help);
+    None
+}
+
+fn common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { common_divisor(b, a % b) }
+}

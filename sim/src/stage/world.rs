@@ -1,0 +1,371 @@
+//! From the tree of things to walls and robots.
+
+use super::body::Body;
+use super::heights::{Beam, Heights, Solid};
+use super::known;
+use super::pictures::Pictures;
+use super::sources::Sources;
+use super::step;
+use super::tree::Thing;
+use super::values::{Pose, Reader};
+use super::{StageLaser, StageRobot, StageWall, StageWorld};
+use crate::files::Files;
+use nalgebra::Isometry2;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// More robots than this are an error.
+const MAX_ROBOTS: usize = 10_000;
+/// The size of a model, where the file gives none, m.
+const DEFAULT_SIZE_M: [f64; 3] = [0.1; 3];
+/// The same for a ranger and a laser.
+const DEFAULT_RANGER_SIZE_M: [f64; 3] = [0.15, 0.15, 0.2];
+
+struct Builder<'a, 'b> {
+    reader: Reader<'a, 'b>,
+    names: BTreeSet<String>,
+    /// How many names of each kind were made up.
+    made_up: BTreeMap<String, usize>,
+    walls: Vec<StageWall>,
+    robots: Vec<StageRobot>,
+    heights: Heights,
+}
+
+/// What a thing is called, and what it is to others.
+struct Looks {
+    name: String,
+    color: Option<String>,
+    /// Whether robots bump into it or lasers see it.
+    is_there: bool,
+}
+
+/// Makes the world of a tree. What it leaves out it names; whether there were errors is for the
+/// caller to see.
+pub(super) fn convert(
+    sources: &mut Sources<'_>,
+    path: &Path,
+    files: &dyn Files,
+    tree: &Thing,
+) -> Option<StageWorld> {
+    let mut reader =
+        Reader { sources, length_m: 1.0, angle_rad: 1.0_f64.to_radians(), pictures: Pictures::new(files) };
+    reader.units(tree);
+    let name = reader.text(tree, "name").map(|(name, _)| name);
+    let quit_time_s = reader.number(tree, "quit_time", 0.0..=1e5).filter(|time_s| *time_s > 0.0);
+    let longest_ms = reader.number(tree, "interval_sim", 1.0..=1e5);
+    let mut builder = Builder {
+        reader,
+        names: BTreeSet::new(),
+        made_up: BTreeMap::new(),
+        walls: Vec::new(),
+        robots: Vec::new(),
+        heights: Heights::default(),
+    };
+    for thing in &tree.parts {
+        builder.stands(thing, &Pose::origin(), true);
+        if builder.robots.len() > MAX_ROBOTS {
+            let help = format!("{MAX_ROBOTS} are the most");
+            builder.reader.sources.error(thing.place, "too many robots", "", &help);
+            return None;
+        }
+    }
+    builder.heights.compare(builder.reader.sources);
+    builder.warn_of_unused(tree);
+    let step_s = step::step_s(builder.reader.sources, longest_ms, &builder.robots)?;
+    let file_name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    Some(StageWorld {
+        name: name.filter(|name| !name.is_empty()).unwrap_or(file_name),
+        files: builder.reader.sources.file_names().map(str::to_owned).collect(),
+        step_s,
+        quit_time_s,
+        walls: builder.walls,
+        robots: builder.robots,
+    })
+}
+
+impl Reader<'_, '_> {
+    fn units(&mut self, world: &Thing) {
+        let mut unit = |name: &str, units: &[(&str, f64)]| {
+            let (unit, place) = self.text(world, name)?;
+            let known = units.iter().find(|(known, _)| *known == unit);
+            if known.is_none() {
+                let names: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
+                self.sources.error(
+                    place,
+                    &format!("there is no unit `{unit}`"),
+                    "",
+                    &format!("it is one of {}", names.join(", ")),
+                );
+            }
+            known.map(|(_, value)| *value)
+        };
+        let length = unit("unit_length", &[("m", 1.0), ("cm", 0.01), ("mm", 0.001)]);
+        let angle = unit("unit_angle", &[("degrees", 1.0_f64.to_radians()), ("radians", 1.0)]);
+        self.length_m = length.unwrap_or(self.length_m);
+        self.angle_rad = angle.unwrap_or(self.angle_rad);
+    }
+}
+
+impl Builder<'_, '_> {
+    /// A thing that stands on the floor or on another one that does.
+    fn stands(&mut self, thing: &Thing, on: &Pose, is_first: bool) {
+        match thing.kind.as_str() {
+            "position" if is_first => self.robot(thing),
+            "position" => {
+                let help = "here it is a part of that thing; put it at the top level to let it drive";
+                self.reader.sources.warning(thing.place, "a robot on another thing", "", help);
+                self.wall(thing, on);
+            }
+            "model" | "puck" => self.wall(thing, on),
+            "ranger" | "laser" => {
+                let help = "only robots have lasers here";
+                self.left_out(thing, "a laser that stands alone is left out", help);
+            }
+            _ => self.other(thing),
+        }
+    }
+
+    /// A kind of thing that is neither a wall nor a robot.
+    fn other(&mut self, thing: &Thing) {
+        let kind = thing.kind.as_str();
+        if let Some((_, why)) = known::KINDS_LEFT_OUT.iter().find(|(known, _)| *known == kind) {
+            return self.left_out(thing, &format!("`{kind}` is left out"), why);
+        }
+        let (what, help) = match kind {
+            "block" => ("a block outside of a thing", "it belongs into the ( ) of a model or robot"),
+            "sensor" => ("a sensor outside of a ranger", "it belongs into the ( ) of a `ranger`"),
+            _ => (
+                "an unknown kind of thing",
+                "Stage knows no such model; is the `include` of its `define` missing?",
+            ),
+        };
+        self.reader.sources.error(thing.place, what, "", help);
+        use_all(thing);
+    }
+
+    fn left_out(&mut self, thing: &Thing, what: &str, why: &str) {
+        self.reader.sources.warning(thing.place, what, "", why);
+        use_all(thing);
+    }
+
+    fn looks(&mut self, thing: &Thing) -> Looks {
+        let given = self.reader.text(thing, "name");
+        let mut name = given.as_ref().map_or_else(|| thing.kind.clone(), |(name, _)| name.clone());
+        if given.is_none() || self.names.contains(&name) {
+            // As Stage makes names up.
+            let count = self.made_up.entry(name.clone()).or_default();
+            let mut free = format!("{name}:{count}");
+            while self.names.contains(&free) {
+                *count += 1;
+                free = format!("{name}:{count}");
+            }
+            *count += 1;
+            if let Some((_, place)) = given {
+                let what = format!("two things are called `{name}`");
+                self.reader.sources.warning(place, &what, "", &format!("this one is called `{free}` here"));
+            }
+            name = free;
+        }
+        self.names.insert(name.clone());
+        let color = self.reader.text(thing, "color").map(|(color, _)| color);
+        let collides = self.reader.flag(thing, "obstacle_return").unwrap_or(true);
+        let is_seen_by_rangers =
+            self.reader.number(thing, "ranger_return", -1e5..=1e5).is_none_or(|value| value >= 0.0);
+        let is_seen_by_lasers = self.reader.flag(thing, "laser_return").unwrap_or(true);
+        let is_seen = is_seen_by_rangers && is_seen_by_lasers;
+        if collides != is_seen {
+            let (what, help) = match collides {
+                true => ("this thing cannot be seen in Stage", "here lasers see whatever robots bump into"),
+                false => {
+                    ("nothing bumps into this thing in Stage", "here robots bump into whatever lasers see")
+                }
+            };
+            self.reader.sources.warning(thing.place, what, "", help);
+        }
+        if let Some((_, place)) =
+            self.reader.numbers(thing, "mass", 1..=1).filter(|_| thing.kind != "position")
+        {
+            self.reader.sources.warning(
+                place,
+                "`mass` means nothing here",
+                "",
+                "what is not a robot cannot be moved",
+            );
+        }
+        Looks { name, color, is_there: collides || is_seen }
+    }
+
+    /// The pose of a thing on another one, its body, and the place on top of it for its parts.
+    fn place(
+        &mut self,
+        thing: &Thing,
+        on: &Pose,
+        default_size_m: [f64; 3],
+        has_box: bool,
+    ) -> (Pose, Body, Pose) {
+        let own = self.reader.pose(thing, "pose").unwrap_or(Pose::origin());
+        let at = on.then(&own);
+        let size_m = self.reader.size(thing, default_size_m);
+        let body = self.reader.body(thing, &at, size_m, has_box);
+        let stacks = self.reader.flag(thing, "stack_children").unwrap_or(true);
+        let top = Pose { z_m: at.z_m + if stacks { size_m[2] } else { 0.0 }, ..at };
+        (at, body, top)
+    }
+
+    fn wall(&mut self, thing: &Thing, on: &Pose) {
+        let looks = self.looks(thing);
+        let (_, body, top) = self.place(thing, on, DEFAULT_SIZE_M, true);
+        if let Some((_, place)) = self.reader.text(thing, "ctrl") {
+            self.reader.sources.warning(
+                place,
+                "controllers of Stage cannot be loaded",
+                "",
+                "this thing stands still",
+            );
+        }
+        if looks.is_there && !body.is_empty() {
+            let (rectangles, off_m) = body.rectangles();
+            self.warn_of_cover(thing, off_m);
+            self.heights.solids.push(Solid {
+                name: looks.name.clone(),
+                robot: None,
+                place: thing.place,
+                z_m: body.z_m,
+            });
+            self.walls.push(StageWall {
+                name: looks.name,
+                color: looks.color,
+                place: self.reader.sources.name(thing.place),
+                plan: body.plan,
+                rectangles,
+            });
+        }
+        for part in thing.parts.iter().filter(|part| part.kind != "block") {
+            self.stands(part, &top, false);
+        }
+    }
+
+    fn warn_of_cover(&mut self, thing: &Thing, off_m: f64) {
+        if off_m == f64::INFINITY {
+            let help = "a block without area is left out; give it three corners that are not on a line";
+            self.reader.sources.warning(thing.place, "a block without area", "", help);
+        } else if off_m > 1e-6 {
+            let what = format!("sharp corners of this thing are cut off, by up to {off_m:.3} m");
+            let help = "walls here are made of rectangles, which do not fill a corner of less than 90°";
+            self.reader.sources.warning(thing.place, &what, "", help);
+        }
+    }
+
+    fn robot(&mut self, thing: &Thing) {
+        let looks = self.looks(thing);
+        if !looks.is_there {
+            let help = "here every robot is solid and seen";
+            self.reader.sources.warning(thing.place, "this robot is a ghost in Stage", "", help);
+        }
+        let (at, body, top) = self.place(thing, &Pose::origin(), DEFAULT_SIZE_M, true);
+        let motion = self.reader.motion(thing);
+        let mass_kg = self.reader.number(thing, "mass", 0.0..=1e5);
+        let controllers = self.controllers(thing);
+        let index = self.robots.len();
+        let mut robot = StageRobot {
+            name: looks.name,
+            color: looks.color,
+            place: self.reader.sources.name(thing.place),
+            pose: at.flat,
+            footprint: Vec::new(),
+            drive: motion.drive,
+            velocity: motion.velocity,
+            acceleration: motion.acceleration,
+            odometry: motion.odometry,
+            lasers: Vec::new(),
+            mass_kg,
+            controllers,
+            at: thing.place,
+        };
+        self.add_body(&mut robot, thing, &body, index);
+        for part in thing.parts.iter().filter(|part| part.kind != "block") {
+            self.carried(part, &top, &mut robot, index);
+        }
+        if robot.footprint.is_empty() {
+            let help = "give it a `size`, a `block` or a `bitmap`";
+            self.reader.sources.error(thing.place, "a robot without a body", "", help);
+        }
+        self.robots.push(robot);
+    }
+
+    /// A thing on a robot.
+    fn carried(&mut self, thing: &Thing, on: &Pose, robot: &mut StageRobot, index: usize) {
+        let (is_laser, size_m) = match thing.kind.as_str() {
+            "ranger" | "laser" => (true, DEFAULT_RANGER_SIZE_M),
+            "model" | "puck" => (false, DEFAULT_SIZE_M),
+            "position" => {
+                let help = "here it is a part of the robot that carries it";
+                self.reader.sources.warning(thing.place, "a robot on a robot", "", help);
+                self.reader.motion(thing);
+                (false, DEFAULT_SIZE_M)
+            }
+            _ => return self.other(thing),
+        };
+        let looks = self.looks(thing);
+        let (at, body, top) = self.place(thing, on, size_m, !is_laser);
+        if looks.is_there {
+            self.add_body(robot, thing, &body, index);
+        }
+        if is_laser {
+            let origin = self.reader.pose(thing, "origin").unwrap_or(Pose::origin());
+            let mount = at.then(&origin);
+            let mount = Pose { flat: robot.pose.inverse() * mount.flat, ..mount };
+            let lasers: Vec<(StageLaser, f64)> = match thing.kind.as_str() {
+                "laser" => self.reader.old_laser(thing, &mount).into_iter().collect(),
+                _ => self.reader.ranger(thing, &mount),
+            };
+            for (laser, z_m) in lasers {
+                robot.lasers.push(laser);
+                self.heights.beams.push(Beam { robot: index, place: thing.place, z_m });
+            }
+        }
+        for part in thing.parts.iter().filter(|part| part.kind != "block" && part.kind != "sensor") {
+            self.carried(part, &top, robot, index);
+        }
+    }
+
+    fn add_body(&mut self, robot: &mut StageRobot, thing: &Thing, body: &Body, index: usize) {
+        if body.is_empty() {
+            return;
+        }
+        let to_robot: Isometry2<f64> = robot.pose.inverse();
+        let corners = body.corners().map(|polygon| polygon.iter().map(|corner| to_robot * corner).collect());
+        robot.footprint.extend(corners);
+        let name = robot.name.clone();
+        self.heights.solids.push(Solid { name, robot: Some(index), place: thing.place, z_m: body.z_m });
+    }
+
+    fn controllers(&mut self, robot: &Thing) -> Vec<String> {
+        let Some(property) = self.reader.property(robot, "ctrl") else {
+            return Vec::new();
+        };
+        let names: Vec<String> =
+            property.values.iter().map(|value| self.reader.sources.text(value.place).to_owned()).collect();
+        let help =
+            "Stage's controllers are programs of its own; `wander` is replaced by our own, others by none";
+        self.reader.sources.warning(property.place(), "controllers of Stage cannot be loaded", "", help);
+        names
+    }
+
+    fn warn_of_unused(&mut self, thing: &Thing) {
+        for (name, property) in thing.properties.iter().filter(|(_, property)| !property.is_used.get()) {
+            let what = format!("`{name}` means nothing here");
+            self.reader.sources.warning(property.name, &what, "", known::why_unused(name));
+            property.is_used.set(true);
+        }
+        for part in &thing.parts {
+            self.warn_of_unused(part);
+        }
+    }
+}
+
+/// Nothing in this thing shall be named again.
+fn use_all(thing: &Thing) {
+    thing.properties.values().for_each(|property| property.is_used.set(true));
+    thing.parts.iter().for_each(use_all);
+}
