@@ -6,13 +6,16 @@ use sim::physics::{Fleet, FleetSpec};
 
 const PLACE: &str = r#"
 name = "hello"
+wall = [
+    { from_m = [0.0, 0.05], to_m = [6.0, 0.05], thickness_m = 0.1 },
+    { from_m = [0.0, 3.95], to_m = [6.0, 3.95], thickness_m = 0.1 },
+    { from_m = [0.05, 0.0], to_m = [0.05, 4.0], thickness_m = 0.1 },
+    { from_m = [5.95, 0.0], to_m = [5.95, 4.0], thickness_m = 0.1 },
+    { from_m = [4.0, 1.0], to_m = [4.0, 3.0], thickness_m = 0.1 },
+]
 [map]
 size_m = [6.0, 4.0]
 cell_m = 0.05
-[[wall]]
-from_m = [4.0, 1.0]
-to_m = [4.0, 3.0]
-thickness_m = 0.1
 [[robot]]
 name = "driven"
 pose_m = [1.0, 2.0]

@@ -37,13 +37,8 @@ impl Laser {
     ) {
         scene.look(&self.beams, pose, own, scratch);
         let LaserSpec { range_min_m, range_max_m, noise_std_m, .. } = self.spec;
-        let noise = &mut self.noise;
-        into.ranges_m.clear();
-        into.ranges_m.extend(scratch.inverse.iter().map(|inverse| {
-            let range_m = 1.0 / inverse;
-            // One draw per beam, hit or not: what one beam meets never changes another's noise.
-            let measured_m = if noise_std_m > 0.0 { range_m + noise_std_m * noise.draw() } else { range_m };
-            // REP-117: too far is +∞, too close −∞.
+        // REP-117: too far is +∞, too close −∞.
+        let reported = |measured_m: f64| {
             if measured_m > range_max_m {
                 f32::INFINITY
             } else if measured_m < range_min_m {
@@ -51,7 +46,20 @@ impl Laser {
             } else {
                 measured_m as f32
             }
-        }));
+        };
+        into.ranges_m.resize(scratch.inverse.len(), 0.0);
+        let beams = into.ranges_m.iter_mut().zip(&scratch.inverse);
+        if noise_std_m > 0.0 {
+            for (range_m, inverse) in beams {
+                // One draw per beam, hit or not: what one beam meets never changes another's noise.
+                *range_m = reported(1.0 / inverse + noise_std_m * self.noise.draw());
+            }
+        } else {
+            // A loop of its own, without a state: several beams at once.
+            for (range_m, inverse) in beams {
+                *range_m = reported(1.0 / inverse);
+            }
+        }
     }
 }
 

@@ -15,6 +15,8 @@ const SAFE: f32 = 1.0 + 1e-5;
 /// Discs within the range of a laser, in its frame.
 #[derive(Clone, Debug, Default)]
 pub(in crate::physics) struct Discs {
+    /// How many there are; the lists below may be longer.
+    count: usize,
     center: Vec<Vector2<f64>>,
     /// The distance squared less the radius squared, m²: positive.
     power: Vec<f64>,
@@ -30,13 +32,22 @@ pub(in crate::physics) struct Discs {
 }
 
 impl Discs {
-    /// No discs.
-    pub(super) fn clear(&mut self) {
-        self.center.clear();
-        self.power.clear();
-        self.x.clear();
-        self.y.clear();
-        self.radius.clear();
+    /// No discs, but room for `most`.
+    pub(super) fn clear(&mut self, most: usize) {
+        self.count = 0;
+        if self.center.len() < most {
+            self.center.resize(most, Vector2::zeros());
+            self.power.resize(most, 0.0);
+            let rough = [
+                &mut self.x,
+                &mut self.y,
+                &mut self.radius,
+                &mut self.angle,
+                &mut self.half,
+                &mut self.nearest,
+            ];
+            rough.into_iter().for_each(|list| list.resize(most, 0.0));
+        }
     }
 
     /// Notes a disc, if it is within range. A laser inside of it sees nothing else.
@@ -51,29 +62,33 @@ impl Discs {
             return hits.add_inside();
         }
         let center = hits.laser().rotation.inverse() * to.coords;
-        self.center.push(center);
-        self.power.push(power);
-        self.x.push(center.x as f32);
-        self.y.push(center.y as f32);
-        self.radius.push(disc.radius_m as f32);
+        let i = self.count;
+        self.center[i] = center;
+        self.power[i] = power;
+        self.x[i] = center.x as f32;
+        self.y[i] = center.y as f32;
+        self.radius[i] = disc.radius_m as f32;
+        self.count += 1;
     }
 
     /// Adds all discs to the hits.
     pub(super) fn add_to(&mut self, hits: &mut Hits<'_>) {
         self.work_out();
-        let exact = self.center.iter().zip(&self.power);
-        let rough = self.angle.iter().zip(&self.half).zip(&self.nearest);
-        for ((center, power), ((angle, half), nearest)) in exact.zip(rough) {
-            hits.add_disc(center, *power, f64::from(*angle), f64::from(*half), f64::from(*nearest));
+        for i in 0..self.count {
+            let (angle, half, nearest) = (self.angle[i], self.half[i], self.nearest[i]);
+            hits.add_disc(
+                &self.center[i],
+                self.power[i],
+                f64::from(angle),
+                f64::from(half),
+                f64::from(nearest),
+            );
         }
     }
 
     /// Works out what is rough. No branches: several discs at once.
     fn work_out(&mut self) {
-        let count = self.x.len();
-        for values in [&mut self.angle, &mut self.half, &mut self.nearest] {
-            values.resize(count, 0.0);
-        }
+        let count = self.count;
         let (x, y, radius) = (&self.x[..count], &self.y[..count], &self.radius[..count]);
         let (angle, half, nearest) =
             (&mut self.angle[..count], &mut self.half[..count], &mut self.nearest[..count]);
@@ -115,11 +130,9 @@ mod tests {
             let radius_m = 0.02 + f64::from(i % 50) * 0.01;
             let distance_m = radius_m * (1.0 + 1e-6 + f64::from(i * i % 977) * 0.1);
             let center = Vector2::new(x, y) * distance_m;
-            discs.clear();
-            discs.center.push(center);
-            discs.x.push(center.x as f32);
-            discs.y.push(center.y as f32);
-            discs.radius.push(radius_m as f32);
+            discs.clear(1);
+            (discs.count, discs.center[0]) = (1, center);
+            (discs.x[0], discs.y[0], discs.radius[0]) = (center.x as f32, center.y as f32, radius_m as f32);
             discs.work_out();
             let off = geometry::wrap_rad(f64::from(discs.angle[0]) - libm::atan2(y, x)).abs();
             let half = libm::asin(radius_m / distance_m);

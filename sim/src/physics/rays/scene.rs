@@ -119,7 +119,7 @@ impl Scene {
         let Walls { solids, edges, sight } = &*self.walls;
         let Scratch { inverse, discs } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);
-        discs.clear();
+        discs.clear(self.sorted.len());
         let at = Point2::from(laser.translation.vector);
         let contains = |sides: &[Edge; 4]| sides.iter().all(|side| side.gap_m(&at) <= 0.0);
         let mut is_inside = self.boxes.iter().any(contains);

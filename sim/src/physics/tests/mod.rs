@@ -3,6 +3,7 @@
 mod caster;
 mod contacts;
 mod contract;
+mod docs;
 mod fleet;
 mod obstacles;
 mod patrol;
