@@ -3,8 +3,9 @@
 use super::file::{MapFile, Number, ObstacleFile, Pair, RobotFile, WallFile, WorldFile};
 use super::numbers::Table;
 use super::robot::robot;
-use super::{Behaviour, FleetSpec, ObstacleSpec, RobotSpec};
+use super::{Behaviour, FleetSpec, ObstacleSpec, RobotSpec, floor_plan};
 use crate::error::{Source, WorldError};
+use crate::files::Files;
 use crate::physics::shape::{Rectangle, TOUCH_M, turned};
 use geometry::{GridFrame, rotation};
 use nalgebra::Point2;
@@ -28,7 +29,11 @@ pub(super) fn file(source: &Source<'_>) -> Result<WorldFile, WorldError> {
 }
 
 /// Checks everything but who is driven.
-pub(super) fn check(source: &Source<'_>, file: &WorldFile) -> Result<FleetSpec, WorldError> {
+pub(super) fn check(
+    source: &Source<'_>,
+    file: &WorldFile,
+    files: &dyn Files,
+) -> Result<FleetSpec, WorldError> {
     let name = Table { source, path: "" }.name(&file.name)?;
     let (size, cell_m, turn_rad) = map(source, &file.map)?;
     let physics = Table { source, path: "physics" };
@@ -36,6 +41,10 @@ pub(super) fn check(source: &Source<'_>, file: &WorldFile) -> Result<FleetSpec, 
     let mut solids = Vec::new();
     for wall in &file.walls {
         solids.push(Solid { shape: self::wall(source, wall, &size)?, span: wall.span() });
+    }
+    for plan in &file.floor_plans {
+        let walls = floor_plan::walls(source, files, plan, &size)?;
+        solids.extend(walls.into_iter().map(|shape| Solid { shape, span: plan.span() }));
     }
     let walls = solids.iter().map(|wall| wall.shape).collect::<Vec<_>>();
     let mut obstacles = Vec::new();
@@ -145,7 +154,7 @@ fn upright(table: &Table<'_>, min: &Pair, max: &Pair, size: &Point2<f64>) -> Res
     Ok(Rectangle::between(low, high))
 }
 
-fn inside(
+pub(super) fn inside(
     source: &Source<'_>,
     what: &str,
     span: Range<usize>,

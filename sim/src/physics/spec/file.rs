@@ -34,6 +34,8 @@ pub(super) struct WorldFile {
     pub(super) physics: PhysicsFile,
     #[serde(default, rename = "wall")]
     pub(super) walls: Vec<Spanned<WallFile>>,
+    #[serde(default, rename = "floor_plan")]
+    pub(super) floor_plans: Vec<Spanned<FloorPlanFile>>,
     #[serde(default, rename = "obstacle")]
     pub(super) obstacles: Vec<Spanned<ObstacleFile>>,
     #[serde(default, rename = "robot")]
@@ -62,6 +64,17 @@ pub(super) struct WallFile {
     pub(super) thickness_m: Option<Number>,
     pub(super) min_m: Option<Pair>,
     pub(super) max_m: Option<Pair>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FloorPlanFile {
+    pub(super) image: Option<Spanned<String>>,
+    pub(super) map: Option<Spanned<String>>,
+    pub(super) pixel_m: Option<Number>,
+    pub(super) corner_m: Option<Pair>,
+    pub(super) heading_deg: Option<Number>,
+    pub(super) blocked_below: Option<Number>,
 }
 
 #[derive(Deserialize)]

@@ -15,6 +15,12 @@
 //! | `physics.step_s` | s | 0.05 | 0.001 to 0.1 |
 //! | `[[wall]]` `from_m`, `to_m`, `thickness_m` | m | required¹ | in the map; thickness 0.001 to 100. The wall ends at its points |
 //! | `[[wall]]` `min_m`, `max_m` | m | required¹ | in the map; lower left and upper right corner |
+//! | `[[floor_plan]]` `image` | | required² | a PNG or PGM picture beside the world file; dark pixels are walls, at most 20 000 pieces |
+//! | `floor_plan.pixel_m` | m | required with `image` | 0.001 to 10; side of a pixel |
+//! | `floor_plan.heading_deg` | ° | 0 | −360 to 360; turns it about its lower left corner |
+//! | `floor_plan.blocked_below` | | 0.5 | 0 to 1; darker pixels are walls (0 black, 1 white) |
+//! | `[[floor_plan]]` `map` | | required² | a `map.yaml` of ROS beside the world file, with its resolution, thresholds and yaw |
+//! | `floor_plan.corner_m` | m | `[0, 0]` | in the map; the lower left corner of the picture |
 //! | `obstacle.name` | | required | unique |
 //! | `[[obstacle]]` `min_m`, `max_m` | m | required¹ | in the map, outside of walls |
 //! | `[[obstacle]]` `center_m`, `size_m`, `heading_deg` | m, ° | required¹, heading 0 | sides 0.001 to 100 |
@@ -43,7 +49,7 @@
 //! | `robot.laser.noise_std_m` | m | 0 | 0 to 1 |
 //! | `robot.behaviour.kind` | | required | one of the behaviours below |
 //!
-//! ¹ one of the two forms.
+//! ¹ one of the two forms. ² one of the two.
 //!
 //! # Behaviours
 //!
@@ -70,6 +76,7 @@
 mod behaviour;
 mod check;
 mod file;
+mod floor_plan;
 mod numbers;
 mod patrol;
 mod robot;
@@ -80,10 +87,12 @@ pub use behaviour::{Behaviour, CircleSpec, PatrolSpec, Repeat, WanderSpec, Waypo
 
 use super::shape::Rectangle;
 use crate::error::{Source, WorldError};
+use crate::files::{Disk, Files};
 use geometry::{GridFrame, Scan};
 use nalgebra::Isometry2;
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A place with any number of robots, as its file describes it: every figure in range, every
 /// relation checked.
@@ -106,18 +115,29 @@ impl FleetSpec {
     /// When the file cannot be read, or as in [`FleetSpec::parse`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self, WorldError> {
         let (name, text) = read(path.as_ref())?;
-        Self::parse(&name, &text)
+        Self::parse_with(&name, &text, &Disk)
     }
 
-    /// Checks the text of a world file; `name` is what messages call the file.
+    /// Checks the text of a world file; `name` is what messages call the file. There are no
+    /// pictures beside it.
     ///
     /// # Errors
     ///
     /// When the text is no TOML, a key is unknown or missing, a value out of range, or the things
     /// in the world contradict each other. The message says where, and what would be right.
     pub fn parse(name: &str, text: &str) -> Result<Self, WorldError> {
+        Self::parse_with(name, text, &no_files())
+    }
+
+    /// The same with the pictures of its floor plans, which are looked for in the folder of the
+    /// path `name`.
+    ///
+    /// # Errors
+    ///
+    /// As [`FleetSpec::parse`], and when a picture cannot be read.
+    pub fn parse_with(name: &str, text: &str, files: &dyn Files) -> Result<Self, WorldError> {
         let source = Source { name, text };
-        check::check(&source, &check::file(&source)?)
+        check::check(&source, &check::file(&source)?, files)
     }
 
     /// What the world is called.
@@ -171,7 +191,7 @@ impl WorldSpec {
     /// When the file cannot be read, or as in [`WorldSpec::parse`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self, WorldError> {
         let (name, text) = read(path.as_ref())?;
-        Self::parse(&name, &text)
+        Self::parse_with(&name, &text, &Disk)
     }
 
     /// Checks the text of a world file; `name` is what messages call the file.
@@ -180,9 +200,19 @@ impl WorldSpec {
     ///
     /// As [`FleetSpec::parse`], and when not exactly one robot is driven.
     pub fn parse(name: &str, text: &str) -> Result<Self, WorldError> {
+        Self::parse_with(name, text, &no_files())
+    }
+
+    /// The same with the pictures of its floor plans, which are looked for in the folder of the
+    /// path `name`.
+    ///
+    /// # Errors
+    ///
+    /// As [`WorldSpec::parse`], and when a picture cannot be read.
+    pub fn parse_with(name: &str, text: &str, files: &dyn Files) -> Result<Self, WorldError> {
         let source = Source { name, text };
         let file = check::file(&source)?;
-        let fleet = check::check(&source, &file)?;
+        let fleet = check::check(&source, &file, files)?;
         let driven = check::driven(&source, &file, &fleet.robots)?;
         Ok(Self { fleet, driven })
     }
@@ -238,6 +268,11 @@ fn read(path: &Path) -> Result<(String, String), WorldError> {
     let name = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|error| WorldError::unreadable(&name, &error))?;
     Ok((name, text))
+}
+
+/// Where a world file without a folder finds its pictures: nowhere.
+fn no_files() -> BTreeMap<PathBuf, Vec<u8>> {
+    BTreeMap::new()
 }
 
 /// A box, which may come and go.

@@ -5,6 +5,7 @@ mod contacts;
 mod contract;
 mod docs;
 mod fleet;
+mod floor_plan;
 mod obstacles;
 mod patrol;
 mod snapshot;
