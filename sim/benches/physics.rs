@@ -1,8 +1,9 @@
-//! What a tick of the shipped worlds costs: `cargo bench -p sim`.
+//! What a tick of the shipped worlds costs, and a step of fleets: `cargo bench -p sim`.
 
+use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use geometry::{Twist, World};
-use sim::physics::{PhysicsWorld, WorldSpec};
+use geometry::{LaserReading, Twist, World};
+use sim::physics::{Fleet, FleetSpec, PhysicsWorld, WorldSpec};
 
 const WORLDS: [&str; 2] = ["four_rooms", "turned_house"];
 
@@ -47,4 +48,47 @@ fn act_and_sense(bencher: Bencher<'_, '_>, name: &str) {
         world.act(black_box(&twist));
         black_box(world.sense())
     });
+}
+
+const BEAMS: usize = 360;
+
+/// The four rooms with robots that wander, on a grid of places.
+fn fleet(robots: usize) -> FleetSpec {
+    let text = include_str!("../../worlds/four_rooms.toml");
+    let mut text = text[..text.find("[[robot]]").unwrap_or(text.len())].to_owned();
+    for robot in 0..robots {
+        let at = [robot % 20, robot / 20].map(|place| 0.55 + 0.57 * place as f64);
+        text += &format!(
+            "[[robot]]\nname = \"{robot}\"\nradius_m = 0.15\npose_m = {at:?}\nheading_deg = {}\n\
+             drive = {{ max_linear_mps = 0.5, max_angular_degps = 120.0, max_linear_acceleration_mps2 = 1.0, \
+             max_angular_acceleration_degps2 = 360.0 }}\n\
+             laser = {{ beams = {BEAMS}, range_max_m = 10.0, rate_hz = 10.0 }}\n\
+             behaviour = {{ kind = \"wander\", speed_mps = 0.4 }}\n",
+            robot * 77 % 360
+        );
+    }
+    match FleetSpec::parse("fleet", &text) {
+        Ok(spec) => spec,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A tenth of a second of a fleet: two physics steps, a scan and a decision of every robot.
+#[divan::bench(args = [1, 10, 100])]
+fn tick_of_a_fleet(bencher: Bencher<'_, '_>, robots: usize) {
+    let mut fleet = Fleet::new(&fleet(robots), 0);
+    let nobody = |_: usize, _: &LaserReading| Twist::STOP;
+    // Away from where they started.
+    fleet.run_until(20.0, &mut { nobody });
+    bencher.counter(ItemsCount::new(robots * BEAMS)).bench_local(|| {
+        fleet.step(&mut { nobody });
+        fleet.step(&mut { nobody });
+    });
+}
+
+/// A fleet as bytes and back.
+#[divan::bench]
+fn snapshot_of_100(bencher: Bencher<'_, '_>) {
+    let fleet = Fleet::new(&fleet(100), 0);
+    bencher.bench_local(|| black_box(fleet.snapshot()));
 }

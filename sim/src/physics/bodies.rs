@@ -107,6 +107,10 @@ impl Bodies {
         let collider = rapier::ColliderBuilder::ball(spec.radius_m as f32)
             .friction(0.0)
             .user_data(pack(Body::Robot(self.robots.len())));
+        let collider = match spec.mass_kg {
+            Some(mass_kg) => collider.mass(mass_kg as f32),
+            None => collider,
+        };
         // Contacts are foreseen over a step's way, so that a fast robot does not enter a wall.
         let body = rapier::RigidBodyBuilder::dynamic()
             .pose(to_rapier(&spec.pose))
@@ -148,16 +152,24 @@ impl Bodies {
         Twist { linear_mps: linear.dot(&own.forward), angular_radps: f64::from(body.angvel()) }
     }
 
-    /// Everything near a robot that it presses against (`true`) or has not yet parted from
-    /// (`false`).
-    pub(super) fn touches(&self, robot: usize) -> impl Iterator<Item = (Body, bool)> {
+    /// Sets a robot down somewhere else, at rest.
+    pub(super) fn put(&mut self, robot: usize, pose: &Isometry2<f64>) {
+        let body = &mut self.world.bodies[self.robots[robot].body];
+        body.set_position(to_rapier(pose), true);
+        body.set_linvel(rapier::Vector::ZERO, true);
+        body.set_angvel(0.0, true);
+    }
+
+    /// Everything near a robot that it presses against, with the impulse of the last step (N·s), or
+    /// has not yet parted from (0).
+    pub(super) fn touches(&self, robot: usize) -> impl Iterator<Item = (Body, f64)> {
         let own = self.robots[robot].collider;
         self.world.narrow_phase.contact_pairs_with(own).filter_map(move |pair| {
             let gap_m = pair.find_deepest_contact()?.1.dist;
-            let presses = pair.total_impulse_magnitude() > 0.0;
+            let impulse_ns = f64::from(pair.total_impulse_magnitude());
             let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
             let body = unpack(self.world.colliders[other].user_data);
-            (presses || gap_m < PART_M).then_some((body, presses))
+            (impulse_ns > 0.0 || gap_m < PART_M).then_some((body, impulse_ns))
         })
     }
 

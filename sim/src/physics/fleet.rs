@@ -4,11 +4,11 @@ use super::obstacles::Obstacle;
 use super::rays::{Beams, Disc, Scene, Scratch};
 use super::report::{Body, Contact, Move, ObstacleView, RobotView};
 use super::robot::Robot;
-use super::shape::Rectangle;
+use super::shape::{Rectangle, TOUCH_M};
 use super::snapshot::{Played, SnapshotError, Tape, fingerprint};
-use super::spec::{FleetSpec, LaserSpec};
-use geometry::{GridFrame, LaserReading, Twist};
-use nalgebra::{Point2, Vector2};
+use super::spec::{FleetSpec, LaserSpec, RobotSpec};
+use geometry::{GridFrame, LaserReading, Twist, heading_rad};
+use nalgebra::{Isometry2, Point2, Vector2};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -24,6 +24,35 @@ impl<F: FnMut(usize, &LaserReading) -> Twist> Controller for F {
     fn command(&mut self, robot: usize, reading: &LaserReading) -> Twist {
         self(robot, reading)
     }
+}
+
+/// Why a robot stayed where it was.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum TeleportError {
+    /// There are fewer robots.
+    #[error("there is no robot {robot}: there are {robots}, counted from 0")]
+    NoSuchRobot {
+        /// The one asked for.
+        robot: usize,
+        /// How many there are.
+        robots: usize,
+    },
+    /// It would reach out of the map, or a number is not finite.
+    #[error("[{x_m}, {y_m}] is not within the map")]
+    Outside {
+        /// The place asked for, m.
+        x_m: f64,
+        /// The place asked for, m.
+        y_m: f64,
+    },
+    /// A wall, an obstacle or another robot is there.
+    #[error("at [{x_m:.3}, {y_m:.3}] there is something else")]
+    Occupied {
+        /// The place asked for, m.
+        x_m: f64,
+        /// The place asked for, m.
+        y_m: f64,
+    },
 }
 
 /// A place with any number of robots.
@@ -131,12 +160,13 @@ impl Fleet {
         self.bodies.play(tape)?;
         self.robots.iter_mut().try_for_each(|robot| robot.play(tape))?;
         self.obstacles.iter_mut().try_for_each(|obstacle| obstacle.play(tape))?;
-        let new = Contact { time_s: 0.0, robot: 0, with: Body::Wall(0), moving: false };
+        let new = Contact { time_s: 0.0, robot: 0, with: Body::Wall(0), moving: false, impulse_ns: 0.0 };
         tape.list(&mut self.contacts, new, |tape, contact| {
             tape.f64(&mut contact.time_s)?;
             tape.usize(&mut contact.robot)?;
             tape.body(&mut contact.with)?;
-            tape.bool(&mut contact.moving)
+            tape.bool(&mut contact.moving)?;
+            tape.f64(&mut contact.impulse_ns)
         })
     }
 
@@ -210,6 +240,36 @@ impl Fleet {
         }
     }
 
+    /// Sets a robot (by its place in the world file) down at `pose`, at rest. It knows where it is
+    /// then, as at the start, and looks around when its next scan is due.
+    ///
+    /// # Errors
+    ///
+    /// When there is no such robot, or it would not fit there; everything stays as it was.
+    pub fn teleport(&mut self, robot: usize, pose: &Isometry2<f64>) -> Result<(), TeleportError> {
+        let Some(RobotSpec { radius_m, .. }) = self.spec.robots.get(robot) else {
+            return Err(TeleportError::NoSuchRobot { robot, robots: self.robots.len() });
+        };
+        let at = Point2::from(pose.translation.vector);
+        let (low, high) = corners(&self.spec.frame);
+        let inside_m = (at - low).min().min((high - at).min());
+        let heading_rad = heading_rad(pose);
+        // Not a number is in no range.
+        if !(inside_m >= radius_m - TOUCH_M && heading_rad.is_finite()) {
+            return Err(TeleportError::Outside { x_m: at.x, y_m: at.y });
+        }
+        let is_in = |shape: &Rectangle| shape.distance_m(&at) < radius_m - TOUCH_M;
+        let others = self.robots.iter().enumerate().filter(|(index, _)| *index != robot);
+        let mut gaps = others.map(|(_, other)| (other.at() - at).norm() - other.spec.radius_m);
+        if self.standing_boxes().iter().any(is_in) || gaps.any(|gap_m| gap_m < radius_m - TOUCH_M) {
+            return Err(TeleportError::Occupied { x_m: at.x, y_m: at.y });
+        }
+        self.bodies.put(robot, &geometry::pose(at.x, at.y, heading_rad));
+        self.robots[robot].put(self.bodies.pose(robot));
+        self.scene.move_disc(robot, self.robots[robot].at());
+        Ok(())
+    }
+
     /// Tells a driven robot what to do.
     pub(super) fn command(&mut self, robot: usize, wanted: &Twist) {
         self.robots[robot].command(wanted);
@@ -265,12 +325,13 @@ impl Fleet {
         self.contacts.clear();
         for (index, robot) in self.robots.iter_mut().enumerate() {
             let mut touching = Vec::new();
-            for (with, presses) in self.bodies.touches(index) {
+            for (with, impulse_ns) in self.bodies.touches(index) {
                 let touched_before = robot.touching.contains(&with);
-                if presses && !touched_before {
-                    self.contacts.push(Contact { time_s, robot: index, with, moving: robot.drove });
+                if impulse_ns > 0.0 && !touched_before {
+                    let moving = robot.drove;
+                    self.contacts.push(Contact { time_s, robot: index, with, moving, impulse_ns });
                 }
-                if presses || touched_before {
+                if impulse_ns > 0.0 || touched_before {
                     touching.push(with);
                 }
             }

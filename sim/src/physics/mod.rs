@@ -24,7 +24,7 @@ mod tests;
 mod truth;
 mod world;
 
-pub use fleet::{Controller, Fleet};
+pub use fleet::{Controller, Fleet, TeleportError};
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView, RobotView, Sweep};
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;

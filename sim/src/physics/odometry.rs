@@ -28,6 +28,12 @@ impl Odometry {
         tape.f64(&mut self.heading_rad)
     }
 
+    /// It is set down somewhere, and knows where.
+    pub(super) fn restart(&mut self, at: Isometry2<f64>) {
+        self.pose = at;
+        self.heading_rad = geometry::heading_rad(&at);
+    }
+
     pub(super) fn pose(&self) -> &Isometry2<f64> {
         &self.pose
     }

@@ -26,6 +26,8 @@ pub struct Contact {
     pub with: Body,
     /// Whether the robot itself moved: a collision. `false`: it stood, and was run into.
     pub moving: bool,
+    /// How hard the first step of the contact was, N·s: the change of momentum that it took.
+    pub impulse_ns: f64,
 }
 
 /// What an obstacle did.

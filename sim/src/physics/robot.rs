@@ -100,6 +100,18 @@ impl Robot {
         self.wanted = *wanted;
     }
 
+    /// It has been set down at `pose`, at rest, and knows where it is.
+    pub(super) fn put(&mut self, pose: Isometry2<f64>) {
+        self.pose = pose;
+        self.was_at = self.at();
+        self.velocity = Twist::STOP;
+        self.wanted = Twist::STOP;
+        self.drive = Drive::new(self.spec.drive);
+        self.odometry.restart(pose);
+        self.touching.clear();
+        self.sweep = None;
+    }
+
     /// Looks around at `time_s`, unless it has done so already at that time.
     pub(super) fn look(&mut self, time_s: f64, scene: &Scene, scratch: &mut Scratch) -> &LaserReading {
         let laser_pose = self.pose * self.spec.laser.mount;

@@ -39,12 +39,61 @@ impl Edge {
 /// The sides of all boxes that a ray from outside can meet first: without those that another box
 /// covers, and with those that continue each other made one.
 pub(super) fn outline(boxes: &[Rectangle]) -> Vec<Edge> {
-    let sides: Vec<(usize, [Edge; 4])> = boxes.iter().map(Edge::of_box).enumerate().collect();
-    let open = sides.iter().flat_map(|(own, edges)| {
-        let others = sides.iter().filter(move |(other, _)| other != own);
-        edges.iter().filter(move |edge| !others.clone().any(|(_, cover)| covers(cover, edge)))
+    let sides: Vec<[Edge; 4]> = boxes.iter().map(Edge::of_box).collect();
+    let bins = Bins::new(boxes);
+    let open = sides.iter().enumerate().flat_map(|(own, edges)| {
+        let is_covered = {
+            let (sides, bins) = (&sides, &bins);
+            move |edge: &&Edge| {
+                let near = bins.at(&nalgebra::center(&edge.from, &edge.to));
+                near.iter().any(|&other| other as usize != own && covers(&sides[other as usize], edge))
+            }
+        };
+        edges.iter().filter(move |edge| !is_covered(edge))
     });
     merged(open.copied().collect())
+}
+
+/// Which boxes are where, on a coarse grid.
+struct Bins {
+    low: Point2<f64>,
+    bin_m: Vector2<f64>,
+    bins: Vec<Vec<u32>>,
+}
+
+impl Bins {
+    /// Bins along each side.
+    const SIDE: usize = 64;
+
+    fn new(boxes: &[Rectangle]) -> Self {
+        let bounds: Vec<_> = boxes.iter().map(Rectangle::bounds).collect();
+        let low = bounds.iter().fold(Point2::new(f64::MAX, f64::MAX), |low, (at, _)| low.inf(at));
+        let high = bounds.iter().fold(Point2::new(f64::MIN, f64::MIN), |high, (_, at)| high.sup(at));
+        let bin_m = ((high - low) / Self::SIDE as f64).sup(&Vector2::repeat(ON_M));
+        let mut bins = Self { low, bin_m, bins: vec![Vec::new(); Self::SIDE * Self::SIDE] };
+        for (i, (from, to)) in bounds.iter().enumerate() {
+            let margin = Vector2::repeat(BESIDE_M);
+            let ((left, bottom), (right, top)) = (bins.place(&(from - margin)), bins.place(&(to + margin)));
+            for (row, column) in
+                (bottom..=top).flat_map(|row| (left..=right).map(move |column| (row, column)))
+            {
+                bins.bins[row * Self::SIDE + column].push(i as u32);
+            }
+        }
+        bins
+    }
+
+    /// Column and row of the bin that a point lies in, or of the nearest one.
+    fn place(&self, point: &Point2<f64>) -> (usize, usize) {
+        let at = (point - self.low).component_div(&self.bin_m);
+        ((at.x as usize).min(Self::SIDE - 1), (at.y as usize).min(Self::SIDE - 1))
+    }
+
+    /// The boxes near a point: all that contain it, and more.
+    fn at(&self, point: &Point2<f64>) -> &[u32] {
+        let (column, row) = self.place(point);
+        &self.bins[row * Self::SIDE + column]
+    }
 }
 
 /// Whether an edge, and what lies outside of it, lies in the box with the given sides: a ray then

@@ -17,6 +17,8 @@ const MAX_CELLS: f64 = 1024.0;
 const LEAST_CELL_M: f64 = 1.0;
 /// Only so many edges per cell are tried as what hides others: those that look largest from there.
 const HIDERS: usize = 24;
+/// Only edges at least as large as this from there, as length over distance.
+const HIDER_SIZE: f64 = 0.1;
 /// Points this near to a cell or an edge may count as on it, m.
 const MARGIN_M: f64 = 1e-6;
 
@@ -63,15 +65,20 @@ impl Sight {
             cells: Lists::new(),
             boxes: Lists::new(),
         };
-        for cell in 0..sight.len() {
+        let mut boxes_in = vec![Vec::new(); sight.len()];
+        for (i, shape) in boxes.iter().enumerate() {
+            for cell in sight.around(shape) {
+                boxes_in[cell].push(i as u32);
+            }
+        }
+        for (cell, inside) in boxes_in.into_iter().enumerate() {
             let own = sight.square(cell, MARGIN_M);
-            let inside = (0..boxes.len()).filter(|&i| boxes[i].overlaps(&own));
-            sight.boxes.push(inside.map(|i| i as u32));
+            sight.boxes.push(inside.into_iter());
             let view = View::new(&own, edges, reach);
             sight.edges.push(view.edges(edges));
             let robots = (0..sight.len()).map(|i| sight.square(i, reach.radius_m + MARGIN_M));
-            let mut visible: Vec<u32> =
-                robots.enumerate().filter(|(_, square)| view.sees(square)).map(|(i, _)| i as u32).collect();
+            let visible = robots.enumerate().filter(|(_, square)| view.sees(square));
+            let mut visible: Vec<u32> = visible.map(|(i, _)| i as u32).collect();
             // The nearest first: they hide the others.
             let apart_m = |&other: &u32| {
                 let other = sight.square(other as usize, 0.0).pose.translation.vector;
@@ -114,6 +121,19 @@ impl Sight {
         self.boxes.get(cell)
     }
 
+    /// The cells that a box reaches into, and some beside it.
+    fn around(&self, shape: &Rectangle) -> impl Iterator<Item = usize> + use<> {
+        let (low, high) = shape.bounds();
+        let margin = Vector2::repeat(2.0 * MARGIN_M);
+        let (first, last) =
+            ((low - margin - self.low) / self.cell_m, (high + margin - self.low) / self.cell_m);
+        // What lies below 0 becomes 0, and what lies beyond the end becomes the end.
+        let (columns, rows) = (self.columns, self.rows);
+        let place = move |at: Vector2<f64>| ((at.x as usize).min(columns - 1), (at.y as usize).min(rows - 1));
+        let ((left, bottom), (right, top)) = (place(first), place(last));
+        (bottom..=top).flat_map(move |row| (left..=right).map(move |column| row * columns + column))
+    }
+
     /// A cell with a border around it.
     fn square(&self, cell: usize, border_m: f64) -> Rectangle {
         let place = Vector2::new((cell % self.columns) as f64, (cell / self.columns) as f64);
@@ -130,42 +150,43 @@ struct View {
     /// From the middle to a corner, m.
     half_m: f64,
     range_m: f64,
+    /// The edges within the range of some point of the cell.
+    near: Vec<usize>,
     hiders: Vec<Edge>,
 }
 
 impl View {
     fn new(cell: &Rectangle, edges: &[Edge], reach: &Reach) -> Self {
-        let middle = Point2::from(cell.pose.translation.vector);
-        let mut view = Self {
-            corners: cell.corners(),
-            middle,
-            half_m: cell.half_m.norm(),
-            range_m: reach.range_m,
-            hiders: Vec::new(),
+        let (middle, half_m) = (Point2::from(cell.pose.translation.vector), cell.half_m.norm());
+        let far_m = reach.range_m + half_m + MARGIN_M;
+        let is_near = |edge: &Edge| {
+            let (along, to) = (edge.to - edge.from, middle - edge.from);
+            // Beyond a circle around both: most are, and need no root.
+            to.norm_squared() <= 2.0 * (far_m * far_m + along.norm_squared())
+                && point_segment_m(&middle, &edge.from, &edge.to) <= far_m
         };
-        let size = |edge: &Edge| {
-            (edge.to - edge.from).norm() / (point_segment_m(&middle, &edge.from, &edge.to) + view.half_m)
-        };
-        let near = edges.iter().enumerate().filter(|(_, edge)| view.is_near(edge));
-        let mut hiders: Vec<(f64, usize)> = near.map(|(i, edge)| (-size(edge), i)).collect();
+        let near: Vec<usize> = (0..edges.len()).filter(|&i| is_near(&edges[i])).collect();
+        let mut hiders: Vec<(f64, usize)> = Vec::new();
+        for &i in &near {
+            let (edge, length_m) = (&edges[i], (edges[i].to - edges[i].from).norm());
+            let size = length_m / (point_segment_m(&middle, &edge.from, &edge.to) + half_m);
+            // What is smaller than half a cell hides next to nothing from all of it.
+            if length_m > half_m && size > HIDER_SIZE {
+                hiders.push((-size, i));
+            }
+        }
         hiders.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        view.hiders = hiders.into_iter().take(HIDERS).map(|(_, i)| edges[i]).collect();
-        view
-    }
-
-    /// Whether an edge is within the range of some point of the cell.
-    fn is_near(&self, edge: &Edge) -> bool {
-        point_segment_m(&self.middle, &edge.from, &edge.to) <= self.range_m + self.half_m + MARGIN_M
+        let hiders = hiders.into_iter().take(HIDERS).map(|(_, i)| edges[i]).collect();
+        Self { corners: cell.corners(), middle, half_m, range_m: reach.range_m, near, hiders }
     }
 
     /// The edges that may be seen.
     fn edges(&self, edges: &[Edge]) -> impl Iterator<Item = u32> {
-        let is_seen = |edge: &&(usize, &Edge)| {
-            self.is_near(edge.1)
-                && self.corners.iter().any(|corner| edge.1.gap_m(corner) > 0.0)
-                && !self.is_hidden(&[edge.1.from, edge.1.to])
+        let is_seen = |edge: &Edge| {
+            self.corners.iter().any(|corner| edge.gap_m(corner) > 0.0)
+                && !self.is_hidden(&[edge.from, edge.to])
         };
-        edges.iter().enumerate().filter(move |edge| is_seen(&edge)).map(|(i, _)| i as u32)
+        self.near.iter().filter(move |&&i| is_seen(&edges[i])).map(|&i| i as u32)
     }
 
     /// Whether some point of a square may be seen.

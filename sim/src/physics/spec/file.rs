@@ -95,6 +95,7 @@ pub(super) struct ObstacleFile {
 pub(super) struct RobotFile {
     pub(super) name: Spanned<String>,
     pub(super) radius_m: Number,
+    pub(super) mass_kg: Option<Number>,
     pub(super) pose_m: Pair,
     pub(super) heading_deg: Option<Number>,
     pub(super) drive: DriveFile,

@@ -28,6 +28,7 @@
 //! | `obstacle.disappears_s` | s | never | 0.001 to 10⁹, after `appears_s` |
 //! | `robot.name` | | required | unique |
 //! | `robot.radius_m` | m | required | 0.02 to 10 |
+//! | `robot.mass_kg` | kg | 1 kg per m² of its area | 0.001 to 100 000; what counts when robots push each other |
 //! | `robot.pose_m` | m | required | in the map, clear of everything |
 //! | `robot.heading_deg` | ° | 0 | −360 to 360 |
 //! | `robot.drive.max_linear_mps` | m/s | required | 0.001 to 5; at most one radius per physics step |
@@ -302,6 +303,8 @@ pub struct RobotSpec {
     pub name: String,
     /// The radius of its body, m.
     pub radius_m: f64,
+    /// Its mass, kg; `None`: 1 kg per m² of its area. It counts when robots push each other.
+    pub mass_kg: Option<f64>,
     /// Where it starts.
     pub pose: Isometry2<f64>,
     /// What its wheels can do.

@@ -20,6 +20,8 @@ pub(super) fn robot(
     let table = Table { source, path: "robot" };
     let name = table.name(&file.name)?;
     let radius_m = table.number("radius_m", &file.radius_m, 0.02..=10.0)?;
+    let mass_kg =
+        file.mass_kg.as_ref().map(|mass| table.number("mass_kg", mass, 0.001..=100_000.0)).transpose()?;
     let at = table.point("pose_m", &file.pose_m, size)?;
     let heading_deg = table.number_or("heading_deg", &file.heading_deg, 0.0, -360.0..=360.0)?;
     let help = format!("its middle must keep its radius of {radius_m} m away");
@@ -37,7 +39,7 @@ pub(super) fn robot(
     let behaviour = Context { source, robot: file, start: at, drive: &drive, size, solids }.behaviour()?;
     let pose = pose(at.x, at.y, heading_deg.to_radians());
     let odometry = odometry(source, &file.odometry)?;
-    Ok(RobotSpec { name, radius_m, pose, drive, odometry, laser, behaviour })
+    Ok(RobotSpec { name, radius_m, mass_kg, pose, drive, odometry, laser, behaviour })
 }
 
 fn drive(source: &Source<'_>, file: &RobotFile, radius_per_step_mps: f64) -> Result<DriveLimits, WorldError> {

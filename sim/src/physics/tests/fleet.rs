@@ -235,7 +235,58 @@ fn a_robot_against_a_wall_is_stalled_and_one_that_stands_is_not() {
     }
     let stalled: Vec<bool> = fleet.robots().map(|robot| robot.is_stalled).collect();
     assert_eq!(stalled, [true, false]);
+    // It weighs π·0.04 kg, and was at full speed.
+    let impulse_ns = contacts[0].impulse_ns;
+    assert!((impulse_ns - 0.5 * 0.04 * std::f64::consts::PI).abs() < 1e-3, "{impulse_ns}");
     let touched: Vec<_> =
         contacts.iter().map(|contact| (contact.robot, contact.with, contact.moving)).collect();
     assert_eq!(touched, [(0, Body::Wall(2), true)]);
+}
+
+#[test]
+fn a_heavy_robot_pushes_a_light_one_away() {
+    // Both go for each other.
+    let driven = "kind = \"driven\"";
+    let mass = |robot: String, mass_kg: f64| {
+        robot.replace("radius_m = 0.2", &format!("radius_m = 0.2\nmass_kg = {mass_kg:?}"))
+    };
+    for (masses_kg, pushed) in [([100.0, 1.0], 1.0), ([1.0, 100.0], -1.0)] {
+        let robots = [robot("one", [2.0, 2.0], 0.0, driven), robot("two", [3.0, 2.0], 180.0, driven)];
+        let robots: Vec<_> = robots.into_iter().zip(masses_kg).map(|(robot, kg)| mass(robot, kg)).collect();
+        let mut fleet = Fleet::new(&house(&robots, ""), 0);
+        fleet.run_until(3.0, &mut |_: usize, _: &LaserReading| Twist { linear_mps: 0.3, angular_radps: 0.0 });
+        let middle_m = (at(&fleet, 0).x + at(&fleet, 1).x) / 2.0 - 2.5;
+        assert!(middle_m * pushed > 0.1, "{middle_m}");
+    }
+}
+
+#[test]
+fn a_robot_is_set_down_where_there_is_room() {
+    let robots = [
+        robot("one", [2.0, 2.0], 0.0, "kind = \"driven\""),
+        robot("two", [4.0, 4.0], 0.0, "kind = \"standing\""),
+    ];
+    let mut fleet = Fleet::new(&house(&robots, ""), 0);
+    let mut forward = |_: usize, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.0 };
+    fleet.run_until(1.0, &mut forward);
+    let before = fleet.snapshot();
+    for (robot, x, y) in
+        [(0, 4.0, 3.7), (0, 6.0, 1.0), (0, 0.1, 2.0), (0, -3.0, 2.0), (0, f64::NAN, 2.0), (2, 3.0, 3.0)]
+    {
+        assert!(fleet.teleport(robot, &geometry::pose(x, y, 0.0)).is_err(), "{robot} to {x}, {y}");
+    }
+    assert_eq!(
+        fleet.teleport(0, &geometry::pose(3.0, 3.0, f64::NAN)),
+        Err(TeleportError::Outside { x_m: 3.0, y_m: 3.0 })
+    );
+    assert_eq!(fleet.snapshot(), before);
+    assert_eq!(fleet.teleport(0, &geometry::pose(9.0, 9.0, 1.0)), Ok(()));
+    fleet.run_until(1.05, &mut |_: usize, _: &LaserReading| Twist::STOP);
+    let pose = pose(&fleet, 0);
+    assert!((pose.translation.vector - geometry::pose(9.0, 9.0, 1.0).translation.vector).norm() < 1e-6);
+    assert!((geometry::heading_rad(&pose) - 1.0).abs() < 1e-6);
+    let reading =
+        fleet.robots().next().and_then(|robot| robot.sweep).map(|sweep| sweep.reading.clone()).unwrap();
+    assert!((reading.pose.translation.x - 9.0).abs() < 1e-6);
+    assert_eq!(fleet.contacts(), []);
 }

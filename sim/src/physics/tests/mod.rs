@@ -8,6 +8,7 @@ mod fleet;
 mod floor_plan;
 mod obstacles;
 mod patrol;
+mod random;
 mod snapshot;
 
 use super::*;

@@ -1,0 +1,125 @@
+//! Random worlds: nothing leaves its place, whatever stands in it.
+
+use super::*;
+use geometry::LaserReading;
+use nalgebra::Point2;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use std::fmt::Write;
+
+/// As many as a run of all tests can wait for; SIM_RANDOM_WORLDS=1000 asks for more.
+const WORLDS: u64 = 100;
+const SECONDS: f64 = 60.0;
+const SIDE_M: f64 = 6.0;
+
+struct Chance(ChaCha8Rng);
+
+impl Chance {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.0.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
+    }
+
+    fn point(&mut self) -> [f64; 2] {
+        [(); 2].map(|()| self.between(0.3, SIDE_M - 0.3))
+    }
+}
+
+/// A closed room with walls at all angles, robots of all sizes and every kind of drive; what does
+/// not fit is left out.
+fn world(seed: u64) -> FleetSpec {
+    let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
+    let mut text = format!("name = \"random\"\n[map]\nsize_m = [{SIDE_M:?}, {SIDE_M:?}]\ncell_m = 0.1\n");
+    let corners = [[0.0, 0.0], [SIDE_M, 0.0], [SIDE_M, SIDE_M], [0.0, SIDE_M]];
+    for side in 0..4 {
+        // Thin walls, within the map.
+        let [a, b] = [corners[side], corners[(side + 1) % 4]]
+            .map(|corner| corner.map(|c| c.clamp(0.03, SIDE_M - 0.03)));
+        let _ = write!(text, "[[wall]]\nfrom_m = {a:?}\nto_m = {b:?}\nthickness_m = 0.05\n");
+    }
+    text += &format!("[physics]\nstep_s = {:?}\n", [0.02, 0.05, 0.1][seed as usize % 3]);
+    let mut spec = FleetSpec::parse("random.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+    for thing in 0..14 {
+        let at = chance.point();
+        let more = if thing < 5 {
+            let to = chance.point();
+            format!(
+                "[[wall]]\nfrom_m = {at:?}\nto_m = {to:?}\nthickness_m = {:?}\n",
+                chance.between(0.01, 0.2)
+            )
+        } else {
+            let radius_m = chance.between(0.05, 0.3);
+            let kinds = ["kind = \"driven\"", "kind = \"wander\"\nspeed_mps = 0.3", "kind = \"standing\""];
+            let fastest_mps = chance.between(0.3, (radius_m / 0.1).clamp(0.4, 3.0));
+            format!(
+                "[[robot]]\nname = \"{thing}\"\nradius_m = {radius_m:?}\npose_m = {at:?}\nheading_deg = {:?}\n\
+                 [robot.drive]\nmax_linear_mps = {fastest_mps:?}\nmax_angular_degps = {:?}\n\
+                 max_linear_acceleration_mps2 = {:?}\nmax_angular_acceleration_degps2 = {:?}\n\
+                 [robot.laser]\nbeams = 24\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behaviour]\n{}\n",
+                chance.between(0.0, 360.0),
+                chance.between(10.0, 400.0),
+                chance.between(0.5, 50.0),
+                chance.between(90.0, 5000.0),
+                kinds[thing % 3],
+            )
+        };
+        if let Ok(fits) = FleetSpec::parse("random.toml", &format!("{text}{more}")) {
+            (spec, text) = (fits, text + &more);
+        }
+    }
+    spec
+}
+
+/// How deep a segment of a robot's way lies in a wall: it passed through if its middle did.
+fn passes(spec: &FleetSpec, from: &Point2<f64>, to: &Point2<f64>) -> bool {
+    spec.walls().iter().any(|wall| wall.segment_distance_m(from, to) <= 0.0)
+}
+
+#[test]
+fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
+    let asked = std::env::var("SIM_RANDOM_WORLDS").ok().and_then(|worlds| worlds.parse().ok());
+    let worlds = asked.unwrap_or(WORLDS);
+    let (mut robots, mut contacts) = (0, 0);
+    for seed in 0..worlds {
+        let spec = world(seed);
+        let mut fleet = Fleet::new(&spec, seed);
+        robots += spec.robots().len();
+        let mut chance = Chance(ChaCha8Rng::seed_from_u64(!seed));
+        // Reckless drivers: full speed in any direction, now and then another.
+        let mut wanted = vec![Twist::STOP; spec.robots().len()];
+        let mut before: Vec<Twist> = wanted.clone();
+        while fleet.time_s() < SECONDS {
+            let from: Vec<Point2<f64>> =
+                fleet.robots().map(|robot| robot.pose.translation.vector.into()).collect();
+            fleet.step(&mut |robot: usize, _: &LaserReading| {
+                if chance.between(0.0, 1.0) < 0.1 {
+                    let [linear_mps, angular_radps] = [5.0, 8.0].map(|most| chance.between(-most, most));
+                    wanted[robot] = Twist { linear_mps, angular_radps };
+                }
+                wanted[robot]
+            });
+            contacts += fleet.contacts().len();
+            for (index, (robot, from)) in fleet.robots().zip(&from).enumerate() {
+                let place = || format!("robot {index} of world {seed} at {:.2} s", fleet.time_s());
+                let at = Point2::from(robot.pose.translation.vector);
+                assert!(at.coords.iter().all(|value| value.is_finite()), "{}", place());
+                assert!(at.coords.min() > 0.0 && at.coords.max() < SIDE_M, "{} left: {at}", place());
+                assert!(!passes(&spec, from, &at), "{} passed a wall: {from} to {at}", place());
+                // Bounds hold, and speeding up has its bound where nothing pushes.
+                let (limits, now) = (spec.robots()[index].drive, robot.twist);
+                assert!(now.linear_mps.abs() <= limits.max_linear_mps + 1e-3, "{}: {now:?}", place());
+                assert!(now.angular_radps.abs() <= limits.max_angular_radps + 1e-3, "{}: {now:?}", place());
+                let gain_mps = limits.max_linear_acceleration_mps2 * spec.step_s();
+                let faster_mps = now.linear_mps.abs() - before[index].linear_mps.abs();
+                assert!(
+                    robot.is_stalled || faster_mps <= gain_mps + 1e-3,
+                    "{}: {faster_mps} m/s faster",
+                    place()
+                );
+                before[index] = now;
+            }
+        }
+    }
+    assert!(robots > 4 * worlds as usize, "too few robots fitted in: {robots}");
+    assert!(contacts > robots, "they hardly ever met: {contacts}");
+}
