@@ -51,6 +51,32 @@ fn plan_of_1000_by_1000(bencher: Bencher<'_, '_>, kind: &str) {
     });
 }
 
+/// From a world file with such a picture, in pixels of 5 cm, to a fleet of one robot whose laser of
+/// 10 m knows what can be seen from where.
+#[divan::bench(args = ["office", "rooms", "cave"], sample_count = 3)]
+fn fleet_of_1000_by_1000(bencher: Bencher<'_, '_>, kind: &str) {
+    let bytes = picture(kind);
+    let bitmap = Bitmap::decode_dark(&bytes, 0.5).unwrap_or_else(|error| panic!("{error}"));
+    let is_free = |x: u32, y: u32| (x..x + 12).all(|x| (y..y + 12).all(|y| !bitmap.is_blocked(x, y)));
+    let free = (400..600).flat_map(|y| (400..600).map(move |x| (x, y))).find(|(x, y)| is_free(*x, *y));
+    let at = free.map(|(x, y)| [f64::from(x + 6) * 0.05, f64::from(y + 6) * 0.05]);
+    let text = format!(
+        "name = \"plan\"\n[map]\nsize_m = [50.0, 50.0]\ncell_m = 0.05\n\
+         [[floor_plan]]\nimage = \"plan.png\"\npixel_m = 0.05\n\
+         [[robot]]\nname = \"a\"\nradius_m = 0.2\npose_m = {:?}\n\
+         [robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 90.0\n\
+         max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 90.0\n\
+         [robot.laser]\nbeams = 360\nrange_max_m = 10.0\nrate_hz = 10.0\n\
+         [robot.behaviour]\nkind = \"driven\"\n",
+        at.unwrap_or_default()
+    );
+    let files = BTreeMap::from([(PathBuf::from("plan.png"), bytes)]);
+    bencher.bench_local(|| {
+        let spec = FleetSpec::parse_with("plan.toml", black_box(&text), &files);
+        Fleet::new(&spec.unwrap_or_else(|error| panic!("{error}")), 0)
+    });
+}
+
 /// The shipped Stage world, from its files to a fleet.
 #[divan::bench]
 fn stage_lab(bencher: Bencher<'_, '_>) {

@@ -9,13 +9,23 @@ use std::path::Path;
 
 /// What touches may overlap by rounding, m.
 const TOUCH_M: f64 = 1e-6;
-/// The fastest that a robot may be, m/s, and the smallest and largest, m.
+/// More pieces of wall than this are refused: looking for what hides what takes their square.
+const MAX_PIECES: usize = 20_000;
+/// The fastest that a robot may be, m/s, the lightest, kg, and the smallest and largest, m.
 const FASTEST_MPS: f64 = 5.0;
+const LEAST_MASS_KG: f64 = 0.001;
 const RADIUS_M: [f64; 2] = [0.02, 10.0];
 
 /// Makes a fleet of a Stage world. Whatever the physics cannot do is said at the line of the Stage
 /// file.
 pub(super) fn load(sources: &mut Sources<'_>, path: &Path, world: &StageWorld) -> Option<FleetSpec> {
+    let pieces: usize = world.walls.iter().map(|wall| wall.rectangles.len()).sum();
+    if pieces > MAX_PIECES {
+        let what = format!("the walls of this world are of {pieces} pieces");
+        let help = format!("{MAX_PIECES} are the most: take coarser pictures, or blocks with fewer corners");
+        sources.findings.add_file(Severity::Error, path, &what, &help);
+        return None;
+    }
     for (index, robot) in world.robots.iter().enumerate() {
         check_drive(sources, robot);
         check_lasers(sources, robot);
@@ -63,9 +73,9 @@ fn check_drive(sources: &mut Sources<'_>, robot: &StageRobot) {
             "robots drive at 0.001 to 5 m/s and turn at 0.002 rad/s or more; see `velocity_bounds`",
         );
     }
-    if robot.mass_kg.is_some() {
-        let help = "every robot's mass is that of its area here; nothing is pushed that could show it";
-        sources.warning(at, &format!("the `mass` of `{name}` is not used"), "", help);
+    if robot.mass_kg.is_some_and(|mass_kg| mass_kg < LEAST_MASS_KG) {
+        let help = format!("a robot weighs {LEAST_MASS_KG} kg or more");
+        sources.error(at, &format!("`{name}` weighs next to nothing"), "", &help);
     }
     let radius_m = robot.radius_m();
     if !(RADIUS_M[0]..=RADIUS_M[1]).contains(&radius_m) {

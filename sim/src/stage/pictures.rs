@@ -42,7 +42,9 @@ impl<'a> Pictures<'a> {
         if self.pixels > MAX_PIXELS {
             return Err(format!("the bitmaps of this world have more than {MAX_PIXELS} pixels together"));
         }
-        self.rectangles += bitmap.rectangles().len();
+        if self.rectangles <= MAX_RECTANGLES {
+            self.rectangles += bitmap.rectangles().len();
+        }
         if self.rectangles > MAX_RECTANGLES {
             return Err(format!(
                 "the bitmaps of this world make more than {MAX_RECTANGLES} rectangles together"

@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 
 /// All texts together may not be longer; an include in an include in an include would be.
 const MAX_BYTES: u64 = 8 << 20;
+/// After so many errors, no more includes are looked for.
+const MAX_ERRORS: usize = 100;
 /// Includes may not lie deeper in each other.
 const MAX_DEPTH: usize = 32;
 
@@ -86,6 +88,9 @@ impl<'a> Sources<'a> {
         let mut is_good = true;
         let mut own = own.into_iter().peekable();
         while let Some(token) = own.next() {
+            if !is_good && self.findings.errors() >= MAX_ERRORS {
+                break;
+            }
             let is_include = token.kind == Kind::Word && self.text(token.place) == "include";
             if !is_include {
                 tokens.push(token);

@@ -124,6 +124,7 @@ impl Map {
         let most = |[least, most]: [f64; 2]| most.max(-least);
         writeln!(to, "\n[[robot]]  # {place}\nname = {}", quoted(name))?;
         number(to, "radius_m", robot.radius_m())?;
+        robot.mass_kg.map_or(Ok(()), |mass_kg| number(to, "mass_kg", mass_kg))?;
         pair(to, "pose_m", &self.point(&robot.pose.translation.vector.into()))?;
         number(to, "heading_deg", heading_rad(&robot.pose).to_degrees())?;
         writeln!(to, "\n[robot.drive]  # {place}")?;

@@ -110,6 +110,7 @@ fn what_the_physics_cannot_do_is_said_at_its_line() {
         ("a car", "position( size [0.4 0.4 1] drive \"car\" laser( ) )"),
         ("one way faster", "position( size [0.4 0.4 1] velocity_bounds [-1 0.5 0 0 0 0 -90 45] laser( ) )"),
         ("too fast", "position( size [4 4 1] velocity_bounds [-9 9 0 0 0 0 -90 90] laser( ) )"),
+        ("light as air", "position( size [0.4 0.4 1] mass 0 laser( ) )"),
         ("no laser", "position( size [0.4 0.4 1] )"),
         ("two lasers", "position( size [0.4 0.4 1] laser( ) laser( ) )"),
         ("a laser on a stick", "position( size [0.4 0.4 1] laser( pose [1 0 0 0] ) )"),
