@@ -16,11 +16,14 @@ mod settings;
 mod situation;
 mod strategies;
 mod tile_coder;
+mod travel;
 
 pub use agent::{Agent, Tally};
 pub use choice::{StrategyChoice, UnknownStrategy};
 pub use choosers::{Always, Chooser, Coin, Curious, Trajectory};
+pub use goal::Goal;
 pub use settings::{AgentSettings, CuriousSettings, Reward, SettingsError};
 pub use situation::Situation;
-pub use strategies::{Poisson, Random, Recency, Strategy};
+pub use strategies::{Pick, Poisson, Random, Recency, Stay, Strategy};
 pub use tile_coder::TileCoder;
+pub use travel::{AsTheCrowFlies, Travel};
