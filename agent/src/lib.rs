@@ -17,6 +17,8 @@ mod situation;
 mod strategies;
 mod tile_coder;
 mod travel;
+#[allow(dead_code)] // until a strategy that looks ahead is here
+mod view;
 
 pub use agent::{Agent, Tally};
 pub use choice::{StrategyChoice, UnknownStrategy};

@@ -29,6 +29,11 @@ impl<'a> Situation<'a> {
         Self { travel, ..self }
     }
 
+    /// The time from the robot to the cell of a number; ∞ where no way is known, or none was asked for.
+    pub(crate) fn travel_to(&self, cell: usize) -> f64 {
+        self.travel.get(cell).copied().unwrap_or(f64::INFINITY)
+    }
+
     /// The cell that the robot is in; outside of the grid if the robot is.
     pub fn cell(&self) -> Cell {
         self.mapper.frame().cell_at(&self.pose.translation.vector.into())

@@ -1,7 +1,7 @@
 //! Pictures of what was learned, without a viewer: the panels of the paper's Figure 5, and the
 //! trajectories of its Figure 4.
 
-mod canvas;
+pub(crate) mod canvas;
 mod panel;
 mod trajectory;
 

@@ -59,6 +59,7 @@ mod tests;
 
 use super::shape::Rectangle;
 use crate::error::{Source, WorldError};
+use crate::kind::Kind;
 use geometry::{GridFrame, Scan};
 use nalgebra::{Isometry2, Point2};
 use std::f64::consts::{PI, TAU};
@@ -97,7 +98,7 @@ impl WorldSpec {
     /// in the world contradict each other. The message says where, and what would be right.
     pub fn parse(name: &str, text: &str) -> Result<Self, WorldError> {
         let source = Source { name, text };
-        let file = toml::from_str(text).map_err(|error| source.toml_error(error))?;
+        let file = toml::from_str(text).map_err(|error| Kind::Physics.explain(&source, error))?;
         check::check(&source, file)
     }
 

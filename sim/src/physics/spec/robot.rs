@@ -17,7 +17,7 @@ pub(super) fn robot(
     solids: &[Solid],
 ) -> Result<RobotSpec, WorldError> {
     let table = Table { source, path: "robot" };
-    let name = table.name(&file.name)?;
+    let name = source.name("robot", &file.name)?;
     let radius_m = table.number("radius_m", &file.radius_m, 0.02..=10.0)?;
     let at = table.point("pose_m", &file.pose_m, size)?;
     let heading_deg = table.number_or("heading_deg", &file.heading_deg, 0.0, -360.0..=360.0)?;

@@ -1,0 +1,60 @@
+//! Each rate from the time in the state that it ends.
+
+use crate::CellStatistics;
+use crate::chain::Chain;
+use crate::gaps::{Prior, Watch};
+
+/// What one event counts for a state that was left often but never seen to be entered again: half
+/// an event, the mean of the Jeffreys posterior of a Poisson rate for no event.
+const UNSEEN_EVENTS: f64 = 0.5;
+
+/// What is known of a probability per step before anything is seen: Jeffreys' prior, half an event in
+/// one step.
+pub(crate) const GAP_PRIOR: Prior = Prior { events: 0.5, steps: 1.0 };
+
+/// The mean time in each state: the time watched in it per event that ended it; none without an event in
+/// view.
+fn dwells(seen: &CellStatistics) -> Option<[f64; 2]> {
+    if seen.block_events + seen.free_events == 0 {
+        return None;
+    }
+    let dwell =
+        |watched: f64, events: u32| watched / if events == 0 { UNSEEN_EVENTS } else { f64::from(events) };
+    Some([dwell(seen.watched_free, seen.block_events), dwell(seen.watched_blocked, seen.free_events)])
+}
+
+/// T = 1/α + 1/β with α the rate of block events while free, and β of free events while blocked.
+pub(super) fn interval_in_view(seen: &CellStatistics) -> f64 {
+    dwells(seen).map_or(f64::INFINITY, |[free, blocked]| free + blocked)
+}
+
+/// α and β of [`interval_in_view`].
+pub(super) fn in_view(seen: &CellStatistics) -> Option<Chain> {
+    dwells(seen).map(|[free, blocked]| Chain { block: 1.0 / free, free: 1.0 / blocked, period: seen.period })
+}
+
+/// What was watched of the cell, in steps of the readings that began in each state. The statistics count
+/// the step of a change for the state after it.
+pub(crate) fn watch(seen: &CellStatistics) -> Watch {
+    let (block, free) = (f64::from(seen.block_events), f64::from(seen.free_events));
+    let steps = |watched: f64, own: f64, other: f64| (watched / seen.period + own - other).max(own);
+    Watch {
+        events: [block, free],
+        steps: [steps(seen.watched_free, block, free), steps(seen.watched_blocked, free, block)],
+    }
+}
+
+/// The same with what the gaps are worth, and the prior.
+pub(super) fn with_gaps(seen: &CellStatistics) -> Chain {
+    let watch = watch(seen);
+    let worth = &seen.gap_worth;
+    let rate = |state: usize, watched: f64, events: f64| {
+        let steps = watch.steps[state] + watched / seen.period + GAP_PRIOR.steps;
+        (watch.events[state] + events + GAP_PRIOR.events) / steps / seen.period
+    };
+    Chain {
+        block: rate(0, worth.watched_free, worth.block_events),
+        free: rate(1, worth.watched_blocked, worth.free_events),
+        period: seen.period,
+    }
+}

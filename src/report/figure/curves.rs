@@ -1,0 +1,142 @@
+//! How a metric went on, for every strategy.
+
+use super::colours;
+use super::pen::{Pen, Sheet};
+use crate::pictures::canvas::{INK, why};
+use crate::report::metric::Metric;
+use crate::report::run::StrategyResult;
+use crate::report::statistics::Estimate;
+use crate::report::wording::thousands;
+use plotters::chart::ChartContext;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use std::ops::Range;
+
+/// How strong the colour of a band is.
+pub(super) const BAND: f64 = 0.16;
+const GRID: RGBColor = RGBColor(225, 228, 233);
+/// The first part of a run, when nothing is known yet, does not stretch the axis.
+const BEGINNING: f64 = 0.03;
+
+type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Draws the axes and the curves of `metric`: means over bands, the first strategy on top.
+pub(super) fn draw<DB: DrawingBackend>(
+    sheet: &Sheet<DB>,
+    pen: &Pen,
+    metric: Metric,
+    steps: &[u64],
+    strategies: &[StrategyResult],
+) -> Result<(), String> {
+    let horizon = steps.last().copied().unwrap_or(0).max(1);
+    let settled = steps.iter().take_while(|&&step| (step as f64) < BEGINNING * horizon as f64).count();
+    let curves = strategies.iter().map(|strategy| &strategy.curve(metric)[settled.min(steps.len())..]);
+    let shown = range(metric, curves.flatten());
+    let (above, _) = sheet.split_vertically(pen.px(34));
+    pen.write(&above, (LEFT, 18), 17, heading(metric))?;
+    let mut chart = ChartBuilder::on(sheet)
+        .margin_top(pen.px(34))
+        .margin_right(pen.px(14))
+        .x_label_area_size(pen.px(48))
+        .y_label_area_size(pen.px(LEFT))
+        .build_cartesian_2d(0.0..horizon as f64, shown.clone())
+        .map_err(why)?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(pen.line(GRID, 1))
+        .x_labels(6)
+        .y_labels(6)
+        .x_label_formatter(&|step| thousands(*step as u64))
+        .y_label_formatter(&|value| format!("{}", (value * 1e4).round() / 1e4))
+        .label_style(pen.text(15))
+        .axis_desc_style(pen.text(15))
+        .axis_style(pen.line(INK, 1))
+        .set_all_tick_mark_size(pen.px(4))
+        .x_desc("steps")
+        .draw()
+        .map_err(why)?;
+    for strategy in strategies.iter().rev() {
+        band(&chart, steps, strategy.curve(metric), &shown, colours::of_strategy(&strategy.name))?;
+    }
+    for strategy in strategies.iter().rev() {
+        let style = pen.line(colours::of_strategy(&strategy.name), 2);
+        for line in lines(steps, strategy.curve(metric), &shown) {
+            chart.plotting_area().draw(&PathElement::new(line, style)).map_err(why)?;
+        }
+    }
+    Ok(())
+}
+
+/// The width of the labels at the left, in pixels of the finished picture.
+const LEFT: i32 = 58;
+
+fn heading(metric: Metric) -> &'static str {
+    match metric {
+        Metric::RateError => "Relative error of the rates",
+        Metric::LogError => "Log error of the rates: 0.69 is a factor of 2",
+        Metric::MapQuality => "Map quality: share of cells that are right",
+        other => other.name(),
+    }
+}
+
+/// What the axis spans: errors from 0, map quality up to 1.
+fn range<'a>(metric: Metric, settled: impl Iterator<Item = &'a Estimate>) -> Range<f64> {
+    let means = settled.map(|at| at.mean).filter(|mean| !mean.is_nan());
+    let (low, high) =
+        means.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), mean| (low.min(mean), high.max(mean)));
+    if low > high {
+        return 0.0..1.0;
+    }
+    match metric {
+        Metric::MapQuality => {
+            let span = (1.0 - low).max(0.001);
+            1.0 - 1.15 * span..1.0 + 0.05 * span
+        }
+        _ => 0.0..(1.1 * high).max(0.001),
+    }
+}
+
+/// The band between the ends of the intervals, cut to what is shown.
+fn band<DB: DrawingBackend>(
+    chart: &Chart<DB>,
+    steps: &[u64],
+    curve: &[Estimate],
+    shown: &Range<f64>,
+    colour: RGBColor,
+) -> Result<(), String> {
+    let known: Vec<(f64, &Estimate)> =
+        steps.iter().map(|&step| step as f64).zip(curve).filter(|(_, at)| !at.low.is_nan()).collect();
+    let cut = |value: f64| value.clamp(shown.start, shown.end);
+    let upper = known.iter().map(|(step, at)| (*step, cut(at.high)));
+    let lower = known.iter().rev().map(|(step, at)| (*step, cut(at.low)));
+    let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
+    if known.len() < 2 {
+        return Ok(());
+    }
+    chart.plotting_area().draw(&Polygon::new(outline, colour.mix(BAND).filled())).map_err(why)
+}
+
+/// The mean as lines: cut where they leave what is shown, broken where there is no mean.
+fn lines(steps: &[u64], curve: &[Estimate], shown: &Range<f64>) -> Vec<Vec<(f64, f64)>> {
+    let points: Vec<(f64, f64)> = steps.iter().zip(curve).map(|(&step, at)| (step as f64, at.mean)).collect();
+    let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
+    for piece in points.windows(2).filter_map(|ends| inside(ends[0], ends[1], shown)) {
+        match lines.last_mut() {
+            Some(line) if line.last() == Some(&piece[0]) => line.push(piece[1]),
+            _ => lines.push(piece.into()),
+        }
+    }
+    lines
+}
+
+/// The part of the line from `a` to `b` between the ends of `shown`; `None` if there is none.
+fn inside(a: (f64, f64), b: (f64, f64), shown: &Range<f64>) -> Option<[(f64, f64); 2]> {
+    let cut = |from: (f64, f64), to: (f64, f64)| {
+        let y = from.1.clamp(shown.start, shown.end);
+        let x = if y == from.1 { from.0 } else { from.0 + (y - from.1) / (to.1 - from.1) * (to.0 - from.0) };
+        (x, y)
+    };
+    let is_outside = a.1.min(b.1) > shown.end || a.1.max(b.1) < shown.start;
+    (!a.1.is_nan() && !b.1.is_nan() && !is_outside).then(|| [cut(a, b), cut(b, a)])
+}
