@@ -35,6 +35,16 @@ pub enum LoadError {
         /// The names of the shipped worlds.
         shipped: String,
     },
+    /// A shipped world, but not one for this program.
+    #[error("`{name}` is a {kind} world: it is for the program {program}")]
+    OtherKind {
+        /// As given.
+        name: String,
+        /// What kind of world it is.
+        kind: &'static str,
+        /// The program that runs it.
+        program: &'static str,
+    },
     /// The file is not a world.
     #[error(transparent)]
     World(#[from] WorldError),
@@ -44,8 +54,11 @@ pub enum LoadError {
 ///
 /// # Errors
 ///
-/// When there is no such file either, or it is not a world.
+/// When there is no such file either, or it is not a world of this kind.
 pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
+    if SHIPPED_GRID.iter().any(|(grid, _)| *grid == name) {
+        return Err(LoadError::OtherKind { name: name.to_owned(), kind: "grid", program: "grid_world" });
+    }
     find(name, &SHIPPED, WorldSpec::parse, |path| WorldSpec::load(path))
 }
 
@@ -55,6 +68,9 @@ pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
 ///
 /// As [`load`].
 pub fn load_grid(name: &str) -> Result<GridSpec, LoadError> {
+    if SHIPPED.iter().any(|(physics, _)| *physics == name) {
+        return Err(LoadError::OtherKind { name: name.to_owned(), kind: "physics", program: "four_rooms" });
+    }
     find(name, &SHIPPED_GRID, GridSpec::parse, |path| GridSpec::load(path))
 }
 

@@ -74,15 +74,23 @@ impl Step {
         }
     }
 
-    /// What is seen `steps` after the cell was free or `blocked`: P = π + (x₀ − π) λ^n, and its
-    /// derivatives dP/da = π₀ S + (1 − x₀ − π₀) n λ^(n−1), likewise for b, with S = (1 − λ^n)/(a + b).
-    pub(crate) fn over(self, blocked: bool, steps: f64) -> GapEnd {
+    /// What is seen `steps` after the cell was free or `blocked`.
+    ///
+    /// For a Markov chain P = π + (x₀ − π) λ^n, with the derivatives dP/da = π₀ S + (1 − x₀ − π₀) n λ^(n−1),
+    /// likewise for b, where S = (1 − λ^n)/(a + b). For stays by the clock the memory fades in a straight line,
+    /// 1 − (a + b) n, as long as that is above 0. `regular` mixes the two.
+    pub(crate) fn over(self, blocked: bool, steps: f64, regular: [f64; 2]) -> GapEnd {
         let sum = self.block + self.free;
         let share = [self.free / sum, self.block / sum];
+        // The state that is left sooner tells how the memory fades.
+        let line = regular[0] * share[1] + regular[1] * share[0];
         let memory = self.memory(steps);
+        let late = if sum < 1.0 { steps * memory / (1.0 - sum) } else { steps * self.memory(steps - 1.0) };
+        let left = (1.0 - sum * steps).max(0.0);
+        let late = (1.0 - line) * late + line * if left > 0.0 { steps } else { 0.0 };
+        let memory = (1.0 - line) * memory + line * left;
         let was = if blocked { [0.0, 1.0] } else { [1.0, 0.0] };
         let spent = (1.0 - memory) / sum;
-        let late = if sum < 1.0 { steps * memory / (1.0 - sum) } else { steps * self.memory(steps - 1.0) };
         GapEnd {
             blocked: (share[1] + (was[1] - share[1]) * memory).clamp(0.0, 1.0),
             slope: [

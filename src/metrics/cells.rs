@@ -68,9 +68,6 @@ pub struct CellMapScores {
     pub coverage: f64,
     /// Share of the cells that can be seen whose mapped state is true; unknown is wrong.
     pub map_quality: f64,
-    /// For the changing cells alone the mean of the accuracy on truly free and on truly blocked
-    /// ones. NaN without changing cells.
-    pub map_quality_changing: f64,
 }
 
 /// Compares the map with the truth now.
@@ -82,17 +79,7 @@ pub fn cell_map_scores(mapper: &Mapper, truth: &GridTruth) -> CellMapScores {
             right.add_if(is_right(mapper, truth, index));
         }
     }
-    let mut changing = [Average::default(); 2];
-    for &index in truth.swept() {
-        changing[usize::from(truth.is_blocked(index))].add_if(is_right(mapper, truth, index));
-    }
-    let mut balanced = Average::default();
-    changing.iter().for_each(|accuracy| balanced.add_mean(accuracy));
-    CellMapScores {
-        coverage: seen.mean_or(0.0),
-        map_quality: right.mean_or(0.0),
-        map_quality_changing: balanced.mean(),
-    }
+    CellMapScores { coverage: seen.mean_or(0.0), map_quality: right.mean_or(0.0) }
 }
 
 fn is_right(mapper: &Mapper, truth: &GridTruth, index: usize) -> bool {
@@ -100,39 +87,68 @@ fn is_right(mapper: &Mapper, truth: &GridTruth, index: usize) -> bool {
     mapper.states().cells()[index] == state
 }
 
-/// Brier scores of P(blocked now) over the changing cells that are out of view: the mean square of
-/// prediction minus truth. Lower is better; NaN where all changing cells are in view.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PredictionScores {
-    /// Of the two-state model, [`Mapper::blocked_probability`].
-    pub model: f64,
-    /// Of the state last seen; 0.5 for a cell never seen.
-    pub last_seen: f64,
-    /// Of the share of its time in view that the cell was blocked; 0.5 for a cell never watched.
-    pub mean: f64,
+/// How right a mind was about the changing cells over a while. They are few, and all of them can be
+/// right or wrong at one instant, so what counts is the mean over many looks.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ChangingLooks {
+    /// Whether the map was right, on truly free and on truly blocked cells.
+    right: [Average; 2],
+    model: Average,
+    last_seen: Average,
+    mean: Average,
 }
 
-/// Judges what `mapper` believes of the changing cells that it does not see now.
-pub fn prediction_scores(mapper: &Mapper, truth: &GridTruth) -> PredictionScores {
-    let [mut model, mut last_seen, mut mean] = [Average::default(); 3];
-    for &index in truth.swept() {
-        if mapper.is_in_view(index) {
-            continue;
+/// What [`ChangingLooks`] came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChangingScores {
+    /// The mean of the accuracy of the map on truly free and on truly blocked cells. NaN without
+    /// changing cells.
+    pub map_quality: f64,
+    /// Brier score (the mean square of prediction minus truth; less is better) of P(blocked now) for
+    /// cells out of view by the two-state model, [`Mapper::blocked_probability`]. NaN where all cells
+    /// were always in view.
+    pub brier: f64,
+    /// The same of the state last seen; 0.5 for a cell never seen.
+    pub brier_last_seen: f64,
+    /// The same of the share of its time in view that the cell was blocked.
+    pub brier_mean: f64,
+}
+
+impl ChangingLooks {
+    /// Looks at what `mapper` believes now.
+    pub fn look(&mut self, mapper: &Mapper, truth: &GridTruth) {
+        for &index in truth.swept() {
+            let is_blocked = truth.is_blocked(index);
+            self.right[usize::from(is_blocked)].add_if(is_right(mapper, truth, index));
+            if mapper.is_in_view(index) {
+                continue;
+            }
+            let now = f64::from(u8::from(is_blocked));
+            let square = |prediction: f64| (prediction - now) * (prediction - now);
+            let state = match mapper.states().cells()[index] {
+                CellState::Unknown => 0.5,
+                CellState::Free => 0.0,
+                CellState::Blocked => 1.0,
+            };
+            let seen = mapper.statistics(index);
+            let watched = seen.watched_free + seen.watched_blocked;
+            self.model.add(square(mapper.blocked_probability(index)));
+            self.last_seen.add(square(state));
+            self.mean.add(square(if watched > 0.0 { seen.watched_blocked / watched } else { state }));
         }
-        let now = f64::from(u8::from(truth.is_blocked(index)));
-        let square = |prediction: f64| (prediction - now) * (prediction - now);
-        let state = match mapper.states().cells()[index] {
-            CellState::Unknown => 0.5,
-            CellState::Free => 0.0,
-            CellState::Blocked => 1.0,
-        };
-        let statistics = mapper.statistics(index);
-        let watched = statistics.watched_free + statistics.watched_blocked;
-        model.add(square(mapper.blocked_probability(index)));
-        last_seen.add(square(state));
-        mean.add(square(if watched > 0.0 { statistics.watched_blocked / watched } else { state }));
     }
-    PredictionScores { model: model.mean(), last_seen: last_seen.mean(), mean: mean.mean() }
+
+    /// What it came to.
+    pub fn scores(&self) -> ChangingScores {
+        let mut balanced = Average::default();
+        self.right.iter().for_each(|accuracy| balanced.add_mean(accuracy));
+        ChangingScores {
+            map_quality: balanced.mean(),
+            brier: self.model.mean(),
+            brier_last_seen: self.last_seen.mean(),
+            brier_mean: self.mean.mean(),
+        }
+    }
 }
 
 /// A running mean.
@@ -166,5 +182,127 @@ impl Average {
 
     fn mean_or(&self, nothing: f64) -> f64 {
         if self.count > 0 { self.mean() } else { nothing }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::{Cell, CellReading, Step, World};
+    use mapper::{Estimator, MapperSettings};
+    use nalgebra::Isometry2;
+    use sim::grid::{GridSpec, GridWorld};
+
+    /// A block that moves every step over three cells, and another that moves every 50 over two.
+    const WORLD: &str = r##"
+        name = "shelf"
+        sensor_radius = 1
+        map = """
+        #######
+        #.....#
+        #..R..#
+        #######
+        """
+        [[block]]
+        name = "fast"
+        dwell = 1
+        course = "back-and-forth"
+        path = [[1, 2], [3, 2]]
+        [[block]]
+        name = "slow"
+        dwell = 50
+        course = "back-and-forth"
+        path = [[4, 2], [5, 2]]
+    "##;
+
+    fn world() -> GridWorld {
+        let unindented: String = WORLD.lines().map(|line| line.trim_start().to_owned() + "\n").collect();
+        GridWorld::new(&GridSpec::parse("shelf.toml", &unindented).unwrap(), 0)
+    }
+
+    fn mapper(world: &GridWorld) -> Mapper {
+        let settings = MapperSettings { estimator: Estimator::Paper, ..Default::default() };
+        Mapper::new(&settings, *world.truth().frame()).unwrap()
+    }
+
+    /// Shows `mapper` the true state of the cells that `sees` picks.
+    fn show(world: &GridWorld, mapper: &mut Mapper, sees: impl Fn(Cell) -> bool) {
+        let truth = world.truth();
+        let cells =
+            (0..truth.frame().len()).map(|index| (truth.frame().cell(index), truth.is_blocked(index)));
+        let cells = cells.filter(|&(cell, _)| sees(cell)).collect();
+        mapper.update(&CellReading { time: truth.time(), pose: Isometry2::identity(), cells }).unwrap();
+    }
+
+    #[test]
+    fn who_sees_everything_is_right() {
+        let mut world = world();
+        let mut mapper = mapper(&world);
+        assert!(cell_rate_scores(&mapper, world.truth()).log_error.is_nan(), "nothing changed yet");
+        for _ in 0..40 {
+            show(&world, &mut mapper, |_| true);
+            world.act(&Step::Stay);
+        }
+        show(&world, &mut mapper, |_| true);
+        let scores = cell_rate_scores(&mapper, world.truth());
+        assert_eq!((scores.rate_error, scores.log_error, scores.false_rate), (0.0, 0.0, 0.0));
+        assert_eq!(false_change_events(&mapper, world.truth()), 0);
+        assert_eq!(
+            cell_map_scores(&mapper, world.truth()),
+            CellMapScores { coverage: 1.0, map_quality: 1.0 }
+        );
+        let mut looks = ChangingLooks::default();
+        looks.look(&mapper, world.truth());
+        assert_eq!(looks.scores().map_quality, 1.0);
+        assert!(looks.scores().brier.is_nan(), "nothing is out of view");
+    }
+
+    #[test]
+    fn who_sees_nothing_is_wrong_by_definition() {
+        let mut world = world();
+        let mapper = mapper(&world);
+        (0..60).for_each(|_| world.act(&Step::Stay));
+        let scores = cell_rate_scores(&mapper, world.truth());
+        assert_eq!(scores.rate_error, 1.0);
+        assert!((scores.log_error - 10.0_f64.ln()).abs() < 1e-12);
+        assert_eq!(
+            cell_map_scores(&mapper, world.truth()),
+            CellMapScores { coverage: 0.0, map_quality: 0.0 }
+        );
+        let mut looks = ChangingLooks::default();
+        looks.look(&mapper, world.truth());
+        let scores = looks.scores();
+        assert_eq!((scores.map_quality, scores.brier, scores.brier_last_seen), (0.0, 0.25, 0.25));
+    }
+
+    #[test]
+    fn things_count_alike_however_many_cells_they_have() {
+        let mut world = world();
+        let mut mapper = mapper(&world);
+        for _ in 0..120 {
+            show(&world, &mut mapper, |cell| cell.x < 4);
+            world.act(&Step::Stay);
+        }
+        // All is known of the fast block's three cells, nothing of the slow one's two.
+        let scores = cell_rate_scores(&mapper, world.truth());
+        assert!((scores.log_error - 10.0_f64.ln() / 2.0).abs() < 0.02, "{scores:?}");
+        assert!((scores.rate_error - 2.0 / 5.0).abs() < 0.02, "{scores:?}");
+    }
+
+    #[test]
+    fn a_map_that_is_out_of_date_is_wrong_where_things_have_moved() {
+        let mut world = world();
+        let mut mapper = mapper(&world);
+        show(&world, &mut mapper, |_| true);
+        world.act(&Step::Stay);
+        show(&world, &mut mapper, |cell| cell.y == 0);
+        let visible = (0..28).filter(|&index| world.truth().can_be_seen(index)).count() as f64;
+        let scores = cell_map_scores(&mapper, world.truth());
+        assert!((scores.map_quality - (visible - 2.0) / visible).abs() < 1e-12, "{scores:?}");
+        let mut looks = ChangingLooks::default();
+        looks.look(&mapper, world.truth());
+        // Of three free changing cells two are right, of two blocked ones one.
+        assert_eq!(looks.scores().map_quality, (2.0 / 3.0 + 0.5) / 2.0);
+        assert_eq!(looks.scores().brier_last_seen, 2.0 / 5.0);
     }
 }

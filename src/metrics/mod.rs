@@ -9,8 +9,8 @@ mod rates;
 mod things;
 
 pub use cells::{
-    CellMapScores, CellRateScores, PredictionScores, cell_map_scores, cell_rate_scores, false_change_events,
-    log_error, prediction_scores,
+    CellMapScores, CellRateScores, ChangingLooks, cell_map_scores, cell_rate_scores, false_change_events,
+    log_error,
 };
 pub use latency::{Delays, Latency};
 pub use rates::{RateScores, rate_scores};

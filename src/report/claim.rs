@@ -5,7 +5,6 @@ use super::comparison::Comparison;
 use super::metric::Measure;
 use super::run::Run;
 use super::wording::{difference, p_value, value};
-use std::fmt;
 
 /// A map quality lower by up to this is as good.
 const QUALITY_MARGIN: f64 = 0.005;
@@ -46,14 +45,27 @@ pub enum Verdict {
     Fails,
 }
 
-impl fmt::Display for Verdict {
-    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
-        to.write_str(match self {
+impl Verdict {
+    /// In a word or two.
+    pub fn name(self) -> &'static str {
+        match self {
             Self::Holds => "holds",
             Self::NotShown => "not shown",
             Self::Fails => "fails",
-        })
+        }
     }
+}
+
+fn is_faster(error: &Comparison) -> bool {
+    error.is_significant() && error.mean_difference < 0.0
+}
+
+fn is_slower(error: &Comparison) -> bool {
+    error.is_significant() && error.mean_difference > 0.0
+}
+
+fn is_worse_map(quality: &Comparison) -> bool {
+    quality.is_significant() && quality.mean_difference < -QUALITY_MARGIN
 }
 
 impl Claim {
@@ -64,13 +76,9 @@ impl Claim {
         let quality_like_recency = against("recency", Measure::FINAL_MAP_QUALITY)?;
 
         let speed = [&faster_than_recency, &faster_than_poisson];
-        let is_worse =
-            quality_like_recency.is_significant() && quality_like_recency.mean_difference < -QUALITY_MARGIN;
-        let is_slower = |error: &&Comparison| error.is_significant() && error.mean_difference > 0.0;
-        let is_faster = |error: &&Comparison| error.is_significant() && error.mean_difference < 0.0;
-        let verdict = if is_worse || speed.iter().any(is_slower) {
+        let verdict = if is_worse_map(&quality_like_recency) || speed.iter().any(|error| is_slower(error)) {
             Verdict::Fails
-        } else if speed.iter().all(is_faster) {
+        } else if speed.iter().all(|error| is_faster(error)) {
             Verdict::Holds
         } else {
             Verdict::NotShown
@@ -85,6 +93,27 @@ impl Claim {
             quality_like_recency,
             verdict,
         })
+    }
+
+    /// The verdict and its parts in words, on two lines.
+    pub fn sentence(&self) -> String {
+        let speed = |error: &Comparison| match error {
+            error if is_faster(error) => "faster than",
+            error if is_slower(error) => "slower than",
+            _ => "level with",
+        };
+        let quality = &self.quality_like_recency;
+        let map = match quality.mean_difference {
+            _ if is_worse_map(quality) => "worse than",
+            difference if difference < -QUALITY_MARGIN => "not significantly worse than",
+            _ => "as good as",
+        };
+        format!(
+            "The paper's claim {}: curious learns rates {} recency and {} poisson,\nand its map is {map} that of recency.",
+            if self.verdict == Verdict::NotShown { "is not shown" } else { self.verdict.name() },
+            speed(&self.faster_than_recency),
+            speed(&self.faster_than_poisson),
+        )
     }
 
     /// The head of a Markdown table of claims, two lines.
@@ -105,7 +134,7 @@ impl Claim {
             "| {} | {} | **{}** | {} | {} | {} | {} | {}{} |",
             self.world.replace('|', "\\|"),
             self.estimator,
-            self.verdict,
+            self.verdict.name(),
             error(&self.faster_than_recency),
             error(&self.faster_than_poisson),
             error(&self.rate_error_to_recency),

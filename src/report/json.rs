@@ -41,7 +41,7 @@ struct ReportFile<'a> {
 struct RunEntry<'a> {
     world: &'a str,
     estimator: &'a str,
-    claim: Option<String>,
+    claim: Option<&'static str>,
     strategies: Object<&'a str, StrategyEntry<'a>>,
     comparisons: &'a [Comparison],
 }
@@ -53,7 +53,7 @@ impl<'a> RunEntry<'a> {
         Self {
             world: &run.world,
             estimator: &run.estimator,
-            claim: Claim::of(run).map(|claim| claim.verdict.to_string()),
+            claim: Claim::of(run).map(|claim| claim.verdict.name()),
             strategies: Object(run.strategies.iter().map(entry).collect()),
             comparisons: &run.comparisons,
         }

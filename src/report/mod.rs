@@ -30,7 +30,6 @@ use crate::output::{make_folder, write_file};
 use crate::pictures::PictureError;
 use run::Lives;
 use statistics::Quantiles;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Up to so many worlds are told one by one, in the table and in figures.

@@ -14,7 +14,7 @@ const CHARACTERS: [(&str, f64, f64, f64); 9] = [
     ("random", 0.4, 0.6, 0.95),
     ("coin", 1.0, 0.36, 0.984),
     ("information-gain", 2.2, 0.2, 0.98),
-    ("revisit", 1.5, 0.3, 0.97),
+    ("optimal-revisiting", 1.5, 0.3, 0.97),
     ("frontier", 0.3, 0.8, 0.96),
     ("oracle", 2.0, 0.22, 0.985),
 ];

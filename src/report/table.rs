@@ -4,149 +4,168 @@ use super::claim::Claim;
 use super::comparison::Comparison;
 use super::metric::{Measure, Metric, Part};
 use super::run::{Run, StrategyResult};
-use super::wording::{difference, p_value, title, value};
+use super::wording::{conditions, difference, p_value, value};
 use super::{ONE_BY_ONE, REFERENCE, Report};
-use std::fmt::Write;
+
+const HOW_TO_READ: &str = "\
+How to read it: errors are 0 and map quality is 1 when all is right; final is the value at the end,
+area the mean over the run, * the best; time at changes is spent with a changing cell in view.
+";
 
 /// Which way a column is good.
-#[derive(Clone, Copy)]
-enum Best {
-    Lowest,
-    Highest,
-    Neither,
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Error,
+    Quality,
+    Share,
 }
 
 struct Column {
-    group: &'static str,
     name: &'static str,
     measure: Measure,
-    best: Best,
-    decimals: usize,
+    kind: Kind,
     width: usize,
 }
 
 /// What share of its time a robot had changing cells in view.
 const CHANGING_SHARE: Measure = Measure { metric: Metric::ChangingShare, part: Part::Final };
 
+/// Above pairs of columns.
+const GROUPS: [&str; 4] = ["log error", "rate error", "map quality", "time at"];
+
 const COLUMNS: [Column; 7] = [
-    Column::error("log error", "final", Measure::FINAL_LOG_ERROR),
-    Column::error("", "area", Measure::LOG_ERROR_AREA),
-    Column::error("rate error", "final", Measure::FINAL_RATE_ERROR),
-    Column::error("", "area", Measure::RATE_ERROR_AREA),
-    Column::quality("map quality", "all cells", Measure::FINAL_MAP_QUALITY),
-    Column::quality("", "changing", Measure::FINAL_MAP_QUALITY_CHANGING),
-    Column {
-        group: "time at",
-        name: "changes",
-        measure: CHANGING_SHARE,
-        best: Best::Neither,
-        decimals: 3,
-        width: 10,
-    },
+    Column { name: "final", measure: Measure::FINAL_LOG_ERROR, kind: Kind::Error, width: 12 },
+    Column { name: "area", measure: Measure::LOG_ERROR_AREA, kind: Kind::Error, width: 9 },
+    Column { name: "final", measure: Measure::FINAL_RATE_ERROR, kind: Kind::Error, width: 12 },
+    Column { name: "area", measure: Measure::RATE_ERROR_AREA, kind: Kind::Error, width: 9 },
+    Column { name: "all cells", measure: Measure::FINAL_MAP_QUALITY, kind: Kind::Quality, width: 13 },
+    Column { name: "changing", measure: Measure::FINAL_MAP_QUALITY_CHANGING, kind: Kind::Quality, width: 10 },
+    Column { name: "changes", measure: CHANGING_SHARE, kind: Kind::Share, width: 12 },
 ];
 
 impl Column {
-    const fn error(group: &'static str, name: &'static str, measure: Measure) -> Self {
-        Self { group, name, measure, best: Best::Lowest, decimals: 3, width: 11 }
-    }
-
-    const fn quality(group: &'static str, name: &'static str, measure: Measure) -> Self {
-        Self { group, name, measure, best: Best::Highest, decimals: 4, width: 12 }
+    fn text(&self, number: f64) -> String {
+        match self.kind {
+            Kind::Error => value(number, 3),
+            Kind::Quality => value(number, 4),
+            Kind::Share if number.is_nan() => "-".into(),
+            Kind::Share => format!("{:.1} %", 100.0 * number),
+        }
     }
 
     /// A number per strategy; the best with a star, and what looks like it.
     fn cells(&self, strategies: &[StrategyResult]) -> Vec<String> {
-        let value_of = |strategy: &StrategyResult| strategy.value(self.measure);
-        let numbers = strategies.iter().filter(|strategy| strategy.name != REFERENCE).map(value_of);
-        let best = match self.best {
-            Best::Lowest => numbers.fold(f64::NAN, f64::min),
-            Best::Highest => numbers.fold(f64::NAN, f64::max),
-            Best::Neither => f64::NAN,
+        let rivals = strategies.iter().filter(|strategy| strategy.name != REFERENCE);
+        let numbers = rivals.map(|strategy| strategy.value(self.measure));
+        let best = match self.kind {
+            Kind::Error => numbers.fold(f64::NAN, f64::min),
+            Kind::Quality => numbers.fold(f64::NAN, f64::max),
+            Kind::Share => f64::NAN,
         };
+        let best = (!best.is_nan()).then(|| self.text(best));
         let cell = |strategy: &StrategyResult| {
-            let text = value(value_of(strategy), self.decimals);
-            let is_best =
-                best.is_finite() && text == value(best, self.decimals) && strategy.name != REFERENCE;
+            let text = self.text(strategy.value(self.measure));
+            let is_best = best.as_ref() == Some(&text) && strategy.name != REFERENCE;
             format!("{text}{}", if is_best { "*" } else { " " })
         };
         strategies.iter().map(cell).collect()
     }
 }
 
-/// The tables of all runs, or of the one over all worlds where there are many.
+/// The tables of all runs; where there are many worlds, only those over all of them.
 pub(super) fn table(report: &Report) -> String {
     if report.runs.is_empty() {
         return "No trial was finished: there is nothing to report.\n".into();
     }
-    let mut text = String::new();
     let worlds = report.runs.iter().map(|run| run.worlds).max().unwrap_or(1);
     let is_short = worlds > ONE_BY_ONE;
+    let mut lines = Vec::new();
     for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
-        write_run(&mut text, report, run);
-        text.push('\n');
+        lines.push(run.world.clone());
+        lines.push(conditions(run, &report.settings));
+        lines.push(String::new());
+        let names = run.strategies.iter().map(|strategy| strategy.name.chars().count());
+        let name_width = names.max().unwrap_or(0).max("strategy".len());
+        lines.extend(values(run, name_width));
+        lines.push(String::new());
+        lines.extend(differences(run, name_width));
+        lines.extend(false_events(run));
+        lines.extend(winner(run));
+        lines.extend(Claim::of(run).map(|claim| claim.sentence()));
+        lines.push(String::new());
     }
-    text.push_str(
-        "How to read it: an error of 0 is perfect and a map quality of 1; area is the mean over the run,\n\
-         final the value at its end, * the best.\n",
-    );
+    let mut text: String = lines.iter().flat_map(|line| [line.trim_end(), "\n"]).collect();
+    text.push_str(HOW_TO_READ);
     if is_short {
         text.push_str("The worlds one by one are in report.json.\n");
     }
     text
 }
 
-fn write_run(text: &mut String, report: &Report, run: &Run) {
-    let strategies = &run.strategies;
-    let name_width =
-        strategies.iter().map(|strategy| strategy.name.chars().count()).max().unwrap_or(0).max(8);
-    // Infallible: this writes to a string.
-    let mut line = |line: String| text.extend([line.trim_end(), "\n"]);
-    line(title(run, &report.settings));
-    line(String::new());
-    let head = |word: fn(&Column) -> &'static str| -> String {
-        COLUMNS.iter().map(|column| format!("{:>1$} ", word(column), column.width - 1)).collect()
+/// A row per strategy.
+fn values(run: &Run, name_width: usize) -> Vec<String> {
+    let groups: String = COLUMNS
+        .chunks(2)
+        .zip(GROUPS)
+        .map(|(columns, group)| {
+            let width: usize = columns.iter().map(|column| column.width).sum();
+            // Over the middle of its columns, where their numbers stand.
+            if columns.len() > 1 {
+                format!("{group:^0$}", width + 3)
+            } else {
+                format!("{group:>0$}", width - 4)
+            }
+        })
+        .collect();
+    let names: String =
+        COLUMNS.iter().map(|column| format!("{:>1$} ", column.name, column.width - 1)).collect();
+    let columns = COLUMNS.map(|column| {
+        column
+            .cells(&run.strategies)
+            .into_iter()
+            .map(move |cell| format!("{cell:>0$}", column.width))
+            .collect::<Vec<_>>()
+    });
+    let mut lines = vec![format!("{:name_width$}{groups}", ""), format!("{:name_width$}{names}", "strategy")];
+    for (row, strategy) in run.strategies.iter().enumerate() {
+        let cells: String = columns.iter().map(|column| column[row].as_str()).collect();
+        lines.push(format!("{:name_width$}{cells}", strategy.name));
+    }
+    lines
+}
+
+/// The first strategy against every other.
+fn differences(run: &Run, name_width: usize) -> Vec<String> {
+    let [first, others @ ..] = run.strategies.as_slice() else { return Vec::new() };
+    if others.is_empty() {
+        return Vec::new();
+    }
+    let head = ["log error, area", "log error, final", "map quality, final"];
+    let row = |name: &str, cells: [String; 3]| {
+        format!("{name:name_width$}{}", cells.map(|cell| format!("{cell:>26}")).concat())
     };
-    line(format!("{:name_width$}{}", "", head(|column| column.group)));
-    line(format!("{:name_width$}{}", "strategy", head(|column| column.name)));
-    let columns: Vec<Vec<String>> = COLUMNS.iter().map(|column| column.cells(strategies)).collect();
-    for (row, strategy) in strategies.iter().enumerate() {
-        let cells =
-            COLUMNS.iter().zip(&columns).map(|(column, cells)| format!("{:>1$}", cells[row], column.width));
-        line(format!("{:name_width$}{}", strategy.name, cells.collect::<String>()));
-    }
-    line(String::new());
-    if let [first, others @ ..] = strategies.as_slice()
-        && !others.is_empty()
-    {
-        line(format!(
-            "{} minus another: mean difference ± half of its 95 % interval, paired t test",
+    let over = if run.worlds > 1 { "worlds" } else { "seeds" };
+    let mut lines = vec![
+        format!(
+            "Paired differences, {} minus the other: mean over {over} ± half its 95 % interval, t test",
             first.name
-        ));
-        line(format!(
-            "{:name_width$}{:>26}{:>26}{:>26}",
-            "", "log error, area", "log error, final", "map quality, final"
-        ));
-        for other in others {
-            let cell = |measure, decimals| {
-                let comparison = run.comparison(&first.name, &other.name, measure);
-                comparison.map_or("-".into(), |comparison| difference_cell(&comparison, decimals))
-            };
-            line(format!(
-                "{:name_width$}{:>26}{:>26}{:>26}",
-                other.name,
-                cell(Measure::LOG_ERROR_AREA, 3),
-                cell(Measure::FINAL_LOG_ERROR, 3),
-                cell(Measure::FINAL_MAP_QUALITY, 4),
-            ));
-        }
-        line(String::new());
+        ),
+        row("", head.map(String::from)),
+    ];
+    for other in others {
+        let cell = |measure, decimals| {
+            let comparison = run.comparison(&first.name, &other.name, measure);
+            comparison.map_or("-".into(), |comparison| difference_cell(&comparison, decimals))
+        };
+        let cells = [
+            cell(Measure::LOG_ERROR_AREA, 3),
+            cell(Measure::FINAL_LOG_ERROR, 3),
+            cell(Measure::FINAL_MAP_QUALITY, 4),
+        ];
+        lines.push(row(&other.name, cells));
     }
-    if let Some(winner) = winner(run) {
-        line(winner);
-    }
-    if let Some(claim) = Claim::of(run) {
-        line(format!("The paper's claim here: {}.", claim.verdict));
-    }
+    lines.push(String::new());
+    lines
 }
 
 fn difference_cell(comparison: &Comparison, decimals: usize) -> String {
@@ -158,25 +177,32 @@ fn difference_cell(comparison: &Comparison, decimals: usize) -> String {
     format!("{mean} ±{half_width} {}", p_value(comparison.p_value))
 }
 
+/// There should be none: told only where there are.
+fn false_events(run: &Run) -> Option<String> {
+    let those = run.strategies.iter().filter(|strategy| strategy.false_change_events > 0);
+    let counts: Vec<String> =
+        those.map(|strategy| format!("{} {}", strategy.name, strategy.false_change_events)).collect();
+    (!counts.is_empty())
+        .then(|| format!("False change events on cells that never change: {}.", counts.join(", ")))
+}
+
 /// Who learned the rates fastest, and whether that may be chance.
 fn winner(run: &Run) -> Option<String> {
     let area = |strategy: &StrategyResult| strategy.value(Measure::LOG_ERROR_AREA);
-    let mut ranked: Vec<&StrategyResult> = run
-        .strategies
-        .iter()
-        .filter(|strategy| strategy.name != REFERENCE && !area(strategy).is_nan())
-        .collect();
+    let is_rival = |strategy: &&StrategyResult| strategy.name != REFERENCE && !area(strategy).is_nan();
+    let mut ranked: Vec<&StrategyResult> = run.strategies.iter().filter(is_rival).collect();
     ranked.sort_by(|a, b| area(a).total_cmp(&area(b)));
     let [winner, next, ..] = ranked.as_slice() else { return None };
     let comparison = run.comparison(&winner.name, &next.name, Measure::LOG_ERROR_AREA)?;
     let certainty = match comparison.p_holm {
-        p if p.is_nan() => "one pair of trials: it may be chance".into(),
-        p if p < 0.05 => format!("significant, {} after Holm's correction", p_value(p)),
-        p => format!("not significant, {} after Holm's correction", p_value(p)),
+        p if p.is_nan() => "one pair says nothing about chance".into(),
+        p if p < 0.05 => format!("significant: {} after Holm's correction", p_value(p)),
+        p => format!("not significant: {} after Holm's correction", p_value(p)),
     };
-    let less = 100.0 * (1.0 - comparison.ratio);
     Some(format!(
-        "{} learns the rates fastest: its log error over the run is {less:.0} % below that of {}\n({certainty}).",
-        winner.name, next.name
+        "{} learns rates fastest: its log error over the run is {} times that of {}\n({certainty}).",
+        winner.name,
+        value(comparison.ratio, 2),
+        next.name
     ))
 }

@@ -30,15 +30,12 @@ pub(super) fn p_value(p_value: f64) -> String {
     }
 }
 
-/// What a run is: `two_blocks: 5 trials of 20,000 steps, estimator two-state, sensor radius 4`.
-pub(super) fn title(run: &Run, settings: &ReportSettings) -> String {
+/// What was done: `5 trials of 20,000 steps, estimator two-state, sensor radius 4`.
+pub(super) fn conditions(run: &Run, settings: &ReportSettings) -> String {
     let (trials, steps) = (trials(run), thousands(settings.steps));
     let ReportSettings { sensor_radius, interrupted, .. } = settings;
     let short = if *interrupted { " (interrupted)" } else { "" };
-    format!(
-        "{}: {trials} of {steps} steps{short}, estimator {}, sensor radius {sensor_radius}",
-        run.world, run.estimator
-    )
+    format!("{trials} of {steps} steps{short}, estimator {}, sensor radius {sensor_radius}", run.estimator)
 }
 
 /// How many trials of a strategy there are: `5 trials`, or `3 to 5 trials` of an interrupted run.

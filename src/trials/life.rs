@@ -1,6 +1,6 @@
 use super::{SettingsError, TrialStrategy};
 use crate::explore;
-use crate::metrics::{cell_map_scores, cell_rate_scores, false_change_events, prediction_scores};
+use crate::metrics::{ChangingLooks, cell_map_scores, cell_rate_scores, false_change_events};
 use crate::oracle::Oracle;
 use crate::pilot::{Autonomous, Guide, Now, Pilot};
 use crate::report::{Sample, Trial};
@@ -16,6 +16,8 @@ use std::ops::ControlFlow;
 
 /// Points of a curve.
 const SAMPLES: u64 = 80;
+/// The changing cells are looked at once in so many steps, and at every sample.
+const LOOK_EVERY: u64 = 10;
 
 /// One trial before it begins.
 #[derive(Clone, Debug)]
@@ -75,7 +77,9 @@ pub fn live(life: &Life, mut watch: impl FnMut(Look) -> bool) -> Result<Option<T
     let controller = Controller::new(life.controller, CellDrive, controller)?;
     match life.strategy {
         TrialStrategy::Agent(choice) => {
-            let agent = Agent::new(life.agent, choice, chance(life.seed, Purpose::Agent))?;
+            let sensor_radius_m = f64::from(life.world.sensor_radius()) * life.world.frame().resolution_m();
+            let settings = AgentSettings { sensor_radius_m, ..life.agent.clone() };
+            let agent = Agent::new(&settings, choice, chance(life.seed, Purpose::Agent))?;
             run(life, Autonomous::new(agent, controller), |_, _| (), &mut watch)
         }
         TrialStrategy::Oracle => {
@@ -94,21 +98,26 @@ fn run<G: Guide>(
     let mut world = GridWorld::new(life.world, life.seed);
     let mut mapper = Mapper::new(&life.mapper, *life.world.frame())?;
     let mut samples = Vec::with_capacity(SAMPLES as usize);
-    let (mut step, mut due, mut near) = (0, sample_step(0, life.steps), Nearness::new(world.truth()));
+    let (mut step, mut due) = (0, sample_step(0, life.steps));
+    let (mut near, mut looks) = (Nearness::default(), ChangingLooks::default());
     let mut is_whole = false;
     explore(&mut world, &mut mapper, &mut pilot, |world, reading, now, pilot| -> Result<_, ReadingError> {
         let truth = world.truth();
         teach(pilot.guide_mut(), truth);
         near.count(truth, reading);
+        if step == due || step % LOOK_EVERY == 0 {
+            looks.look(now.mapper, truth);
+        }
         let mut sample = None;
         if step == due {
-            samples.push(measure(step, now.mapper, truth, &near));
+            samples.push(measure(step, now.mapper, truth, &near, &std::mem::take(&mut looks)));
             sample = samples.last();
             due = sample_step(samples.len() as u64, life.steps);
         }
         is_whole = step == life.steps;
         step += 1;
         let goes_on = watch(Look { world, reading, now, pilot, sample });
+        pilot.take_messages(); // those that nobody wanted must not pile up
         Ok(if goes_on && !is_whole { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
     })
     .expect("a grid world's readings make sense");
@@ -136,35 +145,32 @@ fn sample_step(number: u64, steps: u64) -> u64 {
     if number >= SAMPLES { u64::MAX } else { step.max(number + 1).min(steps) }
 }
 
-fn measure(step: u64, mapper: &Mapper, truth: &GridTruth, near: &Nearness) -> Sample {
+fn measure(step: u64, mapper: &Mapper, truth: &GridTruth, near: &Nearness, looks: &ChangingLooks) -> Sample {
     let (rates, map) = (cell_rate_scores(mapper, truth), cell_map_scores(mapper, truth));
-    let prediction = prediction_scores(mapper, truth);
+    let changing = looks.scores();
     Sample {
         step,
         rate_error: rates.rate_error,
         log_error: rates.log_error,
         map_quality: map.map_quality,
-        map_quality_changing: map.map_quality_changing,
+        map_quality_changing: changing.map_quality,
         coverage: map.coverage,
         false_rate: rates.false_rate,
         changing_share: near.changing_share(),
-        brier: prediction.model,
-        brier_last_seen: prediction.last_seen,
-        brier_mean: prediction.mean,
+        brier: changing.brier,
+        brier_last_seen: changing.brier_last_seen,
+        brier_mean: changing.brier_mean,
     }
 }
 
 /// How much of its time the robot had cells in view that change.
+#[derive(Default)]
 struct Nearness {
     steps: u64,
     near: u64,
 }
 
 impl Nearness {
-    fn new(_truth: &GridTruth) -> Self {
-        Self { steps: 0, near: 0 }
-    }
-
     fn count(&mut self, truth: &GridTruth, reading: &CellReading) {
         let is_swept =
             |&(cell, _): &(_, bool)| truth.frame().index(cell).is_some_and(|at| truth.is_swept(at));

@@ -6,9 +6,11 @@
 //! results.
 
 mod life;
+mod recorded;
 mod strategy;
 
 pub use life::{Life, Look, live};
+pub use recorded::{RECORDED_STEPS, Recorded, record, scene};
 pub use strategy::TrialStrategy;
 
 use crate::report::Trial;
@@ -72,7 +74,7 @@ impl Experiment {
         jobs
     }
 
-    /// Runs all trials on the threads of the present rayon pool, in the order of [`Self::jobs`].
+    /// Runs trials on the threads of the present rayon pool, and gives them in the order of `jobs`.
     /// `watch` is told of every finished one, from any thread; trials that have not ended when
     /// `is_cancelled` is set are left out.
     ///
@@ -81,6 +83,7 @@ impl Experiment {
     /// When settings make no sense.
     pub fn run(
         &self,
+        jobs: Vec<Job>,
         is_cancelled: &AtomicBool,
         watch: impl Fn(&Trial) + Sync,
     ) -> Result<Vec<Trial>, SettingsError> {
@@ -92,8 +95,7 @@ impl Experiment {
             trial.iter().for_each(&watch);
             Ok(trial)
         };
-        let trials: Result<Vec<Option<Trial>>, SettingsError> =
-            self.jobs().into_par_iter().map(trial).collect();
+        let trials: Result<Vec<Option<Trial>>, SettingsError> = jobs.into_par_iter().map(trial).collect();
         Ok(trials?.into_iter().flatten().collect())
     }
 

@@ -1,7 +1,11 @@
+mod frontier;
+mod optimal_revisiting;
 mod poisson;
 mod random;
 mod recency;
 
+pub use frontier::Frontier;
+pub use optimal_revisiting::OptimalRevisiting;
 pub use poisson::Poisson;
 pub use random::Random;
 pub use recency::Recency;

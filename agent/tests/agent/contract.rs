@@ -77,7 +77,9 @@ fn the_same_seed_gives_the_same_life_and_another_seed_another() {
     for choice in StrategyChoice::ALL {
         let life = |seed| live(&mut agent(choice, seed), |_, _, _| ());
         assert_eq!(life(1), life(1), "{choice}");
-        assert_ne!(life(1), life(2), "{choice}");
+        // Who goes to the best cell leaves little to chance.
+        let is_best = [StrategyChoice::Frontier, StrategyChoice::OptimalRevisiting].contains(&choice);
+        assert!(is_best || life(1) != life(2), "{choice}");
     }
 }
 

@@ -6,7 +6,7 @@ mod two_state;
 use crate::CellStatistics;
 use crate::chain::Chain;
 pub(crate) use baselines::changes_in_view;
-pub(crate) use two_state::{GAP_PRIOR, watch};
+pub(crate) use two_state::{gap_prior, watch};
 
 /// How the rate of change of a cell is estimated from what was seen of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]

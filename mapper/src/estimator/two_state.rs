@@ -2,15 +2,16 @@
 
 use crate::CellStatistics;
 use crate::chain::Chain;
-use crate::gaps::{Prior, Watch};
+use crate::gaps::Watch;
 
 /// What one event counts for a state that was left often but never seen to be entered again: half
 /// an event, the mean of the Jeffreys posterior of a Poisson rate for no event.
 const UNSEEN_EVENTS: f64 = 0.5;
 
-/// What is known of a probability per step before anything is seen: Jeffreys' prior, half an event in
-/// one step.
-pub(crate) const GAP_PRIOR: Prior = Prior { events: 0.5, steps: 1.0 };
+/// What is known of both probabilities per step before anything is seen.
+pub(crate) fn gap_prior() -> Watch {
+    Watch { events: [*crate::gaps::tune::PRIOR; 2], steps: [1.0; 2] }
+}
 
 /// The mean time in each state: the time watched in it per event that ended it; none without an event in
 /// view.
@@ -46,15 +47,12 @@ pub(crate) fn watch(seen: &CellStatistics) -> Watch {
 
 /// The same with what the gaps are worth, and the prior.
 pub(super) fn with_gaps(seen: &CellStatistics) -> Chain {
-    let watch = watch(seen);
     let worth = &seen.gap_worth;
-    let rate = |state: usize, watched: f64, events: f64| {
-        let steps = watch.steps[state] + watched / seen.period + GAP_PRIOR.steps;
-        (watch.events[state] + events + GAP_PRIOR.events) / steps / seen.period
+    let worth = Watch {
+        events: [worth.block_events, worth.free_events],
+        steps: [worth.watched_free / seen.period, worth.watched_blocked / seen.period],
     };
-    Chain {
-        block: rate(0, worth.watched_free, worth.block_events),
-        free: rate(1, worth.watched_blocked, worth.free_events),
-        period: seen.period,
-    }
+    let all = watch(seen) + worth + gap_prior();
+    let rate = |state: usize| all.events[state] / all.steps[state] / seen.period;
+    Chain { block: rate(0), free: rate(1), period: seen.period }
 }

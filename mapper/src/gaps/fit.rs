@@ -2,13 +2,34 @@
 
 use super::table::Bins;
 use crate::chain::Step;
+use std::ops::Add;
 
 /// What was watched: per state (free, blocked) the events that ended it and the readings' steps that
 /// began in it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Watch {
     pub(crate) events: [f64; 2],
     pub(crate) steps: [f64; 2],
+}
+
+impl Add for Watch {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        Self { events: sum(self.events, other.events), steps: sum(self.steps, other.steps) }
+    }
+}
+
+/// What is fitted.
+pub(super) struct Evidence<'a> {
+    /// What was watched, and what was known before.
+    pub(super) watch: Watch,
+    pub(super) gaps: &'a Bins,
+    /// The time of one step.
+    pub(super) period: f64,
+    /// How regular stays are, per state.
+    pub(super) regular: [f64; 2],
 }
 
 /// The maximum of the posterior, and its shape there.
@@ -22,14 +43,6 @@ pub(crate) struct Fit {
     /// What the gaps tell of both probabilities together: the mixed term of their information, in
     /// log-odds.
     pub(crate) mixed: f64,
-}
-
-/// Events and steps that are added to what was seen: a beta distribution per step, which for rates far
-/// below one per step is the gamma distribution.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Prior {
-    pub(crate) events: f64,
-    pub(crate) steps: f64,
 }
 
 /// Scoring steps at most. Most fits take three to six.
@@ -49,12 +62,12 @@ struct Slope {
     mixed: f64,
 }
 
-impl Slope {
-    fn of_gaps(step: Step, bins: &Bins, period: f64) -> Self {
-        let mut sum = Self::default();
-        for bin in bins.iter() {
+impl Evidence<'_> {
+    fn slope_of_gaps(&self, step: Step) -> Slope {
+        let mut sum = Slope::default();
+        for bin in self.gaps.iter() {
             let count = f64::from(bin.count);
-            let gap = step.over(bin.before(), bin.length() / period);
+            let gap = step.over(bin.before(), bin.length() / self.period, self.regular);
             let seen = if bin.after() { gap.blocked } else { -(1.0 - gap.blocked) };
             // Score of what was seen, and its expected square over both outcomes.
             let variance = gap.blocked * (1.0 - gap.blocked);
@@ -71,74 +84,73 @@ impl Slope {
         }
         sum
     }
-}
 
-fn log_posterior(step: Step, watch: &Watch, bins: &Bins, period: f64, prior: Prior) -> f64 {
-    let mut sum = 0.0;
-    for (state, leave) in [step.block, step.free].into_iter().enumerate() {
-        let events = watch.events[state] + prior.events;
-        let stays = watch.steps[state] + prior.steps - events;
-        sum += events * libm::log(leave) + stays * libm::log1p(-leave);
+    fn log_posterior(&self, step: Step) -> f64 {
+        let mut sum = 0.0;
+        for (state, leave) in [step.block, step.free].into_iter().enumerate() {
+            let (events, steps) = (self.watch.events[state], self.watch.steps[state]);
+            sum += events * libm::log(leave) + (steps - events) * libm::log1p(-leave);
+        }
+        for bin in self.gaps.iter() {
+            let blocked = step.over(bin.before(), bin.length() / self.period, self.regular).blocked;
+            let seen = if bin.after() { blocked } else { 1.0 - blocked };
+            sum += f64::from(bin.count) * libm::log(seen.max(f64::MIN_POSITIVE));
+        }
+        sum
     }
-    for bin in bins.iter() {
-        let blocked = step.over(bin.before(), bin.length() / period).blocked;
-        let seen = if bin.after() { blocked } else { 1.0 - blocked };
-        sum += f64::from(bin.count) * libm::log(seen.max(f64::MIN_POSITIVE));
+
+    /// Fits by Fisher scoring from `start`, with smaller moves where a whole one would lead downhill.
+    pub(super) fn fit(&self, start: Step) -> Fit {
+        let logit = |leave: f64| (libm::log(leave) - libm::log1p(-leave)).clamp(-EXTREME, EXTREME);
+        let mut odds = [logit(start.block), logit(start.free)];
+        let mut step = from_odds(odds);
+        let mut height = self.log_posterior(step);
+        let mut slope = self.slope_of_gaps(step);
+        for _ in 0..MOST_ROUNDS {
+            let [mut score, mut information] = [slope.score, slope.information];
+            for (state, leave) in [step.block, step.free].into_iter().enumerate() {
+                let (events, steps) = (self.watch.events[state], self.watch.steps[state]);
+                score[state] += events - steps * leave;
+                information[state] += steps * leave * (1.0 - leave);
+            }
+            let determinant = information[0] * information[1] - slope.mixed * slope.mixed;
+            let mut by = [
+                (information[1] * score[0] - slope.mixed * score[1]) / determinant,
+                (information[0] * score[1] - slope.mixed * score[0]) / determinant,
+            ];
+            let longest = by[0].abs().max(by[1].abs());
+            if !longest.is_finite() || longest < FOUND {
+                break;
+            }
+            let scale = (LONGEST_MOVE / longest).min(1.0);
+            by = by.map(|by| by * scale);
+            let mut has_moved = false;
+            for _ in 0..12 {
+                let next = [0, 1].map(|state| (odds[state] + by[state]).clamp(-EXTREME, EXTREME));
+                let next_step = from_odds(next);
+                let next_height = self.log_posterior(next_step);
+                if next_height >= height {
+                    has_moved = next != odds;
+                    (odds, step, height) = (next, next_step, next_height);
+                    break;
+                }
+                by = by.map(|by| by / 2.0);
+            }
+            if !has_moved {
+                break;
+            }
+            slope = self.slope_of_gaps(step);
+        }
+        let mut worth = Watch::default();
+        for (state, leave) in [step.block, step.free].into_iter().enumerate() {
+            worth.steps[state] = slope.information[state] / (leave * (1.0 - leave));
+            worth.events[state] = leave * worth.steps[state] + slope.score[state];
+        }
+        Fit { step, worth, mixed: slope.mixed }
     }
-    sum
 }
 
 fn from_odds(odds: [f64; 2]) -> Step {
     let probability = |odds: f64| 1.0 / (1.0 + libm::exp(-odds));
     Step { block: probability(odds[0]), free: probability(odds[1]) }
-}
-
-/// Fits by Fisher scoring from `start`, with smaller moves where a whole one would lead downhill.
-pub(crate) fn fit(watch: &Watch, bins: &Bins, period: f64, prior: Prior, start: Step) -> Fit {
-    let logit = |leave: f64| (libm::log(leave) - libm::log1p(-leave)).clamp(-EXTREME, EXTREME);
-    let mut odds = [logit(start.block), logit(start.free)];
-    let mut step = from_odds(odds);
-    let mut height = log_posterior(step, watch, bins, period, prior);
-    let mut slope = Slope::of_gaps(step, bins, period);
-    for _ in 0..MOST_ROUNDS {
-        let [mut score, mut information] = [slope.score, slope.information];
-        for (state, leave) in [step.block, step.free].into_iter().enumerate() {
-            let steps = watch.steps[state] + prior.steps;
-            score[state] += watch.events[state] + prior.events - steps * leave;
-            information[state] += steps * leave * (1.0 - leave);
-        }
-        let determinant = information[0] * information[1] - slope.mixed * slope.mixed;
-        let mut by = [
-            (information[1] * score[0] - slope.mixed * score[1]) / determinant,
-            (information[0] * score[1] - slope.mixed * score[0]) / determinant,
-        ];
-        let longest = by[0].abs().max(by[1].abs());
-        if !longest.is_finite() || longest < FOUND {
-            break;
-        }
-        let scale = (LONGEST_MOVE / longest).min(1.0);
-        by = by.map(|by| by * scale);
-        let mut has_moved = false;
-        for _ in 0..12 {
-            let next = [0, 1].map(|state| (odds[state] + by[state]).clamp(-EXTREME, EXTREME));
-            let next_step = from_odds(next);
-            let next_height = log_posterior(next_step, watch, bins, period, prior);
-            if next_height >= height {
-                has_moved = next != odds;
-                (odds, step, height) = (next, next_step, next_height);
-                break;
-            }
-            by = by.map(|by| by / 2.0);
-        }
-        if !has_moved {
-            break;
-        }
-        slope = Slope::of_gaps(step, bins, period);
-    }
-    let mut worth = Watch { events: [0.0; 2], steps: [0.0; 2] };
-    for (state, leave) in [step.block, step.free].into_iter().enumerate() {
-        worth.steps[state] = slope.information[state] / (leave * (1.0 - leave));
-        worth.events[state] = leave * worth.steps[state] + slope.score[state];
-    }
-    Fit { step, worth, mixed: slope.mixed }
 }

@@ -2,13 +2,19 @@
 
 mod fit;
 mod poisson;
+mod prior;
+pub(crate) mod regularity;
 mod table;
+pub(crate) mod tune;
 
 use crate::chain::Step;
 use crate::estimator::{self, Estimator};
 use crate::ledger::ReadingIndex;
 use crate::{CellStatistics, GapWorth};
-pub(crate) use fit::{Prior, Watch};
+use fit::Evidence;
+pub(crate) use fit::Watch;
+pub(crate) use regularity::Regularity;
+use regularity::Stays;
 use table::Bins;
 
 /// Gaps are weighed anew when a cell was seen so much longer, or so much more happened, than when they
@@ -19,7 +25,10 @@ const GROWTH: f64 = 1.0 / 16.0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GapTable {
     bins: Bins,
-    worth: GapWorth,
+    stays: [Stays; 2],
+    worth: Watch,
+    /// What was watched, with what the gaps are worth, when they were last weighed.
+    own: Watch,
     mixed: f64,
     /// The step when the gaps were last weighed, to start from.
     step: Option<Step>,
@@ -39,50 +48,75 @@ impl GapTable {
         self.bins.correct_last(since, after);
     }
 
-    /// What the gaps are worth as watching, when they were last weighed.
-    pub(crate) fn worth(&self) -> GapWorth {
-        self.worth
+    /// The cell stayed in a state for so many steps, from an event in view to an event in view.
+    pub(crate) fn add_stay(&mut self, state: usize, steps: f64, regularity: &mut Regularity) {
+        regularity.add(&mut self.stays[state], state, steps);
     }
 
-    /// Weighs the gaps of a cell that changes, if that is due.
-    pub(crate) fn weigh(&mut self, estimator: Estimator, seen: &CellStatistics) {
-        let counted = f64::from(self.bins.count() + seen.events());
-        let watched = seen.observed();
-        let is_due = counted >= self.due[0] || watched >= self.due[1];
-        if self.bins.count() == 0 || !is_due || !(seen.period > 0.0) {
-            return;
+    /// What was watched, with what the gaps are worth, when they were last weighed.
+    pub(crate) fn own(&self) -> Watch {
+        self.own
+    }
+
+    /// What the gaps are worth as watching, when they were last weighed.
+    pub(crate) fn worth(&self, period: f64) -> GapWorth {
+        GapWorth {
+            watched_free: self.worth.steps[0] * period,
+            watched_blocked: self.worth.steps[1] * period,
+            block_events: self.worth.events[0],
+            free_events: self.worth.events[1],
         }
-        self.due = [counted * (1.0 + GROWTH) + 0.5, watched * (1.0 + 4.0 * GROWTH)];
+    }
+
+    /// Whether the gaps of a cell that changes are to be weighed again.
+    pub(crate) fn is_due(&self, seen: &CellStatistics) -> bool {
+        let counted = f64::from(self.bins.count() + seen.events());
+        seen.period > 0.0 && (counted >= self.due[0] || seen.observed() >= self.due[1])
+    }
+
+    /// Weighs the gaps of a cell that changes. `near` is what was seen of the cells around it.
+    pub(crate) fn weigh(
+        &mut self,
+        estimator: Estimator,
+        seen: &CellStatistics,
+        near: Watch,
+        regularity: &Regularity,
+    ) {
+        let counted = f64::from(self.bins.count() + seen.events());
+        self.due = [counted * (1.0 + GROWTH) + 0.5, seen.observed() * (1.0 + 4.0 * GROWTH)];
         match estimator {
             Estimator::ChoGarciaMolina => {
                 let changes = estimator::changes_in_view(seen);
                 let hidden = poisson::expected_changes(&self.bins, changes, seen.observed());
-                self.worth = GapWorth { block_events: hidden, ..GapWorth::default() };
+                self.worth = Watch { events: [hidden, 0.0], ..Watch::default() };
             }
-            _ => self.fit(seen),
+            _ => self.fit(seen, near, regularity),
         }
     }
 
-    fn fit(&mut self, seen: &CellStatistics) {
+    fn fit(&mut self, seen: &CellStatistics, near: Watch, regularity: &Regularity) {
         let watch = estimator::watch(seen);
+        let prior = prior::of_neighbours(self.own, near);
         let start = self.step.unwrap_or_else(|| {
             // As slow as what was seen allows.
             let time = (seen.last_seen - seen.first_seen) / seen.period + 1.0;
             let leave = (f64::from(seen.events()) / time).min(0.5);
             Step { block: leave, free: leave }
         });
-        let fit = fit::fit(&watch, &self.bins, seen.period, estimator::GAP_PRIOR, start);
+        let evidence = Evidence {
+            watch: watch + prior + estimator::gap_prior(),
+            gaps: &self.bins,
+            period: seen.period,
+            regular: regularity.weights(),
+        };
+        let fit = evidence.fit(start);
         let figures = [fit.worth.steps, fit.worth.events, [fit.mixed, 0.0]];
         if !figures.iter().flatten().all(|figure| figure.is_finite()) {
             return;
         }
         self.step = Some(fit.step);
         self.mixed = fit.mixed;
-        self.worth = GapWorth {
-            watched_free: fit.worth.steps[0] * seen.period,
-            watched_blocked: fit.worth.steps[1] * seen.period,
-            block_events: fit.worth.events[0],
-            free_events: fit.worth.events[1],
-        };
+        self.own = watch + fit.worth;
+        self.worth = fit.worth + prior;
     }
 }

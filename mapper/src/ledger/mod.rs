@@ -6,7 +6,7 @@ mod record;
 mod survival;
 
 use crate::chain::Chain;
-use crate::gaps::GapTable;
+use crate::gaps::{GapTable, Regularity, Watch};
 use crate::{CellStatistics, Estimator, GapWorth};
 use geometry::{Cell, CellState, Grid, GridFrame, Transition};
 use recency::Recency;
@@ -39,6 +39,7 @@ pub(crate) struct Ledger {
     records: Vec<Record>,
     /// The gaps of every cell; empty if the estimator does not weigh them.
     gaps: Vec<GapTable>,
+    regularity: Regularity,
     survival: Survival,
     transitions: Vec<Transition>,
     /// Cells that can be a goal, or are a surface that can be seen again.
@@ -57,6 +58,7 @@ impl Ledger {
             sightings: vec![NEVER | UNSETTLED; cells],
             records: vec![Record::default(); cells],
             gaps: if estimator.weighs_gaps() { vec![GapTable::default(); cells] } else { Vec::new() },
+            regularity: Regularity::default(),
             survival: Survival::default(),
             transitions: Vec::new(),
             candidates: vec![false; cells],
@@ -218,6 +220,7 @@ impl Ledger {
             table.correct_last(since, after == CellState::Blocked);
         }
         let last = self.last(index);
+        let period = self.period(last);
         let record = &mut self.records[index];
         if is_event {
             if !record.has_changed() {
@@ -225,9 +228,18 @@ impl Ledger {
             }
             // The time since the new state was first seen belongs to the new state.
             let until = since.clamp(record.since, last.max(record.since));
-            record.watched[place(before)] += self.times[until as usize] - self.times[record.since as usize];
-            record.since = until;
+            let stayed = self.times[until as usize] - self.times[record.since as usize];
             let event = place(before); // free → blocked is a block event, blocked → free a free event
+            record.watched[event] += stayed;
+            if let Some(table) = self.gaps.get_mut(index)
+                && in_view
+                && record.is_whole
+                && period > 0.0
+            {
+                table.add_stay(event, stayed / period, &mut self.regularity);
+            }
+            record.is_whole = in_view;
+            record.since = until;
             if in_view { record.in_view[event] += 1 } else { record.after_gap[event] += 1 }
         }
         let cell = self.frame().cell(index);
@@ -283,15 +295,23 @@ impl Ledger {
             record.first = now;
         }
         record.since = now;
+        record.is_whole = false;
     }
 
     /// Lets the estimator weigh the gaps of a cell that changes, when enough has been seen since it
     /// last did.
     fn fit_gaps(&mut self, index: usize) {
-        if !self.gaps.is_empty() && self.records[index].has_changed() {
-            let seen = self.statistics(index);
-            self.gaps[index].weigh(self.estimator, &seen);
+        if self.gaps.is_empty() || !self.records[index].has_changed() {
+            return;
         }
+        let seen = self.statistics(index);
+        if !self.gaps[index].is_due(&seen) {
+            return;
+        }
+        let near = self.frame().cell(index).neighbours8();
+        let near = near.into_iter().filter_map(|near| self.frame().index(near));
+        let near = near.fold(Watch::default(), |sum, near| sum + self.gaps[near].own());
+        self.gaps[index].weigh(self.estimator, &seen, near, &self.regularity);
     }
 
     /// A cell is a candidate when it is free, or touches a free cell by a side: a frontier cell or
@@ -381,10 +401,11 @@ impl Ledger {
         let mut watched = record.watched;
         watched[place(self.state(index))] += last_seen - self.times[record.since as usize];
         let [watched_free, watched_blocked] = watched;
+        let period = self.period(last);
         CellStatistics {
             first_seen,
             last_seen,
-            period: self.period(last),
+            period,
             unobserved: (last_seen - first_seen - watched_free - watched_blocked).max(0.0),
             watched_free,
             watched_blocked,
@@ -394,7 +415,7 @@ impl Ledger {
             free_events_after_gap: record.after_gap[1],
             gaps_from_free: record.gaps[0],
             gaps_from_blocked: record.gaps[1],
-            gap_worth: self.gaps.get(index).map_or(GapWorth::default(), GapTable::worth),
+            gap_worth: self.gaps.get(index).map_or(GapWorth::default(), |table| table.worth(period)),
         }
     }
 }

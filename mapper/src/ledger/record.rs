@@ -12,6 +12,8 @@ pub(super) struct Record {
     /// From here to the last sighting the cell was watched in its present state without a gap,
     /// and that time is not in `watched` yet.
     pub(super) since: ReadingIndex,
+    /// Whether the present state began with an event in view, and was watched since.
+    pub(super) is_whole: bool,
     /// Time watched while free and while blocked, over by `since`.
     pub(super) watched: [f64; 2],
     /// Block and free events that happened in view.

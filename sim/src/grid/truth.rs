@@ -78,15 +78,12 @@ impl GridTruth {
     /// Whether the cell counts as one that can be seen now: it is free, or it is blocked and
     /// shares a side with a cell that is not, where no wall parts them from the robot's start.
     pub fn can_be_seen(&self, index: usize) -> bool {
-        let is_open = |index: usize| !self.cells[index].is_blocked && self.reachable[index];
-        is_open(index)
-            || self.cells[index].is_blocked
-                && self
-                    .frame
-                    .cell(index)
-                    .neighbours4()
-                    .into_iter()
-                    .any(|side| self.frame.index(side).is_some_and(is_open))
+        if !self.is_blocked(index) {
+            return self.reachable[index];
+        }
+        let is_open = |side: usize| !self.is_blocked(side) && self.reachable[side];
+        let mut sides = self.frame.cell(index).neighbours4().into_iter();
+        sides.any(|side| self.frame.index(side).is_some_and(is_open))
     }
 
     /// How often the cell turned from free to blocked.

@@ -78,8 +78,9 @@ impl World for GridWorld {
     type Reading = CellReading;
     type Command = Step;
 
-    /// Every cell of the map within the sensor's radius and in line of sight, by direction counter-clockwise
-    /// from the right and from near to far, after the robot's own. The robot looks to the right.
+    /// Every cell of the map within the sensor's radius and in line of sight: the robot's own, then
+    /// the others by direction counter-clockwise from the right and from near to far. The robot's
+    /// heading is always 0. No reading depends on chance.
     fn sense(&mut self) -> CellReading {
         let middle = self.spec.frame().center(self.robot);
         CellReading {

@@ -90,7 +90,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR", default_value = "grid_world_out", help_heading = "What comes out")]
     pub(crate) out: PathBuf,
 
-    /// Record one trial, the first of all, for watching with `rerun FILE`
+    /// Record one trial, the first of all, for watching with `rerun FILE`; at most 20,000 of its steps
     #[arg(long, value_name = "FILE", help_heading = "What comes out")]
     pub(crate) rrd: Option<PathBuf>,
 

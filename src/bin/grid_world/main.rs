@@ -3,17 +3,19 @@
 mod args;
 mod progress;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use args::Args;
 use clap::Parser;
 use controller::CellDrive;
 use curious::output::{make_folder, write_file};
-use curious::report::{Report, ReportSettings, WorldPicture};
-use curious::trials::Experiment;
+use curious::recording::{Recorder, RecordingError, RecordingOptions};
+use curious::report::{Report, ReportSettings, Trial, WorldPicture};
+use curious::trials::{Experiment, Recorded, SettingsError, record, scene};
 use curious::worlds;
 use mapper::{Estimator, MapperSettings};
 use progress::Progress;
 use sim::grid::{GenerateSettings, GridSpec};
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::io::{Write, stderr, stdout};
 use std::process::ExitCode;
@@ -25,7 +27,7 @@ fn main() -> ExitCode {
     if args.list_worlds {
         for (name, _) in worlds::SHIPPED_GRID {
             match worlds::load_grid(name) {
-                Ok(spec) => say(stdout(), format_args!("{name:<18} {}", spec.description())),
+                Ok(spec) => say(stdout(), format_args!("{name:<20} {}", spec.description())),
                 Err(error) => say(stderr(), error),
             }
         }
@@ -83,9 +85,13 @@ fn worlds(args: &Args) -> anyhow::Result<Vec<GridSpec>> {
     let settings = GenerateSettings::default();
     let made = 0..args.generate.unwrap_or(0);
     worlds.extend(made.map(|number| GridSpec::generate(&settings, args.seed.wrapping_add(number))));
+    let mut names = BTreeSet::new();
+    if let Some(twin) = worlds.iter().map(GridSpec::name).find(|name| !names.insert(*name)) {
+        bail!("two worlds are called `{twin}`: give each a name of its own, by which results are told");
+    }
     for world in &mut worlds {
-        for warning in world.warnings() {
-            say(stderr(), format_args!("warning: {warning}"));
+        for warning in world.warnings().iter().filter(|_| !args.quiet) {
+            say(stderr(), format_args!("warning: {}: {warning}", world.name()));
         }
         let mut changed = world.clone();
         if let Some(radius) = args.sensor_radius {
@@ -110,25 +116,53 @@ fn distinct<T: PartialEq>(values: Vec<T>) -> Vec<T> {
     distinct
 }
 
+/// Runs the trials, the first of them with a recording if one is asked for. Returns also why not all of
+/// that one is recorded, if so: no trial is lost for it.
+fn trials(
+    args: &Args,
+    experiment: &Experiment,
+    is_cancelled: &AtomicBool,
+) -> anyhow::Result<(Vec<Trial>, Option<RecordingError>)> {
+    let threads = usize::from(args.threads.unwrap_or(0)); // 0: as many as there are cores
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot make threads")?;
+    let mut jobs = experiment.jobs();
+    let progress = Progress::new(jobs.len(), args.quiet);
+    let first = match &args.rrd {
+        None => None,
+        Some(file) => {
+            let life = experiment.life(jobs.remove(0));
+            let options = RecordingOptions { file: Some(file.clone()), ..RecordingOptions::default() };
+            Some((Recorder::new(&options, scene(life.world))?, life))
+        }
+    };
+    let record = || -> Result<_, SettingsError> {
+        let Some((recorder, life)) = first else { return Ok((None, None)) };
+        let Recorded { trial, problem } = record(&life, recorder, is_cancelled)?;
+        trial.iter().for_each(|_| progress.step());
+        Ok((trial, problem))
+    };
+    let run = || experiment.run(jobs, is_cancelled, |_| progress.step());
+    let (first, others) = pool.install(|| rayon::join(record, run));
+    progress.finish();
+    let (first, problem) = first?;
+    Ok((first.into_iter().chain(others?).collect(), problem))
+}
+
 /// Runs the trials, and writes what came of them.
 fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     make_folder(&args.out)?;
     let is_cancelled = Arc::new(AtomicBool::new(false));
     let flag = is_cancelled.clone();
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
-    let threads = usize::from(args.threads.unwrap_or(0)); // 0: as many as there are cores
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot make threads")?;
-
-    let progress = Progress::new(experiment.jobs().len(), args.quiet);
-    let trials = pool.install(|| experiment.run(&is_cancelled, |_| progress.step()));
-    progress.finish();
-    let (trials, is_interrupted) = (trials?, is_cancelled.load(Ordering::Relaxed));
+    let (trials, problem) = trials(args, experiment, &is_cancelled)?;
+    let is_interrupted = is_cancelled.load(Ordering::Relaxed);
     if trials.is_empty() {
         say(stderr(), "interrupted before the first trial was finished: there is nothing to report");
         return Ok(ExitCode::from(130));
     }
     if args.save_worlds {
-        for world in &experiment.worlds {
+        let named = experiment.worlds.len() - args.generate.unwrap_or(0) as usize;
+        for world in &experiment.worlds[named..] {
             let path = args.out.join(format!("{}.toml", world.name()));
             write_file(&path, |file| file.write_all(world.to_toml().as_bytes()))?;
         }
@@ -144,7 +178,7 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
         estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
         strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
     };
-    let pictures: Vec<_> = experiment.worlds.iter().map(picture).collect();
+    let pictures: Vec<_> = experiment.worlds.iter().map(WorldPicture::of).collect();
     let report = Report::new(settings, trials);
     let files = report.write(&args.out, &pictures)?;
     if !args.quiet {
@@ -152,18 +186,8 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
         let names: Vec<_> = files.iter().filter_map(|file| file.file_name()?.to_str()).collect();
         say(stdout(), format_args!("written to {}: {}", args.out.display(), names.join(", ")));
     }
-    Ok(if is_interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
-}
-
-/// What a world looks like.
-fn picture(world: &GridSpec) -> WorldPicture {
-    let (frame, at) = (world.frame(), |cell: &geometry::Cell| (cell.x as usize, cell.y as usize));
-    let block = |block: &sim::grid::BlockSpec| (block.name.clone(), block.path.iter().map(at).collect());
-    WorldPicture {
-        name: world.name().to_owned(),
-        walls: world.walls().cells().chunks(frame.width()).map(<[bool]>::to_vec).collect(),
-        things: world.blocks().iter().map(block).collect(),
-        start: at(&world.start()),
-        sensor_radius: world.sensor_radius(),
+    if let Some(problem) = problem {
+        return Err(problem.into());
     }
+    Ok(if is_interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
 }

@@ -1,5 +1,6 @@
 //! Colours that stay apart for the colour-blind, and mean the same in every figure.
 
+use crate::report::REFERENCE;
 use plotters::style::RGBColor;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -11,7 +12,7 @@ const STRATEGIES: [(&str, RGBColor); 9] = [
     ("random", RGBColor(150, 150, 150)),
     ("coin", RGBColor(86, 180, 233)),
     ("information-gain", RGBColor(213, 94, 0)),
-    ("revisit", RGBColor(204, 121, 167)),
+    ("optimal-revisiting", RGBColor(204, 121, 167)),
     ("frontier", RGBColor(122, 92, 40)),
     ("oracle", RGBColor(0, 0, 0)),
 ];
@@ -46,4 +47,9 @@ pub(super) fn of_strategy(name: &str) -> RGBColor {
 /// The colour of a thing's cells.
 pub(super) fn of_thing(index: usize) -> RGBColor {
     THINGS[index % THINGS.len()]
+}
+
+/// Whether a strategy's curve is dashed: those that are shown to compare with.
+pub(super) fn is_dashed(name: &str) -> bool {
+    ["random", "coin", REFERENCE].contains(&name)
 }

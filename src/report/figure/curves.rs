@@ -8,10 +8,15 @@ use crate::report::run::StrategyResult;
 use crate::report::statistics::Estimate;
 use crate::report::wording::thousands;
 use plotters::chart::ChartContext;
+use plotters::coord::CoordTranslate;
 use plotters::coord::types::RangedCoordf64;
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use std::ops::Range;
 
+/// The width of the labels at the left, in pixels of the finished picture.
+const LEFT: i32 = 58;
 /// How strong the colour of a band is.
 pub(super) const BAND: f64 = 0.16;
 const GRID: RGBColor = RGBColor(225, 228, 233);
@@ -33,11 +38,11 @@ pub(super) fn draw<DB: DrawingBackend>(
     let curves = strategies.iter().map(|strategy| &strategy.curve(metric)[settled.min(steps.len())..]);
     let shown = range(metric, curves.flatten());
     let (above, _) = sheet.split_vertically(pen.px(34));
-    pen.write(&above, (LEFT, 18), 17, heading(metric))?;
+    pen.write(&above, (LEFT, 18), HPos::Left, 17, heading(metric))?;
     let mut chart = ChartBuilder::on(sheet)
         .margin_top(pen.px(34))
         .margin_right(pen.px(14))
-        .x_label_area_size(pen.px(48))
+        .x_label_area_size(pen.px(44))
         .y_label_area_size(pen.px(LEFT))
         .build_cartesian_2d(0.0..horizon as f64, shown.clone())
         .map_err(why)?;
@@ -59,17 +64,37 @@ pub(super) fn draw<DB: DrawingBackend>(
     for strategy in strategies.iter().rev() {
         band(&chart, steps, strategy.curve(metric), &shown, colours::of_strategy(&strategy.name))?;
     }
-    for strategy in strategies.iter().rev() {
-        let style = pen.line(colours::of_strategy(&strategy.name), 2);
-        for line in lines(steps, strategy.curve(metric), &shown) {
-            chart.plotting_area().draw(&PathElement::new(line, style)).map_err(why)?;
+    // What is dashed lies on top: a coin may go exactly as curious does.
+    for is_dashed in [false, true] {
+        let those =
+            strategies.iter().rev().filter(|strategy| colours::is_dashed(&strategy.name) == is_dashed);
+        for strategy in those {
+            let style = pen.line(colours::of_strategy(&strategy.name), 2);
+            for line in lines(steps, strategy.curve(metric), &shown) {
+                draw_line(chart.plotting_area(), pen, line, style, is_dashed)?;
+            }
         }
     }
     Ok(())
 }
 
-/// The width of the labels at the left, in pixels of the finished picture.
-const LEFT: i32 = 58;
+/// Draws a line, dashed or not.
+pub(super) fn draw_line<DB: DrawingBackend, C: CoordTranslate>(
+    area: &DrawingArea<DB, C>,
+    pen: &Pen,
+    line: Vec<C::From>,
+    style: ShapeStyle,
+    is_dashed: bool,
+) -> Result<(), String>
+where
+    C::From: Clone,
+{
+    if is_dashed {
+        area.draw(&DashedPathElement::new(line, pen.px(7), pen.px(4), style)).map_err(why)
+    } else {
+        area.draw(&PathElement::new(line, style)).map_err(why)
+    }
+}
 
 fn heading(metric: Metric) -> &'static str {
     match metric {
@@ -82,7 +107,7 @@ fn heading(metric: Metric) -> &'static str {
 
 /// What the axis spans: errors from 0, map quality up to 1.
 fn range<'a>(metric: Metric, settled: impl Iterator<Item = &'a Estimate>) -> Range<f64> {
-    let means = settled.map(|at| at.mean).filter(|mean| !mean.is_nan());
+    let means = settled.map(|at| at.mean).filter(|mean| mean.is_finite());
     let (low, high) =
         means.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), mean| (low.min(mean), high.max(mean)));
     if low > high {
@@ -105,8 +130,9 @@ fn band<DB: DrawingBackend>(
     shown: &Range<f64>,
     colour: RGBColor,
 ) -> Result<(), String> {
+    let is_known = |at: &Estimate| at.low.is_finite() && at.high.is_finite();
     let known: Vec<(f64, &Estimate)> =
-        steps.iter().map(|&step| step as f64).zip(curve).filter(|(_, at)| !at.low.is_nan()).collect();
+        steps.iter().map(|&step| step as f64).zip(curve).filter(|(_, at)| is_known(at)).collect();
     let cut = |value: f64| value.clamp(shown.start, shown.end);
     let upper = known.iter().map(|(step, at)| (*step, cut(at.high)));
     let lower = known.iter().rev().map(|(step, at)| (*step, cut(at.low)));
@@ -138,5 +164,28 @@ fn inside(a: (f64, f64), b: (f64, f64), shown: &Range<f64>) -> Option<[(f64, f64
         (x, y)
     };
     let is_outside = a.1.min(b.1) > shown.end || a.1.max(b.1) < shown.start;
-    (!a.1.is_nan() && !b.1.is_nan() && !is_outside).then(|| [cut(a, b), cut(b, a)])
+    (a.1.is_finite() && b.1.is_finite() && !is_outside).then(|| [cut(a, b), cut(b, a)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_ends_where_the_axis_does_and_breaks_where_nothing_is_known() {
+        let at = |mean| Estimate { count: 1, mean, low: f64::NAN, high: f64::NAN };
+        let curve = [2.0, 0.5, 0.25, f64::NAN, 0.5, 1.5, 3.0].map(at);
+        let found = lines(&[0, 3, 4, 5, 6, 8, 9], &curve, &(0.0..1.0));
+        assert_eq!(found, [vec![(2.0, 1.0), (3.0, 0.5), (4.0, 0.25)], vec![(6.0, 0.5), (7.0, 1.0)]]);
+    }
+
+    #[test]
+    fn the_beginning_does_not_stretch_an_axis() {
+        let at = |mean| Estimate { count: 1, mean, low: f64::NAN, high: f64::NAN };
+        let settled = [at(0.9), at(0.98), at(f64::NAN)];
+        let quality = range(Metric::MapQuality, settled.iter());
+        assert!((0.88..0.9).contains(&quality.start) && (1.0..1.01).contains(&quality.end), "{quality:?}");
+        assert_eq!(range(Metric::LogError, settled.iter()), 0.0..1.1 * 0.98);
+        assert_eq!(range(Metric::LogError, settled[2..].iter()), 0.0..1.0);
+    }
 }

@@ -5,16 +5,18 @@ mod colours;
 mod curves;
 mod pen;
 mod plan;
+mod vector;
 
 use super::metric::Metric;
 use super::run::Run;
-use super::wording::title;
+use super::wording::conditions;
 use super::{ONE_BY_ONE, Report, WorldPicture};
 use crate::output::write_file;
 use crate::pictures::PictureError;
 use crate::pictures::canvas::{Canvas, why};
 use pen::{Pen, Sheet, svg};
 use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +25,7 @@ const WIDTH: u32 = 1180;
 const MARGIN: i32 = 16;
 const TITLE: i32 = 46;
 const LEGEND_ROW: i32 = 26;
-const LEGEND_COLUMNS: usize = 6;
+const LEGEND_COLUMNS: usize = 5;
 const PANEL_HEIGHT: i32 = 360;
 
 /// Writes the figures as PNG and SVG. Returns the files.
@@ -113,7 +115,11 @@ impl Figure<'_> {
         sheet.fill(&WHITE).map_err(why)?;
         let sheet = sheet.margin(0, pen.px(MARGIN), pen.px(MARGIN), pen.px(MARGIN));
         let (head, rest) = sheet.split_vertically(pen.px(TITLE));
-        pen.write(&head, (MARGIN, TITLE / 2), 20, &title(self.run, &self.report.settings))?;
+        let title = format!("{}: {}", self.run.world, conditions(self.run, &self.report.settings));
+        pen.write(&head, (MARGIN, TITLE / 2), HPos::Left, 20, &title)?;
+        let over = if self.run.worlds > 1 { "worlds" } else { "trials" };
+        let note = format!("lines: means over {over}; bands: their 95 % confidence");
+        pen.write(&head, (WIDTH as i32 - 2 * MARGIN, TITLE / 2), HPos::Right, 15, &note)?;
         let (legend, panels) = rest.split_vertically(pen.px(self.legend_height()));
         self.legend(&legend, pen)?;
         let panels = panels.split_evenly((2, 2));
@@ -134,8 +140,10 @@ impl Figure<'_> {
             let middle = (index / LEGEND_COLUMNS) as i32 * LEGEND_ROW + LEGEND_ROW / 2;
             let colour = colours::of_strategy(&strategy.name);
             pen.bar(sheet, [left, middle - 7], [26, 14], &colour.mix(curves::BAND))?;
-            pen.bar(sheet, [left, middle - 1], [26, 3], &colour.mix(1.0))?;
-            pen.write(sheet, (left + 34, middle), 16, &strategy.name)?;
+            let line = [left, left + 26].map(|x| (pen.px(x), pen.px(middle)));
+            let is_dashed = colours::is_dashed(&strategy.name);
+            curves::draw_line(sheet, pen, line.into(), pen.line(colour, 2), is_dashed)?;
+            pen.write(sheet, (left + 34, middle), HPos::Left, 16, &strategy.name)?;
         }
         Ok(())
     }

@@ -1,6 +1,8 @@
 //! One way of drawing, for pixels and for vectors.
 
+use super::vector::Vector;
 use crate::pictures::canvas::{FONT, INK, px, register_fonts, why};
+use ab_glyph::FontRef;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::TextStyle;
@@ -36,15 +38,16 @@ impl Pen {
         (FONT, self.px(height)).into_font().color(&INK)
     }
 
-    /// Writes a line; `at` is the middle of its left side.
+    /// Writes a line; `at` is the middle of its left side, or of that which `anchor` tells.
     pub(super) fn write<DB: DrawingBackend>(
         &self,
         sheet: &Sheet<DB>,
         at: (i32, i32),
+        anchor: HPos,
         height: i32,
         text: &str,
     ) -> Result<(), String> {
-        let style = self.text(height).pos(Pos::new(HPos::Left, VPos::Center));
+        let style = self.text(height).pos(Pos::new(anchor, VPos::Center));
         let lower = if self.is_bitmap { self.px(height) / 4 } else { 0 };
         sheet.draw_text(text, &style, (self.px(at.0), self.px(at.1) + lower)).map_err(why)
     }
@@ -65,17 +68,17 @@ impl Pen {
 /// The text of an SVG file of `size` with what `draw` puts on it.
 pub(super) fn svg(
     size: [u32; 2],
-    draw: impl FnOnce(&Sheet<SVGBackend>) -> Result<(), String>,
+    draw: impl FnOnce(&Sheet<Vector>) -> Result<(), String>,
 ) -> Result<String, String> {
     register_fonts()?;
-    let [width, height] = size.map(|length| length * Pen::VECTOR.scale as u32);
-    let mut text = String::new();
-    let sheet = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
-    draw(&sheet)?;
-    sheet.present().map_err(why)?;
-    drop(sheet);
+    let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).map_err(why)?;
+    let drawn @ [width, height] = size.map(|length| length * Pen::VECTOR.scale as u32);
+    let mut elements = String::new();
+    draw(&Vector::new(drawn.into(), font, &mut elements).into_drawing_area())?;
     // Drawn large, shown in its size. Sharp corners of thick lines would show as spikes.
-    let drawn = format!("width=\"{width}\" height=\"{height}\"");
-    let shown = format!("width=\"{}\" height=\"{}\" stroke-linejoin=\"round\"", size[0], size[1]);
-    Ok(text.replacen(&drawn, &shown, 1))
+    Ok(format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" \
+         viewBox=\"0 0 {width} {height}\" stroke-linejoin=\"round\">\n{elements}</svg>\n",
+        size[0], size[1]
+    ))
 }

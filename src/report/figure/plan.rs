@@ -6,7 +6,9 @@ use crate::layer::CURIOUS;
 use crate::pictures::canvas::{INK, ink, why};
 use crate::report::WorldPicture;
 use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// The width of the legend beside a plan, in pixels of the finished picture.
 const LEGEND: i32 = 190;
@@ -22,7 +24,7 @@ pub(super) fn one<DB: DrawingBackend>(
     pen: &Pen,
     world: &WorldPicture,
 ) -> Result<(), String> {
-    pen.write(sheet, (16, 18), 17, "The world")?;
+    pen.write(sheet, (16, 18), HPos::Left, 17, "The world")?;
     let (width, _) = sheet.dim_in_pixel();
     let below = sheet.margin(pen.px(34), pen.px(14), pen.px(16), 0);
     let (left, _) = below.split_horizontally(width as i32 - pen.px(LEGEND + 16));
@@ -32,7 +34,7 @@ pub(super) fn one<DB: DrawingBackend>(
     let mut middle = 12;
     let mut row = |mark: &dyn Fn(i32) -> Result<(), String>, text: &str| {
         mark(middle)?;
-        pen.write(&legend, (26, middle), 15, text)?;
+        pen.write(&legend, (26, middle), HPos::Left, 15, text)?;
         middle += ROW;
         Ok::<_, String>(())
     };
@@ -67,20 +69,17 @@ pub(super) fn many<DB: DrawingBackend>(
         count if count > WORLDS => format!("{WORLDS} of the worlds"),
         _ => "The worlds".into(),
     };
-    pen.write(sheet, (16, 18), 17, &title)?;
+    pen.write(sheet, (16, 18), HPos::Left, 17, &title)?;
     let below = sheet.margin(pen.px(34), pen.px(8), pen.px(12), 0);
     let shown = worlds.len().min(WORLDS);
-    let columns = if shown <= 2 {
-        shown
-    } else if shown <= 6 {
-        3
-    } else {
-        4
+    let columns = match shown {
+        ..=2 => shown,
+        3..=6 => 3,
+        _ => 4,
     };
     let places = below.split_evenly((shown.div_ceil(columns), columns));
     for (place, world) in places.iter().zip(worlds) {
-        let name = pen.px(20);
-        cells(&place.margin(0, name, pen.px(6), pen.px(6)), pen, world)?;
+        cells(&place.margin(0, pen.px(16), pen.px(6), pen.px(6)), pen, world)?;
     }
     Ok(())
 }
@@ -94,51 +93,43 @@ fn cells<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &WorldPicture)
     // Borders of cells, rounded so that neighbours neither overlap nor leave a gap.
     let x = |column: f64| (column * side).round() as i32;
     let y = |row: f64| ((rows as f64 - row) * side).round() as i32;
-    let fill = |column: usize, row: usize, colour: RGBColor| {
-        let (column, row) = (column as f64, row as f64);
-        let corners = [(x(column), y(row + 1.0)), (x(column + 1.0), y(row))];
+    let fill = |columns: Range<usize>, rows: Range<usize>, colour: RGBColor| {
+        let corners =
+            [(x(columns.start as f64), y(rows.end as f64)), (x(columns.end as f64), y(rows.start as f64))];
         sheet.draw(&Rectangle::new(corners, colour.filled())).map_err(why)
     };
     for (index, (_, path)) in world.things.iter().enumerate() {
-        path.iter().try_for_each(|&(column, row)| fill(column, row, colours::of_thing(index)))?;
+        let colour = colours::of_thing(index);
+        path.iter().try_for_each(|&(column, row)| fill(column..column + 1, row..row + 1, colour))?;
+    }
+    let (right, bottom) = (x(columns as f64), y(0.0));
+    if side >= f64::from(pen.px(7)) {
+        let upright = (0..=columns).map(|column| [(x(column as f64), 0), (x(column as f64), bottom)]);
+        let level = (0..=rows).map(|row| [(0, y(row as f64)), (right, y(row as f64))]);
+        let thin = pen.line(GRID, 1);
+        upright.chain(level).try_for_each(|line| sheet.draw(&PathElement::new(line, thin)).map_err(why))?;
     }
     for (row, walls) in world.walls.iter().enumerate() {
-        walls
-            .iter()
-            .enumerate()
-            .filter(|(_, is_wall)| **is_wall)
-            .try_for_each(|(column, _)| fill(column, row, INK))?;
+        stretches(walls).try_for_each(|stretch| fill(stretch, row..row + 1, INK))?;
     }
-    let right = x(columns as f64);
-    let bottom = y(0.0);
-    if side >= f64::from(pen.px(7)) {
-        let thin = pen.line(GRID, 1);
-        for column in 0..=columns {
-            let line = [(x(column as f64), 0), (x(column as f64), bottom)];
-            sheet.draw(&PathElement::new(line, thin)).map_err(why)?;
-        }
-        for row in 0..=rows {
-            let line = [(0, y(row as f64)), (right, y(row as f64))];
-            sheet.draw(&PathElement::new(line, thin)).map_err(why)?;
-        }
+    // Upwards once more: where only rows touch, a hair of white would shine through.
+    for column in 0..columns {
+        let walls: Vec<bool> = world.walls.iter().map(|row| row.get(column) == Some(&true)).collect();
+        stretches(&walls).try_for_each(|stretch| fill(column..column + 1, stretch, INK))?;
     }
 
     let start = (world.start.0 as f64 + 0.5, world.start.1 as f64 + 0.5);
     let reach = f64::from(world.sensor_radius);
-    let on_ring = |part: i32| {
-        let angle_rad = TAU * f64::from(part) / 180.0;
-        (start.0 + reach * libm::cos(angle_rad), start.1 + reach * libm::sin(angle_rad))
-    };
-    let is_in = |(column, row): (f64, f64)| {
+    let ring: Vec<(f64, f64)> = (0..=180)
+        .map(|part| TAU * f64::from(part) / 180.0)
+        .map(|angle_rad| (start.0 + reach * libm::cos(angle_rad), start.1 + reach * libm::sin(angle_rad)))
+        .collect();
+    let is_in = |&(column, row): &(f64, f64)| {
         (0.0..=columns as f64).contains(&column) && (0.0..=rows as f64).contains(&row)
     };
-    let ring = pen.line(ink(CURIOUS), 2);
-    for ends in (0..180)
-        .map(|part| [on_ring(part), on_ring(part + 1)])
-        .filter(|ends| ends.iter().all(|at| is_in(*at)))
-    {
-        let line = ends.map(|(column, row)| (x(column), y(row)));
-        sheet.draw(&PathElement::new(line, ring)).map_err(why)?;
+    for arc in ring.chunk_by(|a, b| is_in(a) == is_in(b)).filter(|arc| is_in(&arc[0])) {
+        let line: Vec<(i32, i32)> = arc.iter().map(|&(column, row)| (x(column), y(row))).collect();
+        sheet.draw(&PathElement::new(line, pen.line(ink(CURIOUS), 2))).map_err(why)?;
     }
     let radius = (0.35 * side / f64::from(pen.px(1))).round().clamp(2.0, 6.0);
     dot(sheet, pen, (x(start.0), y(start.1)), radius as i32)?;
@@ -149,4 +140,13 @@ fn cells<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &WorldPicture)
 fn dot<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, at: (i32, i32), radius: i32) -> Result<(), String> {
     sheet.draw(&Circle::new(at, pen.px(radius + 1), WHITE.filled())).map_err(why)?;
     sheet.draw(&Circle::new(at, pen.px(radius), ink(CURIOUS).filled())).map_err(why)
+}
+
+/// Where one wall follows another.
+fn stretches(walls: &[bool]) -> impl Iterator<Item = Range<usize>> {
+    let mut end = 0;
+    walls.chunk_by(|a, b| a == b).filter_map(move |stretch| {
+        end += stretch.len();
+        stretch[0].then_some(end - stretch.len()..end)
+    })
 }

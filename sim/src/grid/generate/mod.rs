@@ -5,7 +5,7 @@ mod rooms;
 #[cfg(test)]
 mod tests;
 
-use super::spec::{BlockSpec, GridSpec, parts};
+use super::spec::{BlockSpec, GridSpec, MAX_DWELL, MAX_SENSOR_RADIUS, parts};
 use geometry::{Cell, Grid, GridFrame};
 use nalgebra::Point2;
 use rand::RngExt;
@@ -15,8 +15,6 @@ use std::ops::RangeInclusive;
 
 /// A map that had no room for all blocks is drawn anew, at most so often.
 const MAX_MAPS: usize = 20;
-/// Blocks that stand longer are of no interest, and this is what a file takes.
-const MAX_DWELL: u32 = 1_000_000;
 
 /// What random worlds are like. Pairs are the least and the most, both included; each world draws
 /// its own figure between them. Pairs the wrong way round are turned, and what makes no sense is
@@ -39,7 +37,7 @@ pub struct GenerateSettings {
     pub blocks: [u32; 2],
     /// The cells of a block's path; 2 to 1000.
     pub path_cells: [u32; 2],
-    /// The kinds of paths, each as likely as the others; none stands for all.
+    /// The kinds of paths to draw from; none stands for all.
     pub paths: Vec<PathKind>,
     /// The steps that a block stands on a cell, 1 to 1 000 000; each order of magnitude is as likely
     /// as the others.
@@ -54,7 +52,7 @@ impl Default for GenerateSettings {
         Self {
             width: [21, 31],
             height: [21, 27],
-            walls: [1, 4],
+            walls: [2, 5],
             opening: [1, 3],
             pillars: [0, 4],
             blocks: [2, 6],
@@ -121,11 +119,10 @@ fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut ChaCha8
         walls,
         blocks,
         start,
-        sensor_radius: settings.sensor_radius,
+        sensor_radius: settings.sensor_radius.clamp(1, MAX_SENSOR_RADIUS),
         block_chance: 1.0,
         robot_chance: 1.0,
     }
-    .with_sensor_radius(settings.sensor_radius)
 }
 
 fn block(settings: &GenerateSettings, number: usize, path: paths::Path, rng: &mut ChaCha8Rng) -> BlockSpec {

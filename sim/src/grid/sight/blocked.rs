@@ -8,7 +8,7 @@ pub(in crate::grid) struct BlockedCells {
     width: i32,
     height: i32,
     rim: usize,
-    /// The words of a row; two more than the widest look needs.
+    /// The words of a row; a look may begin in the last but one.
     stride: usize,
     words: Vec<u64>,
 }
@@ -17,7 +17,7 @@ impl BlockedCells {
     /// The walls, for a sensor of `radius`.
     pub(in crate::grid) fn new(walls: &Grid<bool>, radius: u32) -> Self {
         let (width, height, rim) = (walls.frame().width(), walls.frame().height(), radius as usize);
-        let stride = (width + 2 * rim + 64) / 64 + 2;
+        let stride = (width + 2 * rim) / 64 + 2;
         let words = vec![0; stride * (height + 2 * rim)];
         let mut blocked = Self { width: width as i32, height: height as i32, rim, stride, words };
         for (index, _) in walls.cells().iter().enumerate().filter(|(_, wall)| **wall) {

@@ -15,6 +15,7 @@ mod shadows;
 #[cfg(test)]
 mod tests;
 
+use super::spec::GridSpec;
 pub(super) use blocked::BlockedCells;
 use geometry::Cell;
 use shadows::{Reach, Shadows};
@@ -73,6 +74,22 @@ impl Sight {
                 shadows.corners[word * 64 + bit].unite(hidden, &shadows.words);
             });
         }
+    }
+}
+
+impl GridSpec {
+    /// For every cell the cells that the robot sees from there when no block is in the way, all by
+    /// their places in row-major order. From inside a wall it sees nothing.
+    pub fn sights(&self) -> Vec<Vec<usize>> {
+        let frame = self.frame();
+        let blocked = BlockedCells::new(self.walls(), self.sensor_radius());
+        let mut sight = Sight::new(self.sensor_radius());
+        let mut from = |index: usize| {
+            let seen = sight.look(&blocked, frame.cell(index));
+            seen.into_iter().filter_map(|(cell, _)| frame.index(cell)).collect()
+        };
+        let walls = self.walls().cells();
+        (0..frame.len()).map(|index| if walls[index] { Vec::new() } else { from(index) }).collect()
     }
 }
 

@@ -110,9 +110,12 @@ impl Shadows {
     /// Keeps the set of these places, the first the lowest and the last the highest.
     fn shadow(&mut self, places: Vec<usize>) -> Shadow {
         let (first, last) = (places[0] / 64, places[places.len() - 1] / 64);
-        let start = self.words.len() as u32;
-        self.words.extend_from_slice(&set(self.reach.len(), places)[first..=last]);
-        Shadow { first: first as u32, words: start..self.words.len() as u32 }
+        let start = self.words.len();
+        self.words.resize(start + last - first + 1, 0);
+        for place in places {
+            self.words[start + place / 64 - first] |= 1 << (place % 64);
+        }
+        Shadow { first: first as u32, words: start as u32..self.words.len() as u32 }
     }
 
     /// The sets of cells that lie outside of the grid, seen from `robot`.
@@ -127,11 +130,10 @@ impl Shadows {
 /// corners, and behind it. A line of sight goes on in x and in y, so that what is behind is farther in
 /// columns and rows together.
 fn behind_cell(offsets: &[Offset], (x, y): Offset) -> Vec<usize> {
-    let corners = [(-1, -1), (1, -1), (1, 1), (-1, 1)].map(|(dx, dy)| (2 * x + dx, 2 * y + dy));
-    let outermost = |side: i64| {
-        corners.into_iter().find(|&a| corners.iter().all(|&b| side * cross(a, b) >= 0)).unwrap_or((x, y))
-    };
-    let (low, high) = (outermost(1), outermost(-1));
+    let [corner, others @ ..] = [(-1, -1), (1, -1), (1, 1), (-1, 1)].map(|(dx, dy)| (2 * x + dx, 2 * y + dy));
+    let low = others.into_iter().fold(corner, |low, other| if cross(low, other) < 0 { other } else { low });
+    let high =
+        others.into_iter().fold(corner, |high, other| if cross(high, other) > 0 { other } else { high });
     let start = first_place(offsets, |offset| by_direction(offset, low).is_gt());
     let end = first_place(offsets, |offset| by_direction(offset, high).is_ge());
     let is_behind = |&place: &usize| steps(offsets[place]) > steps((x, y));

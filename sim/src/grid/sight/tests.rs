@@ -200,7 +200,7 @@ fn scene(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1500))]
+    #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
     fn sight_is_what_the_definition_says((walls, robot, radius) in scene(1..28, 1..=12)) {
@@ -228,7 +228,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(ProptestConfig::with_cases(6))]
 
     /// Where a row of the view takes more than one word.
     #[test]

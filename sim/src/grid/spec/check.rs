@@ -1,14 +1,11 @@
 //! From the file as written to a world that makes sense.
 
-use super::file::{BlockFile, GridFile};
+use super::file::{BlockFile, GridFile, Whole};
 use super::map::{Drawing, drawing};
-use super::{BlockSpec, Course, GridSpec, MAX_SENSOR_RADIUS, parts, path};
+use super::{BlockSpec, Course, GridSpec, MAX_DWELL, MAX_SENSOR_RADIUS, parts, path};
 use crate::error::{Source, WorldError};
 use serde_spanned::Spanned;
 use std::ops::RangeInclusive;
-
-/// A block that stands longer does not move in any run.
-const MAX_DWELL: u32 = 1_000_000;
 
 pub(super) fn check(source: &Source<'_>, file: &GridFile) -> Result<GridSpec, WorldError> {
     let name = source.name("", &file.name)?;
@@ -84,14 +81,13 @@ fn apart(
 fn whole(
     source: &Source<'_>,
     key: &str,
-    value: &Spanned<u32>,
+    value: &Whole,
     range: RangeInclusive<u32>,
 ) -> Result<u32, WorldError> {
-    let number = *value.get_ref();
-    if range.contains(&number) {
+    if let Some(number) = u32::try_from(*value.get_ref()).ok().filter(|number| range.contains(number)) {
         return Ok(number);
     }
-    let what = format!("`{key}` is {number}, which is out of range");
+    let what = format!("`{key}` is {}, which is out of range", value.get_ref());
     let help = format!("it must be a whole number from {} to {}", range.start(), range.end());
     Err(source.error(&what, (value.span(), "out of range"), &[], &help))
 }

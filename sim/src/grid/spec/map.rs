@@ -49,7 +49,7 @@ pub(super) fn drawing(source: &Source<'_>, file: &GridFile) -> Result<Drawing, W
                     start = Some((cell, place));
                 }
                 _ => {
-                    let what = format!("unknown character `{}` in the map", character.escape_default());
+                    let what = format!("unknown character `{}` in the map", character.escape_debug());
                     let help = "`#` is a wall, `.` is free, `R` is where the robot starts";
                     return Err(source.error(&what, (place, "not known here"), &[], help));
                 }
@@ -89,8 +89,8 @@ fn frame(source: &Source<'_>, file: &GridFile, rows: &[Row<'_>]) -> Result<GridF
     let width = rows.first().map_or(0, |row| row.text.chars().count());
     let height = rows.len();
     let said = |what: &str| {
-        let label = format!("{width} columns and {height} rows");
-        let help = "from 3 columns and 3 rows up to 4 million cells; one row of text is one row of cells";
+        let label = format!("{width} × {height} cells");
+        let help = "3 × 3 cells are the least, 4 million the most; one row of text is one row of cells";
         source.error(what, (file.map.span(), &label), &[], help)
     };
     for row in rows {

@@ -34,7 +34,9 @@ use geometry::{Cell, Grid, GridFrame};
 use std::path::Path;
 
 /// The farthest that a sensor can see, in cells.
-const MAX_SENSOR_RADIUS: u32 = 100;
+pub(super) const MAX_SENSOR_RADIUS: u32 = 100;
+/// A block that stands longer moves in no run worth while, steps.
+pub(super) const MAX_DWELL: u32 = 1_000_000;
 
 /// A grid world as its file describes it: every figure in range, every relation checked.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use super::file::{BlockFile, WayPoint};
 use super::{Course, map::Drawing};
 use crate::error::{Source, WorldError};
 use geometry::Cell;
-use serde_spanned::Spanned;
+use std::ops::Range;
 
 /// Longer paths are refused before anything is allocated for them.
 const MAX_CELLS: usize = 1_000_000;
@@ -18,7 +18,7 @@ pub(super) fn cells(
 ) -> Result<Vec<Cell>, WorldError> {
     let name = block.name.get_ref();
     let mut path: Vec<Cell> = Vec::new();
-    let mut previous: Option<&Spanned<WayPoint>> = None;
+    let mut previous: Option<&WayPoint> = None;
     for point in block.path.get_ref() {
         let end = cell(source, name, point, drawing)?;
         match (path.last().copied(), previous) {
@@ -87,13 +87,13 @@ fn close(source: &Source<'_>, block: &BlockFile, path: &mut Vec<Cell>) -> Result
 }
 
 /// The cell of a way point, if it is in the map.
-fn cell(
-    source: &Source<'_>,
-    name: &str,
-    point: &Spanned<WayPoint>,
-    drawing: &Drawing,
-) -> Result<Cell, WorldError> {
-    let WayPoint([x, y]) = *point.get_ref();
+fn cell(source: &Source<'_>, name: &str, point: &WayPoint, drawing: &Drawing) -> Result<Cell, WorldError> {
+    let &[x, y] = point.get_ref().as_slice() else {
+        let what = format!("a way point of the block `{name}` is not a cell");
+        let label = format!("{} numbers", point.get_ref().len()).replace("1 numbers", "1 number");
+        let help = "a cell is its column and its row, as in `[1, 2]`";
+        return Err(source.error(&what, (point.span(), &label), &[], help));
+    };
     let frame = drawing.walls.frame();
     match (i32::try_from(x), i32::try_from(y)) {
         (Ok(x), Ok(y)) if frame.contains(Cell::new(x, y)) => Ok(Cell::new(x, y)),
@@ -114,8 +114,8 @@ fn free(
     source: &Source<'_>,
     name: &str,
     cell: Cell,
-    point: &Spanned<WayPoint>,
-    marks: &[(std::ops::Range<usize>, &str)],
+    point: &WayPoint,
+    marks: &[(Range<usize>, &str)],
     drawing: &Drawing,
 ) -> Result<(), WorldError> {
     if drawing.walls.get(cell) == Some(&false) {
