@@ -44,6 +44,7 @@ pub(crate) struct Robot {
     rng: ChaCha8Rng,
     /// Steps to the goal from every cell; none from walls.
     distance: Vec<Option<u32>>,
+    goal: usize,
     stuck: u32,
     /// Steps at the goal, and calm or random ones in a row among them.
     at_goal: u32,
@@ -60,6 +61,7 @@ impl Robot {
             walls,
             rng,
             distance: vec![None; cells],
+            goal: 0,
             stuck: 0,
             at_goal: 0,
             calm: 0,
@@ -90,8 +92,14 @@ impl Robot {
                 at(cell).and_then(|index| self.distance[index]).is_some_and(|steps| Some(steps) < to_go)
                     && is_open(cell, &self.seen)
             });
-            self.stuck = if nearer.is_some() { 0 } else { self.stuck + 1 };
-            return nearer.unwrap_or(Step::Stay);
+            if let Some(nearer) = nearer {
+                self.stuck = 0;
+                return nearer;
+            }
+            // Something is in the way: around it.
+            self.stuck += 1;
+            self.measure();
+            return Step::Stay;
         }
         self.at_goal += 1;
         self.calm = if changed.is_empty() { self.calm + 1 } else { 0 };
@@ -132,14 +140,23 @@ impl Robot {
                 break index;
             }
         };
+        self.goal = goal;
+        self.measure();
+        (self.stuck, self.at_goal, self.calm) = (0, 0, 0);
+    }
+
+    /// Measures the way to the goal from everywhere, around what is known to stand there.
+    fn measure(&mut self) {
+        let frame = *self.walls.frame();
         self.distance.fill(None);
-        self.distance[goal] = Some(0);
-        let mut open = VecDeque::from([goal]);
+        self.distance[self.goal] = Some(0);
+        let mut open = VecDeque::from([self.goal]);
         while let Some(index) = open.pop_front() {
             let next = self.distance[index].map(|steps| steps + 1);
             for side in frame.cell(index).neighbours4() {
                 if let Some(side) = frame.index(side)
                     && !self.walls.cells()[side]
+                    && self.seen[side] != Some(true)
                     && self.distance[side].is_none()
                 {
                     self.distance[side] = next;
@@ -147,6 +164,5 @@ impl Robot {
                 }
             }
         }
-        (self.stuck, self.at_goal, self.calm) = (0, 0, 0);
     }
 }

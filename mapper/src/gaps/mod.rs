@@ -14,7 +14,6 @@ use crate::{CellStatistics, GapWorth};
 use fit::Evidence;
 pub(crate) use fit::Watch;
 pub(crate) use regularity::Regularity;
-use regularity::Stays;
 use table::Bins;
 
 /// Gaps are weighed anew when a cell was seen so much longer, or so much more happened, than when they
@@ -25,10 +24,14 @@ const GROWTH: f64 = 1.0 / 16.0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GapTable {
     bins: Bins,
-    stays: [Stays; 2],
+    /// The last stay in each state from an event in view to an event in view, in steps; 0 before the first.
+    stays: [f64; 2],
     worth: Watch,
+    left: ReadingIndex,
+    hidden: Watch,
     /// What was watched, with what the gaps are worth, when they were last weighed.
     own: Watch,
+    near: Watch,
     mixed: f64,
     /// The step when the gaps were last weighed, to start from.
     step: Option<Step>,
@@ -38,8 +41,24 @@ pub(crate) struct GapTable {
 
 impl GapTable {
     /// Adds a gap between two readings, `length` long, with whether the cell was blocked before and after.
-    pub(crate) fn add(&mut self, between: [ReadingIndex; 2], length: f64, blocked: [bool; 2]) {
+    pub(crate) fn add(&mut self, between: [ReadingIndex; 2], length: f64, blocked: [bool; 2], rest: f64, _period: f64) {
+        if self.left == between[0] + 1 && blocked[0] {
+            self.hidden.events[1] += 1.0;
+            self.hidden.steps[1] += 1.0;
+            self.bins.add([between[0] + 1, between[1]], rest, [false, blocked[1]]);
+            return;
+        }
         self.bins.add(between, length, blocked);
+    }
+
+    /// it left
+    pub(crate) fn left(&mut self, now: ReadingIndex) { self.left = now; }
+
+    /// was hidden by what stood next to it from a reading to a reading
+    pub(crate) fn unhide(&mut self, from: ReadingIndex, now: ReadingIndex, period: f64) {
+        let Some((length, blocked)) = self.bins.take_last(from, now) else { return };
+        self.hidden.steps[0] += length / period;
+        if blocked { self.hidden.events[0] += 1.0; }
     }
 
     /// The cell has been in another state, `after`, since the reading `since`: if that lies before the end of
@@ -50,11 +69,15 @@ impl GapTable {
 
     /// The cell stayed in a state for so many steps, from an event in view to an event in view.
     pub(crate) fn add_stay(&mut self, state: usize, steps: f64, regularity: &mut Regularity) {
-        regularity.add(&mut self.stays[state], state, steps);
+        let before = std::mem::replace(&mut self.stays[state], steps);
+        if before > 0.0 {
+            regularity.add(state, before, steps);
+        }
     }
 
     /// What was watched, with what the gaps are worth, when they were last weighed.
     pub(crate) fn own(&self) -> Watch {
+        if *tune::DIFFUSE > 0.0 { return self.own + Watch { events: self.near.events.map(|e| e * *tune::DIFFUSE), steps: self.near.steps.map(|e| e * *tune::DIFFUSE) }; }
         self.own
     }
 
@@ -95,7 +118,7 @@ impl GapTable {
     }
 
     fn fit(&mut self, seen: &CellStatistics, near: Watch, regularity: &Regularity) {
-        let watch = estimator::watch(seen);
+        let watch = estimator::watch(seen) + self.hidden;
         let prior = prior::of_neighbours(self.own, near);
         let start = self.step.unwrap_or_else(|| {
             // As slow as what was seen allows.
@@ -117,6 +140,7 @@ impl GapTable {
         self.step = Some(fit.step);
         self.mixed = fit.mixed;
         self.own = watch + fit.worth;
-        self.worth = fit.worth + prior;
+        self.near = prior;
+        self.worth = fit.worth + prior + self.hidden;
     }
 }

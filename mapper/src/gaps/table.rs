@@ -93,6 +93,15 @@ impl Bins {
         self.bins.iter().copied()
     }
 
+    /// Takes the last gap out if from free and between these readings
+    pub(super) fn take_last(&mut self, from: ReadingIndex, now: ReadingIndex) -> Option<(f64, bool)> {
+        let last = self.last?;
+        if last.end != now || last.before || !(last.start == from || last.start + 1 == from) { return None; }
+        self.take(last.length, last.before, last.after);
+        self.last = None;
+        Some((last.length, last.after))
+    }
+
     fn put(&mut self, length: f64, before: bool, after: bool) {
         let key = Bin::key(length, before, after);
         match self.bins.binary_search_by_key(&key, |bin| bin.key) {

@@ -40,6 +40,8 @@ pub(crate) struct Ledger {
     /// The gaps of every cell; empty if the estimator does not weigh them.
     gaps: Vec<GapTable>,
     regularity: Regularity,
+    /// in view moves of the open reading
+    moves: Vec<(u32, Option<ReadingIndex>)>,
     survival: Survival,
     transitions: Vec<Transition>,
     /// Cells that can be a goal, or are a surface that can be seen again.
@@ -59,6 +61,7 @@ impl Ledger {
             records: vec![Record::default(); cells],
             gaps: if estimator.weighs_gaps() { vec![GapTable::default(); cells] } else { Vec::new() },
             regularity: Regularity::default(),
+            moves: Vec::new(),
             survival: Survival::default(),
             transitions: Vec::new(),
             candidates: vec![false; cells],
@@ -76,6 +79,7 @@ impl Ledger {
     /// Opens the next reading and gives its number.
     pub(crate) fn open(&mut self, time: f64) -> ReadingIndex {
         self.transitions.clear();
+        self.moves.clear();
         self.times.push(time);
         self.recency.open();
         self.now_index()
@@ -238,6 +242,10 @@ impl Ledger {
             {
                 table.add_stay(event, stayed / period, &mut self.regularity);
             }
+            if in_view && (after == CellState::Blocked || record.is_whole) {
+                let stood_from = (after != CellState::Blocked).then_some(record.since + 1);
+                self.moves.push((index as u32, stood_from));
+            }
             record.is_whole = in_view;
             record.since = until;
             if in_view { record.in_view[event] += 1 } else { record.after_gap[event] += 1 }
@@ -254,6 +262,32 @@ impl Ledger {
         for neighbour in cell.neighbours4() {
             if let Some(neighbour) = self.frame().index(neighbour) {
                 self.judge_candidate(neighbour);
+            }
+        }
+    }
+
+    /// hidden moves
+    pub(crate) fn infer_moves(&mut self) {
+        if self.gaps.is_empty() { return; }
+        if *crate::gaps::tune::INFER == 0.0 { return; }
+        let now = self.now_index();
+        let period = self.period(now);
+        for position in 0..self.moves.len() {
+            let (index, stood_from) = self.moves[position];
+            let cell = self.frame().cell(index as usize);
+            match stood_from {
+                None => for near in cell.neighbours4() {
+                    let Some(near) = self.frame().index(near) else { continue };
+                    if self.state(near) == CellState::Blocked && self.last(near) + 1 == now && self.records[near].is_known() {
+                        self.gaps[near].left(now);
+                    }
+                },
+                Some(from) => for near in cell.neighbours8() {
+                    let Some(near) = self.frame().index(near) else { continue };
+                    if self.last(near) == now && period > 0.0 && *crate::gaps::tune::INFER > 1.0 {
+                        self.gaps[near].unhide(from, now, period);
+                    }
+                },
             }
         }
     }
@@ -287,9 +321,10 @@ impl Ledger {
             let times = &self.times;
             record.watched[place(before)] += times[last as usize] - times[record.since as usize];
             record.gaps[place(before)] += 1;
+            let period = if now > PRIOR + 1 { (times[now as usize] - times[PRIOR as usize + 1]) / f64::from(now - PRIOR - 1) } else { 0.0 };
             if let Some(table) = self.gaps.get_mut(index) {
                 let length = times[now as usize] - times[last as usize];
-                table.add([last, now], length, [before, after].map(|state| state == CellState::Blocked));
+                table.add([last, now], length, [before, after].map(|state| state == CellState::Blocked), times[now as usize] - times[last as usize + 1], period);
             }
         } else {
             record.first = now;
@@ -308,9 +343,13 @@ impl Ledger {
         if !self.gaps[index].is_due(&seen) {
             return;
         }
-        let near = self.frame().cell(index).neighbours8();
-        let near = near.into_iter().filter_map(|near| self.frame().index(near));
-        let near = near.fold(Watch::default(), |sum, near| sum + self.gaps[near].own());
+        let radius = *crate::gaps::tune::RADIUS as i32;
+        let cell = self.frame().cell(index);
+        let mut near = Watch::default();
+        for y in -radius..=radius { for x in -radius..=radius {
+            if x == 0 && y == 0 { continue; }
+            if let Some(k) = self.frame().index(Cell::new(cell.x + x, cell.y + y)) { near = near + self.gaps[k].own(); }
+        }}
         self.gaps[index].weigh(self.estimator, &seen, near, &self.regularity);
     }
 

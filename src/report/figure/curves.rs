@@ -20,12 +20,17 @@ const LEFT: i32 = 58;
 /// How strong the colour of a band is.
 pub(super) const BAND: f64 = 0.16;
 const GRID: RGBColor = RGBColor(225, 228, 233);
-/// The first part of a run, when nothing is known yet, does not stretch the axis.
+/// The first part of a run, when nothing is known yet, does not stretch the axis of values.
 const BEGINNING: f64 = 0.03;
+/// An axis of the logarithm of steps reaches back to this part of a run.
+const EARLIEST: f64 = 0.003;
 
 type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Draws the axes and the curves of `metric`: means over bands, the first strategy on top.
+///
+/// Steps are on a line, as in the paper; for the log error on a logarithmic one, since most is
+/// learned early.
 pub(super) fn draw<DB: DrawingBackend>(
     sheet: &Sheet<DB>,
     pen: &Pen,
@@ -33,10 +38,22 @@ pub(super) fn draw<DB: DrawingBackend>(
     steps: &[u64],
     strategies: &[StrategyResult],
 ) -> Result<(), String> {
-    let horizon = steps.last().copied().unwrap_or(0).max(1);
-    let settled = steps.iter().take_while(|&&step| (step as f64) < BEGINNING * horizon as f64).count();
-    let curves = strategies.iter().map(|strategy| &strategy.curve(metric)[settled.min(steps.len())..]);
-    let shown = range(metric, curves.flatten());
+    let horizon = steps.last().copied().unwrap_or(0).max(1) as f64;
+    let before = |part: f64| steps.iter().take_while(|&&step| (step as f64) < part * horizon).count();
+    let is_log = metric == Metric::LogError;
+    let (first, settled) = if is_log { (before(EARLIEST), before(EARLIEST)) } else { (0, before(BEGINNING)) };
+    let place = |step: f64| if is_log { libm::log10(step.max(1.0)) } else { step };
+    let places: Vec<f64> = steps[first..].iter().map(|&step| place(step as f64)).collect();
+    let reach = if is_log { places.first().copied().unwrap_or(0.0) } else { 0.0 }..place(horizon).max(1e-9);
+    let curve = |strategy: &StrategyResult| strategy.curve(metric)[first..].to_vec();
+    let shown = range(metric, strategies.iter().flat_map(|strategy| &strategy.curve(metric)[settled..]));
+    let step_label = |place: &f64| match is_log {
+        false => thousands(*place as u64),
+        // Between the powers of ten there are only lines.
+        true if (place - place.round()).abs() > 1e-6 => String::new(),
+        true => thousands(libm::exp10(*place).round() as u64),
+    };
+
     let (above, _) = sheet.split_vertically(pen.px(34));
     pen.write(&above, (LEFT, 18), HPos::Left, 17, heading(metric))?;
     let mut chart = ChartBuilder::on(sheet)
@@ -44,7 +61,7 @@ pub(super) fn draw<DB: DrawingBackend>(
         .margin_right(pen.px(14))
         .x_label_area_size(pen.px(44))
         .y_label_area_size(pen.px(LEFT))
-        .build_cartesian_2d(0.0..horizon as f64, shown.clone())
+        .build_cartesian_2d(reach, shown.clone())
         .map_err(why)?;
     chart
         .configure_mesh()
@@ -52,17 +69,17 @@ pub(super) fn draw<DB: DrawingBackend>(
         .bold_line_style(pen.line(GRID, 1))
         .x_labels(6)
         .y_labels(6)
-        .x_label_formatter(&|step| thousands(*step as u64))
+        .x_label_formatter(&step_label)
         .y_label_formatter(&|value| format!("{}", (value * 1e4).round() / 1e4))
         .label_style(pen.text(15))
         .axis_desc_style(pen.text(15))
         .axis_style(pen.line(INK, 1))
         .set_all_tick_mark_size(pen.px(4))
-        .x_desc("steps")
+        .x_desc(if is_log { "steps, logarithmic" } else { "steps" })
         .draw()
         .map_err(why)?;
     for strategy in strategies.iter().rev() {
-        band(&chart, steps, strategy.curve(metric), &shown, colours::of_strategy(&strategy.name))?;
+        band(&chart, &places, &curve(strategy), &shown, colours::of_strategy(&strategy.name))?;
     }
     // What is dashed lies on top: a coin may go exactly as curious does.
     for is_dashed in [false, true] {
@@ -70,7 +87,7 @@ pub(super) fn draw<DB: DrawingBackend>(
             strategies.iter().rev().filter(|strategy| colours::is_dashed(&strategy.name) == is_dashed);
         for strategy in those {
             let style = pen.line(colours::of_strategy(&strategy.name), 2);
-            for line in lines(steps, strategy.curve(metric), &shown) {
+            for line in lines(&places, &curve(strategy), &shown) {
                 draw_line(chart.plotting_area(), pen, line, style, is_dashed)?;
             }
         }
@@ -125,17 +142,17 @@ fn range<'a>(metric: Metric, settled: impl Iterator<Item = &'a Estimate>) -> Ran
 /// The band between the ends of the intervals, cut to what is shown.
 fn band<DB: DrawingBackend>(
     chart: &Chart<DB>,
-    steps: &[u64],
+    places: &[f64],
     curve: &[Estimate],
     shown: &Range<f64>,
     colour: RGBColor,
 ) -> Result<(), String> {
     let is_known = |at: &Estimate| at.low.is_finite() && at.high.is_finite();
     let known: Vec<(f64, &Estimate)> =
-        steps.iter().map(|&step| step as f64).zip(curve).filter(|(_, at)| is_known(at)).collect();
+        places.iter().copied().zip(curve).filter(|(_, at)| is_known(at)).collect();
     let cut = |value: f64| value.clamp(shown.start, shown.end);
-    let upper = known.iter().map(|(step, at)| (*step, cut(at.high)));
-    let lower = known.iter().rev().map(|(step, at)| (*step, cut(at.low)));
+    let upper = known.iter().map(|(place, at)| (*place, cut(at.high)));
+    let lower = known.iter().rev().map(|(place, at)| (*place, cut(at.low)));
     let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
     if known.len() < 2 {
         return Ok(());
@@ -144,8 +161,8 @@ fn band<DB: DrawingBackend>(
 }
 
 /// The mean as lines: cut where they leave what is shown, broken where there is no mean.
-fn lines(steps: &[u64], curve: &[Estimate], shown: &Range<f64>) -> Vec<Vec<(f64, f64)>> {
-    let points: Vec<(f64, f64)> = steps.iter().zip(curve).map(|(&step, at)| (step as f64, at.mean)).collect();
+fn lines(places: &[f64], curve: &[Estimate], shown: &Range<f64>) -> Vec<Vec<(f64, f64)>> {
+    let points: Vec<(f64, f64)> = places.iter().zip(curve).map(|(&place, at)| (place, at.mean)).collect();
     let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
     for piece in points.windows(2).filter_map(|ends| inside(ends[0], ends[1], shown)) {
         match lines.last_mut() {
@@ -175,7 +192,7 @@ mod tests {
     fn a_line_ends_where_the_axis_does_and_breaks_where_nothing_is_known() {
         let at = |mean| Estimate { count: 1, mean, low: f64::NAN, high: f64::NAN };
         let curve = [2.0, 0.5, 0.25, f64::NAN, 0.5, 1.5, 3.0].map(at);
-        let found = lines(&[0, 3, 4, 5, 6, 8, 9], &curve, &(0.0..1.0));
+        let found = lines(&[0.0, 3.0, 4.0, 5.0, 6.0, 8.0, 9.0], &curve, &(0.0..1.0));
         assert_eq!(found, [vec![(2.0, 1.0), (3.0, 0.5), (4.0, 0.25)], vec![(6.0, 0.5), (7.0, 1.0)]]);
     }
 
