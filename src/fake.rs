@@ -1,7 +1,9 @@
 //! A made-up run for tests: four rooms, a robot that drives a tour, another that goes back and
 //! forth, and scans from a few lines of geometry. No physics, no agent.
 
-use crate::view::{Level, Message, ObstacleView, Outline, RobotView, Scene, Scores, StrategyView, View};
+use crate::view::{
+    Level, Message, ObstacleView, Outline, RobotView, Scene, Scores, Sight, StrategyView, View,
+};
 use geometry::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -75,7 +77,7 @@ impl FakeRun {
             speed_mps,
         };
         Self {
-            scene: Scene { title: "fake rooms".into(), walls },
+            scene: Scene { title: "fake rooms".into(), place: "house", walls, ..Scene::default() },
             mapper: Mapper::new(&MapperSettings::default(), frame).unwrap(),
             step: 0,
             curious: driver(&tour, 0.5),
@@ -154,12 +156,12 @@ impl FakeRun {
     pub(crate) fn with_view<T>(&mut self, look: impl FnOnce(&View) -> T) -> T {
         let features = self.mapper.features();
         let goal = self.curious.waypoints[self.curious.next % self.curious.waypoints.len()];
-        let robot = |name, driver: &Driver, reading| RobotView {
+        let robot = |name, driver: &Driver, is_curious: bool| RobotView {
             name,
             pose: driver.pose,
             radius_m: RADIUS_M,
-            is_curious: reading == Some(&self.reading),
-            reading,
+            is_curious,
+            sight: is_curious.then_some(Sight::Laser(&self.reading)),
         };
         let wave = |phase: f64| 1.0 + libm::sin(self.time_s() / 60.0 + phase);
         let strategy = |name, phase: f64| StrategyView {
@@ -173,18 +175,16 @@ impl FakeRun {
             (0..self.mapper.frame().len()).step_by(7).filter(|&cell| self.mapper.was_ever_seen(cell)).count();
         let coverage = 7.0 * seen as f64 / self.mapper.frame().len() as f64;
         look(&View {
-            time_s: self.time_s(),
+            time: self.time_s(),
             step: self.step,
             features,
             mapper: &self.mapper,
-            robots: &[
-                robot("curious", &self.curious, Some(&self.reading)),
-                robot("dummy", &self.dummy, None),
-            ],
+            robots: &[robot("curious", &self.curious, true), robot("dummy", &self.dummy, false)],
             obstacles: &[ObstacleView { name: "toy", outline: &toy, is_present: self.time_s() > 20.0 }],
             path: &[Point2::from(self.curious.pose.translation.vector), goal],
             goal: Some(goal),
             scores: Some(Scores { coverage, map_quality: 0.98 * coverage }),
+            rate_errors: None,
             strategies: &[strategy("recency", 0.0), strategy("poisson", 2.0), strategy("random", 4.0)],
             messages: &self.messages,
         })

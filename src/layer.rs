@@ -1,6 +1,7 @@
 //! The maps as a person looks at them: every cell gets a class, and every class a colour and a
 //! meaning. The recording and the pictures share them, so that a colour means the same in both.
 
+use crate::view::TimeUnit;
 use geometry::CellState;
 use mapper::Mapper;
 
@@ -84,31 +85,34 @@ impl Layer {
     }
 
     /// The title above the map.
-    pub fn title(self) -> &'static str {
+    pub fn title(self, unit: TimeUnit) -> String {
         match self {
-            Self::Occupancy => "Occupancy",
-            Self::Interval => "Change interval: seconds per cycle",
-            Self::ChangeProbability => "Probability of a change since last seen",
-            Self::Recency => "Recency: seconds since last seen",
+            Self::Occupancy => "Occupancy".into(),
+            Self::Interval => format!("Change interval: {} per cycle", unit.plural()),
+            Self::ChangeProbability => "Probability of a change since last seen".into(),
+            Self::Recency => format!("Recency: {} since last seen", unit.plural()),
         }
     }
 
     /// The scale of the colour bar; `None` for the occupancy.
-    pub fn scale(self) -> Option<Scale> {
-        match self {
-            Self::Occupancy => None,
+    pub fn scale(self, unit: TimeUnit) -> Option<Scale> {
+        match (self, unit) {
+            (Self::Occupancy, _) => None,
             // A door, a robot passing, a chair: two decades around half a minute.
-            Self::Interval => Some(Scale { low: 5.0, high: 500.0, is_log: true }),
-            Self::ChangeProbability => Some(Scale { low: 0.0, high: 1.0, is_log: false }),
-            Self::Recency => Some(Scale { low: 1.0, high: 1000.0, is_log: true }),
+            (Self::Interval, TimeUnit::Second) => Some(Scale { low: 5.0, high: 500.0, is_log: true }),
+            // A cell's way of a block that moves in every step, or one that stands for hundreds.
+            (Self::Interval, TimeUnit::Step) => Some(Scale { low: 5.0, high: 2000.0, is_log: true }),
+            (Self::ChangeProbability, _) => Some(Scale { low: 0.0, high: 1.0, is_log: false }),
+            (Self::Recency, TimeUnit::Second) => Some(Scale { low: 1.0, high: 1000.0, is_log: true }),
+            (Self::Recency, TimeUnit::Step) => Some(Scale { low: 1.0, high: 5000.0, is_log: true }),
         }
     }
 
     /// The marks of the colour bar: value and text.
-    pub fn ticks(self) -> &'static [(f64, &'static str)] {
-        match self {
-            Self::Occupancy => &[],
-            Self::Interval => &[
+    pub fn ticks(self, unit: TimeUnit) -> &'static [(f64, &'static str)] {
+        match (self, unit) {
+            (Self::Occupancy, _) => &[],
+            (Self::Interval, TimeUnit::Second) => &[
                 (5.0, "5"),
                 (10.0, "10"),
                 (20.0, "20"),
@@ -117,17 +121,20 @@ impl Layer {
                 (200.0, "200"),
                 (500.0, "500"),
             ],
-            Self::ChangeProbability => {
+            (Self::Interval, TimeUnit::Step) => {
+                &[(5.0, "5"), (20.0, "20"), (50.0, "50"), (200.0, "200"), (500.0, "500"), (2000.0, "2000")]
+            }
+            (Self::ChangeProbability, _) => {
                 &[(0.0, "0"), (0.25, "0.25"), (0.5, "0.5"), (0.75, "0.75"), (1.0, "1")]
             }
-            Self::Recency => &[(1.0, "1"), (10.0, "10"), (100.0, "100"), (1000.0, "1000")],
+            (Self::Recency, _) => &[(1.0, "1"), (10.0, "10"), (100.0, "100"), (1000.0, "1000")],
         }
     }
 
     /// The class of every cell of the mapper's frame in row-major order.
-    pub fn classes(self, mapper: &Mapper) -> Vec<u8> {
+    pub fn classes(self, mapper: &Mapper, unit: TimeUnit) -> Vec<u8> {
         let states = mapper.states().cells();
-        let Some(scale) = self.scale() else {
+        let Some(scale) = self.scale(unit) else {
             return states.iter().map(|&state| plain(state)).collect();
         };
         if self == Self::Recency {
@@ -139,10 +146,10 @@ impl Layer {
         }
         let mut classes: Vec<u8> = states.iter().map(|&state| plain(state)).collect();
         for index in mapper.changed() {
-            let interval_s = mapper.interval(index);
-            if interval_s.is_finite() {
+            let interval = mapper.interval(index);
+            if interval.is_finite() {
                 classes[index] = scale.class(match self {
-                    Self::Interval => interval_s,
+                    Self::Interval => interval,
                     _ => mapper.change_probability(index),
                 });
             }
@@ -178,11 +185,11 @@ impl Layer {
         (FIRST..FIRST + STEPS).collect()
     }
 
-    /// The unit of the marks.
-    pub fn unit(self) -> &'static str {
+    /// A mark of the colour bar with its unit.
+    pub fn with_unit(self, mark: &str, unit: TimeUnit) -> String {
         match self {
-            Self::Interval | Self::Recency => " s",
-            Self::Occupancy | Self::ChangeProbability => "",
+            Self::Interval | Self::Recency => format!("{mark} {}", unit.symbol()),
+            Self::Occupancy | Self::ChangeProbability => mark.into(),
         }
     }
 
@@ -201,17 +208,18 @@ impl Layer {
     }
 
     /// Every class that a cell can have, with what it means.
-    pub fn legend(self) -> Vec<(u8, String)> {
+    pub fn legend(self, unit: TimeUnit) -> Vec<(u8, String)> {
         let mut legend = self.plain_legend();
-        if let Some(scale) = self.scale() {
+        if let Some(scale) = self.scale(unit) {
+            let symbol = unit.symbol();
             legend.extend((0..STEPS).map(|step| {
                 let edge = |step: u8| scale.value(f64::from(step) / f64::from(STEPS));
                 let (from, to) = (edge(step), edge(step + 1));
                 let text = match self {
                     Self::ChangeProbability => format!("{:.0}–{:.0} %", 100.0 * from, 100.0 * to),
-                    _ if step == STEPS - 1 => format!("{from:.0} s or more"),
-                    _ if to < 20.0 => format!("{from:.1}–{to:.1} s"),
-                    _ => format!("{from:.0}–{to:.0} s"),
+                    _ if step == STEPS - 1 => format!("{from:.0} {symbol} or more"),
+                    _ if to < 20.0 => format!("{from:.1}–{to:.1} {symbol}"),
+                    _ => format!("{from:.0}–{to:.0} {symbol}"),
                 };
                 (FIRST + step, text)
             }));
@@ -232,10 +240,16 @@ fn plain(state: CellState) -> u8 {
 mod tests {
     use super::*;
 
+    const UNITS: [TimeUnit; 2] = [TimeUnit::Second, TimeUnit::Step];
+
+    fn all() -> impl Iterator<Item = (Layer, TimeUnit)> {
+        Layer::ALL.into_iter().flat_map(|layer| UNITS.map(|unit| (layer, unit)))
+    }
+
     #[test]
     fn a_scale_and_its_inverse_agree() {
-        for layer in Layer::ALL {
-            let Some(scale) = layer.scale() else { continue };
+        for (layer, unit) in all() {
+            let Some(scale) = layer.scale(unit) else { continue };
             for step in 0..=20 {
                 let place = f64::from(step) / 20.0;
                 assert!((scale.place(scale.value(place)) - place).abs() < 1e-12);
@@ -249,7 +263,8 @@ mod tests {
     #[test]
     fn a_cycle_of_27_s_looks_unlike_half_and_double() {
         let interval = Layer::Interval;
-        let colour = |seconds: f64| interval.colour(interval.scale().unwrap().class(seconds)).map(i32::from);
+        let scale = interval.scale(TimeUnit::Second).unwrap();
+        let colour = |seconds: f64| interval.colour(scale.class(seconds)).map(i32::from);
         let apart = |a: [i32; 3], b: [i32; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).max().unwrap();
         assert!(apart(colour(27.0), colour(13.5)) > 60, "{:?} {:?}", colour(27.0), colour(13.5));
         assert!(apart(colour(27.0), colour(54.0)) > 60, "{:?} {:?}", colour(27.0), colour(54.0));
@@ -259,19 +274,19 @@ mod tests {
     fn every_class_has_one_meaning() {
         let mut run = crate::fake::FakeRun::new();
         (0..600).for_each(|_| run.step());
-        for layer in Layer::ALL {
-            let mut classes: Vec<u8> = layer.legend().iter().map(|(class, _)| *class).collect();
+        for (layer, unit) in all() {
+            let mut classes: Vec<u8> = layer.legend(unit).iter().map(|(class, _)| *class).collect();
             classes.sort_unstable();
             assert!(classes.windows(2).all(|pair| pair[0] < pair[1]));
-            assert!(layer.classes(&run.mapper).iter().all(|class| classes.contains(class)));
+            assert!(layer.classes(&run.mapper, unit).iter().all(|class| classes.contains(class)));
         }
     }
 
     #[test]
     fn ticks_lie_on_their_scale() {
-        for layer in Layer::ALL {
-            for (value, _) in layer.ticks() {
-                let scale = layer.scale().unwrap();
+        for (layer, unit) in all() {
+            for (value, _) in layer.ticks(unit) {
+                let scale = layer.scale(unit).unwrap();
                 assert!((scale.low..=scale.high).contains(value));
             }
         }

@@ -15,6 +15,7 @@ mod fake;
 pub mod layer;
 pub mod metrics;
 pub mod observer;
+pub mod oracle;
 pub mod output;
 pub mod pictures;
 pub mod pilot;
@@ -22,6 +23,7 @@ pub mod recording;
 pub mod report;
 pub mod ros_map;
 pub mod summary;
+pub mod trials;
 pub mod view;
 pub mod worlds;
 

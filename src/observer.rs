@@ -6,7 +6,8 @@ use crate::pilot::{Now, Pilot};
 use crate::recording::{Recorder, RecordingError};
 use crate::summary::CurvePoint;
 use crate::view::{
-    Level, Message, ObstacleView, Outline, RobotView, Scene, Scores, StrategyView, Trail, View,
+    Level, Message, ObstacleView, Outline, RobotView, Scene, Scores, Sight, StrategyView, TimeUnit, Trail,
+    View,
 };
 use geometry::{LaserReading, Twist};
 use mapper::Mapper;
@@ -55,6 +56,8 @@ impl Observer {
     pub fn scene(world: &PhysicsWorld) -> Scene {
         Scene {
             title: world.spec().name().to_owned(),
+            place: "house",
+            unit: TimeUnit::Second,
             walls: world.walls().map(|corners| corners.to_vec()).collect(),
         }
     }
@@ -169,7 +172,7 @@ impl Observer {
                 pose: robot.pose,
                 radius_m: robot.radius_m,
                 is_curious: robot.is_driven,
-                reading: robot.sweep.map(|sweep| &sweep.reading),
+                sight: robot.sweep.map(|sweep| Sight::Laser(&sweep.reading)),
             })
             .collect();
         let present: Vec<&str> = world.obstacles().map(|obstacle| obstacle.name).collect();
@@ -184,18 +187,10 @@ impl Observer {
                 is_present: present.contains(&obstacle.name.as_str()),
             })
             .collect();
-        let strategies: Vec<StrategyView> = pilot
-            .strategies(now.features)
-            .into_iter()
-            .map(|strategy| StrategyView {
-                name: strategy.name,
-                value: strategy.value.unwrap_or(0.0),
-                share: strategy.share,
-                is_current: strategy.is_current,
-            })
-            .collect();
+        let strategies: Vec<StrategyView> =
+            pilot.strategies(now.features).into_iter().map(StrategyView::from).collect();
         log(&View {
-            time_s: now.mapper.time(),
+            time: now.mapper.time(),
             step: now.mapper.readings() as u64,
             mapper: now.mapper,
             features: now.features,
@@ -204,6 +199,7 @@ impl Observer {
             path: pilot.path(),
             goal: pilot.goal(),
             scores: self.scores(),
+            rate_errors: None,
             strategies: &strategies,
             messages: &self.messages,
         })

@@ -1,17 +1,50 @@
 //! What a run looks like, as plain data: all that the recording and the pictures are told.
 
-use geometry::LaserReading;
+use crate::pilot::StrategyState;
+use geometry::{CellReading, LaserReading};
 use mapper::{Features, Mapper};
 use nalgebra::{Isometry2, Point2};
 
 /// The corners of a polygon, m; the last is joined to the first.
 pub type Outline = Vec<Point2<f64>>;
 
+/// What time is counted in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TimeUnit {
+    /// Seconds of simulated time.
+    #[default]
+    Second,
+    /// Steps of a grid world, in which nothing happens in between.
+    Step,
+}
+
+impl TimeUnit {
+    /// The unit as a word, as in "many seconds".
+    pub fn plural(self) -> &'static str {
+        match self {
+            Self::Second => "seconds",
+            Self::Step => "steps",
+        }
+    }
+
+    /// The unit behind a number.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Second => "s",
+            Self::Step => "steps",
+        }
+    }
+}
+
 /// What stays the same for a whole run.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// What is run, for a person: the name of the world.
     pub title: String,
+    /// What kind of place it is, as in "the house".
+    pub place: &'static str,
+    /// What time is counted in.
+    pub unit: TimeUnit,
     /// The walls.
     pub walls: Vec<Outline>,
 }
@@ -19,9 +52,9 @@ pub struct Scene {
 /// A run at one instant.
 #[derive(Clone, Copy)]
 pub struct View<'a> {
-    /// Simulated time, s.
-    pub time_s: f64,
-    /// The number of readings so far.
+    /// Simulated time, in the unit of the [`Scene`].
+    pub time: f64,
+    /// The number of readings so far; where time is counted in steps, that time.
     pub step: u64,
     /// The map and what was learned of its changes.
     pub mapper: &'a Mapper,
@@ -37,10 +70,19 @@ pub struct View<'a> {
     pub goal: Option<Point2<f64>>,
     /// How right the map is; `None` where that was not measured.
     pub scores: Option<Scores>,
+    /// How wrong the rates of change are; `None` where that is not measured.
+    pub rate_errors: Option<RateErrors>,
     /// The agent's strategies, in an order that never changes; empty while a person drives.
     pub strategies: &'a [StrategyView<'a>],
     /// What happened since the last view.
     pub messages: &'a [Message],
+}
+
+impl<'a> View<'a> {
+    /// What the curious robot sees.
+    pub fn sight(&self) -> Option<Sight<'a>> {
+        self.robots.iter().find(|robot| robot.is_curious)?.sight
+    }
 }
 
 /// One robot at one instant.
@@ -54,8 +96,22 @@ pub struct RobotView<'a> {
     pub radius_m: f64,
     /// Whether it is the curious robot, and not part of the place.
     pub is_curious: bool,
-    /// Its last scan.
-    pub reading: Option<&'a LaserReading>,
+    /// What it sees.
+    pub sight: Option<Sight<'a>>,
+}
+
+/// What a robot sees.
+#[derive(Clone, Copy, Debug)]
+pub enum Sight<'a> {
+    /// By a laser: its last scan.
+    Laser(&'a LaserReading),
+    /// Cell by cell.
+    Cells {
+        /// What it sees now.
+        reading: &'a CellReading,
+        /// How far it sees at most, cells.
+        radius: u32,
+    },
 }
 
 /// A thing that may appear or go.
@@ -78,6 +134,17 @@ pub struct Scores {
     pub map_quality: f64,
 }
 
+/// How wrong the rates of change are, as the metrics define it; not a number while nothing has
+/// changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RateErrors {
+    /// Mean of |estimate − truth| / truth over the cells that truly change.
+    pub relative: f64,
+    /// Mean of |ln(estimate / truth)|, cut to a factor of ten, per moving thing and then over the
+    /// things.
+    pub log: f64,
+}
+
 /// One strategy of the agent at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct StrategyView<'a> {
@@ -89,6 +156,14 @@ pub struct StrategyView<'a> {
     pub share: f64,
     /// Whether it chose the present goal.
     pub is_current: bool,
+}
+
+impl From<StrategyState> for StrategyView<'static> {
+    /// A strategy about which nothing was learned is worth nothing.
+    fn from(state: StrategyState) -> Self {
+        let StrategyState { name, value, share, is_current } = state;
+        Self { name, value: value.unwrap_or(0.0), share, is_current }
+    }
 }
 
 /// How much a [`Message`] matters.

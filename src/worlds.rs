@@ -1,14 +1,24 @@
 //! The worlds that ship with the program, so that it runs from any folder.
 
 use sim::WorldError;
+use sim::grid::GridSpec;
 use sim::physics::WorldSpec;
 use std::path::Path;
 
-/// The name and the text of every shipped world; the first is the default.
+/// The name and the text of every shipped physics world; the first is the default.
 pub const SHIPPED: [(&str, &str); 3] = [
     ("four_rooms", include_str!("../worlds/four_rooms.toml")),
     ("toy_on_the_floor", include_str!("../worlds/toy_on_the_floor.toml")),
     ("turned_house", include_str!("../worlds/turned_house.toml")),
+];
+
+/// The name and the text of every shipped grid world; the first is the default.
+pub const SHIPPED_GRID: [(&str, &str); 5] = [
+    ("two_blocks", include_str!("../worlds/two_blocks.toml")),
+    ("open_hall", include_str!("../worlds/open_hall.toml")),
+    ("corridor_with_doors", include_str!("../worlds/corridor_with_doors.toml")),
+    ("many_slow_blocks", include_str!("../worlds/many_slow_blocks.toml")),
+    ("one_fast_block", include_str!("../worlds/one_fast_block.toml")),
 ];
 
 /// The name and the text of the shipped tour.
@@ -25,6 +35,16 @@ pub enum LoadError {
         /// The names of the shipped worlds.
         shipped: String,
     },
+    /// A shipped world, but not one for this program.
+    #[error("`{name}` is a {kind} world: it is for the program {program}")]
+    OtherKind {
+        /// As given.
+        name: String,
+        /// What kind of world it is.
+        kind: &'static str,
+        /// The program that runs it.
+        program: &'static str,
+    },
     /// The file is not a world.
     #[error(transparent)]
     World(#[from] WorldError),
@@ -34,17 +54,41 @@ pub enum LoadError {
 ///
 /// # Errors
 ///
-/// When there is no such file either, or it is not a world.
+/// When there is no such file either, or it is not a world of this kind.
 pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
-    if let Some((name, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
-        return Ok(WorldSpec::parse(&format!("{name}.toml"), text)?);
+    if SHIPPED_GRID.iter().any(|(grid, _)| *grid == name) {
+        return Err(LoadError::OtherKind { name: name.to_owned(), kind: "grid", program: "grid_world" });
+    }
+    find(name, &SHIPPED, WorldSpec::parse, |path| WorldSpec::load(path))
+}
+
+/// The grid world that `name` stands for, as [`load`].
+///
+/// # Errors
+///
+/// As [`load`].
+pub fn load_grid(name: &str) -> Result<GridSpec, LoadError> {
+    if SHIPPED.iter().any(|(physics, _)| *physics == name) {
+        return Err(LoadError::OtherKind { name: name.to_owned(), kind: "physics", program: "four_rooms" });
+    }
+    find(name, &SHIPPED_GRID, GridSpec::parse, |path| GridSpec::load(path))
+}
+
+fn find<T>(
+    name: &str,
+    shipped: &[(&str, &str)],
+    parse: impl Fn(&str, &str) -> Result<T, WorldError>,
+    load: impl Fn(&Path) -> Result<T, WorldError>,
+) -> Result<T, LoadError> {
+    if let Some((name, text)) = shipped.iter().find(|(shipped, _)| *shipped == name) {
+        return Ok(parse(&format!("{name}.toml"), text)?);
     }
     let path = Path::new(name);
     if !path.exists() {
-        let shipped = SHIPPED.map(|(name, _)| name).join(", ");
-        return Err(LoadError::Unknown { name: name.to_owned(), shipped });
+        let names: Vec<&str> = shipped.iter().map(|(name, _)| *name).collect();
+        return Err(LoadError::Unknown { name: name.to_owned(), shipped: names.join(", ") });
     }
-    Ok(WorldSpec::load(path)?)
+    Ok(load(path)?)
 }
 
 #[cfg(test)]
@@ -56,6 +100,10 @@ mod tests {
         for (name, _) in SHIPPED {
             load(name).unwrap_or_else(|error| panic!("{error}"));
         }
+        for (name, _) in SHIPPED_GRID {
+            let world = load_grid(name).unwrap_or_else(|error| panic!("{error}"));
+            assert!(world.warnings().is_empty(), "{:?}", world.warnings());
+        }
     }
 
     #[test]
@@ -63,7 +111,7 @@ mod tests {
         let files = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/worlds")).unwrap();
         for file in files.map(|file| file.unwrap().path()) {
             let name = file.file_stem().unwrap().to_str().unwrap().to_owned();
-            let is_shipped = SHIPPED.iter().any(|(shipped, _)| *shipped == name);
+            let is_shipped = SHIPPED.iter().chain(&SHIPPED_GRID).any(|(shipped, _)| *shipped == name);
             assert!(is_shipped || name.ends_with(".tour"), "{name} is not in the list");
         }
     }

@@ -1,7 +1,7 @@
 //! How long the next goal takes on a house of 12 × 12 m in cells of 0.05 m, all of it seen, with
 //! 2000 cells that ever changed: once per goal, so every few seconds of a robot's life.
 
-use agent::{Agent, AgentSettings, StrategyChoice};
+use agent::{Agent, AgentSettings, AsTheCrowFlies, StrategyChoice};
 use geometry::{Cell, CellReading, GridFrame};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
@@ -31,7 +31,7 @@ fn house() -> Mapper {
     mapper
 }
 
-#[divan::bench(args = ["recency", "poisson", "random", "curious"])]
+#[divan::bench(args = ["recency", "poisson", "random", "curious", "frontier", "optimal-revisiting"])]
 fn next_goal(bencher: divan::Bencher, strategy: &str) {
     let mut mapper = house();
     let settings = AgentSettings { patch_cells: 10, ..Default::default() };
@@ -43,6 +43,6 @@ fn next_goal(bencher: divan::Bencher, strategy: &str) {
         for _ in 0..50 {
             agent.watch(features, &[]);
         }
-        agent.next_goal(&mapper, &pose)
+        agent.next_goal(&mapper, &pose, &mut AsTheCrowFlies)
     });
 }

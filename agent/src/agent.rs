@@ -1,6 +1,8 @@
-use crate::goal::GoalSampler;
-use crate::{AgentSettings, Chooser, Reward, SettingsError, Situation, Strategy, StrategyChoice, Trajectory};
-use geometry::{Cell, Transition};
+use crate::goal::{Goal, GoalSampler};
+use crate::{
+    AgentSettings, Chooser, Reward, SettingsError, Situation, Strategy, StrategyChoice, Trajectory, Travel,
+};
+use geometry::Transition;
 use mapper::{Features, Mapper};
 use nalgebra::Isometry2;
 use rand_chacha::ChaCha8Rng;
@@ -23,6 +25,8 @@ pub struct Agent {
     strategies: Vec<Box<dyn Strategy>>,
     chooser: Box<dyn Chooser>,
     goals: GoalSampler,
+    /// The time to each cell, for strategies that ask for it.
+    travel: Vec<f64>,
     reward: Reward,
     rng: ChaCha8Rng,
     /// The strategy that sampled the present goal.
@@ -73,6 +77,7 @@ impl Agent {
             strategies,
             chooser,
             goals: GoalSampler::new(settings.patch_cells),
+            travel: Vec::new(),
             reward: settings.reward,
             rng,
             current: None,
@@ -98,9 +103,13 @@ impl Agent {
     /// Ends the trajectory to the last goal, learns from it, chooses a strategy and samples the
     /// next goal: a cell of the grid that [can be a goal](Mapper::is_candidate), or, if there is
     /// none yet, the robot's own cell.
-    pub fn next_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>) -> Cell {
+    pub fn next_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, travel: &mut impl Travel) -> Goal {
         self.learn();
-        let situation = Situation::new(mapper, pose, self.features);
+        self.travel.clear();
+        if self.strategies.iter().any(|strategy| strategy.needs_travel()) {
+            travel.times(mapper, pose, &mut self.travel);
+        }
+        let situation = Situation::new(mapper, pose, self.features).with_travel(&self.travel);
         let strategy = self.chooser.choose(&situation, &mut self.rng);
         self.current = Some(strategy);
         self.tallies[strategy].goals += 1;

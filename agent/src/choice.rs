@@ -1,4 +1,7 @@
-use crate::{AgentSettings, Always, Chooser, Coin, Curious, Poisson, Random, Recency, Strategy};
+use crate::{
+    AgentSettings, Always, Chooser, Coin, Curious, Frontier, OptimalRevisiting, Poisson, Random, Recency,
+    Strategy,
+};
 use rand_chacha::ChaCha8Rng;
 use std::num::NonZeroUsize;
 
@@ -17,6 +20,10 @@ pub enum StrategyChoice {
     Random,
     /// [`Recency`] or [`Poisson`] by a fair coin.
     Coin,
+    /// [`Frontier`] alone.
+    Frontier,
+    /// [`OptimalRevisiting`] alone.
+    OptimalRevisiting,
 }
 
 /// The strategies and the chooser over them.
@@ -24,7 +31,15 @@ pub(crate) type Parts = (Vec<Box<dyn Strategy>>, Box<dyn Chooser>);
 
 impl StrategyChoice {
     /// Every choice.
-    pub const ALL: [Self; 5] = [Self::Curious, Self::Recency, Self::Poisson, Self::Random, Self::Coin];
+    pub const ALL: [Self; 7] = [
+        Self::Curious,
+        Self::Recency,
+        Self::Poisson,
+        Self::Random,
+        Self::Coin,
+        Self::Frontier,
+        Self::OptimalRevisiting,
+    ];
 
     /// The name on the command line and in files.
     pub fn name(self) -> &'static str {
@@ -34,6 +49,8 @@ impl StrategyChoice {
             Self::Poisson => "poisson",
             Self::Random => "random",
             Self::Coin => "coin",
+            Self::Frontier => "frontier",
+            Self::OptimalRevisiting => "optimal-revisiting",
         }
     }
 
@@ -52,6 +69,8 @@ impl StrategyChoice {
             Self::Recency => only(Recency),
             Self::Poisson => only(Poisson),
             Self::Random => only(Random),
+            Self::Frontier => only(Frontier::new(settings.sensor_radius_m)),
+            Self::OptimalRevisiting => only(OptimalRevisiting::new(settings.sensor_radius_m)),
             Self::Coin => (papers(), Box::new(Coin(const { NonZeroUsize::new(2).unwrap() }))),
         }
     }
@@ -103,7 +122,8 @@ mod tests {
     fn an_unknown_name_is_answered_with_the_known_ones() {
         assert_eq!(
             "Curius".parse::<StrategyChoice>().unwrap_err().to_string(),
-            "no strategy is called `Curius`; there are curious, recency, poisson, random, coin"
+            "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, frontier, \
+             optimal-revisiting"
         );
     }
 }

@@ -8,7 +8,7 @@
 //! where there is no candidate, it is the robot's own cell.
 
 use crate::draw::proportional;
-use crate::{Situation, Strategy};
+use crate::{Pick, Situation, Stay, Strategy};
 use geometry::Cell;
 use mapper::Mapper;
 use rand::RngExt;
@@ -17,6 +17,15 @@ use rand_chacha::ChaCha8Rng;
 /// Larger weights count as this much: far above any time in seconds, and so far below the largest
 /// number that no sum over a map overflows.
 const MAX_WEIGHT: f64 = 1e200;
+
+/// Where to go next, and what to do there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// Where to go.
+    pub cell: Cell,
+    /// What to do there.
+    pub stay: Stay,
+}
 
 /// Samples goals; keeps its scratch space from goal to goal.
 #[derive(Clone, Debug)]
@@ -53,13 +62,35 @@ impl GoalSampler {
         strategy: &mut dyn Strategy,
         situation: &Situation,
         rng: &mut ChaCha8Rng,
-    ) -> Cell {
+    ) -> Goal {
         let mapper = situation.mapper;
         self.weights.clear();
         self.weights.resize(mapper.frame().len(), 0.0);
         strategy.weigh(situation, &mut self.weights);
-        self.gather(mapper);
-        self.draw(mapper, rng).unwrap_or_else(|| situation.cell())
+        let best = match strategy.pick() {
+            Pick::Patch => None,
+            Pick::Best => self.best(mapper, rng),
+        };
+        let cell = best.unwrap_or_else(|| {
+            self.gather(mapper);
+            self.draw(mapper, rng).unwrap_or_else(|| situation.cell())
+        });
+        Goal { cell, stay: strategy.stay(cell) }
+    }
+
+    /// The candidate of the largest weight, any of several; `None` where none is above zero.
+    fn best(&self, mapper: &Mapper, rng: &mut ChaCha8Rng) -> Option<Cell> {
+        let (mut best, mut largest, mut ties) = (None, 0.0, 0);
+        for (index, &weight) in self.weights.iter().enumerate() {
+            // A weight that is not a number is not larger than any.
+            if weight >= largest && weight > 0.0 && mapper.is_candidate(index) {
+                ties = if weight > largest { 1 } else { ties + 1 };
+                if weight > largest || rng.random_range(0..ties) == 0 {
+                    (best, largest) = (Some(index), weight);
+                }
+            }
+        }
+        best.map(|index| mapper.frame().cell(index))
     }
 
     /// A candidate by the weights of the patches; `None` where there is no candidate.

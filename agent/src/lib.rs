@@ -15,12 +15,18 @@ mod goal;
 mod settings;
 mod situation;
 mod strategies;
+mod survey;
 mod tile_coder;
+mod travel;
+#[allow(dead_code)] // until a strategy that looks ahead is here
+mod view;
 
 pub use agent::{Agent, Tally};
 pub use choice::{StrategyChoice, UnknownStrategy};
 pub use choosers::{Always, Chooser, Coin, Curious, Trajectory};
+pub use goal::Goal;
 pub use settings::{AgentSettings, CuriousSettings, Reward, SettingsError};
 pub use situation::Situation;
-pub use strategies::{Poisson, Random, Recency, Strategy};
+pub use strategies::{Frontier, OptimalRevisiting, Pick, Poisson, Random, Recency, Stay, Strategy};
 pub use tile_coder::TileCoder;
+pub use travel::{AsTheCrowFlies, Travel};

@@ -31,6 +31,8 @@ impl Reward {
 pub struct AgentSettings {
     /// The side of the square patches that goal weights are averaged over, in cells.
     pub patch_cells: usize,
+    /// How far the robot sees, m, for the strategies that ask what comes into view from where.
+    pub sensor_radius_m: f64,
     /// What counts as a map update.
     pub reward: Reward,
     /// Settings of the learner over strategies.
@@ -39,7 +41,12 @@ pub struct AgentSettings {
 
 impl Default for AgentSettings {
     fn default() -> Self {
-        Self { patch_cells: 5, reward: Reward::default(), curious: CuriousSettings::default() }
+        Self {
+            patch_cells: 5,
+            sensor_radius_m: 10.0,
+            reward: Reward::default(),
+            curious: CuriousSettings::default(),
+        }
     }
 }
 
@@ -80,10 +87,13 @@ pub struct SettingsError {
 
 impl AgentSettings {
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
-        let Self { patch_cells, reward: _, ref curious } = *self;
+        let Self { patch_cells, sensor_radius_m, reward: _, ref curious } = *self;
         let error = |key, expected, found: String| Err(SettingsError { key, expected, found });
         if !(1..=1000).contains(&patch_cells) {
             return error("patch_cells", "from 1 to 1000", patch_cells.to_string());
+        }
+        if !(1e-3..=1e6).contains(&sensor_radius_m) {
+            return error("sensor_radius_m", "from 0.001 to 1000000", sensor_radius_m.to_string());
         }
         if !(1..=1000).contains(&curious.tilings) {
             return error("curious.tilings", "from 1 to 1000", curious.tilings.to_string());
@@ -145,7 +155,7 @@ mod tests {
         }
         assert_eq!(
             message("patches = 3"),
-            "unknown field `patches`, expected one of `patch_cells`, `reward`, `curious`"
+            "unknown field `patches`, expected one of `patch_cells`, `sensor_radius_m`, `reward`, `curious`"
         );
         assert_eq!(
             message("reward = 'joy'"),

@@ -11,7 +11,7 @@ pub enum Status {
     Idle,
     /// It drives to its goal.
     Travelling,
-    /// It explores around its goal.
+    /// It explores around its goal, or watches there.
     Exploring,
     /// It is done with its goal, rests and waits for another.
     Finished(Outcome),
@@ -51,17 +51,30 @@ enum Task {
     /// A goal that came since the last tick.
     Start {
         goal: Point2<f64>,
-        explore: bool,
+        then: Then,
     },
     Travel {
         journey: Journey,
-        explore: bool,
+        then: Then,
     },
     Explore(Exploring),
+    Watch {
+        goal: Point2<f64>,
+        outcome: Outcome,
+        until: f64,
+    },
     Done {
         goal: Point2<f64>,
         outcome: Outcome,
     },
+}
+
+/// What to do at the goal.
+#[derive(Clone, Copy, Debug)]
+enum Then {
+    Explore,
+    /// Stand there for so long.
+    Watch(f64),
 }
 
 /// Local exploration around a goal that was reached, or as nearly as could be.
@@ -88,12 +101,18 @@ impl<D: Drive> Controller<D> {
     /// Gives a goal in the map's frame, m: to drive there, then explore around it. Replaces any
     /// other. A goal outside of the map counts as the nearest point in it.
     pub fn set_goal(&mut self, goal: Point2<f64>) {
-        self.start(goal, true);
+        self.start(goal, Then::Explore);
     }
 
     /// As [`set_goal`](Self::set_goal), without local exploration: for a tour.
     pub fn go_to(&mut self, goal: Point2<f64>) {
-        self.start(goal, false);
+        self.watch_at(goal, 0.0);
+    }
+
+    /// As [`set_goal`](Self::set_goal), but to stand at the goal for `duration` (s; steps in a grid
+    /// world) instead of exploring around it.
+    pub fn watch_at(&mut self, goal: Point2<f64>, duration: f64) {
+        self.start(goal, Then::Watch(duration));
     }
 
     /// Takes the goal back; the robot rests.
@@ -108,8 +127,22 @@ impl<D: Drive> Controller<D> {
         self.surroundings = None;
     }
 
-    fn start(&mut self, goal: Point2<f64>, explore: bool) {
-        self.task = Task::Start { goal, explore };
+    /// Writes how long it takes to get from the robot to each cell, in row-major order, s (steps in
+    /// a grid world), at full speed along the ways that the planner prefers; ∞ where none is known.
+    /// To be asked after the tick's [`drive`](Self::drive), which takes the map's changes in. Costs a
+    /// wave over the whole map.
+    pub fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>) {
+        let body = self.drive.body();
+        times.clear();
+        times.resize(situation.map.frame().len(), f64::INFINITY);
+        if let Some(surroundings) = &mut self.surroundings {
+            surroundings.planner.lengths_m(situation.map, &situation.position(), times);
+            times.iter_mut().for_each(|time| *time /= body.speed_mps);
+        }
+    }
+
+    fn start(&mut self, goal: Point2<f64>, then: Then) {
+        self.task = Task::Start { goal, then };
         self.path.clear();
     }
 
@@ -118,7 +151,7 @@ impl<D: Drive> Controller<D> {
         match self.task {
             Task::None => Status::Idle,
             Task::Start { .. } | Task::Travel { .. } => Status::Travelling,
-            Task::Explore(_) => Status::Exploring,
+            Task::Explore(_) | Task::Watch { .. } => Status::Exploring,
             Task::Done { outcome, .. } => Status::Finished(outcome),
         }
     }
@@ -127,9 +160,10 @@ impl<D: Drive> Controller<D> {
     pub fn goal(&self) -> Option<&Point2<f64>> {
         match &self.task {
             Task::None => None,
-            Task::Start { goal, .. } | Task::Explore(Exploring { goal, .. }) | Task::Done { goal, .. } => {
-                Some(goal)
-            }
+            Task::Start { goal, .. }
+            | Task::Explore(Exploring { goal, .. })
+            | Task::Watch { goal, .. }
+            | Task::Done { goal, .. } => Some(goal),
             Task::Travel { journey, .. } => Some(journey.target()),
         }
     }
@@ -148,13 +182,16 @@ impl<D: Drive> Controller<D> {
         let mut surroundings = self.look(situation);
         let command = match std::mem::replace(&mut self.task, Task::None) {
             Task::None => self.rest(situation, &surroundings),
-            Task::Start { goal, explore } => {
+            Task::Start { goal, then } => {
                 let limit_s = self.settings.patience.goal_limit_s;
                 let journey = Journey::new(situation, goal, f64::INFINITY, limit_s);
-                self.travel(situation, &mut surroundings, journey, explore)
+                self.travel(situation, &mut surroundings, journey, then)
             }
-            Task::Travel { journey, explore } => self.travel(situation, &mut surroundings, journey, explore),
+            Task::Travel { journey, then } => self.travel(situation, &mut surroundings, journey, then),
             Task::Explore(exploring) => self.explore(situation, &mut surroundings, exploring),
+            Task::Watch { goal, outcome, until } => {
+                self.watch(situation, &surroundings, goal, outcome, until)
+            }
             done @ Task::Done { .. } => {
                 self.task = done;
                 self.rest(situation, &surroundings)
@@ -189,13 +226,13 @@ impl<D: Drive> Controller<D> {
         situation: &Situation,
         surroundings: &mut Surroundings,
         mut journey: Journey,
-        explore: bool,
+        then: Then,
     ) -> D::Command {
         let patience = &self.settings.patience;
         let outcome = match journey.drive(patience, situation, surroundings, &mut self.path, &mut self.drive)
         {
             Progress::Underway(command) => {
-                self.task = Task::Travel { journey, explore };
+                self.task = Task::Travel { journey, then };
                 return command;
             }
             Progress::Arrived(Reach { is_goal: true, .. }) => Outcome::Reached,
@@ -203,11 +240,29 @@ impl<D: Drive> Controller<D> {
             Progress::GivenUp => Outcome::GivenUp,
         };
         let goal = *journey.target();
-        if outcome == Outcome::GivenUp || !explore {
-            self.finish(situation, surroundings, goal, outcome)
-        } else {
-            self.step(situation, surroundings, goal, outcome, Exploration::default())
+        match then {
+            _ if outcome == Outcome::GivenUp => self.finish(situation, surroundings, goal, outcome),
+            Then::Explore => self.step(situation, surroundings, goal, outcome, Exploration::default()),
+            Then::Watch(duration) => {
+                self.watch(situation, surroundings, goal, outcome, situation.time + duration)
+            }
         }
+    }
+
+    fn watch(
+        &mut self,
+        situation: &Situation,
+        surroundings: &Surroundings,
+        goal: Point2<f64>,
+        outcome: Outcome,
+        until: f64,
+    ) -> D::Command {
+        if situation.time >= until {
+            return self.finish(situation, surroundings, goal, outcome);
+        }
+        self.task = Task::Watch { goal, outcome, until };
+        self.path.clear();
+        self.rest(situation, surroundings)
     }
 
     fn explore(

@@ -7,6 +7,8 @@ pub struct Body {
     pub radius_m: f64,
     /// How it gets from cell to cell.
     pub moves: Moves,
+    /// How fast it gets on, m/s.
+    pub speed_mps: f64,
     /// It has arrived at a point when it is this near, m.
     pub tolerance_m: f64,
     /// The length of a step of local exploration, m: a robot's diameter, or a cell.

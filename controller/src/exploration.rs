@@ -100,6 +100,7 @@ mod tests {
         let body = Body {
             radius_m: 0.0,
             moves: Moves::Four,
+            speed_mps: 1.0,
             tolerance_m: 0.1,
             stride_m: 1.0,
             directions: 4,

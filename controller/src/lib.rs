@@ -7,8 +7,9 @@
 //! [`Controller`] is all that a loop needs: give it a goal, and at every tick a [`Situation`].
 //! It knows neither how the map is learned nor which world it is in: a [`Drive`] tells what the
 //! robot's body is like and turns paths into that world's commands. [`DiffDrive`] is the one for
-//! the physics world.
+//! the physics world, [`CellDrive`] the one for the grid world.
 
+mod cell_drive;
 mod controller;
 mod costmap;
 mod diff_drive;
@@ -25,6 +26,7 @@ mod settings;
 mod situation;
 mod wavefront;
 
+pub use cell_drive::CellDrive;
 pub use controller::{Controller, Outcome, Status};
 pub use costmap::{CLOSED, Costmap, DIAGONAL, MAX_PRICE, Moves, OPEN, STRAIGHT};
 pub use diff_drive::{DiffDrive, DiffDriveSettings};

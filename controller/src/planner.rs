@@ -1,4 +1,4 @@
-use crate::costmap::{Costmap, Moves, line};
+use crate::costmap::{Costmap, Moves, STRAIGHT, line};
 use crate::inflation::{Inflation, InflationSettings};
 use crate::path::{Path, corners};
 use crate::wavefront::Wavefront;
@@ -132,6 +132,22 @@ impl Planner {
         self.reach = Some(reach);
         self.remember(start);
         Some(reach)
+    }
+
+    /// Writes the length of the way from `from` to each cell that can be reached, in row-major order,
+    /// m; what the costmap charges more for counts as longer. Leaves the others as they are. The last
+    /// path is forgotten.
+    pub fn lengths_m(&mut self, map: &Grid<CellState>, from: &Point2<f64>, lengths_m: &mut [f64]) {
+        self.forget();
+        let frame = *self.costmap().frame();
+        let Some(start) = self.exit(map, frame.cell_at(from)) else { return };
+        self.wavefront.spread(self.inflation.costmap(), start, None);
+        let unit_m = frame.resolution_m() / f64::from(STRAIGHT);
+        for (index, length_m) in lengths_m.iter_mut().enumerate().take(frame.len()) {
+            if let Some(cost) = self.wavefront.cost(frame.cell(index)) {
+                *length_m = f64::from(cost) * unit_m;
+            }
+        }
     }
 
     /// The nearest open cell that nothing blocked hides from the robot's.

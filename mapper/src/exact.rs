@@ -19,6 +19,7 @@ impl Evidence for CellReading {
                 ledger.turn(index, state, now, in_view);
             }
         }
+        ledger.infer_moves();
         Ok(())
     }
 }

@@ -5,9 +5,11 @@
 //! is in proportion to the cells that the reading touches and the cells that ever changed, not to
 //! the map.
 
+mod chain;
 mod estimator;
 mod exact;
 mod footprint;
+mod gaps;
 mod ledger;
 mod naive;
 mod outline;
@@ -18,7 +20,7 @@ mod steady;
 
 pub use estimator::Estimator;
 pub use settings::{MapperSettings, OccupancyModel, SettingsError, SteadySettings};
-pub use statistics::CellStatistics;
+pub use statistics::{CellStatistics, GapWorth};
 
 use geometry::{CellState, Grid, GridFrame, LaserReading, Reading, ScanError, Transition};
 use ledger::Ledger;
@@ -212,6 +214,21 @@ impl Mapper {
     #[inline]
     pub fn change_probability(&self, index: usize) -> f64 {
         estimator::change_probability(self.recency(index), self.rate(index))
+    }
+
+    /// The rates at which the cell leaves its states, per unit of time: free → blocked (α) and
+    /// blocked → free (β). A reading apart, they are probabilities of a step. None for a cell that
+    /// never changed, or whose changes tell no rate by the estimator in use.
+    pub fn transition_rates(&self, index: usize) -> Option<(f64, f64)> {
+        self.ledger.chain(index).map(|chain| (chain.block, chain.free))
+    }
+
+    /// The probability that the cell is blocked now. A cell in view is as seen; out of view a cell that
+    /// changes relaxes from its last state to its mean by the two-state chain,
+    /// π + (x₀ − π) λ^t. One that never changed stays as it was last seen, and an unknown one is
+    /// blocked as likely as not.
+    pub fn blocked_probability(&self, index: usize) -> f64 {
+        self.ledger.blocked_probability(index)
     }
 
     /// The time since the cell was last seen. A cell never seen counts as last seen at 0.

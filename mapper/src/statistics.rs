@@ -6,6 +6,9 @@ pub struct CellStatistics {
     pub first_seen: f64,
     /// When the cell was last seen, t_last.
     pub last_seen: f64,
+    /// The mean time from one reading to the next, whatever they saw, until the cell was last seen; 0
+    /// before the second reading.
+    pub period: f64,
     /// The time between these two in which the cell was not in view, t_not obs. A cell is in view
     /// between two consecutive readings that both saw it.
     pub unobserved: f64,
@@ -21,6 +24,26 @@ pub struct CellStatistics {
     pub block_events_after_gap: u32,
     /// Changes from blocked to free that were found when the cell came back into view.
     pub free_events_after_gap: u32,
+    /// Gaps in the view of the cell that began while it was free.
+    pub gaps_from_free: u32,
+    /// Gaps in the view of the cell that began while it was blocked.
+    pub gaps_from_blocked: u32,
+    /// What the gaps tell, if the estimator weighs them.
+    pub gap_worth: GapWorth,
+}
+
+/// What the gaps in the view of a cell tell of its rates, as the watching that would tell the same. All 0
+/// if the estimator in use does not weigh gaps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GapWorth {
+    /// Time watched while free.
+    pub watched_free: f64,
+    /// Time watched while blocked.
+    pub watched_blocked: f64,
+    /// Changes from free to blocked. Below 0 where the gaps speak for less than the rest.
+    pub block_events: f64,
+    /// Changes from blocked to free, likewise.
+    pub free_events: f64,
 }
 
 impl CellStatistics {

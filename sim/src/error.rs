@@ -105,23 +105,29 @@ impl Source<'_> {
 }
 
 /// What a newcomer calls the type that serde asks for.
-fn plain_type<'a>(expected: &'a str, key: &str) -> &'a str {
-    match expected {
+fn plain_type(expected: &str, key: &str) -> String {
+    let plain = match expected {
         "f64" | "a float" => "a number",
         "usize" | "u64" | "u32" => "a whole number of at least 0",
+        "i64" => "a whole number",
         "a string" | "string" => "a text in quotes",
         "a sequence" if key.ends_with("_m") => "two numbers, as in `[1.0, 2.0]`",
-        "a sequence" => "a list of tables, as in `[[wall]]`",
+        "a sequence" if key.ends_with("path") => "a list of cells, as in `[[1, 2], [5, 2]]`",
+        "a sequence" => return format!("a list of tables, as in `[[{key}]]`"),
         "an array of length 2" => "two numbers, as in `[1.0, 2.0]`",
         other if other.starts_with("struct") || other == "a map" => "a table of keys",
         other => other,
-    }
+    };
+    plain.to_owned()
 }
 
 /// What a newcomer calls the value that serde has found.
 fn plain_value(found: &str, is_length: bool) -> String {
     if is_length {
         return format!("a list of {found}");
+    }
+    if let Some(number) = found.strip_prefix("integer ").and_then(|number| number.strip_suffix(" as i128")) {
+        return format!("the number {number}, which is too large");
     }
     let names = [
         ("floating point ", "the number "),

@@ -1,8 +1,13 @@
 //! Places for a robot to live in.
 //!
 //! [`physics`] is the two-dimensional world of the paper's section 5 and figures 4 and 5: walls,
-//! robots with real contacts, lasers. It implements [`geometry::World`], and keeps the truth that
-//! metrics (and nothing else) may look at.
+//! robots with real contacts, lasers.
+//!
+//! [`grid`] is the world of the paper's figure 3: cells that are blocked or free, blocks that move
+//! from cell to cell, a robot that takes a step at a time and sees exactly.
+//!
+//! Both implement [`geometry::World`], and keep the truth that metrics (and nothing else) may look
+//! at.
 //!
 //! ```
 //! use geometry::{Twist, World};
@@ -25,6 +30,9 @@ mod error;
 mod files;
 mod findings;
 pub mod floor_plan;
+pub mod grid;
+mod kind;
+mod names;
 pub mod physics;
 pub mod stage;
 

@@ -3,10 +3,15 @@
 //! A cell that solids cover in part is neither right nor wrong, and is left out at that moment.
 //! Cells that can be seen are the free ones, and the blocked ones with a free side.
 
+mod cells;
 mod latency;
 mod rates;
 mod things;
 
+pub use cells::{
+    CellMapScores, CellRateScores, ChangingLooks, cell_map_scores, cell_rate_scores, false_change_events,
+    log_error,
+};
 pub use latency::{Delays, Latency};
 pub use rates::{RateScores, rate_scores};
 pub use things::{ThingReport, Things};

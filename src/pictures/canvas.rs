@@ -10,14 +10,14 @@ use plotters::style::{TextStyle, register_font};
 use std::path::Path;
 
 /// A part of a picture to draw on.
-pub(super) type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
+pub(crate) type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 
 /// Pictures are drawn this many times larger, and made smaller at the end: slanted lines and
 /// letters get smooth edges.
 const OVERSAMPLING: u32 = 2;
 
 /// A length in pixels of the finished picture, in pixels to draw with.
-pub(super) const fn px(length: u32) -> i32 {
+pub(crate) const fn px(length: u32) -> i32 {
     (length * OVERSAMPLING) as i32
 }
 
@@ -26,34 +26,38 @@ pub(super) fn text(height: u32) -> TextStyle<'static> {
     (FONT, px(height)).into_font().color(&INK)
 }
 
-pub(super) const INK: RGBColor = RGBColor(40, 44, 52);
-const FONT: &str = "sans-serif";
+pub(crate) const INK: RGBColor = RGBColor(40, 44, 52);
+pub(crate) const FONT: &str = "sans-serif";
 
 /// The plotting library's colour.
-pub(super) fn ink([red, green, blue]: Rgb) -> RGBColor {
+pub(crate) fn ink([red, green, blue]: Rgb) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
 /// Makes an error of the plotting library a sentence.
-pub(super) fn why(error: impl std::fmt::Display) -> String {
+pub(crate) fn why(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
+/// Makes text possible on machines that have no fonts at all.
+pub(crate) fn register_fonts() -> Result<(), String> {
+    let registered = register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
+    registered.map_err(|_| "the font cannot be read".into())
+}
+
 /// A finished picture: rows from the top, three bytes per pixel.
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     size: [u32; 2],
     pixels: Vec<u8>,
 }
 
 impl Canvas {
     /// A white picture of `size`, width and height in pixels, with what `draw` puts on it.
-    pub(super) fn draw(
+    pub(crate) fn draw(
         size: [u32; 2],
         draw: impl FnOnce(&Area) -> Result<(), String>,
     ) -> Result<Self, String> {
-        // A machine may have no fonts at all.
-        register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
-            .map_err(|_| "the font cannot be read")?;
+        register_fonts()?;
         let [width, height] = size.map(|length| length * OVERSAMPLING);
         let mut pixels = vec![255; width as usize * height as usize * 3];
         let area = BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area();
@@ -64,7 +68,7 @@ impl Canvas {
     }
 
     /// Writes a PNG file.
-    pub(super) fn write(&self, path: &Path) -> Result<(), OutputError> {
+    pub(crate) fn write(&self, path: &Path) -> Result<(), OutputError> {
         let [width, height] = self.size;
         write_file(path, |file| {
             let encoder = PngEncoder::new(file);

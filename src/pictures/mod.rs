@@ -1,7 +1,7 @@
 //! Pictures of what was learned, without a viewer: the panels of the paper's Figure 5, and the
 //! trajectories of its Figure 4.
 
-mod canvas;
+pub(crate) mod canvas;
 mod panel;
 mod trajectory;
 
@@ -53,19 +53,19 @@ const FIGURE_5: [Layer; 3] = [Layer::Occupancy, Layer::Interval, Layer::ChangePr
 /// When a picture cannot be drawn or written.
 pub fn write_all(folder: &Path, pictures: &Pictures) -> Result<(), PictureError> {
     make_folder(folder)?;
-    let mapper = pictures.mapper;
+    let (mapper, unit) = (pictures.mapper, pictures.scene.unit);
     let panel_size = panel::size(mapper.frame());
     let save = |name: &str, canvas: Result<Canvas, String>| {
         let canvas = canvas.map_err(|why| PictureError::Draw { name: name.into(), why })?;
         Ok::<_, PictureError>(canvas.write(&folder.join(format!("{name}.png")))?)
     };
     for layer in Layer::ALL {
-        save(layer.name(), Canvas::draw(panel_size, |area| panel::draw(area, mapper, layer)))?;
+        save(layer.name(), Canvas::draw(panel_size, |area| panel::draw(area, mapper, layer, unit)))?;
     }
     let row_size = [panel_size[0] * FIGURE_5.len() as u32, panel_size[1]];
     let row = Canvas::draw(row_size, |area| {
         let panels = area.split_evenly((1, FIGURE_5.len()));
-        panels.iter().zip(FIGURE_5).try_for_each(|(area, layer)| panel::draw(area, mapper, layer))
+        panels.iter().zip(FIGURE_5).try_for_each(|(area, layer)| panel::draw(area, mapper, layer, unit))
     });
     save("figure5", row)?;
     save("trajectory", Canvas::draw(panel_size, |area| trajectory::draw(area, pictures)))

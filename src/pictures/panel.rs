@@ -2,6 +2,7 @@
 
 use super::canvas::{Area, INK, ink, px, text, why};
 use crate::layer::{Layer, Rgb};
+use crate::view::TimeUnit;
 use geometry::GridFrame;
 use mapper::Mapper;
 use plotters::chart::ChartContext;
@@ -93,14 +94,14 @@ pub(super) fn pixel(map: &GridFrame, at: &nalgebra::Point2<f64>) -> [u32; 2] {
 }
 
 /// Draws `layer` of the map with its legend.
-pub(super) fn draw(area: &Area, mapper: &Mapper, layer: Layer) -> Result<(), String> {
+pub(super) fn draw(area: &Area, mapper: &Mapper, layer: Layer, unit: TimeUnit) -> Result<(), String> {
     let map = mapper.frame();
-    let (chart, legend) = axes(area, layer.title(), map)?;
-    cells(&chart, map, layer, &layer.classes(mapper))?;
+    let (chart, legend) = axes(area, &layer.title(unit), map)?;
+    cells(&chart, map, layer, &layer.classes(mapper, unit))?;
     frame(&chart, map)?;
 
     let mut top = LINE / 2;
-    if let Some(scale) = layer.scale() {
+    if let Some(scale) = layer.scale(unit) {
         let length = (px(MAP) * 3 / 5).min(legend.dim_in_pixel().1 as i32 / 2);
         let strip = length / 64;
         for step in 0..64 {
@@ -108,9 +109,9 @@ pub(super) fn draw(area: &Area, mapper: &Mapper, layer: Layer) -> Result<(), Str
             let bar = [(px(18), top + step * strip), (px(18) + SWATCH, top + (step + 1) * strip)];
             legend.draw(&Rectangle::new(bar, ink(layer.colour_at(place)).filled())).map_err(why)?;
         }
-        for (value, label) in layer.ticks() {
+        for (value, label) in layer.ticks(unit) {
             let at = (px(26) + SWATCH, top + ((1.0 - scale.place(*value)) * f64::from(64 * strip)) as i32);
-            write(&legend, at, &format!("{label}{}", layer.unit()))?;
+            write(&legend, at, &layer.with_unit(label, unit))?;
         }
         top += 64 * strip + LINE;
     }

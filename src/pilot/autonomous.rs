@@ -1,21 +1,27 @@
 use super::{GoalCount, Now, Pilot, StrategyState};
 use crate::view::{Level, Message};
-use agent::Agent;
+use agent::{Agent, Goal, Stay, Travel};
 use controller::{Controller, Drive, Outcome, Situation, Status};
-use geometry::Cell;
-use mapper::Features;
-use nalgebra::Point2;
+use mapper::{Features, Mapper};
+use nalgebra::{Isometry2, Point2};
+
+/// Where to go next, m, and what to do there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Visit {
+    /// Where to go, m.
+    pub goal: Point2<f64>,
+    /// What to do there.
+    pub stay: Stay,
+}
 
 /// Says where to go next.
 pub trait Guide {
-    /// The next goal, m; `None` when there is none left. Asked when the controller has handed back.
-    fn next_goal(&mut self, now: &Now) -> Option<Point2<f64>>;
+    /// Where to go next; `None` when there is no goal left. Asked when the controller has handed
+    /// back.
+    fn next_goal(&mut self, now: &Now, travel: &mut impl Travel) -> Option<Visit>;
 
     /// Told at every reading.
     fn watch(&mut self, _now: &Now) {}
-
-    /// Whether to explore around a goal that was reached.
-    fn explores(&self) -> bool;
 
     /// One sentence on the goal just given.
     fn reason(&self) -> String;
@@ -46,6 +52,11 @@ impl<G: Guide, D: Drive> Autonomous<G, D> {
         self.messages.push(Message { level, text });
     }
 
+    /// What the guide thinks of this.
+    pub fn guide_mut(&mut self) -> &mut G {
+        &mut self.guide
+    }
+
     /// Counts how the last goal ended, and asks for the next.
     fn start_next(&mut self, now: &Now, last: Option<Outcome>) {
         match last {
@@ -59,15 +70,15 @@ impl<G: Guide, D: Drive> Autonomous<G, D> {
             }
             None => {}
         }
-        let Some(goal) = self.guide.next_goal(now) else {
+        let mut ways = Ways { controller: &mut self.controller };
+        let Some(Visit { goal, stay }) = self.guide.next_goal(now, &mut ways) else {
             self.controller.cancel();
             self.is_done = true;
             return;
         };
-        if self.guide.explores() {
-            self.controller.set_goal(goal);
-        } else {
-            self.controller.go_to(goal);
+        match stay {
+            Stay::Explore => self.controller.set_goal(goal),
+            Stay::Watch(duration) => self.controller.watch_at(goal, duration),
         }
         let reason = self.guide.reason();
         self.say(Level::Decision, format!("{reason}: to ({:.2}, {:.2})", goal.x, goal.y));
@@ -79,18 +90,15 @@ impl<G: Guide, D: Drive> Pilot for Autonomous<G, D> {
 
     fn command(&mut self, now: &Now) -> D::Command {
         self.guide.watch(now);
+        let situation = situation(now.mapper, now.pose);
+        let command = self.controller.drive(&situation);
         match self.controller.status() {
             Status::Idle if !self.is_done => self.start_next(now, None),
             Status::Finished(outcome) => self.start_next(now, Some(outcome)),
-            _ => {}
+            _ => return command,
         }
-        self.controller.drive(&Situation {
-            time: now.mapper.time(),
-            pose: now.pose,
-            map: now.mapper.states(),
-            transitions: now.mapper.transitions(),
-            points: now.mapper.points(),
-        })
+        // So that no tick is lost between two goals; the map's changes have been taken in.
+        self.controller.drive(&Situation { transitions: &[], ..situation })
     }
 
     fn path(&self) -> &[Point2<f64>] {
@@ -118,18 +126,35 @@ impl<G: Guide, D: Drive> Pilot for Autonomous<G, D> {
     }
 }
 
+fn situation<'a>(mapper: &'a Mapper, pose: &'a Isometry2<f64>) -> Situation<'a> {
+    Situation {
+        time: mapper.time(),
+        pose,
+        map: mapper.states(),
+        transitions: mapper.transitions(),
+        points: mapper.points(),
+    }
+}
+
+/// The ways that a controller knows.
+struct Ways<'a, D: Drive> {
+    controller: &'a mut Controller<D>,
+}
+
+impl<D: Drive> Travel for Ways<'_, D> {
+    fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
+        self.controller.travel_times(&situation(mapper, pose), times);
+    }
+}
+
 impl Guide for Agent {
-    fn next_goal(&mut self, now: &Now) -> Option<Point2<f64>> {
-        let cell: Cell = Agent::next_goal(self, now.mapper, now.pose);
-        Some(now.mapper.frame().center(cell))
+    fn next_goal(&mut self, now: &Now, travel: &mut impl Travel) -> Option<Visit> {
+        let Goal { cell, stay } = Agent::next_goal(self, now.mapper, now.pose, travel);
+        Some(Visit { goal: now.mapper.frame().center(cell), stay })
     }
 
     fn watch(&mut self, now: &Now) {
         Agent::watch(self, now.features, now.mapper.transitions());
-    }
-
-    fn explores(&self) -> bool {
-        true
     }
 
     fn reason(&self) -> String {

@@ -4,7 +4,7 @@ mod autonomous;
 mod keyboard;
 mod tour;
 
-pub use autonomous::{Autonomous, Guide};
+pub use autonomous::{Autonomous, Guide, Visit};
 pub use keyboard::{Keyboard, KeyboardError};
 pub use tour::{Tour, TourError};
 

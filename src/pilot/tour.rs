@@ -1,4 +1,5 @@
-use super::{Guide, Now};
+use super::{Guide, Now, Visit};
+use agent::{Stay, Travel};
 use nalgebra::Point2;
 use serde::Deserialize;
 use serde_spanned::Spanned;
@@ -79,17 +80,13 @@ impl Tour {
 }
 
 impl Guide for Tour {
-    fn next_goal(&mut self, _now: &Now) -> Option<Point2<f64>> {
+    fn next_goal(&mut self, _now: &Now, _travel: &mut impl Travel) -> Option<Visit> {
         if self.repeat && self.next == self.waypoints.len() {
             self.next = 0;
         }
         let goal = self.waypoints.get(self.next).copied();
         self.next += 1;
-        goal
-    }
-
-    fn explores(&self) -> bool {
-        false
+        Some(Visit { goal: goal?, stay: Stay::Watch(0.0) })
     }
 
     fn reason(&self) -> String {

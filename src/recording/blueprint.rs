@@ -3,10 +3,10 @@
 //! Logged component by component, since the SDK's layout types cannot set a view's bounds, the
 //! axis of a plot, or that a trail shows its whole past.
 
-use super::columns::SIM_TIME;
+use super::columns::timeline;
 use super::entity;
 use crate::layer::Layer;
-use crate::view::View;
+use crate::view::{Scene, TimeUnit, View};
 use nalgebra::Point2;
 use rerun::blueprint::components::{ContainerKind, Corner2D, PanelState, PlayState};
 use rerun::external::re_log_types::BlueprintActivationCommand;
@@ -15,27 +15,35 @@ use rerun::external::re_sdk_types::blueprint::{archetypes as blueprint, componen
 use rerun::external::re_sdk_types::datatypes;
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
-/// How much of the curious robot's way is shown, s.
-const RECENT_S: i64 = 300;
+/// How much of the curious robot's way is shown, on the timeline.
+fn recent(unit: TimeUnit) -> i64 {
+    match unit {
+        TimeUnit::Second => 300 * 1_000_000_000,
+        TimeUnit::Step => 60,
+    }
+}
 
 /// Sends the layout for a run that looks like `view`.
 pub(super) fn send(
     stream: &RecordingStream,
     application: &'static str,
+    scene: &Scene,
     view: &View,
 ) -> RecordingStreamResult<()> {
     let (layout, storage) = RecordingStreamBuilder::new(application).enabled(true).blueprint().memory()?;
     layout.set_time_sequence("blueprint", 0);
-    let layout = Layout { stream: layout, count: 0.into() };
+    let layout = Layout { stream: layout, unit: scene.unit, count: 0.into() };
 
-    let house = layout.house(view)?;
+    let house = layout.house(scene, view)?;
     let maps = [Layer::Interval, Layer::ChangeProbability, Layer::Recency];
     let maps = maps.map(|layer| layout.map(view, layer)).into_iter().collect::<Result<Vec<_>, _>>()?;
-    let mut plots = vec![
-        layout.plot("Map: coverage and quality", entity::SCORES, Some([0.0, 1.05]))?,
-        layout.plot("Expected changes out of view, p", entity::P, None)?,
-        layout.plot("Longest time since a cell was seen, r (s)", entity::R, None)?,
-    ];
+    let mut plots = vec![layout.plot("Map: coverage and quality", entity::SCORES, Some([0.0, 1.05]))?];
+    if view.rate_errors.is_some() {
+        plots.push(layout.plot("Errors of the rates of change", entity::RATE_ERRORS, None)?);
+    }
+    plots.push(layout.plot("Expected changes out of view, p", entity::P, None)?);
+    let oldest = format!("Longest time since a cell was seen, r ({})", scene.unit.symbol());
+    plots.push(layout.plot(&oldest, entity::R, None)?);
     if !view.strategies.is_empty() {
         plots.push(layout.plot("Strategies: expected map updates per step", entity::VALUES, None)?);
         plots.push(layout.states("Strategy that chose the goal", entity::STRATEGY)?);
@@ -58,6 +66,7 @@ pub(super) fn send(
 
 struct Layout {
     stream: RecordingStream,
+    unit: TimeUnit,
     count: std::cell::Cell<u8>,
 }
 
@@ -77,7 +86,8 @@ impl Layout {
 
     fn log(&self) -> RecordingStreamResult<Part> {
         let view = self.view("TextLog", "What happened", &[entity::LOG.into()])?;
-        let time = blueprint_types::TimelineColumn { visible: true.into(), timeline: SIM_TIME.into() };
+        let time =
+            blueprint_types::TimelineColumn { visible: true.into(), timeline: timeline(self.unit).into() };
         let columns = [TextLogColumnKind::LogLevel, TextLogColumnKind::Body];
         let columns = columns.map(|kind| blueprint_types::TextLogColumn { kind, visible: true.into() });
         let columns =
@@ -116,17 +126,19 @@ impl Layout {
         Ok(view)
     }
 
-    fn house(&self, view: &View) -> RecordingStreamResult<Part> {
+    fn house(&self, scene: &Scene, view: &View) -> RecordingStreamResult<Part> {
         let (from, to) = bounds(view);
         let margin = nalgebra::Vector2::new(0.02, 0.02) * (to.x - from.x);
         let contents = ["house/**", "robots/**", "maps/occupancy/**", "field_of_view/**", "goal", "path"];
         let contents = contents.map(|entity| format!("+ {}/{entity}", entity::WORLD));
-        let part = self.spatial("The house, as the robot maps it", &contents, from - margin, to + margin)?;
+        let name = format!("The {}, as the robot maps it", scene.place);
+        let part = self.spatial(&name, &contents, from - margin, to + margin)?;
         for robot in view.robots {
-            // The curious robot goes everywhere: all of its way would hide the house.
-            let start = if robot.is_curious { back(RECENT_S) } else { past().start };
+            // The curious robot goes everywhere: all of its way would hide the place.
+            let start = if robot.is_curious { back(recent(scene.unit)) } else { past().start };
             let range = datatypes::TimeRange { start, ..past() };
-            let range = VisibleTimeRange(datatypes::VisibleTimeRange { timeline: SIM_TIME.into(), range });
+            let timeline = timeline(scene.unit).into();
+            let range = VisibleTimeRange(datatypes::VisibleTimeRange { timeline, range });
             let trail = entity::robot(robot.name, "trail");
             let property = format!("ViewContents/overrides{trail}/visualizers");
             self.property(&part, &property, &blueprint::VisibleTimeRanges::new([range]))?;
@@ -137,7 +149,7 @@ impl Layout {
     fn map(&self, view: &View, layer: Layer) -> RecordingStreamResult<Part> {
         let (from, to) = bounds(view);
         let legend = nalgebra::Vector2::new(0.0, entity::LEGEND_SHARE * (to.y - from.y));
-        self.spatial(layer.title(), &[format!("+ {}/**", entity::map(layer))], from - legend, to)
+        self.spatial(&layer.title(self.unit), &[format!("+ {}/**", entity::map(layer))], from - legend, to)
     }
 
     fn plot(&self, name: &str, entity: &str, range: Option<[f64; 2]>) -> RecordingStreamResult<Part> {
@@ -183,7 +195,7 @@ impl Layout {
         self.stream.log("selection_panel", &hidden)?;
         let time = blueprint::TimePanelBlueprint::new()
             .with_state(PanelState::Collapsed)
-            .with_timeline(SIM_TIME)
+            .with_timeline(timeline(self.unit))
             .with_play_state(PlayState::Following);
         self.stream.log("time_panel", &time)
     }
@@ -195,9 +207,9 @@ fn past() -> datatypes::TimeRange {
     datatypes::TimeRange { start, end: datatypes::TimeRangeBoundary::AT_CURSOR }
 }
 
-/// So many seconds before what is shown.
-fn back(seconds: i64) -> datatypes::TimeRangeBoundary {
-    datatypes::TimeRangeBoundary::CursorRelative(datatypes::TimeInt(-seconds * 1_000_000_000))
+/// So far before what is shown, on the timeline.
+fn back(by: i64) -> datatypes::TimeRangeBoundary {
+    datatypes::TimeRangeBoundary::CursorRelative(datatypes::TimeInt(-by))
 }
 
 fn bounds(view: &View) -> (Point2<f64>, Point2<f64>) {

@@ -3,21 +3,30 @@
 //! The SDK's way to log, one call per row, costs some tens of microseconds per row. Rows are
 //! therefore collected here and handed over as columns, many ticks at once.
 
+use crate::view::TimeUnit;
 use rerun::components::ImageBuffer;
 use rerun::{
     Arrows2D, LineStrips2D, Points2D, RecordingStream, Scalars, SegmentationImage, SerializationResult,
-    SerializedComponentColumn, StateChange, TextLog, TimeColumn,
+    SerializedComponentColumn, StateChange, TextLog, TimeColumn, Transform3D,
 };
 
 /// The timeline of the simulated time.
 pub(super) const SIM_TIME: &str = "sim_time";
-/// The timeline that counts readings.
+/// The timeline that counts readings, or steps.
 pub(super) const STEP: &str = "step";
+
+/// The timeline that a viewer opens with.
+pub(super) fn timeline(unit: TimeUnit) -> &'static str {
+    match unit {
+        TimeUnit::Second => SIM_TIME,
+        TimeUnit::Step => STEP,
+    }
+}
 
 /// An instant on both timelines.
 #[derive(Clone, Copy)]
 pub(super) struct Now {
-    pub(super) time_s: f64,
+    pub(super) time: f64,
     pub(super) step: u64,
 }
 
@@ -47,20 +56,21 @@ impl<T: Item> Rows<T> {
     pub(super) fn push(&mut self, now: Now, items: impl IntoIterator<Item = T>) {
         let before = self.items.len();
         self.items.extend(items);
-        self.times_ns.push((now.time_s * 1e9).round() as i64);
+        self.times_ns.push((now.time * 1e9).round() as i64);
         self.steps.push(now.step as i64);
         self.lengths.push(self.items.len() - before);
     }
 
-    /// Hands the rows over as one chunk.
-    pub(super) fn flush(&mut self, stream: &RecordingStream) -> Result<(), String> {
+    /// Hands the rows over as one chunk. Where time is counted in steps, there is no other time.
+    pub(super) fn flush(&mut self, stream: &RecordingStream, unit: TimeUnit) -> Result<(), String> {
         if self.lengths.is_empty() {
             return Ok(());
         }
-        let times = [
-            TimeColumn::new_duration_nanos(SIM_TIME, std::mem::take(&mut self.times_ns)),
-            TimeColumn::new_sequence(STEP, std::mem::take(&mut self.steps)),
-        ];
+        let times_ns = std::mem::take(&mut self.times_ns);
+        let mut times = vec![TimeColumn::new_sequence(STEP, std::mem::take(&mut self.steps))];
+        if unit == TimeUnit::Second {
+            times.push(TimeColumn::new_duration_nanos(SIM_TIME, times_ns));
+        }
         let columns = T::columns(std::mem::take(&mut self.items), std::mem::take(&mut self.lengths));
         let columns = columns.map_err(|error| error.to_string())?;
         stream.send_columns(self.entity.as_str(), times, columns).map_err(|error| error.to_string())
@@ -73,6 +83,16 @@ pub(super) type Place = [f32; 2];
 impl Item for Place {
     fn columns(items: Vec<Self>, lengths: Vec<usize>) -> SerializationResult<Vec<SerializedComponentColumn>> {
         Ok(Points2D::update_fields().with_positions(items).columns(lengths)?.collect())
+    }
+}
+
+/// Where everything below the entity is, m.
+pub(super) struct Shift(pub(super) Place);
+
+impl Item for Shift {
+    fn columns(items: Vec<Self>, lengths: Vec<usize>) -> SerializationResult<Vec<SerializedComponentColumn>> {
+        let to = items.into_iter().map(|Shift([x, y])| [x, y, 0.0]);
+        Ok(Transform3D::update_fields().with_many_translation(to).columns(lengths)?.collect())
     }
 }
 

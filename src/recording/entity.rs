@@ -5,7 +5,9 @@ use rerun::EntityPathPart;
 
 pub(super) const WORLD: &str = "/world";
 pub(super) const HOUSE: &str = "/world/house";
-/// What the curious robot's laser sees: the line around it.
+/// What the curious robot sees.
+pub(super) const SIGHT: &str = "/world/field_of_view";
+/// The line around it, where a laser sees.
 pub(super) const SIGHT_OUTLINE: &str = "/world/field_of_view/outline";
 /// The same, filled.
 pub(super) const SIGHT_CELLS: &str = "/world/field_of_view/cells";
@@ -14,6 +16,9 @@ pub(super) const GOAL: &str = "/world/goal";
 pub(super) const SCORES: &str = "/curves/scores";
 pub(super) const COVERAGE: &str = "/curves/scores/coverage";
 pub(super) const MAP_QUALITY: &str = "/curves/scores/map_quality";
+pub(super) const RATE_ERRORS: &str = "/curves/rate_errors";
+pub(super) const RELATIVE_ERROR: &str = "/curves/rate_errors/relative";
+pub(super) const LOG_ERROR: &str = "/curves/rate_errors/log";
 pub(super) const P: &str = "/curves/p";
 pub(super) const R: &str = "/curves/r";
 pub(super) const VALUES: &str = "/curves/strategy_value";

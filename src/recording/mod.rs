@@ -9,13 +9,16 @@ mod entity;
 mod file;
 mod live;
 mod outline;
+mod pace;
 mod scenery;
+mod sight;
 mod sinks;
 mod tracks;
 
 pub use live::{Live, LiveError};
 
 use crate::view::{Scene, View};
+use pace::Pace;
 use rerun::log::ChunkBatcherConfig;
 use rerun::{RecordingStream, RecordingStreamBuilder};
 use sinks::Sinks;
@@ -65,8 +68,6 @@ const APPLICATION: &str = "curious";
 const FLUSH_FILE: Duration = Duration::from_secs(1);
 /// The same while a viewer watches.
 const FLUSH_LIVE: Duration = Duration::from_millis(50);
-/// How much simulated time may wait, s: maps at hundreds of times real time fill the memory.
-const FLUSH_SIMULATED_S: f64 = 60.0;
 
 /// A recording being made.
 pub struct Recorder {
@@ -76,7 +77,8 @@ pub struct Recorder {
     /// Built at the first view, which tells who takes part.
     tracks: Option<Tracks>,
     flushed: Instant,
-    flushed_s: f64,
+    /// In the unit of the scene.
+    flushed_at: f64,
     live_problem: Option<String>,
 }
 
@@ -98,7 +100,7 @@ impl Recorder {
             RecordingStream::new(info, properties, batching, Default::default(), Box::new(sinks.clone()))
                 .map_err(|error| RecordingError::Sdk(error.to_string()))?;
         let flushed = Instant::now();
-        Ok(Self { stream, sinks, scene, tracks: None, flushed, flushed_s: 0.0, live_problem })
+        Ok(Self { stream, sinks, scene, tracks: None, flushed, flushed_at: 0.0, live_problem })
     }
 
     /// Records the run as it is now.
@@ -109,8 +111,9 @@ impl Recorder {
     pub fn log(&mut self, view: &View) -> Result<(), RecordingError> {
         self.record(view, false).map_err(RecordingError::Sdk)?;
         let wait = if self.sinks.is_live() { FLUSH_LIVE } else { FLUSH_FILE };
-        if self.flushed.elapsed() >= wait || view.time_s - self.flushed_s >= FLUSH_SIMULATED_S {
-            self.flushed_s = view.time_s;
+        let is_much = view.time - self.flushed_at >= Pace::of(self.scene.unit).flush;
+        if is_much || self.flushed.elapsed() >= wait {
+            self.flushed_at = view.time;
             self.flush()?;
         }
         Ok(())
@@ -139,9 +142,9 @@ impl Recorder {
             none => {
                 let sdk = |error: rerun::RecordingStreamError| error.to_string();
                 scenery::send(&self.stream, &self.scene, view).map_err(sdk)?;
-                blueprint::send(&self.stream, APPLICATION, view).map_err(sdk)?;
+                blueprint::send(&self.stream, APPLICATION, &self.scene, view).map_err(sdk)?;
                 self.stream.flush_async().map_err(|error| error.to_string())?;
-                none.insert(Tracks::new(view))
+                none.insert(Tracks::new(view, self.scene.unit))
             }
         };
         tracks.push(view, is_last);

@@ -1,9 +1,9 @@
 //! What is logged once: the house, and how everything looks.
 
 use super::columns::Place;
-use super::entity;
+use super::{entity, sight};
 use crate::layer::{CURIOUS, Layer, OTHERS, Rgb};
-use crate::view::{RobotView, Scene, View};
+use crate::view::{RobotView, Scene, TimeUnit, View};
 use geometry::GridFrame;
 use nalgebra::Point2;
 use rerun::external::re_sdk_types::datatypes;
@@ -13,11 +13,11 @@ use rerun::{
 };
 
 /// Drawn in this order, from the bottom up.
-mod order {
+pub(super) mod order {
     pub(super) const MAP: f32 = -10.0;
-    pub(super) const SIGHT: f32 = -9.0;
+    pub(in crate::recording) const SIGHT: f32 = -9.0;
     pub(super) const WALLS: f32 = 1.0;
-    pub(super) const SIGHT_OUTLINE: f32 = 2.0;
+    pub(in crate::recording) const SIGHT_OUTLINE: f32 = 2.0;
     pub(super) const TRAIL: f32 = 3.0;
     pub(super) const OTHERS_TRAIL: f32 = 3.5;
     pub(super) const PATH: f32 = 4.0;
@@ -25,21 +25,15 @@ mod order {
     pub(super) const HEADING: f32 = 6.0;
 }
 
-const LASER: Rgb = [64, 196, 120];
+/// What the curious robot sees.
+pub(super) const SENSOR: Rgb = [64, 196, 120];
 const WALLS: Rgb = [120, 72, 40];
 const OBSTACLES: Rgb = [200, 90, 20];
 const PATH: Rgb = [224, 122, 20];
 const GOAL: Rgb = [214, 30, 60];
 
-/// The class of the cells in the field of view.
-pub(super) const IN_VIEW: u8 = 1;
-
-/// The cells in which the field of view is filled: a quarter as many as the map's, since there are
-/// five pictures a second.
-pub(super) fn sight_frame(map: &GridFrame) -> GridFrame {
-    let (width, height) = (map.width().div_ceil(2), map.height().div_ceil(2));
-    GridFrame::new(map.origin(), 2.0 * map.resolution_m(), width, height).unwrap_or(*map)
-}
+/// The names of more things than this would hide the map; a viewer still shows them one by one.
+const MAX_LABELS: usize = 4;
 
 /// Logs everything that stays the same for a run whose first view is `view`.
 pub(super) fn send(stream: &RecordingStream, scene: &Scene, view: &View) -> RecordingStreamResult<()> {
@@ -49,14 +43,14 @@ pub(super) fn send(stream: &RecordingStream, scene: &Scene, view: &View) -> Reco
     for robot in view.robots {
         self::robot(stream, robot)?;
     }
-    sight(stream, view.mapper.frame())?;
+    sight::send(stream, view)?;
     for layer in Layer::ALL {
-        map(stream, view, layer)?;
+        map(stream, view.mapper.frame(), layer, scene.unit)?;
     }
     curves(stream, view)
 }
 
-fn colour([red, green, blue]: Rgb, alpha: u8) -> Color {
+pub(super) fn colour([red, green, blue]: Rgb, alpha: u8) -> Color {
     Color::from_unmultiplied_rgba(red, green, blue, alpha)
 }
 
@@ -74,6 +68,7 @@ fn house(stream: &RecordingStream, scene: &Scene, view: &View) -> RecordingStrea
             .with_colors([colour(OBSTACLES, 255)])
             .with_radii([Radius::new_ui_points(2.0)])
             .with_labels([thing.name])
+            .with_show_labels(view.obstacles.len() <= MAX_LABELS)
             .with_draw_order(order::WALLS);
         stream.log_static(entity::obstacle(thing.name), &look)?;
     }
@@ -114,39 +109,27 @@ fn robot(stream: &RecordingStream, robot: &RobotView) -> RecordingStreamResult<(
     stream.log_static(part("trail"), &trail)
 }
 
-/// What the curious robot's laser sees.
-fn sight(stream: &RecordingStream, map: &GridFrame) -> RecordingStreamResult<()> {
-    let outline = LineStrips2D::update_fields()
-        .with_colors([colour(LASER, 220)])
-        .with_radii([Radius::new_ui_points(0.75)])
-        .with_draw_order(order::SIGHT_OUTLINE);
-    stream.log_static(entity::SIGHT_OUTLINE, &outline)?;
-    let class = |id: u8, label: &str, alpha| datatypes::AnnotationInfo {
-        id: id.into(),
-        label: Some(label.into()),
-        color: Some(*colour(LASER, alpha)),
-    };
-    let classes = [class(0, "out of view", 0), class(IN_VIEW, "in view", 255)];
-    stream.log_static(entity::SIGHT_CELLS, &AnnotationContext::new(classes))?;
-    Picture::of_frame(&sight_frame(map)).log(stream, entity::SIGHT_CELLS, order::SIGHT, 0.2)
-}
-
-fn map(stream: &RecordingStream, view: &View, layer: Layer) -> RecordingStreamResult<()> {
-    let (entity, frame) = (entity::map(layer), view.mapper.frame());
+fn map(
+    stream: &RecordingStream,
+    frame: &GridFrame,
+    layer: Layer,
+    unit: TimeUnit,
+) -> RecordingStreamResult<()> {
+    let entity = entity::map(layer);
     let class = |(class, meaning): (u8, String)| datatypes::AnnotationInfo {
         id: class.into(),
         label: Some(meaning.into()),
         color: Some(*colour(layer.colour(class), 255)),
     };
-    let context = AnnotationContext::new(layer.legend().into_iter().map(class));
+    let context = AnnotationContext::new(layer.legend(unit).into_iter().map(class));
     stream.log_static(entity.as_str(), &context)?;
 
     Picture::of_frame(frame).log(stream, &format!("{entity}/cells"), order::MAP, 1.0)?;
-    if layer.scale().is_some() { colour_bar(stream, layer, frame) } else { Ok(()) }
+    colour_bar(stream, layer, frame, unit)
 }
 
 /// A picture of classes: how many, and where.
-struct Picture {
+pub(super) struct Picture {
     columns: usize,
     rows: usize,
     origin: Point2<f64>,
@@ -154,13 +137,13 @@ struct Picture {
 }
 
 impl Picture {
-    fn of_frame(frame: &GridFrame) -> Self {
+    pub(super) fn of_frame(frame: &GridFrame) -> Self {
         let cell_m = [frame.resolution_m(); 2];
         Self { columns: frame.width(), rows: frame.height(), origin: frame.origin(), cell_m }
     }
 
     /// Logs everything but the classes.
-    fn log(
+    pub(super) fn log(
         &self,
         stream: &RecordingStream,
         entity: &str,
@@ -180,9 +163,14 @@ impl Picture {
     }
 }
 
-/// Draws the colour bar below the map.
-fn colour_bar(stream: &RecordingStream, layer: Layer, frame: &GridFrame) -> RecordingStreamResult<()> {
-    let Some(scale) = layer.scale() else { return Ok(()) };
+/// Draws the colour bar below the map, for a layer that has one.
+fn colour_bar(
+    stream: &RecordingStream,
+    layer: Layer,
+    frame: &GridFrame,
+    unit: TimeUnit,
+) -> RecordingStreamResult<()> {
+    let Some(scale) = layer.scale(unit) else { return Ok(()) };
     let entity = format!("{}/colour_bar", entity::map(layer));
     let origin = frame.origin();
     let [width_m, height_m] =
@@ -195,8 +183,8 @@ fn colour_bar(stream: &RecordingStream, layer: Layer, frame: &GridFrame) -> Reco
     stream.log_static(entity, &SegmentationImage::update_fields().with_buffer(classes))?;
 
     let at = |value: f64| [(bar.x + scale.place(value) * length_m) as f32, (bar.y - 0.035 * height_m) as f32];
-    let marks = Points2D::new(layer.ticks().iter().map(|(value, _)| at(*value)))
-        .with_labels(layer.ticks().iter().map(|(_, text)| *text))
+    let marks = Points2D::new(layer.ticks(unit).iter().map(|(value, _)| at(*value)))
+        .with_labels(layer.ticks(unit).iter().map(|(_, text)| *text))
         .with_show_labels(true)
         .with_radii([Radius::new_ui_points(0.0)])
         .with_colors([colour([225, 228, 232], 255)]);
@@ -210,6 +198,10 @@ fn curves(stream: &RecordingStream, view: &View) -> RecordingStreamResult<()> {
     };
     line(entity::COVERAGE.into(), "coverage", [90, 170, 250])?;
     line(entity::MAP_QUALITY.into(), "map quality", [250, 190, 60])?;
+    if view.rate_errors.is_some() {
+        line(entity::RELATIVE_ERROR.into(), "relative", [200, 130, 220])?;
+        line(entity::LOG_ERROR.into(), "of the logarithm", [240, 140, 90])?;
+    }
     line(entity::P.into(), "p", [240, 90, 90])?;
     line(entity::R.into(), "r", [120, 200, 120])?;
     for (strategy, colour) in view.strategies.iter().zip(colorous::TABLEAU10.iter().cycle()) {

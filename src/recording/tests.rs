@@ -1,6 +1,7 @@
 use super::*;
 use crate::fake::FakeRun;
 use crate::layer::Layer;
+use crate::view::TimeUnit;
 use nalgebra::Point2;
 use rerun::components::{ImageBuffer, Position2D, Scalar, Text};
 use rerun::external::re_log_encoding::Decoder;
@@ -18,7 +19,10 @@ fn to(file: &Path) -> RecordingOptions {
 
 /// Records `ticks` of a made-up run into a file.
 fn record(file: &Path, ticks: u64) -> FakeRun {
-    let mut run = FakeRun::new();
+    record_run(FakeRun::new(), file, ticks)
+}
+
+fn record_run(mut run: FakeRun, file: &Path, ticks: u64) -> FakeRun {
     let mut recorder = Recorder::new(&to(file), run.scene.clone()).unwrap();
     for _ in 0..ticks {
         run.step();
@@ -110,9 +114,28 @@ fn everything_that_a_newcomer_looks_for_is_there() {
         "/world/robots/dummy/trail",
     ];
     assert_eq!(entities, expected);
-    let mut timelines: Vec<_> = store.schema().timelines().keys().map(|name| name.to_string()).collect();
-    timelines.sort();
-    assert_eq!(timelines, ["sim_time", "step"]);
+    assert_eq!(timelines(&store), ["sim_time", "step"]);
+}
+
+#[test]
+fn where_time_is_counted_in_steps_nothing_speaks_of_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let mut run = FakeRun::new();
+    run.scene = Scene { unit: TimeUnit::Step, place: "grid", ..run.scene };
+    record_run(run, &file, 3);
+    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+    assert_eq!(timelines(&store), ["step"]);
+    let titles = titles(&file);
+    for title in [
+        "The grid, as the robot maps it",
+        "Change interval: steps per cycle",
+        "Longest time since a cell was seen, r (steps)",
+        "Recency: steps since last seen",
+    ] {
+        assert!(titles.iter().any(|found| found == title), "{title} is not in {titles:?}");
+    }
+    assert!(titles.iter().all(|title| !title.contains("second") && !title.contains("(s)")), "{titles:?}");
 }
 
 #[test]
@@ -137,7 +160,7 @@ fn what_is_read_back_is_what_happened() {
         let most = if layer == Layer::Occupancy { 32 } else { 5 };
         assert!((2..=most).contains(&maps.len()), "{layer:?}: {}", maps.len());
         let last = maps.last().unwrap().1[0].0.to_vec();
-        assert_eq!(last, layer.classes(&run.mapper), "{layer:?} at the end");
+        assert_eq!(last, layer.classes(&run.mapper, TimeUnit::Second), "{layer:?} at the end");
     }
     let coverage = rows::<Scalar>(&store, entity::COVERAGE, Scalars::descriptor_scalars().component);
     assert_eq!(coverage.len(), 32); // once a second, and at the end
@@ -153,12 +176,9 @@ fn what_is_read_back_is_what_happened() {
     assert_eq!(toy[0].0, 20_100_000_000);
 }
 
-#[test]
-fn the_layout_shows_every_view() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("run.rrd");
-    record(&file, 3);
-    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Blueprint);
+/// The titles of the views in the layout of a recording, sorted.
+fn titles(file: &Path) -> Vec<String> {
+    let store = store(&std::fs::read(file).unwrap(), StoreKind::Blueprint);
     let name = rerun::external::re_sdk_types::blueprint::archetypes::ViewBlueprint::descriptor_display_name();
     let mut names: Vec<String> = Vec::new();
     for chunk in store.iter_physical_chunks() {
@@ -166,8 +186,22 @@ fn the_layout_shows_every_view() {
         names.extend(found.flat_map(|names| names.as_slice().to_vec()).map(|name| name.0.to_string()));
     }
     names.sort();
+    names
+}
+
+fn timelines(store: &ChunkStore) -> Vec<String> {
+    let mut timelines: Vec<_> = store.schema().timelines().keys().map(|name| name.to_string()).collect();
+    timelines.sort();
+    timelines
+}
+
+#[test]
+fn the_layout_shows_every_view() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    record(&file, 3);
     assert_eq!(
-        names,
+        titles(&file),
         [
             "Change interval: seconds per cycle",
             "Expected changes out of view, p",

@@ -1,41 +1,12 @@
 //! What changes during a run, and how often each part of it is logged.
 
 use super::columns::{Arrow, Classes, Item, Line, Now, Place, Rows, State, Strip};
-use super::{entity, outline, scenery};
+use super::pace::{Due, Pace};
+use super::{entity, sight};
 use crate::layer::Layer;
-use crate::view::{Level, RobotView, Trail, View};
+use crate::view::{Level, RobotView, TimeUnit, Trail, View};
 use nalgebra::{Isometry2, Point2};
 use rerun::RecordingStream;
-
-/// The time between two fields of view, s.
-const SIGHT_S: f64 = 0.2;
-/// The time between two occupancy maps, s; skipped while nothing changes.
-const OCCUPANCY_S: f64 = 1.0;
-/// The time between two of the other maps, s.
-const MAPS_S: f64 = 10.0;
-/// The time between two points of a curve, s.
-const CURVES_S: f64 = 1.0;
-
-/// Says when something that is logged at a lower rate is due.
-struct Due {
-    period_s: f64,
-    next_s: f64,
-}
-
-impl Due {
-    fn every(period_s: f64) -> Self {
-        Self { period_s, next_s: f64::NEG_INFINITY }
-    }
-
-    fn now(&mut self, time_s: f64) -> bool {
-        // Half a millisecond of slack: 0.1 added ten times is not 1.
-        let is_due = time_s >= self.next_s - 5e-4;
-        if is_due {
-            self.next_s = time_s + self.period_s;
-        }
-        is_due
-    }
-}
 
 /// Everything about one robot.
 struct Robot {
@@ -74,31 +45,6 @@ impl Robot {
     }
 }
 
-/// What the curious robot's laser sees.
-struct Sight {
-    outline: Rows<Strip>,
-    cells: Rows<Classes>,
-    due: Due,
-}
-
-impl Sight {
-    fn new() -> Self {
-        let outline = Rows::new(entity::SIGHT_OUTLINE);
-        Self { outline, cells: Rows::new(entity::SIGHT_CELLS), due: Due::every(SIGHT_S) }
-    }
-
-    fn push(&mut self, now: Now, view: &View, is_last: bool) {
-        let curious = view.robots.iter().find(|robot| robot.is_curious);
-        let Some(reading) = curious.and_then(|robot| robot.reading) else { return };
-        if self.due.now(now.time_s) || is_last {
-            let corners = outline::field_of_view(reading);
-            let frame = scenery::sight_frame(view.mapper.frame());
-            self.cells.push(now, [Classes(outline::fill(&corners, &frame, scenery::IN_VIEW))]);
-            self.outline.push(now, [Strip(corners.iter().map(place).collect())]);
-        }
-    }
-}
-
 /// A map and the classes that were logged last.
 struct Map {
     layer: Layer,
@@ -111,8 +57,8 @@ impl Map {
         Self { layer, rows: Rows::new(format!("{}/cells", entity::map(layer))), last: Vec::new() }
     }
 
-    fn push(&mut self, now: Now, view: &View) {
-        let classes = self.layer.classes(view.mapper);
+    fn push(&mut self, now: Now, view: &View, unit: TimeUnit) {
+        let classes = self.layer.classes(view.mapper, unit);
         if classes != self.last {
             self.rows.push(now, [Classes(classes.clone())]);
             self.last = classes;
@@ -122,15 +68,19 @@ impl Map {
 
 /// All rows of a recording.
 pub(super) struct Tracks {
+    unit: TimeUnit,
     robots: Vec<Robot>,
-    sight: Sight,
-    obstacles: Vec<(Rows<Strip>, bool)>,
+    sight: sight::Track,
+    /// Each with the outline that was logged last, without corners while it is not there.
+    obstacles: Vec<(Rows<Strip>, Vec<Point2<f64>>)>,
     path: (Rows<Strip>, Vec<Point2<f64>>),
     goal: (Rows<Place>, Option<Point2<f64>>),
     occupancy: Map,
     maps: [Map; 3],
     /// Coverage, map quality.
     scores: [Rows<f64>; 2],
+    /// Relative, of the logarithm.
+    rate_errors: [Rows<f64>; 2],
     /// p, r.
     features: [Rows<f64>; 2],
     /// Value and share of each strategy.
@@ -141,48 +91,54 @@ pub(super) struct Tracks {
     maps_due: Due,
     curves_due: Due,
     scores_due: Due,
+    rate_errors_due: Due,
 }
 
 impl Tracks {
     /// Tracks for everyone who takes part in `view`.
-    pub(super) fn new(view: &View) -> Self {
+    pub(super) fn new(view: &View, unit: TimeUnit) -> Self {
+        let (pace, map) = (Pace::of(unit), view.mapper.frame());
         let curves =
             |name: &str| [entity::VALUES, entity::SHARES].map(|of| Rows::new(entity::strategy(of, name)));
         Self {
+            unit,
             robots: view.robots.iter().map(Robot::new).collect(),
-            sight: Sight::new(),
+            sight: sight::Track::new(view, &pace),
             obstacles: view
                 .obstacles
                 .iter()
-                .map(|thing| (Rows::new(entity::obstacle(thing.name)), false))
+                .map(|thing| (Rows::new(entity::obstacle(thing.name)), Vec::new()))
                 .collect(),
             path: (Rows::new(entity::PATH), Vec::new()),
             goal: (Rows::new(entity::GOAL), None),
             occupancy: Map::new(Layer::Occupancy),
             maps: [Layer::Interval, Layer::ChangeProbability, Layer::Recency].map(Map::new),
             scores: [entity::COVERAGE, entity::MAP_QUALITY].map(Rows::new),
+            rate_errors: [entity::RELATIVE_ERROR, entity::LOG_ERROR].map(Rows::new),
             features: [entity::P, entity::R].map(Rows::new),
             strategies: view.strategies.iter().map(|strategy| curves(strategy.name)).collect(),
             strategy: (Rows::new(entity::STRATEGY), String::new()),
             log: Rows::new(entity::LOG),
-            occupancy_due: Due::every(OCCUPANCY_S),
-            maps_due: Due::every(MAPS_S),
-            curves_due: Due::every(CURVES_S),
-            scores_due: Due::every(CURVES_S),
+            occupancy_due: Due::every(pace.picture(pace.occupancy, map)),
+            maps_due: Due::every(pace.picture(pace.maps, map)),
+            curves_due: Due::every(pace.curves),
+            scores_due: Due::every(pace.curves),
+            rate_errors_due: Due::every(pace.curves),
         }
     }
 
     /// Appends what is due now; everything in the last view.
     pub(super) fn push(&mut self, view: &View, is_last: bool) {
-        let now = Now { time_s: view.time_s, step: view.step };
+        let now = Now { time: view.time, step: view.step };
         for (track, robot) in self.robots.iter_mut().zip(view.robots) {
             track.push(now, robot);
         }
         self.sight.push(now, view, is_last);
-        for ((track, was_present), thing) in self.obstacles.iter_mut().zip(view.obstacles) {
-            if *was_present != thing.is_present {
-                *was_present = thing.is_present;
-                let closed = thing.outline.iter().chain(thing.outline.first());
+        for ((track, last), thing) in self.obstacles.iter_mut().zip(view.obstacles) {
+            let outline = if thing.is_present { thing.outline } else { &[] };
+            if last != outline {
+                *last = outline.to_vec();
+                let closed = outline.iter().chain(outline.first());
                 track.push(now, thing.is_present.then(|| Strip(closed.map(place).collect())));
             }
         }
@@ -215,18 +171,18 @@ impl Tracks {
     }
 
     fn push_maps(&mut self, now: Now, view: &View, is_last: bool) {
-        if self.occupancy_due.now(view.time_s) || is_last {
-            self.occupancy.push(now, view);
+        if self.occupancy_due.now(view.time) || is_last {
+            self.occupancy.push(now, view, self.unit);
         }
-        if self.maps_due.now(view.time_s) || is_last {
+        if self.maps_due.now(view.time) || is_last {
             for map in &mut self.maps {
-                map.push(now, view);
+                map.push(now, view, self.unit);
             }
         }
     }
 
     fn push_curves(&mut self, now: Now, view: &View, is_last: bool) {
-        if self.curves_due.now(view.time_s) || is_last {
+        if self.curves_due.now(view.time) || is_last {
             let [p, r] = &mut self.features;
             p.push(now, [view.features.p]);
             r.push(now, [view.features.r]);
@@ -236,11 +192,18 @@ impl Tracks {
             }
         }
         if let Some(scores) = view.scores
-            && (self.scores_due.now(view.time_s) || is_last)
+            && (self.scores_due.now(view.time) || is_last)
         {
             let [coverage, map_quality] = &mut self.scores;
             coverage.push(now, [scores.coverage]);
             map_quality.push(now, [scores.map_quality]);
+        }
+        if let Some(errors) = view.rate_errors.filter(|errors| !errors.log.is_nan())
+            && (self.rate_errors_due.now(view.time) || is_last)
+        {
+            let [relative, log] = &mut self.rate_errors;
+            relative.push(now, [errors.relative]);
+            log.push(now, [errors.log]);
         }
     }
 
@@ -248,27 +211,28 @@ impl Tracks {
     pub(super) fn flush(&mut self, stream: &RecordingStream) -> Result<(), String> {
         fn all<'a, T: Item + 'a>(
             rows: impl IntoIterator<Item = &'a mut Rows<T>>,
-            stream: &RecordingStream,
+            to: (&RecordingStream, TimeUnit),
         ) -> Result<(), String> {
-            rows.into_iter().try_for_each(|rows| rows.flush(stream))
+            rows.into_iter().try_for_each(|rows| rows.flush(to.0, to.1))
         }
+        let to = (stream, self.unit);
         for robot in &mut self.robots {
-            all([&mut robot.body], stream)?;
-            all([&mut robot.heading], stream)?;
-            all([&mut robot.trail], stream)?;
+            all([&mut robot.body], to)?;
+            all([&mut robot.heading], to)?;
+            all([&mut robot.trail], to)?;
         }
-        all([&mut self.sight.cells], stream)?;
+        self.sight.flush(stream, self.unit)?;
         let obstacles = self.obstacles.iter_mut().map(|(rows, _)| rows);
-        all(obstacles.chain([&mut self.sight.outline, &mut self.path.0]), stream)?;
-        all([&mut self.goal.0], stream)?;
-        all(self.maps.iter_mut().chain([&mut self.occupancy]).map(|map| &mut map.rows), stream)?;
+        all(obstacles.chain([&mut self.path.0]), to)?;
+        all([&mut self.goal.0], to)?;
+        all(self.maps.iter_mut().chain([&mut self.occupancy]).map(|map| &mut map.rows), to)?;
         let strategies = self.strategies.iter_mut().flatten();
-        all(strategies.chain(&mut self.scores).chain(&mut self.features), stream)?;
-        all([&mut self.strategy.0], stream)?;
-        all([&mut self.log], stream)
+        all(strategies.chain(&mut self.scores).chain(&mut self.rate_errors).chain(&mut self.features), to)?;
+        all([&mut self.strategy.0], to)?;
+        all([&mut self.log], to)
     }
 }
 
-fn place(point: &Point2<f64>) -> Place {
+pub(super) fn place(point: &Point2<f64>) -> Place {
     [point.x as f32, point.y as f32]
 }

@@ -7,7 +7,7 @@ const WORLD: &str = include_str!("../../worlds/four_rooms.toml");
 const MAP: &str = "image: gone.pgm\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\nnegate: 0\n\
                    occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
-/// What the program says to `arguments`, with a file `name` to read.
+/// What `four_rooms` says to `arguments`, with a file `name` to read.
 #[track_caller]
 fn refused_file(name: &str, text: &str, arguments: &str) -> String {
     let run = Run::new();
@@ -20,8 +20,9 @@ fn refused(arguments: &str) -> String {
     refuses(&Run::new(), arguments, &[])
 }
 
+/// What the program says to `arguments`. It must end with 2 and leave nothing but `files`.
 #[track_caller]
-fn refuses(run: &Run, arguments: &str, files: &[&str]) -> String {
+pub(crate) fn refuses(run: &Run, arguments: &str, files: &[&str]) -> String {
     let ended = run.ends(arguments);
     assert_eq!(ended.code, Some(2), "{ended:?}");
     assert_eq!(ended.stdout, "");
@@ -142,8 +143,8 @@ fn command_lines() {
         ("--speed=inf", "a factor above 0, or max"),
         ("--seed=-1", "--seed <SEED>"),
         ("--seed=1.5", "--seed <SEED>"),
-        ("--strategy=clever", "[possible values: curious, recency, poisson, random, coin]"),
-        ("--estimator=guess", "[possible values: paper, paper-all, two-state]"),
+        ("--strategy=clever", "[possible values: curious, recency, poisson, random, coin"),
+        ("--estimator=guess", "[possible values: paper, paper-all, "),
         ("--occupancy=loose", "[possible values: steady, naive]"),
         ("--drive=train", "[possible values: agent, keyboard, tour]"),
         ("--rrd a.rrd --no-rrd", "'--rrd <FILE>' cannot be used with '--no-rrd'"),

@@ -1,7 +1,8 @@
 //! What holds in every world that a robot can live in.
 
 use curious::worlds;
-use geometry::{Reading, Twist, World};
+use geometry::{Reading, Step, Twist, World};
+use sim::grid::{GenerateSettings, GridSpec, GridWorld};
 use sim::physics::PhysicsWorld;
 use std::fmt::Debug;
 
@@ -93,5 +94,22 @@ fn physics_worlds() {
     for (name, _) in worlds::SHIPPED {
         let spec = worlds::load(name).unwrap();
         keeps_the_contract(|seed| PhysicsWorld::new(&spec, seed), &twists());
+    }
+}
+
+/// Steps, long enough in one direction to meet a wall. None of them is absurd.
+fn steps() -> Words<Step> {
+    let sane = Step::ALL.into_iter().flat_map(|step| std::iter::repeat_n(step, 7)).collect();
+    Words { sane, absurd: Vec::new() }
+}
+
+#[test]
+fn grid_worlds() {
+    let shipped = worlds::SHIPPED_GRID.map(|(name, _)| worlds::load_grid(name).unwrap());
+    let made = (0..5).map(|seed| GridSpec::generate(&GenerateSettings::default(), seed));
+    for spec in shipped.into_iter().chain(made) {
+        for spec in [spec.clone(), spec.with_chances(0.7, 0.9)] {
+            keeps_the_contract(|seed| GridWorld::new(&spec, seed), &steps());
+        }
     }
 }

@@ -13,7 +13,7 @@ fn starts(run: &Run) -> Child {
     run.starts(&format!("--duration 1h --speed {SPEED}"))
 }
 
-fn signal(child: &Child, signal: &str) {
+pub(crate) fn signal(child: &Child, signal: &str) {
     let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
 }

@@ -1,5 +1,6 @@
-//! The whole system: the program is run as a user runs it, and what it says, how it ends and what
-//! it leaves behind must hold. One module per thing that must hold.
+//! The whole system: the programs are run as a user runs them, and what they say, how they end and
+//! what they leave behind must hold. One module per thing that must hold; those of `grid_world` are in
+//! `grid`.
 
 mod recording;
 mod run;
@@ -12,6 +13,7 @@ mod disk;
 mod dummy;
 mod ending;
 mod flicker;
+mod grid;
 mod keyboard;
 mod output;
 mod prior;

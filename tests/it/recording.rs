@@ -1,7 +1,10 @@
 //! Reads a recording back, as a viewer does.
 
-use rerun::components::Scalar;
-use rerun::{ChunkStore, ChunkStoreConfig, EntityPath, Scalars, StoreKind};
+use rerun::components::{LineStrip2D, Position2D, Scalar, Text};
+use rerun::{
+    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, LineStrips2D, Points2D,
+    Scalars, StoreKind, TextLog,
+};
 use std::path::Path;
 
 /// A recording in memory.
@@ -42,20 +45,62 @@ impl Recording {
         *self.times("/", "sim_time").last().unwrap() as f64 * 1e-9
     }
 
+    /// The names of the timelines, sorted.
+    pub(crate) fn timelines(&self) -> Vec<String> {
+        let mut names: Vec<_> = self.0.schema().timelines().keys().map(|name| name.to_string()).collect();
+        names.sort();
+        names
+    }
+
     /// A curve: simulated time, s, and value.
     pub(crate) fn curve(&self, entity: &str) -> Vec<(f64, f64)> {
+        let points = self.rows::<Scalar>(entity, "sim_time", Scalars::descriptor_scalars().component);
+        points.iter().map(|(time_ns, values)| (*time_ns as f64 * 1e-9, values[0].0.0)).collect()
+    }
+
+    /// A curve over steps.
+    pub(crate) fn curve_over_steps(&self, entity: &str) -> Vec<(i64, f64)> {
+        let points = self.rows::<Scalar>(entity, "step", Scalars::descriptor_scalars().component);
+        points.iter().map(|(step, values)| (*step, values[0].0.0)).collect()
+    }
+
+    /// Where a robot is, whenever it has moved: step and place, m.
+    pub(crate) fn places(&self, entity: &str) -> Vec<(i64, [f32; 2])> {
+        let places = self.rows::<Position2D>(entity, "step", Points2D::descriptor_positions().component);
+        places.iter().map(|(step, places)| (*step, [places[0].x(), places[0].y()])).collect()
+    }
+
+    /// The corners of a thing, whenever they have changed: step and places, m.
+    pub(crate) fn outlines(&self, entity: &str) -> Vec<(i64, Vec<[f32; 2]>)> {
+        let strips = self.rows::<LineStrip2D>(entity, "step", LineStrips2D::descriptor_strips().component);
+        let corners = |strip: &LineStrip2D| strip.0.iter().map(|corner| [corner.x(), corner.y()]).collect();
+        strips.iter().map(|(step, strips)| (*step, corners(&strips[0]))).collect()
+    }
+
+    /// The lines of the log, with their steps.
+    pub(crate) fn log(&self) -> Vec<(i64, String)> {
+        let lines = self.rows::<Text>("/log", "step", TextLog::descriptor_text().component);
+        lines.iter().map(|(step, lines)| (*step, lines[0].0.to_string())).collect()
+    }
+
+    /// The rows of a component of an entity in the order of their times.
+    fn rows<C: Component + Clone>(
+        &self,
+        entity: &str,
+        timeline: &str,
+        component: ComponentIdentifier,
+    ) -> Vec<(i64, Vec<C>)> {
         let entity = EntityPath::parse_forgiving(entity);
-        let mut points = Vec::new();
+        let mut rows = Vec::new();
         for chunk in self.0.iter_physical_chunks().filter(|chunk| chunk.entity_path() == &entity) {
             if chunk.is_static() {
-                continue; // how the curve looks
+                continue; // how it looks
             }
-            let times = chunk.timelines().values().find(|column| column.name() == "sim_time").unwrap();
-            let values = chunk.iter_component::<Scalar>(Scalars::descriptor_scalars().component);
-            let values = values.map(|values| values.as_slice()[0].0.0);
-            points.extend(times.times_raw().iter().map(|&time_ns| time_ns as f64 * 1e-9).zip(values));
+            let times = chunk.timelines().values().find(|column| column.name() == timeline).unwrap();
+            let items = chunk.iter_component::<C>(component).map(|items| items.as_slice().to_vec());
+            rows.extend(times.times_raw().iter().copied().zip(items));
         }
-        points.sort_by(|a, b| f64::total_cmp(&a.0, &b.0));
-        points
+        rows.sort_by_key(|row| row.0);
+        rows
     }
 }

@@ -1,14 +1,20 @@
-//! One run of the program, in a folder of its own.
+//! One run of a program, in a folder of its own.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use tempfile::TempDir;
 
-/// A folder to run in. Everything that comes out goes to `out` in it, unless the arguments say
-/// otherwise.
+/// The program for the physics worlds.
+const FOUR_ROOMS: &str = env!("CARGO_BIN_EXE_four_rooms");
+/// The program for the grid worlds.
+const GRID_WORLD: &str = env!("CARGO_BIN_EXE_grid_world");
+
+/// A folder to run a program in. Everything that comes out goes to `out` in it, unless the arguments
+/// say otherwise.
 pub(crate) struct Run {
     folder: TempDir,
+    program: &'static str,
 }
 
 /// How a run ended, and what it said.
@@ -27,11 +33,17 @@ impl From<Output> for Ended {
 }
 
 impl Run {
+    /// Of `four_rooms`.
     pub(crate) fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap() }
+        Self { folder: tempfile::tempdir().unwrap(), program: FOUR_ROOMS }
     }
 
-    /// A finished run without a recording, which has to go well; arguments are separated by spaces.
+    /// Of `grid_world`.
+    pub(crate) fn grid() -> Self {
+        Self { folder: tempfile::tempdir().unwrap(), program: GRID_WORLD }
+    }
+
+    /// A finished run of `four_rooms` without a recording, which has to go well; arguments are separated by spaces.
     pub(crate) fn quiet(arguments: &str) -> Self {
         let run = Self::new();
         run.goes_well(&format!("--quiet --no-rrd {arguments}"));
@@ -40,6 +52,11 @@ impl Run {
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
+    }
+
+    /// Where the program is.
+    pub(crate) fn program(&self) -> &'static str {
+        self.program
     }
 
     /// A file in the output folder.
@@ -53,7 +70,7 @@ impl Run {
 
     /// The program, ready to run.
     pub(crate) fn command(&self, arguments: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_four_rooms"));
+        let mut command = Command::new(self.program);
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
         if !arguments.contains("--out") {
             command.args(["--out", "out"]);

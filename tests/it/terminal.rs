@@ -9,7 +9,7 @@ use std::time::Duration;
 /// Runs the program while `person` presses keys; standard error comes on standard output. `None`
 /// without `script`.
 pub(crate) fn run(run: &Run, arguments: &str, person: impl FnOnce(&mut Keys)) -> Option<Ended> {
-    let line = format!("'{}' --out out {arguments}", env!("CARGO_BIN_EXE_four_rooms"));
+    let line = format!("'{}' --out out {arguments}", run.program());
     let mut script = Command::new("script");
     script.args(["-qec", &line, "/dev/null"]).current_dir(run.path(""));
     script.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());

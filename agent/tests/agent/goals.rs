@@ -1,7 +1,10 @@
 //! Which goals come out of which weights.
 
 use crate::drawing::{agent, can_be_a_goal, empty, map, reading, rng, weigh};
-use agent::{Agent, AgentSettings, Always, Poisson, Random, Recency, Situation, Strategy, StrategyChoice};
+use agent::{
+    Agent, AgentSettings, Always, AsTheCrowFlies, Poisson, Random, Recency, Situation, Strategy,
+    StrategyChoice,
+};
 use geometry::{Cell, CellReading};
 use mapper::Mapper;
 use nalgebra::Isometry2;
@@ -55,7 +58,7 @@ fn assert_frequencies(agent: &mut Agent, mapper: &Mapper, probabilities: &[f64])
     let draws = 40_000;
     let mut counts = vec![0.0; probabilities.len()];
     for _ in 0..draws {
-        let goal = agent.next_goal(mapper, &Isometry2::identity());
+        let goal = agent.next_goal(mapper, &Isometry2::identity(), &mut AsTheCrowFlies).cell;
         counts[mapper.frame().index(goal).expect("a goal in the grid")] += 1.0;
     }
     let (mut chi_square, mut freedom) = (0.0, -1.0);
@@ -163,7 +166,7 @@ fn without_a_candidate_the_goal_is_where_the_robot_is() {
         for (x, y, cell) in [(1.5, 0.5, Cell::new(1, 0)), (-7.5, 99.5, Cell::new(-8, 99))] {
             for choice in StrategyChoice::ALL {
                 let pose = geometry::pose(x, y, 0.0);
-                assert_eq!(agent(choice, 5).next_goal(&mapper, &pose), cell);
+                assert_eq!(agent(choice, 5).next_goal(&mapper, &pose, &mut AsTheCrowFlies).cell, cell);
             }
         }
     }
@@ -175,7 +178,10 @@ fn weights_that_are_no_numbers_count_as_zero() {
     let weights = vec![f64::NAN, -1.0, f64::NEG_INFINITY, 0.0, 1e-3, -0.0];
     let mut agent = agent_of(Given(weights), 1, 6);
     for _ in 0..100 {
-        assert_eq!(agent.next_goal(&mapper, &Isometry2::identity()), Cell::new(4, 0));
+        assert_eq!(
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies).cell,
+            Cell::new(4, 0)
+        );
     }
 }
 
@@ -217,7 +223,7 @@ proptest! {
 
         let mut agent = agent_of(Given(weights.clone()), patch_cells, seed);
         for _ in 0..10 {
-            let goal = agent.next_goal(&mapper, &pose);
+            let goal = agent.next_goal(&mapper, &pose, &mut AsTheCrowFlies).cell;
             if goals.is_empty() {
                 prop_assert_eq!(goal, Cell::new(-5, 0));
             } else {
@@ -238,7 +244,10 @@ fn readings_at_one_instant_leave_only_numbers() {
         for _ in 0..20 {
             let features = mapper.features();
             agent.watch(features, mapper.transitions());
-            assert!(can_be_a_goal(&mapper, agent.next_goal(&mapper, &Isometry2::identity())));
+            assert!(can_be_a_goal(
+                &mapper,
+                agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies).cell
+            ));
             assert!(agent.last_reward().is_finite());
             for strategy in 0..agent.strategies().len() {
                 assert!(agent.value(strategy, features).is_none_or(f64::is_finite));

@@ -3,3 +3,4 @@
 mod contract;
 mod drawing;
 mod goals;
+mod looking;

@@ -86,6 +86,7 @@ impl Drive for DiffDrive {
         Body {
             radius_m,
             moves: Moves::Eight,
+            speed_mps: max_linear_mps,
             tolerance_m,
             stride_m,
             directions: 16,

@@ -1,51 +1,10 @@
 //! The same controller in a world of cells, where a command is one move to a neighbour.
 
-use controller::{
-    Body, Controller, Drive, InflationSettings, Moves, Outcome, Path, Scene, Settings, Situation, Status,
-};
-use geometry::{Cell, CellState, Grid, GridFrame, Transition, pose};
-use nalgebra::Point2;
+use controller::{CellDrive, Controller, Outcome, Situation, Status};
+use geometry::{Cell, CellState, Grid, GridFrame, Step, Transition, pose};
+use nalgebra::{Isometry2, Point2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-
-struct GridDrive;
-
-impl Drive for GridDrive {
-    /// The cell to go to from the present one: itself, or one beside it.
-    type Command = (i32, i32);
-
-    fn body(&self) -> Body {
-        Body {
-            radius_m: 0.0,
-            moves: Moves::Four,
-            tolerance_m: 0.4,
-            stride_m: 1.0,
-            directions: 4,
-            step_s: 1.0,
-            step_limit_s: 1.0,
-        }
-    }
-
-    fn follow(&mut self, scene: &Scene, path: &Path) -> Self::Command {
-        let frame = scene.costmap.frame();
-        let here = frame.cell_at(&scene.situation.position());
-        let next = path.ahead().first().map_or(here, |next| frame.cell_at(next));
-        if scene.costmap.is_open(next) { (next.x - here.x, next.y - here.y) } else { (0, 0) }
-    }
-
-    fn rest(&mut self, _: &Scene) -> Self::Command {
-        (0, 0)
-    }
-
-    fn recover(&mut self, _: &Scene, _: f64) -> Option<Self::Command> {
-        None
-    }
-}
-
-fn settings() -> Settings {
-    let inflation = InflationSettings { margin_m: 0.0, comfort_m: 0.0, comfort_price: 1 };
-    Settings { inflation, ..Settings::default() }
-}
 
 struct World {
     map: Grid<CellState>,
@@ -81,27 +40,25 @@ impl World {
         self.transitions.push(Transition { cell, before, after });
     }
 
-    fn tick(&mut self, controller: &mut Controller<GridDrive>) -> (i32, i32) {
+    fn situation<'a>(&'a self, pose: &'a Isometry2<f64>) -> Situation<'a> {
+        let Self { map, transitions, .. } = self;
+        Situation { time: f64::from(self.step), pose, map, transitions, points: &[] }
+    }
+
+    fn tick(&mut self, controller: &mut Controller<CellDrive>) -> Step {
         let at = self.map.frame().center(self.robot);
-        let (x, y) = controller.drive(&Situation {
-            time: f64::from(self.step),
-            pose: &pose(at.x, at.y, 0.0),
-            map: &self.map,
-            transitions: &self.transitions,
-            points: &[],
-        });
-        assert!(x.abs() + y.abs() <= 1);
-        let next = Cell::new(self.robot.x + x, self.robot.y + y);
+        let step = controller.drive(&self.situation(&pose(at.x, at.y, 0.0)));
+        let next = step.target(self.robot);
         assert_ne!(self.map.get(next), Some(&CellState::Blocked), "a move into something seen");
         self.robot = next;
         self.step += 1;
         self.transitions.clear();
-        (x, y)
+        step
     }
 }
 
-fn controller() -> Controller<GridDrive> {
-    Controller::new(settings(), GridDrive, ChaCha8Rng::seed_from_u64(3)).unwrap()
+fn controller() -> Controller<CellDrive> {
+    Controller::new(CellDrive::settings(), CellDrive, ChaCha8Rng::seed_from_u64(3)).unwrap()
 }
 
 #[test]
@@ -115,7 +72,7 @@ fn it_takes_a_shortest_way_one_cell_per_step() {
         if controller.status() == Status::Finished(Outcome::Reached) {
             break;
         }
-        assert_ne!(moved, (0, 0));
+        assert_ne!(moved, Step::Stay);
         steps += 1;
     }
     assert_eq!((world.robot, steps), (Cell::new(0, 0), 14));
@@ -161,4 +118,28 @@ fn it_follows_a_block_one_action_per_step_up_to_the_bound() {
     assert_eq!(explored, 42);
     // As fast as the block, so no farther behind than at first.
     assert!((world.robot.x - block).abs() <= 5, "lost the block: {} {block}", world.robot.x);
+}
+
+#[test]
+fn it_watches_at_a_goal_for_as_long_as_it_was_told() {
+    let mut world = World::new(&["R....."]);
+    let mut controller = controller();
+    controller.watch_at(Point2::new(2.5, 0.5), 3.0);
+    let steps: Vec<_> = (0..5).map(|_| world.tick(&mut controller)).collect();
+    assert_eq!(steps, [Step::Right, Step::Right, Step::Stay, Step::Stay, Step::Stay]);
+    assert_eq!(controller.status(), Status::Exploring);
+    world.tick(&mut controller);
+    assert_eq!(controller.status(), Status::Finished(Outcome::Reached));
+}
+
+#[test]
+fn it_knows_how_long_it_takes_to_get_anywhere() {
+    let mut world = World::new(&["..#.", "R.#.", "...."]);
+    let mut controller = controller();
+    world.tick(&mut controller);
+    let mut times = Vec::new();
+    let at = world.map.frame().center(world.robot);
+    let (pose, infinity) = (pose(at.x, at.y, 0.0), f64::INFINITY);
+    controller.travel_times(&world.situation(&pose), &mut times);
+    assert_eq!(times, [1.0, 2.0, 3.0, 4.0, 0.0, 1.0, infinity, 5.0, 1.0, 2.0, infinity, 6.0]);
 }

@@ -83,6 +83,7 @@ impl Settings {
         let cell_m = spec.frame().resolution_m();
         let mut agent = AgentSettings {
             patch_cells: (PATCH_M / cell_m).round().max(1.0) as _,
+            sensor_radius_m: robot.laser.range_max_m,
             ..AgentSettings::default()
         };
         // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many

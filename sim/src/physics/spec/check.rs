@@ -6,6 +6,7 @@ use super::robot::robot;
 use super::{Behaviour, FleetSpec, ObstacleSpec, RobotSpec, floor_plan};
 use crate::error::{Source, WorldError};
 use crate::files::Files;
+use crate::kind::Kind;
 use crate::physics::shape::{Rectangle, TOUCH_M, turned};
 use geometry::{GridFrame, rotation};
 use nalgebra::Point2;
@@ -25,7 +26,7 @@ pub(super) struct Solid {
 
 /// The file as it is written.
 pub(super) fn file(source: &Source<'_>) -> Result<WorldFile, WorldError> {
-    toml::from_str(source.text).map_err(|error| source.toml_error(error))
+    toml::from_str(source.text).map_err(|error| Kind::Physics.explain(source, error))
 }
 
 /// Checks everything but who is driven.
@@ -34,7 +35,7 @@ pub(super) fn check(
     file: &WorldFile,
     files: &dyn Files,
 ) -> Result<FleetSpec, WorldError> {
-    let name = Table { source, path: "" }.name(&file.name)?;
+    let name = source.name("", &file.name)?;
     let (size, cell_m, turn_rad) = map(source, &file.map)?;
     let physics = Table { source, path: "physics" };
     let step_s = physics.number_or("step_s", &file.physics.step_s, 0.05, 0.001..=0.1)?;
@@ -55,8 +56,8 @@ pub(super) fn check(
         }
         obstacles.push(obstacle);
     }
-    unique(source, "obstacle", file.obstacles.iter().map(|obstacle| &obstacle.get_ref().name))?;
-    unique(source, "robot", file.robots.iter().map(|robot| &robot.get_ref().name))?;
+    source.unique("obstacle", file.obstacles.iter().map(|obstacle| &obstacle.get_ref().name))?;
+    source.unique("robot", file.robots.iter().map(|robot| &robot.get_ref().name))?;
     let mut robots = Vec::new();
     for file in &file.robots {
         robots.push(robot(source, file.get_ref(), &size, step_s, &solids)?);
@@ -182,7 +183,7 @@ fn obstacle(
     let span = file.get_ref().name.span();
     let ObstacleFile { name, min_m, max_m, center_m, size_m, heading_deg, appears_s, disappears_s } =
         file.get_ref();
-    let name = table.name(name)?;
+    let name = source.name("obstacle", name)?;
     let shape = match (min_m, max_m, center_m, size_m) {
         (Some(min), Some(max), None, None) if heading_deg.is_none() => upright(&table, min, max, size)?,
         (None, None, Some(center), Some(sides)) => {
@@ -219,23 +220,6 @@ fn obstacle(
         return Err(source.error(&what, (marked.span(), "too early"), &[], &help));
     }
     Ok(ObstacleSpec { name, shape, appears_s: appears, disappears_s: disappears })
-}
-
-/// Refuses a name that two things of a kind share.
-fn unique<'a>(
-    source: &Source<'_>,
-    kind: &str,
-    names: impl Iterator<Item = &'a Spanned<String>>,
-) -> Result<(), WorldError> {
-    let mut seen = std::collections::BTreeMap::new();
-    for name in names {
-        if let Some(first) = seen.insert(name.get_ref(), name.span()) {
-            let what = format!("two {kind}s are called `{}`", name.get_ref());
-            let help = format!("every {kind} needs a name of its own");
-            return Err(source.error(&what, (name.span(), "again here"), &[(first, "first here")], &help));
-        }
-    }
-    Ok(())
 }
 
 /// Refuses robots that start in each other.

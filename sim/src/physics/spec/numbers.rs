@@ -82,21 +82,4 @@ impl Table<'_> {
         let help = format!("the map reaches from [0, 0] to [{}, {}]", size.x, size.y);
         Err(self.source.error(&what, (value.span(), "outside of the map"), &[], &help))
     }
-
-    /// A name, if it is not empty.
-    pub(super) fn name(&self, value: &serde_spanned::Spanned<String>) -> Result<String, WorldError> {
-        if !value.get_ref().trim().is_empty() {
-            return Ok(value.get_ref().clone());
-        }
-        let what = match self.path {
-            "" => "`name` is empty".to_owned(),
-            path => format!("`{path}.name` is empty"),
-        };
-        Err(self.source.error(
-            &what,
-            (value.span(), "empty"),
-            &[],
-            "give it a name, as in `name = \"curious\"`",
-        ))
-    }
 }

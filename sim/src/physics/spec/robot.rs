@@ -18,7 +18,7 @@ pub(super) fn robot(
     solids: &[Solid],
 ) -> Result<RobotSpec, WorldError> {
     let table = Table { source, path: "robot" };
-    let name = table.name(&file.name)?;
+    let name = source.name("robot", &file.name)?;
     let radius_m = table.number("radius_m", &file.radius_m, 0.02..=10.0)?;
     let mass_kg =
         file.mass_kg.as_ref().map(|mass| table.number("mass_kg", mass, 0.001..=100_000.0)).transpose()?;

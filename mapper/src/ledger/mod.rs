@@ -1,10 +1,18 @@
 //! What is believed and what was seen of every cell. The occupancy models write here; everything
 //! that is read of the map is read from here.
 
-use crate::estimator::change_probability;
-use crate::{CellStatistics, Estimator};
+mod recency;
+mod record;
+mod survival;
+
+use crate::chain::Chain;
+use crate::gaps::{GapTable, Regularity, Watch};
+use crate::{CellStatistics, Estimator, GapWorth};
 use geometry::{Cell, CellState, Grid, GridFrame, Transition};
-use std::collections::VecDeque;
+use recency::Recency;
+use record::{Record, place};
+use std::num::NonZeroU32;
+use survival::Survival;
 
 /// A reading by its number. Number 0 stands for "never", and its time, 0, is when a cell that was
 /// never seen counts as last seen. Number 1 stands for the prior map, also at time 0; no cell counts
@@ -18,31 +26,6 @@ const UNSETTLED: ReadingIndex = 1 << 31;
 /// Cells that [`Ledger::see_run`] takes at once.
 const BLOCK: usize = 16;
 
-/// The change record of one cell, except for the time of its last sighting, which is written at
-/// every sighting and lies apart.
-#[derive(Clone, Copy, Debug, Default)]
-struct Record {
-    first: ReadingIndex,
-    /// From here to the last sighting the cell was watched in its present state without a gap,
-    /// and that time is not in `watched` yet.
-    since: ReadingIndex,
-    /// Time watched while free and while blocked, over by `since`.
-    watched: [f64; 2],
-    /// Block and free events that happened in view.
-    in_view: [u32; 2],
-    /// Block and free events that were found when the cell came back into view.
-    after_gap: [u32; 2],
-}
-
-/// A cell that changed at least once. Its rate only moves while the cell is in view, so it is kept
-/// from the last sighting on.
-#[derive(Clone, Copy, Debug)]
-struct Changed {
-    index: u32,
-    rate_of: ReadingIndex,
-    rate: f64,
-}
-
 /// The belief of every cell, its change statistics, and the running features over them.
 #[derive(Clone, Debug)]
 pub(crate) struct Ledger {
@@ -54,21 +37,16 @@ pub(crate) struct Ledger {
     /// The last sighting of every cell, with the mark [`UNSETTLED`].
     sightings: Vec<ReadingIndex>,
     records: Vec<Record>,
-    changed: Vec<Changed>,
+    /// The gaps of every cell; empty if the estimator does not weigh them.
+    gaps: Vec<GapTable>,
+    regularity: Regularity,
+    /// in view moves of the open reading
+    moves: Vec<(u32, Option<ReadingIndex>)>,
+    survival: Survival,
     transitions: Vec<Transition>,
     /// Cells that can be a goal, or are a surface that can be seen again.
     candidates: Vec<bool>,
-    /// For each reading from `oldest` on, the number of candidates last seen in it: the maximum
-    /// recency without a pass over the map.
-    last_seen_counts: VecDeque<u32>,
-    oldest: ReadingIndex,
-}
-
-const fn slot(state: CellState) -> usize {
-    match state {
-        CellState::Unknown | CellState::Free => 0,
-        CellState::Blocked => 1,
-    }
+    recency: Recency,
 }
 
 impl Ledger {
@@ -81,11 +59,13 @@ impl Ledger {
             times: vec![0.0, 0.0],
             sightings: vec![NEVER | UNSETTLED; cells],
             records: vec![Record::default(); cells],
-            changed: Vec::new(),
+            gaps: if estimator.weighs_gaps() { vec![GapTable::default(); cells] } else { Vec::new() },
+            regularity: Regularity::default(),
+            moves: Vec::new(),
+            survival: Survival::default(),
             transitions: Vec::new(),
             candidates: vec![false; cells],
-            last_seen_counts: VecDeque::from([0, 0]),
-            oldest: NEVER,
+            recency: Recency::new(),
         };
         for index in 0..cells {
             if ledger.state(index) != CellState::Unknown {
@@ -99,8 +79,9 @@ impl Ledger {
     /// Opens the next reading and gives its number.
     pub(crate) fn open(&mut self, time: f64) -> ReadingIndex {
         self.transitions.clear();
+        self.moves.clear();
         self.times.push(time);
-        self.last_seen_counts.push_back(0);
+        self.recency.open();
         self.now_index()
     }
 
@@ -166,12 +147,24 @@ impl Ledger {
             return;
         }
         if !self.is_in_view(index) {
-            self.book(index);
-            self.records[index].since = now;
+            let state = self.state(index);
+            self.end_gap(index, state);
+            self.fit_gaps(index);
         }
+        self.mark(index, last, now);
+    }
+
+    /// Notes that the open reading saw the cell.
+    #[inline]
+    fn mark(&mut self, index: usize, last: ReadingIndex, now: ReadingIndex) {
         self.sightings[index] = now | self.sightings[index] & UNSETTLED;
         if self.candidates[index] {
-            self.count_moved(last, now);
+            self.recency.moved(last, now);
+        }
+        if last + 1 < now
+            && let Some(slot) = self.records[index].slot()
+        {
+            self.survival.came_back(slot);
         }
     }
 
@@ -215,26 +208,46 @@ impl Ledger {
             block_start += BLOCK;
         }
         // A settled cell is free, and a free cell is a candidate.
-        let newest = self.last_seen_counts.len() - 1;
-        self.last_seen_counts[newest] += again;
-        self.last_seen_counts[newest - 1] -= again;
+        self.recency.seen_again(again);
     }
 
     /// The cell takes another state. `since` is the reading in which the new state was first
     /// seen, and `in_view` says whether the old one was still seen in the reading before that:
     /// then the change happened in view, else it was found after a gap.
     pub(crate) fn turn(&mut self, index: usize, after: CellState, since: ReadingIndex, in_view: bool) {
-        let (before, last) = (self.state(index), self.last(index));
+        let (before, now) = (self.state(index), self.now_index());
+        let is_event = before != CellState::Unknown && self.records[index].is_known();
+        if self.last(index) < now && !self.is_in_view(index) {
+            self.end_gap(index, after);
+            self.mark(index, self.last(index), now);
+        } else if is_event && let Some(table) = self.gaps.get_mut(index) {
+            table.correct_last(since, after == CellState::Blocked);
+        }
+        let last = self.last(index);
+        let period = self.period(last);
         let record = &mut self.records[index];
-        if before != CellState::Unknown && record.first != NEVER {
-            if record.in_view == [0; 2] && record.after_gap == [0; 2] {
-                self.changed.push(Changed { index: index as u32, rate_of: NEVER, rate: 0.0 });
+        if is_event {
+            if !record.has_changed() {
+                record.slot = NonZeroU32::new(self.survival.add(index) + 1);
             }
             // The time since the new state was first seen belongs to the new state.
             let until = since.clamp(record.since, last.max(record.since));
-            record.watched[slot(before)] += self.times[until as usize] - self.times[record.since as usize];
+            let stayed = self.times[until as usize] - self.times[record.since as usize];
+            let event = place(before); // free → blocked is a block event, blocked → free a free event
+            record.watched[event] += stayed;
+            if let Some(table) = self.gaps.get_mut(index)
+                && in_view
+                && record.is_whole
+                && period > 0.0
+            {
+                table.add_stay(event, stayed / period, &mut self.regularity);
+            }
+            if in_view && (after == CellState::Blocked || record.is_whole) {
+                let stood_from = (after != CellState::Blocked).then_some(record.since + 1);
+                self.moves.push((index as u32, stood_from));
+            }
+            record.is_whole = in_view;
             record.since = until;
-            let event = slot(before); // free → blocked is a block event, blocked → free a free event
             if in_view { record.in_view[event] += 1 } else { record.after_gap[event] += 1 }
         }
         let cell = self.frame().cell(index);
@@ -244,10 +257,37 @@ impl Ledger {
             self.set_settled(index, false);
         }
         self.see(index);
+        self.fit_gaps(index);
         self.judge_candidate(index);
         for neighbour in cell.neighbours4() {
             if let Some(neighbour) = self.frame().index(neighbour) {
                 self.judge_candidate(neighbour);
+            }
+        }
+    }
+
+    /// hidden moves
+    pub(crate) fn infer_moves(&mut self) {
+        if self.gaps.is_empty() { return; }
+        if *crate::gaps::tune::INFER == 0.0 { return; }
+        let now = self.now_index();
+        let period = self.period(now);
+        for position in 0..self.moves.len() {
+            let (index, stood_from) = self.moves[position];
+            let cell = self.frame().cell(index as usize);
+            match stood_from {
+                None => for near in cell.neighbours4() {
+                    let Some(near) = self.frame().index(near) else { continue };
+                    if self.state(near) == CellState::Blocked && self.last(near) + 1 == now && self.records[near].is_known() {
+                        self.gaps[near].left(now);
+                    }
+                },
+                Some(from) => for near in cell.neighbours8() {
+                    let Some(near) = self.frame().index(near) else { continue };
+                    if self.last(near) == now && period > 0.0 && *crate::gaps::tune::INFER > 1.0 {
+                        self.gaps[near].unhide(from, now, period);
+                    }
+                },
             }
         }
     }
@@ -264,26 +304,53 @@ impl Ledger {
         let now = self.now_index();
         self.see(index);
         self.records[index] = Record { first: now, since: now, ..Record::default() };
+        if let Some(table) = self.gaps.get_mut(index) {
+            *table = GapTable::default();
+        }
         let (cell, before) = (self.frame().cell(index), self.state(index));
         self.transitions.push(Transition { cell, before, after: CellState::Unknown });
         self.states.cells_mut()[index] = CellState::Unknown;
         self.turn(index, after, now, false);
     }
 
-    /// Adds the time watched without a gap to the state's account.
-    fn book(&mut self, index: usize) {
-        let (state, last) = (self.state(index), self.last(index));
+    /// The cell is seen again after a gap, or for the first time: books what was seen before.
+    fn end_gap(&mut self, index: usize, after: CellState) {
+        let (before, last, now) = (self.state(index), self.last(index), self.now_index());
         let record = &mut self.records[index];
-        if record.first == NEVER {
-            record.first = (self.times.len() - 1) as ReadingIndex;
+        if record.is_known() {
+            let times = &self.times;
+            record.watched[place(before)] += times[last as usize] - times[record.since as usize];
+            record.gaps[place(before)] += 1;
+            let period = if now > PRIOR + 1 { (times[now as usize] - times[PRIOR as usize + 1]) / f64::from(now - PRIOR - 1) } else { 0.0 };
+            if let Some(table) = self.gaps.get_mut(index) {
+                let length = times[now as usize] - times[last as usize];
+                table.add([last, now], length, [before, after].map(|state| state == CellState::Blocked), times[now as usize] - times[last as usize + 1], period);
+            }
         } else {
-            record.watched[slot(state)] += self.times[last as usize] - self.times[record.since as usize];
+            record.first = now;
         }
+        record.since = now;
+        record.is_whole = false;
     }
 
-    fn count_moved(&mut self, from: ReadingIndex, to: ReadingIndex) {
-        self.last_seen_counts[(from - self.oldest) as usize] -= 1;
-        self.last_seen_counts[(to - self.oldest) as usize] += 1;
+    /// Lets the estimator weigh the gaps of a cell that changes, when enough has been seen since it
+    /// last did.
+    fn fit_gaps(&mut self, index: usize) {
+        if self.gaps.is_empty() || !self.records[index].has_changed() {
+            return;
+        }
+        let seen = self.statistics(index);
+        if !self.gaps[index].is_due(&seen) {
+            return;
+        }
+        let radius = *crate::gaps::tune::RADIUS as i32;
+        let cell = self.frame().cell(index);
+        let mut near = Watch::default();
+        for y in -radius..=radius { for x in -radius..=radius {
+            if x == 0 && y == 0 { continue; }
+            if let Some(k) = self.frame().index(Cell::new(cell.x + x, cell.y + y)) { near = near + self.gaps[k].own(); }
+        }}
+        self.gaps[index].weigh(self.estimator, &seen, near, &self.regularity);
     }
 
     /// A cell is a candidate when it is free, or touches a free cell by a side: a frontier cell or
@@ -297,50 +364,29 @@ impl Ledger {
             return;
         }
         self.candidates[index] = is;
-        // A cell seen before every reading that still counts cannot lie before `oldest`: candidates
-        // hold `oldest` back, and a cell that becomes one again is counted where it was last seen.
-        let last = self.last(index);
-        while last < self.oldest {
-            self.last_seen_counts.push_front(0);
-            self.oldest -= 1;
-        }
-        let count = &mut self.last_seen_counts[(last - self.oldest) as usize];
-        if is { *count += 1 } else { *count -= 1 }
+        self.recency.count(self.last(index), is);
     }
 
-    /// The feature r of section 4: the longest time since a candidate was seen. Forgets readings
-    /// that no candidate was last seen in.
+    /// The feature r of section 4: the longest time since a candidate was seen.
     pub(crate) fn max_recency(&mut self) -> f64 {
-        while self.last_seen_counts.len() > 2 && self.last_seen_counts[0] == 0 {
-            self.last_seen_counts.pop_front();
-            self.oldest += 1;
-        }
-        let oldest = self.last_seen_counts.iter().position(|&count| count > 0);
-        oldest.map_or(0.0, |offset| self.now() - self.times[self.oldest as usize + offset])
+        self.recency.longest().map_or(0.0, |reading| self.now() - self.times[reading as usize])
     }
 
     /// The feature p of section 4: the expected number of cells that changed since they were
     /// seen. Costs time in proportion to the cells that ever changed.
     pub(crate) fn sum_change_probability(&mut self) -> f64 {
-        let mut sum = 0.0;
-        for position in 0..self.changed.len() {
-            let Changed { index, rate_of, mut rate } = self.changed[position];
-            let last = self.last(index as usize);
-            if last == self.now_index() {
-                continue; // in view: nothing can have changed unseen
-            }
-            if rate_of != last {
-                rate = self.estimator.rate(&self.statistics(index as usize));
-                self.changed[position] = Changed { index, rate_of: last, rate };
-            }
-            sum += change_probability(self.now() - self.times[last as usize], rate);
-        }
+        let mut survival = std::mem::take(&mut self.survival);
+        let sum = survival.sum_changed(self.now(), |index| {
+            let is_out_of_view = !self.was_seen_now(index);
+            is_out_of_view.then(|| (self.last_seen(index), self.estimator.rate(&self.statistics(index))))
+        });
+        self.survival = survival;
         sum
     }
 
     /// The places of the cells that ever changed, in the order of their first change.
     pub(crate) fn changed(&self) -> impl Iterator<Item = usize> {
-        self.changed.iter().map(|changed| changed.index as usize)
+        self.survival.cells().iter().map(|&index| index as usize)
     }
 
     pub(crate) fn estimator(&self) -> Estimator {
@@ -352,22 +398,53 @@ impl Ledger {
         self.times[self.last(index) as usize]
     }
 
+    /// The mean time from one reading to the next up to one of them; 0 before the second.
+    fn period(&self, until: ReadingIndex) -> f64 {
+        let first = PRIOR + 1;
+        if until <= first {
+            return 0.0;
+        }
+        (self.times[until as usize] - self.times[first as usize]) / f64::from(until - first)
+    }
+
+    /// The two-state chain of the cell, if it has a rate.
+    pub(crate) fn chain(&self, index: usize) -> Option<Chain> {
+        self.estimator.chain(&self.statistics(index))
+    }
+
+    /// The probability that the cell is blocked now.
+    pub(crate) fn blocked_probability(&self, index: usize) -> f64 {
+        let state = self.state(index);
+        let is_certain = self.was_seen_now(index) && state != CellState::Unknown;
+        match self.chain(index).filter(|_| !is_certain) {
+            Some(chain) => chain.blocked_probability(state, self.now() - self.last_seen(index)),
+            None => match state {
+                CellState::Unknown => 0.5,
+                CellState::Free => 0.0,
+                CellState::Blocked => 1.0,
+            },
+        }
+    }
+
     pub(crate) fn ever_seen(&self, index: usize) -> bool {
         self.last(index) != NEVER
     }
 
     pub(crate) fn statistics(&self, index: usize) -> CellStatistics {
         let record = &self.records[index];
-        if record.first == NEVER {
+        if !record.is_known() {
             return CellStatistics::default();
         }
-        let (first_seen, last_seen) = (self.times[record.first as usize], self.last_seen(index));
+        let last = self.last(index);
+        let (first_seen, last_seen) = (self.times[record.first as usize], self.times[last as usize]);
         let mut watched = record.watched;
-        watched[slot(self.state(index))] += last_seen - self.times[record.since as usize];
+        watched[place(self.state(index))] += last_seen - self.times[record.since as usize];
         let [watched_free, watched_blocked] = watched;
+        let period = self.period(last);
         CellStatistics {
             first_seen,
             last_seen,
+            period,
             unobserved: (last_seen - first_seen - watched_free - watched_blocked).max(0.0),
             watched_free,
             watched_blocked,
@@ -375,6 +452,9 @@ impl Ledger {
             free_events: record.in_view[1],
             block_events_after_gap: record.after_gap[0],
             free_events_after_gap: record.after_gap[1],
+            gaps_from_free: record.gaps[0],
+            gaps_from_blocked: record.gaps[1],
+            gap_worth: self.gaps.get(index).map_or(GapWorth::default(), |table| table.worth(period)),
         }
     }
 }

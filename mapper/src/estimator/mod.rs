@@ -1,4 +1,12 @@
+//! How often a cell changes, from what was seen of it.
+
+mod baselines;
+mod two_state;
+
 use crate::CellStatistics;
+use crate::chain::Chain;
+pub(crate) use baselines::changes_in_view;
+pub(crate) use two_state::{gap_prior, watch};
 
 /// How the rate of change of a cell is estimated from what was seen of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
@@ -8,40 +16,59 @@ pub enum Estimator {
     Paper,
     /// The paper's equation 1, counting also the changes that were found after a gap.
     PaperAll,
+    /// Cho & Garcia-Molina's estimator of how often a web page changes ("Estimating frequency of
+    /// change", 2003): one Poisson process, of which each visit tells whether there was any event since
+    /// the visit before. Visits at irregular intervals by their maximum likelihood.
+    ChoGarciaMolina,
+    /// Independent Markov chains of Saarinen, Andreasson & Lilienthal (IROS 2012): per state, the changes
+    /// found at the next observation over the observations, one more of both.
+    Imac,
     /// A two-state continuous-time Markov chain: each rate is conditioned on the state in which
     /// the cell was watched, so that looking longer while something stands there biases less.
     #[default]
     TwoState,
+    /// The same chain in steps of the readings, with what gaps tell: the state before, the state
+    /// after, and the time between. Maximum a posteriori.
+    TwoStateGaps,
 }
 
-/// What one event counts for a state that was left often but never seen to be entered again: half
-/// an event, the mean of the Jeffreys posterior of a Poisson rate for no event.
-const UNSEEN_EVENTS: f64 = 0.5;
-
 impl Estimator {
-    /// Every estimator, in the order of their history.
-    pub const ALL: [Self; 3] = [Self::Paper, Self::PaperAll, Self::TwoState];
+    /// Every estimator.
+    pub const ALL: [Self; 6] =
+        [Self::Paper, Self::PaperAll, Self::ChoGarciaMolina, Self::Imac, Self::TwoState, Self::TwoStateGaps];
 
     /// The name on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Paper => "paper",
             Self::PaperAll => "paper-all",
+            Self::ChoGarciaMolina => "cho-garcia-molina",
+            Self::Imac => "imac",
             Self::TwoState => "two-state",
+            Self::TwoStateGaps => "two-state-gaps",
         }
+    }
+
+    /// Whether the gaps of a cell count one by one.
+    pub(crate) fn weighs_gaps(self) -> bool {
+        matches!(self, Self::ChoGarciaMolina | Self::TwoStateGaps)
     }
 
     /// The mean time of one cycle, blocked to free and back (equation 1's T), in the unit of the
     /// statistics' times; ∞ for a cell without an event, or that was never in view for any time.
     pub fn interval(self, seen: &CellStatistics) -> f64 {
         let interval = match self {
-            Self::Paper => paper(seen, seen.block_events, seen.free_events),
-            Self::PaperAll => paper(
+            _ if seen.events() == 0 => f64::INFINITY,
+            Self::Paper => baselines::paper(seen, seen.block_events, seen.free_events),
+            Self::PaperAll => baselines::paper(
                 seen,
                 seen.block_events + seen.block_events_after_gap,
                 seen.free_events + seen.free_events_after_gap,
             ),
-            Self::TwoState => two_state(seen),
+            Self::ChoGarciaMolina => baselines::cho_garcia_molina(seen),
+            Self::Imac => baselines::imac(seen).interval(),
+            Self::TwoState => two_state::interval_in_view(seen),
+            Self::TwoStateGaps => two_state::with_gaps(seen).interval(),
         };
         // Events of a cell that was never watched, or not for any time that has an inverse, tell of a
         // change, but not how often.
@@ -52,23 +79,22 @@ impl Estimator {
     pub fn rate(self, seen: &CellStatistics) -> f64 {
         1.0 / self.interval(seen)
     }
-}
 
-/// Equation 1: observed time per event, the smaller of the two processes'. They are coupled, so
-/// they share one rate, and the estimate errs towards long intervals.
-fn paper(seen: &CellStatistics, block_events: u32, free_events: u32) -> f64 {
-    let events = block_events.max(free_events);
-    if events == 0 { f64::INFINITY } else { seen.observed() / f64::from(events) }
-}
-
-/// T = 1/α + 1/β with α the rate of block events while free, and β of free events while blocked.
-fn two_state(seen: &CellStatistics) -> f64 {
-    if seen.block_events + seen.free_events == 0 {
-        return f64::INFINITY;
+    /// The rates of both processes, by which what is out of view is predicted; none for a cell
+    /// without a rate.
+    pub(crate) fn chain(self, seen: &CellStatistics) -> Option<Chain> {
+        let cycle_rate = self.rate(seen);
+        if cycle_rate == 0.0 {
+            return None;
+        }
+        let chain = match self {
+            Self::Imac => baselines::imac(seen),
+            Self::TwoState => two_state::in_view(seen)?,
+            Self::TwoStateGaps => two_state::with_gaps(seen),
+            Self::Paper | Self::PaperAll | Self::ChoGarciaMolina => baselines::shared(seen, cycle_rate),
+        };
+        Some(chain.bounded())
     }
-    let dwell =
-        |watched: f64, events: u32| watched / if events == 0 { UNSEEN_EVENTS } else { f64::from(events) };
-    dwell(seen.watched_free, seen.block_events) + dwell(seen.watched_blocked, seen.free_events)
 }
 
 /// The probability that a cell changed since it was last seen (equation 2, with the λ of the
@@ -87,6 +113,7 @@ mod tests {
         CellStatistics {
             first_seen: 0.0,
             last_seen: 130.0,
+            period: 1.0,
             unobserved: 30.0,
             watched_free: 80.0,
             watched_blocked: 20.0,
@@ -94,6 +121,9 @@ mod tests {
             free_events: 5,
             block_events_after_gap: 6,
             free_events_after_gap: 1,
+            gaps_from_free: 8,
+            gaps_from_blocked: 3,
+            ..CellStatistics::default()
         }
     }
 

@@ -1,0 +1,198 @@
+//! What a step costs in a grid world: `cargo bench --bench grid_loop`.
+//!
+//! Every bench takes 20,000 steps and tells how many there are in a second. [`whole`] is the loop as
+//! the program runs it, without metrics: sense, map, features, choose, plan, act. The other two leave
+//! out the choice of goals ([`known_goals`]), and planning and following too ([`known_way`]), by doing
+//! again what was done before; so the differences are what each part costs.
+//!
+//! Two things must hold: `whole` in the world of 25 × 25 cells makes 300,000 steps per second or more,
+//! and `known_way`, which is all but deciding, takes at most three times as long with 200 × 200 cells.
+
+use agent::{Agent, AgentSettings, StrategyChoice, Travel};
+use controller::{CellDrive, Controller};
+use curious::explore;
+use curious::pilot::{Autonomous, Guide, Now, Pilot, Visit};
+use curious::worlds;
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use geometry::Step;
+use mapper::{Mapper, MapperSettings, ReadingError};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use sim::grid::{GenerateSettings, GridSpec, GridWorld};
+use std::ops::ControlFlow;
+
+const STEPS: usize = 20_000;
+const SEED: u64 = 1;
+
+/// The paper's world and random ones, all seen with radius 4, and how goals are chosen.
+const LIVES: [(&str, StrategyChoice); 6] = [
+    ("two_blocks", StrategyChoice::Recency),
+    ("two_blocks", StrategyChoice::Curious),
+    ("25 x 25", StrategyChoice::Recency),
+    ("25 x 25", StrategyChoice::Curious),
+    ("200 x 200", StrategyChoice::Recency),
+    ("200 x 200", StrategyChoice::Curious),
+];
+
+fn main() {
+    divan::main();
+}
+
+fn world(name: &str) -> GridSpec {
+    let side = match name {
+        "25 x 25" => 25,
+        "200 x 200" => 200,
+        shipped => return worlds::load_grid(shipped).expect("a shipped world is right"),
+    };
+    // The larger, the more rooms.
+    let rooms = (side / 12u32).pow(2);
+    let settings = GenerateSettings {
+        width: [side; 2],
+        height: [side; 2],
+        walls: [rooms - 1; 2],
+        pillars: [rooms; 2],
+        blocks: [4; 2],
+        sensor_radius: 4,
+        ..GenerateSettings::default()
+    };
+    GridSpec::generate(&settings, SEED)
+}
+
+fn chance(stream: u64) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    rng.set_stream(stream);
+    rng
+}
+
+/// A robot in its world.
+struct Life<P> {
+    world: GridWorld,
+    mapper: Mapper,
+    pilot: P,
+}
+
+impl<P: Pilot<Command = Step>> Life<P> {
+    fn new(spec: &GridSpec, pilot: P) -> Self {
+        let mapper = Mapper::new(&MapperSettings::default(), *spec.frame()).expect("defaults make sense");
+        Self { world: GridWorld::new(spec, SEED), mapper, pilot }
+    }
+
+    fn live(self) -> Self {
+        let Self { mut world, mut mapper, mut pilot } = self;
+        let mut step = 0;
+        explore(&mut world, &mut mapper, &mut pilot, |_, _, _, pilot| -> Result<_, ReadingError> {
+            pilot.take_messages();
+            step += 1;
+            Ok(if step < STEPS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+        })
+        .expect("a grid world's readings make sense");
+        Self { world, mapper, pilot }
+    }
+}
+
+fn autonomous<G: Guide>(guide: G) -> Autonomous<G, CellDrive> {
+    let controller = Controller::new(CellDrive::settings(), CellDrive, chance(1));
+    Autonomous::new(guide, controller.expect("the drive's own settings make sense"))
+}
+
+fn agent(choice: StrategyChoice) -> Agent {
+    Agent::new(&AgentSettings::default(), choice, chance(2)).expect("defaults make sense")
+}
+
+/// An agent, and what it decided.
+struct Remembering {
+    agent: Agent,
+    visits: Vec<Visit>,
+}
+
+impl Guide for Remembering {
+    fn next_goal(&mut self, now: &Now, travel: &mut impl Travel) -> Option<Visit> {
+        let visit = Guide::next_goal(&mut self.agent, now, travel);
+        self.visits.extend(visit);
+        visit
+    }
+
+    fn watch(&mut self, now: &Now) {
+        Guide::watch(&mut self.agent, now);
+    }
+
+    fn reason(&self) -> String {
+        self.agent.reason()
+    }
+}
+
+/// Decides what was decided before.
+struct Repeating(std::vec::IntoIter<Visit>);
+
+impl Guide for Repeating {
+    fn next_goal(&mut self, _: &Now, _: &mut impl Travel) -> Option<Visit> {
+        self.0.next()
+    }
+
+    fn reason(&self) -> String {
+        String::new()
+    }
+}
+
+/// Remembers every command of a pilot.
+struct Followed<P> {
+    pilot: P,
+    way: Vec<Step>,
+}
+
+impl<P: Pilot<Command = Step>> Pilot for Followed<P> {
+    type Command = Step;
+
+    fn command(&mut self, now: &Now) -> Step {
+        let step = self.pilot.command(now);
+        self.way.push(step);
+        step
+    }
+}
+
+/// Gives commands that were given before.
+struct Way(std::vec::IntoIter<Step>);
+
+impl Pilot for Way {
+    type Command = Step;
+
+    fn command(&mut self, _: &Now) -> Step {
+        self.0.next().unwrap_or_default()
+    }
+}
+
+fn bench<P: Pilot<Command = Step>>(bencher: Bencher<'_, '_>, spec: &GridSpec, pilot: impl Fn() -> P) {
+    bencher
+        .counter(ItemsCount::new(STEPS))
+        .with_inputs(|| Life::new(spec, pilot()))
+        .bench_local_values(Life::live);
+}
+
+/// The whole loop.
+#[divan::bench(args = LIVES, sample_count = 20, sample_size = 1)]
+fn whole(bencher: Bencher<'_, '_>, (name, choice): (&str, StrategyChoice)) {
+    bench(bencher, &world(name), || autonomous(agent(choice)));
+}
+
+/// All but the choice of goals.
+#[divan::bench(args = LIVES, sample_count = 20, sample_size = 1)]
+fn known_goals(bencher: Bencher<'_, '_>, (name, choice): (&str, StrategyChoice)) {
+    let spec = world(name);
+    let remembering = Remembering { agent: agent(choice), visits: Vec::new() };
+    let mut life = Life::new(&spec, autonomous(remembering)).live();
+    let visits = std::mem::take(&mut life.pilot.guide_mut().visits);
+    let robot = life.world.robot();
+    let again = || autonomous(Repeating(visits.clone().into_iter()));
+    assert_eq!(Life::new(&spec, again()).live().world.robot(), robot, "the same goals, the same way");
+    bench(bencher, &spec, again);
+}
+
+/// All but the choice of goals, planning and following.
+#[divan::bench(args = LIVES, sample_count = 20, sample_size = 1)]
+fn known_way(bencher: Bencher<'_, '_>, (name, choice): (&str, StrategyChoice)) {
+    let spec = world(name);
+    let followed = Followed { pilot: autonomous(agent(choice)), way: Vec::with_capacity(STEPS) };
+    let way = Life::new(&spec, followed).live().pilot.way;
+    bench(bencher, &spec, || Way(way.clone().into_iter()));
+}

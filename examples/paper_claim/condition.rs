@@ -1,0 +1,130 @@
+//! What is changed, one thing at a time.
+
+use agent::{AgentSettings, Reward, StrategyChoice};
+use controller::CellDrive;
+use curious::report::{Report, ReportSettings, WorldPicture};
+use curious::trials::{Experiment, Job, TrialStrategy};
+use curious::worlds::{SHIPPED_GRID, load_grid};
+use mapper::{Estimator, MapperSettings};
+use sim::grid::{GenerateSettings, GridSpec};
+use std::sync::atomic::AtomicBool;
+
+/// The name of the condition that the others differ from in one thing.
+pub(crate) const BASE: &str = "the paper's";
+
+/// The strategies that the claim is about, and two baselines.
+const STRATEGIES: [StrategyChoice; 5] = [
+    StrategyChoice::Curious,
+    StrategyChoice::Recency,
+    StrategyChoice::Poisson,
+    StrategyChoice::Random,
+    StrategyChoice::Coin,
+];
+
+/// Everything that can be changed.
+#[derive(Clone, Debug)]
+pub(crate) struct Condition {
+    pub(crate) name: String,
+    sensor_radius: u32,
+    steps: u64,
+    estimator: Estimator,
+    reward: Reward,
+    /// The probability of a move.
+    chance: f64,
+    /// The bound on local exploration.
+    max_steps: u32,
+}
+
+/// The base, then what differs from it in one thing.
+pub(crate) fn conditions() -> Vec<Condition> {
+    let base = Condition {
+        name: BASE.to_owned(),
+        sensor_radius: 4,
+        steps: 20_000,
+        estimator: Estimator::Paper,
+        reward: Reward::Changes,
+        chance: 1.0,
+        max_steps: 42,
+    };
+    let change = |name: String, what: &dyn Fn(&mut Condition)| {
+        let mut condition = Condition { name, ..base.clone() };
+        what(&mut condition);
+        condition
+    };
+    let mut conditions = vec![base.clone()];
+    for radius in [3, 5, 6, 7, 8] {
+        conditions.push(change(format!("sensor radius {radius}"), &|other| other.sensor_radius = radius));
+    }
+    for (steps, name) in [(2_000, "2,000 steps"), (5_000, "5,000 steps"), (50_000, "50,000 steps")] {
+        conditions.push(change(name.to_owned(), &|other| other.steps = steps));
+    }
+    conditions.push(change("estimator paper-all".to_owned(), &|other| other.estimator = Estimator::PaperAll));
+    let best = Estimator::default();
+    conditions.push(change(format!("estimator {}", best.name()), &|other| other.estimator = best));
+    conditions.push(change("reward with discoveries".to_owned(), &|other| {
+        other.reward = Reward::ChangesAndDiscoveries;
+    }));
+    conditions.push(change("stochastic moves (0.8)".to_owned(), &|other| other.chance = 0.8));
+    for bound in [1, 10, 100] {
+        conditions.push(change(format!("max_steps {bound}"), &|other| other.max_steps = bound));
+    }
+    conditions
+}
+
+/// The shipped worlds.
+fn shipped() -> Vec<GridSpec> {
+    let load = |(name, _): &(&str, &str)| load_grid(name).expect("a shipped world is right");
+    SHIPPED_GRID.iter().map(load).collect()
+}
+
+impl Condition {
+    /// Lives all trials: `seeds` in each shipped world, and one in each of as many generated ones.
+    pub(crate) fn run(&self, seeds: u64) -> anyhow::Result<(Report, Report)> {
+        let generate = |number| GridSpec::generate(&GenerateSettings::default(), number);
+        let generated = self.experiment((0..seeds).map(generate).collect(), 1);
+        // Every generated world has a seed of its own.
+        let own_seed = |job: Job| Job { seed: job.world as u64, ..job };
+        let jobs = generated.jobs().into_iter().map(own_seed).collect();
+        let shipped = self.experiment(shipped(), seeds);
+        Ok((report(&shipped, shipped.jobs())?, report(&generated, jobs)?))
+    }
+
+    fn experiment(&self, worlds: Vec<GridSpec>, trials: u64) -> Experiment {
+        let set = |world: GridSpec| {
+            world.with_sensor_radius(self.sensor_radius).with_chances(self.chance, self.chance)
+        };
+        let mut controller = CellDrive::settings();
+        controller.exploration.max_steps = self.max_steps;
+        Experiment {
+            worlds: worlds.into_iter().map(set).collect(),
+            estimators: vec![self.estimator],
+            strategies: STRATEGIES.map(TrialStrategy::Agent).to_vec(),
+            trials,
+            seed: 0,
+            steps: self.steps,
+            mapper: MapperSettings::default(),
+            agent: AgentSettings { reward: self.reward, ..Default::default() },
+            controller,
+        }
+    }
+}
+
+fn report(experiment: &Experiment, jobs: Vec<Job>) -> anyhow::Result<Report> {
+    let trials = experiment.run(jobs, &AtomicBool::new(false), |_| ())?;
+    let settings = ReportSettings {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        steps: experiment.steps,
+        trials: experiment.trials,
+        sensor_radius: experiment.worlds[0].sensor_radius(),
+        worlds: experiment.worlds.iter().map(|world| world.name().to_owned()).collect(),
+        estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
+        strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
+        ..Default::default()
+    };
+    Ok(Report::new(settings, trials))
+}
+
+/// What the shipped worlds look like.
+pub(crate) fn pictures() -> Vec<WorldPicture> {
+    shipped().iter().map(WorldPicture::of).collect()
+}

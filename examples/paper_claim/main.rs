@@ -1,0 +1,78 @@
+//! Does the paper's claim hold? The tables and figures of docs/figure3.md.
+//!
+//! ```text
+//! cargo run --example paper_claim                     everything, some ten minutes on two cores
+//! cargo run --example paper_claim -- /tmp/quick 5     into another folder, with fewer seeds
+//! ```
+//!
+//! One thing is changed at a time. Each condition runs in the shipped worlds, with so many seeds in
+//! each, and in as many generated worlds, each with a seed of its own.
+
+mod condition;
+mod forest;
+mod tables;
+
+use anyhow::Context;
+use condition::{BASE, Condition, conditions};
+use curious::output::{make_folder, write_file};
+use curious::report::{Claim, Report, Run};
+use std::path::{Path, PathBuf};
+
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/figure3");
+const SEEDS: u64 = 50;
+
+/// What one condition showed.
+struct Finding {
+    condition: Condition,
+    /// In each shipped world.
+    shipped: Report,
+    /// Over all generated worlds.
+    generated: Report,
+}
+
+impl Finding {
+    /// The runs that a verdict is given on: every shipped world, then all generated ones as one.
+    fn runs(&self) -> impl Iterator<Item = (&Report, &Run)> {
+        let shipped = self.shipped.runs().iter().filter(|run| run.worlds == 1);
+        let generated = self.generated.runs().iter().filter(|run| run.worlds > 1);
+        let shipped = shipped.map(|run| (&self.shipped, run));
+        shipped.chain(generated.map(|run| (&self.generated, run)))
+    }
+
+    fn claims(&self) -> Vec<Claim> {
+        self.runs().filter_map(|(report, run)| report.claim(&run.world, &run.estimator)).collect()
+    }
+}
+
+fn main() -> anyhow::Result<()> {
+    let mut arguments = std::env::args().skip(1);
+    let folder = PathBuf::from(arguments.next().unwrap_or(FOLDER.to_owned()));
+    let seeds = arguments.next().map_or(Ok(SEEDS), |seeds| seeds.parse()).context("the number of seeds")?;
+    make_folder(&folder)?;
+    let mut findings = Vec::new();
+    for condition in conditions() {
+        eprintln!("{}", condition.name);
+        let (shipped, generated) = condition.run(seeds)?;
+        findings.push(Finding { condition, shipped, generated });
+    }
+    forest::draw(&findings, &folder.join("claim.svg"))?;
+    figures(&findings, &folder)?;
+    write_file(&folder.join("results.md"), |file| {
+        file.write_all(tables::markdown(&findings, seeds).as_bytes())
+    })?;
+    Ok(())
+}
+
+/// The curves of the first condition, in the paper's form.
+fn figures(findings: &[Finding], folder: &Path) -> anyhow::Result<()> {
+    let base = findings.iter().find(|finding| finding.condition.name == BASE).context("no base")?;
+    for (report, name) in [(&base.shipped, "two_blocks"), (&base.generated, "generated")] {
+        let out = tempfile::tempdir()?;
+        report.write(out.path(), &condition::pictures())?;
+        let figure = if name == "generated" { "figure3-all-worlds.svg" } else { "figure3.svg" };
+        let from = out.path().join(figure);
+        let text = std::fs::read(&from).with_context(|| format!("there is no {}", from.display()))?;
+        write_file(&folder.join(format!("{name}.svg")), |file| file.write_all(&text))?;
+    }
+    Ok(())
+}

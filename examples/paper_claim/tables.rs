@@ -1,0 +1,55 @@
+//! The tables of docs/figure3/results.md.
+
+use crate::Finding;
+use curious::report::{Claim, Measure, Metric, Part};
+use std::fmt::Write;
+
+pub(crate) fn markdown(findings: &[Finding], seeds: u64) -> String {
+    let mut text = format!(
+        "# Does the paper hold? All results\n\n\
+         Made by `cargo run --example paper_claim`, {seeds} seeds in each shipped world and {seeds} generated worlds, \
+         each with a seed of its own. What they mean is told in [figure3.md](../figure3.md).\n\n\
+         Differences are curious minus the other, over the run (area under the curve) for errors and at the \
+         end for map quality, each with its 95 % interval, the ratio of the means, Cohen's d of the pairs \
+         and the p-value of the paired t test. Errors: less is better.\n"
+    );
+    for finding in findings {
+        let _ = write!(text, "\n## {}\n\n{}\n", capital(&finding.condition.name), Claim::markdown_head());
+        for claim in finding.claims() {
+            let _ = writeln!(text, "{}", claim.markdown_row());
+        }
+        let _ = write!(text, "\n{}", shares(finding));
+    }
+    text
+}
+
+/// The share of time with changing cells in view, and what the map is worth: the lock-down.
+fn shares(finding: &Finding) -> String {
+    let mut text = String::from(
+        "| world | strategy | log error, area | log error, end | time at changes | map quality | changing cells | coverage |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for (_, run) in finding.runs() {
+        for strategy in &run.strategies {
+            let last = |metric| strategy.value(Measure { metric, part: Part::Final });
+            let _ = writeln!(
+                text,
+                "| {} | {} | {:.3} | {:.3} | {:.2} | {:.4} | {:.3} | {:.4} |",
+                run.world,
+                strategy.name,
+                strategy.value(Measure::LOG_ERROR_AREA),
+                last(Metric::LogError),
+                last(Metric::ChangingShare),
+                last(Metric::MapQuality),
+                last(Metric::MapQualityChanging),
+                last(Metric::Coverage),
+            );
+        }
+    }
+    text
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}

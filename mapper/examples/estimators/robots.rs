@@ -1,0 +1,168 @@
+//! Robots that look at a grid world in different ways, whatever a mapper makes of it.
+
+use geometry::{Cell, CellReading, Grid, Step};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use sim::grid::GridSpec;
+use std::collections::VecDeque;
+
+/// What a robot does at its goals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Habit {
+    /// Goes on to the next goal.
+    Passes,
+    /// Stays until nothing changed in view for some steps.
+    Stays,
+    /// Goes to the middle of what changed in the last step, as the paper's local exploration.
+    Follows,
+}
+
+impl Habit {
+    pub(crate) const ALL: [Self; 3] = [Self::Passes, Self::Stays, Self::Follows];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Passes => "passes by",
+            Self::Stays => "stays while something moves",
+            Self::Follows => "follows what moves",
+        }
+    }
+}
+
+/// Calm steps after which one that stays goes on.
+const PATIENCE: u32 = 10;
+/// Steps of following at most, and random ones in a row: those of the controller.
+const FOLLOWING: u32 = 42;
+const RANDOM_STEPS: u32 = 1;
+/// Steps without getting nearer after which a goal is given up.
+const STUCK: u32 = 20;
+
+/// A robot on its way from random goal to random goal.
+pub(crate) struct Robot {
+    habit: Habit,
+    walls: Grid<bool>,
+    rng: ChaCha8Rng,
+    /// Steps to the goal from every cell; none from walls.
+    distance: Vec<Option<u32>>,
+    goal: usize,
+    stuck: u32,
+    /// Steps at the goal, and calm or random ones in a row among them.
+    at_goal: u32,
+    calm: u32,
+    seen: Vec<Option<bool>>,
+}
+
+impl Robot {
+    pub(crate) fn new(spec: &GridSpec, habit: Habit, rng: ChaCha8Rng) -> Self {
+        let walls = spec.walls().clone();
+        let cells = walls.frame().len();
+        let mut robot = Self {
+            habit,
+            walls,
+            rng,
+            distance: vec![None; cells],
+            goal: 0,
+            stuck: 0,
+            at_goal: 0,
+            calm: 0,
+            seen: vec![None; cells],
+        };
+        robot.choose();
+        robot
+    }
+
+    /// The next action, after `reading`.
+    pub(crate) fn act(&mut self, reading: &CellReading) -> Step {
+        let frame = *self.walls.frame();
+        let at = |cell: Cell| frame.index(cell);
+        let here = frame.cell_at(&reading.pose.translation.vector.into());
+        let mut changed = Vec::new();
+        for &(cell, blocked) in &reading.cells {
+            let Some(index) = at(cell) else { continue };
+            if self.seen[index].replace(blocked).is_some_and(|before| before != blocked) {
+                changed.push(cell);
+            }
+        }
+        let is_open =
+            |cell: Cell, seen: &[Option<bool>]| at(cell).is_some_and(|index| seen[index] != Some(true));
+        let to_go = at(here).and_then(|index| self.distance[index]);
+        if to_go != Some(0) && self.at_goal == 0 && self.stuck < STUCK {
+            let nearer = Step::ALL.into_iter().find(|step| {
+                let cell = step.target(here);
+                at(cell).and_then(|index| self.distance[index]).is_some_and(|steps| Some(steps) < to_go)
+                    && is_open(cell, &self.seen)
+            });
+            if let Some(nearer) = nearer {
+                self.stuck = 0;
+                return nearer;
+            }
+            // Something is in the way: around it.
+            self.stuck += 1;
+            self.measure();
+            return Step::Stay;
+        }
+        self.at_goal += 1;
+        self.calm = if changed.is_empty() { self.calm + 1 } else { 0 };
+        match self.habit {
+            Habit::Stays if self.calm < PATIENCE && self.at_goal < 300 => return Step::Stay,
+            Habit::Follows if self.at_goal <= FOLLOWING && self.calm <= RANDOM_STEPS => {
+                let open: Vec<Step> = Step::ALL[1..]
+                    .iter()
+                    .copied()
+                    .filter(|step| is_open(step.target(here), &self.seen))
+                    .collect();
+                if changed.is_empty() {
+                    let pick = self.rng.random_range(0..open.len().max(1));
+                    return open.get(pick).copied().unwrap_or(Step::Stay);
+                }
+                let count = changed.len() as f64;
+                let x = changed.iter().map(|cell| f64::from(cell.x)).sum::<f64>() / count;
+                let y = changed.iter().map(|cell| f64::from(cell.y)).sum::<f64>() / count;
+                let far = |step: &Step| {
+                    let cell = step.target(here);
+                    (f64::from(cell.x) - x).abs() + (f64::from(cell.y) - y).abs()
+                };
+                let best = open.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+                return best.copied().filter(|step| far(step) < far(&Step::Stay)).unwrap_or(Step::Stay);
+            }
+            _ => {}
+        }
+        self.choose();
+        Step::Stay
+    }
+
+    /// Draws a goal, and measures the way to it from everywhere.
+    fn choose(&mut self) {
+        let frame = *self.walls.frame();
+        let goal = loop {
+            let index = self.rng.random_range(0..frame.len());
+            if !self.walls.cells()[index] {
+                break index;
+            }
+        };
+        self.goal = goal;
+        self.measure();
+        (self.stuck, self.at_goal, self.calm) = (0, 0, 0);
+    }
+
+    /// Measures the way to the goal from everywhere, around what is known to stand there.
+    fn measure(&mut self) {
+        let frame = *self.walls.frame();
+        self.distance.fill(None);
+        self.distance[self.goal] = Some(0);
+        let mut open = VecDeque::from([self.goal]);
+        while let Some(index) = open.pop_front() {
+            let next = self.distance[index].map(|steps| steps + 1);
+            for side in frame.cell(index).neighbours4() {
+                if let Some(side) = frame.index(side)
+                    && !self.walls.cells()[side]
+                    && self.seen[side] != Some(true)
+                    && self.distance[side].is_none()
+                {
+                    self.distance[side] = next;
+                    open.push_back(side);
+                }
+            }
+        }
+    }
+}

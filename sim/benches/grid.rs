@@ -1,0 +1,74 @@
+//! What a step of a grid world costs: `cargo bench -p sim --bench grid`.
+
+use divan::{Bencher, black_box};
+use geometry::{Step, World};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use sim::grid::{GenerateSettings, GridSpec, GridWorld};
+
+/// Cells per side and the sensor's radius.
+const SIZES: [(u32, u32); 4] = [(25, 4), (25, 8), (200, 4), (200, 8)];
+/// The steps of a walk, over and over.
+const STEPS: usize = 4096;
+
+fn main() {
+    divan::main();
+}
+
+/// A random world of `side` × `side` cells; the larger, the more walls.
+fn world(side: u32, radius: u32) -> GridWorld {
+    let rooms = (side / 12).pow(2);
+    let settings = GenerateSettings {
+        width: [side; 2],
+        height: [side; 2],
+        walls: [rooms - 1; 2],
+        pillars: [rooms; 2],
+        blocks: [4; 2],
+        sensor_radius: radius,
+        ..GenerateSettings::default()
+    };
+    GridWorld::new(&GridSpec::generate(&settings, 1), 1)
+}
+
+/// A way that goes on in one direction for a while.
+fn walk() -> Vec<Step> {
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut way = Vec::with_capacity(STEPS);
+    while way.len() < STEPS {
+        let step = Step::ALL[rng.random_range(0..Step::ALL.len())];
+        way.extend(std::iter::repeat_n(step, rng.random_range(1..12)));
+    }
+    way.truncate(STEPS);
+    way
+}
+
+/// A thousand steps without a look.
+#[divan::bench(args = SIZES)]
+fn act_1000(bencher: Bencher<'_, '_>, (side, radius): (u32, u32)) {
+    let (mut world, mut way) = (world(side, radius), walk().into_iter().cycle());
+    bencher.bench_local(|| {
+        for step in way.by_ref().take(1000) {
+            world.act(black_box(&step));
+        }
+    });
+}
+
+/// A thousand steps, each with a look.
+#[divan::bench(args = SIZES)]
+fn act_and_sense_1000(bencher: Bencher<'_, '_>, (side, radius): (u32, u32)) {
+    let (mut world, mut way) = (world(side, radius), walk().into_iter().cycle());
+    bencher.bench_local(|| {
+        for step in way.by_ref().take(1000) {
+            world.act(black_box(&step));
+            black_box(world.sense());
+        }
+    });
+}
+
+/// Making a world: what a sensor of this radius sees is worked out for every cell.
+#[divan::bench(args = [4, 8, 100])]
+fn new(bencher: Bencher<'_, '_>, radius: u32) {
+    let spec = world(25, radius).spec().clone();
+    bencher.bench_local(|| GridWorld::new(black_box(&spec), 1));
+}

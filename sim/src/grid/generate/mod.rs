@@ -1,0 +1,152 @@
+//! Random worlds, each from a seed.
+
+mod paths;
+mod rooms;
+#[cfg(test)]
+mod tests;
+
+use super::spec::{BlockSpec, GridSpec, MAX_DWELL, MAX_SENSOR_RADIUS, parts};
+use geometry::{Cell, Grid, GridFrame};
+use nalgebra::Point2;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use std::ops::RangeInclusive;
+
+/// A map that had no room for all blocks is drawn anew, at most so often.
+const MAX_MAPS: usize = 20;
+
+/// What random worlds are like. Pairs are the least and the most, both included; each world draws
+/// its own figure between them. Pairs the wrong way round are turned, and what makes no sense is
+/// cut to what does.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GenerateSettings {
+    /// Columns, outer walls included; 9 to 1000.
+    pub width: [u32; 2],
+    /// Rows, outer walls included; 9 to 1000.
+    pub height: [u32; 2],
+    /// Inner walls from wall to wall, each with one or two openings; 0 to 1000. Where no room is
+    /// large enough to be divided, there are fewer.
+    pub walls: [u32; 2],
+    /// The width of an opening, cells; 1 to 100.
+    pub opening: [u32; 2],
+    /// Short walls that stand free; 0 to 1000.
+    pub pillars: [u32; 2],
+    /// Moving blocks; 0 to 1000. Where there is no room, there are fewer.
+    pub blocks: [u32; 2],
+    /// The cells of a block's path; 2 to 1000.
+    pub path_cells: [u32; 2],
+    /// The kinds of paths to draw from; none stands for all.
+    pub paths: Vec<PathKind>,
+    /// The steps that a block stands on a cell, 1 to 1 000 000; each order of magnitude is as likely
+    /// as the others.
+    pub dwell: [u32; 2],
+    /// How far the robot sees, cells; 1 to 100.
+    pub sensor_radius: u32,
+}
+
+impl Default for GenerateSettings {
+    /// Worlds like those that ship.
+    fn default() -> Self {
+        Self {
+            width: [21, 31],
+            height: [21, 27],
+            walls: [2, 5],
+            opening: [1, 3],
+            pillars: [0, 4],
+            blocks: [2, 6],
+            path_cells: [3, 20],
+            paths: Vec::new(),
+            dwell: [1, 60],
+            sensor_radius: 4,
+        }
+    }
+}
+
+/// The shape of a block's path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PathKind {
+    /// A straight line, back and forth.
+    Line,
+    /// The border of a rectangle, round and round.
+    Ring,
+    /// A way that bends at random and never crosses itself, back and forth.
+    Winding,
+}
+
+impl PathKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::Line, Self::Ring, Self::Winding];
+}
+
+impl GridSpec {
+    /// A random world, called `generated-` and the seed: an outer wall, inner walls with openings,
+    /// free-standing walls, blocks whose paths keep apart, the robot in the centre. All free cells
+    /// are connected. The same settings and seed give the same world, on every machine.
+    pub fn generate(settings: &GenerateSettings, seed: u64) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let wanted = between(&mut rng, settings.blocks, 0..=1000) as usize;
+        let mut best = draw(settings, wanted, seed, &mut rng);
+        for _ in 1..MAX_MAPS {
+            if best.blocks.len() == wanted {
+                break;
+            }
+            let other = draw(settings, wanted, seed, &mut rng);
+            if other.blocks.len() > best.blocks.len() {
+                best = other;
+            }
+        }
+        best
+    }
+}
+
+/// A world with as many of the `wanted` blocks as there is room for.
+fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut ChaCha8Rng) -> GridSpec {
+    let (width, height) = (between(rng, settings.width, 9..=1000), between(rng, settings.height, 9..=1000));
+    let frame = GridFrame::new(Point2::origin(), 1.0, width as usize, height as usize);
+    let frame = frame.expect("at most a million cells of 1 m make a frame");
+    let start = Cell::new(width / 2, height / 2);
+    let walls = rooms::walls(settings, frame, start, rng);
+    let paths = paths::paths(settings, &walls, start, wanted, rng);
+    let blocks: Vec<BlockSpec> =
+        (1..).zip(paths).map(|(number, path)| block(settings, number, path, rng)).collect();
+    GridSpec {
+        name: format!("generated-{seed}"),
+        description: format!("{width} × {height} cells made at random from the seed {seed}."),
+        warnings: parts::warnings(&walls, start),
+        walls,
+        blocks,
+        start,
+        sensor_radius: settings.sensor_radius.clamp(1, MAX_SENSOR_RADIUS),
+        block_chance: 1.0,
+        robot_chance: 1.0,
+    }
+}
+
+fn block(settings: &GenerateSettings, number: usize, path: paths::Path, rng: &mut ChaCha8Rng) -> BlockSpec {
+    let (low, high) = cut(settings.dwell, 1..=MAX_DWELL);
+    let (log_low, log_high) = (libm::log(f64::from(low)), libm::log(f64::from(high) + 1.0));
+    let log_dwell = log_low + rng.random::<f64>() * (log_high - log_low);
+    let dwell = (libm::exp(log_dwell) as u32).clamp(low, high);
+    let name = format!("block {number}");
+    BlockSpec { name, dwell, stood: rng.random_range(0..dwell), course: path.course, path: path.cells }
+}
+
+/// A number between the two of a setting.
+fn between(rng: &mut ChaCha8Rng, pair: [u32; 2], sense: RangeInclusive<u32>) -> i32 {
+    let (low, high) = cut(pair, sense);
+    rng.random_range(low..=high) as i32
+}
+
+/// A setting, in order and cut to what makes sense.
+fn cut([a, b]: [u32; 2], sense: RangeInclusive<u32>) -> (u32, u32) {
+    let cut = |value: u32| value.clamp(*sense.start(), *sense.end());
+    (cut(a.min(b)), cut(a.max(b)))
+}
+
+/// Whether a cell and the eight around it are all free of walls.
+fn stands_free(walls: &Grid<bool>, cell: Cell) -> bool {
+    cell.neighbours8().into_iter().chain([cell]).all(|near| walls.get(near) == Some(&false))
+}

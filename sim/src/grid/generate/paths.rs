@@ -1,0 +1,111 @@
+//! The paths of the blocks of a random world. They keep apart from each other and from the
+//! robot's start, by a cell at least.
+
+use super::super::spec::Course;
+use super::{GenerateSettings, PathKind, cut};
+use geometry::{Cell, Grid};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+/// A path that finds no place is drawn anew, at most so often.
+const MAX_TRIES: usize = 400;
+/// The chance that a winding path goes straight on.
+const STRAIGHT_ON: f64 = 0.7;
+
+pub(super) struct Path {
+    pub(super) cells: Vec<Cell>,
+    pub(super) course: Course,
+}
+
+/// Paths for so many blocks, or for as many as find a place.
+pub(super) fn paths(
+    settings: &GenerateSettings,
+    walls: &Grid<bool>,
+    start: Cell,
+    wanted: usize,
+    rng: &mut ChaCha8Rng,
+) -> Vec<Path> {
+    let mut open = walls.map(|wall| !wall);
+    close_around(&mut open, start);
+    let mut paths = Vec::new();
+    for _ in 0..wanted {
+        let Some(path) = (0..MAX_TRIES).find_map(|_| path(settings, &open, rng)) else { break };
+        path.cells.iter().for_each(|&cell| close_around(&mut open, cell));
+        paths.push(path);
+    }
+    paths
+}
+
+/// A path over open cells, if there is one where it was drawn.
+fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut ChaCha8Rng) -> Option<Path> {
+    let kinds = if settings.paths.is_empty() { &PathKind::ALL[..] } else { &settings.paths };
+    let kind = kinds[rng.random_range(0..kinds.len())];
+    let (low, high) = cut(settings.path_cells, 2..=1000);
+    let first = open.frame().cell(rng.random_range(0..open.frame().len()));
+    let cells = match kind {
+        PathKind::Line => line(first, rng.random_range(low..=high), rng),
+        PathKind::Ring => ring(first, low, high, rng)?,
+        PathKind::Winding => winding(first, rng.random_range(low..=high), open, rng)?,
+    };
+    let course = if kind == PathKind::Ring { Course::Loop } else { Course::BackAndForth };
+    cells.iter().all(|cell| open.get(*cell) == Some(&true)).then_some(Path { cells, course })
+}
+
+fn line(first: Cell, length: u32, rng: &mut ChaCha8Rng) -> Vec<Cell> {
+    let toward = first.neighbours4()[rng.random_range(0..4)];
+    let (dx, dy) = (toward.x - first.x, toward.y - first.y);
+    (0..length as i32).map(|step| Cell::new(first.x + step * dx, first.y + step * dy)).collect()
+}
+
+/// The border of a rectangle of `low` to `high` cells, either way round; `None` where no rectangle
+/// has such a border.
+fn ring(first: Cell, low: u32, high: u32, rng: &mut ChaCha8Rng) -> Option<Vec<Cell>> {
+    // A border of c cells belongs to sides of c / 2 + 2 cells together, each of two or more.
+    let (low, high) = (low.max(4).div_ceil(2), high / 2);
+    if low > high {
+        return None;
+    }
+    let both = rng.random_range(low..=high) as i32 + 2;
+    let width = rng.random_range(2..=both - 2);
+    let (right, up) = (width - 1, both - width - 1);
+    let sides = [(1, 0, right), (0, 1, up), (-1, 0, right), (0, -1, up)];
+    let mut cells = vec![first];
+    let mut at = first;
+    for (dx, dy, length) in sides {
+        for _ in 0..length {
+            at = Cell::new(at.x + dx, at.y + dy);
+            cells.push(at);
+        }
+    }
+    // The last one is the first again.
+    cells.pop();
+    if rng.random() {
+        cells.reverse();
+    }
+    Some(cells)
+}
+
+fn winding(first: Cell, length: u32, open: &Grid<bool>, rng: &mut ChaCha8Rng) -> Option<Vec<Cell>> {
+    let mut cells = vec![first];
+    let mut side = rng.random_range(0..4);
+    while cells.len() < length as usize {
+        if rng.random::<f64>() >= STRAIGHT_ON {
+            side = (side + if rng.random() { 1 } else { 3 }) % 4;
+        }
+        let at = cells[cells.len() - 1];
+        let is_open = |cell: &Cell| open.get(*cell) == Some(&true) && !cells.contains(cell);
+        let next = (0..4).map(|turn| (side + turn) % 4).find(|side| is_open(&at.neighbours4()[*side]))?;
+        side = next;
+        cells.push(at.neighbours4()[side]);
+    }
+    Some(cells)
+}
+
+/// Takes a cell and the eight around it.
+fn close_around(open: &mut Grid<bool>, cell: Cell) {
+    for near in cell.neighbours8().into_iter().chain([cell]) {
+        if let Some(open) = open.get_mut(near) {
+            *open = false;
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! The walls of a random world: a house divided again and again, every dividing wall with an
+//! opening, so that all rooms stay connected.
+
+use super::{GenerateSettings, between, stands_free};
+use geometry::{Cell, Grid, GridFrame};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+/// No room is narrower, cells.
+const MIN_ROOM: i32 = 4;
+/// A wall or pillar that finds no place is tried at most so often.
+const MAX_TRIES: usize = 50;
+/// The length of free-standing walls, cells.
+const PILLAR: [u32; 2] = [1, 4];
+
+/// A room: its lowest, leftmost and its highest, rightmost cell.
+type Room = (Cell, Cell);
+
+pub(super) fn walls(
+    settings: &GenerateSettings,
+    frame: GridFrame,
+    start: Cell,
+    rng: &mut ChaCha8Rng,
+) -> Grid<bool> {
+    let mut walls = Grid::filled(frame, true);
+    let (right, top) = (frame.width() as i32 - 2, frame.height() as i32 - 2);
+    let mut rooms = vec![(Cell::new(1, 1), Cell::new(right, top))];
+    for cell in cells(rooms[0]) {
+        set(&mut walls, cell, false);
+    }
+    for _ in 0..between(rng, settings.walls, 0..=1000) {
+        for _ in 0..MAX_TRIES {
+            if divide(settings, &mut walls, &mut rooms, start, rng) {
+                break;
+            }
+        }
+    }
+    for _ in 0..between(rng, settings.pillars, 0..=1000) {
+        for _ in 0..MAX_TRIES {
+            if pillar(&mut walls, start, rng) {
+                break;
+            }
+        }
+    }
+    walls
+}
+
+/// Divides a room by a wall with one or two openings, if the room drawn and the place drawn allow
+/// it. The wall must end on walls, so that it closes no opening of another.
+fn divide(
+    settings: &GenerateSettings,
+    walls: &mut Grid<bool>,
+    rooms: &mut Vec<Room>,
+    start: Cell,
+    rng: &mut ChaCha8Rng,
+) -> bool {
+    let index = rng.random_range(0..rooms.len());
+    let (low, high) = rooms[index];
+    let is_upright = rng.random();
+    // Along the wall, and across it.
+    let (along, across) =
+        if is_upright { ((low.y, high.y), (low.x, high.x)) } else { ((low.x, high.x), (low.y, high.y)) };
+    if across.1 - across.0 < 2 * MIN_ROOM {
+        return false;
+    }
+    let at = rng.random_range(across.0 + MIN_ROOM..=across.1 - MIN_ROOM);
+    let cell = |along: i32| if is_upright { Cell::new(at, along) } else { Cell::new(along, at) };
+    let ends_on_walls = [along.0 - 1, along.1 + 1].into_iter().all(|end| walls.get(cell(end)) == Some(&true));
+    let mut wall: Vec<Cell> = (along.0..=along.1).map(cell).collect();
+    if !ends_on_walls || wall.contains(&start) {
+        return false;
+    }
+    for _ in 0..rng.random_range(1..=2) {
+        let width = between(rng, settings.opening, 1..=100) as usize;
+        let width = width.min(wall.len());
+        let first = rng.random_range(0..=wall.len() - width);
+        // The second opening may overlap the first, or the gap that it left.
+        wall.drain(first..first + width);
+        if wall.is_empty() {
+            break;
+        }
+    }
+    for &cell in &wall {
+        set(walls, cell, true);
+    }
+    let (left_high, right_low) = if is_upright {
+        (Cell::new(at - 1, high.y), Cell::new(at + 1, low.y))
+    } else {
+        (Cell::new(high.x, at - 1), Cell::new(low.x, at + 1))
+    };
+    rooms[index] = (low, left_high);
+    rooms.push((right_low, high));
+    true
+}
+
+/// Puts up a short straight wall that nothing touches, if the place drawn allows it.
+fn pillar(walls: &mut Grid<bool>, start: Cell, rng: &mut ChaCha8Rng) -> bool {
+    let length = between(rng, PILLAR, 1..=100);
+    let frame = *walls.frame();
+    let first = frame.cell(rng.random_range(0..frame.len()));
+    let (dx, dy) = if rng.random() { (1, 0) } else { (0, 1) };
+    let pillar: Vec<Cell> =
+        (0..length).map(|step| Cell::new(first.x + step * dx, first.y + step * dy)).collect();
+    let is_clear =
+        |cell: &Cell| stands_free(walls, *cell) && (cell.x - start.x).abs().max((cell.y - start.y).abs()) > 1;
+    if !pillar.iter().all(is_clear) {
+        return false;
+    }
+    for cell in pillar {
+        set(walls, cell, true);
+    }
+    true
+}
+
+fn cells((low, high): Room) -> impl Iterator<Item = Cell> {
+    (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| Cell::new(x, y)))
+}
+
+fn set(walls: &mut Grid<bool>, cell: Cell, is_wall: bool) {
+    if let Some(wall) = walls.get_mut(cell) {
+        *wall = is_wall;
+    }
+}

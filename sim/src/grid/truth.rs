@@ -1,0 +1,162 @@
+use super::spec::{GridSpec, parts};
+use geometry::{Cell, GridFrame};
+
+/// What really is in every cell, and what has happened there. For metrics and pictures only: no
+/// robot may look at it.
+///
+/// A step is over when the robot and all blocks have moved: what changes is what differs between
+/// two such moments. Where one block leaves a cell and another one enters it in the same step,
+/// nothing has changed. The robot is no obstacle to itself and counts as nothing.
+///
+/// Places are row-major, row 0 at the lowest y. Kept up to date at a cost in proportion to the
+/// blocks that move.
+#[derive(Clone, Debug)]
+pub struct GridTruth {
+    frame: GridFrame,
+    time: u64,
+    cells: Vec<CellTruth>,
+    /// Cells that the robot's start is connected with, past blocks but not walls.
+    reachable: Vec<bool>,
+    swept: Vec<usize>,
+    is_swept: Vec<bool>,
+    things: Vec<Vec<usize>>,
+    /// What changed in the last step.
+    changes: Vec<usize>,
+}
+
+/// The story of a cell.
+#[derive(Clone, Copy, Debug, Default)]
+struct CellTruth {
+    is_blocked: bool,
+    block_events: u32,
+    free_events: u32,
+    /// How long it was blocked before it took its present state.
+    blocked_before: u64,
+    /// When it took its present state.
+    since: u64,
+}
+
+impl GridTruth {
+    /// The truth at the start.
+    pub(super) fn new(spec: &GridSpec) -> Self {
+        let frame = *spec.frame();
+        let wall = |is_blocked: &bool| CellTruth { is_blocked: *is_blocked, ..CellTruth::default() };
+        let mut cells: Vec<CellTruth> = spec.walls().cells().iter().map(wall).collect();
+        let place = |cell: &Cell| frame.index(*cell);
+        let mut things = Vec::new();
+        for block in spec.blocks() {
+            if let Some(start) = block.path.first().and_then(place) {
+                cells[start].is_blocked = true;
+            }
+            things.push(sorted(block.path.iter().filter_map(place).collect()));
+        }
+        let swept = sorted(things.concat());
+        let mut is_swept = vec![false; frame.len()];
+        for &index in &swept {
+            is_swept[index] = true;
+        }
+        let reachable = parts::connected(spec.walls(), spec.start());
+        Self { frame, time: 0, cells, reachable, swept, is_swept, things, changes: Vec::new() }
+    }
+
+    /// The cells.
+    pub fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    /// The time since the start, steps.
+    pub fn time(&self) -> f64 {
+        self.time as f64
+    }
+
+    /// Whether a wall or a block is in the cell.
+    #[inline]
+    pub fn is_blocked(&self, index: usize) -> bool {
+        self.cells[index].is_blocked
+    }
+
+    /// Whether the cell counts as one that can be seen now: it is free, or it is blocked and
+    /// shares a side with a cell that is not, where no wall parts them from the robot's start.
+    pub fn can_be_seen(&self, index: usize) -> bool {
+        if !self.is_blocked(index) {
+            return self.reachable[index];
+        }
+        let is_open = |side: usize| !self.is_blocked(side) && self.reachable[side];
+        let mut sides = self.frame.cell(index).neighbours4().into_iter();
+        sides.any(|side| self.frame.index(side).is_some_and(is_open))
+    }
+
+    /// How often the cell turned from free to blocked.
+    #[inline]
+    pub fn block_events(&self, index: usize) -> u32 {
+        self.cells[index].block_events
+    }
+
+    /// How often the cell turned from blocked to free.
+    #[inline]
+    pub fn free_events(&self, index: usize) -> u32 {
+        self.cells[index].free_events
+    }
+
+    /// The cell's true cycle rate so far: block events per step; 0 at the start.
+    pub fn cycle_rate(&self, index: usize) -> f64 {
+        if self.time > 0 { f64::from(self.block_events(index)) / self.time as f64 } else { 0.0 }
+    }
+
+    /// How long the cell was blocked so far, steps.
+    pub fn blocked_time(&self, index: usize) -> f64 {
+        let cell = &self.cells[index];
+        let now = if cell.is_blocked { self.time - cell.since } else { 0 };
+        (cell.blocked_before + now) as f64
+    }
+
+    /// The cells of every block's path, each once and in order. Blocks are in the order of the
+    /// file.
+    pub fn things(&self) -> &[Vec<usize>] {
+        &self.things
+    }
+
+    /// The cells of all paths, each once and in order.
+    pub fn swept(&self) -> &[usize] {
+        &self.swept
+    }
+
+    /// Whether the cell lies on a path.
+    #[inline]
+    pub fn is_swept(&self, index: usize) -> bool {
+        self.is_swept[index]
+    }
+
+    /// The cells that changed in the last step, each once.
+    pub fn changes(&self) -> &[usize] {
+        &self.changes
+    }
+
+    /// A step has passed, in which the blocks `moved` from cell to cell; `is_blocked` says what
+    /// holds of a cell now.
+    pub(super) fn settle(&mut self, moved: &[(Cell, Cell)], is_blocked: impl Fn(Cell) -> bool) {
+        self.time += 1;
+        self.changes.clear();
+        for cell in moved.iter().flat_map(|(from, to)| [*from, *to]) {
+            let Some(index) = self.frame.index(cell) else { continue };
+            let (is_blocked, truth) = (is_blocked(cell), &mut self.cells[index]);
+            if truth.is_blocked == is_blocked {
+                continue;
+            }
+            if is_blocked {
+                truth.block_events += 1;
+            } else {
+                truth.free_events += 1;
+                truth.blocked_before += self.time - truth.since;
+            }
+            (truth.is_blocked, truth.since) = (is_blocked, self.time);
+            self.changes.push(index);
+        }
+    }
+}
+
+fn sorted(mut places: Vec<usize>) -> Vec<usize> {
+    places.sort_unstable();
+    places.dedup();
+    places
+}

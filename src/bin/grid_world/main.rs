@@ -1,0 +1,193 @@
+//! Arguments → trials → report.
+
+mod args;
+mod progress;
+
+use anyhow::{Context, bail};
+use args::Args;
+use clap::Parser;
+use controller::CellDrive;
+use curious::output::{make_folder, write_file};
+use curious::recording::{Recorder, RecordingError, RecordingOptions};
+use curious::report::{Report, ReportSettings, Trial, WorldPicture};
+use curious::trials::{Experiment, Recorded, SettingsError, record, scene};
+use curious::worlds;
+use mapper::{Estimator, MapperSettings};
+use progress::Progress;
+use sim::grid::{GenerateSettings, GridSpec};
+use std::collections::BTreeSet;
+use std::fmt::Display;
+use std::io::{Write, stderr, stdout};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    if args.list_worlds {
+        for (name, _) in worlds::SHIPPED_GRID {
+            match worlds::load_grid(name) {
+                Ok(spec) => say(stdout(), format_args!("{name:<20} {}", spec.description())),
+                Err(error) => say(stderr(), error),
+            }
+        }
+        return ExitCode::SUCCESS;
+    }
+    let experiment = match experiment(&args) {
+        Ok(experiment) => experiment,
+        Err(error) => {
+            say(stderr(), format_args!("error: {error:#}"));
+            return ExitCode::from(2);
+        }
+    };
+    match run(&args, &experiment) {
+        Ok(code) => code,
+        Err(error) => {
+            say(stderr(), format_args!("error: {error:#}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Says `what` to whoever listens. When nobody does any more, as behind `| head`, the run goes on.
+fn say(mut to: impl Write, what: impl Display) {
+    let _ = writeln!(to, "{what}");
+}
+
+/// What the arguments ask for.
+fn experiment(args: &Args) -> anyhow::Result<Experiment> {
+    let mut estimators = args.estimator.clone();
+    if estimators.is_empty() {
+        estimators = vec![Estimator::Paper, Estimator::default()];
+    }
+    let mut controller = CellDrive::settings();
+    controller.exploration.max_steps = args.max_steps;
+    Ok(Experiment {
+        worlds: worlds(args)?,
+        estimators: distinct(estimators),
+        strategies: distinct(args.strategy.clone()),
+        trials: args.trials,
+        seed: args.seed,
+        steps: args.steps,
+        mapper: MapperSettings::default(),
+        agent: agent::AgentSettings { reward: args.reward.into(), ..Default::default() },
+        controller,
+    })
+}
+
+/// The worlds that were named, then those that are made; with what the arguments change in all.
+fn worlds(args: &Args) -> anyhow::Result<Vec<GridSpec>> {
+    let mut names: Vec<&str> = args.world.iter().map(String::as_str).collect();
+    if names.is_empty() && args.generate.is_none() {
+        names.push(worlds::SHIPPED_GRID[0].0);
+    }
+    let mut worlds = distinct(names).into_iter().map(worlds::load_grid).collect::<Result<Vec<_>, _>>()?;
+    let settings = GenerateSettings::default();
+    let made = 0..args.generate.unwrap_or(0);
+    worlds.extend(made.map(|number| GridSpec::generate(&settings, args.seed.wrapping_add(number))));
+    let mut names = BTreeSet::new();
+    if let Some(twin) = worlds.iter().map(GridSpec::name).find(|name| !names.insert(*name)) {
+        bail!("two worlds are called `{twin}`: give each a name of its own, by which results are told");
+    }
+    for world in &mut worlds {
+        for warning in world.warnings().iter().filter(|_| !args.quiet) {
+            say(stderr(), format_args!("warning: {}: {warning}", world.name()));
+        }
+        let mut changed = world.clone();
+        if let Some(radius) = args.sensor_radius {
+            changed = changed.with_sensor_radius(radius);
+        }
+        if let Some(chance) = args.stochastic {
+            changed = changed.with_chances(chance, chance);
+        }
+        *world = changed;
+    }
+    Ok(worlds)
+}
+
+/// Each value once, where it first comes.
+fn distinct<T: PartialEq>(values: Vec<T>) -> Vec<T> {
+    let mut distinct = Vec::new();
+    for value in values {
+        if !distinct.contains(&value) {
+            distinct.push(value);
+        }
+    }
+    distinct
+}
+
+/// Runs the trials, the first of them with a recording if one is asked for. Returns also why not all of
+/// that one is recorded, if so: no trial is lost for it.
+fn trials(
+    args: &Args,
+    experiment: &Experiment,
+    is_cancelled: &AtomicBool,
+) -> anyhow::Result<(Vec<Trial>, Option<RecordingError>)> {
+    let threads = usize::from(args.threads.unwrap_or(0)); // 0: as many as there are cores
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot make threads")?;
+    let mut jobs = experiment.jobs();
+    let progress = Progress::new(jobs.len(), args.quiet);
+    let first = match &args.rrd {
+        None => None,
+        Some(file) => {
+            let life = experiment.life(jobs.remove(0));
+            let options = RecordingOptions { file: Some(file.clone()), ..RecordingOptions::default() };
+            Some((Recorder::new(&options, scene(life.world))?, life))
+        }
+    };
+    let record = || -> Result<_, SettingsError> {
+        let Some((recorder, life)) = first else { return Ok((None, None)) };
+        let Recorded { trial, problem } = record(&life, recorder, is_cancelled)?;
+        trial.iter().for_each(|_| progress.step());
+        Ok((trial, problem))
+    };
+    let run = || experiment.run(jobs, is_cancelled, |_| progress.step());
+    let (first, others) = pool.install(|| rayon::join(record, run));
+    progress.finish();
+    let (first, problem) = first?;
+    Ok((first.into_iter().chain(others?).collect(), problem))
+}
+
+/// Runs the trials, and writes what came of them.
+fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
+    make_folder(&args.out)?;
+    let is_cancelled = Arc::new(AtomicBool::new(false));
+    let flag = is_cancelled.clone();
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
+    let (trials, problem) = trials(args, experiment, &is_cancelled)?;
+    let is_interrupted = is_cancelled.load(Ordering::Relaxed);
+    if trials.is_empty() {
+        say(stderr(), "interrupted before the first trial was finished: there is nothing to report");
+        return Ok(ExitCode::from(130));
+    }
+    if args.save_worlds {
+        let named = experiment.worlds.len() - args.generate.unwrap_or(0) as usize;
+        for world in &experiment.worlds[named..] {
+            let path = args.out.join(format!("{}.toml", world.name()));
+            write_file(&path, |file| file.write_all(world.to_toml().as_bytes()))?;
+        }
+    }
+    let settings = ReportSettings {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        arguments: std::env::args().skip(1).collect(),
+        steps: args.steps,
+        trials: args.trials,
+        sensor_radius: experiment.worlds[0].sensor_radius(),
+        interrupted: is_interrupted,
+        worlds: experiment.worlds.iter().map(|world| world.name().to_owned()).collect(),
+        estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
+        strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
+    };
+    let pictures: Vec<_> = experiment.worlds.iter().map(WorldPicture::of).collect();
+    let report = Report::new(settings, trials);
+    let files = report.write(&args.out, &pictures)?;
+    if !args.quiet {
+        say(stdout(), report.table());
+        let names: Vec<_> = files.iter().filter_map(|file| file.file_name()?.to_str()).collect();
+        say(stdout(), format_args!("written to {}: {}", args.out.display(), names.join(", ")));
+    }
+    if let Some(problem) = problem {
+        return Err(problem.into());
+    }
+    Ok(if is_interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
+}

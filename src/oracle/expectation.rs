@@ -1,0 +1,129 @@
+//! What a look is expected to do to an error.
+
+use crate::metrics::log_error;
+
+/// The tail of a Poisson distribution that is left out.
+const TAIL: f64 = 1e-6;
+
+/// How well the cycle rate of a cell is known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Knowledge {
+    /// Its true cycle rate, per unit of time; above 0.
+    pub(super) truth: f64,
+    /// The estimate; 0 for none.
+    pub(super) estimate: f64,
+    /// The events, of both kinds, that the estimate comes from.
+    pub(super) events: f64,
+    /// The time that the cell was in view.
+    pub(super) watched: f64,
+}
+
+impl Knowledge {
+    /// The log error now.
+    pub(super) fn error(&self) -> f64 {
+        log_error(self.estimate, self.truth)
+    }
+
+    /// By how much the log error is expected to fall when the cell is in view for `duration` more. Below
+    /// 0 where the estimate is right by luck.
+    ///
+    /// A cell of rate λ shows a Poisson number of events of mean 2 λ · duration, and the estimate after
+    /// them is half of all events per time in view. The time in view so far is the one for which this
+    /// is the present estimate, whatever estimator made it.
+    pub(super) fn expected_fall(&self, duration: f64) -> f64 {
+        let (events, watched) = if self.estimate > 0.0 {
+            let events = self.events.max(1.0);
+            (events, events / (2.0 * self.estimate))
+        } else {
+            (0.0, self.watched)
+        };
+        let mean = 2.0 * self.truth * duration;
+        let mut chance = libm::exp(-mean);
+        let (mut left, mut count, mut expected) = (1.0, 0.0, 0.0);
+        // The chances of large means begin below every number: up to the mean none may end the sum.
+        while (left > TAIL || count < mean) && count < 2.0 * mean + 100.0 {
+            let estimate = (events + count) / (2.0 * (watched + duration));
+            expected += chance * log_error(estimate, self.truth);
+            left -= chance;
+            count += 1.0;
+            chance *= mean / count;
+        }
+        self.error() - expected
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    fn uniform(rng: &mut ChaCha8Rng) -> f64 {
+        rng.next_u64() as f64 / u64::MAX as f64
+    }
+
+    /// The number of events of a Poisson process of `rate` in `duration`, by the times between them.
+    fn events(rate: f64, duration: f64, rng: &mut ChaCha8Rng) -> f64 {
+        let (mut time, mut count) = (0.0, -1.0);
+        while time < duration {
+            time -= libm::log(1.0 - uniform(rng)) / rate;
+            count += 1.0;
+        }
+        count
+    }
+
+    #[test]
+    fn the_expected_fall_is_the_mean_of_what_happens() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let known = |truth, estimate, events, watched| Knowledge { truth, estimate, events, watched };
+        let cells = [known(0.1, 0.0, 0.0, 5.0), known(0.02, 0.05, 3.0, 30.0), known(0.4, 0.1, 60.0, 300.0)];
+        for cell in cells {
+            for duration in [1.0, 16.0, 64.0] {
+                let watched =
+                    if cell.estimate > 0.0 { cell.events / (2.0 * cell.estimate) } else { cell.watched };
+                let (mut sum, mut squares, draws) = (0.0, 0.0, 20_000);
+                for _ in 0..draws {
+                    let count = cell.events + events(2.0 * cell.truth, duration, &mut rng);
+                    let fall = cell.error() - log_error(count / (2.0 * (watched + duration)), cell.truth);
+                    sum += fall;
+                    squares += fall * fall;
+                }
+                let mean = sum / f64::from(draws);
+                let sigma = ((squares / f64::from(draws) - mean * mean) / f64::from(draws)).sqrt();
+                let expected = cell.expected_fall(duration);
+                assert!(
+                    (expected - mean).abs() < 4.0 * sigma + 1e-4,
+                    "{cell:?} {duration}: {expected} {mean}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_cell_never_seen_to_change_promises_more_the_longer_one_looks() {
+        let cell = Knowledge { truth: 0.1, estimate: 0.0, events: 0.0, watched: 0.0 };
+        let falls = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0].map(|stay| cell.expected_fall(stay));
+        assert!(falls.is_sorted() && falls[0] > 0.0 && falls[6] < cell.error(), "{falls:?}");
+    }
+
+    #[test]
+    fn an_estimate_that_is_right_by_luck_can_only_get_worse() {
+        let cell = Knowledge { truth: 0.1, estimate: 0.1, events: 4.0, watched: 20.0 };
+        assert_eq!(cell.error(), 0.0);
+        assert!(cell.expected_fall(8.0) < 0.0);
+    }
+
+    #[test]
+    fn extremes_give_numbers() {
+        for truth in [1e-300, 1e-9, 0.5, 1.0] {
+            for estimate in [0.0, 1e-300, 0.5, 1e300] {
+                for events in [0.0, 1.0, 1e9] {
+                    let cell = Knowledge { truth, estimate, events, watched: 0.0 };
+                    for duration in [0.0, 1.0, 64.0] {
+                        assert!(cell.expected_fall(duration).is_finite(), "{cell:?} {duration}");
+                    }
+                }
+            }
+        }
+    }
+}

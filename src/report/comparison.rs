@@ -1,0 +1,106 @@
+//! Two strategies compared: by the pairs of their trials, or of the worlds they lived in.
+
+use super::metric::{Measure, Part};
+use super::run::Lives;
+use super::statistics::{Quantiles, holm, mean};
+use serde::Serialize;
+
+/// The difference between two strategies in one measure: paired by seed within a world, by world
+/// in the entry over all worlds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// A strategy.
+    pub a: String,
+    /// The other.
+    pub b: String,
+    /// What is compared.
+    #[serde(rename = "metric")]
+    pub measure: Measure,
+    /// How many pairs there are.
+    pub pairs: usize,
+    /// The mean of a − b, in the unit of the metric.
+    pub mean_difference: f64,
+    /// The lower end of its 95 % confidence interval; not a number for a single pair.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+    /// Of the paired t test, two-sided; not a number for a single pair, 1 where nothing differs.
+    pub p_value: f64,
+    /// The p-value after Holm's correction for all pairs of strategies compared in this measure
+    /// in this run.
+    pub p_holm: f64,
+    /// The mean of a over that of b.
+    pub ratio: f64,
+    /// Cohen's d of pairs: the mean difference in standard deviations of the differences.
+    pub effect_size: f64,
+}
+
+impl Comparison {
+    /// Whether there is a difference, at 5 % and without correction for other tests.
+    pub fn is_significant(&self) -> bool {
+        self.p_value < 0.05
+    }
+
+    /// The same with a and b exchanged.
+    pub fn flipped(&self) -> Self {
+        Self {
+            a: self.b.clone(),
+            b: self.a.clone(),
+            mean_difference: -self.mean_difference,
+            low: -self.high,
+            high: -self.low,
+            ratio: 1.0 / self.ratio,
+            effect_size: -self.effect_size,
+            ..*self
+        }
+    }
+}
+
+/// Compares every pair of strategies in every measure of [`Measure::COMPARED`]; without those that
+/// have no pair.
+pub(super) fn compare_all(strategies: &[Lives], quantiles: &Quantiles) -> Vec<Comparison> {
+    let mut all = Vec::new();
+    for measure in Measure::COMPARED {
+        let family = all.len();
+        for (index, a) in strategies.iter().enumerate() {
+            all.extend(strategies[index + 1..].iter().filter_map(|b| compare(a, b, measure, quantiles)));
+        }
+        let p_values: Vec<f64> = all[family..].iter().map(|test: &Comparison| test.p_value).collect();
+        for (comparison, p_holm) in all[family..].iter_mut().zip(holm(&p_values)) {
+            comparison.p_holm = p_holm;
+        }
+    }
+    all
+}
+
+fn compare(a: &Lives, b: &Lives, measure: Measure, quantiles: &Quantiles) -> Option<Comparison> {
+    let value = |lives: &Lives, index: usize| match measure.part {
+        Part::Final => lives.units[index].last(measure.metric),
+        Part::Area => lives.units[index].area(measure.metric),
+    };
+    let pairs: Vec<[f64; 2]> = (0..a.units.len())
+        .filter_map(|index| {
+            // Units are in the order of their keys.
+            let partner = b.units.binary_search_by_key(&a.units[index].key, |unit| unit.key).ok()?;
+            Some([value(a, index), value(b, partner)])
+        })
+        .filter(|[a, b]| !a.is_nan() && !b.is_nan())
+        .collect();
+    if pairs.is_empty() {
+        return None;
+    }
+    let test = quantiles.paired_test(pairs.iter().map(|[a, b]| a - b));
+    Some(Comparison {
+        a: a.name.clone(),
+        b: b.name.clone(),
+        measure,
+        pairs: pairs.len(),
+        mean_difference: test.difference.mean,
+        low: test.difference.low,
+        high: test.difference.high,
+        p_value: test.p_value,
+        p_holm: f64::NAN,
+        ratio: mean(pairs.iter().map(|[a, _]| *a)) / mean(pairs.iter().map(|[_, b]| *b)),
+        effect_size: test.effect_size,
+    })
+}

@@ -1,0 +1,146 @@
+//! Made-up trials for tests: errors that fall and qualities that rise, with chance of their own.
+
+use super::{ReportSettings, Sample, Trial, WorldPicture};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+pub(super) const HORIZON: u64 = 20_000;
+
+/// How fast a strategy learns, where its error of the rates ends, and its map quality.
+const CHARACTERS: [(&str, f64, f64, f64); 9] = [
+    ("curious", 1.0, 0.35, 0.985),
+    ("recency", 0.7, 0.38, 0.99),
+    ("poisson", 1.3, 0.36, 0.82),
+    ("random", 0.4, 0.6, 0.95),
+    ("coin", 1.0, 0.36, 0.984),
+    ("information-gain", 2.2, 0.2, 0.98),
+    ("optimal-revisiting", 1.5, 0.3, 0.97),
+    ("frontier", 0.3, 0.8, 0.96),
+    ("oracle", 2.0, 0.22, 0.985),
+];
+
+/// Uniform in [0, 1).
+pub(super) fn uniform(chance: &mut ChaCha8Rng) -> f64 {
+    f64::from(chance.next_u32()) / 4_294_967_296.0
+}
+
+/// The mean 0, the variance 1.
+pub(super) fn normal(chance: &mut ChaCha8Rng) -> f64 {
+    (0..12).map(|_| uniform(chance)).sum::<f64>() - 6.0
+}
+
+/// One trial; `world` makes it harder.
+pub(super) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) -> Trial {
+    let &(_, speed, floor, quality) = CHARACTERS.iter().find(|(name, ..)| *name == strategy).unwrap();
+    let mut chance = ChaCha8Rng::seed_from_u64(seed + 1000 * world as u64 + 77 * (speed * 10.0) as u64);
+    let own = 0.1 * normal(&mut chance);
+    let samples = (0..=80).map(|index| {
+        let step = (HORIZON as f64 * libm::pow(f64::from(index) / 80.0, 2.0)).round() as u64;
+        let learned = 1.0 - libm::exp(-speed * step as f64 / (1500.0 * (1.0 + 0.3 * world as f64)));
+        let noise = 0.02 * normal(&mut chance);
+        let log_error = 2.303 * (1.0 - learned) + floor * learned * (1.0 + own) + noise * learned;
+        Sample {
+            step,
+            rate_error: 1.0 - learned + learned * floor * 1.3 + 3.0 * noise * learned,
+            log_error,
+            map_quality: (quality - (1.0 - learned) * 0.7 + 0.2 * noise).clamp(0.0, 1.0),
+            map_quality_changing: if step < 30 { f64::NAN } else { 0.9 * quality + noise },
+            coverage: learned,
+            false_rate: 0.0,
+            changing_share: 0.1 * speed,
+            brier: if step < 30 { f64::NAN } else { 0.2 + noise },
+            brier_last_seen: if step < 30 { f64::NAN } else { 0.3 + noise },
+            brier_mean: if step < 30 { f64::NAN } else { 0.24 + noise },
+        }
+    });
+    Trial {
+        world: world_name(world),
+        estimator: estimator.into(),
+        strategy: strategy.into(),
+        seed,
+        samples: samples.collect(),
+        strategy_share: vec![("recency".into(), 0.4), ("poisson".into(), 0.6)],
+        false_change_events: 0,
+        map_hash: format!("{seed:032x}"),
+    }
+}
+
+fn world_name(world: usize) -> String {
+    if world == 0 { "two_blocks".into() } else { format!("generated {world}") }
+}
+
+/// The trials of an experiment, and what was asked for.
+pub(super) fn experiment(
+    worlds: usize,
+    estimators: &[&str],
+    strategies: &[&str],
+    seeds: u64,
+) -> (ReportSettings, Vec<Trial>) {
+    let mut trials = Vec::new();
+    for world in 0..worlds {
+        for estimator in estimators {
+            for strategy in strategies {
+                trials.extend((0..seeds).map(|seed| trial(world, estimator, strategy, seed)));
+            }
+        }
+    }
+    let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+    let settings = ReportSettings {
+        version: "0.1.0".into(),
+        arguments: vec!["--trials".into(), seeds.to_string()],
+        steps: HORIZON,
+        trials: seeds,
+        sensor_radius: 4,
+        interrupted: false,
+        worlds: (0..worlds).map(world_name).collect(),
+        estimators: owned(estimators),
+        strategies: owned(strategies),
+    };
+    (settings, trials)
+}
+
+/// A world in the manner of the paper's.
+pub(super) fn picture(world: usize) -> WorldPicture {
+    let map = [
+        "#########################",
+        "#...........#...........#",
+        "#..aaaaaa...#...........#",
+        "#...........#...........#",
+        "#...........#...........#",
+        "#.......................#",
+        "#...........#...........#",
+        "#...........#...........#",
+        "#...........#...........#",
+        "######.#############.####",
+        "#.......................#",
+        "#.......................#",
+        "#.......................#",
+        "#.......................#",
+        "#.......................#",
+        "#####.#######.##########",
+        "#...........#...........#",
+        "#...........#...........#",
+        "#...........#...........#",
+        "#.......................#",
+        "#...........#...........#",
+        "#...........#...........#",
+        "#.bbbbbbbbbbbbbbbbbbbbb.#",
+        "#.bbbbbbbbbbbbbbbbbbbbb.#",
+        "#########################",
+    ];
+    let rows: Vec<Vec<char>> =
+        map.iter().rev().map(|row| format!("{row:#<25}").chars().collect::<Vec<_>>()).collect();
+    let cells = |letter: char| {
+        let all = rows.iter().enumerate().flat_map(|(row, letters)| {
+            letters.iter().enumerate().map(move |(column, found)| (column, row, *found))
+        });
+        all.filter(|(.., found)| *found == letter).map(|(column, row, _)| (column, row)).collect::<Vec<_>>()
+    };
+    WorldPicture {
+        name: world_name(world),
+        walls: rows.iter().map(|row| row.iter().map(|letter| *letter == '#').collect()).collect(),
+        things: vec![("top block".into(), cells('a')), ("bottom block".into(), cells('b'))],
+        start: (12, 12),
+        sensor_radius: 4,
+    }
+}

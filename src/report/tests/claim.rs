@@ -1,0 +1,122 @@
+//! The verdict, and what is printed.
+
+use super::*;
+
+/// A report of 10 seeds in which log errors and map qualities are set, with a little of chance.
+fn made([curious, recency, poisson]: [f64; 3], [of_curious, of_recency]: [f64; 2], chance: f64) -> Report {
+    let (settings, mut trials) = experiment(1, &["paper"], &["curious", "recency", "poisson"], 10);
+    let mut stream = ChaCha8Rng::seed_from_u64(5);
+    for trial in &mut trials {
+        let (error, quality) = match trial.strategy.as_str() {
+            "curious" => (curious, of_curious),
+            "recency" => (recency, of_recency),
+            _ => (poisson, 0.8),
+        };
+        let own = chance * normal(&mut stream);
+        for sample in &mut trial.samples {
+            (sample.log_error, sample.map_quality) = (error + own, quality + 0.01 * own);
+        }
+    }
+    Report::new(settings, trials)
+}
+
+fn verdict(errors: [f64; 3], qualities: [f64; 2]) -> (Verdict, String) {
+    let claim = made(errors, qualities, 0.02).claim("two_blocks", "paper").unwrap();
+    let parts = claim.sentence();
+    (claim.verdict, parts.split_once("curious ").unwrap().1.replace('\n', " "))
+}
+
+#[test]
+fn the_claim_holds_only_in_all_its_parts() {
+    let as_good = "and its map is as good as that of recency.";
+    for (errors, qualities, expected, parts) in [
+        ([0.5, 0.6, 0.7], [0.98, 0.98], Verdict::Holds, "faster than recency and faster than poisson"),
+        ([0.5, 0.6, 0.5], [0.98, 0.98], Verdict::NotShown, "faster than recency and level with poisson"),
+        ([0.5, 0.6, 0.4], [0.98, 0.98], Verdict::Fails, "faster than recency and slower than poisson"),
+        ([0.5, 0.4, 0.6], [0.98, 0.98], Verdict::Fails, "slower than recency and faster than poisson"),
+        ([0.5, 0.6, 0.7], [0.977, 0.98], Verdict::Holds, "faster than recency and faster than poisson"),
+    ] {
+        assert_eq!(verdict(errors, qualities), (expected, format!("learns rates {parts}, {as_good}")));
+    }
+    let (worse, parts) = verdict([0.5, 0.6, 0.7], [0.97, 0.98]);
+    assert_eq!(worse, Verdict::Fails);
+    assert!(parts.ends_with("its map is worse than that of recency."), "{parts}");
+}
+
+#[test]
+fn without_the_paper_s_three_strategies_there_is_no_claim() {
+    assert!(report(1, &["paper"], &["curious", "recency"], 2).claim("two_blocks", "paper").is_none());
+    assert!(made([0.5; 3], [0.98; 2], 0.1).claim("elsewhere", "paper").is_none());
+}
+
+#[test]
+fn a_single_trial_shows_nothing() {
+    let claim = report(1, &["paper"], &["curious", "recency", "poisson"], 1).claim("two_blocks", "paper");
+    assert_eq!(claim.unwrap().verdict, Verdict::NotShown);
+}
+
+#[test]
+fn a_claim_is_a_row_of_markdown() {
+    let claim = made([0.5, 0.6, 0.7], [0.98, 0.98], 0.02).claim("two_blocks", "paper").unwrap();
+    let columns = |line: &str| line.matches('|').count();
+    assert_eq!(Claim::markdown_head().lines().map(columns).collect::<Vec<_>>(), [9, 9]);
+    insta::assert_snapshot!(claim.markdown_row(), @"| two_blocks | paper | **holds** | -0.091 [-0.111, -0.071], ×0.85, d -3.31, p < 0.001 | -0.192 [-0.204, -0.180], ×0.73, d -11.68, p < 0.001 | -0.053 [-0.061, -0.045], ×0.90, d -4.75, p < 0.001 | -0.003 [-0.014, +0.008], ×0.99, d -0.18, p = 0.588 | +0.0001 [-0.0001, +0.0003], d +0.32, p = 0.333 |");
+}
+
+#[test]
+fn the_table_tells_who_won() {
+    insta::assert_snapshot!(report(1, &["two-state"], &["curious", "recency", "oracle"], 5).table(), @"
+    two_blocks
+    5 trials of 20,000 steps, estimator two-state, sensor radius 4
+
+                   log error               rate error              map quality         time at
+    strategy      final     area       final     area    all cells  changing     changes
+    curious       0.326    0.476*      0.453*   0.497*      0.9848    0.8857*     10.0 %
+    recency       0.321*   0.542       0.463    0.547       0.9879*   0.8806       7.0 %
+    oracle        0.241    0.296       0.349    0.305       0.9892    0.9075      20.0 %
+
+    Paired differences, curious minus the other: mean over seeds ± half its 95 % interval, t test
+                       log error, area          log error, final        map quality, final
+    recency    -0.066 ±0.028 p = 0.003   +0.006 ±0.053 p = 0.780 -0.0030 ±0.0078 p = 0.345
+    oracle     +0.180 ±0.048 p < 0.001   +0.085 ±0.050 p = 0.009 -0.0044 ±0.0062 p = 0.125
+
+    curious learns rates fastest: its log error over the run is 0.88 times that of recency
+    (significant: p = 0.003 after Holm's correction).
+
+    How to read it: errors are 0 and map quality is 1 when all is right; final is the value at the end,
+    area the mean over the run, * the best; time at changes is spent with a changing cell in view.
+    ");
+}
+
+#[test]
+fn the_table_fits_a_terminal() {
+    let all = ["curious", "recency", "poisson", "random", "coin", "information-gain", "oracle"];
+    for (worlds, estimators, seeds) in
+        [(1, ["paper"].as_slice(), 1), (3, &["paper", "two-state"], 4), (9, &["paper"], 2)]
+    {
+        let report = report(worlds, estimators, &all, seeds);
+        let table = report.table();
+        assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
+        let shown = report.runs().iter().filter(|run| table.contains(&format!("{}\n", run.world))).count();
+        assert_eq!(shown, if worlds > 8 { 1 } else { report.runs().len() });
+        assert_eq!(table.contains("one by one are in report.json"), worlds > 8);
+    }
+}
+
+#[test]
+fn the_oracle_cannot_win_and_false_changes_are_told() {
+    let (settings, mut trials) = experiment(1, &["paper"], &["recency", "oracle"], 3);
+    trials[0].false_change_events = 7;
+    let table = Report::new(settings, trials).table();
+    assert!(!table.contains("learns rates fastest"), "{table}");
+    assert!(table.contains("False change events on cells that never change: recency 7.\n"), "{table}");
+    let line = table.lines().find(|line| line.starts_with("oracle")).unwrap();
+    assert!(!line.contains('*'), "{line}");
+}
+
+#[test]
+fn no_trial_is_a_sentence() {
+    let report = Report::new(ReportSettings::default(), Vec::new());
+    assert_eq!(report.table(), "No trial was finished: there is nothing to report.\n");
+    assert_eq!(written(&report).len(), 2, "no figure");
+}

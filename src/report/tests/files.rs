@@ -1,0 +1,144 @@
+//! `report.json` and `trials.csv`, read again.
+
+use super::*;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+fn json(report: &Report) -> (Value, String) {
+    let files = written(report);
+    let text = String::from_utf8(files[0].1.clone()).unwrap();
+    (serde_json::from_str(&text).unwrap(), text)
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+#[test]
+fn the_report_has_the_keys_that_are_promised() {
+    let report = report(2, &["paper"], &["recency", "curious", "poisson"], 3);
+    let (json, text) = json(&report);
+    for key in ["version", "arguments", "steps", "trials", "sensor_radius", "interrupted", "runs"] {
+        assert!(!json[key].is_null(), "{key}");
+    }
+    assert_eq!(json["arguments"], serde_json::json!(["--trials", "3"]));
+    let runs = json["runs"].as_array().unwrap();
+    assert_eq!(runs.len(), 3);
+    for (run, expected) in runs.iter().zip(report.runs()) {
+        assert_eq!(run["world"], expected.world);
+        assert_eq!(run["estimator"], "paper");
+        assert_eq!(keys(&run["strategies"]).len(), 3);
+        for (name, strategy) in run["strategies"].as_object().unwrap() {
+            let result = expected.strategy(name).unwrap();
+            for metric in Metric::ALL {
+                let curve = strategy[metric.name()].as_array().unwrap();
+                assert_eq!(curve.len(), 81);
+                let at = result.curve(metric)[80];
+                for (index, figure) in [20_000.0, at.mean, at.low, at.high].into_iter().enumerate() {
+                    close(curve[80][index].as_f64().unwrap(), figure, 1e-12);
+                }
+                for part in [Part::Final, Part::Area] {
+                    let measure = Measure { metric, part };
+                    close(strategy[measure.name()].as_f64().unwrap(), result.value(measure), 1e-12);
+                }
+            }
+            for key in ["final_rate_error", "rate_error_area", "final_log_error", "log_error_area"] {
+                assert!(strategy[key].is_f64(), "{key}");
+            }
+            assert_eq!(strategy["strategy_share"], serde_json::json!({ "recency": 0.4, "poisson": 0.6 }));
+        }
+        let comparisons = run["comparisons"].as_array().unwrap();
+        assert_eq!(comparisons.len(), expected.comparisons.len());
+        for key in ["a", "b", "metric", "mean_difference", "low", "high", "p_value", "p_holm", "ratio"] {
+            assert!(!comparisons[0][key].is_null(), "{key}");
+        }
+        assert_eq!(comparisons[0]["metric"], "log_error_area");
+    }
+    assert_eq!(keys(&runs[0]["strategies"]["curious"]["map_hashes"]).len(), 3);
+    let places = ["recency", "curious", "poisson"].map(|name| text.find(&format!("\"{name}\": {{")).unwrap());
+    assert!(places.is_sorted(), "strategies stay in their order");
+}
+
+#[test]
+fn what_is_undefined_is_null() {
+    let (json, _) = json(&report(1, &["paper"], &["curious", "recency"], 1));
+    let run = &json["runs"][0];
+    assert_eq!(run["claim"], Value::Null);
+    assert_eq!(run["strategies"]["curious"]["brier"][0], serde_json::json!([0, null, null, null]));
+    let comparison = &run["comparisons"][0];
+    assert!(comparison["mean_difference"].is_f64());
+    for key in ["low", "high", "p_value", "p_holm", "effect_size"] {
+        assert_eq!(comparison[key], Value::Null, "{key}");
+    }
+}
+
+#[test]
+fn a_person_can_read_it() {
+    let (_, text) = json(&report(1, &["paper"], &["curious"], 2));
+    insta::assert_snapshot!(text.lines().take(14).collect::<Vec<_>>().join("\n"), @r#"
+    {
+      "version": "0.1.0",
+      "arguments": ["--trials","2"],
+      "steps": 20000,
+      "trials": 2,
+      "sensor_radius": 4,
+      "interrupted": false,
+      "runs": [
+      {
+        "world": "two_blocks",
+        "estimator": "paper",
+        "claim": null,
+        "strategies": {
+          "curious": {
+    "#);
+    assert!(
+        text.lines().any(|line| line.starts_with("        \"log_error\": [[0,2.30")),
+        "a curve is a line"
+    );
+    assert!(text.ends_with("}\n"));
+}
+
+#[test]
+fn the_csv_has_a_row_per_trial_and_sample_and_gives_the_report_again() {
+    let report = report(2, &["paper", "two-state"], &["curious", "recency"], 3);
+    let files = written(&report);
+    assert_eq!(files[1].0, "trials.csv");
+    let mut reader = csv::Reader::from_reader(files[1].1.as_slice());
+    let head: Vec<String> = reader.headers().unwrap().iter().map(String::from).collect();
+    assert_eq!(head[..5], ["world", "estimator", "strategy", "seed", "step"]);
+    assert_eq!(head[5..], Metric::ALL.map(Metric::name));
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), 2 * 2 * 2 * 3 * 81);
+
+    // The area under the log error once more, from the rows alone.
+    let mut curves: BTreeMap<[String; 4], Vec<(f64, f64)>> = BTreeMap::new();
+    for row in &rows {
+        let key = [0, 1, 2, 3].map(|column| row[column].to_owned());
+        curves.entry(key).or_default().push((row[4].parse().unwrap(), row[6].parse().unwrap()));
+        assert_eq!(row[12].is_empty(), row[4].parse::<u64>().unwrap() < 30, "undefined is empty");
+    }
+    for run in report.runs().iter().filter(|run| run.worlds == 1) {
+        for strategy in &run.strategies {
+            let wanted = [&run.world, &run.estimator, &strategy.name];
+            let areas: Vec<f64> = curves
+                .iter()
+                .filter(|(key, _)| key.iter().zip(wanted).all(|(a, b)| a == b))
+                .map(|(_, curve)| {
+                    let pieces =
+                        curve.windows(2).map(|ends| (ends[1].0 - ends[0].0) * (ends[0].1 + ends[1].1) / 2.0);
+                    pieces.sum::<f64>() / HORIZON as f64
+                })
+                .collect();
+            assert_eq!(areas.len(), 3);
+            close(areas.iter().sum::<f64>() / 3.0, strategy.value(Measure::LOG_ERROR_AREA), 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_named() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let folder = file.path().join("report");
+    let error = report(1, &["paper"], &["curious"], 1).write(&folder, &[]).unwrap_err().to_string();
+    assert!(error.starts_with(&format!("cannot write {}: ", folder.display())), "{error}");
+}

@@ -1,0 +1,156 @@
+//! Bad input is one message that says where, what is wrong and what would be right; the exit code
+//! is 2, and nothing is written.
+
+use crate::bad_input::refuses;
+use crate::run::Run;
+
+const WORLD: &str = include_str!("../../../worlds/two_blocks.toml");
+
+#[track_caller]
+fn refused(arguments: &str) -> String {
+    refuses(&Run::grid(), arguments, &[])
+}
+
+/// What is said to the shipped world with a mistake in it.
+#[track_caller]
+fn refused_world(right: &str, wrong: &str) -> String {
+    assert!(WORLD.contains(right), "{right} is not in the world");
+    let run = Run::grid();
+    run.write("grid.toml", &WORLD.replacen(right, wrong, 1));
+    refuses(&run, "--world two_blocks --world grid.toml", &["grid.toml"])
+}
+
+#[test]
+fn worlds() {
+    insta::assert_snapshot!(refused("--world nowhere"), @"error: there is no world `nowhere`: it is neither a file nor one of those that ship (two_blocks, open_hall, corridor_with_doors, many_slow_blocks, one_fast_block)");
+    insta::assert_snapshot!(refused_world("sensor_radius", "sensor_radios"), @"
+    error: unknown key `sensor_radios`
+      --> grid.toml:10:1
+       |
+    10 | sensor_radios = 4       # cells, from the middle of the robot's own to the middle of another
+       | ^^^^^^^^^^^^^ not known here
+       |
+       = help: did you mean `sensor_radius`? the keys here are: name, description, sensor_radius, map, transitions, block
+    ");
+    insta::assert_snapshot!(refused_world("sensor_radius = 4", "sensor_radius = 4.5"), @"
+    error: `sensor_radius` has the wrong type
+      --> grid.toml:10:17
+       |
+    10 | sensor_radius = 4.5       # cells, from the middle of the robot's own to the middle of another
+       |                 ^^^ this is the number `4.5`
+       |
+       = help: it must be a whole number
+    ");
+    for wrong in ["0", "-1", "101", "1000000000000"] {
+        let message = refused_world("sensor_radius = 4", &format!("sensor_radius = {wrong}"));
+        assert!(message.contains("sensor_radius") && message.contains("grid.toml:10:17"), "{message}");
+    }
+    insta::assert_snapshot!(refused_world("name = \"two blocks\"", "name = \"two blocks\""), @"error: two worlds are called `two blocks`: give each a name of its own, by which results are told");
+    let folder = Run::grid();
+    std::fs::create_dir(folder.path("grid")).unwrap();
+    insta::assert_snapshot!(refuses(&folder, "--world grid", &["grid"]), @"error: cannot read the world file `grid`: Is a directory (os error 21)");
+}
+
+#[test]
+fn maps() {
+    let row = "#.....#.....R.....#.....#";
+    insta::assert_snapshot!(refused_world(row, "#.....#.....R.....#....."), @"
+    error: the rows of the map are not equally long
+      --> grid.toml:28:1
+       |
+    16 | #########################
+       | ------------------------- the first row has 25 characters
+    ...
+    28 | #.....#.....R.....#.....
+       | ^^^^^^^^^^^^^^^^^^^^^^^^ this one has 24 characters
+       |
+       = help: every row must be as long as the first; draw the outside as `#`
+    ");
+    insta::assert_snapshot!(refused_world(row, "#.....#.....R..?..#.....#"), @"
+    error: unknown character `?` in the map
+      --> grid.toml:28:16
+       |
+    28 | #.....#.....R..?..#.....#
+       |                ^ not known here
+       |
+       = help: `#` is a wall, `.` is free, `R` is where the robot starts
+    ");
+    insta::assert_snapshot!(refused_world(row, "#.....#.....#.....#.....#"), @"
+    error: the robot starts in a wall
+      --> grid.toml:28:13
+       |
+    28 | #.....#.....#.....#.....#
+       |             ^ the centre of the map
+       |
+       = help: without an `R` the robot starts in the centre of the map, [12, 12]: draw an `R`, or a `.` there
+    ");
+}
+
+#[test]
+fn blocks() {
+    insta::assert_snapshot!(refused_world("[4, 1], [13, 1]", "[4, 1], [13, 2]"), @"
+    error: the path of the block `bottom` jumps
+      --> grid.toml:62:17
+       |
+    62 | path = [[4, 1], [13, 2], [13, 2], [4, 2]]
+       |         ------  ^^^^^^^ to here
+       |         |
+       |         from here
+       |
+       = help: two way points must lie in one row or in one column
+    ");
+    insta::assert_snapshot!(refused_world("[4, 1], [13, 1]", "[4, 0], [13, 0]"), @"
+    error: the path of the block `bottom` crosses a wall
+      --> grid.toml:62:9
+       |
+    62 | path = [[4, 0], [13, 0], [13, 2], [4, 2]]
+       |         ^^^^^^ a wall
+       |
+       = help: [4, 0] is a wall: x counts columns from the left, y rows from the bottom, both from 0
+    ");
+    for wrong in ["0", "-2", "1.5", "nan", "1000001"] {
+        let message = refused_world("dwell = 2\n", &format!("dwell = {wrong}\n"));
+        assert!(message.contains("dwell") && message.contains("grid.toml:60:9"), "{message}");
+    }
+}
+
+#[test]
+fn worlds_of_the_other_kind() {
+    let file = |name: &str| format!("{}/worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let message = refused(&format!("--world {}", file("four_rooms")));
+    assert!(message.starts_with("error: this is a physics world, not a grid world\n"), "{message}");
+    assert!(message.contains("a grid world draws its `map` as text"), "{message}");
+    insta::assert_snapshot!(refused("--world four_rooms"), @"error: `four_rooms` is a physics world: it is for the program four_rooms");
+
+    let message = refuses(&Run::new(), &format!("--world {}", file("two_blocks")), &[]);
+    assert!(message.starts_with("error: this is a grid world, not a physics world\n"), "{message}");
+    assert!(message.contains("a physics world has a table `[map]`"), "{message}");
+    insta::assert_snapshot!(refuses(&Run::new(), "--world two_blocks", &[]), @"error: `two_blocks` is a grid world: it is for the program grid_world");
+}
+
+#[test]
+fn command_lines() {
+    for (arguments, says) in [
+        ("--strategy=clever", "[possible values: curious, recency, poisson, random, coin"),
+        ("--estimator=guess", "[possible values: paper, paper-all, "),
+        ("--reward=joy", "[possible values: changes, changes-and-discoveries]"),
+        ("--trials=0", "0 is not in 1..="),
+        ("--trials=-1", "'--trials <TRIALS>'"),
+        ("--steps=0", "0 is not in 1..="),
+        ("--steps=1e3", "'--steps <STEPS>'"),
+        ("--seed=-1", "'--seed <SEED>'"),
+        ("--seed=1.5", "'--seed <SEED>'"),
+        ("--sensor-radius=0", "0 is not in 1..=100"),
+        ("--sensor-radius=101", "101 is not in 1..=100"),
+        ("--generate=0", "0 is not in 1..="),
+        ("--stochastic=0", "must be above 0, and at most 1"),
+        ("--stochastic=nan", "must be above 0, and at most 1"),
+        ("--max-steps=-1", "'--max-steps <STEPS>'"),
+        ("--threads=0", "0 is not in 1..="),
+        ("--save-worlds", "--generate <N>"),
+        ("--sead=2", "a similar argument exists: '--seed'"),
+    ] {
+        let message = refused(arguments);
+        assert!(message.contains(says), "{arguments}: {message}");
+    }
+}

@@ -1,0 +1,66 @@
+//! Every choice on the command line runs.
+
+use super::{ran, results, values};
+use crate::run::Run;
+use std::collections::BTreeSet;
+
+#[test]
+fn every_strategy_explores_a_grid_world() {
+    let names = values(&Run::grid(), "--strategy");
+    assert!(names.len() >= 6 && names.contains(&"curious".to_owned()), "{names:?}");
+    let chosen: Vec<String> = names.iter().map(|name| format!("--strategy {name}")).collect();
+    let run = ran(&format!("--steps 3000 --trials 1 --estimator two-state {}", chosen.join(" ")));
+    let results = results(&run);
+    // In the order in which they were asked for.
+    let text = std::fs::read_to_string(run.out("report.json")).unwrap();
+    let places: Vec<_> = names.iter().map(|name| text.find(&format!("\"{name}\": {{")).unwrap()).collect();
+    assert!(places.is_sorted(), "{places:?}");
+    let mut hashes = BTreeSet::new();
+    for result in &results {
+        let coverage = result.entry["final_coverage"].as_f64().unwrap();
+        assert!(coverage > 0.3, "{} saw {coverage}", result.strategy);
+        assert_eq!(result.entry["false_change_events"], 0, "{}", result.strategy);
+        hashes.insert(result.hashes());
+    }
+    assert_eq!(hashes.len(), names.len(), "two strategies did the same");
+}
+
+#[test]
+fn every_strategy_explores_a_physics_world() {
+    let names = values(&Run::new(), "--strategy");
+    let in_grid = values(&Run::grid(), "--strategy");
+    for name in &names {
+        assert!(in_grid.contains(name), "{name} is for physics worlds only");
+        let summary = Run::quiet(&format!("--duration 60 --strategy {name}")).summary();
+        assert_eq!(summary.text("/strategy"), name);
+        assert_eq!(summary.number("/simulated_s"), 60.0);
+        assert!(summary.number("/coverage") > 0.2, "{name} saw {}", summary.number("/coverage"));
+        assert_eq!(summary.number("/collisions"), 0.0, "{name}");
+        assert_eq!(summary.number("/false_change_events"), 0.0, "{name}");
+    }
+    // The oracle needs a truth that only a grid world has.
+    assert_eq!(names.len() + 1, in_grid.len(), "{names:?} against {in_grid:?}");
+}
+
+#[test]
+fn every_estimator_estimates_in_its_own_way() {
+    let names = values(&Run::grid(), "--estimator");
+    let chosen: Vec<String> = names.iter().map(|name| format!("--estimator {name}")).collect();
+    // What random goals show does not depend on rates, so that all of them see the same.
+    let run = ran(&format!("--steps 3000 --trials 1 --strategy random {}", chosen.join(" ")));
+    let results = results(&run);
+    assert_eq!(results.iter().map(|result| result.estimator.clone()).collect::<Vec<_>>(), names);
+    let seen: BTreeSet<_> = results.iter().map(|it| it.entry["final_coverage"].to_string()).collect();
+    assert_eq!(seen.len(), 1, "{seen:?}");
+    let errors: BTreeSet<_> = results.iter().map(|it| it.entry["final_log_error"].to_string()).collect();
+    assert_eq!(errors.len(), names.len(), "{errors:?}");
+}
+
+#[test]
+fn the_learner_can_be_changed() {
+    let one = "--steps 2000 --trials 1 --estimator paper --strategy curious";
+    let hashes: BTreeSet<_> = ["", "--max-steps 1", "--reward changes-and-discoveries"]
+        .map(|change| super::hash(&format!("{one} {change}")))
+        .into();
+    assert_eq!(hashes.len(), 3);
+}

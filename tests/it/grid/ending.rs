@@ -1,0 +1,62 @@
+//! Ctrl-C keeps what is finished.
+#![cfg(unix)]
+
+use super::{report, rows};
+use crate::ending::signal;
+use crate::recording::Recording;
+use crate::run::{Ended, Run, names};
+use std::collections::BTreeSet;
+use std::io::{BufRead, BufReader};
+use std::time::{Duration, Instant};
+
+#[test]
+fn ctrl_c_keeps_the_finished_trials() {
+    let run = Run::grid();
+    let mut child =
+        run.starts("--trials 100000 --steps 2000 --strategy recency --strategy random --estimator paper");
+    // The first line of progress: by then there are finished trials.
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    stderr.read_line(&mut line).unwrap();
+    assert!(line.contains(" of 200000 trials, ") && line.ends_with(" s left\n"), "{line:?}");
+    signal(&child, "-INT");
+    let ended = Ended::from(child.wait_with_output().unwrap());
+    assert_eq!(ended.code, Some(130), "{ended:?}");
+
+    let told: usize = line.split(' ').next().unwrap().parse().unwrap();
+    let report = report(&run);
+    assert_eq!(report["interrupted"], true);
+    let rows = rows(&run);
+    let finished: BTreeSet<_> = rows.iter().map(|row| (row.strategy.clone(), row.seed)).collect();
+    assert!((told..200_000).contains(&finished.len()), "{} finished, {told} told", finished.len());
+    assert_eq!(rows.len(), 80 * finished.len(), "only whole trials are kept");
+    let counted: u64 = ["recency", "random"]
+        .map(|name| report["runs"][0]["strategies"][name]["trials"].as_u64().unwrap())
+        .iter()
+        .sum();
+    assert_eq!(counted, finished.len() as u64);
+    assert!(run.out("figure3.svg").exists());
+    assert!(ended.stdout.contains("written to out"), "{}", ended.stdout);
+}
+
+#[test]
+fn ctrl_c_closes_the_recording_even_before_the_first_trial_is_finished() {
+    let run = Run::grid();
+    let child = run.starts("--trials 1 --steps 100000000 --rrd trial.rrd --estimator paper");
+    let start = Instant::now();
+    while std::fs::metadata(run.path("trial.rrd")).map_or(0, |file| file.len()) < 50_000 {
+        assert!(start.elapsed() < Duration::from_secs(60), "no recording");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    signal(&child, "-INT");
+    let ended = Ended::from(child.wait_with_output().unwrap());
+    assert_eq!(ended.code, Some(130), "{ended:?}");
+    insta::assert_snapshot!(ended.stderr, @"interrupted before the first trial was finished: there is nothing to report");
+    assert_eq!(names(&run.path("out")), [""; 0]);
+
+    // Whether it came to its own end first does not matter.
+    let recording = Recording::read(&run.path("trial.rrd"));
+    let last = *recording.times("/", "step").last().unwrap();
+    assert!((1..=20_000).contains(&last), "{last}");
+    assert_eq!(recording.curve_over_steps("/curves/scores/coverage").last().unwrap().0, last);
+}

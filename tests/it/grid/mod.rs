@@ -1,0 +1,99 @@
+//! Trials in grid worlds, and their report.
+
+mod bad_input;
+mod choices;
+mod disk;
+mod ending;
+mod files;
+mod golden;
+mod recording;
+mod report;
+mod same;
+mod screen;
+mod walls;
+mod worlds;
+
+use crate::run::Run;
+use serde_json::Value;
+
+/// A finished, silent run; arguments are separated by spaces.
+fn ran(arguments: &str) -> Run {
+    let run = Run::grid();
+    run.goes_well(&format!("--quiet {arguments}"));
+    run
+}
+
+/// `report.json`.
+fn report(run: &Run) -> Value {
+    serde_json::from_slice(&std::fs::read(run.out("report.json")).unwrap()).unwrap()
+}
+
+/// What one strategy with one estimator came to in one world.
+struct Result {
+    world: String,
+    estimator: String,
+    strategy: String,
+    /// The entry in `report.json`.
+    entry: Value,
+}
+
+impl Result {
+    /// The hash of what was learned, by seed.
+    fn hashes(&self) -> Vec<(String, String)> {
+        let hashes = self.entry["map_hashes"].as_object().unwrap().iter();
+        hashes.map(|(seed, hash)| (seed.clone(), hash.as_str().unwrap().to_owned())).collect()
+    }
+}
+
+/// All results, but those over all worlds.
+fn results(run: &Run) -> Vec<Result> {
+    let report = report(run);
+    let mut results = Vec::new();
+    for run in report["runs"].as_array().unwrap() {
+        let text = |key: &str| run[key].as_str().unwrap().to_owned();
+        if text("world").starts_with("all worlds") {
+            continue;
+        }
+        for (strategy, entry) in run["strategies"].as_object().unwrap() {
+            let (strategy, entry) = (strategy.clone(), entry.clone());
+            results.push(Result { world: text("world"), estimator: text("estimator"), strategy, entry });
+        }
+    }
+    results
+}
+
+/// The only hash of a run of one trial.
+fn hash(arguments: &str) -> String {
+    let results = results(&ran(arguments));
+    let [result] = &results[..] else { panic!("{arguments} makes {} results", results.len()) };
+    let [(_, hash)] = &result.hashes()[..] else { panic!("{arguments} makes more than one trial") };
+    hash.clone()
+}
+
+/// A row of `trials.csv`.
+#[derive(Debug, serde::Deserialize)]
+struct Row {
+    world: String,
+    estimator: String,
+    strategy: String,
+    seed: u64,
+    step: u64,
+    rate_error: Option<f64>,
+    log_error: Option<f64>,
+    map_quality: f64,
+    coverage: f64,
+}
+
+fn rows(run: &Run) -> Vec<Row> {
+    let mut table = csv::Reader::from_path(run.out("trials.csv")).unwrap();
+    table.deserialize().map(|row| row.unwrap()).collect()
+}
+
+/// The possible values of an option, as the program's `--help` names them.
+fn values(run: &Run, option: &str) -> Vec<String> {
+    let help = run.goes_well("--help").stdout;
+    let (_, about) = help.split_once(&format!("\n      {option} <")).unwrap();
+    let (_, list) = about.split_once("[possible values: ").unwrap();
+    let (list, _) = list.split_once(']').unwrap();
+    list.split(',').map(|value| value.trim().to_owned()).collect()
+}

@@ -1,0 +1,150 @@
+//! `report.json` has what it promises, and says the same as `trials.csv`.
+
+use super::{Row, ran, report, rows};
+use crate::run::Run;
+use serde_json::Value;
+use std::sync::LazyLock;
+
+/// Two worlds, two estimators, three strategies, three seeds.
+static RUN: LazyLock<Run> = LazyLock::new(|| {
+    ran(
+        "--steps 600 --trials 3 --world two_blocks --world open_hall --estimator paper --estimator two-state \
+         --strategy curious --strategy recency --strategy poisson",
+    )
+});
+
+const STRATEGIES: [&str; 3] = ["curious", "poisson", "recency"];
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+/// A number, or what is not one.
+fn number(value: &Value) -> f64 {
+    match value {
+        Value::Null => f64::NAN,
+        value => value.as_f64().unwrap_or_else(|| panic!("{value} is neither a number nor null")),
+    }
+}
+
+#[test]
+fn it_has_every_key() {
+    let report = report(&RUN);
+    let top = ["version", "arguments", "steps", "trials", "sensor_radius", "runs"];
+    assert!(top.iter().all(|key| keys(&report).contains(key)), "{:?}", keys(&report));
+    assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(report["arguments"][1], "--steps");
+    assert_eq!([&report["steps"], &report["trials"], &report["sensor_radius"]], [600, 3, 4]);
+    assert_eq!(report["interrupted"], false);
+
+    let runs = report["runs"].as_array().unwrap();
+    let which: Vec<_> =
+        runs.iter().map(|run| [run["world"].as_str().unwrap(), run["estimator"].as_str().unwrap()]).collect();
+    assert_eq!(
+        which,
+        [
+            ["two blocks", "paper"],
+            ["two blocks", "two-state"],
+            ["open hall", "paper"],
+            ["open hall", "two-state"],
+            ["all worlds (2)", "paper"],
+            ["all worlds (2)", "two-state"],
+        ]
+    );
+    for run in runs {
+        let mut names = keys(&run["strategies"]);
+        names.sort_unstable();
+        assert_eq!(names, STRATEGIES);
+        for strategy in run["strategies"].as_object().unwrap().values() {
+            for curve in ["rate_error", "log_error", "map_quality"] {
+                check_curve(&strategy[curve]);
+            }
+            for value in [
+                "final_rate_error",
+                "rate_error_area",
+                "final_log_error",
+                "log_error_area",
+                "final_map_quality",
+            ] {
+                assert!(number(&strategy[value]).is_finite(), "{value} of {}", run["world"]);
+            }
+        }
+        for comparison in run["comparisons"].as_array().unwrap() {
+            let [a, b] = ["a", "b"].map(|key| comparison[key].as_str().unwrap());
+            assert!(a != b && STRATEGIES.contains(&a) && STRATEGIES.contains(&b), "{a}, {b}");
+            assert!(comparison["metric"].is_string());
+            let [mean, low, high, p] =
+                ["mean_difference", "low", "high", "p_value"].map(|key| number(&comparison[key]));
+            assert!(!(low > mean || mean > high), "{comparison}");
+            assert!(p.is_nan() || (0.0..=1.0).contains(&p), "{comparison}");
+        }
+    }
+}
+
+/// Step, mean and 95 % interval, 80 times.
+fn check_curve(curve: &Value) {
+    let points = curve.as_array().unwrap();
+    assert_eq!(points.len(), 80);
+    let steps: Vec<u64> = points.iter().map(|point| point[0].as_u64().unwrap()).collect();
+    assert!(steps.is_sorted_by(|a, b| a < b) && steps[79] == 600, "{steps:?}");
+    for point in points {
+        assert_eq!(point.as_array().unwrap().len(), 4, "{point}");
+        let [mean, low, high] = [1, 2, 3].map(|column| number(&point[column]));
+        assert!(mean.is_nan() || !(low > mean || mean > high), "{point}");
+    }
+}
+
+/// The mean over the trials of a strategy at the end, from `trials.csv`.
+fn at_the_end(rows: &[Row], [world, estimator, strategy]: [&str; 3], value: fn(&Row) -> f64) -> Vec<f64> {
+    let is_asked = |row: &&Row| {
+        row.step == 600 && row.world == world && row.estimator == estimator && row.strategy == strategy
+    };
+    let mut ends: Vec<&Row> = rows.iter().filter(is_asked).collect();
+    ends.sort_by_key(|row| row.seed);
+    ends.into_iter().map(value).collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[test]
+fn it_agrees_with_the_trials() {
+    let (report, rows) = (report(&RUN), rows(&RUN));
+    let values: [(&str, fn(&Row) -> f64); 3] = [
+        ("final_rate_error", |row| row.rate_error.unwrap()),
+        ("final_log_error", |row| row.log_error.unwrap()),
+        ("final_map_quality", |row| row.map_quality),
+    ];
+    let mut compared = 0;
+    for run in report["runs"].as_array().unwrap() {
+        let [world, estimator] = ["world", "estimator"].map(|key| run[key].as_str().unwrap());
+        if world.starts_with("all worlds") {
+            continue;
+        }
+        for (name, value) in values {
+            let ends = |strategy| at_the_end(&rows, [world, estimator, strategy], value);
+            for strategy in STRATEGIES {
+                assert_eq!(ends(strategy).len(), 3);
+                let told = number(&run["strategies"][strategy][name]);
+                assert!((told - mean(&ends(strategy))).abs() < 1e-12, "{name} of {strategy} in {world}");
+            }
+            for comparison in run["comparisons"].as_array().unwrap().iter().filter(|it| it["metric"] == name)
+            {
+                let [a, b] = ["a", "b"].map(|key| ends(comparison[key].as_str().unwrap()));
+                let differences: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a - b).collect();
+                assert!((number(&comparison["mean_difference"]) - mean(&differences)).abs() < 1e-12);
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 0, "nothing was compared");
+}
+
+#[test]
+fn nothing_changes_where_nothing_moves() {
+    for result in super::results(&RUN) {
+        assert_eq!(result.entry["false_change_events"], 0, "{} in {}", result.strategy, result.world);
+        assert_eq!(result.entry["final_false_rate"], 0.0, "{} in {}", result.strategy, result.world);
+    }
+}

@@ -1,0 +1,73 @@
+//! The seed decides, and nothing else does.
+
+use super::{hash, ran};
+use crate::run::{Run, names};
+use std::collections::BTreeSet;
+
+const ARGUMENTS: &str =
+    "--steps 800 --trials 2 --world two_blocks --generate 2 --strategy curious --strategy coin";
+
+/// Everything that a run leaves, but the arguments in the report.
+fn files(run: &Run) -> Vec<(String, Vec<u8>)> {
+    let content = |name: String| {
+        let bytes = std::fs::read(run.out(&name)).unwrap();
+        if name != "report.json" {
+            return (name, bytes);
+        }
+        let text = String::from_utf8(bytes).unwrap();
+        let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("  \"arguments\": ")).collect();
+        assert_eq!(lines.len() + 1, text.lines().count(), "the arguments are one line");
+        (name, lines.join("\n").into_bytes())
+    };
+    names(&run.path("out")).into_iter().map(content).collect()
+}
+
+#[test]
+fn on_any_number_of_threads_and_again() {
+    let reference = files(&ran(&format!("{ARGUMENTS} --threads 1")));
+    for threads in [1, 2, 3] {
+        for (file, expected) in
+            files(&ran(&format!("{ARGUMENTS} --threads {threads}"))).iter().zip(&reference)
+        {
+            assert_eq!(file.0, expected.0);
+            assert!(file.1 == expected.1, "{} differs on {threads} threads", file.0);
+        }
+    }
+}
+
+#[test]
+fn neither_words_nor_a_recording_matter() {
+    let reference = files(&ran(ARGUMENTS));
+    let recorded = Run::grid();
+    recorded.goes_well(&format!("{ARGUMENTS} --rrd first.rrd"));
+    assert!(files(&recorded) == reference);
+}
+
+#[test]
+fn other_seeds_differ() {
+    let one = "--steps 800 --trials 1 --estimator paper --strategy random";
+    let hashes: BTreeSet<_> = (0..4).map(|seed| hash(&format!("{one} --seed {seed}"))).collect();
+    assert_eq!(hashes.len(), 4);
+}
+
+#[test]
+fn seeds_count_up_from_the_first() {
+    let common = "--steps 800 --estimator paper --strategy curious";
+    let three = super::results(&ran(&format!("{common} --trials 3 --seed 7")));
+    for (seed, found) in three[0].hashes() {
+        assert_eq!(hash(&format!("{common} --trials 1 --seed {seed}")), found, "seed {seed}");
+    }
+    assert_eq!(three[0].hashes().len(), 3);
+}
+
+/// What is done in the same run does not matter to a trial.
+#[test]
+fn a_trial_does_not_depend_on_the_others() {
+    let alone = hash("--steps 800 --trials 1 --seed 2 --estimator paper --strategy poisson");
+    let among = ran(
+        "--steps 800 --trials 2 --seed 1 --estimator two-state --estimator paper --strategy coin --strategy poisson",
+    );
+    let results = super::results(&among);
+    let same = results.iter().find(|it| it.estimator == "paper" && it.strategy == "poisson").unwrap();
+    assert!(same.hashes().contains(&("2".to_owned(), alone)), "{:?}", same.hashes());
+}

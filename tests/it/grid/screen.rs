@@ -1,0 +1,71 @@
+//! What the program says, and to whom.
+
+use crate::run::Run;
+
+#[test]
+fn quiet_is_silent() {
+    let ended = Run::grid().goes_well("--quiet --steps 200 --trials 1");
+    assert_eq!((ended.stdout.as_str(), ended.stderr.as_str()), ("", ""));
+}
+
+#[test]
+fn the_table_names_every_strategy_and_fits_a_terminal() {
+    let ended = Run::grid().goes_well("--steps 500");
+    assert_eq!(ended.stderr, "");
+    for strategy in ["curious", "recency", "poisson", "random", "coin"] {
+        assert!(ended.stdout.lines().any(|line| line.starts_with(strategy)), "{strategy}: {}", ended.stdout);
+    }
+    let table = ended.stdout.lines().filter(|line| !line.starts_with("written to "));
+    assert!(table.clone().all(|line| line.chars().count() <= 100), "{}", ended.stdout);
+    assert!(table.clone().count() > 10);
+}
+
+#[test]
+fn worlds_are_listed() {
+    insta::assert_snapshot!(Run::grid().goes_well("--list-worlds").stdout, @"
+    two_blocks           The paper's grid world: a slow block in the upper right, a fast one along the bottom wall.
+    open_hall            A hall with pillars; four blocks at four paces, far from each other.
+    corridor_with_doors  Rooms along a corridor; six sliding doors that open and shut at different paces.
+    many_slow_blocks     Twelve blocks in nine rooms, each of which moves once in 20 to 60 steps.
+    one_fast_block       A block that moves at every step in the lower right, among eight that stand for hundreds of steps.
+    ");
+}
+
+#[test]
+fn the_version_is_told() {
+    let expected = concat!("grid_world ", env!("CARGO_PKG_VERSION"), "\n");
+    assert_eq!(Run::grid().goes_well("--version").stdout, expected);
+}
+
+#[test]
+fn help_names_every_choice() {
+    let help = Run::grid().goes_well("--help").stdout;
+    let choices = "--world --generate --strategy --estimator --trials --steps --seed --sensor-radius --threads \
+                   --out --rrd --quiet --list-worlds --save-worlds --stochastic --max-steps --reward";
+    for choice in choices.split_whitespace() {
+        assert!(help.contains(choice), "{choice} is not in\n{help}");
+    }
+    assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_terminal_shows_a_bar_that_goes_away() {
+    let run = Run::grid();
+    let ended = crate::terminal::run(&run, "--steps 20000 --trials 2 --estimator paper", |_| ());
+    let Some(ended) = ended else { return };
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    let (before, after) = ended.stdout.split_once("two blocks\r\n").unwrap();
+    assert!(before.contains(" of 10 trials"), "{before:?}");
+    assert!(!after.contains(" of 10 trials"), "{after:?}");
+}
+
+/// As behind `| head`.
+#[test]
+fn a_run_goes_on_when_nobody_listens() {
+    let run = Run::grid();
+    let mut child = run.starts("--steps 500");
+    drop((child.stdout.take(), child.stderr.take()));
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    assert_eq!(super::report(&run)["interrupted"], false);
+}
