@@ -62,7 +62,7 @@ pub struct View<'a> {
     pub features: Features,
     /// Every robot, in an order that never changes.
     pub robots: &'a [RobotView<'a>],
-    /// Everything that may appear or go, in an order that never changes.
+    /// Everything that may appear, go or move and is no robot, in an order that never changes.
     pub obstacles: &'a [ObstacleView<'a>],
     /// The way that the curious robot means to take, m; empty without one.
     pub path: &'a [Point2<f64>],
@@ -114,12 +114,12 @@ pub enum Sight<'a> {
     },
 }
 
-/// A thing that may appear or go.
+/// A thing that may appear, go or move.
 #[derive(Clone, Copy, Debug)]
 pub struct ObstacleView<'a> {
     /// Its name in the world file.
     pub name: &'a str,
-    /// Its corners, m.
+    /// Its corners now, m.
     pub outline: &'a [Point2<f64>],
     /// Whether it stands there now.
     pub is_present: bool,

@@ -1,4 +1,5 @@
 use crate::goal::{Goal, GoalSampler};
+use crate::knowledge::knowledge;
 use crate::{
     AgentSettings, Chooser, Reward, SettingsError, Situation, Strategy, StrategyChoice, Trajectory, Travel,
 };
@@ -35,6 +36,8 @@ pub struct Agent {
     trajectory: Vec<Features>,
     /// The map updates in these readings.
     updates: usize,
+    /// What was known when the present goal was sampled.
+    known: f64,
     features: Features,
     tallies: Vec<Tally>,
     last_reward: f64,
@@ -83,6 +86,7 @@ impl Agent {
             current: None,
             trajectory: Vec::new(),
             updates: 0,
+            known: 0.0,
             features: Features::default(),
             last_reward: 0.0,
             last_length: 0,
@@ -104,7 +108,7 @@ impl Agent {
     /// next goal: a cell of the grid that [can be a goal](Mapper::is_candidate), or, if there is
     /// none yet, the robot's own cell.
     pub fn next_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, travel: &mut impl Travel) -> Goal {
-        self.learn();
+        self.learn(mapper);
         self.travel.clear();
         if self.strategies.iter().any(|strategy| strategy.needs_travel()) {
             travel.times(mapper, pose, &mut self.travel);
@@ -116,12 +120,16 @@ impl Agent {
         self.goals.sample(&mut *self.strategies[strategy], &situation, &mut self.rng)
     }
 
-    fn learn(&mut self) {
+    fn learn(&mut self, mapper: &Mapper) {
+        let before = std::mem::replace(&mut self.known, knowledge(mapper));
         // A goal given up before the next reading came teaches nothing.
         let Some(strategy) = self.current.filter(|_| !self.trajectory.is_empty()) else { return };
         self.last_length = self.trajectory.len();
         self.last_reward = self.updates as f64 / self.last_length as f64;
-        self.chooser.learn(&Trajectory { strategy, features: &self.trajectory, reward: self.last_reward });
+        // A first sighting that turned out wrong takes back what it brought.
+        let progress = (self.known - before).max(0.0) / self.last_length as f64;
+        let (features, reward) = (&self.trajectory[..], self.last_reward);
+        self.chooser.learn(&Trajectory { strategy, features, reward, progress });
         self.trajectory.clear();
         self.updates = 0;
     }
@@ -136,8 +144,8 @@ impl Agent {
         self.current
     }
 
-    /// What a strategy is believed to bring at `features`, in map updates per reading; `None` from
-    /// a chooser that does not value strategies, and for a place without a strategy.
+    /// What a strategy is believed to bring at `features`, in what the chooser is rewarded
+    /// for per reading; `None` from a chooser that does not value strategies, and for a place without a strategy.
     pub fn value(&self, strategy: usize, features: Features) -> Option<f64> {
         self.chooser.value(strategy, features)
     }

@@ -1,6 +1,6 @@
 use crate::{
-    AgentSettings, Always, Chooser, Coin, Curious, Frontier, OptimalRevisiting, Poisson, Random, Recency,
-    Strategy,
+    AgentSettings, Always, Chooser, Coin, Curious, Frontier, OptimalRevisiting, Poisson, Progress, Random,
+    Recency, Strategy,
 };
 use rand_chacha::ChaCha8Rng;
 use std::num::NonZeroUsize;
@@ -24,6 +24,8 @@ pub enum StrategyChoice {
     Frontier,
     /// [`OptimalRevisiting`] alone.
     OptimalRevisiting,
+    /// [`Progress`] over [`Recency`], [`Poisson`], [`Frontier`] and [`OptimalRevisiting`].
+    Progress,
 }
 
 /// The strategies and the chooser over them.
@@ -31,7 +33,7 @@ pub(crate) type Parts = (Vec<Box<dyn Strategy>>, Box<dyn Chooser>);
 
 impl StrategyChoice {
     /// Every choice.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Curious,
         Self::Recency,
         Self::Poisson,
@@ -39,6 +41,7 @@ impl StrategyChoice {
         Self::Coin,
         Self::Frontier,
         Self::OptimalRevisiting,
+        Self::Progress,
     ];
 
     /// The name on the command line and in files.
@@ -51,6 +54,7 @@ impl StrategyChoice {
             Self::Coin => "coin",
             Self::Frontier => "frontier",
             Self::OptimalRevisiting => "optimal-revisiting",
+            Self::Progress => "progress",
         }
     }
 
@@ -71,6 +75,13 @@ impl StrategyChoice {
             Self::Random => only(Random),
             Self::Frontier => only(Frontier::new(settings.sensor_radius_m)),
             Self::OptimalRevisiting => only(OptimalRevisiting::new(settings.sensor_radius_m)),
+            Self::Progress => {
+                let mut strategies = papers();
+                strategies.push(Box::new(Frontier::new(settings.sensor_radius_m)));
+                strategies.push(Box::new(OptimalRevisiting::new(settings.sensor_radius_m)));
+                let chooser = Progress::new(strategies.len());
+                (strategies, Box::new(chooser))
+            }
             Self::Coin => (papers(), Box::new(Coin(const { NonZeroUsize::new(2).unwrap() }))),
         }
     }
@@ -123,7 +134,7 @@ mod tests {
         assert_eq!(
             "Curius".parse::<StrategyChoice>().unwrap_err().to_string(),
             "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, frontier, \
-             optimal-revisiting"
+             optimal-revisiting, progress"
         );
     }
 }

@@ -12,6 +12,7 @@ mod choice;
 mod choosers;
 mod draw;
 mod goal;
+mod knowledge;
 mod settings;
 mod situation;
 mod strategies;
@@ -23,7 +24,7 @@ mod view;
 
 pub use agent::{Agent, Tally};
 pub use choice::{StrategyChoice, UnknownStrategy};
-pub use choosers::{Always, Chooser, Coin, Curious, Trajectory};
+pub use choosers::{Always, Chooser, Coin, Curious, Progress, Trajectory};
 pub use goal::Goal;
 pub use settings::{AgentSettings, CuriousSettings, Reward, SettingsError};
 pub use situation::Situation;

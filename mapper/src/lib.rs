@@ -6,9 +6,11 @@
 //! the map.
 
 mod chain;
+mod credible;
 mod estimator;
 mod exact;
 mod footprint;
+mod gamma;
 mod gaps;
 mod ledger;
 mod naive;
@@ -214,6 +216,14 @@ impl Mapper {
     #[inline]
     pub fn change_probability(&self, index: usize) -> f64 {
         estimator::change_probability(self.recency(index), self.rate(index))
+    }
+
+    /// The interval that holds the cell's cycle rate with probability `mass`, as much of the rest above it as
+    /// below, per unit of time: the posterior of the two-state chain, with the gaps if the estimator in
+    /// use weighs them. A cell without an event has rate 0; here the prior shows, and what was seen since: the
+    /// longer nothing happened, the lower the upper bound. From 0 to ∞ before the second reading.
+    pub fn credible_interval(&self, index: usize, mass: f64) -> (f64, f64) {
+        self.ledger.credible_interval(index, mass)
     }
 
     /// The rates at which the cell leaves its states, per unit of time: free → blocked (α) and

@@ -39,7 +39,7 @@ pub(super) fn robot(name: &str, part: &str) -> String {
     format!("/world/robots/{}/{part}", escape(name))
 }
 
-/// A thing that may appear or go.
+/// A thing that may appear, go or move.
 pub(super) fn obstacle(name: &str) -> String {
     format!("/world/house/obstacles/{}", escape(name))
 }

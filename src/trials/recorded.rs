@@ -16,8 +16,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Later steps are not recorded: a person has seen enough, and the file stays a few megabytes large.
 pub const RECORDED_STEPS: u64 = 20_000;
 
-/// The scores take a pass over the map: once in so many steps.
+/// The scores take a pass over the map: once in so many steps in a map of up to [`SCORE_CELLS`], and
+/// the more seldom the larger it is.
 const SCORE_EVERY: u64 = 10;
+/// See [`SCORE_EVERY`].
+const SCORE_CELLS: usize = 10_000;
 /// What the robot is called.
 const ROBOT: &str = "robot";
 /// The radius that the robot is drawn with, m: it is as large as its cell, which is 1 m wide.
@@ -71,8 +74,8 @@ struct Observer {
     steps: u64,
     /// Where the robot is, looking along its last move.
     pose: Isometry2<f64>,
-    scores: Option<Scores>,
-    rate_errors: Option<RateErrors>,
+    /// Steps from one look at the scores to the next.
+    score_every: u64,
 }
 
 impl Observer {
@@ -82,8 +85,7 @@ impl Observer {
             recorder: Some(recorder),
             steps: life.steps,
             pose: pose(start.x, start.y, 0.0),
-            scores: None,
-            rate_errors: None,
+            score_every: SCORE_EVERY * life.world.frame().len().div_ceil(SCORE_CELLS) as u64,
         }
     }
 
@@ -99,13 +101,11 @@ impl Observer {
             messages.push(Message { level: Level::Event, text });
         }
         self.turn(look);
-        if is_last || step.is_multiple_of(SCORE_EVERY) {
-            self.measure(look);
-        }
+        let scores = (is_last || step.is_multiple_of(self.score_every)).then(|| measure(look));
         if is_last {
-            return self.show(look, step, &messages, |view| recorder.finish(view));
+            return self.show(look, step, scores, &messages, |view| recorder.finish(view));
         }
-        self.show(look, step, &messages, |view| recorder.log(view))?;
+        self.show(look, step, scores, &messages, |view| recorder.log(view))?;
         self.recorder = Some(recorder);
         Ok(())
     }
@@ -119,15 +119,15 @@ impl Observer {
         }
     }
 
-    fn measure(&mut self, look: &Look) {
-        let (mapper, truth) = (look.now.mapper, look.world.truth());
-        let (map, rates) = (cell_map_scores(mapper, truth), cell_rate_scores(mapper, truth));
-        self.scores = Some(Scores { coverage: map.coverage, map_quality: map.map_quality });
-        self.rate_errors = Some(RateErrors { relative: rates.rate_error, log: rates.log_error });
-    }
-
     /// Puts together what the trial looks like now.
-    fn show<T>(&self, look: &Look, step: u64, messages: &[Message], log: impl FnOnce(&View) -> T) -> T {
+    fn show<T>(
+        &self,
+        look: &Look,
+        step: u64,
+        scores: Option<(Scores, RateErrors)>,
+        messages: &[Message],
+        log: impl FnOnce(&View) -> T,
+    ) -> T {
         let robot = RobotView {
             name: ROBOT,
             pose: self.pose,
@@ -151,12 +151,22 @@ impl Observer {
             obstacles: &blocks,
             path: look.pilot.path(),
             goal: look.pilot.goal(),
-            scores: self.scores,
-            rate_errors: self.rate_errors,
+            scores: scores.map(|(map, _)| map),
+            rate_errors: scores.map(|(_, rates)| rates),
             strategies: &strategies,
             messages,
         })
     }
+}
+
+/// How right the map is, and how wrong the rates are.
+fn measure(look: &Look) -> (Scores, RateErrors) {
+    let (mapper, truth) = (look.now.mapper, look.world.truth());
+    let (map, rates) = (cell_map_scores(mapper, truth), cell_rate_scores(mapper, truth));
+    (
+        Scores { coverage: map.coverage, map_quality: map.map_quality },
+        RateErrors { relative: rates.rate_error, log: rates.log_error },
+    )
 }
 
 /// The rectangle from one cell to another, both included, with its sides moved inwards, m. Cells are

@@ -75,7 +75,12 @@ mod tests {
         for _ in 0..rounds {
             let strategy = curious.choose(&situation, &mut rng);
             counts[strategy] += 1.0;
-            curious.learn(&Trajectory { strategy, features: &[features; 3], reward: rewards[strategy] });
+            curious.learn(&Trajectory {
+                strategy,
+                features: &[features; 3],
+                reward: rewards[strategy],
+                progress: 0.0,
+            });
         }
         counts
     }

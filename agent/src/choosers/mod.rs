@@ -1,10 +1,12 @@
 mod always;
 mod coin;
 mod curious;
+mod progress;
 
 pub use always::Always;
 pub use coin::Coin;
 pub use curious::Curious;
+pub use progress::Progress;
 
 use crate::Situation;
 use mapper::Features;
@@ -20,6 +22,9 @@ pub struct Trajectory<'a> {
     pub features: &'a [Features],
     /// Map updates per reading, R of section 4; finite, not negative.
     pub reward: f64,
+    /// How much more is known of the rates of change, per reading: by how much the error of their
+    /// logarithms is expected to have fallen, summed over the cells. Finite, not negative.
+    pub progress: f64,
 }
 
 /// A way to pick the strategy that samples the next goal. Strategies are known by their places in
@@ -31,8 +36,8 @@ pub trait Chooser: std::fmt::Debug + Send {
     /// Learns from what came of the last choice.
     fn learn(&mut self, _: &Trajectory) {}
 
-    /// What the strategy is believed to bring at `features`, in map updates per reading; `None`
-    /// from a chooser that does not value strategies.
+    /// What the strategy is believed to bring at `features`, in what it is rewarded for
+    /// per reading (map updates, or progress); `None` from a chooser that does not value strategies.
     fn value(&self, _strategy: usize, _features: Features) -> Option<f64> {
         None
     }

@@ -106,6 +106,7 @@ fn the_books_are_right() {
 #[test]
 fn learners_know_finite_values_and_others_none() {
     for choice in StrategyChoice::ALL {
+        let is_learner = [StrategyChoice::Curious, StrategyChoice::Progress].contains(&choice);
         let mut agent = agent(choice, 4);
         let mut learned = false;
         live(&mut agent, |agent, _, _| {
@@ -113,7 +114,7 @@ fn learners_know_finite_values_and_others_none() {
                 for r in [0.0, 50.0, f64::MAX, f64::INFINITY, f64::NAN] {
                     for strategy in 0..agent.strategies().len() {
                         let value = agent.value(strategy, Features { p, r });
-                        assert_eq!(value.is_some(), choice == StrategyChoice::Curious);
+                        assert_eq!(value.is_some(), is_learner);
                         assert!(value.is_none_or(f64::is_finite));
                         learned |= value.is_some_and(|value| value > 0.0);
                     }
@@ -121,7 +122,7 @@ fn learners_know_finite_values_and_others_none() {
                 }
             }
         });
-        assert_eq!(learned, choice == StrategyChoice::Curious);
+        assert_eq!(learned, is_learner);
     }
 }
 
@@ -130,6 +131,7 @@ fn the_strategies_of_each_choice() {
     let names = |choice| agent(choice, 0).strategies().collect::<Vec<_>>();
     assert_eq!(names(StrategyChoice::Curious), ["recency", "poisson"]);
     assert_eq!(names(StrategyChoice::Coin), ["recency", "poisson"]);
+    assert_eq!(names(StrategyChoice::Progress), ["recency", "poisson", "frontier", "optimal-revisiting"]);
     for choice in [StrategyChoice::Recency, StrategyChoice::Poisson, StrategyChoice::Random] {
         assert_eq!(names(choice), [choice.name()]);
     }
@@ -141,7 +143,7 @@ fn the_first_choice_and_the_coin_are_fair() {
     for choice in [StrategyChoice::Curious, StrategyChoice::Coin] {
         let firsts = (0..1000).filter(|&seed| {
             let mut agent = agent(choice, seed);
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies).cell;
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
             agent.current() == Some(0)
         });
         // Four standard deviations.
@@ -149,7 +151,7 @@ fn the_first_choice_and_the_coin_are_fair() {
     }
     let mut agent = agent(StrategyChoice::Coin, 1);
     for _ in 0..1000 {
-        agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies).cell;
+        agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
     }
     assert!(agent.shares().all(|share| (0.436..=0.564).contains(&share)));
 }
@@ -190,7 +192,7 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
         let strategies: Vec<Box<dyn agent::Strategy>> = vec![Box::new(Recency), Box::new(Random)];
         let mut agent = Agent::with(&settings, strategies, Box::new(pupil), rng(0)).unwrap();
         let goal = |agent: &mut Agent| {
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies).cell;
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
         };
         agent.watch(at(9.0), &[found; 50]); // before the first goal: nobody's merit
         goal(&mut agent);
@@ -209,6 +211,42 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
             [(0, vec![at(1.0), at(2.0), at(3.0), at(4.0)], first), (0, vec![at(5.0)], second)]
         );
     }
+}
+
+/// Notes the progress that it is told of.
+#[derive(Debug, Default)]
+struct Listener(Arc<Mutex<Vec<f64>>>);
+
+impl Chooser for Listener {
+    fn choose(&mut self, _: &Situation, _: &mut ChaCha8Rng) -> usize {
+        0
+    }
+
+    fn learn(&mut self, trajectory: &Trajectory) {
+        self.0.lock().unwrap().push(trajectory.progress);
+    }
+}
+
+#[test]
+fn progress_is_what_the_events_of_a_trajectory_tell_per_reading() {
+    let listener = Listener::default();
+    let heard = Arc::clone(&listener.0);
+    let mut agent =
+        Agent::with(&AgentSettings::default(), vec![Box::new(Random)], Box::new(listener), rng(0)).unwrap();
+    let mut mapper = empty(3, 1);
+    let drawings = ["...", ".#.", "...", ".#.", ".#.", ".#."];
+    for (step, drawing) in drawings.into_iter().enumerate() {
+        mapper.update(&reading(step as f64, &[drawing])).unwrap();
+        agent.watch(Features::default(), mapper.transitions());
+        // The first goal comes after one event, the next two readings and two events later, the last
+        // when two readings showed nothing.
+        if [1, 3, 5].contains(&step) {
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
+        }
+    }
+    let heard = heard.lock().unwrap();
+    assert!((heard[0] - (1.0 - 1.0 / 3f64.sqrt()) / 2.0).abs() < 1e-12, "{heard:?}");
+    assert_eq!(heard[1..], [0.0]);
 }
 
 #[test]

@@ -6,7 +6,6 @@ mod two_state;
 use crate::CellStatistics;
 use crate::chain::Chain;
 pub(crate) use baselines::changes_in_view;
-pub(crate) use two_state::{gap_prior, watch};
 
 /// How the rate of change of a cell is estimated from what was seen of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
@@ -52,6 +51,11 @@ impl Estimator {
     /// Whether the gaps of a cell count one by one.
     pub(crate) fn weighs_gaps(self) -> bool {
         matches!(self, Self::ChoGarciaMolina | Self::TwoStateGaps)
+    }
+
+    /// Whether the worth of the gaps is that of a two-state chain.
+    pub(crate) fn fits_chain(self) -> bool {
+        self == Self::TwoStateGaps
     }
 
     /// The mean time of one cycle, blocked to free and back (equation 1's T), in the unit of the

@@ -1,25 +1,8 @@
 //! The two-state chain that explains best what was seen of a cell, gaps included.
 
-use super::table::Bins;
-use crate::chain::Step;
-use std::ops::Add;
-
-/// What was watched: per state (free, blocked) the events that ended it and the readings' steps that
-/// began in it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Watch {
-    pub(crate) events: [f64; 2],
-    pub(crate) steps: [f64; 2],
-}
-
-impl Add for Watch {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
-        Self { events: sum(self.events, other.events), steps: sum(self.steps, other.steps) }
-    }
-}
+use super::bins::Bins;
+use super::watch::Watch;
+use crate::chain::{GapEnd, Gaze, Step};
 
 /// What is fitted.
 pub(super) struct Evidence<'a> {
@@ -34,119 +17,121 @@ pub(super) struct Evidence<'a> {
 
 /// The maximum of the posterior, and its shape there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fit {
+pub(super) struct Fit {
     /// The chain per step.
-    pub(crate) step: Step,
+    pub(super) step: Step,
     /// What the gaps are worth at the maximum: the watching, per state, that would pull each
     /// probability as hard and hold it as firmly.
-    pub(crate) worth: Watch,
+    pub(super) worth: Watch,
     /// What the gaps tell of both probabilities together: the mixed term of their information, in
     /// log-odds.
-    pub(crate) mixed: f64,
+    pub(super) mixed: f64,
 }
 
-/// Scoring steps at most. Most fits take three to six.
+/// Scoring steps at most. Most fits take two or three.
 const MOST_ROUNDS: usize = 30;
 /// A probability is found when its log-odds move less than this.
-const FOUND: f64 = 1e-7;
+const FOUND: f64 = 1e-4;
 /// Log-odds move by at most this in one round.
 const LONGEST_MOVE: f64 = 2.0;
 /// Log-odds stay within these bounds.
 const EXTREME: f64 = 30.0;
+/// Halvings of a move that leads downhill.
+const MOST_HALVINGS: usize = 12;
 
-/// Score and information of the gaps in log-odds.
+/// The logarithm of the posterior at one place, and its first and expected second derivatives in log-odds.
 #[derive(Clone, Copy, Debug, Default)]
-struct Slope {
+struct Height {
+    height: f64,
     score: [f64; 2],
     information: [f64; 2],
     mixed: f64,
 }
 
 impl Evidence<'_> {
-    fn slope_of_gaps(&self, step: Step) -> Slope {
-        let mut sum = Slope::default();
+    fn of_gaps(&self, step: Step) -> Height {
+        let (gaze, per_period) = (Gaze::new(step, self.regular), 1.0 / self.period);
+        let mut sum = Height::default();
         for bin in self.gaps.iter() {
             let count = f64::from(bin.count);
-            let gap = step.over(bin.before(), bin.length() / self.period, self.regular);
-            let seen = if bin.after() { gap.blocked } else { -(1.0 - gap.blocked) };
+            let GapEnd { blocked, slope } = gaze.over(bin.before(), bin.length() * per_period);
+            let seen = if bin.after() { blocked } else { 1.0 - blocked };
+            let sign = if bin.after() { 1.0 } else { -1.0 };
+            sum.height += count * libm::log(seen.max(f64::MIN_POSITIVE));
             // Score of what was seen, and its expected square over both outcomes.
-            let variance = gap.blocked * (1.0 - gap.blocked);
-            if variance <= f64::MIN_POSITIVE {
-                continue;
+            let variance = blocked * (1.0 - blocked);
+            if variance > f64::MIN_POSITIVE {
+                let (pull, weight) = (count * sign / seen, count / variance);
+                for state in 0..2 {
+                    sum.score[state] += pull * slope[state];
+                    sum.information[state] += weight * slope[state] * slope[state];
+                }
+                sum.mixed += weight * slope[0] * slope[1];
             }
-            for (score, slope) in sum.score.iter_mut().zip(gap.slope) {
-                *score += count * slope / seen;
-            }
-            for (information, slope) in sum.information.iter_mut().zip(gap.slope) {
-                *information += count * slope * slope / variance;
-            }
-            sum.mixed += count * gap.slope[0] * gap.slope[1] / variance;
         }
         sum
     }
 
-    fn log_posterior(&self, step: Step) -> f64 {
-        let mut sum = 0.0;
+    /// What was watched, added to the gaps.
+    fn with_watch(&self, step: Step, gaps: Height) -> Height {
+        let mut sum = gaps;
         for (state, leave) in [step.block, step.free].into_iter().enumerate() {
             let (events, steps) = (self.watch.events[state], self.watch.steps[state]);
-            sum += events * libm::log(leave) + (steps - events) * libm::log1p(-leave);
-        }
-        for bin in self.gaps.iter() {
-            let blocked = step.over(bin.before(), bin.length() / self.period, self.regular).blocked;
-            let seen = if bin.after() { blocked } else { 1.0 - blocked };
-            sum += f64::from(bin.count) * libm::log(seen.max(f64::MIN_POSITIVE));
+            sum.height += events * libm::log(leave) + (steps - events) * libm::log1p(-leave);
+            sum.score[state] += events - steps * leave;
+            sum.information[state] += steps * leave * (1.0 - leave);
         }
         sum
     }
 
-    /// Fits by Fisher scoring from `start`, with smaller moves where a whole one would lead downhill.
-    pub(super) fn fit(&self, start: Step) -> Fit {
-        let logit = |leave: f64| (libm::log(leave) - libm::log1p(-leave)).clamp(-EXTREME, EXTREME);
-        let mut odds = [logit(start.block), logit(start.free)];
+    /// Fits by Fisher scoring from `start`, with smaller moves where a whole one would lead downhill; none
+    /// where the figures are beyond all numbers.
+    pub(super) fn fit(&self, start: Step) -> Option<Fit> {
+        let mut odds = [start.block, start.free].map(|leave| {
+            let odds = libm::log(leave) - libm::log1p(-leave);
+            odds.clamp(-EXTREME, EXTREME)
+        });
         let mut step = from_odds(odds);
-        let mut height = self.log_posterior(step);
-        let mut slope = self.slope_of_gaps(step);
+        let mut gaps = self.of_gaps(step);
         for _ in 0..MOST_ROUNDS {
-            let [mut score, mut information] = [slope.score, slope.information];
-            for (state, leave) in [step.block, step.free].into_iter().enumerate() {
-                let (events, steps) = (self.watch.events[state], self.watch.steps[state]);
-                score[state] += events - steps * leave;
-                information[state] += steps * leave * (1.0 - leave);
-            }
-            let determinant = information[0] * information[1] - slope.mixed * slope.mixed;
-            let mut by = [
-                (information[1] * score[0] - slope.mixed * score[1]) / determinant,
-                (information[0] * score[1] - slope.mixed * score[0]) / determinant,
-            ];
-            let longest = by[0].abs().max(by[1].abs());
-            if !longest.is_finite() || longest < FOUND {
-                break;
-            }
-            let scale = (LONGEST_MOVE / longest).min(1.0);
-            by = by.map(|by| by * scale);
-            let mut has_moved = false;
-            for _ in 0..12 {
+            let here = self.with_watch(step, gaps);
+            let Some(mut by) = here.best_move() else { break };
+            let mut found = None;
+            for _ in 0..MOST_HALVINGS {
                 let next = [0, 1].map(|state| (odds[state] + by[state]).clamp(-EXTREME, EXTREME));
                 let next_step = from_odds(next);
-                let next_height = self.log_posterior(next_step);
-                if next_height >= height {
-                    has_moved = next != odds;
-                    (odds, step, height) = (next, next_step, next_height);
+                let next_gaps = self.of_gaps(next_step);
+                if self.with_watch(next_step, next_gaps).height >= here.height {
+                    found = Some((next, next_step, next_gaps));
                     break;
                 }
                 by = by.map(|by| by / 2.0);
             }
-            if !has_moved {
+            let Some(found) = found else { break };
+            (odds, step, gaps) = found;
+            if by.iter().all(|by| by.abs() < FOUND) {
                 break;
             }
-            slope = self.slope_of_gaps(step);
         }
         let mut worth = Watch::default();
         for (state, leave) in [step.block, step.free].into_iter().enumerate() {
-            worth.steps[state] = slope.information[state] / (leave * (1.0 - leave));
-            worth.events[state] = leave * worth.steps[state] + slope.score[state];
+            worth.steps[state] = gaps.information[state] / (leave * (1.0 - leave));
+            worth.events[state] = leave * worth.steps[state] + gaps.score[state];
         }
-        Fit { step, worth, mixed: slope.mixed }
+        let figures = [worth.steps, worth.events, [gaps.mixed, gaps.height]];
+        let is_sound = figures.iter().flatten().all(|figure| figure.is_finite());
+        is_sound.then_some(Fit { step, worth, mixed: gaps.mixed })
+    }
+}
+
+impl Height {
+    /// The move to the top of a hill of this slope and information.
+    fn best_move(&self) -> Option<[f64; 2]> {
+        let ([a, b], [u, v]) = (self.information, self.score);
+        let determinant = a * b - self.mixed * self.mixed;
+        let by = [(b * u - self.mixed * v) / determinant, (a * v - self.mixed * u) / determinant];
+        let longest = by[0].abs().max(by[1].abs());
+        longest.is_finite().then(|| by.map(|by| by * (LONGEST_MOVE / longest).min(1.0)))
     }
 }
 

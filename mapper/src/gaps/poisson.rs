@@ -1,17 +1,20 @@
 //! Changes in gaps by one Poisson process, after Cho & Garcia-Molina.
 
-use super::table::{Bin, Bins};
+use super::bins::{Bin, Bins};
+use crate::CellStatistics;
+use crate::estimator::changes_in_view;
 
 /// Rounds at most; the rate is found to a millionth long before.
 const MOST_ROUNDS: usize = 100;
 
 /// The expected number of changes in all gaps together, at the rate that explains best what was
-/// found after them and `changes` in `time` of view.
+/// found after them and what happened in view.
 ///
 /// A gap tells whether there was any change: one of length I at rate r holds rI/(1 − e^(−rI)) if so, and
 /// none if not. As in their estimator, half an unchanged gap is added, so that a rate is found also
 /// where every gap showed a change.
-pub(super) fn expected_changes(bins: &Bins, changes: f64, time: f64) -> f64 {
+pub(super) fn hidden_changes(bins: &Bins, seen: &CellStatistics) -> f64 {
+    let (changes, time) = (changes_in_view(seen), seen.observed());
     let total: f64 = bins.iter().map(|bin| bin.total).sum();
     let count: f64 = bins.iter().map(|bin| f64::from(bin.count)).sum();
     if total <= 0.0 {

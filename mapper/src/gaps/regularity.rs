@@ -1,45 +1,100 @@
 //! How regular the times are that cells stay in a state.
 //!
-//! A Markov chain forgets: how much longer a cell stays does not depend on how long it has stayed. What moves by a
-//! clock is not like that. It matters for gaps about as long as a stay: after one stay's length, the
-//! chain says 63 % changed, the clock all.
+//! A Markov chain forgets: how much longer a cell stays does not depend on how long it has stayed. What
+//! moves by a clock is not like that, and it matters for gaps about as long as a stay: after the time of one
+//! stay the chain says 63 % left, the clock all.
 
-use super::tune;
+/// Two stays that differ by at most this part of their sum are equal.
+const EQUAL: f64 = 0.1;
+/// Pairs of a Markov chain that are taken as seen from the start: nothing is regular until it was shown.
+const DOUBT: f64 = 4.0;
+/// Where so few, or so many, of the pairs are equal beyond chance, the world is a Markov chain, or a
+/// clock. Stays that begin and end within short visits are a little more equal than others; clocks stop while
+/// something is in their way.
+const BETWEEN: [f64; 2] = [0.2, 0.7];
 
-/// How much two stays in a row differ, over all cells, beside what they would for Markov chains.
+/// How often two stays of a cell in a row are equal, over all cells.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Regularity {
-    /// Per state: the sum over pairs of stays, 1 on average for Markov chains, 0 for clocks.
-    differences: [f64; 2],
-    pairs: [f64; 2],
+    /// Per state: equal pairs, less those expected of Markov chains.
+    equal: [f64; 2],
+    /// Unequal pairs expected of Markov chains.
+    unequal: [f64; 2],
 }
 
 impl Regularity {
-    /// A cell stayed in a state for so many steps, from an event in view to an event in view, after it had
-    /// stayed in it for `before` steps.
+    /// A cell stayed in a state for so many steps, from an event in view to an event in view; and before that for
+    /// `before` steps.
     pub(super) fn add(&mut self, state: usize, before: f64, steps: f64) {
-        // Given their sum s, each split of it into two stays is as likely as another for a Markov chain,
-        // whatever its rate. So their difference is s/2 on average, to less than 1 %, from 4 steps on; two stays of one
-        // or two steps tell nothing.
+        let (before, steps) = (libm::round(before), libm::round(steps));
         let sum = before + steps;
-        if sum > 3.5 {
-            // equal: |x - y| <= 0.1 s; of the s - 1 splits
-            let even = (sum / 2.0).fract() < 0.25 || (sum / 2.0).fract() > 0.75;
-            let h = 0.05 * sum; // |x - s/2| <= h
-            let splits = if even { 1.0 + 2.0 * h.floor() } else { 2.0 * (h + 0.5).floor() };
-            let expected = splits / (sum - 1.0);
-            self.differences[state] += f64::from(u8::from((before - steps).abs() <= 0.1 * sum + 1e-9)) - expected;
-            self.pairs[state] += 1.0 - expected;
+        if sum < 4.0 {
+            return; // two stays of one or two steps are equal, or not, whatever moves
+        }
+        // Given their sum, each way to split it in two is as likely as another for a Markov chain, whatever its
+        // rates. So many of the sum − 1 ways count as equal:
+        let most = libm::floor(EQUAL * sum);
+        let ways = if sum % 2.0 == 0.0 {
+            2.0 * libm::floor(most / 2.0) + 1.0
+        } else {
+            2.0 * libm::floor((most + 1.0) / 2.0)
+        };
+        let expected = ways / (sum - 1.0);
+        self.equal[state] += f64::from(u8::from((before - steps).abs() <= most)) - expected;
+        self.unequal[state] += 1.0 - expected;
+    }
+
+    /// Per state, from 0 for Markov chains to 1 for clocks.
+    pub(super) fn weights(&self) -> [f64; 2] {
+        let [low, high] = BETWEEN;
+        [0, 1].map(|state| {
+            let share = self.equal[state] / (self.unequal[state] + DOUBT);
+            ((share - low) / (high - low)).clamp(0.0, 1.0)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, Geometric};
+
+    fn weight(stays: impl IntoIterator<Item = f64>) -> f64 {
+        let (mut regularity, mut before) = (Regularity::default(), 0.0);
+        for stay in stays {
+            if before > 0.0 {
+                regularity.add(1, before, stay);
+            }
+            before = stay;
+        }
+        regularity.weights()[1]
+    }
+
+    #[test]
+    fn a_markov_chain_is_not_regular_whatever_its_rate() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        for leave in [0.7, 0.5, 0.2, 0.01] {
+            let stays = Geometric::new(leave).unwrap();
+            let mut next = || stays.sample(&mut rng) as f64 + 1.0;
+            assert_eq!(weight((0..3000).map(|_| next())), 0.0, "leaving with {leave}");
+            // Only stays that fit in a window of ten steps are seen whole.
+            let seen: Vec<f64> = (0..3000).map(|_| next()).filter(|&stay| stay < 9.0).collect();
+            assert_eq!(weight(seen), 0.0, "leaving with {leave}, in short visits");
         }
     }
 
-    /// Per state, from 0 for a Markov chain to 1 for a clock.
-    pub(super) fn weights(&self) -> [f64; 2] {
-        if *tune::REG >= 0.0 { return [*tune::REG; 2]; }
-        if std::env::var("SHOWR").is_ok() { eprintln!("{:?} {:?}", self.differences, self.pairs); }
-        [0, 1].map(|state| {
-            let w = self.differences[state] / (self.pairs[state] + *tune::RPRIOR);
-            ((w - *tune::RCUT) / *tune::RSPAN).clamp(0.0, 1.0)
-        })
+    #[test]
+    fn a_clock_is_regular_once_it_was_shown_also_if_it_stops_at_times() {
+        assert_eq!(weight([7.0; 2]), 0.0);
+        assert_eq!(weight([7.0; 40]), 1.0);
+        let waits = |number: u32| if number % 12 == 0 { 30.0 } else { 7.0 };
+        assert!(weight((0..120).map(waits)) > 0.7);
+    }
+
+    #[test]
+    fn stays_of_one_step_tell_nothing() {
+        assert_eq!(weight([1.0; 100]), 0.0);
     }
 }

@@ -10,12 +10,14 @@ pub(super) struct Recency {
     oldest: ReadingIndex,
 }
 
-impl Recency {
+impl Default for Recency {
     /// With nothing counted, and the readings "never" and "prior" open.
-    pub(super) fn new() -> Self {
+    fn default() -> Self {
         Self { counts: VecDeque::from([0, 0]), oldest: NEVER }
     }
+}
 
+impl Recency {
     /// Opens the next reading.
     pub(super) fn open(&mut self) {
         self.counts.push_back(0);

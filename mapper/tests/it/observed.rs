@@ -12,7 +12,7 @@ pub(crate) struct ObservedCell {
     is_known: bool,
     is_in_view: bool,
     is_candidate: bool,
-    figures: [u64; 4],
+    figures: [u64; 7],
 }
 
 /// A mapper as its readers see it; figures are compared bit by bit.
@@ -29,6 +29,11 @@ pub(crate) struct Observed {
 
 impl Observed {
     pub(crate) fn of(mapper: &Mapper) -> Self {
+        // Quantiles take long; a part of the cells tells as much.
+        let interval = |index: usize| match index % 17 {
+            0 => mapper.credible_interval(index, 0.9),
+            _ => (0.0, 0.0),
+        };
         let cell = |index: usize| ObservedCell {
             state: mapper.states().cells()[index],
             statistics: mapper.statistics(index),
@@ -40,6 +45,9 @@ impl Observed {
                 mapper.rate(index),
                 mapper.change_probability(index),
                 mapper.recency(index),
+                mapper.blocked_probability(index),
+                interval(index).0,
+                interval(index).1,
             ]
             .map(f64::to_bits),
         };
@@ -77,6 +85,16 @@ pub(crate) fn assert_sound(mapper: &Mapper) {
         assert!(rate.is_finite() && rate >= 0.0, "rate {rate} of {seen:?}");
         let probability = mapper.change_probability(index);
         assert!((0.0..=1.0).contains(&probability), "P(E > 0) = {probability} of {seen:?}");
+        let blocked = mapper.blocked_probability(index);
+        assert!((0.0..=1.0).contains(&blocked), "P(blocked) = {blocked} of {seen:?}");
+        let (low, high) = mapper.credible_interval(index, 0.9);
+        assert!(low >= 0.0 && low <= high, "a rate from {low} to {high} of {seen:?}");
+        if let Some((block, free)) = mapper.transition_rates(index) {
+            assert!(
+                rate > 0.0 && [block, free].iter().all(|rate| *rate > 0.0 && rate.is_finite()),
+                "{seen:?}"
+            );
+        }
         let recency = mapper.recency(index);
         assert!(recency.is_finite() && recency >= 0.0, "recency {recency} of {seen:?}");
     }

@@ -49,3 +49,22 @@ fn a_disk_that_is_full() {
     insta::assert_snapshot!(fails(&run, "--rrd /dev/full"), @"error: cannot write the recording /dev/full: No space left on device (os error 28)");
     assert_eq!(names(&run.path("out")), [""; 0]);
 }
+
+/// As when a disk fills up in the middle: here a pipe whose other end is closed after a while.
+#[test]
+#[cfg(unix)]
+fn a_recording_that_cannot_go_on_costs_no_trial() {
+    use std::io::Read;
+    let run = Run::grid();
+    let pipe = run.path("pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let arguments = "--steps 3000 --trials 2 --strategy recency --estimator paper --rrd pipe";
+    let child = run.starts(arguments);
+    std::fs::File::open(&pipe).unwrap().read_exact(&mut [0; 1000]).unwrap();
+    let ended = crate::run::Ended::from(child.wait_with_output().unwrap());
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    insta::assert_snapshot!(ended.stderr, @"error: cannot write the recording pipe: Broken pipe (os error 32)");
+    let without = super::ran(&arguments.replace("--rrd pipe", ""));
+    let trials = |run: &Run| std::fs::read(run.out("trials.csv")).unwrap();
+    assert!(trials(&run) == trials(&without), "the trials are others");
+}

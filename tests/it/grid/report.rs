@@ -94,8 +94,11 @@ fn check_curve(curve: &Value) {
     }
 }
 
-/// The mean over the trials of a strategy at the end, from `trials.csv`.
-fn at_the_end(rows: &[Row], [world, estimator, strategy]: [&str; 3], value: fn(&Row) -> f64) -> Vec<f64> {
+/// A column of `trials.csv`.
+type Column = fn(&Row) -> f64;
+
+/// The values at the end of every trial of a strategy, in the order of the seeds.
+fn at_the_end(rows: &[Row], [world, estimator, strategy]: [&str; 3], value: Column) -> Vec<f64> {
     let is_asked = |row: &&Row| {
         row.step == 600 && row.world == world && row.estimator == estimator && row.strategy == strategy
     };
@@ -111,7 +114,7 @@ fn mean(values: &[f64]) -> f64 {
 #[test]
 fn it_agrees_with_the_trials() {
     let (report, rows) = (report(&RUN), rows(&RUN));
-    let values: [(&str, fn(&Row) -> f64); 3] = [
+    let values: [(&str, Column); 3] = [
         ("final_rate_error", |row| row.rate_error.unwrap()),
         ("final_log_error", |row| row.log_error.unwrap()),
         ("final_map_quality", |row| row.map_quality),

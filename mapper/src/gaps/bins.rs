@@ -18,8 +18,8 @@ pub(super) struct Bin {
     pub(super) total: f64,
 }
 
-/// Binary digits of a length, after the leading one, that tell bins apart: bins of a quarter to a
-/// half of an octave, and lengths of 1, 2, 3 and 4 steps each for themselves.
+/// Binary digits of a length, after the leading one, that tell bins apart: two bins to an octave, and
+/// gaps of two and of three steps each for themselves.
 const DIGITS: u32 = 1;
 
 impl Bin {
@@ -91,15 +91,6 @@ impl Bins {
     /// The gaps by kind.
     pub(super) fn iter(&self) -> impl Iterator<Item = Bin> + Clone {
         self.bins.iter().copied()
-    }
-
-    /// Takes the last gap out if from free and between these readings
-    pub(super) fn take_last(&mut self, from: ReadingIndex, now: ReadingIndex) -> Option<(f64, bool)> {
-        let last = self.last?;
-        if last.end != now || last.before || !(last.start == from || last.start + 1 == from) { return None; }
-        self.take(last.length, last.before, last.after);
-        self.last = None;
-        Some((last.length, last.after))
     }
 
     fn put(&mut self, length: f64, before: bool, after: bool) {

@@ -1,0 +1,29 @@
+//! How sure a rate is.
+
+use crate::gamma;
+use crate::gaps::Watch;
+
+/// The interval that holds the cycle rate with probability `mass`, as much of the rest above as below, by
+/// the posterior of the two-state chain: `all` that was seen, in steps of `period`, and the `mixed` term of
+/// its information. The rate is taken to be gamma distributed, which it is where only one of the two
+/// probabilities is in doubt.
+pub(crate) fn interval(all: Watch, mixed: f64, period: f64, mass: f64) -> (f64, f64) {
+    let [block, free] = all.leave().map(|leave| leave.clamp(f64::MIN_POSITIVE, 1.0));
+    let information = [(0, block), (1, free)]
+        .map(|(state, leave)| (all.steps[state] * leave * (1.0 - leave)).max(f64::MIN_POSITIVE));
+    let most = 0.999 * libm::sqrt(information[0] * information[1]);
+    let mixed = mixed.clamp(-most, most);
+    let determinant = information[0] * information[1] - mixed * mixed;
+    // ln r = −ln(1/a + 1/b) grows with the log-odds of a by the share of the cycle that is free, times
+    // (1 − a), and likewise with those of b.
+    let slopes = [free / (block + free) * (1.0 - block), block / (block + free) * (1.0 - free)];
+    let variance = (slopes[0] * slopes[0] * information[1] - 2.0 * slopes[0] * slopes[1] * mixed
+        + slopes[1] * slopes[1] * information[0])
+        / determinant;
+    let rate = block * free / (block + free) / period;
+    // No surer than everything known for certain, no vaguer than nothing known at all.
+    let shape = (1.0 / variance).clamp(0.05, 1e12);
+    let mass = mass.clamp(0.0, 1.0);
+    let quantile = |probability: f64| (rate * gamma::quantile(shape, probability)).min(0.5 / period);
+    (quantile(0.5 - 0.5 * mass), quantile(0.5 + 0.5 * mass))
+}
