@@ -2,6 +2,7 @@
 //! 25 × 25 cells that sees four cells far, where two blocks have changed 24 cells. How that is divided
 //! tells `see_states` in `mapper/src/ledger/sight.rs`.
 
+#[allow(dead_code)] // the bench needs one habit only
 #[path = "../examples/estimators/robots.rs"]
 mod robots;
 

@@ -111,7 +111,7 @@ pub(crate) fn run(
             let looks = match pattern {
                 Pattern::Of(view, every) => (step + 7 * x as u64) % every < view,
                 Pattern::Stays { every, calm } => {
-                    (step + 7 * x as u64) % every == 0 || life.looks && life.calm < calm
+                    (step + 7 * x as u64).is_multiple_of(every) || life.looks && life.calm < calm
                 }
             };
             life.looks = looks;

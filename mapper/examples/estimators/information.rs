@@ -42,7 +42,7 @@ impl Information {
         }
         let [[aa, ab], [_, bb]] = matrix;
         let determinant = aa * bb - ab * ab;
-        if !(determinant > 1e-9 * aa * bb) {
+        if determinant.is_nan() || determinant <= 1e-9 * aa * bb {
             return f64::INFINITY;
         }
         // ln r = −ln(1/a + 1/b): its slopes are the shares of the other state.

@@ -1,3 +1,11 @@
+//! How right the estimators of rates are, all on the same streams of observations: block worlds, then
+//! simulated two-state chains.
+//!
+//! ```text
+//! cargo run --release -p mapper --example estimators              24 block worlds of 20,000 steps
+//! cargo run --release -p mapper --example estimators -- 48 5000   more of them, shorter
+//! ```
+
 mod blocks;
 mod chains;
 mod information;
@@ -5,9 +13,9 @@ mod robots;
 mod score;
 
 fn main() -> anyhow::Result<()> {
-    let args: Vec<u64> = std::env::args().skip(1).map(|a| a.parse().unwrap()).collect();
-    if args.len() > 2 {
-        return chains::table(args[0] as usize, args[1]);
-    }
-    blocks::table(args[0], args[1])
+    let mut arguments = std::env::args().skip(1).map(|text| text.parse::<u64>());
+    let worlds = arguments.next().unwrap_or(Ok(24))?;
+    let steps = arguments.next().unwrap_or(Ok(20_000))?;
+    blocks::table(worlds, steps)?;
+    chains::table(worlds as usize, steps)
 }

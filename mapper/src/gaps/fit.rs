@@ -62,9 +62,9 @@ impl Evidence<'_> {
             let variance = blocked * (1.0 - blocked);
             if variance > f64::MIN_POSITIVE {
                 let (pull, weight) = (count * sign / seen, count / variance);
-                for state in 0..2 {
-                    sum.score[state] += pull * slope[state];
-                    sum.information[state] += weight * slope[state] * slope[state];
+                for (state, slope) in slope.into_iter().enumerate() {
+                    sum.score[state] += pull * slope;
+                    sum.information[state] += weight * slope * slope;
                 }
                 sum.mixed += weight * slope[0] * slope[1];
             }

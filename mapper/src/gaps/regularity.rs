@@ -89,7 +89,7 @@ mod tests {
     fn a_clock_is_regular_once_it_was_shown_also_if_it_stops_at_times() {
         assert_eq!(weight([7.0; 2]), 0.0);
         assert_eq!(weight([7.0; 40]), 1.0);
-        let waits = |number: u32| if number % 12 == 0 { 30.0 } else { 7.0 };
+        let waits = |number: u32| if number.is_multiple_of(12) { 30.0 } else { 7.0 };
         assert!(weight((0..120).map(waits)) > 0.7);
     }
 
