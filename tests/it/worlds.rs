@@ -19,13 +19,19 @@ fn things_that_come_and_go_are_noticed() {
     assert!(summary.number("/map_quality") > 0.99);
 }
 
+/// How many depends on the way that the robot takes: here it is the middle one of three lives that
+/// counts. `mapper/examples/flicker` measures the same on a fixed way.
 #[test]
 fn walls_that_stand_askew_and_a_noisy_laser_make_few_false_changes() {
-    let summary = Run::quiet("--world turned_house --duration 10m").summary();
-    assert!(summary.number("/coverage") >= 0.98, "{}", summary.number("/coverage"));
-    assert!(summary.number("/static_cells") > 40_000.0);
-    assert!(summary.number("/false_change_events") <= 20.0, "{}", summary.number("/false_change_events"));
-    assert_eq!(summary.number("/collisions"), 0.0);
+    let mut false_changes = [0, 1, 2].map(|seed| {
+        let summary = Run::quiet(&format!("--world turned_house --duration 10m --seed {seed}")).summary();
+        assert!(summary.number("/coverage") >= 0.98, "{}", summary.number("/coverage"));
+        assert!(summary.number("/static_cells") > 40_000.0);
+        assert_eq!(summary.number("/collisions"), 0.0);
+        summary.number("/false_change_events")
+    });
+    false_changes.sort_by(f64::total_cmp);
+    assert!(false_changes[1] <= 20.0, "{false_changes:?}");
 }
 
 #[test]
