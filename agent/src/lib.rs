@@ -28,6 +28,8 @@ pub use choosers::{Always, Chooser, Coin, Curious, Progress, Trajectory};
 pub use goal::Goal;
 pub use settings::{AgentSettings, CuriousSettings, Reward, SettingsError};
 pub use situation::Situation;
-pub use strategies::{Frontier, OptimalRevisiting, Pick, Poisson, Random, Recency, Stay, Strategy};
+pub use strategies::{
+    Frontier, InformationGain, OptimalRevisiting, Pick, Poisson, Random, Recency, Stay, Strategy,
+};
 pub use tile_coder::TileCoder;
 pub use travel::{AsTheCrowFlies, Travel};

@@ -4,7 +4,7 @@
 //! cast anew only where a wall has come or gone since. A fine grid under a far sensor is judged by
 //! squares of cells, since the view from one cell is that from the next.
 
-use geometry::{CellState, GridFrame};
+use geometry::{Cell, CellState, GridFrame};
 use mapper::Mapper;
 
 /// A view reaches at most this many places far: more would cost much and tell little.
@@ -38,6 +38,16 @@ impl Places {
     pub(crate) fn of(&self, index: usize) -> usize {
         let width = self.frame.width();
         index / width / self.side * self.columns + index % width / self.side
+    }
+
+    /// Whether each place is a cell.
+    pub(crate) fn are_cells(&self) -> bool {
+        self.side == 1
+    }
+
+    /// The place that holds a cell; `None` outside of the map.
+    pub(crate) fn at_cell(&self, cell: Cell) -> Option<usize> {
+        self.frame.index(cell).map(|index| self.of(index))
     }
 
     /// The cells of a place by their numbers, row by row.
@@ -218,7 +228,6 @@ fn cast(places: &Places, opaque: &[bool], origin: usize, reach: f64) -> Vec<u32>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::Cell;
     use geometry::CellReading;
     use mapper::MapperSettings;
     use nalgebra::{Isometry2, Point2};

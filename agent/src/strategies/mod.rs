@@ -1,10 +1,12 @@
 mod frontier;
+mod information_gain;
 mod optimal_revisiting;
 mod poisson;
 mod random;
 mod recency;
 
 pub use frontier::Frontier;
+pub use information_gain::InformationGain;
 pub use optimal_revisiting::OptimalRevisiting;
 pub use poisson::Poisson;
 pub use random::Random;
