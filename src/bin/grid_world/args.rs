@@ -25,7 +25,7 @@ use std::path::PathBuf;
     max_term_width = 100,
     after_help = "Examples:\n  \
         grid_world --trials 100                                  the same with power\n  \
-        grid_world --generate 50 --trials 2 --strategy curious --strategy information-gain\n  \
+        grid_world --generate 50 --trials 2 --strategy curious --strategy progress\n  \
         grid_world --world my_world.toml --sensor-radius 6 --rrd one_trial.rrd\n\n\
         Exit codes: 0 done, 1 the run failed, 2 wrong arguments or input, 130 interrupted (Ctrl-C; what is \
         finished is reported)."
