@@ -31,7 +31,7 @@ fn house() -> Mapper {
     mapper
 }
 
-#[divan::bench(args = ["recency", "poisson", "random", "curious", "frontier", "optimal-revisiting"])]
+#[divan::bench(args = ["recency", "poisson", "random", "curious", "frontier", "optimal-revisiting", "information-gain"])]
 fn next_goal(bencher: divan::Bencher, strategy: &str) {
     let mut mapper = house();
     let settings = AgentSettings { patch_cells: 10, ..Default::default() };

@@ -1,6 +1,6 @@
 use crate::{
-    AgentSettings, Always, Chooser, Coin, Curious, Frontier, OptimalRevisiting, Poisson, Progress, Random,
-    Recency, Strategy,
+    AgentSettings, Always, Chooser, Coin, Curious, Frontier, InformationGain, OptimalRevisiting, Poisson,
+    Progress, Random, Recency, Strategy,
 };
 use rand_chacha::ChaCha8Rng;
 use std::num::NonZeroUsize;
@@ -24,7 +24,10 @@ pub enum StrategyChoice {
     Frontier,
     /// [`OptimalRevisiting`] alone.
     OptimalRevisiting,
-    /// [`Progress`] over [`Recency`], [`Poisson`], [`Frontier`] and [`OptimalRevisiting`].
+    /// [`InformationGain`] alone.
+    InformationGain,
+    /// [`Progress`] over [`Recency`], [`Poisson`], [`Frontier`], [`OptimalRevisiting`] and
+    /// [`InformationGain`].
     Progress,
 }
 
@@ -33,7 +36,7 @@ pub(crate) type Parts = (Vec<Box<dyn Strategy>>, Box<dyn Chooser>);
 
 impl StrategyChoice {
     /// Every choice.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Curious,
         Self::Recency,
         Self::Poisson,
@@ -41,6 +44,7 @@ impl StrategyChoice {
         Self::Coin,
         Self::Frontier,
         Self::OptimalRevisiting,
+        Self::InformationGain,
         Self::Progress,
     ];
 
@@ -54,6 +58,7 @@ impl StrategyChoice {
             Self::Coin => "coin",
             Self::Frontier => "frontier",
             Self::OptimalRevisiting => "optimal-revisiting",
+            Self::InformationGain => "information-gain",
             Self::Progress => "progress",
         }
     }
@@ -75,10 +80,12 @@ impl StrategyChoice {
             Self::Random => only(Random),
             Self::Frontier => only(Frontier::new(settings.sensor_radius_m)),
             Self::OptimalRevisiting => only(OptimalRevisiting::new(settings.sensor_radius_m)),
+            Self::InformationGain => only(InformationGain::new(settings.sensor_radius_m)),
             Self::Progress => {
                 let mut strategies = papers();
                 strategies.push(Box::new(Frontier::new(settings.sensor_radius_m)));
                 strategies.push(Box::new(OptimalRevisiting::new(settings.sensor_radius_m)));
+                strategies.push(Box::new(InformationGain::new(settings.sensor_radius_m)));
                 let chooser = Progress::new(strategies.len());
                 (strategies, Box::new(chooser))
             }
@@ -134,7 +141,7 @@ mod tests {
         assert_eq!(
             "Curius".parse::<StrategyChoice>().unwrap_err().to_string(),
             "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, frontier, \
-             optimal-revisiting, progress"
+             optimal-revisiting, information-gain, progress"
         );
     }
 }

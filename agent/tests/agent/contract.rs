@@ -78,7 +78,9 @@ fn the_same_seed_gives_the_same_life_and_another_seed_another() {
         let life = |seed| live(&mut agent(choice, seed), |_, _, _| ());
         assert_eq!(life(1), life(1), "{choice}");
         // Who goes to the best cell leaves little to chance.
-        let is_best = [StrategyChoice::Frontier, StrategyChoice::OptimalRevisiting].contains(&choice);
+        let is_best =
+            [StrategyChoice::Frontier, StrategyChoice::OptimalRevisiting, StrategyChoice::InformationGain]
+                .contains(&choice);
         assert!(is_best || life(1) != life(2), "{choice}");
     }
 }
@@ -131,7 +133,10 @@ fn the_strategies_of_each_choice() {
     let names = |choice| agent(choice, 0).strategies().collect::<Vec<_>>();
     assert_eq!(names(StrategyChoice::Curious), ["recency", "poisson"]);
     assert_eq!(names(StrategyChoice::Coin), ["recency", "poisson"]);
-    assert_eq!(names(StrategyChoice::Progress), ["recency", "poisson", "frontier", "optimal-revisiting"]);
+    assert_eq!(
+        names(StrategyChoice::Progress),
+        ["recency", "poisson", "frontier", "optimal-revisiting", "information-gain"]
+    );
     for choice in [StrategyChoice::Recency, StrategyChoice::Poisson, StrategyChoice::Random] {
         assert_eq!(names(choice), [choice.name()]);
     }

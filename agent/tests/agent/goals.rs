@@ -117,8 +117,10 @@ fn recency_and_poisson_are_sampled_by_their_weights() {
 fn without_any_weight_every_candidate_is_as_likely() {
     let mapper = map(&[(0.0, ROOM)]);
     let uniform = probabilities(&mapper, &vec![0.0; mapper.frame().len()], 5);
-    // Nothing ever changed, and everything was seen just now.
-    for choice in StrategyChoice::ALL {
+    // Nothing ever changed, and everything was seen just now: only information gain still hopes for something,
+    // and progress sometimes asks it.
+    let hopes = |choice| matches!(choice, StrategyChoice::InformationGain | StrategyChoice::Progress);
+    for choice in StrategyChoice::ALL.into_iter().filter(|&choice| !hopes(choice)) {
         assert_frequencies(&mut agent(choice, 3), &mapper, &uniform);
     }
 }

@@ -3,4 +3,5 @@
 mod contract;
 mod drawing;
 mod goals;
+mod information_gain;
 mod looking;

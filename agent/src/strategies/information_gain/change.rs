@@ -25,8 +25,6 @@ const BLOCKED: f64 = 0.003;
 const WAY_IN_VIEW: f64 = 5.0;
 /// A thing that stands somewhere leaves that cell as many times faster as its way is long.
 const WAY: f64 = 10.0;
-/// Time between two looks that found the same counts as so much time in view.
-const BETWEEN_LOOKS: f64 = 0.3;
 /// What an unknown cell is worth to one just seen free: more, since there may be others behind it.
 const UNKNOWN: f64 = 1.5;
 /// The share of cells beside a thing that move at its pace, if they change; the others at any.
@@ -110,10 +108,10 @@ impl Change {
             let (chance, watched, factor) = match (state, position) {
                 (CellState::Unknown, _) => (self.chance(position), 0.0, UNKNOWN),
                 (CellState::Free, Position::Far) => {
-                    (self.far, WAY_IN_VIEW * watched_and_between(mapper, cell), 1.0)
+                    (self.far, WAY_IN_VIEW * since_first_seen(mapper, cell), 1.0)
                 }
                 (CellState::Free, _) => (self.chance(position), mapper.statistics(cell).watched_free, 1.0),
-                (CellState::Blocked, _) => (BLOCKED, WAY * watched_and_between(mapper, cell), 1.0),
+                (CellState::Blocked, _) => (BLOCKED, WAY * since_first_seen(mapper, cell), 1.0),
             };
             let bin = Rates::bin(watched);
             let (silent, gains) = if pace.is_finite() && *state != CellState::Blocked {
@@ -143,7 +141,9 @@ impl Change {
     }
 }
 
-fn watched_and_between(mapper: &Mapper, cell: usize) -> f64 {
+/// For how long the cell may have shown nothing: what both looks at the ends of a gap found alike counts as
+/// seen.
+fn since_first_seen(mapper: &Mapper, cell: usize) -> f64 {
     let seen = mapper.statistics(cell);
-    seen.watched_free + seen.watched_blocked + BETWEEN_LOOKS * seen.unobserved
+    seen.last_seen - seen.first_seen
 }

@@ -1,0 +1,154 @@
+//! The strategy that goes where a look teaches most, on maps drawn by hand.
+
+use crate::drawing::{map, reading};
+use agent::{InformationGain, Situation, Stay, Strategy};
+use geometry::{Cell, CellReading, GridFrame};
+use mapper::{Mapper, MapperSettings};
+use nalgebra::{Isometry2, Point2};
+use proptest::prelude::*;
+
+/// The weights for a robot that takes these times to get to the cells.
+fn weigh(strategy: &mut InformationGain, mapper: &Mapper, travel: &[f64]) -> Vec<f64> {
+    let mut weights = vec![0.0; mapper.frame().len()];
+    let pose = Isometry2::identity();
+    let situation = Situation::new(mapper, &pose, Default::default()).with_travel(travel);
+    strategy.weigh(&situation, &mut weights);
+    weights
+}
+
+/// Two rooms, the right one seen for `right` looks, and a cell in each that changes every other look: it is
+/// seen `left` times in the left room, and `right` times in the right one.
+fn rooms(left: u32, right: u32) -> Mapper {
+    let (still, moved) = (["...#...", "...#...", "...#..."], ["...#...", ".#.#.#.", "...#..."]);
+    let cut = |rows: [&'static str; 3], is_left: bool, is_right: bool| -> Vec<String> {
+        let cell = |(x, letter): (usize, char)| {
+            let is_seen = if x <= 3 { x == 3 || is_left } else { is_right };
+            if is_seen { letter } else { ' ' }
+        };
+        rows.iter().map(|row| row.chars().enumerate().map(cell).collect()).collect()
+    };
+    let mut mapper = map(&[(0.0, &still)]);
+    for look in 1..=left.max(right) {
+        let rows = if look % 2 == 0 { still } else { moved };
+        let rows = cut(rows, look <= left, look <= right);
+        let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
+        mapper.update(&reading(f64::from(look), &rows)).unwrap();
+    }
+    mapper
+}
+
+fn best(weights: &[f64], columns: std::ops::Range<usize>) -> f64 {
+    let inside = |index: &usize| columns.contains(&(index % 7));
+    (0..weights.len()).filter(inside).map(|index| weights[index]).fold(0.0, f64::max)
+}
+
+#[test]
+fn what_changes_and_is_little_known_is_preferred_to_what_is_well_known() {
+    for (left, right, is_left) in [(4, 80, true), (80, 4, false)] {
+        let weights = weigh(&mut InformationGain::new(2.0), &rooms(left, right), &[10.0; 21]);
+        let (in_left, in_right) = (best(&weights, 0..3), best(&weights, 4..7));
+        assert_eq!(in_left > 1.2 * in_right, is_left, "{in_left} and {in_right}");
+        assert_eq!(in_right > 1.2 * in_left, !is_left, "{in_left} and {in_right}");
+    }
+}
+
+#[test]
+fn what_was_watched_for_long_and_never_changed_is_worth_next_to_nothing() {
+    let best_after = |time: f64| {
+        let mapper = map(&[(0.0, &["....", "....", "...."]), (time, &["....", "....", "...."])]);
+        weigh(&mut InformationGain::new(3.0), &mapper, &[1.0; 12]).into_iter().fold(0.0, f64::max)
+    };
+    let worth: Vec<f64> = [1.0, 30.0, 300.0, 3000.0].map(best_after).into();
+    assert!(worth.is_sorted_by(|one, next| one > next), "{worth:?}");
+    assert!(worth[3] < worth[0] / 100.0, "{worth:?}");
+}
+
+#[test]
+fn the_same_view_is_worth_less_the_farther_it_is_and_nothing_where_no_way_leads() {
+    let mapper = map(&[(0.0, &["....."])]);
+    let weights = weigh(&mut InformationGain::new(9.0), &mapper, &[0.0, 5.0, 20.0, f64::INFINITY, 80.0]);
+    assert!(weights[0] > weights[1] && weights[1] > weights[2] && weights[2] > weights[4]);
+    assert!(weights[4] > 0.0);
+    assert_eq!(weights[3], 0.0);
+}
+
+#[test]
+fn the_robot_does_not_stand_where_things_pass() {
+    let mapper = map(&[(0.0, &["....."]), (1.0, &["..#.."]), (2.0, &["....."])]);
+    let weights = weigh(&mut InformationGain::new(9.0), &mapper, &[1.0; 5]);
+    assert_eq!(weights[2], 0.0);
+    assert!(weights[0] > weights[1], "beside the way it might be in it");
+}
+
+#[test]
+fn a_door_that_was_closed_when_last_seen_is_tried_again() {
+    let mapper = map(&[(0.0, &["....."]), (1.0, &["..#.."]), (2.0, &["..   "])]);
+    let travel = [0.0, 1.0, f64::INFINITY, f64::INFINITY, f64::INFINITY];
+    let weights = weigh(&mut InformationGain::new(1.0), &mapper, &travel);
+    assert!(weights[3] > 0.0 && weights[4] > 0.0, "{weights:?}");
+    let in_view = map(&[(0.0, &["....."]), (1.0, &["..#.."])]);
+    let weights = weigh(&mut InformationGain::new(1.0), &in_view, &travel);
+    assert_eq!(weights[3..], [0.0, 0.0]);
+}
+
+#[test]
+fn what_a_visit_did_not_show_is_worth_less_from_there() {
+    // The last cell is never seen, whatever the map says.
+    let mut mapper = map(&[(0.0, &["..... "])]);
+    let mut strategy = InformationGain::new(9.0);
+    let travel = [0.0, 3.0, 3.0, 3.0, 3.0, 3.0];
+    let first = weigh(&mut strategy, &mapper, &travel)[0];
+    for visit in 0..100 {
+        let Stay::Watch(watch) = strategy.stay(Cell::new(0, 0)) else { panic!("it watches") };
+        assert!((0.0..=5.0).contains(&watch));
+        let pose = geometry::pose(0.5, 0.5, 0.0);
+        mapper.update(&CellReading { pose, ..reading(f64::from(visit), &[".     "]) }).unwrap();
+        let mut weights = vec![0.0; 6];
+        let situation = Situation::new(&mapper, &pose, Default::default()).with_travel(&travel);
+        strategy.weigh(&situation, &mut weights);
+    }
+    let last = weigh(&mut strategy, &mapper, &travel)[0];
+    assert!(last < 0.1 * first, "{last} after {first}");
+}
+
+#[test]
+fn a_fine_grid_is_weighed_too() {
+    let frame = GridFrame::new(Point2::origin(), 0.05, 240, 120).unwrap();
+    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+    for look in 0..20 {
+        // A box of half a metre that comes and goes in the left half.
+        let is_blocked =
+            |cell: Cell| look % 2 == 1 && (40..50).contains(&cell.x) && (40..50).contains(&cell.y);
+        let cells = (0..frame.len()).map(|index| frame.cell(index)).map(|cell| (cell, is_blocked(cell)));
+        let (time, pose) = (f64::from(look), Isometry2::identity());
+        mapper.update(&CellReading { time, pose, cells: cells.collect() }).unwrap();
+    }
+    let travel = vec![1.0; frame.len()];
+    let weights = weigh(&mut InformationGain::new(3.0), &mapper, &travel);
+    let best = (0..weights.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap();
+    assert!((frame.cell(best).x - 45).abs() <= 60, "the box is in view from {:?}", frame.cell(best));
+    assert!(weights.iter().all(|weight| weight.is_finite() && *weight >= 0.0));
+}
+
+proptest! {
+    #[test]
+    fn weights_are_finite_whatever_was_seen(
+        looks in prop::collection::vec(prop::collection::vec(0..3u8, 24), 1..12),
+        steps in prop::collection::vec(prop_oneof![Just(0.0), 0.1..100.0, Just(1e300)], 12),
+        travel in prop::collection::vec(prop_oneof![3 => 0.0..50.0, 1 => Just(f64::INFINITY)], 24),
+    ) {
+        let mut mapper = crate::drawing::empty(6, 4);
+        let mut strategy = InformationGain::new(3.0);
+        let mut time = 0.0;
+        for (look, step) in looks.iter().zip(steps) {
+            time += step;
+            let seen = (0..24).filter(|&index| look[index] > 0);
+            let cells = seen.map(|index| (mapper.frame().cell(index), look[index] == 2)).collect();
+            mapper.update(&CellReading { time, pose: Isometry2::identity(), cells }).unwrap();
+            let weights = weigh(&mut strategy, &mapper, &travel);
+            prop_assert!(weights.iter().all(|weight| weight.is_finite() && *weight >= 0.0), "{:?}", weights);
+            let goal = (0..24).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap();
+            prop_assert!(matches!(strategy.stay(mapper.frame().cell(goal)), Stay::Watch(0.0..=5.0)));
+        }
+    }
+}
