@@ -1,6 +1,8 @@
 //! Every choice on the command line runs; equal choices give equal runs, others do not.
 
 use crate::run::Run;
+use agent::StrategyChoice;
+use mapper::Estimator;
 use std::collections::BTreeSet;
 
 fn hash(arguments: &str) -> String {
@@ -9,26 +11,33 @@ fn hash(arguments: &str) -> String {
 
 #[test]
 fn every_strategy_explores_in_its_own_way() {
+    let papers = ["poisson", "recency"];
+    let all = ["frontier", "information-gain", "optimal-revisiting", "poisson", "recency"];
     let mut hashes = BTreeSet::new();
-    for (strategy, alone) in
-        [("curious", false), ("coin", false), ("recency", true), ("poisson", true), ("random", true)]
-    {
+    for strategy in StrategyChoice::ALL.map(StrategyChoice::name) {
         let summary = Run::quiet(&format!("--duration 3m --strategy {strategy}")).summary();
         assert_eq!(summary.text("/strategy"), strategy);
         let shares = summary.at("/strategy_share").as_object().unwrap();
         let names: Vec<&str> = shares.keys().map(String::as_str).collect();
-        assert_eq!(names, if alone { vec![strategy] } else { vec!["poisson", "recency"] });
+        let expected = match strategy {
+            "curious" | "coin" => &papers[..],
+            "progress" => &all,
+            alone => &[alone],
+        };
+        assert_eq!(names, expected);
         assert!(summary.number("/coverage") > 0.5, "{strategy} saw {}", summary.number("/coverage"));
         assert!(summary.number("/goals/reached") >= 3.0, "{strategy}");
+        assert_eq!(summary.number("/collisions"), 0.0, "{strategy}");
+        assert_eq!(summary.number("/false_change_events"), 0.0, "{strategy}");
         hashes.insert(summary.hash().to_owned());
     }
-    assert_eq!(hashes.len(), 5, "two strategies did the same");
+    assert_eq!(hashes.len(), StrategyChoice::ALL.len(), "two strategies did the same");
 }
 
 #[test]
 fn every_estimator_estimates_in_its_own_way() {
     let mut errors = BTreeSet::new();
-    for estimator in ["paper", "paper-all", "two-state"] {
+    for estimator in Estimator::ALL.map(Estimator::name) {
         // A tour does not depend on rates, so that all of them see the same.
         let arguments = format!("--duration 8m --drive tour --strategy curious --estimator {estimator}");
         let summary = Run::quiet(&arguments).summary();
@@ -37,7 +46,7 @@ fn every_estimator_estimates_in_its_own_way() {
         assert!(summary.number("/rate_auc") > 0.9, "{estimator}: {}", summary.number("/rate_auc"));
         errors.insert(summary.at("/log_error").to_string());
     }
-    assert_eq!(errors.len(), 3, "{errors:?}");
+    assert_eq!(errors.len(), Estimator::ALL.len(), "{errors:?}");
 }
 
 #[test]
