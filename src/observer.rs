@@ -175,16 +175,22 @@ impl Observer {
                 sight: robot.sweep.map(|sweep| Sight::Laser(&sweep.reading)),
             })
             .collect();
-        let present: Vec<&str> = world.obstacles().map(|obstacle| obstacle.name).collect();
+        // Those that are there, where they are now; the others, where they were or will be.
+        let mut outlines = self.outlines.clone();
+        let mut present = vec![false; outlines.len()];
+        for obstacle in world.obstacles() {
+            outlines[obstacle.index] = obstacle.corners.to_vec();
+            present[obstacle.index] = true;
+        }
         let obstacles: Vec<ObstacleView> = world
             .spec()
             .obstacles()
             .iter()
-            .zip(&self.outlines)
-            .map(|(obstacle, outline)| ObstacleView {
+            .zip(outlines.iter().zip(present))
+            .map(|(obstacle, (outline, is_present))| ObstacleView {
                 name: &obstacle.name,
                 outline,
-                is_present: present.contains(&obstacle.name.as_str()),
+                is_present,
             })
             .collect();
         let strategies: Vec<StrategyView> =

@@ -1,9 +1,9 @@
-//! Rigid bodies and contacts: the only file that knows rapier.
+//! Rigid bodies and contacts: the only folder that knows rapier.
 
 use super::report::Body;
 use super::shape::Rectangle;
 use super::snapshot::{Played, Tape, Torn};
-use super::spec::RobotSpec;
+use super::spec::{PushedSpec, RobotSpec};
 use geometry::{Twist, heading_rad, rotation};
 #[cfg(test)]
 use nalgebra::Point2;
@@ -14,10 +14,21 @@ use rapier2d::prelude as rapier;
 /// less.
 const PART_M: f32 = 0.001;
 
+/// Contacts of obstacles that move are foreseen over this way, m: the most that their surface goes
+/// in a step, and what drives against it.
+const FORESEEN_M: f32 = 0.25;
+/// Standard gravity: what presses boxes onto the floor.
+const GRAVITY_MPS2: f64 = 9.806_65;
+/// How hard friction holds, as long as its force is enough, 1/s: what is left of a speed after a
+/// step is next to nothing.
+const RUB_PER_S: f32 = 1e5;
+
 /// All bodies: walls and obstacles that stand, robots that drive.
 pub(super) struct Bodies {
     world: rapier::PhysicsWorld,
     robots: Vec<Robot>,
+    /// What boxes rub on.
+    floor: Option<rapier::RigidBodyHandle>,
 }
 
 #[derive(Clone)]
@@ -26,6 +37,14 @@ struct Robot {
     collider: rapier::ColliderHandle,
     /// The heading of the wheels half way through the last step.
     forward: Vector2<f64>,
+}
+
+/// The body of an obstacle that moves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mover {
+    body: rapier::RigidBodyHandle,
+    /// What makes a box rub on the floor, with the force that it takes to move it, N.
+    rubs: Option<(rapier::ImpulseJointHandle, f32)>,
 }
 
 /// An obstacle's body, to take it away again.
@@ -54,9 +73,10 @@ impl Clone for Bodies {
             narrow_phase: self.world.narrow_phase.clone(),
             bodies: self.world.bodies.clone(),
             colliders: self.world.colliders.clone(),
+            impulse_joints: self.world.impulse_joints.clone(),
             ..Default::default()
         };
-        Self { world, robots: self.robots.clone() }
+        Self { world, robots: self.robots.clone(), floor: self.floor }
     }
 }
 
@@ -67,7 +87,7 @@ impl Bodies {
         world.integration_parameters.dt = step_s as f32;
         // Distances of contacts are read at every step, so they must not be stale.
         world.integration_parameters.contact_recycling = false;
-        Self { world, robots: Vec::new() }
+        Self { world, robots: Vec::new(), floor: None }
     }
 
     /// Writes or reads all that moves and touches. The same bodies must have been added before.
@@ -89,16 +109,87 @@ impl Bodies {
 
     /// Adds a body that stands still.
     pub(super) fn add_box(&mut self, body: Body, shape: &Rectangle) -> Handle {
-        let collider = rapier::ColliderBuilder::cuboid(shape.half_m.x as f32, shape.half_m.y as f32)
-            .position(to_rapier(&shape.pose))
-            .friction(0.0)
-            .user_data(pack(body));
+        let collider = cuboid(body, shape).position(to_rapier(&shape.pose));
         Handle(self.world.insert_collider(collider, None))
     }
 
     /// Takes such a body away.
     pub(super) fn remove_box(&mut self, handle: Handle) {
         self.world.remove_collider(handle.0);
+    }
+
+    /// Adds a body that goes where it is told to, whatever is in its way.
+    pub(super) fn add_driven(&mut self, body: Body, shape: &Rectangle) -> Mover {
+        let collider = cuboid(body, shape);
+        let body = rapier::RigidBodyBuilder::kinematic_position_based()
+            .pose(to_rapier(&shape.pose))
+            .can_sleep(false)
+            .soft_ccd_prediction(FORESEEN_M);
+        Mover { body: self.world.insert(body, collider).0, rubs: None }
+    }
+
+    /// Tells such a body where to be after the next step.
+    pub(super) fn drive(&mut self, mover: &Mover, to: &Isometry2<f64>) {
+        self.world.bodies[mover.body].set_next_kinematic_position(to_rapier(to));
+    }
+
+    /// Adds a body that is pushed, and rubs on the floor.
+    pub(super) fn add_pushed(&mut self, body: Body, shape: &Rectangle, pushed: &PushedSpec) -> Mover {
+        let collider = cuboid(body, shape).mass(pushed.mass_kg as f32);
+        let body =
+            rapier::RigidBodyBuilder::dynamic().pose(to_rapier(&shape.pose)).soft_ccd_prediction(FORESEEN_M);
+        let body = self.world.insert(body, collider).0;
+        let mut mover = Mover { body, rubs: None };
+        let weight_n = pushed.friction * pushed.mass_kg * GRAVITY_MPS2;
+        if weight_n > 0.0 {
+            let world = &mut self.world;
+            let floor =
+                *self.floor.get_or_insert_with(|| world.insert_body(rapier::RigidBodyBuilder::fixed()));
+            // The mean distance of a rectangle's points from its middle is 0.87 (long) to 0.94 (square)
+            // times the root of their mean square.
+            let lever_m = 0.9 * (shape.half_m.norm_squared() / 3.0).sqrt();
+            let mut rub = rapier::GenericJointBuilder::new(rapier::JointAxesMask::empty());
+            for (axis, force) in [
+                (rapier::JointAxis::LinX, weight_n),
+                (rapier::JointAxis::LinY, weight_n),
+                (rapier::JointAxis::AngX, weight_n * lever_m),
+            ] {
+                rub = rub.motor_velocity(axis, 0.0, RUB_PER_S).motor_max_force(axis, force as f32);
+            }
+            let joint = world.insert_impulse_joint(floor, body, rub.build());
+            mover.rubs = Some((joint, weight_n as f32));
+        }
+        mover
+    }
+
+    /// Where the last step brought a body that is pushed.
+    pub(super) fn pushed_pose(&mut self, mover: &Mover) -> Isometry2<f64> {
+        let body = &self.world.bodies[mover.body];
+        let velocity = body.linvel();
+        let at = pose_of(body);
+        if let Some((joint, weight_n)) = mover.rubs
+            && let Some(joint) = self.world.impulse_joints.get_mut(joint, false)
+        {
+            // In motion the force of the weight acts along it, and not along each axis; at rest it
+            // is not known where it will be needed.
+            let speed_mps = velocity.length();
+            let share =
+                if speed_mps > 1e-3 { velocity.abs() / speed_mps } else { rapier::Vector::splat(1.0) };
+            joint.data.set_motor_max_force(rapier::JointAxis::LinX, weight_n * share.x);
+            joint.data.set_motor_max_force(rapier::JointAxis::LinY, weight_n * share.y);
+        }
+        at
+    }
+
+    /// The energy of motion of everything that is pushed or drives, J.
+    #[cfg(test)]
+    pub(super) fn kinetic_j(&self) -> f64 {
+        let energy = |body: &rapier::RigidBody| {
+            let inertia = body.mass_properties().effective_angular_inertia();
+            let spin = body.angvel() * body.angvel() * inertia;
+            f64::from(body.mass() * body.linvel().length_squared() + spin) / 2.0
+        };
+        self.world.bodies.iter().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| energy(body)).sum()
     }
 
     /// Adds a robot; robots are numbered in the order in which they are added.
@@ -139,9 +230,7 @@ impl Bodies {
 
     /// Where a robot is.
     pub(super) fn pose(&self, robot: usize) -> Isometry2<f64> {
-        let pose = self.world.bodies[self.robots[robot].body].position();
-        let at = Translation2::new(f64::from(pose.translation.x), f64::from(pose.translation.y));
-        Isometry2::from_parts(at, rotation(f64::from(pose.rotation.angle())))
+        pose_of(&self.world.bodies[self.robots[robot].body])
     }
 
     /// The velocity that the contacts left a robot in the last step.
@@ -173,6 +262,12 @@ impl Bodies {
         })
     }
 
+    /// Finds out again where everything is, for rays.
+    #[cfg(test)]
+    pub(super) fn find_again(&mut self) {
+        self.world.detect_collisions(&(), &());
+    }
+
     /// The nearest body that a ray meets, m; the oracle for our own rays.
     #[cfg(test)]
     pub(super) fn ray_m(
@@ -194,6 +289,19 @@ impl Bodies {
         let ray = rapier::Ray::new(origin, rapier::Vector::new(along.x as f32, along.y as f32));
         query.cast_ray(&ray, max_m as f32, true).map(|(_, range_m)| f64::from(range_m))
     }
+}
+
+/// A rectangle's collider, without a place. All sides are smooth.
+fn cuboid(body: Body, shape: &Rectangle) -> rapier::ColliderBuilder {
+    rapier::ColliderBuilder::cuboid(shape.half_m.x as f32, shape.half_m.y as f32)
+        .friction(0.0)
+        .user_data(pack(body))
+}
+
+fn pose_of(body: &rapier::RigidBody) -> Isometry2<f64> {
+    let pose = body.position();
+    let at = Translation2::new(f64::from(pose.translation.x), f64::from(pose.translation.y));
+    Isometry2::from_parts(at, rotation(f64::from(pose.rotation.angle())))
 }
 
 fn to_rapier(pose: &Isometry2<f64>) -> rapier::Pose {

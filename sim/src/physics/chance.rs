@@ -13,9 +13,11 @@ pub(super) enum Purpose {
     Odometry = 1,
     /// What a robot does by itself.
     Behaviour = 2,
+    /// When a door opens and closes.
+    Door = 3,
 }
 
-/// The stream of a robot (by its place in the world) for one purpose.
+/// The stream of a robot or door (by its place in the world) for one purpose.
 fn stream(seed: u64, purpose: Purpose, robot: usize) -> ChaCha8Rng {
     let mut stream = ChaCha8Rng::seed_from_u64(seed);
     stream.set_stream((purpose as u64) << 32 | robot as u64);
@@ -36,7 +38,7 @@ pub(super) struct Uniform {
 }
 
 impl Uniform {
-    /// The stream of a robot (by its place in the world) for one purpose.
+    /// The stream of a robot or door (by its place in the world) for one purpose.
     pub(super) fn new(seed: u64, purpose: Purpose, robot: usize) -> Self {
         Self { stream: stream(seed, purpose, robot) }
     }

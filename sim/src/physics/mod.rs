@@ -4,9 +4,12 @@
 //! [`WorldSpec`] and [`PhysicsWorld`] are the same for a place in which one robot is driven, with the
 //! [`Truth`] about every cell, for metrics. Bodies and contacts are rapier's; rays are our own, exact
 //! to the geometry.
+//!
+#![doc = include_str!("../../worlds/keys.md")]
 
 mod bodies;
 mod chance;
+mod convex;
 mod drive;
 mod fleet;
 mod laser;
@@ -29,8 +32,9 @@ pub use report::{Body, Contact, ObstacleEvent, ObstacleView, RobotView, Sweep};
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
-    Behaviour, CircleSpec, DriveLimits, FleetSpec, LaserSpec, ObstacleSpec, OdometryError, PatrolSpec,
-    Repeat, RobotSpec, WanderSpec, WaypointsSpec, WorldSpec,
+    Behaviour, CircleSpec, DoorSpec, DriveLimits, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec,
+    OdometryError, Opening, PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, WanderSpec, WaypointsSpec,
+    WorldSpec,
 };
 pub use truth::{TrueChange, TrueState, Truth};
 pub use world::PhysicsWorld;

@@ -82,9 +82,11 @@ pub struct Sweep {
     pub laser_pose: Isometry2<f64>,
 }
 
-/// An obstacle that stands now, to look at.
+/// An obstacle that is there now, to look at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObstacleView<'a> {
+    /// Its place in the world file.
+    pub index: usize,
     /// Its name.
     pub name: &'a str,
     /// Its corners, counter-clockwise, m.

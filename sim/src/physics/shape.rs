@@ -98,6 +98,11 @@ impl Rectangle {
         })
     }
 
+    /// The same rectangle somewhere else (m).
+    pub(crate) fn moved(&self, by_m: Vector2<f64>) -> Self {
+        Self { pose: Translation2::from(by_m) * self.pose, half_m: self.half_m }
+    }
+
     /// The same rectangle after the world has turned about `middle` (m).
     pub(crate) fn turned(&self, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Self {
         Self { pose: turned(&self.pose, turn, middle), half_m: self.half_m }

@@ -26,7 +26,7 @@ impl PhysicsWorld {
         let boxes = fleet.standing_boxes();
         for (index, obstacle) in spec.obstacles().iter().enumerate().filter(|(i, _)| fleet.is_standing(*i)) {
             let mover = obstacle.is_mover().then_some(Body::Obstacle(index));
-            truth.change_box(&obstacle.shape, &boxes, mover);
+            truth.change_box(&obstacle.start(), &boxes, mover);
         }
         for index in others(spec) {
             let robot = fleet.robot(index);
@@ -76,7 +76,7 @@ impl PhysicsWorld {
         self.fleet.walls()
     }
 
-    /// The obstacles that stand now.
+    /// The obstacles that are there now, where they are now.
     pub fn obstacles(&self) -> impl Iterator<Item = ObstacleView<'_>> {
         self.fleet.obstacles()
     }
@@ -90,6 +90,14 @@ impl PhysicsWorld {
         for index in others(&self.spec) {
             let robot = self.fleet.robot(index);
             self.truth.move_disc(Body::Robot(index), Some(robot.was_at), robot.at(), robot.spec.radius_m);
+        }
+        if self.fleet.moved().len() > 0 {
+            let boxes = self.fleet.standing_boxes();
+            for (index, before, after) in self.fleet.moved() {
+                for shape in [before, after] {
+                    self.truth.change_box(&shape, &boxes, Some(Body::Obstacle(index)));
+                }
+            }
         }
         let own = self.fleet.contacts().iter().filter(|contact| contact.robot == self.spec.driven);
         self.contacts.extend(own);

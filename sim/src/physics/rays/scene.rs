@@ -1,5 +1,6 @@
 use super::discs::Discs;
 use super::fan::{Beams, Hits};
+use super::hulls::{Hulls, Seen};
 use super::outline::{Edge, outline};
 use super::sight::{Reach, Sight};
 use crate::physics::shape::Rectangle;
@@ -22,14 +23,15 @@ pub(in crate::physics) struct Scratch {
     /// What was seen: one over the range for each beam, 1/m; 0 where there is no hit.
     pub(in crate::physics) inverse: Vec<f64>,
     discs: Discs,
+    seen: Seen,
 }
 
 /// Everything that a laser can see.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Scene {
     walls: Arc<Walls>,
-    /// The sides of the boxes that stand now.
-    boxes: Vec<[Edge; 4]>,
+    /// Whatever else comes, goes or moves.
+    hulls: Hulls,
     /// The robots, in their order.
     discs: Vec<Disc>,
     /// The robots by the cell in which their middles are; last those beyond the borders.
@@ -48,12 +50,13 @@ struct Walls {
 }
 
 impl Scene {
-    /// The walls between two corners (m), for lasers that see `range_m` far and robots no larger
-    /// than `radius_m`.
+    /// The walls between two corners (m), for lasers that see `range_m` far, with round robots, and
+    /// room for `hulls` convex bodies that are not there yet.
     pub(in crate::physics) fn new(
         (low, high): (Point2<f64>, Point2<f64>),
         walls: &[Rectangle],
         discs: Vec<Disc>,
+        hulls: usize,
         range_m: f64,
     ) -> Self {
         let edges = outline(walls);
@@ -63,16 +66,22 @@ impl Scene {
         Self {
             starts: vec![0; sight.len() + 2],
             walls: Arc::new(Walls { solids, edges, sight }),
-            boxes: Vec::new(),
+            hulls: Hulls::new(hulls),
             discs,
             sorted: Vec::new(),
             is_sorted: false,
         }
     }
 
-    /// Shows the boxes that stand now.
-    pub(in crate::physics) fn set_boxes<'a>(&mut self, boxes: impl Iterator<Item = &'a Rectangle>) {
-        self.boxes = boxes.map(Edge::of_box).collect();
+    /// Puts a convex body with these corners (counter-clockwise, m) into a place of its own; no
+    /// corners take it away. Lasers of `robot`, whose body it is, never see it.
+    pub(in crate::physics) fn set_hull(
+        &mut self,
+        place: usize,
+        robot: Option<usize>,
+        corners: &[Point2<f64>],
+    ) {
+        self.hulls.set(place, robot, corners);
     }
 
     /// A robot is somewhere else (m).
@@ -81,8 +90,9 @@ impl Scene {
         self.is_sorted = false;
     }
 
-    /// Sorts the robots into cells, if any has moved; to be called before [`Scene::look`].
+    /// Sorts what moves into cells, if any has moved; to be called before [`Scene::look`].
     pub(in crate::physics) fn sort(&mut self) {
+        self.hulls.sort(&self.walls.sight);
         if self.is_sorted {
             return;
         }
@@ -117,28 +127,34 @@ impl Scene {
     ) {
         debug_assert!(self.is_sorted);
         let Walls { solids, edges, sight } = &*self.walls;
-        let Scratch { inverse, discs } = scratch;
+        let Scratch { inverse, discs, seen } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);
         discs.clear(self.sorted.len());
         let at = Point2::from(laser.translation.vector);
         let contains = |sides: &[Edge; 4]| sides.iter().all(|side| side.gap_m(&at) <= 0.0);
-        let mut is_inside = self.boxes.iter().any(contains);
-        match sight.cell_at(&at) {
+        let own_cell = sight.cell_at(&at);
+        let has_hulls = !self.hulls.is_empty();
+        let mut is_inside = has_hulls && self.hulls.contains(own_cell, own, &at);
+        self.hulls.begin(seen);
+        match own_cell {
             Some(cell) => {
                 is_inside |= sight.boxes(cell).iter().any(|&i| contains(&solids[i as usize]));
                 sight.edges(cell).iter().for_each(|&i| hits.add_edge(&edges[i as usize]));
                 let cells = sight.cells(cell).iter().map(|&cell| cell as usize);
-                for seen in cells.chain([sight.len()]) {
-                    self.note_robots(discs, &mut hits, self.starts[seen]..self.starts[seen + 1], own);
+                for cell in cells.chain([sight.len()]) {
+                    self.note_robots(discs, &mut hits, self.starts[cell]..self.starts[cell + 1], own);
+                    if has_hulls {
+                        self.hulls.add_cell(cell, own, seen, &mut hits);
+                    }
                 }
             }
             None => {
                 is_inside |= solids.iter().any(contains);
                 edges.iter().for_each(|edge| hits.add_edge(edge));
                 self.note_robots(discs, &mut hits, 0..self.sorted.len() as u32, own);
+                self.hulls.add_all(own, &mut hits);
             }
         }
-        self.boxes.iter().flatten().for_each(|edge| hits.add_edge(edge));
         // Last, since most are hidden by what has been added before.
         discs.add_to(&mut hits);
         if is_inside {

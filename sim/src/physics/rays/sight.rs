@@ -67,7 +67,8 @@ impl Sight {
         };
         let mut boxes_in = vec![Vec::new(); sight.len()];
         for (i, shape) in boxes.iter().enumerate() {
-            for cell in sight.around(shape) {
+            let (low, high) = shape.bounds();
+            for cell in sight.around(&low, &high) {
                 boxes_in[cell].push(i as u32);
             }
         }
@@ -121,9 +122,18 @@ impl Sight {
         self.boxes.get(cell)
     }
 
-    /// The cells that a box reaches into, and some beside it.
-    fn around(&self, shape: &Rectangle) -> impl Iterator<Item = usize> + use<> {
-        let (low, high) = shape.bounds();
+    /// Whether the upright box between two corners (m) is not wholly within the borders.
+    pub(super) fn reaches_out(&self, low: &Point2<f64>, high: &Point2<f64>) -> bool {
+        let end = Vector2::new(self.columns as f64, self.rows as f64) * self.cell_m;
+        (low - self.low).min() < MARGIN_M || (self.low + end - high).min() < MARGIN_M
+    }
+
+    /// The cells that the upright box between two corners (m) reaches into, and some beside it.
+    pub(super) fn around(
+        &self,
+        low: &Point2<f64>,
+        high: &Point2<f64>,
+    ) -> impl Iterator<Item = usize> + use<> {
         let margin = Vector2::repeat(2.0 * MARGIN_M);
         let (first, last) =
             ((low - margin - self.low) / self.cell_m, (high + margin - self.low) / self.cell_m);

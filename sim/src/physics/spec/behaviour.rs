@@ -195,7 +195,8 @@ impl Context<'_> {
                 &help,
             ));
         }
-        let is_left = self.choice("direction", &file.direction, &[("left", true), ("right", false)])?;
+        let is_left =
+            self.table().choice("direction", &file.direction, &[("left", true), ("right", false)])?;
         let turn_radps = speed_mps / radius_m * if is_left { 1.0 } else { -1.0 };
         Ok(Behaviour::Circle(CircleSpec { speed_mps, turn_radps }))
     }
@@ -212,7 +213,7 @@ impl Context<'_> {
         let speed_mps = self.speed_mps(file)?;
         let repeats =
             [("loop", Repeat::Loop), ("back_and_forth", Repeat::BackAndForth), ("once", Repeat::Once)];
-        let repeat = self.choice("repeat", &file.repeat, &repeats)?;
+        let repeat = self.table().choice("repeat", &file.repeat, &repeats)?;
         let mut points: Vec<(Point2<f64>, Range<usize>)> = Vec::new();
         for point in list.get_ref() {
             points.push((self.table().point("points_m", point, self.size)?, point.span()));
@@ -243,23 +244,6 @@ impl Context<'_> {
         let clearance_m = self.clearance_m(file)?;
         let points = points.into_iter().map(|(point, _)| point).collect();
         Ok(Behaviour::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m }))
-    }
-
-    /// One of some words; the first if it is left out.
-    pub(super) fn choice<T: Copy>(
-        &self,
-        key: &str,
-        value: &Option<Spanned<String>>,
-        choices: &[(&str, T)],
-    ) -> Result<T, WorldError> {
-        let Some(value) = value else { return Ok(choices[0].1) };
-        let found = choices.iter().find(|(word, _)| word == value.get_ref());
-        found.map(|(_, choice)| *choice).ok_or_else(|| {
-            let what = format!("`{}.{key}` is `{}`", Self::TABLE, value.get_ref());
-            let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
-            let help = format!("it must be {}", words.join(" or "));
-            self.source.error(&what, (value.span(), "not known"), &[], &help)
-        })
     }
 }
 

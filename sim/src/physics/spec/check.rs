@@ -1,9 +1,10 @@
 //! From the file as written to a world that makes sense.
 
-use super::file::{MapFile, Number, ObstacleFile, Pair, RobotFile, WallFile, WorldFile};
+use super::file::{MapFile, ObstacleFile, Pair, RobotFile, WallFile, WorldFile};
 use super::numbers::Table;
+use super::obstacle::{Motion, ObstacleSpec, obstacle};
 use super::robot::robot;
-use super::{Behaviour, FleetSpec, ObstacleSpec, RobotSpec, floor_plan};
+use super::{Behaviour, FleetSpec, RobotSpec, floor_plan};
 use crate::error::{Source, WorldError};
 use crate::files::Files;
 use crate::kind::Kind;
@@ -16,7 +17,7 @@ use std::ops::Range;
 /// More cells than this are refused before anything is allocated for them.
 const MAX_CELLS: f64 = 4e6;
 /// The latest time that a file can name, s: some thirty years.
-const MAX_TIME_S: f64 = 1e9;
+pub(super) const MAX_TIME_S: f64 = 1e9;
 
 /// Something solid, and where the file speaks of it.
 pub(super) struct Solid {
@@ -49,18 +50,24 @@ pub(super) fn check(
     }
     let walls = solids.iter().map(|wall| wall.shape).collect::<Vec<_>>();
     let mut obstacles = Vec::new();
+    // What stands at the start but may be gone when a robot comes by.
+    let mut movers = Vec::new();
     for file in &file.obstacles {
-        let obstacle = obstacle(source, file, &size, &solids[..walls.len()])?;
-        if obstacle.appears_s.is_none() {
-            solids.push(Solid { shape: obstacle.shape, span: file.span() });
+        let obstacle = obstacle(source, file.get_ref(), &size, &solids[..walls.len()], step_s)?;
+        let solid = |shape| Solid { shape, span: file.span() };
+        match &obstacle.motion {
+            Motion::Fixed if obstacle.appears_s.is_some() => {}
+            Motion::Fixed => solids.push(solid(obstacle.shape)),
+            Motion::Pushed(_) | Motion::Path(_) | Motion::Door(_) => movers.push(solid(obstacle.start())),
         }
         obstacles.push(obstacle);
     }
+    boxes_apart(source, &file.obstacles, &obstacles)?;
     source.unique("obstacle", file.obstacles.iter().map(|obstacle| &obstacle.get_ref().name))?;
     source.unique("robot", file.robots.iter().map(|robot| &robot.get_ref().name))?;
     let mut robots = Vec::new();
     for file in &file.robots {
-        robots.push(robot(source, file.get_ref(), &size, step_s, &solids)?);
+        robots.push(robot(source, file.get_ref(), &size, step_s, &solids, &movers)?);
     }
     apart(source, &file.robots, &robots)?;
 
@@ -140,7 +147,12 @@ fn wall(source: &Source<'_>, file: &Spanned<WallFile>, size: &Point2<f64>) -> Re
 }
 
 /// The rectangle between two corners.
-fn upright(table: &Table<'_>, min: &Pair, max: &Pair, size: &Point2<f64>) -> Result<Rectangle, WorldError> {
+pub(super) fn upright(
+    table: &Table<'_>,
+    min: &Pair,
+    max: &Pair,
+    size: &Point2<f64>,
+) -> Result<Rectangle, WorldError> {
     let (low, high) = (table.point("min_m", min, size)?, table.point("max_m", max, size)?);
     if (high - low).min() < 0.001 {
         let what = format!("`{}.max_m` is not above and to the right of `min_m`", table.path);
@@ -173,53 +185,25 @@ pub(super) fn inside(
     Err(source.error(what, (span, "this one"), &[], &help))
 }
 
-fn obstacle(
+/// Refuses boxes that can be pushed and start in something else: they would burst apart.
+fn boxes_apart(
     source: &Source<'_>,
-    file: &Spanned<ObstacleFile>,
-    size: &Point2<f64>,
-    walls: &[Solid],
-) -> Result<ObstacleSpec, WorldError> {
-    let table = Table { source, path: "obstacle" };
-    let span = file.get_ref().name.span();
-    let ObstacleFile { name, min_m, max_m, center_m, size_m, heading_deg, appears_s, disappears_s } =
-        file.get_ref();
-    let name = source.name("obstacle", name)?;
-    let shape = match (min_m, max_m, center_m, size_m) {
-        (Some(min), Some(max), None, None) if heading_deg.is_none() => upright(&table, min, max, size)?,
-        (None, None, Some(center), Some(sides)) => {
-            let center = table.point("center_m", center, size)?;
-            let sides = table.pair("size_m", sides, 0.001..=100.0)?;
-            let heading_deg = table.number_or("heading_deg", heading_deg, 0.0, -360.0..=360.0)?;
-            Rectangle::around(center, sides.coords, heading_deg.to_radians())
+    files: &[Spanned<ObstacleFile>],
+    obstacles: &[ObstacleSpec],
+) -> Result<(), WorldError> {
+    let is_pushed = |obstacle: &ObstacleSpec| matches!(obstacle.motion, Motion::Pushed(_));
+    for (b, second) in obstacles.iter().enumerate() {
+        for (a, first) in obstacles[..b].iter().enumerate() {
+            if (is_pushed(first) || is_pushed(second)) && first.start().overlaps(&second.start()) {
+                let what = format!("the obstacles `{}` and `{}` overlap", first.name, second.name);
+                let marks = [(files[a].get_ref().name.span(), "and this one")];
+                let mark = (files[b].get_ref().name.span(), "this one");
+                let help = "a box that can be pushed may touch other things, but not overlap them";
+                return Err(source.error(&what, mark, &marks, help));
+            }
         }
-        _ => {
-            let help = "give either `min_m` and `max_m`, or `center_m`, `size_m` and, if it is turned, `heading_deg`";
-            return Err(source.error("an obstacle needs one shape", (span, "this obstacle"), &[], help));
-        }
-    };
-    inside(source, &format!("the obstacle `{name}` reaches out of the map"), span.clone(), &shape, size)?;
-    if let Some(wall) = walls.iter().find(|wall| wall.shape.overlaps(&shape)) {
-        let what = format!("the obstacle `{name}` stands in a wall");
-        let marks = [(wall.span.clone(), "in this wall")];
-        return Err(source.error(
-            &what,
-            (span, "this obstacle"),
-            &marks,
-            "it may touch walls, but not overlap them",
-        ));
     }
-    let time = |key: &str, value: &Option<Number>| {
-        value.as_ref().map(|value| table.number(key, value, 0.001..=MAX_TIME_S)).transpose()
-    };
-    let (appears, disappears) = (time("appears_s", appears_s)?, time("disappears_s", disappears_s)?);
-    if let (Some(from), Some(to), Some(marked)) = (appears, disappears, disappears_s)
-        && to <= from
-    {
-        let what = format!("the obstacle `{name}` disappears before it appears");
-        let help = format!("`disappears_s` must be later than `appears_s`, which is {from}");
-        return Err(source.error(&what, (marked.span(), "too early"), &[], &help));
-    }
-    Ok(ObstacleSpec { name, shape, appears_s: appears, disappears_s: disappears })
+    Ok(())
 }
 
 /// Refuses robots that start in each other.
@@ -273,7 +257,7 @@ fn turn(spec: &mut FleetSpec, turn_rad: f64, middle: &Point2<f64>) {
         *wall = wall.turned(&by, middle);
     }
     for obstacle in &mut spec.obstacles {
-        obstacle.shape = obstacle.shape.turned(&by, middle);
+        obstacle.turn(&by, middle);
     }
     for robot in &mut spec.robots {
         robot.pose = turned(&robot.pose, &by, middle);

@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 use serde_spanned::Spanned;
+use std::ops::Range;
 
 pub(super) type Number = Spanned<f64>;
 pub(super) type Pair = Spanned<Two>;
@@ -81,6 +82,7 @@ pub(super) struct FloorPlanFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct ObstacleFile {
     pub(super) name: Spanned<String>,
+    pub(super) kind: Option<Spanned<String>>,
     pub(super) min_m: Option<Pair>,
     pub(super) max_m: Option<Pair>,
     pub(super) center_m: Option<Pair>,
@@ -88,6 +90,61 @@ pub(super) struct ObstacleFile {
     pub(super) heading_deg: Option<Number>,
     pub(super) appears_s: Option<Number>,
     pub(super) disappears_s: Option<Number>,
+    pub(super) mass_kg: Option<Number>,
+    pub(super) friction: Option<Number>,
+    pub(super) path_m: Option<Spanned<Vec<Pair>>>,
+    pub(super) dwell_s: Option<Number>,
+    pub(super) speed_mps: Option<Number>,
+    pub(super) times_s: Option<Spanned<Vec<Number>>>,
+    pub(super) repeat: Option<Spanned<String>>,
+    pub(super) from_m: Option<Pair>,
+    pub(super) to_m: Option<Pair>,
+    pub(super) thickness_m: Option<Number>,
+    pub(super) open_deg: Option<Number>,
+    pub(super) slide_m: Option<Number>,
+    pub(super) opening: Option<Spanned<String>>,
+    pub(super) closed_s: Option<Number>,
+    pub(super) open_s: Option<Number>,
+    pub(super) switches_s: Option<Spanned<Vec<Number>>>,
+    pub(super) move_s: Option<Number>,
+    pub(super) starts_open: Option<Spanned<bool>>,
+}
+
+impl ObstacleFile {
+    /// The keys that are there, besides the name and the kind, with their places.
+    pub(super) fn keys(&self) -> Vec<(&'static str, Range<usize>)> {
+        fn place<T>(key: &'static str, value: &Option<Spanned<T>>) -> Option<(&'static str, Range<usize>)> {
+            value.as_ref().map(|value| (key, value.span()))
+        }
+        let found = [
+            place("min_m", &self.min_m),
+            place("max_m", &self.max_m),
+            place("center_m", &self.center_m),
+            place("size_m", &self.size_m),
+            place("heading_deg", &self.heading_deg),
+            place("appears_s", &self.appears_s),
+            place("disappears_s", &self.disappears_s),
+            place("mass_kg", &self.mass_kg),
+            place("friction", &self.friction),
+            place("path_m", &self.path_m),
+            place("dwell_s", &self.dwell_s),
+            place("speed_mps", &self.speed_mps),
+            place("times_s", &self.times_s),
+            place("repeat", &self.repeat),
+            place("from_m", &self.from_m),
+            place("to_m", &self.to_m),
+            place("thickness_m", &self.thickness_m),
+            place("open_deg", &self.open_deg),
+            place("slide_m", &self.slide_m),
+            place("opening", &self.opening),
+            place("closed_s", &self.closed_s),
+            place("open_s", &self.open_s),
+            place("switches_s", &self.switches_s),
+            place("move_s", &self.move_s),
+            place("starts_open", &self.starts_open),
+        ];
+        found.into_iter().flatten().collect()
+    }
 }
 
 #[derive(Deserialize)]

@@ -1,90 +1,18 @@
-//! What a world file says, checked and in SI.
-//!
-//! # Keys
-//!
-//! Lengths are in metres, times in seconds, angles in degrees counter-clockwise from the x axis.
-//! An unknown key is an error. Ranges include their ends.
-//!
-//! | key | unit | default | range |
-//! |---|---|---|---|
-//! | `name` | | required | not empty |
-//! | `description` | | `""` | |
-//! | `map.size_m` | m | required | 0.1 to 1000 each; at most 4 million cells |
-//! | `map.cell_m` | m | required | 0.005 to 10; side of a cell of the truth grid |
-//! | `map.turn_deg` | ° | 0 | −360 to 360; turns everything about the middle of the map, and the grid grows to cover it |
-//! | `physics.step_s` | s | 0.05 | 0.001 to 0.1 |
-//! | `[[wall]]` `from_m`, `to_m`, `thickness_m` | m | required¹ | in the map; thickness 0.001 to 100. The wall ends at its points |
-//! | `[[wall]]` `min_m`, `max_m` | m | required¹ | in the map; lower left and upper right corner |
-//! | `[[floor_plan]]` `image` | | required² | a PNG or PGM picture beside the world file; dark pixels are walls, at most 20 000 pieces |
-//! | `floor_plan.pixel_m` | m | required with `image` | 0.001 to 10; side of a pixel |
-//! | `floor_plan.heading_deg` | ° | 0 | −360 to 360; turns it about its lower left corner |
-//! | `floor_plan.blocked_below` | | 0.5 | 0 to 1; darker pixels are walls (0 black, 1 white) |
-//! | `[[floor_plan]]` `map` | | required² | a `map.yaml` of ROS beside the world file, with its resolution, thresholds and yaw |
-//! | `floor_plan.corner_m` | m | `[0, 0]` | in the map; the lower left corner of the picture |
-//! | `obstacle.name` | | required | unique |
-//! | `[[obstacle]]` `min_m`, `max_m` | m | required¹ | in the map, outside of walls |
-//! | `[[obstacle]]` `center_m`, `size_m`, `heading_deg` | m, ° | required¹, heading 0 | sides 0.001 to 100 |
-//! | `obstacle.appears_s` | s | stands from the start | 0.001 to 10⁹. A box whose place is taken then waits until it is free |
-//! | `obstacle.disappears_s` | s | never | 0.001 to 10⁹, after `appears_s` |
-//! | `robot.name` | | required | unique |
-//! | `robot.radius_m` | m | required | 0.02 to 10 |
-//! | `robot.mass_kg` | kg | 1 kg per m² of its area | 0.001 to 100 000; what counts when robots push each other |
-//! | `robot.pose_m` | m | required | in the map, clear of everything |
-//! | `robot.heading_deg` | ° | 0 | −360 to 360 |
-//! | `robot.drive.max_linear_mps` | m/s | required | 0.001 to 5; at most one radius per physics step |
-//! | `robot.drive.max_angular_degps` | °/s | required | 0.1 to 3600 |
-//! | `robot.drive.max_linear_acceleration_mps2` | m/s² | required | 0.001 to 100 |
-//! | `robot.drive.max_angular_acceleration_degps2` | °/s² | required | 0.1 to 100 000 |
-//! | `robot.odometry.distance_gain` | | 0 | −0.5 to 0.5; 0.01: a metre is felt as 1.01 m |
-//! | `robot.odometry.turn_gain` | | 0 | −0.5 to 0.5; the same for turning |
-//! | `robot.odometry.turn_per_m_deg` | °/m | 0 | −90 to 90; felt turn per metre straight on |
-//! | `robot.odometry.distance_noise_m` | m | 0 | 0 to 1; standard deviation after 1 m |
-//! | `robot.odometry.turn_noise_deg` | ° | 0 | 0 to 90; standard deviation after 1 rad |
-//! | `robot.laser.beams` | | required | 2 to 10 000 |
-//! | `robot.laser.fov_deg` | ° | 360 | 1 to 360; a full turn has no doubled beam |
-//! | `robot.laser.range_min_m` | m | 0 | 0 to 1000, below `range_max_m` |
-//! | `robot.laser.range_max_m` | m | required | 0.01 to 1000 |
-//! | `robot.laser.rate_hz` | Hz | required | 0.01 to 1000; a scan every whole number of steps |
-//! | `robot.laser.mount_m` | m | `[0, 0]` | within the robot's radius |
-//! | `robot.laser.mount_deg` | ° | 0 | −360 to 360 |
-//! | `robot.laser.noise_std_m` | m | 0 | 0 to 1 |
-//! | `robot.behaviour.kind` | | required | one of the behaviours below |
-//!
-//! ¹ one of the two forms. ² one of the two.
-//!
-//! # Behaviours
-//!
-//! A key that a behaviour does not have is an error.
-//!
-//! | `kind` | the robot | key | unit | default | range |
-//! |---|---|---|---|---|---|
-//! | `"driven"` | obeys commands; exactly one in a [`WorldSpec`], any number in a [`FleetSpec`] | | | | |
-//! | `"standing"` | stands | | | | |
-//! | `"circle"` | drives a circle, blindly | `speed_mps` | m/s | required | 0.01 to `max_linear_mps` |
-//! | | | `turn_radius_m` | m | required | 0.01 to 1000; turns within `max_angular_degps` |
-//! | | | `direction` | | `"left"` | `"left"` or `"right"` |
-//! | `"wander"` | drives about, and turns away from what it sees ahead | `speed_mps` | m/s | required | 0.01 to `max_linear_mps` |
-//! | | | `clearance_m` | m | 0.15 | 0.05 to 10; kept free ahead |
-//! | `"waypoints"` | drives straight from point to point, and waits while something is in its way | `points_m` | m | required | 1 to 1000 points in the map, 0.1 m apart or more; the way to each keeps 0.05 m more than the radius away from walls |
-//! | | | `speed_mps` | m/s | required | 0.01 to `max_linear_mps` |
-//! | | | `repeat` | | `"loop"` | `"loop"`: from the last to the first; `"back_and_forth"`; `"once"` |
-//! | | | `clearance_m` | m | 0.15 | 0.05 to 10; kept free ahead when it stops |
-//! | `"wall_patrol"` | follows a wall back and forth, and waits while something is in its way | `from_m`, `to_m` | m | required | 0.1 m apart or more; the robot fits all the way and starts on it |
-//! | | | `speed_mps` | m/s | required | 0.01 to `max_linear_mps` |
-//! | | | `wall_side` | | required | `"left"` or `"right"`, on the way from `from_m` to `to_m`; the whole way must run along a wall there, its surface 0.05 m beyond the robot or more, and at most 2 m from its middle |
-//! | | | `clearance_m` | m | 0.15 | 0.05 to 10; kept free ahead when it stops |
+//! What a world file says, checked and in SI. All keys are in `worlds/keys.md`.
 
 mod behaviour;
 mod check;
 mod file;
 mod floor_plan;
 mod numbers;
+mod obstacle;
 mod patrol;
 mod robot;
 #[cfg(test)]
 mod tests;
 
 pub use behaviour::{Behaviour, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
+pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
 
 use super::shape::Rectangle;
 use crate::error::{Source, WorldError};
@@ -274,26 +202,6 @@ fn read(path: &Path) -> Result<(String, String), WorldError> {
 /// Where a world file without a folder finds its pictures: nowhere.
 fn no_files() -> BTreeMap<PathBuf, Vec<u8>> {
     BTreeMap::new()
-}
-
-/// A box, which may come and go.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ObstacleSpec {
-    /// What it is called.
-    pub name: String,
-    /// Where it stands.
-    pub shape: Rectangle,
-    /// When it is put there, s; `None`: it stands from the start.
-    pub appears_s: Option<f64>,
-    /// When it is taken away, s; `None`: never.
-    pub disappears_s: Option<f64>,
-}
-
-impl ObstacleSpec {
-    /// Whether it comes or goes at all.
-    pub fn is_mover(&self) -> bool {
-        self.appears_s.is_some() || self.disappears_s.is_some()
-    }
 }
 
 /// A round robot with two wheels and a laser.

@@ -3,6 +3,7 @@
 use super::file::{Number, Pair, Two};
 use crate::error::{Source, WorldError};
 use nalgebra::Point2;
+use serde_spanned::Spanned;
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -64,6 +65,23 @@ impl Table<'_> {
         let what = format!("`{}.{key}` is [{}, {}], which is out of range", self.path, Figure(x), Figure(y));
         let help = format!("both must be numbers from {} to {}", range.start(), range.end());
         Err(self.source.error(&what, (value.span(), "out of range"), &[], &help))
+    }
+
+    /// One of some words; the first if it is left out.
+    pub(super) fn choice<T: Copy>(
+        &self,
+        key: &str,
+        value: &Option<Spanned<String>>,
+        choices: &[(&str, T)],
+    ) -> Result<T, WorldError> {
+        let Some(value) = value else { return Ok(choices[0].1) };
+        let found = choices.iter().find(|(word, _)| word == value.get_ref());
+        found.map(|(_, choice)| *choice).ok_or_else(|| {
+            let what = format!("`{}.{key}` is `{}`", self.path, value.get_ref());
+            let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+            let help = format!("it must be {}", words.join(" or "));
+            self.source.error(&what, (value.span(), "not known"), &[], &help)
+        })
     }
 
     /// A point (m) in the map of `size` (m).

@@ -16,6 +16,7 @@ pub(super) fn robot(
     size: &Point2<f64>,
     step_s: f64,
     solids: &[Solid],
+    movers: &[Solid],
 ) -> Result<RobotSpec, WorldError> {
     let table = Table { source, path: "robot" };
     let name = source.name("robot", &file.name)?;
@@ -29,7 +30,9 @@ pub(super) fn robot(
         let what = format!("the robot `{name}` reaches out of the map");
         return Err(source.error(&what, (file.pose_m.span(), "too near to the border"), &[], &help));
     }
-    if let Some(solid) = solids.iter().find(|solid| solid.shape.distance_m(&at) < radius_m - TOUCH_M) {
+    if let Some(solid) =
+        solids.iter().chain(movers).find(|solid| solid.shape.distance_m(&at) < radius_m - TOUCH_M)
+    {
         let what = format!("the robot `{name}` starts in a wall or an obstacle");
         let marks = [(solid.span.clone(), "in this one")];
         return Err(source.error(&what, (file.pose_m.span(), "stands here"), &marks, &help));

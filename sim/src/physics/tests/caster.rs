@@ -18,11 +18,10 @@ const GRAZE_RAD: f64 = 1e-6;
 fn brute_force_m(
     from: &Point2<f64>,
     along: &Vector2<f64>,
-    spec: &FleetSpec,
+    boxes: &[Rectangle],
     discs: &[(Point2<f64>, f64)],
 ) -> f64 {
-    let boxes = spec.walls().iter().chain(spec.obstacles().iter().map(|obstacle| &obstacle.shape));
-    let box_m = boxes.filter_map(|shape| shape.ray_m(from, along)).fold(f64::INFINITY, f64::min);
+    let box_m = boxes.iter().filter_map(|shape| shape.ray_m(from, along)).fold(f64::INFINITY, f64::min);
     let disc_m = discs.iter().filter_map(|(center, radius_m)| {
         let (to, r2) = (center - from, radius_m * radius_m);
         let (b, miss2) = (to.dot(along), to.perp(along).powi(2));
@@ -45,6 +44,8 @@ struct Place {
     spec: FleetSpec,
     scene: Scene,
     bodies: Bodies,
+    /// Walls, and whatever else is there.
+    boxes: Vec<Rectangle>,
     discs: Vec<(Point2<f64>, f64)>,
 }
 
@@ -71,10 +72,28 @@ impl Place {
         }
         bodies.step();
         let round = discs.iter().map(|&(center, radius_m)| Disc { center, radius_m });
-        let mut scene = Scene::new(corners(spec.frame()), spec.walls(), round.collect(), 10.0);
-        scene.set_boxes(spec.obstacles().iter().map(|obstacle| &obstacle.shape));
+        let hulls = spec.obstacles().len();
+        let mut scene = Scene::new(corners(spec.frame()), spec.walls(), round.collect(), hulls, 10.0);
+        for (place, obstacle) in spec.obstacles().iter().enumerate() {
+            scene.set_hull(place, None, &obstacle.shape.corners());
+        }
         scene.sort();
-        Self { spec, scene, bodies, discs }
+        let boxes = spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).copied().collect();
+        Self { spec, scene, bodies, boxes, discs }
+    }
+
+    /// The present state of a fleet.
+    fn of(fleet: Fleet) -> Self {
+        let spec = fleet.spec().clone();
+        let boxes = fleet.standing_boxes();
+        let discs = fleet
+            .robots()
+            .map(|robot| (Point2::from(robot.pose.translation.vector), f64::from(robot.radius_m as f32)));
+        let discs = discs.collect();
+        let (mut scene, mut bodies) = fleet.into_parts();
+        scene.sort();
+        bodies.find_again();
+        Self { spec, scene, bodies, boxes, discs }
     }
 
     /// Whether a laser there is outside of everything.
@@ -99,7 +118,7 @@ impl Place {
         for (beam, range_m) in scan.ranges_m.iter().enumerate() {
             let direction =
                 |turn_rad: f64| rotation(scan.angle_rad(beam) + turn_rad) * (at.rotation * Vector2::x());
-            let exact = |turn_rad: f64| brute_force_m(&from, &direction(turn_rad), &self.spec, &others);
+            let exact = |turn_rad: f64| brute_force_m(&from, &direction(turn_rad), &self.boxes, &others);
             let [low, range, high] = [-GRAZE_RAD, 0.0, GRAZE_RAD].map(exact);
             // Where the target stays the same, so does the range, within what a turn can shift it.
             if (low - range).abs() > 1e-3 || (high - range).abs() > 1e-3 || (range - max_m).abs() < 1e-3 {
@@ -190,6 +209,32 @@ fn in_a_crowd_of_houses_every_beam_is_right() {
     assert!(tally.grazing < tally.beams / 10_000, "{tally:?}");
 }
 
+/// Doors, blocks and boxes on the move, again and again.
+#[test]
+fn whatever_moves_is_seen_where_it_is() {
+    let spec = super::things::busy();
+    let mut fleet = Fleet::new(&spec, 5);
+    let laser = LaserSpec { beams: 360, noise_std_m: 0.0, ..spec.robots()[0].laser };
+    let mut stream = ChaCha8Rng::seed_from_u64(4);
+    let mut tally = Tally::default();
+    let mut moved = 0;
+    for _ in 0..60 {
+        fleet.run_until(fleet.time_s() + 0.35, &mut super::things::reckless);
+        moved += fleet.moved().len();
+        let place = Place::of(fleet.clone());
+        let goal = tally.beams + 10_000;
+        while tally.beams < goal {
+            // Beyond the borders, too.
+            let at = Point2::new(uniform(&mut stream, -0.5..12.5), uniform(&mut stream, -0.5..12.5));
+            if place.is_free(&at, 0) {
+                place.compare(&laser, &pose(at.x, at.y, uniform(&mut stream, -4.0..4.0)), 0, &mut tally);
+            }
+        }
+    }
+    assert!(moved > 300, "hardly anything moves: {moved}");
+    assert!(tally.grazing < tally.beams / 5_000, "{tally:?}");
+}
+
 #[test]
 fn narrow_lasers_see_the_same() {
     let place = Place::new(cluttered().fleet);
@@ -238,7 +283,7 @@ fn a_laser_inside_of_a_solid_sees_nothing_else() {
     spec.fleet.robots[0].pose = pose(6.0, 1.0, 0.3);
     let noise = chance::Gaussian::new(0, chance::Purpose::Laser, 0);
     let mut laser = Laser::new(&spec.driven().laser, beams(&spec.driven().laser).into(), noise);
-    let mut scene = Scene::new(corners(spec.frame()), spec.walls(), Vec::new(), 10.0);
+    let mut scene = Scene::new(corners(spec.frame()), spec.walls(), Vec::new(), 0, 10.0);
     scene.sort();
     let mut scan = spec.driven().laser.empty_scan();
     laser.scan(&spec.driven().pose, &scene, 0, &mut Scratch::default(), &mut scan);

@@ -117,7 +117,7 @@ fn the_worlds_of_this_crate_run() {
     worlds.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     worlds.sort();
     let names: Vec<_> = worlds.iter().map(|path| path.file_stem().unwrap().to_str().unwrap()).collect();
-    assert_eq!(names, ["cave", "house", "office", "warehouse"]);
+    assert_eq!(names, ["cave", "house", "office", "warehouse", "yard"]);
     for path in worlds {
         // One robot is driven, so that the curious one can live there.
         let spec = WorldSpec::load(&path).unwrap_or_else(|error| panic!("{error}"));

@@ -6,10 +6,12 @@ mod contract;
 mod docs;
 mod fleet;
 mod floor_plan;
+mod keys;
 mod obstacles;
 mod patrol;
 mod random;
 mod snapshot;
+mod things;
 
 use super::*;
 use geometry::{Twist, World};

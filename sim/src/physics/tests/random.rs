@@ -39,7 +39,7 @@ fn world(seed: u64) -> FleetSpec {
     }
     text += &format!("[physics]\nstep_s = {:?}\n", [0.02, 0.05, 0.1][seed as usize % 3]);
     let mut spec = FleetSpec::parse("random.toml", &text).unwrap_or_else(|error| panic!("{error}"));
-    for thing in 0..14 {
+    for thing in 0..26 {
         let at = chance.point();
         let more = if thing < 5 {
             let to = chance.point();
@@ -47,6 +47,8 @@ fn world(seed: u64) -> FleetSpec {
                 "[[wall]]\nfrom_m = {at:?}\nto_m = {to:?}\nthickness_m = {:?}\n",
                 chance.between(0.01, 0.2)
             )
+        } else if thing >= 14 {
+            self::thing(thing, at, &mut chance)
         } else {
             let radius_m = chance.between(0.05, 0.3);
             let kinds = ["kind = \"driven\"", "kind = \"wander\"\nspeed_mps = 0.3", "kind = \"standing\""];
@@ -70,16 +72,42 @@ fn world(seed: u64) -> FleetSpec {
     spec
 }
 
+/// Something that moves.
+fn thing(thing: usize, at: [f64; 2], chance: &mut Chance) -> String {
+    let name = format!("[[obstacle]]\nname = \"{thing}\"\n");
+    let to = chance.point();
+    let size = [(); 2].map(|()| chance.between(0.1, 0.6));
+    match thing % 4 {
+        0 | 1 => format!(
+            "{name}kind = \"box\"\ncenter_m = {at:?}\nsize_m = {size:?}\nheading_deg = {:?}\nmass_kg = {:?}\nfriction = {:?}\n",
+            chance.between(0.0, 90.0),
+            chance.between(0.02, 2.0),
+            chance.between(-0.2, 0.5).max(0.0),
+        ),
+        2 => format!(
+            "{name}kind = \"block\"\nsize_m = {size:?}\npath_m = [{at:?}, {to:?}]\nspeed_mps = {:?}\ndwell_s = {:?}\n",
+            chance.between(0.1, 1.0),
+            chance.between(0.0, 3.0),
+        ),
+        _ => format!(
+            "{name}kind = \"{}\"\nfrom_m = {at:?}\nto_m = [{:?}, {:?}]\nthickness_m = 0.04\nopening = \"random\"\nclosed_s = 2.0\nopen_s = 2.0\nmove_s = 1.6\n",
+            if thing == 15 { "hinged_door" } else { "sliding_door" },
+            at[0] + chance.between(0.1, 0.6),
+            at[1] + chance.between(0.1, 0.6),
+        ),
+    }
+}
+
 /// How deep a segment of a robot's way lies in a wall: it passed through if its middle did.
-fn passes(spec: &FleetSpec, from: &Point2<f64>, to: &Point2<f64>) -> bool {
-    spec.walls().iter().any(|wall| wall.segment_distance_m(from, to) <= 0.0)
+fn passes(fleet: &Fleet, from: &Point2<f64>, to: &Point2<f64>) -> bool {
+    fleet.spec().walls().iter().any(|wall| wall.segment_distance_m(from, to) <= 0.0)
 }
 
 #[test]
 fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
     let asked = std::env::var("SIM_RANDOM_WORLDS").ok().and_then(|worlds| worlds.parse().ok());
     let worlds = asked.unwrap_or(WORLDS);
-    let (mut robots, mut contacts) = (0, 0);
+    let (mut robots, mut contacts, mut things) = (0, 0, 0);
     for seed in 0..worlds {
         let spec = world(seed);
         let mut fleet = Fleet::new(&spec, seed);
@@ -99,12 +127,23 @@ fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
                 wanted[robot]
             });
             contacts += fleet.contacts().len();
+            for (index, before, after) in fleet.moved() {
+                let spec = &spec.obstacles()[index];
+                let place = || format!("obstacle {} of world {seed} at {:.2} s", spec.name, fleet.time_s());
+                let [from, to] = [before, after].map(|shape| Point2::from(shape.pose.translation.vector));
+                assert!(to.coords.iter().all(|value| value.is_finite()), "{}", place());
+                if let Motion::Pushed(_) = spec.motion {
+                    assert!(to.coords.min() > 0.0 && to.coords.max() < SIDE_M, "{} left: {to}", place());
+                    assert!(!passes(&fleet, &from, &to), "{} passed a wall: {from} to {to}", place());
+                }
+                things += 1;
+            }
             for (index, (robot, from)) in fleet.robots().zip(&from).enumerate() {
                 let place = || format!("robot {index} of world {seed} at {:.2} s", fleet.time_s());
                 let at = Point2::from(robot.pose.translation.vector);
                 assert!(at.coords.iter().all(|value| value.is_finite()), "{}", place());
                 assert!(at.coords.min() > 0.0 && at.coords.max() < SIDE_M, "{} left: {at}", place());
-                assert!(!passes(&spec, from, &at), "{} passed a wall: {from} to {at}", place());
+                assert!(!passes(&fleet, from, &at), "{} passed a wall: {from} to {at}", place());
                 // Bounds hold, and speeding up has its bound where nothing pushes.
                 let (limits, now) = (spec.robots()[index].drive, robot.twist);
                 assert!(now.linear_mps.abs() <= limits.max_linear_mps + 1e-3, "{}: {now:?}", place());
@@ -117,9 +156,14 @@ fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
                     place()
                 );
                 before[index] = now;
+                // Nothing that moves goes through a robot, or a robot through it.
+                let depth = |thing: &Rectangle| robot.radius_m - thing.distance_m(&at);
+                let deepest_m = fleet.standing_boxes().iter().map(depth).fold(f64::MIN, f64::max);
+                assert!(deepest_m < 0.5 * robot.radius_m, "{} is {deepest_m} m in something", place());
             }
         }
     }
     assert!(robots > 4 * worlds as usize, "too few robots fitted in: {robots}");
+    assert!(things > 1000 * worlds as usize, "hardly anything moved: {things}");
     assert!(contacts > robots, "they hardly ever met: {contacts}");
 }

@@ -36,8 +36,8 @@ fn drivers(robot: usize, reading: &LaserReading) -> Twist {
 
 #[test]
 fn a_restored_fleet_and_a_fork_live_on_bit_by_bit() {
-    let (zoo, crowd) = (zoo(), crowd());
-    for spec in [&zoo, &crowd] {
+    let (zoo, crowd, busy) = (zoo(), crowd(), super::things::busy());
+    for spec in [&zoo, &crowd, &busy] {
         // Before the first step, between two scans, and after contacts.
         for at_s in [0.0, 0.05, 5.0, 10.0, 31.25] {
             let mut fleet = Fleet::new(spec, 4);

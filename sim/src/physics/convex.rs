@@ -1,0 +1,52 @@
+//! Convex bodies by their corners, counter-clockwise, m.
+
+use super::shape::point_segment_m;
+use nalgebra::Point2;
+
+/// How far two convex bodies are apart, m, along the side that parts them best: never more than
+/// their distance, and negative if they overlap.
+pub(crate) fn gap_m(a: &[Point2<f64>], b: &[Point2<f64>]) -> f64 {
+    beyond_m(a, b).max(beyond_m(b, a))
+}
+
+/// How far a convex body lies outside of a disc, m; negative if they overlap.
+pub(crate) fn disc_gap_m(body: &[Point2<f64>], center: &Point2<f64>, radius_m: f64) -> f64 {
+    let inside_m = beyond_m(body, &[*center]);
+    let border_m = sides(body).map(|(from, to)| point_segment_m(center, from, to));
+    if inside_m < 0.0 { inside_m - radius_m } else { border_m.fold(f64::INFINITY, f64::min) - radius_m }
+}
+
+/// How far all of `points` lie outside of that side of `body` of which they lie farthest, m.
+fn beyond_m(body: &[Point2<f64>], points: &[Point2<f64>]) -> f64 {
+    let outside = sides(body).map(|(from, to)| {
+        let along = (to - from).normalize();
+        points.iter().map(|point| (point - from).perp(&along)).fold(f64::INFINITY, f64::min)
+    });
+    outside.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The sides, in order.
+pub(crate) fn sides(body: &[Point2<f64>]) -> impl Iterator<Item = (&Point2<f64>, &Point2<f64>)> {
+    body.iter().zip(body.iter().cycle().skip(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(left: f64, bottom: f64) -> Vec<Point2<f64>> {
+        [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+            .map(|(x, y)| Point2::new(left + x, bottom + y))
+            .to_vec()
+    }
+
+    #[test]
+    fn gaps_are_between_the_borders_and_negative_inside() {
+        assert!((gap_m(&square(0.0, 0.0), &square(1.5, 0.3)) - 0.5).abs() < 1e-12);
+        assert!((gap_m(&square(0.0, 0.0), &square(0.75, 0.0)) + 0.25).abs() < 1e-12);
+        let disc = |x, y| disc_gap_m(&square(0.0, 0.0), &Point2::new(x, y), 0.5);
+        assert!((disc(2.0, 0.5) - 0.5).abs() < 1e-12);
+        assert!((disc(4.0, 5.0) - 4.5).abs() < 1e-12);
+        assert!((disc(0.9, 0.5) + 0.6).abs() < 1e-12);
+    }
+}

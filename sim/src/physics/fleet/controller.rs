@@ -1,0 +1,15 @@
+use geometry::{LaserReading, Twist};
+
+/// What tells driven robots where to go: any type, or a closure from a robot (by its place in the
+/// world file) and its reading to a command.
+pub trait Controller {
+    /// What the robot is to do from this reading on until its next one. Not a number stops it;
+    /// what is beyond its bounds is cut to them.
+    fn command(&mut self, robot: usize, reading: &LaserReading) -> Twist;
+}
+
+impl<F: FnMut(usize, &LaserReading) -> Twist> Controller for F {
+    fn command(&mut self, robot: usize, reading: &LaserReading) -> Twist {
+        self(robot, reading)
+    }
+}

@@ -1,0 +1,207 @@
+//! Any number of robots in one place.
+
+mod controller;
+mod state;
+mod teleport;
+mod time;
+
+pub use controller::Controller;
+pub use teleport::TeleportError;
+
+use super::bodies::Bodies;
+use super::laser::beams;
+use super::obstacles::Obstacle;
+use super::rays::{Beams, Disc, Scene, Scratch};
+use super::report::{Body, Contact, ObstacleView, RobotView};
+use super::robot::Robot;
+use super::shape::Rectangle;
+use super::spec::{FleetSpec, LaserSpec};
+use geometry::{GridFrame, LaserReading, Twist};
+use nalgebra::{Point2, Vector2};
+use std::sync::Arc;
+
+/// A place with any number of robots.
+///
+/// The same spec, seed and commands give the same bits, on every machine and any number of threads.
+/// A clone is a fork: it lives on by itself, and alike under the same commands.
+#[derive(Clone)]
+pub struct Fleet {
+    spec: FleetSpec,
+    seed: u64,
+    /// Steps since the start; time is a multiple, so that it never drifts.
+    step: u64,
+    bodies: Bodies,
+    robots: Vec<Robot>,
+    obstacles: Vec<Obstacle>,
+    scene: Scene,
+    contacts: Vec<Contact>,
+    /// The obstacles that moved in the last step, with where they were.
+    moved: Vec<(usize, Rectangle)>,
+    parallel_lasers: bool,
+    scratch: Scratch,
+}
+
+impl Fleet {
+    /// The place of `spec` at its start. `seed` starts all chance: the noise of lasers, that of
+    /// odometry, and what robots do by themselves, each in a stream of its own.
+    pub fn new(spec: &FleetSpec, seed: u64) -> Self {
+        let mut bodies = Bodies::new(spec.step_s);
+        for (index, wall) in spec.walls.iter().enumerate() {
+            bodies.add_box(Body::Wall(index), wall);
+        }
+        let mut lasers = Lasers::default();
+        let mut robots = Vec::with_capacity(spec.robots.len());
+        for (index, robot) in spec.robots.iter().enumerate() {
+            bodies.add_robot(robot, spec.step_s);
+            let beams = lasers.beams(&robot.laser);
+            robots.push(Robot::new(robot, index, bodies.pose(index), spec.step_s, seed, beams));
+        }
+        let obstacles =
+            spec.obstacles.iter().enumerate().map(|(i, o)| Obstacle::new(o, i, seed, &mut bodies));
+        let obstacles = obstacles.collect();
+        let discs = robots.iter().map(|robot| Disc { center: robot.at(), radius_m: robot.spec.radius_m });
+        let range_m = spec.robots.iter().fold(0.0, |most: f64, robot| most.max(robot.laser.range_max_m));
+        let scene =
+            Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), spec.obstacles.len(), range_m);
+        let mut fleet = Self {
+            spec: spec.clone(),
+            seed,
+            step: 0,
+            bodies,
+            robots,
+            obstacles,
+            scene,
+            contacts: Vec::new(),
+            moved: Vec::new(),
+            parallel_lasers: false,
+            scratch: Scratch::default(),
+        };
+        fleet.show_obstacles();
+        fleet
+    }
+
+    /// The time since the start, s.
+    pub fn time_s(&self) -> f64 {
+        self.step as f64 * self.spec.step_s
+    }
+
+    /// What the place was made from.
+    pub fn spec(&self) -> &FleetSpec {
+        &self.spec
+    }
+
+    /// All robots, in the order of the file.
+    pub fn robots(&self) -> impl ExactSizeIterator<Item = RobotView<'_>> {
+        self.robots.iter().map(|robot| RobotView {
+            name: &robot.spec.name,
+            pose: robot.pose,
+            radius_m: robot.spec.radius_m,
+            is_driven: robot.is_driven(),
+            twist: robot.velocity,
+            is_stalled: robot.drive.is_stalled(),
+            sweep: robot.sweep.as_ref(),
+        })
+    }
+
+    /// The corners of all walls, counter-clockwise, m.
+    pub fn walls(&self) -> impl ExactSizeIterator<Item = [Point2<f64>; 4]> {
+        self.spec.walls.iter().map(Rectangle::corners)
+    }
+
+    /// The obstacles that are there now, where they are now.
+    pub fn obstacles(&self) -> impl Iterator<Item = ObstacleView<'_>> {
+        let standing = self.obstacles.iter().enumerate().filter(|(_, obstacle)| obstacle.is_standing());
+        standing.map(|(index, o)| ObstacleView { index, name: &o.spec.name, corners: o.shape.corners() })
+    }
+
+    /// The contacts that began in the last step, robot by robot.
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// Whether lasers look around on all threads of rayon's pool, or on this one alone, as at
+    /// first. The result is the same; a step must take some 0.1 ms for it to be worth it.
+    pub fn set_parallel_lasers(&mut self, parallel: bool) {
+        self.parallel_lasers = parallel;
+    }
+
+    /// Tells a driven robot what to do.
+    pub(super) fn command(&mut self, robot: usize, wanted: &Twist) {
+        self.robots[robot].command(wanted);
+    }
+
+    /// One robot.
+    pub(super) fn robot(&self, robot: usize) -> &Robot {
+        &self.robots[robot]
+    }
+
+    /// What a robot sees now.
+    pub(super) fn look(&mut self, robot: usize) -> &LaserReading {
+        let time_s = self.time_s();
+        self.scene.sort();
+        self.robots[robot].look(time_s, &self.scene, &mut self.scratch)
+    }
+
+    /// Walls, and the obstacles that stand now.
+    pub(super) fn standing_boxes(&self) -> Vec<Rectangle> {
+        let standing = self.obstacles.iter().filter(|obstacle| obstacle.is_standing());
+        self.spec.walls.iter().copied().chain(standing.map(|obstacle| obstacle.shape)).collect()
+    }
+
+    /// Whether an obstacle stands now.
+    pub(super) fn is_standing(&self, obstacle: usize) -> bool {
+        self.obstacles[obstacle].is_standing()
+    }
+
+    /// The obstacles that moved in the last step, each with where it was and is.
+    pub(super) fn moved(&self) -> impl ExactSizeIterator<Item = (usize, Rectangle, Rectangle)> {
+        self.moved.iter().map(|(index, before)| (*index, *before, self.obstacles[*index].shape))
+    }
+
+    /// What lasers see, and the bodies.
+    #[cfg(test)]
+    pub(super) fn into_parts(self) -> (Scene, Bodies) {
+        (self.scene, self.bodies)
+    }
+
+    /// The energy of motion of everything that is pushed or drives, J.
+    #[cfg(test)]
+    pub(super) fn kinetic_j(&self) -> f64 {
+        self.bodies.kinetic_j()
+    }
+
+    /// Shows the lasers what stands now.
+    fn show_obstacles(&mut self) {
+        (0..self.obstacles.len()).for_each(|index| self.show_obstacle(index));
+    }
+
+    /// Shows the lasers what has become of an obstacle.
+    fn show_obstacle(&mut self, index: usize) {
+        let obstacle = &self.obstacles[index];
+        let corners = obstacle.shape.corners();
+        self.scene.set_hull(index, None, if obstacle.is_standing() { &corners } else { &[] });
+    }
+}
+
+/// The beams of all lasers, each kind once.
+#[derive(Default)]
+struct Lasers {
+    known: Vec<(LaserSpec, Arc<Beams>)>,
+}
+
+impl Lasers {
+    fn beams(&mut self, spec: &LaserSpec) -> Arc<Beams> {
+        if let Some((_, beams)) = self.known.iter().find(|(known, _)| known == spec) {
+            return Arc::clone(beams);
+        }
+        let beams = Arc::new(beams(spec));
+        self.known.push((*spec, Arc::clone(&beams)));
+        beams
+    }
+}
+
+/// The lower left and the upper right corner of a grid, m.
+pub(super) fn corners(frame: &GridFrame) -> (Point2<f64>, Point2<f64>) {
+    let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
+    (frame.origin(), frame.origin() + size)
+}

@@ -1,0 +1,201 @@
+//! What kind of obstacle a table of the file describes.
+
+use super::{Motion, ObstacleSpec, PushedSpec};
+use crate::error::{Source, WorldError};
+use crate::physics::shape::Rectangle;
+use crate::physics::spec::check::{MAX_TIME_S, Solid, inside, upright};
+use crate::physics::spec::file::{Number, ObstacleFile};
+use crate::physics::spec::numbers::Table;
+use nalgebra::Point2;
+use std::ops::Range;
+
+/// The keys of each kind, beside its name, and what it is.
+const KINDS: [(&str, &[&str], &str); 5] = [
+    (
+        "fixed",
+        &["min_m", "max_m", "center_m", "size_m", "heading_deg", "appears_s", "disappears_s"],
+        "stands, and may come and go",
+    ),
+    ("box", &["min_m", "max_m", "center_m", "size_m", "heading_deg", "mass_kg", "friction"], "can be pushed"),
+    (
+        "block",
+        &["size_m", "heading_deg", "path_m", "dwell_s", "speed_mps", "times_s", "repeat"],
+        "moves along a path",
+    ),
+    (
+        "hinged_door",
+        &[
+            "from_m",
+            "to_m",
+            "thickness_m",
+            "open_deg",
+            "opening",
+            "closed_s",
+            "open_s",
+            "switches_s",
+            "move_s",
+            "starts_open",
+        ],
+        "turns about `from_m`",
+    ),
+    (
+        "sliding_door",
+        &[
+            "from_m",
+            "to_m",
+            "thickness_m",
+            "slide_m",
+            "opening",
+            "closed_s",
+            "open_s",
+            "switches_s",
+            "move_s",
+            "starts_open",
+        ],
+        "slides from `to_m` towards `from_m`",
+    ),
+];
+
+/// An obstacle of the file, and what stands where it is.
+pub(super) struct Context<'a> {
+    pub(super) source: &'a Source<'a>,
+    pub(super) file: &'a ObstacleFile,
+    pub(super) name: String,
+    pub(super) size: &'a Point2<f64>,
+    pub(super) walls: &'a [Solid],
+    pub(super) step_s: f64,
+}
+
+/// Checks an obstacle of the file.
+pub(in crate::physics::spec) fn obstacle(
+    source: &Source<'_>,
+    file: &ObstacleFile,
+    size: &Point2<f64>,
+    walls: &[Solid],
+    step_s: f64,
+) -> Result<ObstacleSpec, WorldError> {
+    let name = source.name("obstacle", &file.name)?;
+    let kind = match &file.kind {
+        None => "fixed",
+        Some(kind) => {
+            let Some((known, _, _)) = KINDS.iter().find(|(known, _, _)| known == kind.get_ref()) else {
+                let what = format!("`{}` is no kind of obstacle", kind.get_ref());
+                let names = KINDS.map(|(name, _, _)| format!("\"{name}\""));
+                let help = format!("it must be one of {}", names.join(", "));
+                return Err(source.error(&what, (kind.span(), "not known"), &[], &help));
+            };
+            known
+        }
+    };
+    let (_, known, does) = KINDS.iter().find(|(name, _, _)| *name == kind).unwrap_or(&KINDS[0]);
+    if let Some((key, span)) = file.keys().into_iter().find(|(key, _)| !known.contains(key)) {
+        let what = format!("an obstacle that is `{kind}` has no `{key}`");
+        let help = format!("leave it out: such an obstacle {does}; its keys are {}", known.join(", "));
+        return Err(source.error(&what, (span, "not for this obstacle"), &[], &help));
+    }
+    let context = Context { source, file, name, size, walls, step_s };
+    match kind {
+        "block" => context.block(),
+        "hinged_door" | "sliding_door" => context.door(kind == "hinged_door"),
+        "box" => context.pushed(),
+        _ => context.fixed(),
+    }
+}
+
+impl Context<'_> {
+    pub(super) const TABLE: &'static str = "obstacle";
+
+    pub(super) fn table(&self) -> Table<'_> {
+        Table { source: self.source, path: Self::TABLE }
+    }
+
+    /// The place in the file that stands for it as a whole.
+    pub(super) fn span(&self) -> Range<usize> {
+        self.file.name.span()
+    }
+
+    pub(super) fn incomplete(&self, what: &str, help: &str) -> WorldError {
+        let what = format!("the {what} `{}` is not complete", self.name);
+        self.source.error(&what, (self.span(), "this one"), &[], help)
+    }
+
+    pub(super) fn spec(self, shape: Rectangle, motion: Motion) -> ObstacleSpec {
+        ObstacleSpec { name: self.name, shape, motion, appears_s: None, disappears_s: None }
+    }
+
+    fn fixed(self) -> Result<ObstacleSpec, WorldError> {
+        let shape = self.shape()?;
+        let table = self.table();
+        let time = |key: &str, value: &Option<Number>| {
+            value.as_ref().map(|value| table.number(key, value, 0.001..=MAX_TIME_S)).transpose()
+        };
+        let appears_s = time("appears_s", &self.file.appears_s)?;
+        let disappears_s = time("disappears_s", &self.file.disappears_s)?;
+        if let (Some(from), Some(to), Some(marked)) = (appears_s, disappears_s, &self.file.disappears_s)
+            && to <= from
+        {
+            let what = format!("the obstacle `{}` disappears before it appears", self.name);
+            let help = format!("`disappears_s` must be later than `appears_s`, which is {from}");
+            return Err(self.source.error(&what, (marked.span(), "too early"), &[], &help));
+        }
+        Ok(ObstacleSpec { appears_s, disappears_s, ..self.spec(shape, Motion::Fixed) })
+    }
+
+    fn pushed(self) -> Result<ObstacleSpec, WorldError> {
+        let shape = self.shape()?;
+        let Some(mass) = &self.file.mass_kg else {
+            return Err(self.incomplete("box", "it needs a `mass_kg`"));
+        };
+        let mass_kg = self.table().number("mass_kg", mass, 0.001..=100_000.0)?;
+        let friction = self.table().number_or("friction", &self.file.friction, 0.5, 0.0..=10.0)?;
+        // A thin box would lie in a wall as a whole before the physics pushes it out.
+        if shape.half_m.min() < 0.01 {
+            let help = "a box that can be pushed must be 0.02 m wide or more";
+            let what = format!("the box `{}` is too thin", self.name);
+            return Err(self.source.error(&what, (self.span(), "this one"), &[], help));
+        }
+        Ok(self.spec(shape, Motion::Pushed(PushedSpec { mass_kg, friction })))
+    }
+
+    /// The shape of what stands at the start.
+    fn shape(&self) -> Result<Rectangle, WorldError> {
+        let (table, span) = (self.table(), self.span());
+        let ObstacleFile { min_m, max_m, center_m, size_m, heading_deg, .. } = self.file;
+        let shape = match (min_m, max_m, center_m, size_m) {
+            (Some(min), Some(max), None, None) if heading_deg.is_none() => {
+                upright(&table, min, max, self.size)?
+            }
+            (None, None, Some(center), Some(sides)) => {
+                let center = table.point("center_m", center, self.size)?;
+                let sides = table.pair("size_m", sides, 0.001..=100.0)?;
+                let heading_deg = table.number_or("heading_deg", heading_deg, 0.0, -360.0..=360.0)?;
+                Rectangle::around(center, sides.coords, heading_deg.to_radians())
+            }
+            _ => {
+                let help = "give either `min_m` and `max_m`, or `center_m`, `size_m` and, if it is turned, `heading_deg`";
+                return Err(self.source.error(
+                    "an obstacle needs one shape",
+                    (span, "this obstacle"),
+                    &[],
+                    help,
+                ));
+            }
+        };
+        self.is_free(&shape)?;
+        Ok(shape)
+    }
+
+    /// It lies in the map and in no wall.
+    fn is_free(&self, shape: &Rectangle) -> Result<(), WorldError> {
+        let (name, span) = (&self.name, self.span());
+        let what = format!("the obstacle `{name}` reaches out of the map");
+        inside(self.source, &what, span.clone(), shape, self.size)?;
+        if let Some(wall) = self.walls.iter().find(|wall| wall.shape.overlaps(shape)) {
+            let what = format!("the obstacle `{name}` stands in a wall");
+            let marks = [(wall.span.clone(), "in this wall")];
+            let help = "it may touch walls, but not overlap them";
+            return Err(self.source.error(&what, (span, "this obstacle"), &marks, help));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,108 @@
+//! A door: its leaf, and when it opens.
+
+use super::check::Context;
+use super::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening};
+use crate::error::WorldError;
+use crate::physics::shape::Rectangle;
+use crate::physics::spec::check::{MAX_TIME_S, inside};
+use crate::physics::spec::file::Number;
+
+const MOST_SWITCHES: usize = 100_000;
+/// The kinds of opening, and the keys of each.
+const OPENINGS: [(&str, Kind); 3] =
+    [("periodic", Kind::Periodic), ("random", Kind::Random), ("scripted", Kind::Scripted)];
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Periodic,
+    Random,
+    Scripted,
+}
+
+impl Context<'_> {
+    pub(super) fn door(self, is_hinged: bool) -> Result<ObstacleSpec, WorldError> {
+        let (table, file) = (self.table(), self.file);
+        let (Some(from_m), Some(to_m), Some(thickness)) = (&file.from_m, &file.to_m, &file.thickness_m)
+        else {
+            return Err(self.incomplete("door", "it needs `from_m`, `to_m` and `thickness_m`"));
+        };
+        let (from, to) = (table.point("from_m", from_m, self.size)?, table.point("to_m", to_m, self.size)?);
+        let thickness_m = table.number("thickness_m", thickness, 0.01..=1.0)?;
+        let length_m = (to - from).norm();
+        if !(0.1..=10.0).contains(&length_m) {
+            let what = format!("the leaf of `{}` is {length_m:.3} m long", self.name);
+            let marks = [(from_m.span(), "from here")];
+            let help = "it must be 0.1 to 10 m long";
+            return Err(self.source.error(&what, (to_m.span(), "to here"), &marks, help));
+        }
+        let shape = Rectangle::along(from, to, thickness_m);
+        let what = format!("the leaf of `{}` reaches out of the map", self.name);
+        inside(self.source, &what, self.span(), &shape, self.size)?;
+        let (leaf, way_m) = if is_hinged {
+            let open_deg = table.number_or("open_deg", &file.open_deg, 90.0, -180.0..=180.0)?;
+            let open_rad = open_deg.to_radians();
+            (Leaf::Hinged { hinge: from, open_rad }, open_rad.abs() * length_m)
+        } else {
+            let slide_m = table.number_or("slide_m", &file.slide_m, length_m, -10.0..=10.0)?;
+            (Leaf::Sliding { by_m: (from - to) / length_m * slide_m }, slide_m.abs())
+        };
+        let move_s = table.number_or("move_s", &file.move_s, 1.0, 0.05..=3600.0)?;
+        if way_m / move_s > self.fastest_mps() {
+            let what = format!("the leaf of `{}` moves at {:.3} m/s", self.name, way_m / move_s);
+            let help = format!("`move_s` must be {:.3} or more", way_m / self.fastest_mps());
+            let mark = file.move_s.as_ref().map_or(self.span(), Number::span);
+            return Err(self.source.error(&what, (mark, "too fast"), &[], &help));
+        }
+        let opening = self.opening()?;
+        let starts_open = file.starts_open.as_ref().is_some_and(|open| *open.get_ref());
+        Ok(self.spec(shape, Motion::Door(DoorSpec { leaf, opening, move_s, starts_open })))
+    }
+
+    fn opening(&self) -> Result<Opening, WorldError> {
+        let (table, file) = (self.table(), self.file);
+        let Some(kind) = &file.opening else {
+            let help = "it needs an `opening`: \"periodic\", \"random\" or \"scripted\"";
+            return Err(self.incomplete("door", help));
+        };
+        let word = table.choice("opening", &file.opening, &OPENINGS)?;
+        let is_scripted = word == Kind::Scripted;
+        match (&file.closed_s, &file.open_s, &file.switches_s) {
+            (Some(closed), Some(open), None) if !is_scripted => {
+                let closed_s = table.number("closed_s", closed, 0.1..=MAX_TIME_S)?;
+                let open_s = table.number("open_s", open, 0.1..=MAX_TIME_S)?;
+                Ok(match word {
+                    Kind::Random => Opening::Random { closed_s, open_s },
+                    _ => Opening::Periodic { closed_s, open_s },
+                })
+            }
+            (None, None, Some(switches)) if is_scripted => {
+                let mut switches_s: Vec<f64> = Vec::new();
+                if switches.get_ref().len() > MOST_SWITCHES {
+                    let what = format!("the door `{}` switches too often", self.name);
+                    let help = format!("{MOST_SWITCHES} times are the most");
+                    return Err(self.source.error(&what, (switches.span(), "these times"), &[], &help));
+                }
+                for time in switches.get_ref() {
+                    let time_s = table.number("switches_s", time, 0.0..=MAX_TIME_S)?;
+                    if switches_s.last().is_some_and(|before_s| time_s <= *before_s) {
+                        let help = "each time must be later than the one before";
+                        let what = "`obstacle.switches_s` is not in order";
+                        return Err(self.source.error(what, (time.span(), "too early"), &[], help));
+                    }
+                    switches_s.push(time_s);
+                }
+                Ok(Opening::Scripted { switches_s })
+            }
+            _ => {
+                let what = format!("the opening of `{}` does not fit its times", self.name);
+                let help = match is_scripted {
+                    true => "a scripted door has `switches_s`: the times at which it opens, closes, opens, …",
+                    false => {
+                        "such a door has `closed_s` and `open_s`: how long it stays so, or the means of that"
+                    }
+                };
+                Err(self.source.error(&what, (kind.span(), "this opening"), &[], help))
+            }
+        }
+    }
+}
