@@ -12,6 +12,7 @@
 pub mod cell_statistics;
 #[cfg(test)]
 mod fake;
+pub mod inspection;
 pub mod layer;
 pub mod metrics;
 pub mod observer;

@@ -24,6 +24,12 @@ pub const SHIPPED_GRID: [(&str, &str); 5] = [
 /// The name and the text of the shipped tour.
 pub const TOUR: (&str, &str) = ("four_rooms.tour.toml", include_str!("../worlds/four_rooms.tour.toml"));
 
+/// The text of the shipped world of either kind that is called `name`.
+pub fn text(name: &str) -> Option<&'static str> {
+    let mut shipped = SHIPPED.iter().chain(&SHIPPED_GRID);
+    shipped.find(|(shipped, _)| *shipped == name).map(|(_, text)| *text)
+}
+
 /// Why there is no world.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {

@@ -3,8 +3,10 @@
 
 pub(crate) mod canvas;
 mod panel;
+mod plan;
 mod trajectory;
 
+use crate::inspection::Content;
 use crate::layer::Layer;
 use crate::output::{OutputError, make_folder};
 use crate::view::{Scene, Trail};
@@ -69,6 +71,17 @@ pub fn write_all(folder: &Path, pictures: &Pictures) -> Result<(), PictureError>
     });
     save("figure5", row)?;
     save("trajectory", Canvas::draw(panel_size, |area| trajectory::draw(area, pictures)))
+}
+
+/// Draws what is in a world, from above, to the PNG file `path`.
+///
+/// # Errors
+///
+/// When the picture cannot be drawn or written.
+pub fn draw_plan(path: &Path, content: &Content) -> Result<(), PictureError> {
+    let canvas = Canvas::draw(panel::size(&content.plan.frame), |area| plan::draw(area, content));
+    let canvas = canvas.map_err(|why| PictureError::Draw { name: content.name.clone(), why })?;
+    Ok(canvas.write(path)?)
 }
 
 #[cfg(test)]

@@ -36,6 +36,16 @@ pub(super) fn axes<'a, 'b>(
     title: &str,
     frame: &GridFrame,
 ) -> Result<(Chart<'a, 'b>, Area<'b>), String> {
+    axes_in(area, title, frame, "m")
+}
+
+/// The same in another unit of length.
+pub(super) fn axes_in<'a, 'b>(
+    area: &'a Area<'b>,
+    title: &str,
+    frame: &GridFrame,
+    unit: &str,
+) -> Result<(Chart<'a, 'b>, Area<'b>), String> {
     let (width, _) = area.dim_in_pixel();
     let (above, below) = area.split_vertically(px(MARGIN + TITLE));
     let middle = (px(MARGIN + AXIS + MAP / 2), px(MARGIN + TITLE / 2));
@@ -62,8 +72,8 @@ pub(super) fn axes<'a, 'b>(
         .axis_desc_style(text(16))
         .axis_style(INK.stroke_width(px(1) as u32))
         .set_all_tick_mark_size(px(4))
-        .x_desc("x (m)")
-        .y_desc("y (m)")
+        .x_desc(format!("x ({unit})"))
+        .y_desc(format!("y ({unit})"))
         .draw()
         .map_err(why)?;
     Ok((chart, legend))

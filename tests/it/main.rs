@@ -7,6 +7,7 @@ mod run;
 mod terminal;
 
 mod bad_input;
+mod check_world;
 mod choices;
 mod contract;
 mod disk;

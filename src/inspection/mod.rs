@@ -1,0 +1,150 @@
+//! What is in a world file, in words and as a plan, whoever wrote it and for whatever simulator.
+
+mod grid;
+mod physics;
+#[cfg(test)]
+mod tests;
+
+use crate::worlds;
+use geometry::GridFrame;
+use nalgebra::{Isometry2, Point2};
+use sim::floor_plan::{FloorPlan, ros};
+use sim::grid::GridSpec;
+use sim::physics::FleetSpec;
+use sim::{Disk, Findings, Severity, stage};
+use std::path::Path;
+
+/// What was found in one file.
+#[derive(Clone, Debug, Default)]
+pub struct Inspection {
+    /// What the file was called by whoever asked.
+    pub file: String,
+    /// The world, unless there are errors.
+    pub content: Option<Content>,
+    /// What the world will do otherwise than the file asks, one message each.
+    pub warnings: Vec<String>,
+    /// What is wrong with the file, one message each.
+    pub errors: Vec<String>,
+}
+
+/// What is in a world.
+#[derive(Clone, Debug)]
+pub struct Content {
+    /// What kind of world it is.
+    pub kind: &'static str,
+    /// What it is called.
+    pub name: String,
+    /// What it shows, in its author's words; can be empty.
+    pub description: String,
+    /// Lines of a name and what there is of it.
+    pub lines: Vec<(&'static str, String)>,
+    /// What it looks like.
+    pub plan: Plan,
+}
+
+/// A world from above, at its start.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What lengths are counted in.
+    pub unit: &'static str,
+    /// The rectangle that is drawn.
+    pub frame: GridFrame,
+    /// Corners of what stands for good.
+    pub walls: Vec<Vec<Point2<f64>>>,
+    /// What can move, come or go.
+    pub things: Vec<Thing>,
+    /// Who lives there.
+    pub robots: Vec<Robot>,
+}
+
+/// Something that is no wall and no robot.
+#[derive(Clone, Debug)]
+pub struct Thing {
+    /// What it is called.
+    pub name: String,
+    /// Where it is at the start; empty if it is not there yet.
+    pub outline: Vec<Point2<f64>>,
+    /// Where it can get to, as far as that is known beforehand.
+    pub reach: Vec<Vec<Point2<f64>>>,
+}
+
+/// A robot at its start.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    /// What it is called.
+    pub name: String,
+    /// Where it stands.
+    pub pose: Isometry2<f64>,
+    /// The radius of the circle about it.
+    pub radius: f64,
+    /// Whether it obeys commands.
+    pub is_driven: bool,
+}
+
+/// Reads a file as what it is: a shipped world by its name, a world file (physics or grid), a `.world` file of
+/// Stage, or a `map.yaml` of ROS.
+pub fn inspect(name: &str) -> Inspection {
+    let shipped = worlds::text(name).filter(|_| !Path::new(name).exists());
+    let path = Path::new(name);
+    let mut inspection = match (shipped, path.extension().and_then(|ending| ending.to_str())) {
+        (Some(text), _) => world_file(&format!("{name}.toml"), text),
+        (None, Some("world" | "inc")) => stage_file(path),
+        (None, Some("yaml" | "yml")) => ros_file(path),
+        (None, _) => match std::fs::read(path) {
+            Ok(bytes) => match String::from_utf8(bytes) {
+                Ok(text) => world_file(name, &text),
+                Err(_) => wrong(format!("error: cannot read `{name}`: it is no text, so no world file")),
+            },
+            Err(why) => wrong(format!("error: cannot read `{name}`: {why}, and no world of this name ships")),
+        },
+    };
+    inspection.file = name.to_owned();
+    inspection
+}
+
+fn wrong(error: String) -> Inspection {
+    Inspection { errors: vec![error], ..Inspection::default() }
+}
+
+/// A world file of ours: with a drawing for a `map` it is a grid world.
+fn world_file(name: &str, text: &str) -> Inspection {
+    let is_grid =
+        text.parse::<toml::Table>().is_ok_and(|file| file.get("map").is_some_and(toml::Value::is_str));
+    let outcome = if is_grid {
+        GridSpec::parse(name, text).map(|world| (grid::content(&world), world.warnings().to_vec()))
+    } else {
+        FleetSpec::parse_with(name, text, &Disk)
+            .map(|world| (physics::content("physics world", &world), Vec::new()))
+    };
+    match outcome {
+        Ok((content, warnings)) => {
+            let warnings = warnings.iter().map(|warning| format!("warning: {warning}")).collect();
+            Inspection { content: Some(content), warnings, ..Inspection::default() }
+        }
+        Err(error) => wrong(format!("error: {error}")),
+    }
+}
+
+fn stage_file(path: &Path) -> Inspection {
+    let (world, findings) = stage::load(path, &Disk);
+    found(world.map(|world| physics::content("Stage world", &world)), &findings)
+}
+
+fn ros_file(path: &Path) -> Inspection {
+    let mut findings = Findings::default();
+    let plan: Option<FloorPlan> = ros::read(path, &Disk, &mut findings);
+    found(plan.and_then(|plan| physics::floor_plan(path, &plan)), &findings)
+}
+
+fn found(content: Option<Content>, findings: &Findings) -> Inspection {
+    let of = |severity| {
+        let these = findings.iter().filter(move |finding| finding.severity == severity);
+        these.map(ToString::to_string).collect()
+    };
+    Inspection {
+        content,
+        warnings: of(Severity::Warning),
+        errors: of(Severity::Error),
+        ..Inspection::default()
+    }
+}

@@ -1,0 +1,193 @@
+//! Physics worlds, from whatever file.
+
+use super::{Content, Plan, Robot, Thing};
+use geometry::GridFrame;
+use nalgebra::{Isometry2, Point2};
+use sim::floor_plan::FloorPlan;
+use sim::physics::{Behaviour, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec};
+use std::path::Path;
+
+/// The side of the cells that a floor plan is given for its frame, m.
+const PLAN_CELL_M: f64 = 0.05;
+
+pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
+    let frame = *world.frame();
+    let cell_m = frame.resolution_m();
+    let [width_m, height_m] = [frame.width(), frame.height()].map(|cells| cells as f64 * cell_m);
+    let mut lines = vec![
+        (
+            "size",
+            format!(
+                "{} × {} m, {} × {} cells of {cell_m} m",
+                short(width_m),
+                short(height_m),
+                frame.width(),
+                frame.height()
+            ),
+        ),
+        ("time", format!("physics steps of {} s", world.step_s())),
+        ("walls", format!("{}", world.walls().len())),
+    ];
+    lines.extend(world.obstacles().iter().map(|obstacle| ("thing", thing_line(obstacle))));
+    lines.extend(robot_lines(world.robots()));
+    let robot = |robot: &RobotSpec| Robot {
+        name: robot.name.clone(),
+        pose: robot.pose,
+        radius: robot.radius_m,
+        is_driven: robot.behaviour == Behaviour::Driven,
+    };
+    Content {
+        kind,
+        name: world.name().to_owned(),
+        description: world.description().to_owned(),
+        lines,
+        plan: Plan {
+            unit: "m",
+            frame,
+            walls: world.walls().iter().map(|wall| wall.corners().to_vec()).collect(),
+            things: world.obstacles().iter().map(thing).collect(),
+            robots: world.robots().iter().map(robot).collect(),
+        },
+    }
+}
+
+/// A floor plan alone; none if it has no area.
+pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
+    let size = plan.size_m();
+    let corners = [(0.0, 0.0), (size.x, 0.0), (size.x, size.y), (0.0, size.y)];
+    let corners = corners.map(|(x, y)| plan.origin * Point2::new(x, y));
+    let low = corners.iter().fold(corners[0], |low, corner| low.inf(corner));
+    let high = corners.iter().fold(corners[0], |high, corner| high.sup(corner));
+    let rectangles: Vec<Rectangle> = plan.rectangles().collect();
+    let bitmap = &plan.bitmap;
+    Some(Content {
+        kind: "floor plan",
+        name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        description: String::new(),
+        lines: vec![
+            ("size", format!("{} × {} m", short(size.x), short(size.y))),
+            (
+                "picture",
+                format!("{} × {} pixels of {} m", bitmap.width(), bitmap.height(), short(plan.pixel_m.x)),
+            ),
+            (
+                "walls",
+                format!(
+                    "{} rectangles, {} straight pieces of surface",
+                    rectangles.len(),
+                    plan.outline().count()
+                ),
+            ),
+        ],
+        plan: Plan {
+            unit: "m",
+            frame: GridFrame::covering(low, high.x - low.x, high.y - low.y, PLAN_CELL_M.max(plan.pixel_m.x))?,
+            walls: rectangles.iter().map(|wall| wall.corners().to_vec()).collect(),
+            things: Vec::new(),
+            robots: Vec::new(),
+        },
+    })
+}
+
+fn thing(obstacle: &ObstacleSpec) -> Thing {
+    let corners = |shape: Rectangle| shape.corners().to_vec();
+    let reach = match &obstacle.motion {
+        Motion::Fixed | Motion::Pushed(_) => Vec::new(),
+        Motion::Path(path) => {
+            path.keys.iter().map(|(_, middle)| corners(moved(&obstacle.shape, middle))).collect()
+        }
+        Motion::Door(door) => match door.leaf {
+            Leaf::Hinged { hinge, open_rad } => {
+                let turn = Isometry2::translation(hinge.x, hinge.y)
+                    * Isometry2::rotation(open_rad)
+                    * Isometry2::translation(-hinge.x, -hinge.y);
+                vec![corners(Rectangle { pose: turn * obstacle.shape.pose, ..obstacle.shape })]
+            }
+            Leaf::Sliding { by_m } => {
+                let pose = Isometry2::translation(by_m.x, by_m.y) * obstacle.shape.pose;
+                vec![corners(Rectangle { pose, ..obstacle.shape })]
+            }
+        },
+    };
+    let is_there = obstacle.appears_s.is_none();
+    let outline = if is_there { corners(obstacle.shape) } else { Vec::new() };
+    let later = if is_there { Vec::new() } else { vec![corners(obstacle.shape)] };
+    Thing { name: obstacle.name.clone(), outline, reach: [later, reach].concat() }
+}
+
+fn moved(shape: &Rectangle, middle: &Point2<f64>) -> Rectangle {
+    Rectangle { pose: Isometry2::from_parts((*middle).into(), shape.pose.rotation), ..*shape }
+}
+
+fn thing_line(obstacle: &ObstacleSpec) -> String {
+    let size = obstacle.shape.half_m * 2.0;
+    let what = match &obstacle.motion {
+        Motion::Fixed => "a box that stands".to_owned(),
+        Motion::Pushed(pushed) => format!("a box of {} kg that can be pushed", short(pushed.mass_kg)),
+        Motion::Path(path) => {
+            let (last_s, _) = path.keys.last().copied().unwrap_or_default();
+            let again = if path.is_loop { "over and over" } else { "once" };
+            format!("a block on a path of {} places, {} s long, {again}", path.keys.len(), short(last_s))
+        }
+        Motion::Door(door) => {
+            let leaf = if matches!(door.leaf, Leaf::Hinged { .. }) { "hinged" } else { "sliding" };
+            let opening = match &door.opening {
+                Opening::Periodic { closed_s, open_s } => {
+                    format!("closed {} s, open {} s", short(*closed_s), short(*open_s))
+                }
+                Opening::Random { closed_s, open_s } => {
+                    format!("at random closed {} s, open {} s in the mean", short(*closed_s), short(*open_s))
+                }
+                Opening::Scripted { switches_s } => format!("moved {} times, as written", switches_s.len()),
+            };
+            format!("a {leaf} door, {opening}")
+        }
+    };
+    let when = [("from", obstacle.appears_s), ("until", obstacle.disappears_s)];
+    let when = when.into_iter().filter_map(|(word, at_s)| Some(format!(", {word} {} s", short(at_s?))));
+    format!(
+        "`{}`: {what}, {} × {} m{}",
+        obstacle.name,
+        short(size.x),
+        short(size.y),
+        when.collect::<String>()
+    )
+}
+
+/// A line for each robot; one for all in a row that differ in nothing but name and place.
+fn robot_lines(robots: &[RobotSpec]) -> impl Iterator<Item = (&'static str, String)> {
+    robots.chunk_by(|one, next| robot_line(one) == robot_line(next)).map(|alike| {
+        let (first, last) = (&alike[0], &alike[alike.len() - 1]);
+        let what = robot_line(first);
+        match alike.len() {
+            1 => ("robot", format!("`{}` {what}", first.name)),
+            number => ("robots", format!("{number}, `{}` to `{}`, each {what}", first.name, last.name)),
+        }
+    })
+}
+
+fn robot_line(robot: &RobotSpec) -> String {
+    let does = match &robot.behaviour {
+        Behaviour::Driven => "is driven",
+        Behaviour::Standing => "stands",
+        Behaviour::Circle(_) => "drives a circle",
+        Behaviour::Wander(_) => "wanders",
+        Behaviour::Waypoints(_) => "drives from point to point",
+        Behaviour::WallPatrol(_) => "follows a wall back and forth",
+    };
+    let laser = &robot.laser;
+    format!(
+        "{does}, radius {} m, up to {} m/s; laser of {} beams over {}°, {} m, {} Hz",
+        short(robot.radius_m),
+        short(robot.drive.max_linear_mps),
+        laser.beams,
+        short(laser.fov_rad.to_degrees()),
+        short(laser.range_max_m),
+        short(laser.rate_hz),
+    )
+}
+
+/// As short as it can be, to the thousandth: 2 and not 2.0.
+fn short(value: f64) -> String {
+    format!("{}", (value * 1000.0).round() / 1000.0)
+}

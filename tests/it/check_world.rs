@@ -1,0 +1,52 @@
+//! `check_world` says what is in files of every kind, draws them, and tells what is wrong.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn check(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_check_world")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+#[test]
+fn worlds_are_described_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let lab = concat!(env!("CARGO_MANIFEST_DIR"), "/sim/worlds/stage/lab.world");
+    let ended = check(folder.path(), &["--png", "--out", "plans", "two_blocks", "four_rooms", lab]);
+    assert_eq!(ended.status.code(), Some(0), "{ended:?}");
+    let said = text(&ended.stdout);
+    assert!(said.contains("two_blocks: right, a grid world called `two blocks`"), "{said}");
+    assert!(said.contains("`dummy` follows a wall back and forth"), "{said}");
+    assert!(text(&ended.stderr).contains("warning: `window` is left out"));
+    for (name, is_wide) in [("two_blocks", false), ("four_rooms", false), ("lab", true)] {
+        let picture = image::open(folder.path().join("plans").join(name).with_extension("png")).unwrap();
+        let picture = picture.to_rgb8();
+        // The plot is as wide as high in a square world, and lies in the middle of the rest.
+        assert_eq!(picture.height() < 600, is_wide, "{name}: {:?}", picture.dimensions());
+        let walls = picture.pixels().filter(|pixel| pixel.0 == [70, 74, 82]).count();
+        assert!(walls > 2000, "{name}: {walls} pixels of wall");
+    }
+}
+
+#[test]
+fn what_is_wrong_is_told_of_every_file() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("ragged.toml"),
+        "name = 'x'\nsensor_radius = 2\nmap = '''\n####\n#R#\n'''\n",
+    )
+    .unwrap();
+    let ended = check(folder.path(), &["--png", "ragged.toml", "gone.toml", "two_blocks"]);
+    assert_eq!(ended.status.code(), Some(2), "{ended:?}");
+    let said = text(&ended.stderr);
+    assert!(said.contains("error: the rows of the map are not equally long\n --> ragged.toml:5:1"), "{said}");
+    assert!(said.contains("error: cannot read `gone.toml`"), "{said}");
+    assert!(text(&ended.stdout).contains("gone.toml: wrong, 1 error"));
+    let mut names: Vec<_> =
+        std::fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["ragged.toml", "two_blocks.png"]);
+}
