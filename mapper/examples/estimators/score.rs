@@ -28,11 +28,13 @@ impl Mean {
         }
     }
 
+    /// Adds every value of another.
     pub(crate) fn add_all(&mut self, other: &Self) {
         self.sum += other.sum;
         self.count += other.count;
     }
 
+    /// NaN of nothing.
     pub(crate) fn mean(&self) -> f64 {
         self.sum / f64::from(self.count)
     }
