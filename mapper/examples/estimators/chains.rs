@@ -43,7 +43,7 @@ const IDENTIFIED: f64 = 0.1;
 const MASS: f64 = 0.9;
 const CELLS: usize = 100;
 /// Cells lie so far apart that none tells of another.
-const APART: usize = 3;
+const APART: usize = 4;
 
 /// What one estimator reached with one kind of chain.
 #[derive(Clone, Copy, Debug)]

@@ -13,7 +13,7 @@ use crate::ledger::ReadingIndex;
 use crate::{CellStatistics, GapWorth};
 use bins::Bins;
 use fit::Evidence;
-pub(crate) use prior::{MEAN_EVENTS, MEDIAN_EVENTS};
+pub(crate) use prior::{MEAN_EVENTS, MEDIAN_EVENTS, Near};
 pub(crate) use regularity::Regularity;
 pub(crate) use watch::Watch;
 
@@ -21,6 +21,10 @@ pub(crate) use watch::Watch;
 /// gap is bounded, and what is missed tells little.
 const COUNTED_GROWTH: f64 = 1.0 / 8.0;
 const WATCHED_GROWTH: f64 = 1.0 / 4.0;
+
+/// A stay by the clock that was seen whole counts as so many more stays of a chain: it tells the length of
+/// all of them.
+const WHOLE_STAY: f64 = 3.0;
 
 /// The gaps of one cell, and what they are worth.
 #[derive(Clone, Debug, Default)]
@@ -45,6 +49,8 @@ struct Weighed {
     due: [f64; 2],
     /// The last stay in each state from an event in view to an event in view, in steps; 0 before the first.
     stays: [f64; 2],
+    /// All such stays: how many, and their steps.
+    whole: Watch,
 }
 
 impl Gaps {
@@ -62,6 +68,8 @@ impl Gaps {
     /// The cell stayed in a state for so many steps, from an event in view to an event in view.
     pub(crate) fn add_stay(&mut self, state: usize, steps: f64, regularity: &mut Regularity) {
         let weighed = self.weighed.get_or_insert_default();
+        weighed.whole.events[state] += 1.0;
+        weighed.whole.steps[state] += steps;
         let before = std::mem::replace(&mut weighed.stays[state], steps);
         if before > 0.0 {
             regularity.add(state, before, steps);
@@ -96,7 +104,7 @@ impl Gaps {
         f64::from(self.bins.count()) + f64::from(seen.events())
     }
 
-    /// Weighs the gaps of a cell that changes. `near` is what was seen of the cells around it.
+    /// Weighs the gaps of a cell that changes. `near` is what the cells around it tell.
     pub(crate) fn weigh(
         &mut self,
         estimator: Estimator,
@@ -113,8 +121,9 @@ impl Gaps {
             return;
         }
         let watch = Watch::of(seen);
-        let prior =
-            prior::of_neighbours(weighed.own, near) + prior::of_looking(watch, &self.bins, seen.period);
+        let prior = near
+            + prior::of_looking(watch, &self.bins, seen.period)
+            + weighed.whole_stays(regularity.weights());
         let evidence = Evidence {
             watch: watch + prior + Watch::of_both(MEDIAN_EVENTS, 1.0),
             gaps: &self.bins,
@@ -143,6 +152,17 @@ impl Gaps {
             regular: regularity.weights(),
         };
         evidence.fit(slowest(seen)).map_or((prior, 0.0), |fit| (fit.worth + prior, fit.mixed))
+    }
+}
+
+impl Weighed {
+    /// What the stays that were seen whole tell beyond what was watched. Mostly the state that is left sooner
+    /// has such stays; of the other, only its shortest stays fit into a visit, and count little.
+    fn whole_stays(&self, regular: [f64; 2]) -> Watch {
+        let Some(Step { block, free }) = self.step else { return Watch::default() };
+        let [blocked, unblocked] = [block, free].map(|leave| leave / (block + free));
+        let part = [blocked * blocked * regular[0], unblocked * unblocked * regular[1]];
+        self.whole.times(part.map(|part| WHOLE_STAY * part))
     }
 }
 

@@ -7,11 +7,11 @@
 /// Two stays that differ by at most this part of their sum are equal.
 const EQUAL: f64 = 0.1;
 /// Pairs of a Markov chain that are taken as seen from the start: nothing is regular until it was shown.
-const DOUBT: f64 = 4.0;
+const DOUBT: f64 = 2.0;
 /// Where so few, or so many, of the pairs are equal beyond chance, the world is a Markov chain, or a
 /// clock. Stays that begin and end within short visits are a little more equal than others; clocks stop while
 /// something is in their way.
-const BETWEEN: [f64; 2] = [0.2, 0.7];
+const BETWEEN: [f64; 2] = [0.1, 0.5];
 
 /// How often two stays of a cell in a row are equal, over all cells.
 #[derive(Clone, Copy, Debug, Default)]
