@@ -2,9 +2,8 @@
 
 use crate::information::Information;
 use crate::patterns::{Looker, Pattern};
-use crate::score::{Mean, log_error};
+use crate::score::{MASS, Mean, log_error};
 use geometry::{Cell, CellReading, GridFrame};
-use mapper::Estimator;
 use nalgebra::Point2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -37,10 +36,6 @@ const RATES: [f64; 10] = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.
 pub(crate) const SHARES: [f64; 2] = [0.5, 0.1];
 /// Chains that leave a state faster than this alternate rather than wait.
 const FASTEST: f64 = 0.9;
-/// A pattern of looks identifies a rate if no estimator without bias need be off by more, relatively.
-const IDENTIFIED: f64 = 0.1;
-/// The mass of the credible intervals that are tried.
-const MASS: f64 = 0.9;
 const CELLS: usize = 100;
 /// Cells lie so far apart that none tells of another.
 const APART: usize = 4;
@@ -53,7 +48,7 @@ pub(crate) struct Score {
     pub(crate) rms: f64,
     pub(crate) log_error: f64,
     /// Share of the cells whose credible interval holds the truth.
-    covered: f64,
+    pub(crate) covered: f64,
 }
 
 /// What came out for one kind of chain under one pattern of looks.
@@ -62,7 +57,7 @@ pub(crate) struct Outcome {
     pub(crate) share_blocked: f64,
     pub(crate) rate: f64,
     /// The relative standard deviation that an estimator without bias has at least.
-    least: f64,
+    pub(crate) least: f64,
     pub(crate) scores: Vec<Score>,
 }
 
@@ -72,9 +67,8 @@ fn run(chains: &[Chain], pattern: Pattern, apart: usize, steps: u64) -> anyhow::
     let frame = GridFrame::new(Point2::origin(), 1.0, CELLS * apart, 1);
     let mut mappers = crate::mappers(frame.ok_or_else(|| anyhow::anyhow!("too many cells"))?)?;
     let of = |number: usize| chains[number % chains.len()];
-    let mut cells: Vec<(bool, Looker)> = (0..CELLS)
-        .map(|number| (rng.random_bool(of(number).share_blocked()), Looker::default()))
-        .collect();
+    let mut cells: Vec<(bool, Looker)> =
+        (0..CELLS).map(|number| (rng.random_bool(of(number).share_blocked()), Looker::default())).collect();
     let mut information = Information::new(chains[0]);
     let mut reading = CellReading { time: 0.0, pose: geometry::pose(0.0, 0.0, 0.0), cells: Vec::new() };
     for step in 0..steps {
@@ -105,7 +99,7 @@ fn run(chains: &[Chain], pattern: Pattern, apart: usize, steps: u64) -> anyhow::
             square.add(error * error);
             log.add(log_error(mapper.rate(index), truth));
             let (low, high) = mapper.credible_interval(index, MASS);
-            covered.add(f64::from(u8::from((low..=high).contains(&truth))));
+            covered.add_if((low..=high).contains(&truth));
         }
         let (rms, log_error) = (square.mean().sqrt(), log.mean());
         Score { bias: bias.mean(), rms, log_error, covered: covered.mean() }
@@ -123,6 +117,7 @@ fn run(chains: &[Chain], pattern: Pattern, apart: usize, steps: u64) -> anyhow::
 pub(crate) fn all(steps: u64) -> anyhow::Result<Vec<Outcome>> {
     let mut outcomes = Vec::new();
     for pattern in Pattern::ALL {
+        eprintln!("Chains, looks {}", pattern.name());
         for share in SHARES {
             for rate in RATES.into_iter().filter(|rate| rate / share <= FASTEST) {
                 outcomes.push(run(&[Chain::new(rate, share)], pattern, APART, steps)?);
@@ -132,57 +127,15 @@ pub(crate) fn all(steps: u64) -> anyhow::Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// Prints what every estimator reached under every pattern.
-pub(crate) fn tables(outcomes: &[Outcome]) {
-    println!(
-        "Chains: the largest bias, the mean log error, where the looks identify the rate; the mean log error \
-         where they do not; the share of {MASS} intervals that hold the truth; the most by which the log error, \
-         and the root mean square of the relative error, are above those of `paper`:\n"
-    );
-    println!("| looks | estimator | identified | bias | log error | log error elsewhere | covered | worse |");
-    println!("|---|---|---|---|---|---|---|---|");
-    for pattern in Pattern::ALL {
-        for (at, estimator) in Estimator::ALL.iter().enumerate() {
-            let [mut identified, mut elsewhere, mut covered] = [Mean::default(); 3];
-            let (mut bias, mut worse, mut count): (f64, [f64; 2], u32) = (0.0, [f64::NEG_INFINITY; 2], 0);
-            for outcome in outcomes.iter().filter(|outcome| outcome.pattern == pattern) {
-                let (score, paper) = (outcome.scores[at], outcome.scores[0]);
-                if outcome.least <= IDENTIFIED {
-                    bias = if score.bias.abs() > bias.abs() { score.bias } else { bias };
-                    identified.add(score.log_error);
-                    count += 1;
-                } else {
-                    elsewhere.add(score.log_error);
-                }
-                covered.add(score.covered);
-                worse = [
-                    worse[0].max(score.log_error - paper.log_error),
-                    worse[1].max(score.rms - paper.rms),
-                ];
-            }
-            print!("| {} | `{}` | {count} | {bias:+.3} |", pattern.name(), estimator.name());
-            print!(" {:.3} | {:.3} |", identified.mean(), elsewhere.mean());
-            println!(" {:.2} | {:+.3}, {:+.3} |", covered.mean(), worse[0], worse[1]);
-        }
-    }
-    println!();
-}
+/// The cycle rates of cells between unlike neighbours.
+const MIXED_RATES: [f64; 3] = [0.005, 0.01, 0.02];
 
-/// Prints the bias of cells that lie between others of a different pace.
-pub(crate) fn unlike_neighbours(steps: u64) -> anyhow::Result<()> {
-    println!("Neighbours that differ, seen 10 of 40 steps; bias and log error of `two-state-gaps`:\n");
-    println!("| cycle rate | alone | between cells 10 times faster | 10 times slower |\n|---|---|---|---|");
-    let last = Estimator::ALL.len() - 1;
-    for rate in [0.005, 0.01, 0.02] {
-        print!("| {rate} |");
-        for other in [rate, 10.0 * rate, 0.1 * rate] {
-            let apart = if other == rate { APART } else { 1 };
-            let chains = [Chain::new(rate, 0.5), Chain::new(other, 0.5)];
-            let Score { bias, log_error, .. } = run(&chains, Pattern::Of(10, 40), apart, steps)?.scores[last];
-            print!(" {bias:+.3}, {log_error:.3} |");
-        }
-        println!();
-    }
-    println!();
-    Ok(())
+/// Cells alone, between cells 10 times faster, and between cells 10 times slower, seen 10 of 40 steps.
+pub(crate) fn unlike_neighbours(steps: u64) -> anyhow::Result<Vec<[Outcome; 3]>> {
+    let outcome = |rate: f64, factor: f64| {
+        let apart = if factor == 1.0 { APART } else { 1 };
+        run(&[Chain::new(rate, 0.5), Chain::new(factor * rate, 0.5)], Pattern::Of(10, 40), apart, steps)
+    };
+    let row = |rate| Ok([outcome(rate, 1.0)?, outcome(rate, 10.0)?, outcome(rate, 0.1)?]);
+    MIXED_RATES.into_iter().map(row).collect()
 }

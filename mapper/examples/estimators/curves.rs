@@ -31,7 +31,8 @@ pub(crate) fn draw(outcomes: &[Outcome], path: &str) -> anyhow::Result<()> {
     let area = SVGBackend::new(path, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
     let rows = Pattern::ALL.len().div_ceil(COLUMNS);
-    for (number, (panel, pattern)) in area.split_evenly((rows, COLUMNS)).iter().zip(Pattern::ALL).enumerate() {
+    for (number, (panel, pattern)) in area.split_evenly((rows, COLUMNS)).iter().zip(Pattern::ALL).enumerate()
+    {
         let mut chart = ChartBuilder::on(panel)
             .caption(pattern.name(), ("sans-serif", 15))
             .margin(8)
@@ -51,7 +52,8 @@ pub(crate) fn draw(outcomes: &[Outcome], path: &str) -> anyhow::Result<()> {
             let of_panel = |outcome: &&Outcome| {
                 outcome.pattern == pattern && (outcome.share_blocked - SHARES[0]).abs() < 1e-9
             };
-            let line = outcomes.iter().filter(of_panel).map(|outcome| (outcome.rate, outcome.scores[at].log_error));
+            let line =
+                outcomes.iter().filter(of_panel).map(|outcome| (outcome.rate, outcome.scores[at].log_error));
             let style = COLOURS[at].stroke_width(2);
             let series = chart.draw_series([PathElement::new(line.collect::<Vec<_>>(), style)])?;
             if number == 0 {

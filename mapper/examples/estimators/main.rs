@@ -1,5 +1,5 @@
 //! How right the estimators of rates are, all on the same streams of observations: in block worlds, and on
-//! simulated two-state chains. Prints the tables of `docs/estimators.md` and draws `docs/estimators.svg`.
+//! simulated two-state chains. Writes `docs/estimators/tables.md` and `docs/estimators/chains.svg`.
 //!
 //! ```text
 //! cargo run --release -p mapper --example estimators              60 block worlds of 20,000 steps
@@ -13,8 +13,12 @@ mod information;
 mod patterns;
 mod robots;
 mod score;
+mod tables;
 
 use mapper::{Estimator, Mapper, MapperSettings, SettingsError};
+
+const TABLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/estimators/tables.md");
+const CURVES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/estimators/chains.svg");
 
 /// One mapper per estimator, in the order of [`Estimator::ALL`].
 fn mappers(frame: geometry::GridFrame) -> Result<Vec<Mapper>, SettingsError> {
@@ -26,10 +30,16 @@ fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1).map(|text| text.parse::<u64>());
     let worlds = arguments.next().unwrap_or(Ok(60))?;
     let steps = arguments.next().unwrap_or(Ok(20_000))?;
-    blocks::table(worlds, steps)?;
-    if std::env::var("NC").is_ok() { return Ok(()); }
+    let mut text = format!(
+        "# Estimators: the tables\n\nMade by `cargo run --release -p mapper --example estimators -- {worlds} \
+         {steps}`; what they mean is in [`estimators.md`](../estimators.md).\n"
+    );
+    for set in blocks::Set::ALL {
+        text += &tables::blocks(set, &blocks::judge(set, worlds, steps)?);
+    }
     let outcomes = chains::all(steps)?;
-    chains::tables(&outcomes);
-    chains::unlike_neighbours(steps)?;
-    curves::draw(&outcomes, concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/estimators.svg"))
+    text += &tables::chains(&outcomes);
+    text += &tables::unlike_neighbours(&chains::unlike_neighbours(steps)?);
+    std::fs::write(TABLES, text)?;
+    curves::draw(&outcomes, CURVES)
 }
