@@ -12,6 +12,7 @@ mod curves;
 mod information;
 mod patterns;
 mod robots;
+mod room;
 mod score;
 mod tables;
 
@@ -37,6 +38,7 @@ fn main() -> anyhow::Result<()> {
     for set in blocks::Set::ALL {
         text += &tables::blocks(set, &blocks::judge(set, worlds, steps)?);
     }
+    text += &tables::room(&room::judge()?);
     let outcomes = chains::all(steps)?;
     text += &tables::chains(&outcomes);
     text += &tables::unlike_neighbours(&chains::unlike_neighbours(steps)?);

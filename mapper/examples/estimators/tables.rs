@@ -4,6 +4,7 @@ use crate::blocks::{Judged, Set};
 use crate::chains::Outcome;
 use crate::patterns::Pattern;
 use crate::robots::Habit;
+use crate::room;
 use crate::score::{MASS, Mean};
 use mapper::Estimator;
 use std::fmt::Write as _;
@@ -61,6 +62,29 @@ pub(crate) fn blocks(set: Set, judged: &Judged) -> String {
         events[0],
         events[1],
     );
+    text
+}
+
+/// The dummy robot of the physics world.
+pub(crate) fn room(scores: &[Vec<room::Score>]) -> String {
+    let mut text = format!(
+        "\n## The physics world\n\nThe dummy robot of `four_rooms`, watched for half an hour by a laser that stands \
+         in its room.\n\n| scans seen | estimator | log error | bias | rate of static cells | {MASS} intervals \
+         that hold the truth |\n|---|---|---|---|---|---|\n"
+    );
+    for ((seen, of), scores) in room::VISITS.into_iter().zip(scores) {
+        for (estimator, score) in Estimator::ALL.into_iter().zip(scores) {
+            let _ = writeln!(
+                text,
+                "| {seen} of {of} | {} | {:.3} | {:+.2} | {} | {:.2} |",
+                name(estimator),
+                score.log_error.mean(),
+                score.bias.mean(),
+                score.false_rate.mean(),
+                score.covered.mean(),
+            );
+        }
+    }
     text
 }
 

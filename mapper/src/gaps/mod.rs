@@ -37,8 +37,10 @@ pub(crate) struct Gaps {
 /// What the gaps were worth when they were last weighed, and when that was.
 #[derive(Clone, Debug, Default)]
 struct Weighed {
-    /// The gaps, the neighbours, and the step of looking.
+    /// The gaps, the neighbours, the whole stays, and the step of looking.
     worth: Watch,
+    /// The neighbours alone.
+    near: Watch,
     /// What was watched, and the gaps.
     own: Watch,
     /// What the gaps tell of both probabilities together.
@@ -51,6 +53,15 @@ struct Weighed {
     stays: [f64; 2],
     /// All such stays: how many, and their steps.
     whole: Watch,
+}
+
+/// What is believed of both probabilities of a cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Belief {
+    /// The watching that would tell as much.
+    pub(crate) watch: Watch,
+    /// What the gaps tell of both together: the mixed term of their information, in log-odds.
+    pub(crate) mixed: f64,
 }
 
 impl Gaps {
@@ -135,23 +146,28 @@ impl Gaps {
         weighed.mixed = fit.mixed;
         weighed.own = watch + fit.worth;
         weighed.worth = fit.worth + prior;
+        weighed.near = near;
     }
 
-    /// What the gaps are worth, and what they tell of both probabilities together, in log-odds; also of a cell
-    /// that never changed.
-    pub(crate) fn belief(&self, seen: &CellStatistics, regularity: &Regularity) -> (Watch, f64) {
-        if let Some(weighed) = &self.weighed {
-            return (weighed.worth, weighed.mixed);
+    /// What is believed of a cell with `watch` seen and known besides the gaps; also of one that never changed.
+    pub(crate) fn belief(&self, seen: &CellStatistics, watch: Watch, regularity: &Regularity) -> Belief {
+        if let Some(Weighed { worth, near, mixed, .. }) = self.weighed.as_deref() {
+            let all = watch + *worth;
+            // What moves shows itself to all cells around at the same time: they tell of the rate what
+            // the cell has mostly seen itself. They move the estimate, but make it no surer.
+            let own = [0, 1].map(|state| 1.0 - near.steps[state] / all.steps[state]);
+            return Belief { watch: all.times(own), mixed: *mixed };
         }
-        let watch = Watch::of(seen);
-        let prior = prior::of_looking(watch, &self.bins, seen.period);
+        let looking = prior::of_looking(Watch::of(seen), &self.bins, seen.period);
         let evidence = Evidence {
-            watch: watch + prior + Watch::of_both(MEAN_EVENTS, 1.0),
+            watch: watch + looking,
             gaps: &self.bins,
             period: seen.period,
             regular: regularity.weights(),
         };
-        evidence.fit(slowest(seen)).map_or((prior, 0.0), |fit| (fit.worth + prior, fit.mixed))
+        let (worth, mixed) =
+            evidence.fit(slowest(seen)).map_or((Watch::default(), 0.0), |fit| (fit.worth, fit.mixed));
+        Belief { watch: watch + looking + worth, mixed }
     }
 }
 
