@@ -10,12 +10,12 @@ pub(crate) const MEDIAN_EVENTS: f64 = 1.0 / 6.0;
 pub(crate) const MEAN_EVENTS: f64 = 0.5;
 
 /// What the neighbours tell counts as so many events at most.
-const NEAR_EVENTS: f64 = 60.0;
+const NEAR_EVENTS: f64 = 120.0;
 /// The variance of the logarithms of rates between neighbours that are alike.
 const NEAR_VARIANCE: f64 = 0.03;
 /// Degrees of freedom of the doubt whether a neighbour is like the cell: few, so that one that is not soon
 /// counts for nothing.
-const FREEDOM: f64 = 1.0;
+const FREEDOM: f64 = 1.5;
 
 /// What the cells around one tell of it: what moves, moves from cell to cell, and stays in each alike.
 ///

@@ -11,7 +11,7 @@ const DOUBT: f64 = 4.0;
 /// Where so few, or so many, of the pairs are equal beyond chance, the world is a Markov chain, or a
 /// clock. Stays that begin and end within short visits are a little more equal than others; clocks stop while
 /// something is in their way.
-const BETWEEN: [f64; 2] = [0.15, 0.5];
+const BETWEEN: [f64; 2] = [0.15, 0.4];
 
 /// How often two stays of a cell in a row are equal, over all cells.
 #[derive(Clone, Copy, Debug, Default)]
