@@ -44,7 +44,7 @@ impl Looker {
             Pattern::Of(view, every) => (step + shift) % every < view,
             Pattern::Stays { every, calm } => {
                 let is_there = self.seen.is_some_and(|(at, _)| at + 1 == step);
-                (step + shift) % every == 0 || is_there && self.calm < calm
+                (step + shift).is_multiple_of(every) || is_there && self.calm < calm
             }
         }
     }

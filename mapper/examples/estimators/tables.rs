@@ -40,7 +40,7 @@ pub(crate) fn blocks(set: Set, judged: &Judged) -> String {
         let errors: Vec<String> = score.log_error.iter().map(|mean| figure(mean.mean(), 3)).collect();
         let _ = writeln!(
             text,
-            "| {} | {} | {:.3} | {:.2} | {:+.2} | {} | {} | {} | {:.2} | {:.4} |",
+            "| {} | {} | {:.3} | {:.3} | {:+.2} | {} | {} | {} | {:.2} | {:.4} |",
             name(estimator),
             errors.join(" | "),
             all(at),
