@@ -9,6 +9,8 @@ pub(crate) const MEDIAN_EVENTS: f64 = 1.0 / 6.0;
 /// The same for the mean of that distribution.
 pub(crate) const MEAN_EVENTS: f64 = 0.5;
 
+// The next three were chosen on generated block worlds; `docs/estimators.md` has what else was tried.
+
 /// What the neighbours tell counts as so many events at most.
 const NEAR_EVENTS: f64 = 120.0;
 /// The variance of the logarithms of rates between neighbours that are alike.
