@@ -1,13 +1,12 @@
 //! How sure a rate is.
 
 use crate::gamma;
-use crate::gaps::Watch;
+use crate::gaps::Belief;
 
 /// The interval that holds the cycle rate with probability `mass`, as much of the rest above as below, by
-/// the posterior of the two-state chain: `all` that was seen, in steps of `period`, and the `mixed` term of
-/// its information. The rate is taken to be gamma distributed, which it is where only one of the two
-/// probabilities is in doubt.
-pub(crate) fn interval(all: Watch, mixed: f64, period: f64, mass: f64) -> (f64, f64) {
+/// the posterior of the two-state chain in steps of `period`. The rate is taken to be gamma distributed, which
+/// it is where only one of the two probabilities is in doubt.
+pub(crate) fn interval(Belief { watch: all, mixed }: Belief, period: f64, mass: f64) -> (f64, f64) {
     let [block, free] = all.leave().map(|leave| leave.clamp(f64::MIN_POSITIVE, 1.0));
     let information = [(0, block), (1, free)]
         .map(|(state, leave)| (all.steps[state] * leave * (1.0 - leave)).max(f64::MIN_POSITIVE));

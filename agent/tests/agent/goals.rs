@@ -153,8 +153,9 @@ fn poisson_weighs_by_the_probability_of_a_change() {
         (8.0, &["..."]),
         (11.0, &[".  "]),
     ]);
-    // Two-state: watched free for 2 + 2 s with one block event, blocked for 4 s with one free event.
-    let interval = 4.0 + 4.0;
+    // Last seen 3 s ago, of a cycle of about 8 s: free for 2 + 2 s, blocked for 4 s.
+    let interval = mapper.interval(1);
+    assert!((4.0..16.0).contains(&interval), "{interval}");
     let expected = 1.0 - f64::exp(-3.0 / interval);
     let [left, middle, right] = weigh(Poisson, &mapper)[0][..] else { panic!("three cells") };
     assert_eq!((left, right), (0.0, 0.0));

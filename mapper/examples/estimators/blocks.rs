@@ -1,217 +1,222 @@
 //! Block worlds: things that stand for a fixed time and move on, seen by a robot that moves.
 
 use crate::robots::{Habit, Robot};
-use crate::score::{Mean, log_error};
-use geometry::World;
-use mapper::{Estimator, Mapper, MapperSettings};
+use crate::score::{MASS, Mean, log_error};
+use geometry::{CellState, World};
+use mapper::{Estimator, Mapper};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sim::grid::{GenerateSettings, GridSpec, GridTruth, GridWorld};
 
-/// Cells in view for less than this share of the time count as sparse.
-const SPARSE: f64 = 0.1;
+/// The first seed. The constants of the estimators were chosen on worlds below it.
+const FIRST_SEED: u64 = 1000;
+/// Seeds per shipped world.
+const SHIPPED_SEEDS: u64 = 5;
+const SHIPPED: [(&str, &str); 5] = [
+    ("two_blocks.toml", include_str!("../../../worlds/two_blocks.toml")),
+    ("corridor_with_doors.toml", include_str!("../../../worlds/corridor_with_doors.toml")),
+    ("many_slow_blocks.toml", include_str!("../../../worlds/many_slow_blocks.toml")),
+    ("one_fast_block.toml", include_str!("../../../worlds/one_fast_block.toml")),
+    ("open_hall.toml", include_str!("../../../worlds/open_hall.toml")),
+];
+/// The chances per step that a block which is due moves, and that the robot's action happens.
+const CHANCES: (f64, f64) = (0.7, 0.9);
 
-/// What one estimator reached in one world.
+/// Cells in view for less than this share of the time are seen sparsely.
+const SPARSE: f64 = 0.05;
+/// Every so many steps predictions are judged, in the second half of a life.
+const JUDGED_EVERY: u64 = 97;
+
+/// Worlds of one kind.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Set {
+    Generated,
+    Stochastic,
+    Shipped,
+}
+
+impl Set {
+    pub(crate) const ALL: [Self; 3] = [Self::Generated, Self::Stochastic, Self::Shipped];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Generated => "Generated block worlds",
+            Self::Stochastic => "Generated block worlds, stochastic",
+            Self::Shipped => "The shipped grid worlds",
+        }
+    }
+
+    /// Every world with the seed of what happens in it.
+    fn worlds(self, count: u64) -> anyhow::Result<Vec<(GridSpec, u64)>> {
+        let generated = |seed| GridSpec::generate(&GenerateSettings::default(), seed);
+        let seeds = FIRST_SEED..FIRST_SEED + count;
+        match self {
+            Self::Generated => Ok(seeds.map(|seed| (generated(seed), seed)).collect()),
+            Self::Stochastic => {
+                let (block, robot) = CHANCES;
+                Ok(seeds.map(|seed| (generated(seed).with_chances(block, robot), seed)).collect())
+            }
+            Self::Shipped => {
+                let mut worlds = Vec::new();
+                for (name, text) in SHIPPED {
+                    let spec = GridSpec::parse(name, text)?;
+                    worlds.extend((0..SHIPPED_SEEDS).map(|seed| (spec.clone(), seed)));
+                }
+                Ok(worlds)
+            }
+        }
+    }
+}
+
+/// What one estimator reached.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct BlockScore {
-    /// Averaged per thing, then over things.
-    pub(crate) log_error: f64,
-    pub(crate) relative_error: f64,
-    pub(crate) bias: f64,
-    pub(crate) sparse: Mean,
+pub(crate) struct Score {
+    /// The log error per habit of the robot, averaged per thing, over the things of a world, over worlds.
+    pub(crate) log_error: [Mean; Habit::ALL.len()],
+    pub(crate) bias: Mean,
+    /// The log error of cells that were in view for long, and of the others.
     pub(crate) dense: Mean,
-    pub(crate) false_rate: f64,
-    pub(crate) brier: f64,
+    pub(crate) sparse: Mean,
+    /// The rate of cells that no thing ever touches.
+    pub(crate) false_rate: Mean,
+    /// The share of changing cells whose credible interval holds the truth.
+    pub(crate) covered: Mean,
+    /// The square error of P(blocked now) of cells out of view.
+    pub(crate) brier: Mean,
 }
 
-fn score(mapper: &Mapper, truth: &GridTruth, brier: &Mean) -> BlockScore {
-    let mut things = Mean::default();
-    let [mut relative, mut bias, mut sparse, mut dense, mut still] = [Mean::default(); 5];
-    for thing in truth.things() {
-        let mut cells = Mean::default();
-        for &index in thing {
-            let (rate, true_rate) = (mapper.rate(index), truth.cycle_rate(index));
-            if true_rate == 0.0 {
-                continue;
+impl Score {
+    /// Judges one life at its end.
+    fn add_life(&mut self, habit: usize, mapper: &Mapper, truth: &GridTruth) {
+        let [mut things, mut bias] = [Mean::default(); 2];
+        for thing in truth.things() {
+            let mut cells = Mean::default();
+            for &index in thing.iter().filter(|&&index| truth.block_events(index) > 0) {
+                let (rate, true_rate) = (mapper.rate(index), truth.cycle_rate(index));
+                let error = log_error(rate, true_rate);
+                cells.add(error);
+                bias.add(rate / true_rate - 1.0);
+                let is_sparse = mapper.statistics(index).observed() < SPARSE * truth.time();
+                if is_sparse {
+                    self.sparse.add(error)
+                } else {
+                    self.dense.add(error)
+                }
+                let (low, high) = mapper.credible_interval(index, MASS);
+                self.covered.add_if((low..=high).contains(&true_rate));
             }
-            let error = log_error(rate, true_rate);
-            cells.add(error);
-            relative.add((rate / true_rate - 1.0).abs());
-            bias.add(rate / true_rate - 1.0);
-            let share = mapper.statistics(index).observed() / truth.time();
-            if share < SPARSE { sparse.add(error) } else { dense.add(error) }
+            things.add_mean(&cells);
         }
-        things.add_mean(&cells);
-    }
-    for index in 0..mapper.frame().len() {
-        if !truth.is_swept(index) && mapper.was_ever_seen(index) {
-            still.add(mapper.rate(index));
+        self.log_error[habit].add_mean(&things);
+        self.bias.add_mean(&bias);
+        for index in 0..mapper.frame().len() {
+            if !truth.is_swept(index) && mapper.was_ever_seen(index) {
+                self.false_rate.add(mapper.rate(index));
+            }
         }
     }
-    BlockScore {
-        log_error: things.mean(),
-        relative_error: relative.mean(),
-        bias: bias.mean(),
-        sparse,
-        dense,
-        false_rate: still.mean(),
-        brier: brier.mean(),
+
+    /// Judges what is believed now of the cells out of view.
+    fn add_predictions(&mut self, mapper: &Mapper, truth: &GridTruth) {
+        for index in out_of_view(mapper, truth) {
+            self.brier.add(square_error(mapper.blocked_probability(index), truth.is_blocked(index)));
+        }
     }
 }
 
-/// Lets a robot live in a world, and every estimator learn from what it sees.
-pub(crate) fn live(spec: &GridSpec, habit: Habit, steps: u64, seed: u64) -> anyhow::Result<Vec<BlockScore>> {
-    let mut world = GridWorld::new(spec, seed);
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream(1);
-    let mut robot = Robot::new(spec, habit, rng);
-    let mut mappers = Estimator::ALL
-        .map(|estimator| {
-            Mapper::new(&MapperSettings { estimator, ..MapperSettings::default() }, *spec.frame())
-        })
-        .into_iter()
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut visits: Vec<Vec<String>> = vec![Vec::new(); spec.frame().len()];
-    let mut last: Vec<(i64, bool)> = vec![(-10, false); spec.frame().len()];
-    let mut history: Vec<(Vec<(usize, bool)>, geometry::Cell)> = Vec::new();
-    let mut briers = vec![Mean::default(); mappers.len()];
-    for step in 0..=steps {
-        let reading = world.sense();
-        let mut turned: Vec<(usize, bool)> = Vec::new();
-        for &(cell, b) in &reading.cells {
-            let i = spec.frame().index(cell).unwrap();
-            if last[i].0 >= 0 && last[i].1 != b {
-                turned.push((i, b));
-            }
-        }
-        history.push((turned.clone(), world.robot()));
-        let between = |k: usize, i: usize, robot: geometry::Cell| {
-            let f = spec.frame();
-            let (k, c) = (f.cell(k), f.cell(i));
-            let (vx, vy) = (f64::from(c.x - robot.x), f64::from(c.y - robot.y));
-            let (kx, ky) = (f64::from(k.x - robot.x), f64::from(k.y - robot.y));
-            let l2 = vx * vx + vy * vy;
-            let t = (kx * vx + ky * vy) / l2;
-            let off = (kx * vy - ky * vx).abs() / l2.sqrt();
-            t > 0.0 && t < 1.0 && off <= 0.75
-        };
-        for &(cell, b) in &reading.cells {
-            let i = spec.frame().index(cell).unwrap();
-            if !world.truth().is_swept(i) {
-                last[i] = (step as i64, b);
-                continue;
-            }
-            if last[i].0 + 1 == step as i64 {
-                if last[i].1 != b {
-                    let v = visits[i].last_mut().unwrap();
-                    v.push_str(&format!(" {step}"));
-                }
-            } else {
-                let l = last[i].0;
-                let fled = l >= 0 && {
-                    let (t, r) = &history[l as usize + 1];
-                    t.iter().any(|&(k, b)| b && between(k, i, *r))
-                };
-                let came = {
-                    let (t, _) = &history[step as usize];
-                    let r = if step > 0 { history[step as usize - 1].1 } else { world.robot() };
-                    t.iter().any(|&(k, b)| !b && (between(k, i, world.robot()) || between(k, i, r)))
-                };
-                if let Some(v) = visits[i].last_mut() {
-                    v.push_str(&format!(" {l} {}", u8::from(fled)));
-                }
-                visits[i].push(format!("{} {} {step}", u8::from(came), u8::from(b)));
-            }
-            last[i] = (step as i64, b);
-        }
-        for mapper in &mut mappers {
-            mapper.update(&reading)?;
-        }
-        if step % 97 == 0 && step > steps / 2 {
-            for (mapper, brier) in mappers.iter().zip(&mut briers) {
-                for &index in world.truth().swept() {
-                    if !mapper.is_in_view(index) {
-                        let truth = f64::from(u8::from(world.truth().is_blocked(index)));
-                        brier.add((mapper.blocked_probability(index) - truth).powi(2));
-                    }
-                }
-            }
-        }
-        if step < steps {
-            world.act(&robot.act(&reading));
-        }
-    }
-    if std::env::var("DUMP").is_ok() {
-        for (thing, cells) in world.truth().things().iter().enumerate() {
-            let block = &spec.blocks()[thing];
-            for &index in cells {
-                let seen = mappers[5].statistics(index);
-                let rates: Vec<String> = mappers.iter().map(|m| m.rate(index).to_string()).collect();
-                println!(
-                    "V;{};{};{thing};{index};{};{};{};{};{} {} 0",
-                    habit.name(),
-                    seed,
-                    block.dwell,
-                    cells.len(),
-                    world.truth().cycle_rate(index),
-                    mappers[0].rate(index),
-                    visits[index].join("/"),
-                    last[index].0
-                );
-                println!(
-                    "{},{},{thing},{},{:?},{},{index},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
-                    habit.name(),
-                    seed,
-                    block.dwell,
-                    block.course,
-                    cells.len(),
-                    world.truth().cycle_rate(index),
-                    world.truth().blocked_time(index) / world.truth().time(),
-                    seen.watched_free,
-                    seen.watched_blocked,
-                    seen.block_events,
-                    seen.free_events,
-                    seen.block_events_after_gap,
-                    seen.free_events_after_gap,
-                    seen.gaps_from_free,
-                    seen.gaps_from_blocked,
-                    seen.unobserved,
-                    seen.gap_worth.watched_free,
-                    seen.gap_worth.watched_blocked,
-                    seen.gap_worth.block_events,
-                    seen.gap_worth.free_events,
-                    seen.first_seen,
-                    seen.last_seen,
-                    rates.join(",")
-                );
-            }
-        }
-    }
-    Ok(mappers.iter().zip(&briers).map(|(mapper, brier)| score(mapper, world.truth(), brier)).collect())
+/// Predictions that need no rates.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Naive {
+    /// A cell is as it was last seen.
+    pub(crate) last_seen: Mean,
+    /// It is blocked with the share of the time in view that it was blocked.
+    pub(crate) always_mean: Mean,
 }
 
-pub(crate) fn table(worlds: u64, steps: u64) -> anyhow::Result<()> {
-    for habit in Habit::ALL {
-        let mut sums = vec![[Mean::default(); 7]; Estimator::ALL.len()];
-        for seed in 0..worlds {
-            let spec = GridSpec::generate(&GenerateSettings::default(), seed);
-            for (sum, score) in sums.iter_mut().zip(live(&spec, habit, steps, seed)?) {
-                sum[0].add(score.log_error);
-                sum[1].add(score.relative_error);
-                sum[2].add(score.bias);
-                sum[3].add_all(&score.dense);
-                sum[4].add_all(&score.sparse);
-                sum[5].add(score.false_rate);
-                sum[6].add(score.brier);
-            }
-        }
-        for (estimator, sum) in Estimator::ALL.iter().zip(&sums) {
-            print!("| {} | {steps} | {} |", habit.name(), estimator.name());
-            for mean in sum {
-                print!(" {:.3} |", mean.mean());
-            }
-            println!();
+impl Naive {
+    fn add_predictions(&mut self, mapper: &Mapper, truth: &GridTruth) {
+        for index in out_of_view(mapper, truth) {
+            let (is_blocked, seen) = (truth.is_blocked(index), mapper.statistics(index));
+            let last = match mapper.states().cells()[index] {
+                CellState::Unknown => 0.5,
+                CellState::Free => 0.0,
+                CellState::Blocked => 1.0,
+            };
+            let mean = if seen.observed() > 0.0 { seen.watched_blocked / seen.observed() } else { last };
+            self.last_seen.add(square_error(last, is_blocked));
+            self.always_mean.add(square_error(mean, is_blocked));
         }
     }
-    Ok(())
+}
+
+fn out_of_view<'a>(mapper: &'a Mapper, truth: &'a GridTruth) -> impl Iterator<Item = usize> + 'a {
+    truth.swept().iter().copied().filter(|&index| !mapper.is_in_view(index))
+}
+
+fn square_error(probability: f64, is_blocked: bool) -> f64 {
+    (probability - f64::from(u8::from(is_blocked))).powi(2)
+}
+
+/// What all estimators reached in worlds of one kind.
+pub(crate) struct Judged {
+    pub(crate) worlds: usize,
+    pub(crate) steps: u64,
+    /// In the order of [`Estimator::ALL`].
+    pub(crate) scores: Vec<Score>,
+    pub(crate) naive: Naive,
+    /// Block and free events in view, of all changing cells.
+    pub(crate) events: [u64; 2],
+}
+
+impl Judged {
+    /// Lets a robot live in a world, and every estimator learn from what it sees.
+    fn live(&mut self, (spec, seed): &(GridSpec, u64), habit: usize) -> anyhow::Result<()> {
+        let mut rng = ChaCha8Rng::seed_from_u64(*seed);
+        rng.set_stream(1);
+        let (mut world, mut robot) = (GridWorld::new(spec, *seed), Robot::new(spec, Habit::ALL[habit], rng));
+        let mut mappers = crate::mappers(*spec.frame())?;
+        for step in 0..=self.steps {
+            let reading = world.sense();
+            for mapper in &mut mappers {
+                mapper.update(&reading)?;
+            }
+            if 2 * step > self.steps && step % JUDGED_EVERY == 0 {
+                for (mapper, score) in mappers.iter().zip(&mut self.scores) {
+                    score.add_predictions(mapper, world.truth());
+                }
+                self.naive.add_predictions(&mappers[0], world.truth());
+            }
+            if step < self.steps {
+                world.act(&robot.act(&reading));
+            }
+        }
+        for (mapper, score) in mappers.iter().zip(&mut self.scores) {
+            score.add_life(habit, mapper, world.truth());
+        }
+        for &index in world.truth().swept() {
+            let seen = mappers[0].statistics(index);
+            self.events[0] += u64::from(seen.block_events);
+            self.events[1] += u64::from(seen.free_events);
+        }
+        Ok(())
+    }
+}
+
+/// Judges all estimators with every robot, in so many random worlds, or in those that ship.
+pub(crate) fn judge(set: Set, count: u64, steps: u64) -> anyhow::Result<Judged> {
+    let worlds = set.worlds(count)?;
+    let mut judged = Judged {
+        worlds: worlds.len(),
+        steps,
+        scores: vec![Score::default(); Estimator::ALL.len()],
+        naive: Naive::default(),
+        events: [0; 2],
+    };
+    for (number, world) in worlds.iter().enumerate() {
+        eprintln!("{}: {} of {}", set.name(), number + 1, worlds.len());
+        for habit in 0..Habit::ALL.len() {
+            judged.live(world, habit)?;
+        }
+    }
+    Ok(judged)
 }

@@ -19,8 +19,8 @@ impl Information {
         *self.looks.entry((before, steps)).or_default() += 1;
     }
 
-    /// The relative standard deviation of the cycle rate, at best, of one of `cells` cells.
-    pub(crate) fn relative_deviation(&self, cells: f64) -> f64 {
+    /// The least relative standard deviation of the cycle rate of one of `cells` cells.
+    pub(crate) fn least_deviation(&self, cells: f64) -> f64 {
         let mut matrix = [[0.0; 2]; 2];
         let logs = [self.chain.block.ln(), self.chain.free.ln()];
         for (&(before, steps), &count) in &self.looks {

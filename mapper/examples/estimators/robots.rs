@@ -29,8 +29,9 @@ impl Habit {
     }
 }
 
-/// Calm steps after which one that stays goes on.
+/// Calm steps after which one that stays goes on, and the most that it stays.
 const PATIENCE: u32 = 10;
+const STAY: u32 = 300;
 /// Steps of following at most, and random ones in a row: those of the controller.
 const FOLLOWING: u32 = 42;
 const RANDOM_STEPS: u32 = 1;
@@ -45,6 +46,7 @@ pub(crate) struct Robot {
     /// Steps to the goal from every cell; none from walls.
     distance: Vec<Option<u32>>,
     goal: usize,
+    /// Steps in a row in which something was in the way.
     stuck: u32,
     /// Steps at the goal, and calm or random ones in a row among them.
     at_goal: u32,
@@ -83,14 +85,12 @@ impl Robot {
                 changed.push(cell);
             }
         }
-        let is_open =
-            |cell: Cell, seen: &[Option<bool>]| at(cell).is_some_and(|index| seen[index] != Some(true));
         let to_go = at(here).and_then(|index| self.distance[index]);
         if to_go != Some(0) && self.at_goal == 0 && self.stuck < STUCK {
             let nearer = Step::ALL.into_iter().find(|step| {
                 let cell = step.target(here);
                 at(cell).and_then(|index| self.distance[index]).is_some_and(|steps| Some(steps) < to_go)
-                    && is_open(cell, &self.seen)
+                    && self.is_open(cell)
             });
             if let Some(nearer) = nearer {
                 self.stuck = 0;
@@ -104,43 +104,51 @@ impl Robot {
         self.at_goal += 1;
         self.calm = if changed.is_empty() { self.calm + 1 } else { 0 };
         match self.habit {
-            Habit::Stays if self.calm < PATIENCE && self.at_goal < 300 => return Step::Stay,
+            Habit::Stays if self.calm < PATIENCE && self.at_goal < STAY => Step::Stay,
             Habit::Follows if self.at_goal <= FOLLOWING && self.calm <= RANDOM_STEPS => {
-                let open: Vec<Step> = Step::ALL[1..]
-                    .iter()
-                    .copied()
-                    .filter(|step| is_open(step.target(here), &self.seen))
-                    .collect();
-                if changed.is_empty() {
-                    let pick = self.rng.random_range(0..open.len().max(1));
-                    return open.get(pick).copied().unwrap_or(Step::Stay);
-                }
-                let count = changed.len() as f64;
-                let x = changed.iter().map(|cell| f64::from(cell.x)).sum::<f64>() / count;
-                let y = changed.iter().map(|cell| f64::from(cell.y)).sum::<f64>() / count;
-                let far = |step: &Step| {
-                    let cell = step.target(here);
-                    (f64::from(cell.x) - x).abs() + (f64::from(cell.y) - y).abs()
-                };
-                let best = open.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-                return best.copied().filter(|step| far(step) < far(&Step::Stay)).unwrap_or(Step::Stay);
+                self.follow(here, &changed)
             }
-            _ => {}
+            _ => {
+                self.choose();
+                Step::Stay
+            }
         }
-        self.choose();
-        Step::Stay
+    }
+
+    /// A step to the middle of what changed; a random one where nothing did.
+    fn follow(&mut self, here: Cell, changed: &[Cell]) -> Step {
+        let is_open = |step: &&Step| self.is_open(step.target(here));
+        let open: Vec<Step> = Step::ALL[1..].iter().filter(is_open).copied().collect();
+        if changed.is_empty() {
+            let pick = self.rng.random_range(0..open.len().max(1));
+            return open.get(pick).copied().unwrap_or(Step::Stay);
+        }
+        let middle = |of: fn(&Cell) -> i32| {
+            changed.iter().map(|cell| f64::from(of(cell))).sum::<f64>() / changed.len() as f64
+        };
+        let (x, y) = (middle(|cell| cell.x), middle(|cell| cell.y));
+        let far = |step: &Step| {
+            let cell = step.target(here);
+            (f64::from(cell.x) - x).abs() + (f64::from(cell.y) - y).abs()
+        };
+        let best = open.into_iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+        best.filter(|step| far(step) < far(&Step::Stay)).unwrap_or(Step::Stay)
+    }
+
+    /// Whether nothing is known to stand in the cell.
+    fn is_open(&self, cell: Cell) -> bool {
+        self.walls.frame().index(cell).is_some_and(|index| self.seen[index] != Some(true))
     }
 
     /// Draws a goal, and measures the way to it from everywhere.
     fn choose(&mut self) {
         let frame = *self.walls.frame();
-        let goal = loop {
+        self.goal = loop {
             let index = self.rng.random_range(0..frame.len());
             if !self.walls.cells()[index] {
                 break index;
             }
         };
-        self.goal = goal;
         self.measure();
         (self.stuck, self.at_goal, self.calm) = (0, 0, 0);
     }

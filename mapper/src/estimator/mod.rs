@@ -24,10 +24,10 @@ pub enum Estimator {
     Imac,
     /// A two-state continuous-time Markov chain: each rate is conditioned on the state in which
     /// the cell was watched, so that looking longer while something stands there biases less.
-    #[default]
     TwoState,
     /// The same chain in steps of the readings, with what gaps tell: the state before, the state
-    /// after, and the time between. Maximum a posteriori.
+    /// after, and the time between. Maximum a posteriori. The default: `docs/estimators.md` says why.
+    #[default]
     TwoStateGaps,
 }
 

@@ -13,7 +13,7 @@ use crate::ledger::ReadingIndex;
 use crate::{CellStatistics, GapWorth};
 use bins::Bins;
 use fit::Evidence;
-pub(crate) use prior::{MEAN_EVENTS, MEDIAN_EVENTS};
+pub(crate) use prior::{MEAN_EVENTS, MEDIAN_EVENTS, Near};
 pub(crate) use regularity::Regularity;
 pub(crate) use watch::Watch;
 
@@ -21,6 +21,10 @@ pub(crate) use watch::Watch;
 /// gap is bounded, and what is missed tells little.
 const COUNTED_GROWTH: f64 = 1.0 / 8.0;
 const WATCHED_GROWTH: f64 = 1.0 / 4.0;
+
+/// A stay by the clock that was seen whole counts as so many more stays of a chain: it tells the length of
+/// all of them.
+const WHOLE_STAY: f64 = 3.0;
 
 /// The gaps of one cell, and what they are worth.
 #[derive(Clone, Debug, Default)]
@@ -33,8 +37,10 @@ pub(crate) struct Gaps {
 /// What the gaps were worth when they were last weighed, and when that was.
 #[derive(Clone, Debug, Default)]
 struct Weighed {
-    /// The gaps, the neighbours, and the step of looking.
+    /// The gaps, the neighbours, the whole stays, and the step of looking.
     worth: Watch,
+    /// The neighbours alone.
+    near: Watch,
     /// What was watched, and the gaps.
     own: Watch,
     /// What the gaps tell of both probabilities together.
@@ -45,6 +51,17 @@ struct Weighed {
     due: [f64; 2],
     /// The last stay in each state from an event in view to an event in view, in steps; 0 before the first.
     stays: [f64; 2],
+    /// All such stays: how many, and their steps.
+    whole: Watch,
+}
+
+/// What is believed of both probabilities of a cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Belief {
+    /// The watching that would tell as much.
+    pub(crate) watch: Watch,
+    /// What the gaps tell of both together: the mixed term of their information, in log-odds.
+    pub(crate) mixed: f64,
 }
 
 impl Gaps {
@@ -62,6 +79,8 @@ impl Gaps {
     /// The cell stayed in a state for so many steps, from an event in view to an event in view.
     pub(crate) fn add_stay(&mut self, state: usize, steps: f64, regularity: &mut Regularity) {
         let weighed = self.weighed.get_or_insert_default();
+        weighed.whole.events[state] += 1.0;
+        weighed.whole.steps[state] += steps;
         let before = std::mem::replace(&mut weighed.stays[state], steps);
         if before > 0.0 {
             regularity.add(state, before, steps);
@@ -96,7 +115,7 @@ impl Gaps {
         f64::from(self.bins.count()) + f64::from(seen.events())
     }
 
-    /// Weighs the gaps of a cell that changes. `near` is what was seen of the cells around it.
+    /// Weighs the gaps of a cell that changes. `near` is what the cells around it tell.
     pub(crate) fn weigh(
         &mut self,
         estimator: Estimator,
@@ -113,8 +132,9 @@ impl Gaps {
             return;
         }
         let watch = Watch::of(seen);
-        let prior =
-            prior::of_neighbours(weighed.own, near) + prior::of_looking(watch, &self.bins, seen.period);
+        let prior = near
+            + prior::of_looking(watch, &self.bins, seen.period)
+            + weighed.whole_stays(regularity.weights());
         let evidence = Evidence {
             watch: watch + prior + Watch::of_both(MEDIAN_EVENTS, 1.0),
             gaps: &self.bins,
@@ -126,23 +146,39 @@ impl Gaps {
         weighed.mixed = fit.mixed;
         weighed.own = watch + fit.worth;
         weighed.worth = fit.worth + prior;
+        weighed.near = near;
     }
 
-    /// What the gaps are worth, and what they tell of both probabilities together, in log-odds; also of a cell
-    /// that never changed.
-    pub(crate) fn belief(&self, seen: &CellStatistics, regularity: &Regularity) -> (Watch, f64) {
-        if let Some(weighed) = &self.weighed {
-            return (weighed.worth, weighed.mixed);
+    /// What is believed of a cell with `watch` seen and known besides the gaps; also of one that never changed.
+    pub(crate) fn belief(&self, seen: &CellStatistics, watch: Watch, regularity: &Regularity) -> Belief {
+        if let Some(Weighed { worth, near, mixed, .. }) = self.weighed.as_deref() {
+            let all = watch + *worth;
+            // What moves shows itself to all cells around at the same time: they tell of the rate what
+            // the cell has mostly seen itself. They move the estimate, but make it no surer.
+            let own = [0, 1].map(|state| 1.0 - near.steps[state] / all.steps[state]);
+            return Belief { watch: all.times(own), mixed: *mixed };
         }
-        let watch = Watch::of(seen);
-        let prior = prior::of_looking(watch, &self.bins, seen.period);
+        let looking = prior::of_looking(Watch::of(seen), &self.bins, seen.period);
         let evidence = Evidence {
-            watch: watch + prior + Watch::of_both(MEAN_EVENTS, 1.0),
+            watch: watch + looking,
             gaps: &self.bins,
             period: seen.period,
             regular: regularity.weights(),
         };
-        evidence.fit(slowest(seen)).map_or((prior, 0.0), |fit| (fit.worth + prior, fit.mixed))
+        let (worth, mixed) =
+            evidence.fit(slowest(seen)).map_or((Watch::default(), 0.0), |fit| (fit.worth, fit.mixed));
+        Belief { watch: watch + looking + worth, mixed }
+    }
+}
+
+impl Weighed {
+    /// What the stays that were seen whole tell beyond what was watched. Mostly the state that is left sooner
+    /// has such stays; of the other, only its shortest stays fit into a visit, and count little.
+    fn whole_stays(&self, regular: [f64; 2]) -> Watch {
+        let Some(Step { block, free }) = self.step else { return Watch::default() };
+        let [blocked, unblocked] = [block, free].map(|leave| leave / (block + free));
+        let part = [blocked * blocked * regular[0], unblocked * unblocked * regular[1]];
+        self.whole.times(part.map(|part| WHOLE_STAY * part))
     }
 }
 

@@ -11,7 +11,7 @@ const DOUBT: f64 = 4.0;
 /// Where so few, or so many, of the pairs are equal beyond chance, the world is a Markov chain, or a
 /// clock. Stays that begin and end within short visits are a little more equal than others; clocks stop while
 /// something is in their way.
-const BETWEEN: [f64; 2] = [0.2, 0.7];
+const BETWEEN: [f64; 2] = [0.15, 0.4];
 
 /// How often two stays of a cell in a row are equal, over all cells.
 #[derive(Clone, Copy, Debug, Default)]
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn a_clock_is_regular_once_it_was_shown_also_if_it_stops_at_times() {
-        assert_eq!(weight([7.0; 2]), 0.0);
+        assert!(weight([7.0; 2]) < 0.2);
         assert_eq!(weight([7.0; 40]), 1.0);
         let waits = |number: u32| if number.is_multiple_of(12) { 30.0 } else { 7.0 };
         assert!(weight((0..120).map(waits)) > 0.7);

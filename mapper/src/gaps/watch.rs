@@ -34,6 +34,12 @@ impl Watch {
         Self { events: [events; 2], steps: [steps; 2] }
     }
 
+    /// A part of it, per state.
+    pub(crate) fn times(self, part: [f64; 2]) -> Self {
+        let times = |of: [f64; 2]| [of[0] * part[0], of[1] * part[1]];
+        Self { events: times(self.events), steps: times(self.steps) }
+    }
+
     /// Events per step, per state.
     pub(crate) fn leave(self) -> [f64; 2] {
         [0, 1].map(|state| self.events[state] / self.steps[state])

@@ -3,7 +3,7 @@
 use super::record::place;
 use super::{Ledger, PRIOR, ReadingIndex};
 use crate::chain::Chain;
-use crate::gaps::{MEAN_EVENTS, Watch};
+use crate::gaps::{Belief, MEAN_EVENTS, Watch};
 use crate::{CellStatistics, GapWorth, credible};
 use geometry::CellState;
 
@@ -73,9 +73,9 @@ impl Ledger {
         }
         let watch = Watch::of(&seen) + Watch::of_both(MEAN_EVENTS, 1.0);
         let weighed = self.gaps.get(index).filter(|_| self.estimator.fits_chain());
-        let (worth, mixed) =
-            weighed.map_or((Watch::default(), 0.0), |gaps| gaps.belief(&seen, &self.regularity));
-        credible::interval(watch + worth, mixed, seen.period, mass)
+        let belief =
+            weighed.map_or(Belief { watch, mixed: 0.0 }, |gaps| gaps.belief(&seen, watch, &self.regularity));
+        credible::interval(belief, seen.period, mass)
     }
 
     /// The probability that the cell is blocked now.

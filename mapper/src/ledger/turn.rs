@@ -2,8 +2,11 @@
 
 use super::record::{Record, place};
 use super::{Ledger, PRIOR, ReadingIndex};
-use crate::gaps::{Gaps, Watch};
-use geometry::{CellState, Transition};
+use crate::gaps::{Gaps, Near};
+use geometry::{Cell, CellState, Transition};
+
+/// Cells as far as this from a cell, along either axis, tell how it may change.
+const NEAR: i32 = 3;
 
 impl Ledger {
     /// The cell takes another state. `since` is the reading in which the new state was first
@@ -91,9 +94,20 @@ impl Ledger {
         if !self.gaps[index].is_due(&seen) {
             return;
         }
+        let own = self.gaps[index].own();
         let frame = self.frame();
-        let near = frame.cell(index).neighbours8().into_iter().filter_map(|near| frame.index(near));
-        let near = near.fold(Watch::default(), |sum, near| sum + self.gaps[near].own());
+        let cell = frame.cell(index);
+        let mut near = Near::of(own);
+        for y in cell.y - NEAR..=cell.y + NEAR {
+            for x in cell.x - NEAR..=cell.x + NEAR {
+                if let Some(other) = frame.index(Cell::new(x, y))
+                    && other != index
+                {
+                    near.add(self.gaps[other].own());
+                }
+            }
+        }
+        let near = near.prior();
         self.gaps[index].weigh(self.estimator, &seen, near, &self.regularity);
     }
 }

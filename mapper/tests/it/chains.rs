@@ -33,7 +33,7 @@ impl Chain {
 
 const SAMPLE_S: f64 = 0.1;
 const CELLS: usize = 8;
-const READINGS: usize = 400_000;
+const READINGS: usize = 150_000;
 
 /// The mean rate over some cells that follow `chain`, each of which is looked at whenever
 /// `looks(reading, blocked now, reading in which it was last seen blocked)` says so.

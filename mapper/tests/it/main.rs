@@ -6,6 +6,7 @@ mod house;
 mod bad_readings;
 mod bookkeeping;
 mod chains;
+mod estimators;
 mod observed;
 mod prior;
 mod things;

@@ -61,7 +61,7 @@ pub(crate) struct Args {
     pub(crate) speed: Option<f64>,
 
     /// How rates of change are estimated
-    #[arg(long, default_value = "two-state", value_parser = estimators(), help_heading = "How to learn")]
+    #[arg(long, default_value = "two-state-gaps", value_parser = estimators(), help_heading = "How to learn")]
     pub(crate) estimator: Estimator,
 
     /// How scans become a map: steady (walls never flicker) or naive (every beam counts, as in the

@@ -1,0 +1,196 @@
+//! What must hold of estimates whatever was seen, and how `two-state-gaps` deals with what is no Markov chain.
+
+use geometry::{Cell, CellReading, GridFrame};
+use mapper::{Estimator, Mapper, MapperSettings};
+use nalgebra::Point2;
+use proptest::prelude::*;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+/// A mapper of one row of cells.
+fn mapper(estimator: Estimator, cells: usize) -> Mapper {
+    let frame = GridFrame::new(Point2::origin(), 1.0, cells, 1).unwrap();
+    Mapper::new(&MapperSettings { estimator, ..MapperSettings::default() }, frame).unwrap()
+}
+
+/// Shows a mapper the states of some cells, given with their columns.
+fn show(mapper: &mut Mapper, time: f64, cells: impl IntoIterator<Item = (usize, bool)>) {
+    let cells = cells.into_iter().map(|(x, blocked)| (Cell::new(x as i32, 0), blocked)).collect();
+    mapper.update(&CellReading { time, pose: geometry::pose(0.0, 0.0, 0.0), cells }).unwrap();
+}
+
+/// Chains that leave their states with `leave` (free, blocked) per step, `apart` columns from each other, all seen
+/// whenever `looks` says so.
+fn chains(
+    estimator: Estimator,
+    count: usize,
+    apart: usize,
+    steps: u32,
+    leave: [f64; 2],
+    looks: fn(u32) -> bool,
+) -> Mapper {
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let share_blocked = leave[0] / (leave[0] + leave[1]);
+    let mut blocked: Vec<bool> = (0..count).map(|_| random.random_bool(share_blocked)).collect();
+    let mut mapper = mapper(estimator, count * apart);
+    for step in 0..steps {
+        let seen = blocked.iter().enumerate().filter(|_| looks(step));
+        show(&mut mapper, f64::from(step), seen.map(|(cell, &blocked)| (cell * apart, blocked)));
+        for blocked in &mut blocked {
+            *blocked ^= random.random_bool(leave[usize::from(*blocked)]);
+        }
+    }
+    mapper
+}
+
+/// Cycles per step of a chain.
+fn cycle_rate([block, free]: [f64; 2]) -> f64 {
+    block * free / (block + free)
+}
+
+/// A stream of looks at three cells: which of them are seen, and which are blocked.
+fn streams() -> impl Strategy<Value = Vec<[(bool, bool); 3]>> {
+    prop::collection::vec(prop::array::uniform3((prop::bool::weighted(0.7), any::<bool>())), 2..120)
+}
+
+fn after(estimator: Estimator, stream: &[[(bool, bool); 3]], step: f64, mirrored: bool) -> Mapper {
+    let mut mapper = mapper(estimator, 3);
+    for (number, cells) in stream.iter().enumerate() {
+        let seen = cells.iter().enumerate().filter(|(_, (is_seen, _))| *is_seen);
+        show(&mut mapper, number as f64 * step, seen.map(|(x, (_, blocked))| (x, *blocked != mirrored)));
+    }
+    mapper
+}
+
+fn assert_near(found: f64, expected: f64) {
+    let is_near = found == expected || (found / expected - 1.0).abs() < 1e-6;
+    assert!(is_near, "{found}, not {expected}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// A cycle is blocked → free → blocked as much as free → blocked → free.
+    #[test]
+    fn free_and_blocked_are_alike(stream in streams()) {
+        for estimator in Estimator::ALL {
+            let [seen, mirrored] = [false, true].map(|mirrored| after(estimator, &stream, 1.0, mirrored));
+            for index in 0..3 {
+                assert_near(mirrored.rate(index), seen.rate(index));
+            }
+        }
+    }
+
+    #[test]
+    fn rates_are_per_unit_of_time(stream in streams()) {
+        for estimator in Estimator::ALL {
+            let [steps, quarters] = [1.0, 0.25].map(|step| after(estimator, &stream, step, false));
+            for index in 0..3 {
+                assert_near(quarters.rate(index), 4.0 * steps.rate(index));
+                let [a, b] = [&steps, &quarters].map(|mapper| mapper.credible_interval(index, 0.8));
+                assert_near(b.0, 4.0 * a.0);
+                assert_near(b.1, 4.0 * a.1);
+            }
+        }
+    }
+
+    /// A cell has a rate above 0 only if it was seen in both states, and its interval then holds the rate.
+    #[test]
+    fn only_what_changed_has_a_rate(stream in streams()) {
+        for estimator in Estimator::ALL {
+            let mapper = after(estimator, &stream, 1.0, false);
+            for index in 0..3 {
+                let states: Vec<bool> =
+                    stream.iter().map(|cells| cells[index]).filter(|cell| cell.0).map(|cell| cell.1).collect();
+                let changed = states.windows(2).any(|pair| pair[0] != pair[1]);
+                prop_assert!(changed || mapper.rate(index) == 0.0);
+                if estimator == Estimator::TwoStateGaps {
+                    prop_assert_eq!(changed, mapper.rate(index) > 0.0);
+                    let (low, high) = mapper.credible_interval(index, 0.99);
+                    prop_assert!(!changed || low < mapper.rate(index) && mapper.rate(index) <= high * 1.001);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn nine_of_ten_intervals_of_mass_0_9_hold_the_truth() {
+    const CELLS: usize = 300;
+    for (leave, looks) in [
+        ([0.02, 0.05], (|step| step % 40 < 10) as fn(u32) -> bool),
+        ([0.004, 0.01], |step| step % 10 == 0),
+        ([0.1, 0.1], |_| true),
+    ] {
+        let mapper = chains(Estimator::TwoStateGaps, CELLS, 4, 2000, leave, looks);
+        let holds = |cell: &usize| {
+            let (low, high) = mapper.credible_interval(cell * 4, 0.9);
+            (low..=high).contains(&cycle_rate(leave))
+        };
+        let covered = (0..CELLS).filter(holds).count() as f64 / CELLS as f64;
+        assert!((0.84..=0.96).contains(&covered), "{covered} with {leave:?}");
+    }
+}
+
+/// Cells side by side that change each for itself: with their neighbours the estimates scatter less, but no
+/// interval gets narrower for it.
+#[test]
+fn neighbours_move_an_estimate_and_make_it_no_surer() {
+    const CELLS: usize = 100;
+    let leave = [0.02, 0.05];
+    let of = |apart| chains(Estimator::TwoStateGaps, CELLS, apart, 2000, leave, |step| step % 40 < 10);
+    let [alone, near] = [(of(4), 4), (of(1), 1)].map(|(mapper, apart)| {
+        let error = |cell| (mapper.rate(cell * apart) / cycle_rate(leave)).ln().abs();
+        let width = |cell| {
+            let (low, high) = mapper.credible_interval(cell * apart, 0.9);
+            (high / low).ln()
+        };
+        let mean = |of: &dyn Fn(usize) -> f64| (0..CELLS).map(of).sum::<f64>() / CELLS as f64;
+        [mean(&error), mean(&width)]
+    });
+    assert!(near[0] < 0.7 * alone[0], "errors {} beside neighbours, {} alone", near[0], alone[0]);
+    assert!((near[1] / alone[1] - 1.0).abs() < 0.15, "widths {} and {}", near[1], alone[1]);
+}
+
+/// A block that comes towards the robot hides the cell that it enters next: the cell is never seen getting
+/// blocked, only found blocked. Free for 20 steps, blocked for 5, hidden in the last 5 of the 20.
+#[test]
+fn a_cell_that_is_hidden_before_it_gets_blocked_still_has_its_rate() {
+    let rate = |estimator| {
+        let mut mapper = mapper(estimator, 1);
+        for step in 0..2500 {
+            let phase = step % 25;
+            show(&mut mapper, f64::from(step), (!(15..20).contains(&phase)).then_some((0, phase >= 20)));
+        }
+        mapper.rate(0) * 25.0
+    };
+    let (in_view, with_gaps) = (rate(Estimator::TwoState), rate(Estimator::TwoStateGaps));
+    assert!((with_gaps - 1.0).abs() < 0.1, "{with_gaps} of the true rate");
+    assert!(in_view < 0.1, "{in_view}: it counts only what it sees happen");
+}
+
+/// Stays by the clock, seen for 30 of about 130 steps at any phase: after 20 steps out of view nothing is left
+/// of the stay, where a Markov chain would have more than a third left.
+#[test]
+fn stays_by_the_clock_are_no_chain() {
+    const CELLS: usize = 20;
+    let (stay, cycle) = (12, 60);
+    let mut random = ChaCha8Rng::seed_from_u64(9);
+    let mut mapper = mapper(Estimator::TwoStateGaps, CELLS * 4);
+    let (mut visit, mut step) = (0, 0);
+    for _ in 0..10_000 {
+        if step == visit + 30 {
+            visit += random.random_range(35..=50);
+        }
+        let seen = (0..CELLS).filter(|_| step >= visit);
+        let blocked = |cell: usize| (step + 7 * cell) % cycle < stay;
+        show(&mut mapper, step as f64, seen.map(|cell| (cell * 4, blocked(cell))));
+        step += 1;
+    }
+    let mean = (0..CELLS).map(|cell| mapper.rate(cell * 4)).sum::<f64>() / CELLS as f64 * cycle as f64;
+    assert!((mean - 1.0).abs() < 0.04, "{mean} of the true rate");
+    let (block, free) = mapper.transition_rates(0).unwrap();
+    assert!((free * f64::from(stay as u32) - 1.0).abs() < 0.1, "stays are {} steps", 1.0 / free);
+    assert!(block < free);
+}
