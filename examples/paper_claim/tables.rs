@@ -13,12 +13,39 @@ pub(crate) fn markdown(findings: &[Finding], seeds: u64) -> String {
          end for map quality, each with its 95 % interval, the ratio of the means, Cohen's d of the pairs \
          and the p-value of the paired t test. Errors: less is better.\n"
     );
+    text.push_str(&overview(findings));
     for finding in findings {
         let _ = write!(text, "\n## {}\n\n{}\n", capital(&finding.condition.name), Claim::markdown_head());
         for claim in finding.claims() {
             let _ = writeln!(text, "{}", claim.markdown_row());
         }
         let _ = write!(text, "\n{}", shares(finding));
+    }
+    text
+}
+
+/// A row per condition: the verdict in each world, and how curious does over all generated ones.
+fn overview(findings: &[Finding]) -> String {
+    let mut text = String::from("\n## All conditions\n\n");
+    let mut is_first = true;
+    for finding in findings {
+        let claims = finding.claims();
+        if std::mem::take(&mut is_first) {
+            let worlds = claims.iter().map(|claim| claim.world.as_str()).collect::<Vec<_>>().join(" | ");
+            let rules = "---|".repeat(claims.len() + 4);
+            let _ = writeln!(
+                text,
+                "| condition | {worlds} | generated: to recency | to coin | to poisson |\n|{rules}"
+            );
+        }
+        let verdicts = claims.iter().map(|claim| claim.verdict.name()).collect::<Vec<_>>().join(" | ");
+        let generated = finding.runs().map(|(_, run)| run).find(|run| run.worlds > 1);
+        let ratios = ["recency", "coin", "poisson"].map(|other| {
+            let comparison =
+                generated.and_then(|run| run.comparison("curious", other, Measure::LOG_ERROR_AREA));
+            comparison.map_or_else(String::new, |comparison| comparison.in_short())
+        });
+        let _ = writeln!(text, "| {} | {verdicts} | {} |", finding.condition.name, ratios.join(" | "));
     }
     text
 }

@@ -3,6 +3,7 @@
 use super::metric::{Measure, Part};
 use super::run::Lives;
 use super::statistics::{Quantiles, holm, mean};
+use super::wording::{p_value, value};
 use serde::Serialize;
 
 /// The difference between two strategies in one measure: paired by seed within a world, by world
@@ -39,6 +40,11 @@ impl Comparison {
     /// Whether there is a difference, at 5 % and without correction for other tests.
     pub fn is_significant(&self) -> bool {
         self.p_value < 0.05
+    }
+
+    /// The ratio of the means and the p-value, as in `×0.98, p = 0.012`.
+    pub fn in_short(&self) -> String {
+        format!("×{}, {}", value(self.ratio, 2), p_value(self.p_value))
     }
 
     /// The same with a and b exchanged.

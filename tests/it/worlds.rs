@@ -13,8 +13,9 @@ fn things_that_come_and_go_are_noticed() {
         assert!((time_s("happened_s") - happened_s).abs() < 0.2, "{thing}");
         assert!(time_s("in_view_s") >= time_s("happened_s"), "{thing}");
         assert!(time_s("noticed_s") >= time_s("in_view_s"), "{thing}");
+        assert!(time_s("noticed_s") <= time_s("in_view_s") + 3.0, "{thing}");
+        // All of it may be right only when the robot comes by again.
         assert!(time_s("right_s") >= time_s("noticed_s"), "{thing}");
-        assert!(time_s("right_s") <= time_s("in_view_s") + 3.0, "{thing}");
     }
     assert!(summary.number("/map_quality") > 0.99);
 }
