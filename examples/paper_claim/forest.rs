@@ -10,12 +10,11 @@ const ROW: i32 = 22;
 const LEFT: i32 = 330;
 const WIDTH: u32 = 1100;
 const TOP: i32 = 74;
-/// The two panels, and what they show.
-const PANELS: [(&str, i32); 2] = [("against recency", 0), ("against poisson", 1)];
+/// The two panels: what they show, how far they reach to either side (larger differences end at their
+/// edge), and where they have a tick. Differences to recency are ten times smaller.
+const PANELS: [(&str, f64, f64); 2] = [("against recency", 0.12, 0.1), ("against poisson", 1.2, 1.0)];
 const PANEL: i32 = 340;
 const GAP: i32 = 30;
-/// Differences in log error that the panels reach to; larger ones end in an arrow's place.
-const REACH: f64 = 0.6;
 
 /// One row per condition and kind of world: the generated worlds as one, and the paper's.
 pub(crate) fn draw(findings: &[Finding], path: &Path) -> anyhow::Result<()> {
@@ -36,13 +35,13 @@ pub(crate) fn draw(findings: &[Finding], path: &Path) -> anyhow::Result<()> {
     let text = ("sans-serif", 14).into_font();
     let title = "Log error of the rates over the run: curious minus another, with 95 % interval";
     area.draw(&Text::new(title, (12, 10), ("sans-serif", 17)))?;
-    for (name, panel) in PANELS {
+    for (panel, (name, reach, tick)) in PANELS.into_iter().enumerate() {
         let middle = x(panel, 0.0);
         area.draw(&Text::new(name, (middle - 60, 36), text.clone()))?;
-        area.draw(&Text::new("curious better", (x(panel, -REACH), 54), ("sans-serif", 12)))?;
-        area.draw(&Text::new("worse", (x(panel, REACH) - 34, 54), ("sans-serif", 12)))?;
+        area.draw(&Text::new("curious better", (x(panel, -reach), 54), ("sans-serif", 12)))?;
+        area.draw(&Text::new("worse", (x(panel, reach) - 34, 54), ("sans-serif", 12)))?;
         area.draw(&PathElement::new([(middle, TOP - 4), (middle, height as i32 - 28)], BLACK.mix(0.4)))?;
-        for tick in [-0.5, 0.5] {
+        for tick in [-tick, tick] {
             let at = x(panel, tick);
             area.draw(&PathElement::new([(at, TOP - 4), (at, height as i32 - 28)], BLACK.mix(0.1)))?;
             area.draw(&Text::new(format!("{tick:+}"), (at - 12, height as i32 - 24), ("sans-serif", 12)))?;
@@ -60,7 +59,7 @@ pub(crate) fn draw(findings: &[Finding], path: &Path) -> anyhow::Result<()> {
         for (panel, comparison) in
             [&claim.faster_than_recency, &claim.faster_than_poisson].into_iter().enumerate()
         {
-            whisker(&area, panel as i32, y, comparison)?;
+            whisker(&area, panel, y, comparison)?;
         }
         let colour = match claim.verdict {
             Verdict::Holds => RGBColor(0, 158, 115),
@@ -80,7 +79,7 @@ pub(crate) fn draw(findings: &[Finding], path: &Path) -> anyhow::Result<()> {
 
 fn whisker(
     area: &DrawingArea<SVGBackend, plotters::coord::Shift>,
-    panel: i32,
+    panel: usize,
     y: i32,
     comparison: &Comparison,
 ) -> anyhow::Result<()> {
@@ -97,7 +96,8 @@ fn whisker(
 }
 
 /// Where a difference lies in a panel.
-fn x(panel: i32, difference: f64) -> i32 {
-    let part = (difference.clamp(-REACH, REACH) / REACH + 1.0) / 2.0;
-    LEFT + panel * (PANEL + GAP) + (part * f64::from(PANEL)) as i32
+fn x(panel: usize, difference: f64) -> i32 {
+    let (_, reach, _) = PANELS[panel];
+    let part = (difference.clamp(-reach, reach) / reach + 1.0) / 2.0;
+    LEFT + panel as i32 * (PANEL + GAP) + (part * f64::from(PANEL)) as i32
 }
