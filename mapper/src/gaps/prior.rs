@@ -9,10 +9,14 @@ pub(crate) const MEDIAN_EVENTS: f64 = 1.0 / 6.0;
 /// The same for the mean of that distribution.
 pub(crate) const MEAN_EVENTS: f64 = 0.5;
 
-// The next three were chosen on generated block worlds; `docs/estimators.md` has what else was tried.
+// The next four were chosen on generated block worlds; `docs/estimators.md` has what else was tried.
 
 /// What the neighbours tell counts as so many events at most.
 const NEAR_EVENTS: f64 = 120.0;
+/// The same for a cell without an event of its own; each of its own lets them count for one more. At first all
+/// were seen in the same few passages of the same thing, found because it was passing: many neighbours then
+/// tell as little as one, and that too fast.
+const FIRST_NEAR_EVENTS: f64 = 2.0;
 /// The variance of the logarithms of rates between neighbours that are alike.
 const NEAR_VARIANCE: f64 = 0.03;
 /// Degrees of freedom of the doubt whether a neighbour is like the cell: few, so that one that is not soon
@@ -57,7 +61,10 @@ impl Near {
 
     /// The watching of the cell itself that would tell the same.
     pub(crate) fn prior(self) -> Watch {
-        let part = self.sum.events.map(|events| NEAR_EVENTS / (NEAR_EVENTS + events));
+        let part = [0, 1].map(|state| {
+            let most = (FIRST_NEAR_EVENTS + self.own.events[state].max(0.0)).min(NEAR_EVENTS);
+            most / (most + self.sum.events[state])
+        });
         self.sum.times(part)
     }
 }
@@ -95,7 +102,14 @@ mod tests {
     fn a_cell_without_a_story_of_its_own_takes_that_of_its_neighbours() {
         let prior = prior(Watch::default(), &[watch(40.0, 400.0); 8]);
         assert!((prior.events[0] / prior.steps[0] - 0.1).abs() < 0.002);
-        assert!((20.0..=NEAR_EVENTS).contains(&prior.events[0]));
+        assert!((1.5..=FIRST_NEAR_EVENTS).contains(&prior.events[0]));
+    }
+
+    #[test]
+    fn the_more_a_cell_tells_itself_the_more_its_neighbours_may() {
+        let told = |own: f64| prior(watch(own, 10.0 * own), &[watch(40.0, 400.0); 40]).events[0];
+        assert!(told(1.0) < 3.0 && told(10.0) > 10.0 && told(1000.0) > 50.0);
+        assert!(told(1e6) < NEAR_EVENTS);
     }
 
     #[test]
