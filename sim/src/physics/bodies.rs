@@ -1,10 +1,11 @@
 //! Rigid bodies and contacts: the only folder that knows rapier.
 
+use super::command::Velocity;
 use super::report::Body;
 use super::shape::Rectangle;
 use super::snapshot::{Played, Tape, Torn};
 use super::spec::{PushedSpec, RobotSpec};
-use geometry::{Twist, heading_rad, rotation};
+use geometry::{heading_rad, rotation};
 #[cfg(test)]
 use nalgebra::Point2;
 use nalgebra::{Isometry2, Translation2, Vector2};
@@ -206,21 +207,21 @@ impl Bodies {
         let body = rapier::RigidBodyBuilder::dynamic()
             .pose(to_rapier(&spec.pose))
             .can_sleep(false)
-            .soft_ccd_prediction((2.0 * spec.drive.max_linear_mps * step_s) as f32);
+            .soft_ccd_prediction((2.0 * spec.drive.fastest_mps() * step_s) as f32);
         let (body, collider) = self.world.insert(body, collider);
         self.robots.push(Robot { body, collider, forward: Vector2::x() });
     }
 
     /// Sets a robot's velocity for the next step: along the heading half way through it, so that
     /// steps make up an arc.
-    pub(super) fn set_velocity(&mut self, robot: usize, twist: &Twist, step_s: f64) {
+    pub(super) fn set_velocity(&mut self, robot: usize, own_velocity: &Velocity, step_s: f64) {
         let own = &mut self.robots[robot];
         let body = &mut self.world.bodies[own.body];
-        let heading = f64::from(body.rotation().angle()) + twist.angular_radps * step_s / 2.0;
+        let heading = f64::from(body.rotation().angle()) + own_velocity.turn_radps * step_s / 2.0;
         own.forward = rotation(heading) * Vector2::x();
-        let velocity = own.forward * twist.linear_mps;
+        let velocity = own.forward * own_velocity.forward_mps + left(&own.forward) * own_velocity.left_mps;
         body.set_linvel(rapier::Vector::new(velocity.x as f32, velocity.y as f32), true);
-        body.set_angvel(twist.angular_radps as f32, true);
+        body.set_angvel(own_velocity.turn_radps as f32, true);
     }
 
     /// Lets one step pass.
@@ -234,11 +235,15 @@ impl Bodies {
     }
 
     /// The velocity that the contacts left a robot in the last step.
-    pub(super) fn velocity(&self, robot: usize) -> Twist {
+    pub(super) fn velocity(&self, robot: usize) -> Velocity {
         let own = &self.robots[robot];
         let body = &self.world.bodies[own.body];
         let linear = Vector2::new(f64::from(body.linvel().x), f64::from(body.linvel().y));
-        Twist { linear_mps: linear.dot(&own.forward), angular_radps: f64::from(body.angvel()) }
+        Velocity {
+            forward_mps: linear.dot(&own.forward),
+            left_mps: linear.dot(&left(&own.forward)),
+            turn_radps: f64::from(body.angvel()),
+        }
     }
 
     /// Sets a robot down somewhere else, at rest.
@@ -289,6 +294,11 @@ impl Bodies {
         let ray = rapier::Ray::new(origin, rapier::Vector::new(along.x as f32, along.y as f32));
         query.cast_ray(&ray, max_m as f32, true).map(|(_, range_m)| f64::from(range_m))
     }
+}
+
+/// The direction to the left.
+fn left(forward: &Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-forward.y, forward.x)
 }
 
 /// A rectangle's collider, without a place. All sides are smooth.

@@ -15,6 +15,8 @@ pub(super) enum Purpose {
     Behaviour = 2,
     /// When a door opens and closes.
     Door = 3,
+    /// Which ranges are missing.
+    Dropout = 4,
 }
 
 /// The stream of a robot or door (by its place in the world) for one purpose.

@@ -9,8 +9,10 @@
 
 mod bodies;
 mod chance;
+mod command;
 mod convex;
 mod drive;
+mod eye;
 mod fleet;
 mod laser;
 mod minds;
@@ -27,14 +29,15 @@ mod tests;
 mod truth;
 mod world;
 
+pub use command::{Acceleration, Command, Velocity};
 pub use fleet::{Controller, Fleet, TeleportError};
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView, RobotView, Sweep};
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
-    Behaviour, CircleSpec, DoorSpec, DriveLimits, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec,
-    OdometryError, Opening, PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, WanderSpec, WaypointsSpec,
-    WorldSpec,
+    Behaviour, CircleSpec, DoorSpec, DriveKind, DriveLimits, FleetSpec, LaserSpec, Leaf, Motion,
+    ObstacleSpec, OdometryError, Opening, PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, WanderSpec,
+    WaypointsSpec, WorldSpec,
 };
 pub use truth::{TrueChange, TrueState, Truth};
 pub use world::PhysicsWorld;

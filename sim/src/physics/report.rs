@@ -1,7 +1,9 @@
 //! What happened, and what there is to draw.
 
+use super::eye::Eye;
 use geometry::{Cell, LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
+use std::fmt;
 
 /// Something solid, by its place in the world file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -55,8 +57,10 @@ pub struct ObstacleEvent {
 }
 
 /// A robot, to look at.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct RobotView<'a> {
+    /// Its place in the world file.
+    pub index: usize,
     /// Its name.
     pub name: &'a str,
     /// Where it truly is.
@@ -67,10 +71,29 @@ pub struct RobotView<'a> {
     pub is_driven: bool,
     /// Its true velocity.
     pub twist: Twist,
+    /// What of it goes to the left, m/s: 0 but for an omni drive.
+    pub left_mps: f64,
     /// Whether it was held back in the last step: by a wall that it drives against, or another robot.
     pub is_stalled: bool,
-    /// What it saw last, if it has looked yet.
+    /// What its main laser saw last, if it has looked yet.
     pub sweep: Option<&'a Sweep>,
+    pub(super) eyes: &'a [Eye],
+}
+
+impl<'a> RobotView<'a> {
+    /// What each of its lasers saw last, in the order of the file; `None`: it has not looked yet.
+    pub fn sweeps(&self) -> impl ExactSizeIterator<Item = Option<&'a Sweep>> + use<'a> {
+        self.eyes.iter().map(|eye| eye.sweep.as_ref())
+    }
+}
+
+impl fmt::Debug for RobotView<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("RobotView")
+            .field("name", &self.name)
+            .field("pose", &self.pose)
+            .finish_non_exhaustive()
+    }
 }
 
 /// A reading, and where the laser truly was.

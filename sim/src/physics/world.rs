@@ -128,7 +128,7 @@ impl World for PhysicsWorld {
 
     fn act(&mut self, command: &Twist) {
         self.truth.forget_changes();
-        self.fleet.command(self.spec.driven, command);
+        self.fleet.command(self.spec.driven, &(*command).into());
         for _ in 0..self.spec.driven().laser.period_steps {
             self.advance();
         }

@@ -9,14 +9,15 @@ pub use controller::Controller;
 pub use teleport::TeleportError;
 
 use super::bodies::Bodies;
+use super::command::Command;
 use super::laser::beams;
 use super::obstacles::Obstacle;
 use super::rays::{Beams, Disc, Scene, Scratch};
 use super::report::{Body, Contact, ObstacleView, RobotView};
 use super::robot::Robot;
 use super::shape::Rectangle;
-use super::spec::{FleetSpec, LaserSpec};
-use geometry::{GridFrame, LaserReading, Twist};
+use super::spec::{FleetSpec, LaserSpec, RobotSpec};
+use geometry::{GridFrame, LaserReading};
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 
@@ -53,14 +54,15 @@ impl Fleet {
         let mut robots = Vec::with_capacity(spec.robots.len());
         for (index, robot) in spec.robots.iter().enumerate() {
             bodies.add_robot(robot, spec.step_s);
-            let beams = lasers.beams(&robot.laser);
+            let beams = robot.lasers().map(|laser| lasers.beams(laser)).collect();
             robots.push(Robot::new(robot, index, bodies.pose(index), spec.step_s, seed, beams));
         }
         let obstacles =
             spec.obstacles.iter().enumerate().map(|(i, o)| Obstacle::new(o, i, seed, &mut bodies));
         let obstacles = obstacles.collect();
         let discs = robots.iter().map(|robot| Disc { center: robot.at(), radius_m: robot.spec.radius_m });
-        let range_m = spec.robots.iter().fold(0.0, |most: f64, robot| most.max(robot.laser.range_max_m));
+        let ranges_m = spec.robots.iter().flat_map(RobotSpec::lasers).map(|laser| laser.range_max_m);
+        let range_m = ranges_m.fold(0.0, f64::max);
         let scene =
             Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), spec.obstacles.len(), range_m);
         let mut fleet = Self {
@@ -92,15 +94,7 @@ impl Fleet {
 
     /// All robots, in the order of the file.
     pub fn robots(&self) -> impl ExactSizeIterator<Item = RobotView<'_>> {
-        self.robots.iter().map(|robot| RobotView {
-            name: &robot.spec.name,
-            pose: robot.pose,
-            radius_m: robot.spec.radius_m,
-            is_driven: robot.is_driven(),
-            twist: robot.velocity,
-            is_stalled: robot.drive.is_stalled(),
-            sweep: robot.sweep.as_ref(),
-        })
+        self.robots.iter().map(Robot::view)
     }
 
     /// The corners of all walls, counter-clockwise, m.
@@ -126,7 +120,7 @@ impl Fleet {
     }
 
     /// Tells a driven robot what to do.
-    pub(super) fn command(&mut self, robot: usize, wanted: &Twist) {
+    pub(super) fn command(&mut self, robot: usize, wanted: &Command) {
         self.robots[robot].command(wanted);
     }
 
@@ -137,9 +131,9 @@ impl Fleet {
 
     /// What a robot sees now.
     pub(super) fn look(&mut self, robot: usize) -> &LaserReading {
-        let time_s = self.time_s();
+        let now = (self.step, self.time_s());
         self.scene.sort();
-        self.robots[robot].look(time_s, &self.scene, &mut self.scratch)
+        self.robots[robot].look(now, &self.scene, &mut self.scratch)
     }
 
     /// Walls, and the obstacles that stand now.

@@ -13,12 +13,12 @@ impl Fleet {
     /// that are driven ask `controller`.
     pub fn step(&mut self, controller: &mut impl Controller) {
         self.think(|_| true);
-        for (index, robot) in self.robots.iter_mut().enumerate() {
+        for robot in &mut self.robots {
             if robot.is_driven()
                 && robot.is_due(self.step)
-                && let Some(sweep) = &robot.sweep
+                && let Some(sweep) = robot.sweep()
             {
-                let wanted = controller.command(index, &sweep.reading);
+                let wanted = controller.drive(&robot.view(), &sweep.reading);
                 robot.command(&wanted);
             }
         }
@@ -36,8 +36,8 @@ impl Fleet {
 
     /// Lets the robots that `is_meant` look and decide, where their next scan is due.
     pub(in crate::physics) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
-        let (step, time_s) = (self.step, self.time_s());
-        let is_due = |robot: &&mut Robot| robot.is_due(step) && is_meant(robot);
+        let now = (self.step, self.time_s());
+        let is_due = |robot: &&mut Robot| robot.looks(now.0) && is_meant(robot);
         if !self.robots.iter_mut().any(|robot| is_due(&robot)) {
             return;
         }
@@ -45,10 +45,10 @@ impl Fleet {
         let scene = &self.scene;
         if self.parallel_lasers {
             let due = self.robots.par_iter_mut().filter(is_due);
-            due.for_each_init(Scratch::default, |scratch, robot| robot.think(time_s, scene, scratch));
+            due.for_each_init(Scratch::default, |scratch, robot| robot.think(now, scene, scratch));
         } else {
             let due = self.robots.iter_mut().filter(is_due);
-            due.for_each(|robot| robot.think(time_s, scene, &mut self.scratch));
+            due.for_each(|robot| robot.think(now, scene, &mut self.scratch));
         }
     }
 

@@ -3,7 +3,7 @@
 use super::check::Solid;
 use super::file::{BehaviourFile, Number, Pair, RobotFile};
 use super::numbers::Table;
-use super::{DriveLimits, patrol};
+use super::{DriveKind, DriveLimits, patrol};
 use crate::error::{Source, WorldError};
 use crate::physics::shape::{TOUCH_M, turned_point};
 use nalgebra::{Point2, UnitComplex};
@@ -131,6 +131,13 @@ impl Context<'_> {
             let help = format!("it must be one of {}", names.join(", "));
             return Err(self.source.error(&what, (file.kind.span(), "not known"), &[], &help));
         };
+        if let DriveKind::Car { .. } = self.drive.kind
+            && !["driven", "standing", "circle"].contains(&kind)
+        {
+            let what = format!("a car cannot be `{kind}`");
+            let help = "it cannot turn in place: it is \"driven\" or \"standing\", or drives a \"circle\"";
+            return Err(self.source.error(&what, (file.kind.span(), "not for a car"), &[], help));
+        }
         if let Some((key, span)) = keys(file).into_iter().find(|(key, _)| !known.contains(key)) {
             let what = format!("a robot that is `{kind}` has no `{key}`");
             let keys =
@@ -180,7 +187,8 @@ impl Context<'_> {
         let speed_mps = self.speed_mps(file)?;
         let radius = self.needed("turn_radius_m", &file.turn_radius_m)?;
         let radius_m = self.table().number("turn_radius_m", radius, 0.01..=1000.0)?;
-        let fastest_radps = self.drive.max_angular_radps;
+        let curved_radps = speed_mps * self.drive.max_curvature_radpm();
+        let fastest_radps = self.drive.max_angular_radps.min(curved_radps);
         if speed_mps / radius_m > fastest_radps {
             let marks = [(file.speed_mps.as_ref().map_or(radius.span(), Spanned::span), "at this speed")];
             let help = format!(

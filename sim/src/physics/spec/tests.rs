@@ -212,6 +212,45 @@ fn things_that_move() {
 }
 
 #[test]
+fn drives_and_lasers() {
+    let drive = "max_linear_mps = 0.5";
+    let with = |keys: &str| format!("{drive}\n{keys}");
+    let laser = "[robot.laser]\nbeams = 360\nrange_max_m = 10.0\nrate_hz = 10.0";
+    let drive_table = &GOOD[GOOD.find("[robot.drive]").unwrap()..GOOD.find("[robot.laser]").unwrap()];
+    let both = format!("{drive_table}{laser}");
+    let several = |keys: &str| laser.replace("[robot.laser]", "[[robot.laser]]") + keys;
+    let cases = [
+        ("unknown drive", drive, with("kind = \"hover\"")),
+        ("diff drive that goes sideways", drive, with("max_left_mps = 0.5")),
+        ("omni drive with a wheelbase", drive, with("kind = \"omni\"\nwheelbase_m = 0.5")),
+        ("omni drive too fast at once", drive, with("kind = \"omni\"\nmax_left_mps = 3.99")),
+        ("car without a wheelbase", drive, with("kind = \"car\"")),
+        ("no laser", &both, format!("laser = []\n\n{drive_table}")),
+        ("wrong key of the second laser", laser, several("\n[[robot.laser]]\nbeans = 3")),
+        (
+            "wrong number of the second laser",
+            laser,
+            several("\n[[robot.laser]]\nbeams = 1\nrange_max_m = 1.0\nrate_hz = 10.0"),
+        ),
+        ("no table of a laser", &both, format!("laser = 3\n\n{drive_table}")),
+        ("dropout of more than all", "rate_hz = 10.0", "rate_hz = 10.0\ndropout = 1.5".to_owned()),
+    ];
+    let cases: Vec<_> = cases.iter().map(|(case, from, to)| (*case, *from, to.as_str())).collect();
+    compare("drives_and_lasers", &cases);
+    let car = GOOD.replacen("max_linear_mps", "kind = \"car\"\nwheelbase_m = 0.3\nmax_linear_mps", 1);
+    let wander = |kind: &str| car.replacen("kind = \"driven\"", kind, 1);
+    let error = |text: String| FleetSpec::parse("closet.toml", &text).map(|_| ()).unwrap_err().to_string();
+    assert!(error(wander("kind = \"wander\"\nspeed_mps = 0.3")).contains("a car cannot be `wander`"));
+    let tight = "kind = \"circle\"\nspeed_mps = 0.3\nturn_radius_m = 0.4";
+    assert!(
+        error(wander(tight)).contains("a circle has a radius of 0.520 m or more"),
+        "{}",
+        error(wander(tight))
+    );
+    assert!(FleetSpec::parse("closet.toml", &car).is_ok());
+}
+
+#[test]
 fn robots() {
     let all_robots = &GOOD[GOOD.find("[[robot]]").unwrap()..];
     compare(

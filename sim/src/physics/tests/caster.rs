@@ -49,6 +49,14 @@ struct Place {
     discs: Vec<(Point2<f64>, f64)>,
 }
 
+fn noise() -> chance::Gaussian {
+    chance::Gaussian::new(0, chance::Purpose::Laser, 0)
+}
+
+fn dropout() -> chance::Uniform {
+    chance::Uniform::new(0, chance::Purpose::Dropout, 0)
+}
+
 /// What became of the beams that were compared.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
@@ -106,8 +114,7 @@ impl Place {
 
     /// Holds a scan from `at` on robot `own` against both oracles.
     fn compare(&self, spec: &LaserSpec, at: &Isometry2<f64>, own: usize, tally: &mut Tally) {
-        let mut laser =
-            Laser::new(spec, beams(spec).into(), chance::Gaussian::new(0, chance::Purpose::Laser, 0));
+        let mut laser = Laser::new(spec, beams(spec).into(), noise(), dropout());
         let mut scan = spec.empty_scan();
         laser.scan(at, &self.scene, own, &mut Scratch::default(), &mut scan);
         let from = Point2::from(at.translation.vector);
@@ -281,8 +288,7 @@ fn a_robot_sees_the_other_but_not_itself() {
 fn a_laser_inside_of_a_solid_sees_nothing_else() {
     let mut spec = four_rooms();
     spec.fleet.robots[0].pose = pose(6.0, 1.0, 0.3);
-    let noise = chance::Gaussian::new(0, chance::Purpose::Laser, 0);
-    let mut laser = Laser::new(&spec.driven().laser, beams(&spec.driven().laser).into(), noise);
+    let mut laser = Laser::new(&spec.driven().laser, beams(&spec.driven().laser).into(), noise(), dropout());
     let mut scene = Scene::new(corners(spec.frame()), spec.walls(), Vec::new(), 0, 10.0);
     scene.sort();
     let mut scan = spec.driven().laser.empty_scan();

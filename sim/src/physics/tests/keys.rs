@@ -74,6 +74,8 @@ fn fit(heading: &str, key: &str, good: &str) -> String {
         ("`robot.behaviour`", "clearance_m") => kind("wander"),
         ("`robot.behaviour`", "turn_radius_m" | "direction") => kind("circle") + "\nturn_radius_m = 1.0",
         ("`robot.behaviour`", "repeat") => kind("waypoints") + "\npoints_m = [[2.0, 2.0]]",
+        (_, "max_left_mps" | "max_left_acceleration_mps2") => format!("kind = \"omni\"\n{good}"),
+        (_, "wheelbase_m" | "max_steer_deg") => format!("kind = \"car\"\nwheelbase_m = 1.0\n{good}"),
         (_, "slide_m") => good.replace("hinged", "sliding"),
         (_, "switches_s") => good.replace("random", "scripted").replace("closed_s = 1.0\nopen_s = 1.0", ""),
         (_, "times_s") => good.replace("speed_mps = 1.0", ""),
@@ -162,7 +164,8 @@ fn the_defaults_are_those_that_are_taken() {
             assert!(known.contains(&row.default), "{:?}: {}", row.keys, row.default);
             continue;
         };
-        if default == "{}" || default == "[]" {
+        // Another key's value is no value.
+        if default == "{}" || default == "[]" || default.starts_with("max_") {
             continue;
         }
         let (_, _, good) = GOOD.iter().find(|(heading, _, _)| *heading == row.heading).unwrap();

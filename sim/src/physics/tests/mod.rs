@@ -4,6 +4,7 @@ mod caster;
 mod contacts;
 mod contract;
 mod docs;
+mod drives;
 mod fleet;
 mod floor_plan;
 mod keys;
