@@ -6,9 +6,7 @@ use super::shape::Rectangle;
 use super::snapshot::{Played, Tape, Torn};
 use super::spec::{PushedSpec, RobotSpec};
 use geometry::{heading_rad, rotation};
-#[cfg(test)]
-use nalgebra::Point2;
-use nalgebra::{Isometry2, Translation2, Vector2};
+use nalgebra::{Isometry2, Point2, Translation2, Vector2};
 use rapier2d::prelude as rapier;
 
 /// Bodies farther apart than this no longer touch, m. A contact that rapier keeps open flickers by
@@ -196,10 +194,16 @@ impl Bodies {
     /// Adds a robot; robots are numbered in the order in which they are added.
     pub(super) fn add_robot(&mut self, spec: &RobotSpec, step_s: f64) {
         // Friction 0: a round robot slides along a wall, as one with a bumper ring does.
-        let collider = rapier::ColliderBuilder::ball(spec.radius_m as f32)
+        let corners = spec.corners.iter().map(|corner| rapier::Vector::new(corner.x as f32, corner.y as f32));
+        let is_round = spec.corners.is_empty();
+        let hull = if is_round { None } else { rapier::ColliderBuilder::convex_polyline(corners.collect()) };
+        let collider = hull
+            .unwrap_or_else(|| rapier::ColliderBuilder::ball(spec.radius_m as f32))
             .friction(0.0)
             .user_data(pack(Body::Robot(self.robots.len())));
         let collider = match spec.mass_kg {
+            // The wheels turn it about its middle, wherever the middle of its outline is.
+            _ if !is_round => collider.density(0.0),
             Some(mass_kg) => collider.mass(mass_kg as f32),
             None => collider,
         };
@@ -208,6 +212,7 @@ impl Bodies {
             .pose(to_rapier(&spec.pose))
             .can_sleep(false)
             .soft_ccd_prediction((2.0 * spec.drive.fastest_mps() * step_s) as f32);
+        let body = if is_round { body } else { body.additional_mass_properties(disc_mass(spec)) };
         let (body, collider) = self.world.insert(body, collider);
         self.robots.push(Robot { body, collider, forward: Vector2::x() });
     }
@@ -254,16 +259,19 @@ impl Bodies {
         body.set_angvel(0.0, true);
     }
 
-    /// Everything near a robot that it presses against, with the impulse of the last step (N·s), or
-    /// has not yet parted from (0).
-    pub(super) fn touches(&self, robot: usize) -> impl Iterator<Item = (Body, f64)> {
+    /// Everything near a robot that it presses against, with where (m) and the impulse of the last
+    /// step (N·s), or has not yet parted from (0).
+    pub(super) fn touches(&self, robot: usize) -> impl Iterator<Item = (Body, Point2<f64>, f64)> {
         let own = self.robots[robot].collider;
         self.world.narrow_phase.contact_pairs_with(own).filter_map(move |pair| {
-            let gap_m = pair.find_deepest_contact()?.1.dist;
+            let contact = pair.find_deepest_contact()?.1;
+            let (gap_m, first) = (contact.dist, self.world.colliders[pair.collider1].position());
             let impulse_ns = f64::from(pair.total_impulse_magnitude());
             let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
             let body = unpack(self.world.colliders[other].user_data);
-            (impulse_ns > 0.0 || gap_m < PART_M).then_some((body, impulse_ns))
+            let at = first.transform_point(contact.local_p1);
+            let at = Point2::new(f64::from(at.x), f64::from(at.y));
+            (impulse_ns > 0.0 || gap_m < PART_M).then_some((body, at, impulse_ns))
         })
     }
 
@@ -294,6 +302,13 @@ impl Bodies {
         let ray = rapier::Ray::new(origin, rapier::Vector::new(along.x as f32, along.y as f32));
         query.cast_ray(&ray, max_m as f32, true).map(|(_, range_m)| f64::from(range_m))
     }
+}
+
+/// The mass of a disc about a robot's middle.
+fn disc_mass(spec: &RobotSpec) -> rapier::MassProperties {
+    let square_m2 = spec.radius_m * spec.radius_m;
+    let mass_kg = spec.mass_kg.unwrap_or(std::f64::consts::PI * square_m2);
+    rapier::MassProperties::new(rapier::Vector::ZERO, mass_kg as f32, (mass_kg * square_m2 / 2.0) as f32)
 }
 
 /// The direction to the left.

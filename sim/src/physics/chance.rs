@@ -17,6 +17,8 @@ pub(super) enum Purpose {
     Door = 3,
     /// Which ranges are missing.
     Dropout = 4,
+    /// The noise of sonars.
+    Sonar = 5,
 }
 
 /// The stream of a robot or door (by its place in the world) for one purpose.

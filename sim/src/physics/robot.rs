@@ -2,7 +2,10 @@ use super::bodies::Bodies;
 use super::chance::{Gaussian, Purpose, Uniform};
 use super::command::{Command, Velocity};
 use super::drive::Drive;
+use super::ear::Ear;
 use super::eye::{Eye, Stance};
+use super::finder::{Finder, Tagged};
+use super::form::Form;
 use super::minds::Mind;
 use super::odometry::Odometry;
 use super::rays::{Beams, Scene, Scratch};
@@ -21,8 +24,8 @@ pub(super) struct Robot {
     index: usize,
     /// Where it truly is.
     pub(super) pose: Isometry2<f64>,
-    /// Where its middle was before the last step, m.
-    pub(super) was_at: Point2<f64>,
+    /// Where it was before the last step.
+    pub(super) was: Isometry2<f64>,
     pub(super) velocity: Velocity,
     /// Whether it drove by itself in the last step.
     pub(super) drove: bool,
@@ -35,6 +38,18 @@ pub(super) struct Robot {
     mind: Mind,
     /// Its lasers, the main one first.
     eyes: Vec<Eye>,
+    ears: Vec<Ear>,
+    finder: Option<Finder>,
+    /// The bumpers that were pressed in the last step, as bits.
+    pub(super) pressed: u64,
+}
+
+/// A moment, and what there is to sense.
+pub(super) struct Now<'a> {
+    pub(super) step: u64,
+    pub(super) time_s: f64,
+    pub(super) scene: &'a Scene,
+    pub(super) tagged: &'a [Tagged],
 }
 
 impl Robot {
@@ -50,7 +65,7 @@ impl Robot {
         Self {
             index,
             pose,
-            was_at: pose.translation.vector.into(),
+            was: pose,
             velocity: Velocity::STOP,
             drove: false,
             touching: Vec::new(),
@@ -64,6 +79,14 @@ impl Robot {
                 .enumerate()
                 .map(|(which, (laser, beams))| Eye::new(laser, beams, seed, index, which))
                 .collect(),
+            ears: spec
+                .sonars
+                .iter()
+                .enumerate()
+                .map(|(which, sonar)| Ear::new(sonar, seed, index, which))
+                .collect(),
+            finder: spec.fiducial.as_ref().map(Finder::new),
+            pressed: 0,
             spec: spec.clone(),
         }
     }
@@ -71,7 +94,7 @@ impl Robot {
     /// Writes or reads what has become of it.
     pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
         tape.pose(&mut self.pose)?;
-        tape.point(&mut self.was_at)?;
+        tape.pose(&mut self.was)?;
         self.velocity.play(tape)?;
         tape.bool(&mut self.drove)?;
         tape.list(&mut self.touching, Body::Wall(0), Tape::body)?;
@@ -79,12 +102,20 @@ impl Robot {
         self.drive.play(tape)?;
         self.odometry.play(tape)?;
         self.mind.play(tape)?;
-        self.eyes.iter_mut().try_for_each(|eye| eye.play(tape))
+        self.eyes.iter_mut().try_for_each(|eye| eye.play(tape))?;
+        self.ears.iter_mut().try_for_each(|ear| ear.play(tape))?;
+        self.finder.iter_mut().try_for_each(|finder| finder.play(tape))?;
+        tape.u64(&mut self.pressed)
     }
 
     /// Its middle, m.
     pub(super) fn at(&self) -> Point2<f64> {
         self.pose.translation.vector.into()
+    }
+
+    /// Its body, now.
+    pub(super) fn form(&self) -> Form {
+        self.spec.form(&self.pose)
     }
 
     /// Whether it obeys commands.
@@ -97,9 +128,11 @@ impl Robot {
         self.eyes[0].is_due(step)
     }
 
-    /// Whether a scan of any laser is due at a step.
+    /// Whether any of its senses is due at a step.
     pub(super) fn looks(&self, step: u64) -> bool {
         self.eyes.iter().any(|eye| eye.is_due(step))
+            || self.ears.iter().any(|ear| ear.is_due(step))
+            || self.finder.as_ref().is_some_and(|finder| finder.is_due(step))
     }
 
     /// What its main laser saw last, if it has looked yet.
@@ -114,12 +147,16 @@ impl Robot {
             name: &self.spec.name,
             pose: self.pose,
             radius_m: self.spec.radius_m,
+            corners: &self.spec.corners,
             is_driven: self.is_driven(),
             twist: self.velocity.twist(),
             left_mps: self.velocity.left_mps,
             is_stalled: self.drive.is_stalled(),
             sweep: self.sweep(),
+            fiducials: self.finder.as_ref().map_or(&[], |finder| finder.found.as_slice()),
             eyes: &self.eyes,
+            ears: &self.ears,
+            bumpers: (self.pressed, self.spec.bumper.map_or(0, |bumper| bumper.sectors)),
         }
     }
 
@@ -131,42 +168,46 @@ impl Robot {
     /// It has been set down at `pose`, at rest, and knows where it is.
     pub(super) fn put(&mut self, pose: Isometry2<f64>) {
         self.pose = pose;
-        self.was_at = self.at();
+        self.was = pose;
         self.velocity = Velocity::STOP;
         self.wanted = Command::STOP;
         self.drive = Drive::new(self.spec.drive);
         self.odometry.restart(pose);
         self.touching.clear();
+        self.pressed = 0;
         self.eyes.iter_mut().for_each(|eye| eye.sweep = None);
+        self.ears.iter_mut().for_each(|ear| ear.ping = None);
+        self.finder.iter_mut().for_each(|finder| finder.found.clear());
     }
 
-    /// Looks around with its main laser at `time_s`, and with the others that are due, unless it has
-    /// done so already at that time.
-    pub(super) fn look(
-        &mut self,
-        (step, time_s): (u64, f64),
-        scene: &Scene,
-        scratch: &mut Scratch,
-    ) -> &LaserReading {
-        let stance = self.stance(time_s);
-        let (main, others) = self.eyes.split_at_mut(1);
-        for eye in others.iter_mut().filter(|eye| eye.is_due(step)) {
-            eye.look(&stance, scene, scratch);
-        }
-        main[0].look(&stance, scene, scratch)
+    /// Looks around with its main laser, and with all other senses that are due, unless it has done
+    /// so already at that time.
+    pub(super) fn look(&mut self, now: &Now<'_>, scratch: &mut Scratch) -> &LaserReading {
+        let stance = self.stance(now.time_s);
+        self.sense(now, &stance, scratch);
+        self.eyes[0].look(&stance, now.scene, scratch)
     }
 
-    /// Looks around with the lasers that are due and, with a mind of its own, decides what to do.
-    pub(super) fn think(&mut self, (step, time_s): (u64, f64), scene: &Scene, scratch: &mut Scratch) {
-        let stance = self.stance(time_s);
-        for eye in self.eyes.iter_mut().filter(|eye| eye.is_due(step)) {
-            eye.look(&stance, scene, scratch);
-        }
-        if self.is_due(step)
+    /// Senses what is due and, with a mind of its own, decides what to do.
+    pub(super) fn think(&mut self, now: &Now<'_>, scratch: &mut Scratch) {
+        self.sense(now, &self.stance(now.time_s), scratch);
+        if self.is_due(now.step)
             && let Some(sweep) = &self.eyes[0].sweep
             && let Some(wanted) = self.mind.decide(&sweep.reading)
         {
             self.wanted = wanted.into();
+        }
+    }
+
+    fn sense(&mut self, now: &Now<'_>, stance: &Stance, scratch: &mut Scratch) {
+        for eye in self.eyes.iter_mut().filter(|eye| eye.is_due(now.step)) {
+            eye.look(stance, now.scene, scratch);
+        }
+        for ear in self.ears.iter_mut().filter(|ear| ear.is_due(now.step)) {
+            ear.listen(stance, now.scene, scratch);
+        }
+        if let Some(finder) = self.finder.as_mut().filter(|finder| finder.is_due(now.step)) {
+            finder.look(stance, now.tagged, now.scene, scratch);
         }
     }
 
@@ -192,6 +233,6 @@ impl Robot {
         let before = std::mem::replace(&mut self.pose, bodies.pose(self.index));
         self.velocity = self.drive.settle(&bodies.velocity(self.index));
         self.odometry.feel(&before, &self.pose);
-        self.was_at = before.translation.vector.into();
+        self.was = before;
     }
 }

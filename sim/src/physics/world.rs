@@ -30,7 +30,7 @@ impl PhysicsWorld {
         }
         for index in others(spec) {
             let robot = fleet.robot(index);
-            truth.move_disc(Body::Robot(index), None, robot.at(), robot.spec.radius_m);
+            truth.move_robot(Body::Robot(index), None, &robot.form());
         }
         truth.begin();
         Self { spec: spec.clone(), fleet, truth, contacts: Vec::new(), obstacle_events: Vec::new() }
@@ -89,7 +89,8 @@ impl PhysicsWorld {
         self.truth.set_time(time_s);
         for index in others(&self.spec) {
             let robot = self.fleet.robot(index);
-            self.truth.move_disc(Body::Robot(index), Some(robot.was_at), robot.at(), robot.spec.radius_m);
+            let was = robot.spec.form(&robot.was);
+            self.truth.move_robot(Body::Robot(index), Some(&was), &robot.form());
         }
         if self.fleet.moved().len() > 0 {
             let boxes = self.fleet.standing_boxes();

@@ -105,6 +105,8 @@ impl Behaviour {
 pub(super) struct Context<'a> {
     pub(super) source: &'a Source<'a>,
     pub(super) robot: &'a RobotFile,
+    /// Of the circle that holds it, m.
+    pub(super) radius_m: f64,
     pub(super) start: Point2<f64>,
     pub(super) drive: &'a DriveLimits,
     pub(super) size: &'a Point2<f64>,
@@ -229,7 +231,7 @@ impl Context<'_> {
         let start = (self.start, self.robot.pose_m.span());
         let back = (repeat == Repeat::Loop && points.len() > 1).then(|| points[0].clone());
         let way: Vec<_> = [start].into_iter().chain(points.iter().cloned()).chain(back).collect();
-        let keep_m = *self.robot.radius_m.get_ref() + BESIDE_M;
+        let keep_m = self.radius_m + BESIDE_M;
         for (leg, pair) in way.windows(2).enumerate() {
             let [(a, from), (b, to)] = pair else { continue };
             let marks = |label| (to.clone(), label);

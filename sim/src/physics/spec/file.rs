@@ -116,6 +116,7 @@ pub(super) struct FloorPlanFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct ObstacleFile {
     pub(super) name: Spanned<String>,
+    pub(super) tag: Option<Spanned<u32>>,
     pub(super) kind: Option<Spanned<String>>,
     pub(super) min_m: Option<Pair>,
     pub(super) max_m: Option<Pair>,
@@ -185,7 +186,8 @@ impl ObstacleFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct RobotFile {
     pub(super) name: Spanned<String>,
-    pub(super) radius_m: Number,
+    pub(super) radius_m: Option<Number>,
+    pub(super) footprint_m: Option<Spanned<Vec<Pair>>>,
     pub(super) mass_kg: Option<Number>,
     pub(super) pose_m: Pair,
     pub(super) heading_deg: Option<Number>,
@@ -194,6 +196,11 @@ pub(super) struct RobotFile {
     pub(super) odometry: OdometryFile,
     #[serde(rename = "laser")]
     pub(super) lasers: Spanned<OneOrMore<LaserFile>>,
+    pub(super) bumper: Option<BumperFile>,
+    #[serde(default, rename = "sonar")]
+    pub(super) sonars: Vec<Spanned<SonarFile>>,
+    pub(super) fiducial: Option<FiducialFile>,
+    pub(super) tag: Option<Spanned<u32>>,
     pub(super) behaviour: Spanned<BehaviourFile>,
 }
 
@@ -248,4 +255,33 @@ pub(super) struct BehaviourFile {
     pub(super) direction: Option<Spanned<String>>,
     pub(super) points_m: Option<Spanned<Vec<Pair>>>,
     pub(super) repeat: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BumperFile {
+    pub(super) sectors: Spanned<u32>,
+    pub(super) fov_deg: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SonarFile {
+    pub(super) cone_deg: Number,
+    pub(super) range_min_m: Option<Number>,
+    pub(super) range_max_m: Number,
+    pub(super) rate_hz: Number,
+    pub(super) mount_m: Option<Pair>,
+    pub(super) mount_deg: Option<Number>,
+    pub(super) noise_std_m: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FiducialFile {
+    pub(super) fov_deg: Option<Number>,
+    pub(super) range_max_m: Number,
+    pub(super) rate_hz: Number,
+    pub(super) mount_m: Option<Pair>,
+    pub(super) mount_deg: Option<Number>,
 }

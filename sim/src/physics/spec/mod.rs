@@ -5,12 +5,14 @@ mod check;
 mod drive;
 mod file;
 mod floor_plan;
+mod footprint;
 mod laser;
 mod numbers;
 mod obstacle;
 mod parts;
 mod patrol;
 mod robot;
+mod senses;
 #[cfg(test)]
 mod tests;
 
@@ -18,6 +20,7 @@ pub use behaviour::{Behaviour, CircleSpec, PatrolSpec, Repeat, WanderSpec, Waypo
 
 pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
 pub use parts::{DriveKind, DriveLimits, LaserSpec, OdometryError, RobotSpec};
+pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
 use super::shape::Rectangle;
 use crate::error::{Source, WorldError};

@@ -1,18 +1,21 @@
 //! A robot and its parts, checked and in SI.
 
-use super::Behaviour;
+use super::{Behaviour, BumperSpec, FiducialSpec, SonarSpec};
+use crate::physics::form::Form;
 use geometry::Scan;
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
 use std::f64::consts::{PI, TAU};
 
-/// A round robot with wheels and lasers.
+/// A robot with wheels and lasers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotSpec {
     /// What it is called.
     pub name: String,
-    /// The radius of its body, m.
+    /// The radius of its body, m; with corners: that of the circle about its middle that holds it.
     pub radius_m: f64,
-    /// Its mass, kg; `None`: 1 kg per m² of its area. It counts when robots push each other.
+    /// The corners of its body in its own frame, convex, counter-clockwise, m; none: it is round.
+    pub corners: Vec<Point2<f64>>,
+    /// Its mass, kg; `None`: 1 kg per m² of the circle. It counts when robots push each other.
     pub mass_kg: Option<f64>,
     /// Where it starts.
     pub pose: Isometry2<f64>,
@@ -24,11 +27,24 @@ pub struct RobotSpec {
     pub laser: LaserSpec,
     /// Its other lasers.
     pub more_lasers: Vec<LaserSpec>,
+    /// What it feels touches with.
+    pub bumper: Option<BumperSpec>,
+    /// Its sonars and infrared sensors.
+    pub sonars: Vec<SonarSpec>,
+    /// What it finds tags with.
+    pub fiducial: Option<FiducialSpec>,
+    /// Its own tag, by which others find it.
+    pub tag: Option<u32>,
     /// What it does.
     pub behaviour: Behaviour,
 }
 
 impl RobotSpec {
+    /// Its body at a pose.
+    pub(in crate::physics) fn form(&self, pose: &Isometry2<f64>) -> Form {
+        Form::new(&self.corners, self.radius_m, pose)
+    }
+
     /// All its lasers, the main one first.
     pub fn lasers(&self) -> impl Iterator<Item = &LaserSpec> {
         [&self.laser].into_iter().chain(&self.more_lasers)

@@ -4,10 +4,13 @@ use super::behaviour::Context;
 use super::check::Solid;
 use super::drive::drive;
 use super::file::{OdometryFile, RobotFile};
+use super::footprint::{Footprint, footprint};
 use super::laser::lasers;
 use super::numbers::Table;
-use super::{OdometryError, RobotSpec};
+use super::{OdometryError, RobotSpec, senses};
 use crate::error::{Source, WorldError};
+use crate::physics::convex;
+use crate::physics::form::Form;
 use crate::physics::shape::TOUCH_M;
 use geometry::pose;
 use nalgebra::Point2;
@@ -22,30 +25,57 @@ pub(super) fn robot(
 ) -> Result<RobotSpec, WorldError> {
     let table = Table { source, path: "robot" };
     let name = source.name("robot", &file.name)?;
-    let radius_m = table.number("radius_m", &file.radius_m, 0.02..=10.0)?;
+    let Footprint { radius_m, inner_m, corners, .. } = footprint(source, file)?;
     let mass_kg =
         file.mass_kg.as_ref().map(|mass| table.number("mass_kg", mass, 0.001..=100_000.0)).transpose()?;
     let at = table.point("pose_m", &file.pose_m, size)?;
     let heading_deg = table.number_or("heading_deg", &file.heading_deg, 0.0, -360.0..=360.0)?;
-    let help = format!("its middle must keep its radius of {radius_m} m away");
-    if at.coords.min().min((size - at).min()) < radius_m - TOUCH_M {
+    let pose = pose(at.x, at.y, heading_deg.to_radians());
+    let form = Form::new(&corners, radius_m, &pose);
+    let help = match &form {
+        Form::Disc { .. } => format!("its middle must keep its radius of {radius_m} m away"),
+        Form::Convex(_) => "its footprint may touch other things, but not overlap them".to_owned(),
+    };
+    let (low, high) = form.bounds();
+    if low.coords.min().min((size - high).min()) < -TOUCH_M {
         let what = format!("the robot `{name}` reaches out of the map");
         return Err(source.error(&what, (file.pose_m.span(), "too near to the border"), &[], &help));
     }
-    if let Some(solid) =
-        solids.iter().chain(movers).find(|solid| solid.shape.distance_m(&at) < radius_m - TOUCH_M)
-    {
+    let stands_in = |solid: &&Solid| match &form {
+        Form::Disc { .. } => solid.shape.distance_m(&at) < radius_m - TOUCH_M,
+        Form::Convex(corners) => convex::gap_m(corners, &solid.shape.corners()) < -TOUCH_M,
+    };
+    if let Some(solid) = solids.iter().chain(movers).find(stands_in) {
         let what = format!("the robot `{name}` starts in a wall or an obstacle");
         let marks = [(solid.span.clone(), "in this one")];
         return Err(source.error(&what, (file.pose_m.span(), "stands here"), &marks, &help));
     }
-    let drive = drive(source, &file.drive, radius_m / step_s)?;
+    let drive = drive(source, &file.drive, inner_m / step_s)?;
     let lasers = lasers(source, file, step_s, radius_m)?;
-    let behaviour = Context { source, robot: file, start: at, drive: &drive, size, solids }.behaviour()?;
-    let pose = pose(at.x, at.y, heading_deg.to_radians());
+    let behaviour =
+        Context { source, robot: file, radius_m, start: at, drive: &drive, size, solids }.behaviour()?;
     let odometry = odometry(source, &file.odometry)?;
     let (laser, more_lasers) = lasers;
-    Ok(RobotSpec { name, radius_m, mass_kg, pose, drive, odometry, laser, more_lasers, behaviour })
+    Ok(RobotSpec {
+        name,
+        radius_m,
+        corners,
+        mass_kg,
+        pose,
+        drive,
+        odometry,
+        laser,
+        more_lasers,
+        bumper: file.bumper.as_ref().map(|file| senses::bumper(source, file)).transpose()?,
+        sonars: senses::sonars(source, &file.sonars, step_s, radius_m)?,
+        fiducial: file
+            .fiducial
+            .as_ref()
+            .map(|file| senses::fiducial(source, file, step_s, radius_m))
+            .transpose()?,
+        tag: file.tag.as_ref().map(|tag| *tag.get_ref()),
+        behaviour,
+    })
 }
 
 fn odometry(source: &Source<'_>, file: &OdometryFile) -> Result<OdometryError, WorldError> {

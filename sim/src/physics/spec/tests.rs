@@ -251,6 +251,51 @@ fn drives_and_lasers() {
 }
 
 #[test]
+fn footprints() {
+    let radius = "radius_m = 0.2";
+    let corners = |corners: &str| format!("footprint_m = [{corners}]");
+    let square = "[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]";
+    let at = "radius_m = 0.2\npose_m = [1.0, 1.0]";
+    let put = |pose: &str| format!("footprint_m = [{square}]\npose_m = {pose}");
+    let cases = [
+        ("no outline", radius, String::new()),
+        ("two outlines", radius, format!("{radius}\n{}", corners(square))),
+        ("two corners", radius, corners("[0.0, 0.0], [1.0, 1.0]")),
+        ("not convex", radius, corners("[-0.2, -0.2], [0.2, -0.2], [-0.1, -0.1], [-0.2, 0.2]")),
+        ("a star", radius, corners("[0.3, 0.0], [-0.24, 0.18], [0.09, -0.29], [0.09, 0.29], [-0.24, -0.18]")),
+        ("beside itself", radius, corners("[0.1, -0.2], [0.5, -0.2], [0.5, 0.2], [0.1, 0.2]")),
+        ("far corners", radius, corners("[-20.0, -0.2], [0.2, -0.2], [0.2, 0.2]")),
+        ("footprint in a wall", at, put("[1.81, 1.0]")),
+        ("footprint outside", at, put("[0.19, 1.0]")),
+        ("footprint in a robot", at, put("[2.31, 0.5]")),
+        ("footprint beside a wall", at, put("[1.8, 1.0]")),
+    ];
+    let cases: Vec<_> = cases.iter().map(|(case, from, to)| (*case, *from, to.as_str())).collect();
+    compare("footprints", &cases);
+}
+
+#[test]
+fn senses() {
+    let at = "[robot.behaviour]\nkind = \"driven\"";
+    let with = |keys: &str| format!("{keys}\n\n{at}");
+    let sonar = "[[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 3.0\nrate_hz = 10.0";
+    let cases = [
+        ("no bumpers", with("[robot.bumper]\nsectors = 0")),
+        ("sonar that hears nothing", with(&format!("{sonar}\nrange_min_m = 3.0"))),
+        ("sonar off the robot", with(&format!("{sonar}\nmount_m = [0.3, 0.0]"))),
+        ("sonar between steps", with(&sonar.replace("10.0", "15.0"))),
+        ("sonar as a table", with(&sonar.replace("[[robot.sonar]]", "[robot.sonar]"))),
+        (
+            "finder off the robot",
+            with("[robot.fiducial]\nrange_max_m = 3.0\nrate_hz = 10.0\nmount_m = [1.0, 0.0]"),
+        ),
+        ("wrong tag", with("").replacen("[robot.behaviour]", "[robot.behaviour]\ntag = 3", 1)),
+    ];
+    let cases: Vec<_> = cases.iter().map(|(case, to)| (*case, at, to.as_str())).collect();
+    compare("senses", &cases);
+}
+
+#[test]
 fn robots() {
     let all_robots = &GOOD[GOOD.find("[[robot]]").unwrap()..];
     compare(

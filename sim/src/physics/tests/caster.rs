@@ -19,15 +19,22 @@ fn brute_force_m(
     from: &Point2<f64>,
     along: &Vector2<f64>,
     boxes: &[Rectangle],
+    sides: &[(Point2<f64>, Point2<f64>)],
     discs: &[(Point2<f64>, f64)],
 ) -> f64 {
+    let side_m = sides.iter().filter_map(|(a, b)| {
+        let (to, side) = (a - from, b - a);
+        let (range_m, place) = (to.perp(&side) / along.perp(&side), to.perp(along) / along.perp(&side));
+        (range_m > 0.0 && (0.0..=1.0).contains(&place)).then_some(range_m)
+    });
+    let side_m = side_m.fold(f64::INFINITY, f64::min);
     let box_m = boxes.iter().filter_map(|shape| shape.ray_m(from, along)).fold(f64::INFINITY, f64::min);
     let disc_m = discs.iter().filter_map(|(center, radius_m)| {
         let (to, r2) = (center - from, radius_m * radius_m);
         let (b, miss2) = (to.dot(along), to.perp(along).powi(2));
         (miss2 <= r2 && b > 0.0).then(|| b - (r2 - miss2).sqrt())
     });
-    disc_m.fold(box_m, f64::min)
+    disc_m.fold(box_m.min(side_m), f64::min)
 }
 
 /// A cluttered house, turned, with boxes at odd angles and several robots.
@@ -47,6 +54,8 @@ struct Place {
     /// Walls, and whatever else is there.
     boxes: Vec<Rectangle>,
     discs: Vec<(Point2<f64>, f64)>,
+    /// The robots that are not round, with their corners.
+    cornered: Vec<(usize, Vec<Point2<f64>>)>,
 }
 
 fn noise() -> chance::Gaussian {
@@ -87,28 +96,34 @@ impl Place {
         }
         scene.sort();
         let boxes = spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).copied().collect();
-        Self { spec, scene, bodies, boxes, discs }
+        Self { spec, scene, bodies, boxes, discs, cornered: Vec::new() }
     }
 
     /// The present state of a fleet.
     fn of(fleet: Fleet) -> Self {
         let spec = fleet.spec().clone();
         let boxes = fleet.standing_boxes();
-        let discs = fleet
-            .robots()
-            .map(|robot| (Point2::from(robot.pose.translation.vector), f64::from(robot.radius_m as f32)));
-        let discs = discs.collect();
+        let (mut discs, mut cornered) = (Vec::new(), Vec::new());
+        for robot in fleet.robots() {
+            let at = Point2::from(robot.pose.translation.vector);
+            let is_round = robot.corners.is_empty();
+            discs.push((at, if is_round { f64::from(robot.radius_m as f32) } else { 0.0 }));
+            if !is_round {
+                cornered
+                    .push((robot.index, robot.corners.iter().map(|corner| robot.pose * corner).collect()));
+            }
+        }
         let (mut scene, mut bodies) = fleet.into_parts();
         scene.sort();
         bodies.find_again();
-        Self { spec, scene, bodies, boxes, discs }
+        Self { spec, scene, bodies, boxes, discs, cornered }
     }
 
     /// Whether a laser there is outside of everything.
     fn is_free(&self, at: &Point2<f64>, own: usize) -> bool {
-        let boxes = self.spec.walls().iter().chain(self.spec.obstacles().iter().map(|o| &o.shape));
         let mut others = self.discs.iter().enumerate().filter(|(i, _)| *i != own);
-        boxes.into_iter().all(|shape| shape.distance_m(at) > 1e-3)
+        self.boxes.iter().all(|shape| shape.distance_m(at) > 1e-3)
+            && self.cornered.iter().all(|(_, body)| convex::disc_gap_m(body, at, 1e-3) > 0.0)
             && others.all(|(_, (center, radius_m))| (center - at).norm() > radius_m + 1e-3)
     }
 
@@ -120,12 +135,16 @@ impl Place {
         let from = Point2::from(at.translation.vector);
         let others: Vec<_> =
             self.discs.iter().enumerate().filter(|(i, _)| *i != own).map(|(_, disc)| *disc).collect();
+        let cornered = self.cornered.iter().filter(|(robot, _)| *robot != own);
+        let sides: Vec<_> =
+            cornered.flat_map(|(_, corners)| convex::sides(corners)).map(|(a, b)| (*a, *b)).collect();
         let max_m = scan.range_max_m;
         tally.beams += scan.ranges_m.len();
         for (beam, range_m) in scan.ranges_m.iter().enumerate() {
             let direction =
                 |turn_rad: f64| rotation(scan.angle_rad(beam) + turn_rad) * (at.rotation * Vector2::x());
-            let exact = |turn_rad: f64| brute_force_m(&from, &direction(turn_rad), &self.boxes, &others);
+            let exact =
+                |turn_rad: f64| brute_force_m(&from, &direction(turn_rad), &self.boxes, &sides, &others);
             let [low, range, high] = [-GRAZE_RAD, 0.0, GRAZE_RAD].map(exact);
             // Where the target stays the same, so does the range, within what a turn can shift it.
             if (low - range).abs() > 1e-3 || (high - range).abs() > 1e-3 || (range - max_m).abs() < 1e-3 {
@@ -254,6 +273,22 @@ fn narrow_lasers_see_the_same() {
         laser.range_max_m = 4.0;
         let heading = uniform(&mut stream, -4.0..4.0);
         place.compare(&laser, &pose(at.x, at.y, heading), 0, &mut Tally::default());
+    }
+}
+
+/// A narrow view with things behind it: what lies there is in none of its beams.
+#[test]
+fn nothing_is_seen_behind_a_narrow_laser() {
+    let place = Place::of(Fleet::new(&super::fleet::crowd(), 0));
+    let mut stream = ChaCha8Rng::seed_from_u64(6);
+    let mut tally = Tally::default();
+    for _ in 0..300 {
+        let mut laser = LaserSpec { noise_std_m: 0.0, ..place.spec.robots()[0].laser };
+        laser.fov_rad = uniform(&mut stream, 1.0..40.0).to_radians();
+        laser.beams = uniform(&mut stream, 2.0..100.0) as usize;
+        let own = (uniform(&mut stream, 0.0..36.0) as usize).min(35);
+        let at = place.spec.robots()[own].pose.translation.vector;
+        place.compare(&laser, &pose(at.x, at.y, uniform(&mut stream, -4.0..4.0)), own, &mut tally);
     }
 }
 

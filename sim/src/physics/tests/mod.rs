@@ -7,10 +7,12 @@ mod docs;
 mod drives;
 mod fleet;
 mod floor_plan;
+mod footprint;
 mod keys;
 mod obstacles;
 mod patrol;
 mod random;
+mod senses;
 mod snapshot;
 mod things;
 
