@@ -10,6 +10,7 @@ mod floor_plan;
 mod footprint;
 mod keys;
 mod obstacles;
+mod oracle;
 mod patrol;
 mod random;
 mod senses;

@@ -1,10 +1,14 @@
 //! Rigid bodies and contacts: the only folder that knows rapier.
 
+mod movers;
+
+pub(super) use movers::Mover;
+
 use super::command::Velocity;
 use super::report::Body;
 use super::shape::Rectangle;
 use super::snapshot::{Played, Tape, Torn};
-use super::spec::{PushedSpec, RobotSpec};
+use super::spec::RobotSpec;
 use geometry::{heading_rad, rotation};
 use nalgebra::{Isometry2, Point2, Translation2, Vector2};
 use rapier2d::prelude as rapier;
@@ -12,15 +16,6 @@ use rapier2d::prelude as rapier;
 /// Bodies farther apart than this no longer touch, m. A contact that rapier keeps open flickers by
 /// less.
 const PART_M: f32 = 0.001;
-
-/// Contacts of obstacles that move are foreseen over this way, m: the most that their surface goes
-/// in a step, and what drives against it.
-const FORESEEN_M: f32 = 0.25;
-/// Standard gravity: what presses boxes onto the floor.
-const GRAVITY_MPS2: f64 = 9.806_65;
-/// How hard friction holds, as long as its force is enough, 1/s: what is left of a speed after a
-/// step is next to nothing.
-const RUB_PER_S: f32 = 1e5;
 
 /// All bodies: walls and obstacles that stand, robots that drive.
 pub(super) struct Bodies {
@@ -36,14 +31,6 @@ struct Robot {
     collider: rapier::ColliderHandle,
     /// The heading of the wheels half way through the last step.
     forward: Vector2<f64>,
-}
-
-/// The body of an obstacle that moves.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Mover {
-    body: rapier::RigidBodyHandle,
-    /// What makes a box rub on the floor, with the force that it takes to move it, N.
-    rubs: Option<(rapier::ImpulseJointHandle, f32)>,
 }
 
 /// An obstacle's body, to take it away again.
@@ -115,69 +102,6 @@ impl Bodies {
     /// Takes such a body away.
     pub(super) fn remove_box(&mut self, handle: Handle) {
         self.world.remove_collider(handle.0);
-    }
-
-    /// Adds a body that goes where it is told to, whatever is in its way.
-    pub(super) fn add_driven(&mut self, body: Body, shape: &Rectangle) -> Mover {
-        let collider = cuboid(body, shape);
-        let body = rapier::RigidBodyBuilder::kinematic_position_based()
-            .pose(to_rapier(&shape.pose))
-            .can_sleep(false)
-            .soft_ccd_prediction(FORESEEN_M);
-        Mover { body: self.world.insert(body, collider).0, rubs: None }
-    }
-
-    /// Tells such a body where to be after the next step.
-    pub(super) fn drive(&mut self, mover: &Mover, to: &Isometry2<f64>) {
-        self.world.bodies[mover.body].set_next_kinematic_position(to_rapier(to));
-    }
-
-    /// Adds a body that is pushed, and rubs on the floor.
-    pub(super) fn add_pushed(&mut self, body: Body, shape: &Rectangle, pushed: &PushedSpec) -> Mover {
-        let collider = cuboid(body, shape).mass(pushed.mass_kg as f32);
-        let body =
-            rapier::RigidBodyBuilder::dynamic().pose(to_rapier(&shape.pose)).soft_ccd_prediction(FORESEEN_M);
-        let body = self.world.insert(body, collider).0;
-        let mut mover = Mover { body, rubs: None };
-        let weight_n = pushed.friction * pushed.mass_kg * GRAVITY_MPS2;
-        if weight_n > 0.0 {
-            let world = &mut self.world;
-            let floor =
-                *self.floor.get_or_insert_with(|| world.insert_body(rapier::RigidBodyBuilder::fixed()));
-            // The mean distance of a rectangle's points from its middle is 0.87 (long) to 0.94 (square)
-            // times the root of their mean square.
-            let lever_m = 0.9 * (shape.half_m.norm_squared() / 3.0).sqrt();
-            let mut rub = rapier::GenericJointBuilder::new(rapier::JointAxesMask::empty());
-            for (axis, force) in [
-                (rapier::JointAxis::LinX, weight_n),
-                (rapier::JointAxis::LinY, weight_n),
-                (rapier::JointAxis::AngX, weight_n * lever_m),
-            ] {
-                rub = rub.motor_velocity(axis, 0.0, RUB_PER_S).motor_max_force(axis, force as f32);
-            }
-            let joint = world.insert_impulse_joint(floor, body, rub.build());
-            mover.rubs = Some((joint, weight_n as f32));
-        }
-        mover
-    }
-
-    /// Where the last step brought a body that is pushed.
-    pub(super) fn pushed_pose(&mut self, mover: &Mover) -> Isometry2<f64> {
-        let body = &self.world.bodies[mover.body];
-        let velocity = body.linvel();
-        let at = pose_of(body);
-        if let Some((joint, weight_n)) = mover.rubs
-            && let Some(joint) = self.world.impulse_joints.get_mut(joint, false)
-        {
-            // In motion the force of the weight acts along it, and not along each axis; at rest it
-            // is not known where it will be needed.
-            let speed_mps = velocity.length();
-            let share =
-                if speed_mps > 1e-3 { velocity.abs() / speed_mps } else { rapier::Vector::splat(1.0) };
-            joint.data.set_motor_max_force(rapier::JointAxis::LinX, weight_n * share.x);
-            joint.data.set_motor_max_force(rapier::JointAxis::LinY, weight_n * share.y);
-        }
-        at
     }
 
     /// The energy of motion of everything that is pushed or drives, J.
