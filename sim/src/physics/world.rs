@@ -121,8 +121,8 @@ impl World for PhysicsWorld {
     type Reading = LaserReading;
     type Command = Twist;
 
-    /// The driven robot's scan, with its pose by odometry at the same instant. Looking twice at
-    /// the same time gives the same reading.
+    /// The scan of the driven robot's main laser, with its pose by odometry at the same instant; its
+    /// other senses look no oftener than that. Looking twice at the same time gives the same reading.
     fn sense(&mut self) -> LaserReading {
         self.fleet.look(self.spec.driven).clone()
     }

@@ -189,13 +189,14 @@ impl Bodies {
         let own = self.robots[robot].collider;
         self.world.narrow_phase.contact_pairs_with(own).filter_map(move |pair| {
             let contact = pair.find_deepest_contact()?.1;
-            let (gap_m, first) = (contact.dist, self.world.colliders[pair.collider1].position());
             let impulse_ns = f64::from(pair.total_impulse_magnitude());
+            if impulse_ns <= 0.0 && contact.dist >= PART_M {
+                return None;
+            }
+            let at = self.world.colliders[pair.collider1].position().transform_point(contact.local_p1);
             let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
             let body = unpack(self.world.colliders[other].user_data);
-            let at = first.transform_point(contact.local_p1);
-            let at = Point2::new(f64::from(at.x), f64::from(at.y));
-            (impulse_ns > 0.0 || gap_m < PART_M).then_some((body, at, impulse_ns))
+            Some((body, Point2::new(f64::from(at.x), f64::from(at.y)), impulse_ns))
         })
     }
 

@@ -38,6 +38,8 @@ pub struct Fleet {
     obstacles: Vec<Obstacle>,
     /// The robots that have corners.
     cornered: Vec<usize>,
+    /// Whether any robot looks for tags.
+    has_finders: bool,
     scene: Scene,
     contacts: Vec<Contact>,
     /// The obstacles that moved in the last step, with where they were.
@@ -81,6 +83,7 @@ impl Fleet {
             robots,
             obstacles,
             cornered,
+            has_finders: spec.robots.iter().any(|robot| robot.fiducial.is_some()),
             scene,
             contacts: Vec::new(),
             moved: Vec::new(),
@@ -149,7 +152,7 @@ impl Fleet {
 
     /// Everything with a tag that is there, robots first; nothing if no robot looks for it.
     pub(in crate::physics) fn tagged(&self) -> Vec<Tagged> {
-        if self.spec.robots.iter().all(|robot| robot.fiducial.is_none()) {
+        if !self.has_finders {
             return Vec::new();
         }
         let robots = self.robots.iter().enumerate().filter_map(|(index, robot)| {
@@ -203,7 +206,8 @@ impl Fleet {
     fn show_robot(&mut self, index: usize) {
         let robot = &self.robots[index];
         self.scene.move_disc(index, robot.at());
-        if let Form::Convex(corners) = robot.form()
+        if !robot.spec.corners.is_empty()
+            && let Form::Convex(corners) = robot.form()
             && let Ok(place) = self.cornered.binary_search(&index)
         {
             self.scene.set_hull(self.obstacles.len() + place, Some(index), &corners);

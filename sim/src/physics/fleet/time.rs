@@ -64,10 +64,10 @@ impl Fleet {
         self.step += 1;
         self.set_obstacles_out();
         self.bodies.step();
-        for robot in &mut self.robots {
-            robot.follow(&self.bodies);
+        for index in 0..self.robots.len() {
+            self.robots[index].follow(&self.bodies);
+            self.show_robot(index);
         }
-        (0..self.robots.len()).for_each(|index| self.show_robot(index));
         self.moved.clear();
         for (index, before) in before.into_iter().enumerate() {
             self.obstacles[index].follow(&mut self.bodies);
