@@ -29,8 +29,8 @@ pub(super) struct Finder {
 }
 
 impl Finder {
+    /// A finder that has not looked yet.
     pub(super) fn new(spec: &FiducialSpec) -> Self {
-        // Farther than what it finds: the surface of a thing may hide its middle by as much.
         Self { spec: *spec, beam: Beams::new(0.0, 1.0, 1, spec.range_max_m), found: Vec::new() }
     }
 

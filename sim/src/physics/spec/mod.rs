@@ -17,7 +17,6 @@ mod senses;
 mod tests;
 
 pub use behaviour::{Behaviour, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
-
 pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
 pub use parts::{DriveKind, DriveLimits, LaserSpec, OdometryError, RobotSpec};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
