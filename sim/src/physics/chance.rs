@@ -15,6 +15,10 @@ pub(super) enum Purpose {
     Behaviour = 2,
     /// When a door opens and closes.
     Door = 3,
+    /// Which ranges are missing.
+    Dropout = 4,
+    /// The noise of sonars.
+    Sonar = 5,
 }
 
 /// The stream of a robot or door (by its place in the world) for one purpose.

@@ -1,4 +1,4 @@
-use super::chance::Gaussian;
+use super::chance::{Gaussian, Uniform};
 use super::rays::{Beams, Scene, Scratch};
 use super::snapshot::{Played, Tape};
 use super::spec::LaserSpec;
@@ -12,17 +12,19 @@ pub(super) struct Laser {
     spec: LaserSpec,
     beams: Arc<Beams>,
     noise: Gaussian,
+    dropout: Uniform,
 }
 
 impl Laser {
     /// A laser with `beams`, which are [`beams`] of its spec.
-    pub(super) fn new(spec: &LaserSpec, beams: Arc<Beams>, noise: Gaussian) -> Self {
-        Self { spec: *spec, beams, noise }
+    pub(super) fn new(spec: &LaserSpec, beams: Arc<Beams>, noise: Gaussian, dropout: Uniform) -> Self {
+        Self { spec: *spec, beams, noise, dropout }
     }
 
     /// Writes or reads what has become of it.
     pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
-        self.noise.play(tape)
+        self.noise.play(tape)?;
+        self.dropout.play(tape)
     }
 
     /// The scan from a laser at `pose` on the robot in place `own`, which it never sees. `scratch`
@@ -36,7 +38,7 @@ impl Laser {
         into: &mut Scan,
     ) {
         scene.look(&self.beams, pose, own, scratch);
-        let LaserSpec { range_min_m, range_max_m, noise_std_m, .. } = self.spec;
+        let LaserSpec { range_min_m, range_max_m, noise_std_m, dropout, .. } = self.spec;
         // REP-117: too far is +∞, too close −∞.
         let reported = |measured_m: f64| {
             if measured_m > range_max_m {
@@ -58,6 +60,14 @@ impl Laser {
             // A loop of its own, without a state: several beams at once.
             for (range_m, inverse) in beams {
                 *range_m = reported(1.0 / inverse);
+            }
+        }
+        if dropout > 0.0 {
+            for range_m in &mut into.ranges_m {
+                // REP-117: what was not measured is not a number. One draw per beam, as above.
+                if self.dropout.between(0.0..1.0) < dropout {
+                    *range_m = f32::NAN;
+                }
             }
         }
     }

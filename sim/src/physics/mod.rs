@@ -8,10 +8,16 @@
 #![doc = include_str!("../../worlds/keys.md")]
 
 mod bodies;
+mod bumper;
 mod chance;
+mod command;
 mod convex;
 mod drive;
+mod ear;
+mod eye;
+mod finder;
 mod fleet;
+mod form;
 mod laser;
 mod minds;
 mod obstacles;
@@ -27,14 +33,15 @@ mod tests;
 mod truth;
 mod world;
 
+pub use command::{Acceleration, Command, Velocity};
 pub use fleet::{Controller, Fleet, TeleportError};
-pub use report::{Body, Contact, ObstacleEvent, ObstacleView, RobotView, Sweep};
+pub use report::{Body, Contact, Fiducial, ObstacleEvent, ObstacleView, Ping, RobotView, Sweep};
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
-    Behaviour, CircleSpec, DoorSpec, DriveLimits, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec,
-    OdometryError, Opening, PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, WanderSpec, WaypointsSpec,
-    WorldSpec,
+    Behaviour, BumperSpec, CircleSpec, DoorSpec, DriveKind, DriveLimits, FiducialSpec, FleetSpec, LaserSpec,
+    Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec,
+    SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
 };
 pub use truth::{TrueChange, TrueState, Truth};
 pub use world::PhysicsWorld;

@@ -30,7 +30,7 @@ impl PhysicsWorld {
         }
         for index in others(spec) {
             let robot = fleet.robot(index);
-            truth.move_disc(Body::Robot(index), None, robot.at(), robot.spec.radius_m);
+            truth.move_robot(Body::Robot(index), None, &robot.form());
         }
         truth.begin();
         Self { spec: spec.clone(), fleet, truth, contacts: Vec::new(), obstacle_events: Vec::new() }
@@ -89,7 +89,8 @@ impl PhysicsWorld {
         self.truth.set_time(time_s);
         for index in others(&self.spec) {
             let robot = self.fleet.robot(index);
-            self.truth.move_disc(Body::Robot(index), Some(robot.was_at), robot.at(), robot.spec.radius_m);
+            let was = robot.spec.form(&robot.was);
+            self.truth.move_robot(Body::Robot(index), Some(&was), &robot.form());
         }
         if self.fleet.moved().len() > 0 {
             let boxes = self.fleet.standing_boxes();
@@ -120,15 +121,15 @@ impl World for PhysicsWorld {
     type Reading = LaserReading;
     type Command = Twist;
 
-    /// The driven robot's scan, with its pose by odometry at the same instant. Looking twice at
-    /// the same time gives the same reading.
+    /// The scan of the driven robot's main laser, with its pose by odometry at the same instant; its
+    /// other senses look no oftener than that. Looking twice at the same time gives the same reading.
     fn sense(&mut self) -> LaserReading {
         self.fleet.look(self.spec.driven).clone()
     }
 
     fn act(&mut self, command: &Twist) {
         self.truth.forget_changes();
-        self.fleet.command(self.spec.driven, command);
+        self.fleet.command(self.spec.driven, &(*command).into());
         for _ in 0..self.spec.driven().laser.period_steps {
             self.advance();
         }

@@ -6,7 +6,7 @@ pub(super) const KINDS_LEFT_OUT: [(&str, &str); 15] = [
     ("camera", "there are no cameras here"),
     ("blobfinder", "nothing here sees colours"),
     ("fiducial", "fiducial finders are not read yet"),
-    ("bumper", "contacts are reported without bumpers"),
+    ("bumper", "bumpers of Stage are not read yet; give the robot a `[robot.bumper]`"),
     ("gripper", "there are no grippers here; its body is left out too"),
     ("actuator", "there are no actuators here; it and what it carries are left out"),
     ("blinkenlight", "there are no lights here"),

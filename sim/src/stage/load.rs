@@ -1,6 +1,7 @@
 //! From a Stage world to one that runs here.
 
 use super::sources::Sources;
+use super::toml::STEER_DEG;
 use super::{Drive, StageRobot, StageWorld};
 use crate::findings::Severity;
 use crate::physics::FleetSpec;
@@ -47,18 +48,10 @@ pub(super) fn load(sources: &mut Sources<'_>, path: &Path, world: &StageWorld) -
 
 fn check_drive(sources: &mut Sources<'_>, robot: &StageRobot) {
     let (at, name) = (robot.at, &robot.name);
-    if robot.drive != Drive::Differential {
-        let kind = if robot.drive == Drive::Omni { "omni" } else { "car" };
-        sources.error(
-            at,
-            &format!("the drive `{kind}` of `{name}` is not here yet"),
-            "",
-            "robots have the drive `diff`",
-        );
-    }
     let [back, forth] = robot.velocity.x;
     let [right, left] = robot.velocity.turn;
-    if -back != forth || -right != left {
+    let is_omni = robot.drive == Drive::Omni;
+    if -back != forth || -right != left || is_omni && -robot.velocity.y[0] != robot.velocity.y[1] {
         let what = format!("`{name}` may drive or turn faster one way than the other");
         sources.warning(at, &what, "", "here the larger bound holds both ways");
     }
@@ -72,6 +65,15 @@ fn check_drive(sources: &mut Sources<'_>, robot: &StageRobot) {
             "",
             "robots drive at 0.001 to 5 m/s and turn at 0.002 rad/s or more; see `velocity_bounds`",
         );
+    }
+    if let Drive::Car { .. } = robot.drive {
+        let help = format!("here they turn by up to {STEER_DEG}°, and the car obeys commands");
+        sources.warning(at, &format!("Stage does not bound how far the wheels of `{name}` turn"), "", &help);
+    }
+    let sideways_mps = robot.velocity.y[1].max(-robot.velocity.y[0]);
+    if is_omni && !(0.001..=FASTEST_MPS).contains(&sideways_mps) {
+        let what = format!("`{name}` may drive sideways at {sideways_mps} m/s");
+        sources.error(at, &what, "", "it is 0.001 to 5 m/s; see `velocity_bounds`");
     }
     if robot.mass_kg.is_some_and(|mass_kg| mass_kg < LEAST_MASS_KG) {
         let help = format!("a robot weighs {LEAST_MASS_KG} kg or more");
@@ -91,26 +93,20 @@ fn check_drive(sources: &mut Sources<'_>, robot: &StageRobot) {
 
 fn check_lasers(sources: &mut Sources<'_>, robot: &StageRobot) {
     let (at, name) = (robot.at, &robot.name);
-    let Some(first) = robot.lasers.first() else {
+    if robot.lasers.is_empty() {
         let help =
             "every robot has one here: it is given a laser of 180 beams over 180°, up to 8 m, at 10 Hz";
         return sources.warning(at, &format!("`{name}` has no laser"), "", help);
-    };
-    for laser in &robot.lasers[1..] {
-        let what = format!("`{name}` has more than one laser");
-        sources.warning(laser.at, &what, "", "a robot has one laser here: this one is left out");
     }
-    if first.mount.translation.vector.norm() > robot.radius_m() {
-        sources.error(
-            first.at,
-            &format!("a laser of `{name}` is mounted off its robot"),
-            "",
-            "it must lie above the robot's body",
-        );
-    }
-    if first.range_max_m > 1000.0 || first.fov_rad < 1.0_f64.to_radians() || first.noise_std_m > 1.0 {
-        let help = "a laser sees over 1° or more, up to 1000 m, with a noise of at most 1 m";
-        sources.error(first.at, &format!("a laser of `{name}` is out of range"), "", help);
+    for laser in &robot.lasers {
+        if laser.mount.translation.vector.norm() > robot.radius_m() {
+            let what = format!("a laser of `{name}` is mounted off its robot");
+            sources.error(laser.at, &what, "", "it must lie above the robot's body");
+        }
+        if laser.range_max_m > 1000.0 || laser.fov_rad < 1.0_f64.to_radians() || laser.noise_std_m > 1.0 {
+            let help = "a laser sees over 1° or more, up to 1000 m, with a noise of at most 1 m";
+            sources.error(laser.at, &format!("a laser of `{name}` is out of range"), "", help);
+        }
     }
 }
 

@@ -108,7 +108,7 @@ pub struct StageRobot {
     pub acceleration: Option<Bounds>,
     /// How its odometry errs.
     pub odometry: OdometryError,
-    /// What it sees with; of Stage's single rays there are none here.
+    /// What it sees with, all of which it has here; of Stage's single rays there are none.
     pub lasers: Vec<StageLaser>,
     /// Its mass, kg.
     pub mass_kg: Option<f64>,

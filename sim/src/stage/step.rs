@@ -1,7 +1,7 @@
 //! The physics step of a world that does not say one.
 
-use super::StageRobot;
 use super::sources::{Place, Sources};
+use super::{Drive, StageRobot};
 
 /// No physics step is longer, ms.
 const LONGEST_MS: f64 = 50.0;
@@ -20,8 +20,9 @@ pub(super) fn step_s(
         lasers.map(|laser| laser.interval_ms).reduce(common_divisor).map_or(LONGEST_MS, f64::from);
     let mut longest_ms = longest_ms.unwrap_or(LONGEST_MS).min(LONGEST_MS);
     for robot in robots {
-        let bounds = robot.velocity.x.iter().chain(&robot.velocity.y);
-        let fastest_mps = bounds.fold(0.0, |most: f64, bound| most.max(bound.abs()));
+        let fastest = |bounds: &[f64; 2]| bounds[1].max(-bounds[0]);
+        let sideways_mps = if robot.drive == Drive::Omni { fastest(&robot.velocity.y) } else { 0.0 };
+        let fastest_mps = libm::hypot(fastest(&robot.velocity.x), sideways_mps);
         // No robot goes farther than its radius in a step, so that none can pass through another.
         longest_ms = longest_ms.min(0.999 * 1000.0 * robot.radius_m() / fastest_mps);
     }

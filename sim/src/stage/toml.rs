@@ -14,6 +14,9 @@ const MOST_CELLS: f64 = 3.5e6;
 const AT_ONCE_MPS2: f64 = 100.0;
 const AT_ONCE_DEGPS2: f64 = 100_000.0;
 
+/// How far the front wheels of a car turn, °: Stage does not bound it.
+pub(super) const STEER_DEG: f64 = 45.0;
+
 /// The speed of Stage's own wandering robots, m/s.
 const WANDER_MPS: f64 = 0.4;
 
@@ -128,28 +131,36 @@ impl Map {
         pair(to, "pose_m", &self.point(&robot.pose.translation.vector.into()))?;
         number(to, "heading_deg", heading_rad(&robot.pose).to_degrees())?;
         writeln!(to, "\n[robot.drive]  # {place}")?;
-        match robot.drive {
-            Drive::Differential => {}
-            Drive::Omni => writeln!(to, "kind = \"omni\"")?,
-            Drive::Car { wheelbase_m } => {
-                writeln!(to, "kind = \"car\"")?;
-                number(to, "wheelbase_m", wheelbase_m)?;
-            }
-        }
         number(to, "max_linear_mps", most(velocity.x))?;
         number(to, "max_angular_degps", most(velocity.turn).to_degrees())?;
         let gain = robot.acceleration.map(|bounds| (most(bounds.x), most(bounds.turn).to_degrees()));
         let (along, about) = gain.unwrap_or((AT_ONCE_MPS2, AT_ONCE_DEGPS2));
         number(to, "max_linear_acceleration_mps2", along)?;
         number(to, "max_angular_acceleration_degps2", about)?;
+        match robot.drive {
+            Drive::Differential => {}
+            Drive::Omni => {
+                writeln!(to, "kind = \"omni\"")?;
+                number(to, "max_left_mps", most(velocity.y))?;
+                let gain = robot.acceleration.map_or(AT_ONCE_MPS2, |bounds| most(bounds.y));
+                number(to, "max_left_acceleration_mps2", gain)?;
+            }
+            Drive::Car { wheelbase_m } => {
+                writeln!(to, "kind = \"car\"")?;
+                number(to, "wheelbase_m", wheelbase_m)?;
+                number(to, "max_steer_deg", STEER_DEG)?;
+            }
+        }
         if *odometry != OdometryError::default() {
             writeln!(to, "\n[robot.odometry]  # {place}")?;
             number(to, "distance_gain", odometry.distance_gain)?;
             number(to, "turn_gain", odometry.turn_gain)?;
         }
-        write_laser(to, robot.lasers.first(), place)?;
+        write_lasers(to, &robot.lasers, place)?;
         writeln!(to, "\n[robot.behaviour]  # {place}")?;
-        if robot.controllers.iter().any(|name| name.split_whitespace().next() == Some("wander")) {
+        let wanders = |name: &String| name.split_whitespace().next() == Some("wander");
+        // A car cannot turn in place, as ours do.
+        if robot.controllers.iter().any(wanders) && !matches!(robot.drive, Drive::Car { .. }) {
             writeln!(to, "kind = \"wander\"")?;
             return number(to, "speed_mps", WANDER_MPS.min(most(velocity.x)));
         }
@@ -157,12 +168,17 @@ impl Map {
     }
 }
 
-fn write_laser(to: &mut String, laser: Option<&StageLaser>, robot_place: &str) -> Result {
-    let Some(laser) = laser else {
+fn write_lasers(to: &mut String, lasers: &[StageLaser], robot_place: &str) -> Result {
+    if lasers.is_empty() {
         writeln!(to, "\n[robot.laser]  # {robot_place}: none there")?;
         return writeln!(to, "beams = 180\nfov_deg = 180.0\nrange_max_m = 8.0\nrate_hz = 10.0");
-    };
-    writeln!(to, "\n[robot.laser]  # {}\nbeams = {}", laser.place, laser.beams)?;
+    }
+    let table = if lasers.len() == 1 { "[robot.laser]" } else { "[[robot.laser]]" };
+    lasers.iter().try_for_each(|laser| write_laser(to, laser, table))
+}
+
+fn write_laser(to: &mut String, laser: &StageLaser, table: &str) -> Result {
+    writeln!(to, "\n{table}  # {}\nbeams = {}", laser.place, laser.beams)?;
     number(to, "fov_deg", laser.fov_rad.to_degrees())?;
     number(to, "range_min_m", laser.range_min_m)?;
     number(to, "range_max_m", laser.range_max_m)?;

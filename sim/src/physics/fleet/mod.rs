@@ -9,14 +9,17 @@ pub use controller::Controller;
 pub use teleport::TeleportError;
 
 use super::bodies::Bodies;
+use super::command::Command;
+use super::finder::Tagged;
+use super::form::Form;
 use super::laser::beams;
 use super::obstacles::Obstacle;
 use super::rays::{Beams, Disc, Scene, Scratch};
 use super::report::{Body, Contact, ObstacleView, RobotView};
-use super::robot::Robot;
+use super::robot::{Now, Robot};
 use super::shape::Rectangle;
-use super::spec::{FleetSpec, LaserSpec};
-use geometry::{GridFrame, LaserReading, Twist};
+use super::spec::{FleetSpec, LaserSpec, RobotSpec};
+use geometry::{GridFrame, LaserReading};
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 
@@ -33,6 +36,10 @@ pub struct Fleet {
     bodies: Bodies,
     robots: Vec<Robot>,
     obstacles: Vec<Obstacle>,
+    /// The robots that have corners.
+    cornered: Vec<usize>,
+    /// Whether any robot looks for tags.
+    has_finders: bool,
     scene: Scene,
     contacts: Vec<Contact>,
     /// The obstacles that moved in the last step, with where they were.
@@ -53,16 +60,21 @@ impl Fleet {
         let mut robots = Vec::with_capacity(spec.robots.len());
         for (index, robot) in spec.robots.iter().enumerate() {
             bodies.add_robot(robot, spec.step_s);
-            let beams = lasers.beams(&robot.laser);
+            let beams = robot.lasers().map(|laser| lasers.beams(laser)).collect();
             robots.push(Robot::new(robot, index, bodies.pose(index), spec.step_s, seed, beams));
         }
         let obstacles =
             spec.obstacles.iter().enumerate().map(|(i, o)| Obstacle::new(o, i, seed, &mut bodies));
         let obstacles = obstacles.collect();
-        let discs = robots.iter().map(|robot| Disc { center: robot.at(), radius_m: robot.spec.radius_m });
-        let range_m = spec.robots.iter().fold(0.0, |most: f64, robot| most.max(robot.laser.range_max_m));
-        let scene =
-            Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), spec.obstacles.len(), range_m);
+        // A robot with corners is no disc to be seen, but a hull after those of the obstacles.
+        let radius_m = |robot: &Robot| if robot.spec.corners.is_empty() { robot.spec.radius_m } else { 0.0 };
+        let discs = robots.iter().map(|robot| Disc { center: robot.at(), radius_m: radius_m(robot) });
+        let cornered = spec.robots.iter().enumerate().filter(|(_, robot)| !robot.corners.is_empty());
+        let cornered: Vec<usize> = cornered.map(|(index, _)| index).collect();
+        let ranges_m = spec.robots.iter().flat_map(RobotSpec::lasers).map(|laser| laser.range_max_m);
+        let range_m = ranges_m.fold(0.0, f64::max);
+        let hulls = spec.obstacles.len() + cornered.len();
+        let scene = Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), hulls, range_m);
         let mut fleet = Self {
             spec: spec.clone(),
             seed,
@@ -70,6 +82,8 @@ impl Fleet {
             bodies,
             robots,
             obstacles,
+            cornered,
+            has_finders: spec.robots.iter().any(|robot| robot.fiducial.is_some()),
             scene,
             contacts: Vec::new(),
             moved: Vec::new(),
@@ -77,6 +91,7 @@ impl Fleet {
             scratch: Scratch::default(),
         };
         fleet.show_obstacles();
+        (0..fleet.robots.len()).for_each(|index| fleet.show_robot(index));
         fleet
     }
 
@@ -92,15 +107,7 @@ impl Fleet {
 
     /// All robots, in the order of the file.
     pub fn robots(&self) -> impl ExactSizeIterator<Item = RobotView<'_>> {
-        self.robots.iter().map(|robot| RobotView {
-            name: &robot.spec.name,
-            pose: robot.pose,
-            radius_m: robot.spec.radius_m,
-            is_driven: robot.is_driven(),
-            twist: robot.velocity,
-            is_stalled: robot.drive.is_stalled(),
-            sweep: robot.sweep.as_ref(),
-        })
+        self.robots.iter().map(Robot::view)
     }
 
     /// The corners of all walls, counter-clockwise, m.
@@ -126,7 +133,7 @@ impl Fleet {
     }
 
     /// Tells a driven robot what to do.
-    pub(super) fn command(&mut self, robot: usize, wanted: &Twist) {
+    pub(super) fn command(&mut self, robot: usize, wanted: &Command) {
         self.robots[robot].command(wanted);
     }
 
@@ -137,9 +144,29 @@ impl Fleet {
 
     /// What a robot sees now.
     pub(super) fn look(&mut self, robot: usize) -> &LaserReading {
-        let time_s = self.time_s();
         self.scene.sort();
-        self.robots[robot].look(time_s, &self.scene, &mut self.scratch)
+        let (step, time_s, tagged) = (self.step, self.time_s(), self.tagged());
+        let now = Now { step, time_s, scene: &self.scene, tagged: &tagged };
+        self.robots[robot].look(&now, &mut self.scratch)
+    }
+
+    /// Everything with a tag that is there, robots first; nothing if no robot looks for it.
+    pub(in crate::physics) fn tagged(&self) -> Vec<Tagged> {
+        if !self.has_finders {
+            return Vec::new();
+        }
+        let robots = self.robots.iter().enumerate().filter_map(|(index, robot)| {
+            let tag = robot.spec.tag?;
+            Some(Tagged { tag, body: Body::Robot(index), center: robot.at(), form: robot.form() })
+        });
+        let standing = self.obstacles.iter().enumerate().filter(|(_, obstacle)| obstacle.is_standing());
+        let obstacles = standing.filter_map(|(index, obstacle)| {
+            let (tag, shape) = (obstacle.spec.tag?, &obstacle.shape);
+            let (center, form) =
+                (shape.pose.translation.vector.into(), Form::Convex(shape.corners().to_vec()));
+            Some(Tagged { tag, body: Body::Obstacle(index), center, form })
+        });
+        robots.chain(obstacles).collect()
     }
 
     /// Walls, and the obstacles that stand now.
@@ -173,6 +200,18 @@ impl Fleet {
     /// Shows the lasers what stands now.
     fn show_obstacles(&mut self) {
         (0..self.obstacles.len()).for_each(|index| self.show_obstacle(index));
+    }
+
+    /// Shows the lasers where a robot is.
+    fn show_robot(&mut self, index: usize) {
+        let robot = &self.robots[index];
+        self.scene.move_disc(index, robot.at());
+        if !robot.spec.corners.is_empty()
+            && let Form::Convex(corners) = robot.form()
+            && let Ok(place) = self.cornered.binary_search(&index)
+        {
+            self.scene.set_hull(self.obstacles.len() + place, Some(index), &corners);
+        }
     }
 
     /// Shows the lasers what has become of an obstacle.

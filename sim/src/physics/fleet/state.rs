@@ -39,9 +39,7 @@ impl Fleet {
         if !tape.is_at_end() {
             return Err(SnapshotError::Damaged);
         }
-        for (index, robot) in fleet.robots.iter().enumerate() {
-            fleet.scene.move_disc(index, robot.at());
-        }
+        (0..fleet.robots.len()).for_each(|index| fleet.show_robot(index));
         fleet.show_obstacles();
         Ok(fleet)
     }
@@ -56,11 +54,13 @@ impl Fleet {
         self.bodies.play(tape)?;
         self.robots.iter_mut().try_for_each(|robot| robot.play(tape))?;
         self.obstacles.iter_mut().try_for_each(|obstacle| obstacle.play(tape))?;
-        let new = Contact { time_s: 0.0, robot: 0, with: Body::Wall(0), moving: false, impulse_ns: 0.0 };
+        let at = nalgebra::Point2::origin();
+        let new = Contact { time_s: 0.0, robot: 0, with: Body::Wall(0), at, moving: false, impulse_ns: 0.0 };
         tape.list(&mut self.contacts, new, |tape, contact| {
             tape.f64(&mut contact.time_s)?;
             tape.usize(&mut contact.robot)?;
             tape.body(&mut contact.with)?;
+            tape.point(&mut contact.at)?;
             tape.bool(&mut contact.moving)?;
             tape.f64(&mut contact.impulse_ns)
         })

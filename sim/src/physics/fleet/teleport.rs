@@ -1,8 +1,8 @@
 //! Setting robots down somewhere else.
 
 use super::{Fleet, corners};
+use crate::physics::robot::Robot;
 use crate::physics::shape::{Rectangle, TOUCH_M};
-use crate::physics::spec::RobotSpec;
 use geometry::heading_rad;
 use nalgebra::{Isometry2, Point2};
 
@@ -43,26 +43,27 @@ impl Fleet {
     ///
     /// When there is no such robot, or it would not fit there; everything stays as it was.
     pub fn teleport(&mut self, robot: usize, pose: &Isometry2<f64>) -> Result<(), TeleportError> {
-        let Some(RobotSpec { radius_m, .. }) = self.spec.robots.get(robot) else {
+        let Some(spec) = self.spec.robots.get(robot) else {
             return Err(TeleportError::NoSuchRobot { robot, robots: self.robots.len() });
         };
         let at = Point2::from(pose.translation.vector);
-        let (low, high) = corners(&self.spec.frame);
-        let inside_m = (at - low).min().min((high - at).min());
+        let ((low, high), form) = (corners(&self.spec.frame), spec.form(pose));
+        let (least, most) = form.bounds();
+        let inside_m = (least - low).min().min((high - most).min());
         let heading_rad = heading_rad(pose);
-        // Not a number is in no range.
-        if !(inside_m >= radius_m - TOUCH_M && heading_rad.is_finite()) {
+        let is_finite = at.x.is_finite() && at.y.is_finite() && heading_rad.is_finite();
+        if !is_finite || inside_m < -TOUCH_M {
             return Err(TeleportError::Outside { x_m: at.x, y_m: at.y });
         }
-        let is_in = |shape: &Rectangle| shape.distance_m(&at) < radius_m - TOUCH_M;
-        let others = self.robots.iter().enumerate().filter(|(index, _)| *index != robot);
-        let mut gaps = others.map(|(_, other)| (other.at() - at).norm() - other.spec.radius_m);
-        if self.standing_boxes().iter().any(is_in) || gaps.any(|gap_m| gap_m < radius_m - TOUCH_M) {
+        let is_in = |shape: &Rectangle| form.gap_m(&shape.corners()) < -TOUCH_M;
+        let mut others = self.robots.iter().enumerate().filter(|(index, _)| *index != robot);
+        let meets = |(_, other): (usize, &Robot)| form.apart_m(&other.form()) < -TOUCH_M;
+        if self.standing_boxes().iter().any(is_in) || others.any(meets) {
             return Err(TeleportError::Occupied { x_m: at.x, y_m: at.y });
         }
         self.bodies.put(robot, &geometry::pose(at.x, at.y, heading_rad));
         self.robots[robot].put(self.bodies.pose(robot));
-        self.scene.move_disc(robot, self.robots[robot].at());
+        self.show_robot(robot);
         Ok(())
     }
 }

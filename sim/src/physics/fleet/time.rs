@@ -1,10 +1,12 @@
 //! How time passes.
 
 use super::{Controller, Fleet};
+use crate::physics::bumper;
+use crate::physics::form::Form;
 use crate::physics::obstacles::{InTheWay, Obstacle};
 use crate::physics::rays::Scratch;
 use crate::physics::report::{Contact, Move};
-use crate::physics::robot::Robot;
+use crate::physics::robot::{Now, Robot};
 use crate::physics::shape::Rectangle;
 use rayon::prelude::*;
 
@@ -13,12 +15,12 @@ impl Fleet {
     /// that are driven ask `controller`.
     pub fn step(&mut self, controller: &mut impl Controller) {
         self.think(|_| true);
-        for (index, robot) in self.robots.iter_mut().enumerate() {
+        for robot in &mut self.robots {
             if robot.is_driven()
                 && robot.is_due(self.step)
-                && let Some(sweep) = &robot.sweep
+                && let Some(sweep) = robot.sweep()
             {
-                let wanted = controller.command(index, &sweep.reading);
+                let wanted = controller.drive(&robot.view(), &sweep.reading);
                 robot.command(&wanted);
             }
         }
@@ -37,18 +39,19 @@ impl Fleet {
     /// Lets the robots that `is_meant` look and decide, where their next scan is due.
     pub(in crate::physics) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
         let (step, time_s) = (self.step, self.time_s());
-        let is_due = |robot: &&mut Robot| robot.is_due(step) && is_meant(robot);
+        let is_due = |robot: &&mut Robot| robot.looks(step) && is_meant(robot);
         if !self.robots.iter_mut().any(|robot| is_due(&robot)) {
             return;
         }
         self.scene.sort();
-        let scene = &self.scene;
+        let tagged = self.tagged();
+        let now = &Now { step, time_s, scene: &self.scene, tagged: &tagged };
         if self.parallel_lasers {
             let due = self.robots.par_iter_mut().filter(is_due);
-            due.for_each_init(Scratch::default, |scratch, robot| robot.think(time_s, scene, scratch));
+            due.for_each_init(Scratch::default, |scratch, robot| robot.think(now, scratch));
         } else {
             let due = self.robots.iter_mut().filter(is_due);
-            due.for_each(|robot| robot.think(time_s, scene, &mut self.scratch));
+            due.for_each(|robot| robot.think(now, &mut self.scratch));
         }
     }
 
@@ -61,9 +64,9 @@ impl Fleet {
         self.step += 1;
         self.set_obstacles_out();
         self.bodies.step();
-        for (index, robot) in self.robots.iter_mut().enumerate() {
-            robot.follow(&self.bodies);
-            self.scene.move_disc(index, robot.at());
+        for index in 0..self.robots.len() {
+            self.robots[index].follow(&self.bodies);
+            self.show_robot(index);
         }
         self.moved.clear();
         for (index, before) in before.into_iter().enumerate() {
@@ -91,11 +94,11 @@ impl Fleet {
     fn in_the_way(&self) -> InTheWay {
         let mut in_the_way = InTheWay::default();
         for robot in &self.robots {
-            in_the_way.add_disc(robot.at(), robot.spec.radius_m);
+            in_the_way.add(robot.at(), robot.spec.radius_m, robot.form());
         }
         for Obstacle { shape, .. } in self.obstacles.iter().filter(|obstacle| obstacle.is_pushed()) {
             let (center, radius_m) = (shape.pose.translation.vector.into(), shape.half_m.norm());
-            in_the_way.add_body(center, radius_m, shape.corners().to_vec());
+            in_the_way.add(center, radius_m, Form::Convex(shape.corners().to_vec()));
         }
         in_the_way
     }
@@ -106,11 +109,15 @@ impl Fleet {
         self.contacts.clear();
         for (index, robot) in self.robots.iter_mut().enumerate() {
             let mut touching = Vec::new();
-            for (with, impulse_ns) in self.bodies.touches(index) {
+            robot.pressed = 0;
+            for (with, at, impulse_ns) in self.bodies.touches(index) {
+                if let Some(spec) = robot.spec.bumper.as_ref().filter(|_| impulse_ns > 0.0) {
+                    robot.pressed |= bumper::pressed(spec, &robot.pose, &at);
+                }
                 let touched_before = robot.touching.contains(&with);
                 if impulse_ns > 0.0 && !touched_before {
                     let moving = robot.drove;
-                    self.contacts.push(Contact { time_s, robot: index, with, moving, impulse_ns });
+                    self.contacts.push(Contact { time_s, robot: index, with, at, moving, impulse_ns });
                 }
                 if impulse_ns > 0.0 || touched_before {
                     touching.push(with);

@@ -110,8 +110,10 @@ impl Beams {
     fn runs(&self, first: usize, end: usize) -> [Range<usize>; 2] {
         let count = self.count;
         let (low, high) = (first.min(count), end.min(count));
-        let (again, last) = (first.saturating_sub(count), end.saturating_sub(count));
-        [low..high.max(low), again..last.max(again).min(count)]
+        // Of a narrow view, what lies behind it may be counted on past the end a second time.
+        let again = first.saturating_sub(count).min(count);
+        let last = end.saturating_sub(count).min(count);
+        [low..high.max(low), again..last.max(again)]
     }
 }
 

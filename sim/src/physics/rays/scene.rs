@@ -162,6 +162,8 @@ impl Scene {
         }
     }
 
+    // For every cell in sight, most of which are empty: as a call it costs 5 % of a simulated second.
+    #[inline(always)]
     fn note_robots(&self, discs: &mut Discs, hits: &mut Hits<'_>, sorted: Range<u32>, own: usize) {
         for (robot, disc) in &self.sorted[sorted.start as usize..sorted.end as usize] {
             if *robot as usize != own {

@@ -3,7 +3,7 @@
 use super::check::Solid;
 use super::file::{BehaviourFile, Number, Pair, RobotFile};
 use super::numbers::Table;
-use super::{DriveLimits, patrol};
+use super::{DriveKind, DriveLimits, patrol};
 use crate::error::{Source, WorldError};
 use crate::physics::shape::{TOUCH_M, turned_point};
 use nalgebra::{Point2, UnitComplex};
@@ -105,6 +105,8 @@ impl Behaviour {
 pub(super) struct Context<'a> {
     pub(super) source: &'a Source<'a>,
     pub(super) robot: &'a RobotFile,
+    /// Of the circle that holds it, m.
+    pub(super) radius_m: f64,
     pub(super) start: Point2<f64>,
     pub(super) drive: &'a DriveLimits,
     pub(super) size: &'a Point2<f64>,
@@ -131,6 +133,13 @@ impl Context<'_> {
             let help = format!("it must be one of {}", names.join(", "));
             return Err(self.source.error(&what, (file.kind.span(), "not known"), &[], &help));
         };
+        if let DriveKind::Car { .. } = self.drive.kind
+            && !["driven", "standing", "circle"].contains(&kind)
+        {
+            let what = format!("a car cannot be `{kind}`");
+            let help = "it cannot turn in place: it is \"driven\" or \"standing\", or drives a \"circle\"";
+            return Err(self.source.error(&what, (file.kind.span(), "not for a car"), &[], help));
+        }
         if let Some((key, span)) = keys(file).into_iter().find(|(key, _)| !known.contains(key)) {
             let what = format!("a robot that is `{kind}` has no `{key}`");
             let keys =
@@ -180,7 +189,8 @@ impl Context<'_> {
         let speed_mps = self.speed_mps(file)?;
         let radius = self.needed("turn_radius_m", &file.turn_radius_m)?;
         let radius_m = self.table().number("turn_radius_m", radius, 0.01..=1000.0)?;
-        let fastest_radps = self.drive.max_angular_radps;
+        let curved_radps = speed_mps * self.drive.max_curvature_radpm();
+        let fastest_radps = self.drive.max_angular_radps.min(curved_radps);
         if speed_mps / radius_m > fastest_radps {
             let marks = [(file.speed_mps.as_ref().map_or(radius.span(), Spanned::span), "at this speed")];
             let help = format!(
@@ -221,7 +231,7 @@ impl Context<'_> {
         let start = (self.start, self.robot.pose_m.span());
         let back = (repeat == Repeat::Loop && points.len() > 1).then(|| points[0].clone());
         let way: Vec<_> = [start].into_iter().chain(points.iter().cloned()).chain(back).collect();
-        let keep_m = *self.robot.radius_m.get_ref() + BESIDE_M;
+        let keep_m = self.radius_m + BESIDE_M;
         for (leg, pair) in way.windows(2).enumerate() {
             let [(a, from), (b, to)] = pair else { continue };
             let marks = |label| (to.clone(), label);

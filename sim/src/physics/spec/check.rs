@@ -210,12 +210,20 @@ fn boxes_apart(
 fn apart(source: &Source<'_>, files: &[Spanned<RobotFile>], robots: &[RobotSpec]) -> Result<(), WorldError> {
     for (b, second) in robots.iter().enumerate() {
         for (a, first) in robots[..b].iter().enumerate() {
-            let apart_m: f64 = (first.pose.translation.vector - second.pose.translation.vector).norm();
             let needed_m = first.radius_m + second.radius_m;
-            if apart_m < needed_m - TOUCH_M {
+            let apart_m: f64 = (first.pose.translation.vector - second.pose.translation.vector).norm();
+            // Circles first: nearly all are far apart.
+            if apart_m < needed_m - TOUCH_M
+                && first.form(&first.pose).apart_m(&second.form(&second.pose)) < -TOUCH_M
+            {
                 let what = format!("the robots `{}` and `{}` overlap", first.name, second.name);
                 let marks = [(files[a].get_ref().pose_m.span(), "the other one")];
-                let help = format!("their middles must be {needed_m:.3} m apart or more, not {apart_m:.3} m");
+                let help = match first.corners.is_empty() && second.corners.is_empty() {
+                    true => {
+                        format!("their middles must be {needed_m:.3} m apart or more, not {apart_m:.3} m")
+                    }
+                    false => "their footprints may touch, but not overlap".to_owned(),
+                };
                 let mark = (files[b].get_ref().pose_m.span(), "one stands here");
                 return Err(source.error(&what, mark, &marks, &help));
             }

@@ -1,7 +1,11 @@
 //! The world file as it is written: every key with its place in the text.
 
-use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use serde_spanned::Spanned;
+use std::fmt;
+use std::marker::PhantomData;
 use std::ops::Range;
 
 pub(super) type Number = Spanned<f64>;
@@ -21,6 +25,36 @@ impl TryFrom<Vec<f64>> for Two {
             .try_into()
             .map(Self)
             .map_err(|_| format!("invalid length {count}, expected an array of length 2"))
+    }
+}
+
+/// A table, or a list of tables.
+pub(super) struct OneOrMore<T>(pub(super) Vec<T>);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMore<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Tables<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for Tables<T> {
+            type Value = OneOrMore<T>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table of keys, or a list of them")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<OneOrMore<T>, A::Error> {
+                Ok(OneOrMore(vec![T::deserialize(MapAccessDeserializer::new(map))?]))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<OneOrMore<T>, A::Error> {
+                let mut tables = Vec::new();
+                while let Some(table) = list.next_element()? {
+                    tables.push(table);
+                }
+                Ok(OneOrMore(tables))
+            }
+        }
+        // Not an untagged enum: that would forget where in the file an error is.
+        deserializer.deserialize_any(Tables(PhantomData))
     }
 }
 
@@ -82,6 +116,7 @@ pub(super) struct FloorPlanFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct ObstacleFile {
     pub(super) name: Spanned<String>,
+    pub(super) tag: Option<Spanned<u32>>,
     pub(super) kind: Option<Spanned<String>>,
     pub(super) min_m: Option<Pair>,
     pub(super) max_m: Option<Pair>,
@@ -151,24 +186,36 @@ impl ObstacleFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct RobotFile {
     pub(super) name: Spanned<String>,
-    pub(super) radius_m: Number,
+    pub(super) radius_m: Option<Number>,
+    pub(super) footprint_m: Option<Spanned<Vec<Pair>>>,
     pub(super) mass_kg: Option<Number>,
     pub(super) pose_m: Pair,
     pub(super) heading_deg: Option<Number>,
     pub(super) drive: DriveFile,
     #[serde(default)]
     pub(super) odometry: OdometryFile,
-    pub(super) laser: LaserFile,
+    #[serde(rename = "laser")]
+    pub(super) lasers: Spanned<OneOrMore<LaserFile>>,
+    pub(super) bumper: Option<BumperFile>,
+    #[serde(default, rename = "sonar")]
+    pub(super) sonars: Vec<Spanned<SonarFile>>,
+    pub(super) fiducial: Option<FiducialFile>,
+    pub(super) tag: Option<Spanned<u32>>,
     pub(super) behaviour: Spanned<BehaviourFile>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct DriveFile {
+    pub(super) kind: Option<Spanned<String>>,
     pub(super) max_linear_mps: Number,
     pub(super) max_angular_degps: Number,
     pub(super) max_linear_acceleration_mps2: Number,
     pub(super) max_angular_acceleration_degps2: Number,
+    pub(super) max_left_mps: Option<Number>,
+    pub(super) max_left_acceleration_mps2: Option<Number>,
+    pub(super) wheelbase_m: Option<Number>,
+    pub(super) max_steer_deg: Option<Number>,
 }
 
 #[derive(Default, Deserialize)]
@@ -192,6 +239,7 @@ pub(super) struct LaserFile {
     pub(super) mount_m: Option<Pair>,
     pub(super) mount_deg: Option<Number>,
     pub(super) noise_std_m: Option<Number>,
+    pub(super) dropout: Option<Number>,
 }
 
 #[derive(Deserialize)]
@@ -207,4 +255,33 @@ pub(super) struct BehaviourFile {
     pub(super) direction: Option<Spanned<String>>,
     pub(super) points_m: Option<Spanned<Vec<Pair>>>,
     pub(super) repeat: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BumperFile {
+    pub(super) sectors: Spanned<u32>,
+    pub(super) fov_deg: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SonarFile {
+    pub(super) cone_deg: Number,
+    pub(super) range_min_m: Option<Number>,
+    pub(super) range_max_m: Number,
+    pub(super) rate_hz: Number,
+    pub(super) mount_m: Option<Pair>,
+    pub(super) mount_deg: Option<Number>,
+    pub(super) noise_std_m: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FiducialFile {
+    pub(super) fov_deg: Option<Number>,
+    pub(super) range_max_m: Number,
+    pub(super) rate_hz: Number,
+    pub(super) mount_m: Option<Pair>,
+    pub(super) mount_deg: Option<Number>,
 }

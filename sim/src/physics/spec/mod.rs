@@ -2,25 +2,30 @@
 
 mod behaviour;
 mod check;
+mod drive;
 mod file;
 mod floor_plan;
+mod footprint;
+mod laser;
 mod numbers;
 mod obstacle;
+mod parts;
 mod patrol;
 mod robot;
+mod senses;
 #[cfg(test)]
 mod tests;
 
 pub use behaviour::{Behaviour, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
 pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
+pub use parts::{DriveKind, DriveLimits, LaserSpec, OdometryError, RobotSpec};
+pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
 use super::shape::Rectangle;
 use crate::error::{Source, WorldError};
 use crate::files::{Disk, Files};
-use geometry::{GridFrame, Scan};
-use nalgebra::Isometry2;
+use geometry::GridFrame;
 use std::collections::BTreeMap;
-use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
 /// A place with any number of robots, as its file describes it: every figure in range, every
@@ -202,103 +207,4 @@ fn read(path: &Path) -> Result<(String, String), WorldError> {
 /// Where a world file without a folder finds its pictures: nowhere.
 fn no_files() -> BTreeMap<PathBuf, Vec<u8>> {
     BTreeMap::new()
-}
-
-/// A round robot with two wheels and a laser.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RobotSpec {
-    /// What it is called.
-    pub name: String,
-    /// The radius of its body, m.
-    pub radius_m: f64,
-    /// Its mass, kg; `None`: 1 kg per m² of its area. It counts when robots push each other.
-    pub mass_kg: Option<f64>,
-    /// Where it starts.
-    pub pose: Isometry2<f64>,
-    /// What its wheels can do.
-    pub drive: DriveLimits,
-    /// How its odometry errs.
-    pub odometry: OdometryError,
-    /// What it sees with.
-    pub laser: LaserSpec,
-    /// What it does.
-    pub behaviour: Behaviour,
-}
-
-/// The bounds of a diff drive, which hold at every physics step. All positive.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DriveLimits {
-    /// Forwards and backwards, m/s.
-    pub max_linear_mps: f64,
-    /// Either way round, rad/s.
-    pub max_angular_radps: f64,
-    /// Speeding up and braking, m/s².
-    pub max_linear_acceleration_mps2: f64,
-    /// The same for turning, rad/s².
-    pub max_angular_acceleration_radps2: f64,
-}
-
-/// How a robot's odometry errs; all zero is exact.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct OdometryError {
-    /// Metres felt too many per metre.
-    pub distance_gain: f64,
-    /// Radians felt too many per radian.
-    pub turn_gain: f64,
-    /// Radians felt per metre driven straight on.
-    pub turn_radpm: f64,
-    /// Standard deviation of the distance after 1 m, m; it grows with the square root of the way.
-    pub distance_noise_m: f64,
-    /// Standard deviation of the heading after a turn of 1 rad, rad; it grows likewise.
-    pub turn_noise_rad: f64,
-}
-
-/// A planar laser.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LaserSpec {
-    /// The number of beams.
-    pub beams: usize,
-    /// The angle they are spread over, rad, in (0, 2π].
-    pub fov_rad: f64,
-    /// Nearer things give −∞, m.
-    pub range_min_m: f64,
-    /// Farther things give +∞, m.
-    pub range_max_m: f64,
-    /// Scans per second, Hz.
-    pub rate_hz: f64,
-    /// The physics steps from one scan to the next; at least 1.
-    pub period_steps: u64,
-    /// Where it sits on the robot.
-    pub mount: Isometry2<f64>,
-    /// Standard deviation of a range, m.
-    pub noise_std_m: f64,
-}
-
-impl LaserSpec {
-    /// The direction of the first beam in the laser's frame, rad.
-    pub fn angle_min_rad(&self) -> f64 {
-        if self.is_full_turn() { -PI } else { -self.fov_rad / 2.0 }
-    }
-
-    /// The angle from beam to beam, rad. Of a full turn the last beam is a neighbour of the
-    /// first; of less, the first and the last lie on the borders.
-    pub fn angle_increment_rad(&self) -> f64 {
-        let gaps = if self.is_full_turn() { self.beams } else { self.beams - 1 };
-        self.fov_rad / gaps as f64
-    }
-
-    /// A scan of this laser that has seen nothing: no return on any beam.
-    pub fn empty_scan(&self) -> Scan {
-        Scan {
-            angle_min_rad: self.angle_min_rad(),
-            angle_increment_rad: self.angle_increment_rad(),
-            range_min_m: self.range_min_m,
-            range_max_m: self.range_max_m,
-            ranges_m: vec![f32::INFINITY; self.beams],
-        }
-    }
-
-    fn is_full_turn(&self) -> bool {
-        self.fov_rad > TAU - 1e-9
-    }
 }

@@ -17,7 +17,7 @@ const SLACK_M: f64 = 0.05;
 const LOOK_EVERY_M: f64 = 0.1;
 
 pub(super) fn patrol(context: &Context<'_>, file: &BehaviourFile) -> Result<Behaviour, WorldError> {
-    let Context { source, robot, start, size, solids, .. } = context;
+    let Context { source, robot, radius_m, start, size, solids, .. } = context;
     let BehaviourFile { kind, from_m, to_m, speed_mps, wall_side, .. } = file;
     let (Some(from_m), Some(to_m), Some(_), Some(side)) = (from_m, to_m, speed_mps, wall_side) else {
         let what = format!("the patrol of `{}` is not complete", robot.name.get_ref());
@@ -36,7 +36,7 @@ pub(super) fn patrol(context: &Context<'_>, file: &BehaviourFile) -> Result<Beha
         }
     };
     let (speed_mps, clearance_m) = (context.speed_mps(file)?, context.clearance_m(file)?);
-    let way = Way { source, robot, from, to, spans: [from_m.span(), to_m.span()] };
+    let way = Way { source, robot, radius_m: *radius_m, from, to, spans: [from_m.span(), to_m.span()] };
     way.is_free(start, solids)?;
     let wall_distance_m = way.wall_distance_m(wall_on_left, solids)?;
     Ok(Behaviour::WallPatrol(PatrolSpec { from, to, speed_mps, wall_on_left, wall_distance_m, clearance_m }))
@@ -46,6 +46,7 @@ pub(super) fn patrol(context: &Context<'_>, file: &BehaviourFile) -> Result<Beha
 struct Way<'a> {
     source: &'a Source<'a>,
     robot: &'a RobotFile,
+    radius_m: f64,
     from: Point2<f64>,
     to: Point2<f64>,
     spans: [std::ops::Range<usize>; 2],
@@ -61,7 +62,7 @@ impl Way<'_> {
 
     /// The robot fits all the way, and starts on it.
     fn is_free(&self, start: &Point2<f64>, solids: &[Solid]) -> Result<(), WorldError> {
-        let (name, radius_m) = (self.robot.name.get_ref(), *self.robot.radius_m.get_ref());
+        let (name, radius_m) = (self.robot.name.get_ref(), self.radius_m);
         if (self.to - self.from).norm() < 0.1 {
             let what = format!("the patrol of `{name}` has no length");
             return Err(self.error(&what, &[], "its two ends must be at least 0.1 m apart"));
@@ -116,7 +117,7 @@ impl Way<'_> {
             }
             i += 1.0;
         }
-        let (name, radius_m) = (self.robot.name.get_ref(), *self.robot.radius_m.get_ref());
+        let (name, radius_m) = (self.robot.name.get_ref(), self.radius_m);
         if first_m < radius_m + WALL_RELIEF_M - TOUCH_M {
             let what = format!("the patrol of `{name}` is too near to its wall");
             let help = format!(

@@ -1,34 +1,14 @@
 //! Our rays against rapier's.
 
+use super::oracle::{Place, Tally, dropout, noise, uniform};
 use super::*;
 use crate::physics::fleet::corners;
 use crate::physics::laser::{Laser, beams};
-use crate::physics::rays::{Disc, Scene, Scratch};
-use crate::physics::{bodies::Bodies, chance};
+use crate::physics::rays::{Scene, Scratch};
 use geometry::{pose, rotation};
-use nalgebra::{Isometry2, Point2, Vector2};
-use rand::Rng;
+use nalgebra::Point2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-
-/// A beam whose target does not survive a turn of this much is grazing, rad.
-const GRAZE_RAD: f64 = 1e-6;
-
-/// The range to the nearest thing, m, by a slab or a root per thing and beam: slow and simple.
-fn brute_force_m(
-    from: &Point2<f64>,
-    along: &Vector2<f64>,
-    boxes: &[Rectangle],
-    discs: &[(Point2<f64>, f64)],
-) -> f64 {
-    let box_m = boxes.iter().filter_map(|shape| shape.ray_m(from, along)).fold(f64::INFINITY, f64::min);
-    let disc_m = discs.iter().filter_map(|(center, radius_m)| {
-        let (to, r2) = (center - from, radius_m * radius_m);
-        let (b, miss2) = (to.dot(along), to.perp(along).powi(2));
-        (miss2 <= r2 && b > 0.0).then(|| b - (r2 - miss2).sqrt())
-    });
-    disc_m.fold(box_m, f64::min)
-}
 
 /// A cluttered house, turned, with boxes at odd angles and several robots.
 fn cluttered() -> WorldSpec {
@@ -37,120 +17,6 @@ fn cluttered() -> WorldSpec {
         format!("[[obstacle]]\nname = \"b{i}\"\ncenter_m = [{x}, {y}]\nsize_m = [{w}, {h}]\nheading_deg = {turn}\n")
     });
     four_rooms_but(&[("turn_deg = 0.0", "turn_deg = 10.0")], &obstacles.collect::<String>())
-}
-
-/// A place with what is in it, for our rays and for both oracles.
-struct Place {
-    spec: FleetSpec,
-    scene: Scene,
-    bodies: Bodies,
-    /// Walls, and whatever else is there.
-    boxes: Vec<Rectangle>,
-    discs: Vec<(Point2<f64>, f64)>,
-}
-
-/// What became of the beams that were compared.
-#[derive(Clone, Copy, Debug, Default)]
-struct Tally {
-    beams: usize,
-    /// Those whose target a turn of ±[`GRAZE_RAD`] changes. Each was as one of these three turns
-    /// has it.
-    grazing: usize,
-}
-
-impl Place {
-    fn new(spec: FleetSpec) -> Self {
-        let mut bodies = Bodies::new(spec.step_s());
-        for (i, shape) in spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).enumerate() {
-            bodies.add_box(Body::Wall(i), shape);
-        }
-        let mut discs = Vec::new();
-        for (i, robot) in spec.robots().iter().enumerate() {
-            bodies.add_robot(robot, spec.step_s());
-            // As rapier has it, so that both see the same.
-            discs.push((bodies.pose(i).translation.vector.into(), f64::from(robot.radius_m as f32)));
-        }
-        bodies.step();
-        let round = discs.iter().map(|&(center, radius_m)| Disc { center, radius_m });
-        let hulls = spec.obstacles().len();
-        let mut scene = Scene::new(corners(spec.frame()), spec.walls(), round.collect(), hulls, 10.0);
-        for (place, obstacle) in spec.obstacles().iter().enumerate() {
-            scene.set_hull(place, None, &obstacle.shape.corners());
-        }
-        scene.sort();
-        let boxes = spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).copied().collect();
-        Self { spec, scene, bodies, boxes, discs }
-    }
-
-    /// The present state of a fleet.
-    fn of(fleet: Fleet) -> Self {
-        let spec = fleet.spec().clone();
-        let boxes = fleet.standing_boxes();
-        let discs = fleet
-            .robots()
-            .map(|robot| (Point2::from(robot.pose.translation.vector), f64::from(robot.radius_m as f32)));
-        let discs = discs.collect();
-        let (mut scene, mut bodies) = fleet.into_parts();
-        scene.sort();
-        bodies.find_again();
-        Self { spec, scene, bodies, boxes, discs }
-    }
-
-    /// Whether a laser there is outside of everything.
-    fn is_free(&self, at: &Point2<f64>, own: usize) -> bool {
-        let boxes = self.spec.walls().iter().chain(self.spec.obstacles().iter().map(|o| &o.shape));
-        let mut others = self.discs.iter().enumerate().filter(|(i, _)| *i != own);
-        boxes.into_iter().all(|shape| shape.distance_m(at) > 1e-3)
-            && others.all(|(_, (center, radius_m))| (center - at).norm() > radius_m + 1e-3)
-    }
-
-    /// Holds a scan from `at` on robot `own` against both oracles.
-    fn compare(&self, spec: &LaserSpec, at: &Isometry2<f64>, own: usize, tally: &mut Tally) {
-        let mut laser =
-            Laser::new(spec, beams(spec).into(), chance::Gaussian::new(0, chance::Purpose::Laser, 0));
-        let mut scan = spec.empty_scan();
-        laser.scan(at, &self.scene, own, &mut Scratch::default(), &mut scan);
-        let from = Point2::from(at.translation.vector);
-        let others: Vec<_> =
-            self.discs.iter().enumerate().filter(|(i, _)| *i != own).map(|(_, disc)| *disc).collect();
-        let max_m = scan.range_max_m;
-        tally.beams += scan.ranges_m.len();
-        for (beam, range_m) in scan.ranges_m.iter().enumerate() {
-            let direction =
-                |turn_rad: f64| rotation(scan.angle_rad(beam) + turn_rad) * (at.rotation * Vector2::x());
-            let exact = |turn_rad: f64| brute_force_m(&from, &direction(turn_rad), &self.boxes, &others);
-            let [low, range, high] = [-GRAZE_RAD, 0.0, GRAZE_RAD].map(exact);
-            // Where the target stays the same, so does the range, within what a turn can shift it.
-            if (low - range).abs() > 1e-3 || (high - range).abs() > 1e-3 || (range - max_m).abs() < 1e-3 {
-                tally.grazing += 1;
-                let near = [low, range, high]
-                    .iter()
-                    .any(|e| (e.min(1e9) - f64::from(*range_m).min(1e9)).abs() < 1e-3);
-                assert!(
-                    near || *range_m == f32::INFINITY && range > max_m - 1e-3,
-                    "grazing beam {beam} at {at:?}: {range_m}, not {low}, {range} or {high}"
-                );
-                continue;
-            }
-            let expected = if range > max_m { f32::INFINITY } else { range as f32 };
-            assert!(
-                *range_m == expected || (range_m - expected).abs() < 1e-5,
-                "beam {beam} at {at:?}: {range_m}, not {expected}"
-            );
-            let rapier = self.bodies.ray_m(&from, &direction(0.0), own, max_m);
-            let rapier = rapier.map_or(f64::INFINITY, |range| range);
-            let ours = f64::from(*range_m);
-            assert!(
-                ours == rapier || (ours - rapier).abs() < 1e-3,
-                "beam {beam} at {at:?}: ours {ours} m, rapier's {rapier} m"
-            );
-        }
-    }
-}
-
-/// A number in a range, the same for everyone.
-fn uniform(stream: &mut ChaCha8Rng, range: std::ops::Range<f64>) -> f64 {
-    range.start + (range.end - range.start) * (stream.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
 }
 
 #[test]
@@ -250,6 +116,22 @@ fn narrow_lasers_see_the_same() {
     }
 }
 
+/// A narrow view with things behind it: what lies there is in none of its beams.
+#[test]
+fn nothing_is_seen_behind_a_narrow_laser() {
+    let place = Place::of(Fleet::new(&super::fleet::crowd(), 0));
+    let mut stream = ChaCha8Rng::seed_from_u64(6);
+    let mut tally = Tally::default();
+    for _ in 0..300 {
+        let mut laser = LaserSpec { noise_std_m: 0.0, ..place.spec.robots()[0].laser };
+        laser.fov_rad = uniform(&mut stream, 1.0..40.0).to_radians();
+        laser.beams = uniform(&mut stream, 2.0..100.0) as usize;
+        let own = (uniform(&mut stream, 0.0..36.0) as usize).min(35);
+        let at = place.spec.robots()[own].pose.translation.vector;
+        place.compare(&laser, &pose(at.x, at.y, uniform(&mut stream, -4.0..4.0)), own, &mut tally);
+    }
+}
+
 #[test]
 fn limits_follow_rep_117() {
     let limits = "range_min_m = 2.0\nrange_max_m = 3.0";
@@ -281,8 +163,7 @@ fn a_robot_sees_the_other_but_not_itself() {
 fn a_laser_inside_of_a_solid_sees_nothing_else() {
     let mut spec = four_rooms();
     spec.fleet.robots[0].pose = pose(6.0, 1.0, 0.3);
-    let noise = chance::Gaussian::new(0, chance::Purpose::Laser, 0);
-    let mut laser = Laser::new(&spec.driven().laser, beams(&spec.driven().laser).into(), noise);
+    let mut laser = Laser::new(&spec.driven().laser, beams(&spec.driven().laser).into(), noise(), dropout());
     let mut scene = Scene::new(corners(spec.frame()), spec.walls(), Vec::new(), 0, 10.0);
     scene.sort();
     let mut scan = spec.driven().laser.empty_scan();

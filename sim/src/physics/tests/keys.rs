@@ -65,6 +65,9 @@ const GOOD: &[(&str, &str, &str)] = &[
     ("`robot.odometry`", "robot.odometry", ""),
     ("`robot.laser`", "robot.laser", "beams = 10\nrange_max_m = 5.0\nrate_hz = 10.0"),
     ("`robot.behaviour`", "robot.behaviour", "kind = \"driven\""),
+    ("`robot.bumper`", "robot.bumper", "sectors = 4"),
+    ("`robot.sonar`", "robot.sonar", "cone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0"),
+    ("`robot.fiducial`", "robot.fiducial", "range_max_m = 5.0\nrate_hz = 10.0"),
 ];
 
 /// The keys that a key needs beside it, where the good ones do not have it.
@@ -74,6 +77,8 @@ fn fit(heading: &str, key: &str, good: &str) -> String {
         ("`robot.behaviour`", "clearance_m") => kind("wander"),
         ("`robot.behaviour`", "turn_radius_m" | "direction") => kind("circle") + "\nturn_radius_m = 1.0",
         ("`robot.behaviour`", "repeat") => kind("waypoints") + "\npoints_m = [[2.0, 2.0]]",
+        (_, "max_left_mps" | "max_left_acceleration_mps2") => format!("kind = \"omni\"\n{good}"),
+        (_, "wheelbase_m" | "max_steer_deg") => format!("kind = \"car\"\nwheelbase_m = 1.0\n{good}"),
         (_, "slide_m") => good.replace("hinged", "sliding"),
         (_, "switches_s") => good.replace("random", "scripted").replace("closed_s = 1.0\nopen_s = 1.0", ""),
         (_, "times_s") => good.replace("speed_mps = 1.0", ""),
@@ -86,15 +91,18 @@ fn world(heading: &str, changed: &str) -> String {
     let mut text = "name = \"w\"\n".to_owned();
     let table_of = |heading: &str| GOOD.iter().find(|(known, _, _)| *known == heading).unwrap().1;
     for (known, table, good) in GOOD {
-        // Pictures and obstacles are only there where they are asked for.
-        let is_optional = matches!(*table, "floor_plan" | "obstacle");
+        // These are only there where they are asked for.
+        let is_optional =
+            matches!(*table, "floor_plan" | "obstacle" | "robot.bumper" | "robot.sonar" | "robot.fiducial");
         if (is_optional || table_of(heading) == *table) && *known != heading {
             continue;
         }
         let keys = if *known == heading { changed } else { good };
         match *table {
             "" => text += &format!("{keys}\n"),
-            "wall" | "floor_plan" | "obstacle" | "robot" => text += &format!("[[{table}]]\n{keys}\n"),
+            "wall" | "floor_plan" | "obstacle" | "robot" | "robot.sonar" => {
+                text += &format!("[[{table}]]\n{keys}\n")
+            }
             _ => text += &format!("[{table}]\n{keys}\n"),
         }
     }
@@ -137,7 +145,7 @@ fn the_ranges_are_those_that_are_checked() {
                 keys.lines().filter(|line| !line.starts_with(&format!("{key} ="))).collect();
             for beyond in [least - 0.5 * least.abs() - 1e-5, most * 1.5] {
                 let value = match *key {
-                    "beams" => format!("{}", beyond.max(0.0) as u32),
+                    "beams" | "sectors" => format!("{}", beyond.max(0.0) as u32),
                     "size_m" => format!("[{beyond:?}, {beyond:?}]"),
                     "times_s" | "switches_s" => format!("[{beyond:?}]"),
                     _ => format!("{beyond:?}"),
@@ -157,12 +165,19 @@ fn the_defaults_are_those_that_are_taken() {
     let mut checked = 0;
     for row in rows().iter().filter(|row| row.heading != "The file") {
         let Some(default) = row.default.strip_prefix('`').and_then(|text| text.strip_suffix('`')) else {
-            let known =
-                ["required", "its length", "never", "stands from the start", "1 kg per m² of its area"];
+            let known = [
+                "required",
+                "its length",
+                "never",
+                "none",
+                "stands from the start",
+                "1 kg per m² of its circle",
+            ];
             assert!(known.contains(&row.default), "{:?}: {}", row.keys, row.default);
             continue;
         };
-        if default == "{}" || default == "[]" {
+        // Another key's value is no value.
+        if default == "{}" || default == "[]" || default.starts_with("max_") {
             continue;
         }
         let (_, _, good) = GOOD.iter().find(|(heading, _, _)| *heading == row.heading).unwrap();

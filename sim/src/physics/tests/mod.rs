@@ -4,12 +4,16 @@ mod caster;
 mod contacts;
 mod contract;
 mod docs;
+mod drives;
 mod fleet;
 mod floor_plan;
+mod footprint;
 mod keys;
 mod obstacles;
+mod oracle;
 mod patrol;
 mod random;
+mod senses;
 mod snapshot;
 mod things;
 

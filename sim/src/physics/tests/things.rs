@@ -37,9 +37,17 @@ fn robot_at(fleet: &Fleet, robot: usize) -> Point2<f64> {
 
 /// The four rooms with everything that moves, and robots that push.
 pub(super) fn busy() -> FleetSpec {
-    let robots = [[2.0, 2.0], [9.0, 3.0], [3.0, 9.0], [9.5, 9.0]].map(|at| {
+    let robots = [[2.0, 2.0], [9.0, 3.0], [3.0, 9.0], [9.5, 9.0]].map(|at: [f64; 2]| {
         let name = format!("r{at:?}");
-        robot(&name, at, 30.0, "kind = \"driven\"").replace("radius_m", "mass_kg = 20.0\nradius_m")
+        let robot =
+            robot(&name, at, 30.0, "kind = \"driven\"").replace("radius_m", "mass_kg = 20.0\nradius_m");
+        // One of them is not round.
+        let outline = if at[0] < 9.2 {
+            "radius_m = 0.2"
+        } else {
+            "footprint_m = [[-0.3, -0.15], [0.3, -0.1], [0.3, 0.1], [-0.3, 0.15]]"
+        };
+        robot.replace("radius_m = 0.2", if at[1] > 8.0 { outline } else { "radius_m = 0.2" })
     });
     let mut things = String::new();
     for (i, robot) in [[2.0, 2.0], [9.0, 3.0], [3.0, 9.0], [9.5, 9.0]].into_iter().enumerate() {

@@ -1,5 +1,7 @@
 //! Which cells a body covers, wholly or in part.
 
+use crate::physics::convex;
+use crate::physics::form::Form;
 use crate::physics::shape::{Rectangle, TOUCH_M};
 use geometry::{Cell, GridFrame};
 use nalgebra::{Point2, Vector2};
@@ -29,13 +31,28 @@ pub(super) fn box_cells(frame: &GridFrame, shape: &Rectangle, mut visit: impl Fn
     });
 }
 
+/// The same for the body of a robot.
+pub(super) fn form_cells(frame: &GridFrame, form: &Form, visit: impl FnMut(Cell, bool)) {
+    match form {
+        Form::Disc { center, radius_m } => disc_cells(frame, center, *radius_m, visit),
+        Form::Convex(corners) => convex_cells(frame, form, corners, visit),
+    }
+}
+
+fn convex_cells(frame: &GridFrame, form: &Form, corners: &[Point2<f64>], mut visit: impl FnMut(Cell, bool)) {
+    let (half_m, (low, high)) = (frame.resolution_m() / 2.0, form.bounds());
+    for_cells(frame, &low, &high, |cell| {
+        let corner = |(x, y): (f64, f64)| frame.center(cell) + Vector2::new(x, y) * half_m;
+        let square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(corner);
+        if convex::gap_m(corners, &square) < -TOUCH_M {
+            let is_in = |corner: &Point2<f64>| convex::disc_gap_m(corners, corner, 0.0) < TOUCH_M;
+            visit(cell, square.iter().all(is_in));
+        }
+    });
+}
+
 /// The same for a disc.
-pub(super) fn disc_cells(
-    frame: &GridFrame,
-    center: &Point2<f64>,
-    radius_m: f64,
-    mut visit: impl FnMut(Cell, bool),
-) {
+fn disc_cells(frame: &GridFrame, center: &Point2<f64>, radius_m: f64, mut visit: impl FnMut(Cell, bool)) {
     let half_cell_m = frame.resolution_m() / 2.0;
     let reach = Vector2::repeat(radius_m);
     let (inner2, outer2) = ((radius_m - TOUCH_M).max(0.0).powi(2), (radius_m + TOUCH_M).powi(2));

@@ -5,6 +5,7 @@ mod start;
 #[cfg(test)]
 mod tests;
 
+use super::form::Form;
 use super::report::Body;
 use super::shape::Rectangle;
 use geometry::{Cell, GridFrame};
@@ -148,19 +149,13 @@ impl Truth {
         self.elapsed_s = time_s;
     }
 
-    /// A robot is set down at the start, or moves (m).
-    pub(super) fn move_disc(
-        &mut self,
-        body: Body,
-        from: Option<Point2<f64>>,
-        to: Point2<f64>,
-        radius_m: f64,
-    ) {
+    /// A robot is set down at the start, or moves.
+    pub(super) fn move_robot(&mut self, body: Body, from: Option<&Form>, to: &Form) {
         if from == Some(to) {
             return;
         }
         let frame = self.frame;
-        cover::disc_cells(&frame, &to, radius_m, |cell, whole| {
+        cover::form_cells(&frame, to, |cell, whole| {
             if let Some(index) = frame.index(cell) {
                 self.overlapped[index] += 1;
                 self.covered[index] += u16::from(whole);
@@ -168,7 +163,7 @@ impl Truth {
             }
         });
         if let Some(from) = from {
-            cover::disc_cells(&frame, &from, radius_m, |cell, whole| {
+            cover::form_cells(&frame, from, |cell, whole| {
                 if let Some(index) = frame.index(cell) {
                     self.overlapped[index] -= 1;
                     self.covered[index] -= u16::from(whole);
@@ -176,7 +171,7 @@ impl Truth {
                 }
             });
         }
-        cover::disc_cells(&frame, &to, radius_m, |cell, _| {
+        cover::form_cells(&frame, to, |cell, _| {
             if let Some(index) = frame.index(cell) {
                 self.settle(cell, index);
             }

@@ -47,13 +47,14 @@ fn a_disc_that_passes_blocks_every_cell_once() {
     let mut truth = small();
     let robot = Body::Robot(1);
     let (mut at, radius_m) = (Point2::new(0.1, 0.3), 0.2);
-    truth.move_disc(robot, None, at, radius_m);
+    let disc = |center| crate::physics::form::Form::Disc { center, radius_m };
+    truth.move_robot(robot, None, &disc(at));
     truth.begin();
     assert_eq!(drawn(&truth)[1..5], ["+++..++.", "##+..++.", "##+..++.", "+++..++."]);
     // A wobble that uncovers a cell in part is not an event.
     for to in [0.11, 0.1, 0.18, 0.1, 0.35, 0.33, 0.35, 0.1] {
         let to = Point2::new(to, 0.3);
-        truth.move_disc(robot, Some(at), to, radius_m);
+        truth.move_robot(robot, Some(&disc(at)), &disc(to));
         at = to;
     }
     let index = |x, y| truth.frame().index(Cell::new(x, y)).unwrap();

@@ -6,7 +6,7 @@ use crate::error::WorldError;
 use crate::physics::convex;
 use crate::physics::shape::{Rectangle, TOUCH_M};
 use crate::physics::spec::Repeat;
-use crate::physics::spec::check::{MAX_TIME_S, inside};
+use crate::physics::spec::check::{MAX_TIME_S, Solid, inside};
 use crate::physics::spec::file::{Number, Pair};
 use nalgebra::{Point2, Vector2};
 use serde_spanned::Spanned;
@@ -175,8 +175,7 @@ impl Context<'_> {
             let what = format!("the path of `{}` leads out of the map", self.name);
             inside(self.source, &what, span.clone(), &at(to), self.size)?;
             let swept = swept(&at(from), &(to - from));
-            let is_in_way =
-                |wall: &&super::super::check::Solid| convex::gap_m(&swept, &wall.shape.corners()) < -TOUCH_M;
+            let is_in_way = |wall: &&Solid| convex::gap_m(&swept, &wall.shape.corners()) < -TOUCH_M;
             if let Some(wall) = self.walls.iter().find(is_in_way) {
                 let what = format!("the path of `{}` leads through a wall", self.name);
                 let marks = [(wall.span.clone(), "through this one")];

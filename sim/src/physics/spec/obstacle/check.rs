@@ -120,7 +120,8 @@ impl Context<'_> {
     }
 
     pub(super) fn spec(self, shape: Rectangle, motion: Motion) -> ObstacleSpec {
-        ObstacleSpec { name: self.name, shape, motion, appears_s: None, disappears_s: None }
+        let tag = self.file.tag.as_ref().map(|tag| *tag.get_ref());
+        ObstacleSpec { name: self.name, shape, motion, tag, appears_s: None, disappears_s: None }
     }
 
     fn fixed(self) -> Result<ObstacleSpec, WorldError> {

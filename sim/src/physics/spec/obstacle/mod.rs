@@ -18,6 +18,8 @@ pub struct ObstacleSpec {
     pub shape: Rectangle,
     /// How it moves.
     pub motion: Motion,
+    /// Its tag, by which robots find it.
+    pub tag: Option<u32>,
     /// When it is put there, s; `None`: it is there from the start.
     pub appears_s: Option<f64>,
     /// When it is taken away, s; `None`: never.

@@ -1,3 +1,5 @@
+mod parts;
+
 use super::{FleetSpec, WorldSpec};
 
 /// A small world in which every line can be made wrong.
@@ -162,53 +164,6 @@ fn walls_and_obstacles() {
             ("obstacle without shape", "min_m = [3.0, 2.0]\nmax_m", "min_m = [3.0, 2.0]\nsize_m"),
         ],
     );
-}
-
-#[test]
-fn things_that_move() {
-    let toy = "name = \"toy\"\nmin_m = [3.0, 2.0]\nmax_m = [3.4, 2.4]\nappears_s = 10.0\ndisappears_s = 20.0";
-    let block =
-        "name = \"block\"\nkind = \"block\"\nsize_m = [0.4, 0.4]\npath_m = [[3.0, 2.0], [3.5, 2.0]]\n";
-    let door = "name = \"door\"\nkind = \"hinged_door\"\nfrom_m = [3.0, 2.0]\nto_m = [3.8, 2.0]\nthickness_m = 0.04\n";
-    let crate_ = "name = \"crate\"\nkind = \"box\"\nmin_m = [3.0, 2.0]\nmax_m = [3.4, 2.4]\n";
-    let cases = [
-        ("unknown kind", "name = \"toy\"\nkind = \"ball\"".to_owned()),
-        ("key of another kind", format!("{toy}\nfriction = 0.5")),
-        ("box without a mass", crate_.to_owned()),
-        ("box without weight", format!("{crate_}mass_kg = 0.0")),
-        ("thin box", format!("{crate_}mass_kg = 1.0").replace("[3.4, 2.4]", "[3.01, 2.4]")),
-        (
-            "box in a robot",
-            format!("{crate_}mass_kg = 1.0")
-                .replace("[3.0, 2.0]", "[2.6, 0.4]")
-                .replace("[3.4, 2.4]", "[2.9, 0.7]"),
-        ),
-        (
-            "boxes in each other",
-            format!("{crate_}mass_kg = 1.0\n[[obstacle]]\n{}mass_kg = 1.0", crate_.replace("crate", "other")),
-        ),
-        ("block without a path", "name = \"block\"\nkind = \"block\"\nsize_m = [0.4, 0.4]".to_owned()),
-        ("block without times", block.to_owned()),
-        ("block through a wall", format!("{block}speed_mps = 1.0").replace("[3.5, 2.0]", "[1.0, 2.0]")),
-        ("block out of the map", format!("{block}speed_mps = 1.0").replace("[3.5, 2.0]", "[3.9, 2.0]")),
-        ("block too fast", format!("{block}speed_mps = 4.0")),
-        ("block with too few times", format!("{block}times_s = [0.0]")),
-        ("block that is late", format!("{block}times_s = [1.0, 2.0]")),
-        ("block back in time", format!("{block}times_s = [0.0, 0.0]")),
-        ("block in a hurry", format!("{block}times_s = [0.0, 0.1]\nrepeat = \"once\"")),
-        ("block that is not back", format!("{block}times_s = [0.0, 1.0]")),
-        ("door without an opening", door.to_owned()),
-        ("door that opens oddly", format!("{door}opening = \"often\"")),
-        ("random door with a script", format!("{door}opening = \"random\"\nswitches_s = [1.0]")),
-        ("script back in time", format!("{door}opening = \"scripted\"\nswitches_s = [2.0, 1.0]")),
-        ("door that slams", format!("{door}opening = \"scripted\"\nswitches_s = [2.0]\nmove_s = 0.1")),
-        (
-            "door without a leaf",
-            format!("{door}opening = \"random\"\nclosed_s = 1.0\nopen_s = 1.0").replace("3.8", "3.0"),
-        ),
-    ];
-    let cases: Vec<_> = cases.iter().map(|(case, to)| (*case, toy, to.as_str())).collect();
-    compare("things_that_move", &cases);
 }
 
 #[test]

@@ -1,27 +1,21 @@
 //! Rigid bodies and contacts: the only folder that knows rapier.
 
+mod movers;
+
+pub(super) use movers::Mover;
+
+use super::command::Velocity;
 use super::report::Body;
 use super::shape::Rectangle;
 use super::snapshot::{Played, Tape, Torn};
-use super::spec::{PushedSpec, RobotSpec};
-use geometry::{Twist, heading_rad, rotation};
-#[cfg(test)]
-use nalgebra::Point2;
-use nalgebra::{Isometry2, Translation2, Vector2};
+use super::spec::RobotSpec;
+use geometry::{heading_rad, rotation};
+use nalgebra::{Isometry2, Point2, Translation2, Vector2};
 use rapier2d::prelude as rapier;
 
 /// Bodies farther apart than this no longer touch, m. A contact that rapier keeps open flickers by
 /// less.
 const PART_M: f32 = 0.001;
-
-/// Contacts of obstacles that move are foreseen over this way, m: the most that their surface goes
-/// in a step, and what drives against it.
-const FORESEEN_M: f32 = 0.25;
-/// Standard gravity: what presses boxes onto the floor.
-const GRAVITY_MPS2: f64 = 9.806_65;
-/// How hard friction holds, as long as its force is enough, 1/s: what is left of a speed after a
-/// step is next to nothing.
-const RUB_PER_S: f32 = 1e5;
 
 /// All bodies: walls and obstacles that stand, robots that drive.
 pub(super) struct Bodies {
@@ -37,14 +31,6 @@ struct Robot {
     collider: rapier::ColliderHandle,
     /// The heading of the wheels half way through the last step.
     forward: Vector2<f64>,
-}
-
-/// The body of an obstacle that moves.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Mover {
-    body: rapier::RigidBodyHandle,
-    /// What makes a box rub on the floor, with the force that it takes to move it, N.
-    rubs: Option<(rapier::ImpulseJointHandle, f32)>,
 }
 
 /// An obstacle's body, to take it away again.
@@ -118,69 +104,6 @@ impl Bodies {
         self.world.remove_collider(handle.0);
     }
 
-    /// Adds a body that goes where it is told to, whatever is in its way.
-    pub(super) fn add_driven(&mut self, body: Body, shape: &Rectangle) -> Mover {
-        let collider = cuboid(body, shape);
-        let body = rapier::RigidBodyBuilder::kinematic_position_based()
-            .pose(to_rapier(&shape.pose))
-            .can_sleep(false)
-            .soft_ccd_prediction(FORESEEN_M);
-        Mover { body: self.world.insert(body, collider).0, rubs: None }
-    }
-
-    /// Tells such a body where to be after the next step.
-    pub(super) fn drive(&mut self, mover: &Mover, to: &Isometry2<f64>) {
-        self.world.bodies[mover.body].set_next_kinematic_position(to_rapier(to));
-    }
-
-    /// Adds a body that is pushed, and rubs on the floor.
-    pub(super) fn add_pushed(&mut self, body: Body, shape: &Rectangle, pushed: &PushedSpec) -> Mover {
-        let collider = cuboid(body, shape).mass(pushed.mass_kg as f32);
-        let body =
-            rapier::RigidBodyBuilder::dynamic().pose(to_rapier(&shape.pose)).soft_ccd_prediction(FORESEEN_M);
-        let body = self.world.insert(body, collider).0;
-        let mut mover = Mover { body, rubs: None };
-        let weight_n = pushed.friction * pushed.mass_kg * GRAVITY_MPS2;
-        if weight_n > 0.0 {
-            let world = &mut self.world;
-            let floor =
-                *self.floor.get_or_insert_with(|| world.insert_body(rapier::RigidBodyBuilder::fixed()));
-            // The mean distance of a rectangle's points from its middle is 0.87 (long) to 0.94 (square)
-            // times the root of their mean square.
-            let lever_m = 0.9 * (shape.half_m.norm_squared() / 3.0).sqrt();
-            let mut rub = rapier::GenericJointBuilder::new(rapier::JointAxesMask::empty());
-            for (axis, force) in [
-                (rapier::JointAxis::LinX, weight_n),
-                (rapier::JointAxis::LinY, weight_n),
-                (rapier::JointAxis::AngX, weight_n * lever_m),
-            ] {
-                rub = rub.motor_velocity(axis, 0.0, RUB_PER_S).motor_max_force(axis, force as f32);
-            }
-            let joint = world.insert_impulse_joint(floor, body, rub.build());
-            mover.rubs = Some((joint, weight_n as f32));
-        }
-        mover
-    }
-
-    /// Where the last step brought a body that is pushed.
-    pub(super) fn pushed_pose(&mut self, mover: &Mover) -> Isometry2<f64> {
-        let body = &self.world.bodies[mover.body];
-        let velocity = body.linvel();
-        let at = pose_of(body);
-        if let Some((joint, weight_n)) = mover.rubs
-            && let Some(joint) = self.world.impulse_joints.get_mut(joint, false)
-        {
-            // In motion the force of the weight acts along it, and not along each axis; at rest it
-            // is not known where it will be needed.
-            let speed_mps = velocity.length();
-            let share =
-                if speed_mps > 1e-3 { velocity.abs() / speed_mps } else { rapier::Vector::splat(1.0) };
-            joint.data.set_motor_max_force(rapier::JointAxis::LinX, weight_n * share.x);
-            joint.data.set_motor_max_force(rapier::JointAxis::LinY, weight_n * share.y);
-        }
-        at
-    }
-
     /// The energy of motion of everything that is pushed or drives, J.
     #[cfg(test)]
     pub(super) fn kinetic_j(&self) -> f64 {
@@ -195,10 +118,16 @@ impl Bodies {
     /// Adds a robot; robots are numbered in the order in which they are added.
     pub(super) fn add_robot(&mut self, spec: &RobotSpec, step_s: f64) {
         // Friction 0: a round robot slides along a wall, as one with a bumper ring does.
-        let collider = rapier::ColliderBuilder::ball(spec.radius_m as f32)
+        let corners = spec.corners.iter().map(|corner| rapier::Vector::new(corner.x as f32, corner.y as f32));
+        let is_round = spec.corners.is_empty();
+        let hull = if is_round { None } else { rapier::ColliderBuilder::convex_polyline(corners.collect()) };
+        let collider = hull
+            .unwrap_or_else(|| rapier::ColliderBuilder::ball(spec.radius_m as f32))
             .friction(0.0)
             .user_data(pack(Body::Robot(self.robots.len())));
         let collider = match spec.mass_kg {
+            // The wheels turn it about its middle, wherever the middle of its outline is.
+            _ if !is_round => collider.density(0.0),
             Some(mass_kg) => collider.mass(mass_kg as f32),
             None => collider,
         };
@@ -206,21 +135,22 @@ impl Bodies {
         let body = rapier::RigidBodyBuilder::dynamic()
             .pose(to_rapier(&spec.pose))
             .can_sleep(false)
-            .soft_ccd_prediction((2.0 * spec.drive.max_linear_mps * step_s) as f32);
+            .soft_ccd_prediction((2.0 * spec.drive.fastest_mps() * step_s) as f32);
+        let body = if is_round { body } else { body.additional_mass_properties(disc_mass(spec)) };
         let (body, collider) = self.world.insert(body, collider);
         self.robots.push(Robot { body, collider, forward: Vector2::x() });
     }
 
     /// Sets a robot's velocity for the next step: along the heading half way through it, so that
     /// steps make up an arc.
-    pub(super) fn set_velocity(&mut self, robot: usize, twist: &Twist, step_s: f64) {
+    pub(super) fn set_velocity(&mut self, robot: usize, own_velocity: &Velocity, step_s: f64) {
         let own = &mut self.robots[robot];
         let body = &mut self.world.bodies[own.body];
-        let heading = f64::from(body.rotation().angle()) + twist.angular_radps * step_s / 2.0;
+        let heading = f64::from(body.rotation().angle()) + own_velocity.turn_radps * step_s / 2.0;
         own.forward = rotation(heading) * Vector2::x();
-        let velocity = own.forward * twist.linear_mps;
+        let velocity = own.forward * own_velocity.forward_mps + left(&own.forward) * own_velocity.left_mps;
         body.set_linvel(rapier::Vector::new(velocity.x as f32, velocity.y as f32), true);
-        body.set_angvel(twist.angular_radps as f32, true);
+        body.set_angvel(own_velocity.turn_radps as f32, true);
     }
 
     /// Lets one step pass.
@@ -234,11 +164,15 @@ impl Bodies {
     }
 
     /// The velocity that the contacts left a robot in the last step.
-    pub(super) fn velocity(&self, robot: usize) -> Twist {
+    pub(super) fn velocity(&self, robot: usize) -> Velocity {
         let own = &self.robots[robot];
         let body = &self.world.bodies[own.body];
         let linear = Vector2::new(f64::from(body.linvel().x), f64::from(body.linvel().y));
-        Twist { linear_mps: linear.dot(&own.forward), angular_radps: f64::from(body.angvel()) }
+        Velocity {
+            forward_mps: linear.dot(&own.forward),
+            left_mps: linear.dot(&left(&own.forward)),
+            turn_radps: f64::from(body.angvel()),
+        }
     }
 
     /// Sets a robot down somewhere else, at rest.
@@ -249,16 +183,20 @@ impl Bodies {
         body.set_angvel(0.0, true);
     }
 
-    /// Everything near a robot that it presses against, with the impulse of the last step (N·s), or
-    /// has not yet parted from (0).
-    pub(super) fn touches(&self, robot: usize) -> impl Iterator<Item = (Body, f64)> {
+    /// Everything near a robot that it presses against, with where (m) and the impulse of the last
+    /// step (N·s), or has not yet parted from (0).
+    pub(super) fn touches(&self, robot: usize) -> impl Iterator<Item = (Body, Point2<f64>, f64)> {
         let own = self.robots[robot].collider;
         self.world.narrow_phase.contact_pairs_with(own).filter_map(move |pair| {
-            let gap_m = pair.find_deepest_contact()?.1.dist;
+            let contact = pair.find_deepest_contact()?.1;
             let impulse_ns = f64::from(pair.total_impulse_magnitude());
+            if impulse_ns <= 0.0 && contact.dist >= PART_M {
+                return None;
+            }
+            let at = self.world.colliders[pair.collider1].position().transform_point(contact.local_p1);
             let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
             let body = unpack(self.world.colliders[other].user_data);
-            (impulse_ns > 0.0 || gap_m < PART_M).then_some((body, impulse_ns))
+            Some((body, Point2::new(f64::from(at.x), f64::from(at.y)), impulse_ns))
         })
     }
 
@@ -289,6 +227,18 @@ impl Bodies {
         let ray = rapier::Ray::new(origin, rapier::Vector::new(along.x as f32, along.y as f32));
         query.cast_ray(&ray, max_m as f32, true).map(|(_, range_m)| f64::from(range_m))
     }
+}
+
+/// The mass of a disc about a robot's middle.
+fn disc_mass(spec: &RobotSpec) -> rapier::MassProperties {
+    let square_m2 = spec.radius_m * spec.radius_m;
+    let mass_kg = spec.mass_kg.unwrap_or(std::f64::consts::PI * square_m2);
+    rapier::MassProperties::new(rapier::Vector::ZERO, mass_kg as f32, (mass_kg * square_m2 / 2.0) as f32)
+}
+
+/// The direction to the left.
+fn left(forward: &Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-forward.y, forward.x)
 }
 
 /// A rectangle's collider, without a place. All sides are smooth.

@@ -1,0 +1,129 @@
+//! Senses beside lasers: bumpers, sonars, fiducial finders.
+
+use super::file::{BumperFile, FiducialFile, Number, Pair, SonarFile};
+use super::laser::{mount, period_steps};
+use super::numbers::Table;
+use crate::error::{Source, WorldError};
+use nalgebra::Isometry2;
+use serde_spanned::Spanned;
+
+/// More sonars on one robot than this are refused.
+const MOST_SONARS: usize = 100;
+
+/// A ring of bumpers, which covers a part of a robot's outline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BumperSpec {
+    /// The number of bumpers, at most 64, from right to left.
+    pub sectors: usize,
+    /// The angle that they share, symmetrical to straight ahead, rad, in (0, 2π].
+    pub fov_rad: f64,
+}
+
+/// A sonar or infrared sensor: it measures how near the nearest thing in a cone is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SonarSpec {
+    /// The angle of the cone, rad.
+    pub cone_rad: f64,
+    /// Nearer things give −∞, m.
+    pub range_min_m: f64,
+    /// Farther things give +∞, m.
+    pub range_max_m: f64,
+    /// The physics steps from one measurement to the next; at least 1.
+    pub period_steps: u64,
+    /// Where it sits on the robot.
+    pub mount: Isometry2<f64>,
+    /// Standard deviation of a range, m.
+    pub noise_std_m: f64,
+}
+
+/// A sensor that finds what has a tag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FiducialSpec {
+    /// The angle that it sees, symmetrical to straight ahead, rad, in (0, 2π].
+    pub fov_rad: f64,
+    /// Things whose middle is farther away are not found, m.
+    pub range_max_m: f64,
+    /// The physics steps from one look to the next; at least 1.
+    pub period_steps: u64,
+    /// Where it sits on the robot.
+    pub mount: Isometry2<f64>,
+}
+
+pub(super) fn bumper(source: &Source<'_>, file: &BumperFile) -> Result<BumperSpec, WorldError> {
+    let table = Table { source, path: "robot.bumper" };
+    let sectors = *file.sectors.get_ref();
+    if !(1..=64).contains(&sectors) {
+        let what = format!("`robot.bumper.sectors` is {sectors}, which is out of range");
+        let help = "it must be a whole number from 1 to 64";
+        return Err(source.error(&what, (file.sectors.span(), "out of range"), &[], help));
+    }
+    let fov_rad = table.number_or("fov_deg", &file.fov_deg, 360.0, 1.0..=360.0)?.to_radians();
+    Ok(BumperSpec { sectors: sectors as usize, fov_rad })
+}
+
+pub(super) fn sonars(
+    source: &Source<'_>,
+    files: &[Spanned<SonarFile>],
+    step_s: f64,
+    radius_m: f64,
+) -> Result<Vec<SonarSpec>, WorldError> {
+    if let Some(last) = files.get(MOST_SONARS) {
+        let help = format!("{MOST_SONARS} are the most");
+        return Err(source.error("a robot has too many sonars", (last.span(), "one too many"), &[], &help));
+    }
+    files.iter().map(|file| sonar(source, file.get_ref(), step_s, radius_m)).collect()
+}
+
+fn sonar(source: &Source<'_>, file: &SonarFile, step_s: f64, radius_m: f64) -> Result<SonarSpec, WorldError> {
+    let table = Table { source, path: "robot.sonar" };
+    let [range_min_m, range_max_m] = range(&table, &file.range_min_m, &file.range_max_m)?;
+    Ok(SonarSpec {
+        cone_rad: table.number("cone_deg", &file.cone_deg, 1.0..=180.0)?.to_radians(),
+        range_min_m,
+        range_max_m,
+        period_steps: period_steps(&table, &file.rate_hz, step_s)?.1,
+        mount: place(&table, &file.mount_m, &file.mount_deg, radius_m)?,
+        noise_std_m: table.number_or("noise_std_m", &file.noise_std_m, 0.0, 0.0..=1.0)?,
+    })
+}
+
+pub(super) fn fiducial(
+    source: &Source<'_>,
+    file: &FiducialFile,
+    step_s: f64,
+    radius_m: f64,
+) -> Result<FiducialSpec, WorldError> {
+    let table = Table { source, path: "robot.fiducial" };
+    Ok(FiducialSpec {
+        fov_rad: table.number_or("fov_deg", &file.fov_deg, 360.0, 1.0..=360.0)?.to_radians(),
+        range_max_m: table.number("range_max_m", &file.range_max_m, 0.01..=1000.0)?,
+        period_steps: period_steps(&table, &file.rate_hz, step_s)?.1,
+        mount: place(&table, &file.mount_m, &file.mount_deg, radius_m)?,
+    })
+}
+
+fn place(
+    table: &Table<'_>,
+    mount_m: &Option<Pair>,
+    mount_deg: &Option<Number>,
+    radius_m: f64,
+) -> Result<Isometry2<f64>, WorldError> {
+    mount(table, "a sensor", mount_m, mount_deg, radius_m)
+}
+
+/// The least and the greatest range, m.
+pub(super) fn range(
+    table: &Table<'_>,
+    least: &Option<Number>,
+    most: &Number,
+) -> Result<[f64; 2], WorldError> {
+    let range_max_m = table.number("range_max_m", most, 0.01..=1000.0)?;
+    let range_min_m = table.number_or("range_min_m", least, 0.0, 0.0..=1000.0)?;
+    if let Some(min) = least.as_ref().filter(|_| range_min_m >= range_max_m) {
+        let marks = [(most.span(), "not below this")];
+        let help = "`range_min_m` must be smaller than `range_max_m`";
+        let what = if table.path == "robot.laser" { "a laser sees nothing" } else { "a sonar hears nothing" };
+        return Err(table.source.error(what, (min.span(), "too far"), &marks, help));
+    }
+    Ok([range_min_m, range_max_m])
+}

@@ -1,0 +1,170 @@
+//! Two oracles for our rays: a slab or a root per thing and beam, and rapier's rays.
+
+use super::*;
+use crate::physics::fleet::corners;
+use crate::physics::laser::{Laser, beams};
+use crate::physics::rays::{Disc, Scene, Scratch};
+use crate::physics::{bodies::Bodies, chance};
+use geometry::rotation;
+use nalgebra::{Isometry2, Point2, Vector2};
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+
+/// A beam whose target does not survive a turn of this much is grazing, rad.
+const GRAZE_RAD: f64 = 1e-6;
+
+/// The range to the nearest thing, m, by a slab or a root per thing and beam: slow and simple.
+fn brute_force_m(
+    from: &Point2<f64>,
+    along: &Vector2<f64>,
+    boxes: &[Rectangle],
+    sides: &[(Point2<f64>, Point2<f64>)],
+    discs: &[(Point2<f64>, f64)],
+) -> f64 {
+    let side_m = sides.iter().filter_map(|(a, b)| {
+        let (to, side) = (a - from, b - a);
+        let (range_m, place) = (to.perp(&side) / along.perp(&side), to.perp(along) / along.perp(&side));
+        (range_m > 0.0 && (0.0..=1.0).contains(&place)).then_some(range_m)
+    });
+    let side_m = side_m.fold(f64::INFINITY, f64::min);
+    let box_m = boxes.iter().filter_map(|shape| shape.ray_m(from, along)).fold(f64::INFINITY, f64::min);
+    let disc_m = discs.iter().filter_map(|(center, radius_m)| {
+        let (to, r2) = (center - from, radius_m * radius_m);
+        let (b, miss2) = (to.dot(along), to.perp(along).powi(2));
+        (miss2 <= r2 && b > 0.0).then(|| b - (r2 - miss2).sqrt())
+    });
+    disc_m.fold(box_m.min(side_m), f64::min)
+}
+
+/// A place with what is in it, for our rays and for both oracles.
+pub(super) struct Place {
+    pub(super) spec: FleetSpec,
+    scene: Scene,
+    bodies: Bodies,
+    /// Walls, and whatever else is there.
+    boxes: Vec<Rectangle>,
+    discs: Vec<(Point2<f64>, f64)>,
+    /// The robots that are not round, with their corners.
+    cornered: Vec<(usize, Vec<Point2<f64>>)>,
+}
+
+pub(super) fn noise() -> chance::Gaussian {
+    chance::Gaussian::new(0, chance::Purpose::Laser, 0)
+}
+
+pub(super) fn dropout() -> chance::Uniform {
+    chance::Uniform::new(0, chance::Purpose::Dropout, 0)
+}
+
+/// What became of the beams that were compared.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tally {
+    pub(super) beams: usize,
+    /// Those whose target a turn of ±[`GRAZE_RAD`] changes. Each was as one of these three turns
+    /// has it.
+    pub(super) grazing: usize,
+}
+
+impl Place {
+    pub(super) fn new(spec: FleetSpec) -> Self {
+        let mut bodies = Bodies::new(spec.step_s());
+        for (i, shape) in spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).enumerate() {
+            bodies.add_box(Body::Wall(i), shape);
+        }
+        let mut discs = Vec::new();
+        for (i, robot) in spec.robots().iter().enumerate() {
+            bodies.add_robot(robot, spec.step_s());
+            // As rapier has it, so that both see the same.
+            discs.push((bodies.pose(i).translation.vector.into(), f64::from(robot.radius_m as f32)));
+        }
+        bodies.step();
+        let round = discs.iter().map(|&(center, radius_m)| Disc { center, radius_m });
+        let hulls = spec.obstacles().len();
+        let mut scene = Scene::new(corners(spec.frame()), spec.walls(), round.collect(), hulls, 10.0);
+        for (place, obstacle) in spec.obstacles().iter().enumerate() {
+            scene.set_hull(place, None, &obstacle.shape.corners());
+        }
+        scene.sort();
+        let boxes = spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).copied().collect();
+        Self { spec, scene, bodies, boxes, discs, cornered: Vec::new() }
+    }
+
+    /// The present state of a fleet.
+    pub(super) fn of(fleet: Fleet) -> Self {
+        let spec = fleet.spec().clone();
+        let boxes = fleet.standing_boxes();
+        let (mut discs, mut cornered) = (Vec::new(), Vec::new());
+        for robot in fleet.robots() {
+            let at = Point2::from(robot.pose.translation.vector);
+            let is_round = robot.corners.is_empty();
+            discs.push((at, if is_round { f64::from(robot.radius_m as f32) } else { 0.0 }));
+            if !is_round {
+                cornered
+                    .push((robot.index, robot.corners.iter().map(|corner| robot.pose * corner).collect()));
+            }
+        }
+        let (mut scene, mut bodies) = fleet.into_parts();
+        scene.sort();
+        bodies.find_again();
+        Self { spec, scene, bodies, boxes, discs, cornered }
+    }
+
+    /// Whether a laser there is outside of everything.
+    pub(super) fn is_free(&self, at: &Point2<f64>, own: usize) -> bool {
+        let mut others = self.discs.iter().enumerate().filter(|(i, _)| *i != own);
+        self.boxes.iter().all(|shape| shape.distance_m(at) > 1e-3)
+            && self.cornered.iter().all(|(_, body)| convex::disc_gap_m(body, at, 1e-3) > 0.0)
+            && others.all(|(_, (center, radius_m))| (center - at).norm() > radius_m + 1e-3)
+    }
+
+    /// Holds a scan from `at` on robot `own` against both oracles.
+    pub(super) fn compare(&self, spec: &LaserSpec, at: &Isometry2<f64>, own: usize, tally: &mut Tally) {
+        let mut laser = Laser::new(spec, beams(spec).into(), noise(), dropout());
+        let mut scan = spec.empty_scan();
+        laser.scan(at, &self.scene, own, &mut Scratch::default(), &mut scan);
+        let from = Point2::from(at.translation.vector);
+        let others: Vec<_> =
+            self.discs.iter().enumerate().filter(|(i, _)| *i != own).map(|(_, disc)| *disc).collect();
+        let cornered = self.cornered.iter().filter(|(robot, _)| *robot != own);
+        let sides: Vec<_> =
+            cornered.flat_map(|(_, corners)| convex::sides(corners)).map(|(a, b)| (*a, *b)).collect();
+        let max_m = scan.range_max_m;
+        tally.beams += scan.ranges_m.len();
+        for (beam, range_m) in scan.ranges_m.iter().enumerate() {
+            let direction =
+                |turn_rad: f64| rotation(scan.angle_rad(beam) + turn_rad) * (at.rotation * Vector2::x());
+            let exact =
+                |turn_rad: f64| brute_force_m(&from, &direction(turn_rad), &self.boxes, &sides, &others);
+            let [low, range, high] = [-GRAZE_RAD, 0.0, GRAZE_RAD].map(exact);
+            // Where the target stays the same, so does the range, within what a turn can shift it.
+            if (low - range).abs() > 1e-3 || (high - range).abs() > 1e-3 || (range - max_m).abs() < 1e-3 {
+                tally.grazing += 1;
+                let near = [low, range, high]
+                    .iter()
+                    .any(|e| (e.min(1e9) - f64::from(*range_m).min(1e9)).abs() < 1e-3);
+                assert!(
+                    near || *range_m == f32::INFINITY && range > max_m - 1e-3,
+                    "grazing beam {beam} at {at:?}: {range_m}, not {low}, {range} or {high}"
+                );
+                continue;
+            }
+            let expected = if range > max_m { f32::INFINITY } else { range as f32 };
+            assert!(
+                *range_m == expected || (range_m - expected).abs() < 1e-5,
+                "beam {beam} at {at:?}: {range_m}, not {expected}"
+            );
+            let rapier = self.bodies.ray_m(&from, &direction(0.0), own, max_m);
+            let rapier = rapier.map_or(f64::INFINITY, |range| range);
+            let ours = f64::from(*range_m);
+            assert!(
+                ours == rapier || (ours - rapier).abs() < 1e-3,
+                "beam {beam} at {at:?}: ours {ours} m, rapier's {rapier} m"
+            );
+        }
+    }
+}
+
+/// A number in a range, the same for everyone.
+pub(super) fn uniform(stream: &mut ChaCha8Rng, range: std::ops::Range<f64>) -> f64 {
+    range.start + (range.end - range.start) * (stream.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
+}

@@ -1,0 +1,112 @@
+//! Bumpers, sonars and fiducial finders.
+
+use super::fleet::{house, robot};
+use super::*;
+use geometry::LaserReading;
+
+const SENSES: &str = "[robot.bumper]\nsectors = 4\nfov_deg = 180.0\n\
+    [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0\n\
+    [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 5.0\nmount_deg = 90.0\nnoise_std_m = 0.02\n\
+    [robot.fiducial]\nfov_deg = 180.0\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behaviour]";
+
+/// A robot at [1, 2] with all senses, and whatever else.
+fn place(more: &[String], things: &str) -> FleetSpec {
+    let one = robot("one", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("[robot.behaviour]", SENSES);
+    let robots: Vec<String> = [one].into_iter().chain(more.iter().cloned()).collect();
+    house(&robots, things)
+}
+
+fn stop(_: usize, _: &LaserReading) -> Twist {
+    Twist::STOP
+}
+
+fn tagged(name: &str, at: [f64; 2], tag: u32) -> String {
+    robot(name, at, 0.0, "kind = \"standing\"").replace("radius_m", &format!("tag = {tag}\nradius_m"))
+}
+
+#[test]
+fn a_sonar_hears_the_nearest_thing_in_its_cone() {
+    // 0.5 m beside its axis, 2 m ahead: 14° off it; and one that is nearer, but beside the cone.
+    let others = [tagged("in", [3.0, 2.5], 1), tagged("beside", [2.0, 2.9], 2)];
+    let mut fleet = Fleet::new(&place(&others, ""), 0);
+    fleet.step(&mut stop);
+    let robot = fleet.robots().next().unwrap();
+    let pings: Vec<Ping> = robot.pings().flatten().collect();
+    // The beam nearest to its middle may pass that by a quarter of a degree.
+    let expected_m = libm::hypot(2.0, 0.5) - 0.2;
+    assert!((f64::from(pings[0].range_m) - expected_m).abs() < 1e-3, "{pings:?}");
+    assert_eq!(pings[0].time_s, 0.0);
+    // To the left the border of its cone meets the outer wall, 0.9 m beside it.
+    let exact_m = (0.9 / libm::sin(15.0_f64.to_radians())) as f32;
+    assert!((pings[1].range_m - exact_m).abs() < 0.1 && pings[1].range_m != exact_m, "{pings:?}");
+    fleet.run_until(0.15, &mut stop);
+    let times: Vec<f64> = fleet.robots().next().unwrap().pings().flatten().map(|ping| ping.time_s).collect();
+    assert!((times[0] - 0.1).abs() < 1e-9 && times[1] == 0.0, "{times:?}");
+}
+
+#[test]
+fn bumpers_feel_where_they_are_touched() {
+    for (turn_deg, sector) in [(0.0, 2), (30.0, 1), (-30.0, 2), (60.0, 0), (-60.0, 3)] {
+        let text = place(&[], "");
+        let mut fleet = Fleet::new(&text, 0);
+        // The outer wall on the left ends at 0.1 m: it drives into it, turned.
+        let heading: f64 = std::f64::consts::PI + f64::to_radians(turn_deg);
+        fleet.teleport(0, &geometry::pose(0.305, 3.0, heading)).unwrap();
+        assert!(!fleet.robots().next().unwrap().bumpers().any(|pressed| pressed));
+        let mut felt = vec![false; 4];
+        for _ in 0..20 {
+            fleet.step(&mut |_: usize, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.0 });
+            for (felt, pressed) in felt.iter_mut().zip(fleet.robots().next().unwrap().bumpers()) {
+                *felt |= pressed;
+            }
+        }
+        if turn_deg == 0.0 {
+            // Straight ahead two of them meet.
+            assert!(felt[1] || felt[2], "{felt:?}");
+        } else {
+            let expected: Vec<bool> = (0..4).map(|i| i == sector).collect();
+            assert_eq!(felt, expected, "turned by {turn_deg}°");
+        }
+    }
+}
+
+#[test]
+fn tags_are_found_where_nothing_is_in_front() {
+    let others = [
+        tagged("ahead", [3.0, 2.0], 11),
+        tagged("hidden", [4.0, 2.0], 12),
+        tagged("beside", [2.0, 3.5], 13),
+        tagged("far", [5.5, 5.0], 14),
+        tagged("next room", [7.0, 1.0], 15),
+    ];
+    let crate_ = "[[obstacle]]\nname = \"crate\"\nkind = \"box\"\ncenter_m = [1.5, 0.5]\nsize_m = [0.3, 0.3]\nmass_kg = 1.0\ntag = 20\n\
+        [[obstacle]]\nname = \"behind\"\ncenter_m = [0.4, 3.0]\nsize_m = [0.3, 0.3]\ntag = 21\n";
+    let mut fleet = Fleet::new(&place(&others, crate_), 0);
+    fleet.step(&mut stop);
+    let found = fleet.robots().next().unwrap().fiducials.to_vec();
+    let tags: Vec<u32> = found.iter().map(|found| found.tag).collect();
+    assert_eq!(tags, [11, 13, 20]);
+    assert_eq!(found[0].body, Body::Robot(1));
+    assert!((found[0].range_m - 2.0).abs() < 1e-6 && found[0].bearing_rad.abs() < 1e-6);
+    assert!((found[1].bearing_rad - libm::atan2(1.5, 1.0)).abs() < 1e-6);
+    assert_eq!(found[2].body, Body::Obstacle(0));
+}
+
+#[test]
+fn a_snapshot_knows_what_was_sensed() {
+    let mut fleet = Fleet::new(&place(&[tagged("other", [2.0, 2.0], 1)], ""), 3);
+    let mut ahead = |_: usize, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.1 };
+    fleet.run_until(1.25, &mut ahead);
+    let snapshot = fleet.snapshot();
+    let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();
+    let sensed = |fleet: &Fleet| {
+        let robot = fleet.robots().next().unwrap();
+        (robot.pings().collect::<Vec<_>>(), robot.bumpers().collect::<Vec<_>>(), robot.fiducials.to_vec())
+    };
+    assert_eq!(sensed(&again), sensed(&fleet));
+    assert_eq!(sensed(&fleet).2.len(), 1);
+    for fleet in [&mut fleet, &mut again] {
+        fleet.run_until(4.0, &mut ahead);
+    }
+    assert_eq!(again.snapshot(), fleet.snapshot());
+}
