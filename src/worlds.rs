@@ -3,13 +3,25 @@
 use sim::WorldError;
 use sim::grid::GridSpec;
 use sim::physics::WorldSpec;
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// The name and the text of every shipped physics world; the first is the default.
-pub const SHIPPED: [(&str, &str); 3] = [
+pub const SHIPPED: [(&str, &str); 8] = [
     ("four_rooms", include_str!("../worlds/four_rooms.toml")),
     ("toy_on_the_floor", include_str!("../worlds/toy_on_the_floor.toml")),
     ("turned_house", include_str!("../worlds/turned_house.toml")),
+    ("house", include_str!("../sim/worlds/house.toml")),
+    ("office", include_str!("../sim/worlds/office.toml")),
+    ("warehouse", include_str!("../sim/worlds/warehouse.toml")),
+    ("cave", include_str!("../sim/worlds/cave.toml")),
+    ("yard", include_str!("../sim/worlds/yard.toml")),
+];
+
+/// The pictures that floor plans of shipped worlds are made from.
+const PICTURES: [(&str, &[u8]); 2] = [
+    ("office.png", include_bytes!("../sim/worlds/office.png")),
+    ("cave.png", include_bytes!("../sim/worlds/cave.png")),
 ];
 
 /// The name and the text of every shipped grid world; the first is the default.
@@ -65,7 +77,8 @@ pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
     if SHIPPED_GRID.iter().any(|(grid, _)| *grid == name) {
         return Err(LoadError::OtherKind { name: name.to_owned(), kind: "grid", program: "grid_world" });
     }
-    find(name, &SHIPPED, WorldSpec::parse, |path| WorldSpec::load(path))
+    let parse = |name: &str, text: &str| WorldSpec::parse_with(name, text, &pictures());
+    find(name, &SHIPPED, parse, |path| WorldSpec::load(path))
 }
 
 /// The grid world that `name` stands for, as [`load`].
@@ -78,6 +91,11 @@ pub fn load_grid(name: &str) -> Result<GridSpec, LoadError> {
         return Err(LoadError::OtherKind { name: name.to_owned(), kind: "physics", program: "four_rooms" });
     }
     find(name, &SHIPPED_GRID, GridSpec::parse, |path| GridSpec::load(path))
+}
+
+/// The files beside the shipped worlds.
+pub fn pictures() -> BTreeMap<PathBuf, Vec<u8>> {
+    PICTURES.iter().map(|(name, bytes)| (PathBuf::from(name), bytes.to_vec())).collect()
 }
 
 fn find<T>(
@@ -114,8 +132,11 @@ mod tests {
 
     #[test]
     fn every_world_file_ships() {
-        let files = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/worlds")).unwrap();
-        for file in files.map(|file| file.unwrap().path()) {
+        let folders =
+            ["/worlds", "/sim/worlds"].map(|folder| format!("{}{folder}", env!("CARGO_MANIFEST_DIR")));
+        let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap());
+        let files = files.map(|file| file.unwrap().path());
+        for file in files.filter(|file| file.extension().is_some_and(|ending| ending == "toml")) {
             let name = file.file_stem().unwrap().to_str().unwrap().to_owned();
             let is_shipped = SHIPPED.iter().chain(&SHIPPED_GRID).any(|(shipped, _)| *shipped == name);
             assert!(is_shipped || name.ends_with(".tour"), "{name} is not in the list");

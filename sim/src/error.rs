@@ -5,12 +5,36 @@ use std::ops::Range;
 
 /// A world file that cannot be read or makes no sense.
 ///
-/// Its `Display` is one message of several lines, without colour, that names the file, the line,
-/// the key, what is wrong and what would be right.
+/// Each of its messages has several lines, without colour, that name the file, the line, the key, what is
+/// wrong and what would be right. Its `Display` is all of them; the second and further ones begin with
+/// `error: `, as whoever prints it begins the first.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
+#[error("{}", messages.join("\n\nerror: "))]
 pub struct WorldError {
-    message: String,
+    messages: Vec<String>,
+}
+
+/// Everything that is wrong with a file, as far as one thing being wrong does not hide another.
+#[derive(Debug, Default)]
+pub(crate) struct Wrong {
+    messages: Vec<String>,
+}
+
+impl Wrong {
+    /// What was asked for, if it is right; else what is wrong is kept.
+    pub(crate) fn keep<T>(&mut self, outcome: Result<T, WorldError>) -> Option<T> {
+        outcome.map_err(|error| self.messages.extend(error.messages)).ok()
+    }
+
+    /// Whether nothing was wrong so far.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.messages.is_empty()
+    }
+
+    /// Everything that was wrong.
+    pub(crate) fn into_error(self) -> WorldError {
+        WorldError { messages: self.messages }
+    }
 }
 
 /// The text of a world file, to point into.
@@ -26,9 +50,14 @@ pub(crate) struct Source<'a> {
 pub(crate) type Mark<'a> = (Range<usize>, &'a str);
 
 impl WorldError {
+    /// What is wrong, one message each, in the order of the file's parts; at least one.
+    pub fn messages(&self) -> &[String] {
+        &self.messages
+    }
+
     /// A file that could not be read at all.
     pub(crate) fn unreadable(name: &str, error: &std::io::Error) -> Self {
-        Self { message: format!("cannot read the world file `{name}`: {error}") }
+        Self { messages: vec![format!("cannot read the world file `{name}`: {error}")] }
     }
 }
 
@@ -45,7 +74,7 @@ impl Source<'_> {
             .annotations(others.iter().map(|other| annotation(AnnotationKind::Context, other)));
         let report =
             [Level::ERROR.no_name().primary_title(what).element(snippet).element(Level::HELP.message(help))];
-        WorldError { message: Renderer::plain().render(&report) }
+        WorldError { messages: vec![Renderer::plain().render(&report)] }
     }
 
     /// What the TOML reader has to say, in the same form as every other error.

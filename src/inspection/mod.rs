@@ -11,7 +11,7 @@ use nalgebra::{Isometry2, Point2};
 use sim::floor_plan::{FloorPlan, ros};
 use sim::grid::GridSpec;
 use sim::physics::FleetSpec;
-use sim::{Disk, Findings, Severity, stage};
+use sim::{Disk, Files, Findings, Severity, stage};
 use std::path::Path;
 
 /// What was found in one file.
@@ -87,12 +87,12 @@ pub fn inspect(name: &str) -> Inspection {
     let shipped = worlds::text(name).filter(|_| !Path::new(name).exists());
     let path = Path::new(name);
     let mut inspection = match (shipped, path.extension().and_then(|ending| ending.to_str())) {
-        (Some(text), _) => world_file(&format!("{name}.toml"), text),
+        (Some(text), _) => world_file(&format!("{name}.toml"), text, &worlds::pictures()),
         (None, Some("world" | "inc")) => stage_file(path),
         (None, Some("yaml" | "yml")) => ros_file(path),
         (None, _) => match std::fs::read(path) {
             Ok(bytes) => match String::from_utf8(bytes) {
-                Ok(text) => world_file(name, &text),
+                Ok(text) => world_file(name, &text, &Disk),
                 Err(_) => wrong(format!("error: cannot read `{name}`: it is no text, so no world file")),
             },
             Err(why) => wrong(format!("error: cannot read `{name}`: {why}, and no world of this name ships")),
@@ -107,13 +107,13 @@ fn wrong(error: String) -> Inspection {
 }
 
 /// A world file of ours: with a drawing for a `map` it is a grid world.
-fn world_file(name: &str, text: &str) -> Inspection {
+fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
     let is_grid =
         text.parse::<toml::Table>().is_ok_and(|file| file.get("map").is_some_and(toml::Value::is_str));
     let outcome = if is_grid {
         GridSpec::parse(name, text).map(|world| (grid::content(&world), world.warnings().to_vec()))
     } else {
-        FleetSpec::parse_with(name, text, &Disk)
+        FleetSpec::parse_with(name, text, files)
             .map(|world| (physics::content("physics world", &world), Vec::new()))
     };
     match outcome {
@@ -121,7 +121,10 @@ fn world_file(name: &str, text: &str) -> Inspection {
             let warnings = warnings.iter().map(|warning| format!("warning: {warning}")).collect();
             Inspection { content: Some(content), warnings, ..Inspection::default() }
         }
-        Err(error) => wrong(format!("error: {error}")),
+        Err(error) => {
+            let errors = error.messages().iter().map(|message| format!("error: {message}")).collect();
+            Inspection { errors, ..Inspection::default() }
+        }
     }
 }
 

@@ -4,7 +4,9 @@ use super::{Content, Plan, Robot, Thing};
 use geometry::GridFrame;
 use nalgebra::{Isometry2, Point2};
 use sim::floor_plan::FloorPlan;
-use sim::physics::{Behaviour, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec};
+use sim::physics::{
+    Behaviour, DriveKind, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec,
+};
 use std::path::Path;
 
 /// The side of the cells that a floor plan is given for its frame, m.
@@ -175,16 +177,35 @@ fn robot_line(robot: &RobotSpec) -> String {
         Behaviour::Waypoints(_) => "drives from point to point",
         Behaviour::WallPatrol(_) => "follows a wall back and forth",
     };
-    let laser = &robot.laser;
-    format!(
-        "{does}, radius {} m, up to {} m/s; laser of {} beams over {}°, {} m, {} Hz",
-        short(robot.radius_m),
-        short(robot.drive.max_linear_mps),
-        laser.beams,
-        short(laser.fov_rad.to_degrees()),
-        short(laser.range_max_m),
-        short(laser.rate_hz),
-    )
+    let body = match robot.corners.len() {
+        0 => format!("radius {} m", short(robot.radius_m)),
+        corners => format!("{corners} corners, at most {} m away", short(robot.radius_m)),
+    };
+    let drive = match robot.drive.kind {
+        DriveKind::Differential => "on two wheels",
+        DriveKind::Omni { .. } => "in every direction",
+        DriveKind::Car { .. } => "as a car",
+    };
+    let mut parts = vec![format!("{does}, {body}, {drive} up to {} m/s", short(robot.drive.max_linear_mps))];
+    parts.extend(robot.lasers().map(|laser| {
+        format!(
+            "laser of {} beams over {}°, {} m, {} Hz",
+            laser.beams,
+            short(laser.fov_rad.to_degrees()),
+            short(laser.range_max_m),
+            short(laser.rate_hz),
+        )
+    }));
+    let others = [
+        (robot.sonars.len(), "sonar"),
+        (usize::from(robot.bumper.is_some()), "bumper"),
+        (usize::from(robot.fiducial.is_some()), "fiducial finder"),
+    ];
+    parts.extend(
+        others.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{what} × {count}")),
+    );
+    parts.extend(robot.tag.map(|tag| format!("tag {tag}")));
+    parts.join("; ")
 }
 
 /// As short as it can be, to the thousandth: 2 and not 2.0.

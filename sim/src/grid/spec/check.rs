@@ -3,29 +3,41 @@
 use super::file::{BlockFile, GridFile, Whole};
 use super::map::{Drawing, drawing};
 use super::{BlockSpec, Course, GridSpec, MAX_DWELL, MAX_SENSOR_RADIUS, parts, path};
-use crate::error::{Source, WorldError};
+use crate::error::{Source, WorldError, Wrong};
 use serde_spanned::Spanned;
 use std::ops::RangeInclusive;
 
 pub(super) fn check(source: &Source<'_>, file: &GridFile) -> Result<GridSpec, WorldError> {
-    let name = source.name("", &file.name)?;
-    let sensor_radius = whole(source, "sensor_radius", &file.sensor_radius, 1..=MAX_SENSOR_RADIUS)?;
-    let drawing = drawing(source, file)?;
-    let block_chance = chance(source, "block_chance", &file.transitions.block_chance)?;
-    let robot_chance = chance(source, "robot_chance", &file.transitions.robot_chance)?;
-    source.unique("block", file.blocks.iter().map(|block| &block.name))?;
-    let mut blocks: Vec<BlockSpec> = Vec::new();
+    let mut wrong = Wrong::default();
+    let name = wrong.keep(source.name("", &file.name));
+    let sensor_radius =
+        wrong.keep(whole(source, "sensor_radius", &file.sensor_radius, 1..=MAX_SENSOR_RADIUS));
+    let block_chance = wrong.keep(chance(source, "block_chance", &file.transitions.block_chance));
+    let robot_chance = wrong.keep(chance(source, "robot_chance", &file.transitions.robot_chance));
+    wrong.keep(source.unique("block", file.blocks.iter().map(|block| &block.name)));
+    let drawing = wrong.keep(drawing(source, file));
+    // By their places in the file; none where one is wrong.
+    let mut blocks: Vec<Option<BlockSpec>> = Vec::new();
     for written in &file.blocks {
-        let block = block(source, written, &drawing)?;
-        apart(source, file, written, &block, &blocks, &drawing)?;
+        // Without a map there is nothing to judge a path by.
+        let Some(drawing) = &drawing else { break };
+        let block = wrong.keep(block(source, written, drawing));
+        if let Some(block) = &block {
+            wrong.keep(apart(source, file, written, block, &blocks, drawing));
+        }
         blocks.push(block);
     }
+    let (Some(name), Some(sensor_radius), Some(block_chance), Some(robot_chance), Some(drawing), true) =
+        (name, sensor_radius, block_chance, robot_chance, drawing, wrong.is_empty())
+    else {
+        return Err(wrong.into_error());
+    };
     Ok(GridSpec {
         name,
         description: file.description.clone(),
         warnings: parts::warnings(&drawing.walls, drawing.start),
         walls: drawing.walls,
-        blocks,
+        blocks: blocks.into_iter().flatten().collect(),
         start: drawing.start,
         sensor_radius,
         block_chance,
@@ -58,7 +70,7 @@ fn apart(
     file: &GridFile,
     written: &BlockFile,
     block: &BlockSpec,
-    others: &[BlockSpec],
+    others: &[Option<BlockSpec>],
     drawing: &Drawing,
 ) -> Result<(), WorldError> {
     let place = |block: &BlockFile| block.path.get_ref()[0].span();
@@ -68,9 +80,11 @@ fn apart(
         let help = "begin the path elsewhere, or draw an `R` where the robot starts";
         return Err(source.error(&what, (place(written), "the robot starts here"), &[], help));
     }
-    if let Some(other) = others.iter().position(|other| other.path[0] == start) {
-        let what = format!("the blocks `{}` and `{}` start on one cell", others[other].name, block.name);
-        let marks = [(place(&file.blocks[other]), "the other one")];
+    let mut others = others.iter().zip(&file.blocks);
+    let other = others.find(|(other, _)| other.as_ref().is_some_and(|other| other.path[0] == start));
+    if let Some((_, other)) = other {
+        let what = format!("the blocks `{}` and `{}` start on one cell", other.name.get_ref(), block.name);
+        let marks = [(place(other), "the other one")];
         let help = "begin one of the paths elsewhere";
         return Err(source.error(&what, (place(written), "one starts here"), &marks, help));
     }

@@ -5,7 +5,7 @@ use super::numbers::Table;
 use super::obstacle::{Motion, ObstacleSpec, obstacle};
 use super::robot::robot;
 use super::{Behaviour, FleetSpec, RobotSpec, floor_plan};
-use crate::error::{Source, WorldError};
+use crate::error::{Source, WorldError, Wrong};
 use crate::files::Files;
 use crate::kind::Kind;
 use crate::physics::shape::{Rectangle, TOUCH_M, turned};
@@ -36,16 +36,22 @@ pub(super) fn check(
     file: &WorldFile,
     files: &dyn Files,
 ) -> Result<FleetSpec, WorldError> {
-    let name = source.name("", &file.name)?;
-    let (size, cell_m, turn_rad) = map(source, &file.map)?;
+    let mut wrong = Wrong::default();
+    let name = wrong.keep(source.name("", &file.name)).unwrap_or_default();
     let physics = Table { source, path: "physics" };
-    let step_s = physics.number_or("step_s", &file.physics.step_s, 0.05, 0.001..=0.1)?;
+    let step_s = wrong.keep(physics.number_or("step_s", &file.physics.step_s, 0.05, 0.001..=0.1));
+    let map = wrong.keep(map(source, &file.map));
+    // Without these two there is nothing to judge the rest by.
+    let (Some((size, cell_m, turn_rad)), Some(step_s)) = (map, step_s) else {
+        return Err(wrong.into_error());
+    };
     let mut solids = Vec::new();
     for wall in &file.walls {
-        solids.push(Solid { shape: self::wall(source, wall, &size)?, span: wall.span() });
+        let shape = wrong.keep(self::wall(source, wall, &size));
+        solids.extend(shape.map(|shape| Solid { shape, span: wall.span() }));
     }
     for plan in &file.floor_plans {
-        let walls = floor_plan::walls(source, files, plan, &size)?;
+        let walls = wrong.keep(floor_plan::walls(source, files, plan, &size)).unwrap_or_default();
         solids.extend(walls.into_iter().map(|shape| Solid { shape, span: plan.span() }));
     }
     let walls = solids.iter().map(|wall| wall.shape).collect::<Vec<_>>();
@@ -53,7 +59,8 @@ pub(super) fn check(
     // What stands at the start but may be gone when a robot comes by.
     let mut movers = Vec::new();
     for file in &file.obstacles {
-        let obstacle = obstacle(source, file.get_ref(), &size, &solids[..walls.len()], step_s)?;
+        let obstacle = obstacle(source, file.get_ref(), &size, &solids[..walls.len()], step_s);
+        let Some(obstacle) = wrong.keep(obstacle) else { continue };
         let solid = |shape| Solid { shape, span: file.span() };
         match &obstacle.motion {
             Motion::Fixed if obstacle.appears_s.is_some() => {}
@@ -62,24 +69,27 @@ pub(super) fn check(
         }
         obstacles.push(obstacle);
     }
-    boxes_apart(source, &file.obstacles, &obstacles)?;
-    source.unique("obstacle", file.obstacles.iter().map(|obstacle| &obstacle.get_ref().name))?;
-    source.unique("robot", file.robots.iter().map(|robot| &robot.get_ref().name))?;
+    wrong.keep(source.unique("obstacle", file.obstacles.iter().map(|obstacle| &obstacle.get_ref().name)));
+    wrong.keep(source.unique("robot", file.robots.iter().map(|robot| &robot.get_ref().name)));
     let mut robots = Vec::new();
-    for file in &file.robots {
-        robots.push(robot(source, file.get_ref(), &size, step_s, &solids, &movers)?);
+    // A robot that follows a wall is not wrong because the wall is.
+    let is_built = wrong.is_empty();
+    for file in file.robots.iter().filter(|_| is_built) {
+        robots.extend(wrong.keep(robot(source, file.get_ref(), &size, step_s, &solids, &movers)));
     }
-    apart(source, &file.robots, &robots)?;
+    let frame = covering(&size, cell_m, turn_rad).ok_or_else(|| too_many_cells(source, &file.map));
+    let frame = wrong.keep(frame);
+    // What things are to each other is asked of things that are right.
+    if obstacles.len() == file.obstacles.len() {
+        wrong.keep(boxes_apart(source, &file.obstacles, &obstacles));
+    }
+    if robots.len() == file.robots.len() {
+        wrong.keep(apart(source, &file.robots, &robots));
+    }
+    let (Some(frame), true) = (frame, wrong.is_empty()) else { return Err(wrong.into_error()) };
 
-    let mut spec = FleetSpec {
-        name,
-        description: file.description.clone(),
-        frame: covering(&size, cell_m, turn_rad).ok_or_else(|| too_many_cells(source, &file.map))?,
-        step_s,
-        walls,
-        obstacles,
-        robots,
-    };
+    let mut spec =
+        FleetSpec { name, description: file.description.clone(), frame, step_s, walls, obstacles, robots };
     turn(&mut spec, turn_rad, &(size / 2.0));
     Ok(spec)
 }
