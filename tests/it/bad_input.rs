@@ -61,7 +61,7 @@ fn worlds() {
     75 | max_liner_mps = 0.8
        | ^^^^^^^^^^^^^ not known here
        |
-       = help: did you mean `max_linear_mps`? the keys here are: max_linear_mps, max_angular_degps, max_linear_acceleration_mps2, max_angular_acceleration_degps2
+       = help: did you mean `max_linear_mps`? the keys here are: kind, max_linear_mps, max_angular_degps, max_linear_acceleration_mps2, max_angular_acceleration_degps2, max_left_mps, max_left_acceleration_mps2, wheelbase_m, max_steer_deg
     ");
     insta::assert_snapshot!(refused_world("radius_m = 0.2 ", "radius_m = \"big\""), @r#"
     error: `robot.radius_m` has the wrong type
@@ -90,8 +90,8 @@ fn worlds() {
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
     let folder = Run::new();
-    std::fs::create_dir(folder.path("house")).unwrap();
-    insta::assert_snapshot!(refuses(&folder, "--world house", &["house"]), @"error: cannot read the world file `house`: Is a directory (os error 21)");
+    std::fs::create_dir(folder.path("attic")).unwrap();
+    insta::assert_snapshot!(refuses(&folder, "--world attic", &["attic"]), @"error: cannot read the world file `attic`: Is a directory (os error 21)");
 }
 
 #[test]
