@@ -33,6 +33,8 @@ mod tests;
 mod truth;
 mod world;
 
+pub(crate) use form::Form;
+
 pub use command::{Acceleration, Command, Velocity};
 pub use fleet::{Controller, Fleet, TeleportError};
 pub use report::{Body, Contact, Fiducial, ObstacleEvent, ObstacleView, Ping, RobotView, Sweep};

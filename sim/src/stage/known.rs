@@ -1,12 +1,14 @@
 //! What Stage has and this simulator has not, so that it can be named.
 
 /// Kinds of things that are left out, and why.
-pub(super) const KINDS_LEFT_OUT: [(&str, &str); 15] = [
+pub(super) const KINDS_LEFT_OUT: [(&str, &str); 14] = [
     ("window", "there is no window here"),
     ("camera", "there are no cameras here"),
     ("blobfinder", "nothing here sees colours"),
-    ("fiducial", "fiducial finders are not read yet"),
-    ("bumper", "bumpers of Stage are not read yet; give the robot a `[robot.bumper]`"),
+    (
+        "bumper",
+        "Stage's are short beams that may lie anywhere; `[robot.bumper]` is a ring that feels touches",
+    ),
     ("gripper", "there are no grippers here; its body is left out too"),
     ("actuator", "there are no actuators here; it and what it carries are left out"),
     ("blinkenlight", "there are no lights here"),
@@ -20,7 +22,7 @@ pub(super) const KINDS_LEFT_OUT: [(&str, &str); 15] = [
 ];
 
 /// Keys that Stage knows and that mean nothing here, and why.
-const KEYS_LEFT_OUT: [(&str, &str); 49] = [
+const KEYS_LEFT_OUT: [(&str, &str); 48] = [
     ("resolution", "rays and contacts are exact here, on no grid"),
     ("map_resolution", "bitmaps are exact here, on the borders of pixels"),
     ("color_rgba", DRAWN),
@@ -56,8 +58,7 @@ const KEYS_LEFT_OUT: [(&str, &str); 49] = [
     ("kjoules_capacity", ENERGY),
     ("give", ENERGY),
     ("input", ENERGY),
-    ("fiducial_return", "fiducial finders are not read yet"),
-    ("fiducial_key", "fiducial finders are not read yet"),
+    ("fiducial_key", "a fiducial finder here finds every tag, whatever its key"),
     ("blob_return", "nothing here sees colours"),
     ("blobfinder_return", "nothing here sees colours"),
     ("gripper_return", "there are no grippers here: nothing is picked up or pushed by one"),

@@ -1,11 +1,12 @@
 //! From a Stage world to one that runs here.
 
-use super::sources::Sources;
+use super::sources::{Place, Sources};
 use super::toml::STEER_DEG;
 use super::{Drive, StageRobot, StageWorld};
 use crate::findings::Severity;
 use crate::physics::FleetSpec;
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2};
+use std::f64::consts::PI;
 use std::path::Path;
 
 /// What touches may overlap by rounding, m.
@@ -16,6 +17,10 @@ const MAX_PIECES: usize = 20_000;
 const FASTEST_MPS: f64 = 5.0;
 const LEAST_MASS_KG: f64 = 0.001;
 const RADIUS_M: [f64; 2] = [0.02, 10.0];
+/// A robot has no more lasers than this, nor sonars.
+const MOST_SENSORS: usize = 100;
+/// The least that a laser or a fiducial finder sees, rad: 1°.
+const LEAST_FOV_RAD: f64 = PI / 180.0;
 
 /// Makes a fleet of a Stage world. Whatever the physics cannot do is said at the line of the Stage
 /// file.
@@ -29,7 +34,7 @@ pub(super) fn load(sources: &mut Sources<'_>, path: &Path, world: &StageWorld) -
     }
     for (index, robot) in world.robots.iter().enumerate() {
         check_drive(sources, robot);
-        check_lasers(sources, robot);
+        check_senses(sources, robot);
         check_place(sources, world, index);
     }
     if sources.findings.errors() > 0 {
@@ -83,54 +88,67 @@ fn check_drive(sources: &mut Sources<'_>, robot: &StageRobot) {
     if !(RADIUS_M[0]..=RADIUS_M[1]).contains(&radius_m) {
         let what = format!("`{name}` has a radius of {radius_m:.3} m");
         sources.error(at, &what, "", "robots have a radius of 0.02 to 10 m");
-    } else if !robot.is_round() {
-        let help = format!(
-            "here it is a disc of {radius_m:.3} m about the point that it turns about, which holds all of it"
-        );
-        sources.warning(at, &format!("`{name}` is not round"), "", &help);
     }
 }
 
-fn check_lasers(sources: &mut Sources<'_>, robot: &StageRobot) {
-    let (at, name) = (robot.at, &robot.name);
+/// Whether its sensors can be what they are meant to be.
+fn check_senses(sources: &mut Sources<'_>, robot: &StageRobot) {
+    let radius_m = robot.radius_m();
+    let mut check = |at: Place, what: &str, mount: &Isometry2<f64>, range_max_m: f64, is_fine: bool| {
+        if mount.translation.vector.norm() > radius_m {
+            let what = format!("a {what} of `{}` is mounted off its robot", robot.name);
+            sources.error(at, &what, "", "it must lie above the robot's body");
+        }
+        if !(0.01..=1000.0).contains(&range_max_m) || !is_fine {
+            let help = "it sees over 1° or more, up to 0.01 to 1000 m, with a noise of at most 1 m";
+            sources.error(at, &format!("a {what} of `{}` is out of range", robot.name), "", help);
+        }
+    };
+    for laser in &robot.lasers {
+        let is_fine = laser.fov_rad >= LEAST_FOV_RAD && laser.noise_std_m <= 1.0;
+        check(laser.at, "laser", &laser.mount, laser.range_max_m, is_fine);
+    }
+    for sonar in &robot.sonars {
+        check(sonar.at, "sonar", &sonar.mount, sonar.range_max_m, sonar.noise_std_m <= 1.0);
+    }
+    if let Some(finder) = &robot.fiducial {
+        let is_fine = finder.fov_rad >= LEAST_FOV_RAD;
+        check(finder.at, "fiducial finder", &finder.mount, finder.range_max_m, is_fine);
+    }
+    for (what, count) in [("lasers", robot.lasers.len()), ("sonars", robot.sonars.len())] {
+        if count > MOST_SENSORS {
+            let what = format!("`{}` has {count} {what}", robot.name);
+            sources.error(robot.at, &what, "", &format!("{MOST_SENSORS} are the most"));
+        }
+    }
     if robot.lasers.is_empty() {
         let help =
             "every robot has one here: it is given a laser of 180 beams over 180°, up to 8 m, at 10 Hz";
-        return sources.warning(at, &format!("`{name}` has no laser"), "", help);
-    }
-    for laser in &robot.lasers {
-        if laser.mount.translation.vector.norm() > robot.radius_m() {
-            let what = format!("a laser of `{name}` is mounted off its robot");
-            sources.error(laser.at, &what, "", "it must lie above the robot's body");
-        }
-        if laser.range_max_m > 1000.0 || laser.fov_rad < 1.0_f64.to_radians() || laser.noise_std_m > 1.0 {
-            let help = "a laser sees over 1° or more, up to 1000 m, with a noise of at most 1 m";
-            sources.error(laser.at, &format!("a laser of `{name}` is out of range"), "", help);
-        }
+        sources.warning(robot.at, &format!("`{}` has no laser", robot.name), "", help);
     }
 }
 
 /// Whether a robot stands in a wall or in another robot.
 fn check_place(sources: &mut Sources<'_>, world: &StageWorld, index: usize) {
     let robot = &world.robots[index];
-    let (middle, radius_m) = (Point2::from(robot.pose.translation.vector), robot.radius_m());
+    let form = robot.form();
     let stands_in = |wall: &&super::StageWall| {
-        wall.rectangles.iter().any(|rectangle| rectangle.distance_m(&middle) < radius_m - TOUCH_M)
+        let mut rectangles = wall.rectangles.iter().filter(|rectangle| {
+            let middle = Point2::from(robot.pose.translation.vector);
+            rectangle.distance_m(&middle) < robot.radius_m()
+        });
+        rectangles.any(|rectangle| form.gap_m(&rectangle.corners()) < -TOUCH_M)
     };
     if let Some(wall) = world.walls.iter().find(stands_in) {
         let what = format!("the robot `{}` stands in `{}`", robot.name, wall.name);
-        let help = format!("its middle must keep {radius_m:.3} m away from {}", wall.place);
+        let help = format!("it may touch, but not overlap, {}", wall.place);
         sources.error(robot.at, &what, "", &help);
     }
     for other in &world.robots[..index] {
         let apart_m = (other.pose.translation.vector - robot.pose.translation.vector).norm();
-        let needed_m = radius_m + other.radius_m();
-        if apart_m < needed_m - TOUCH_M {
+        if apart_m < robot.radius_m() + other.radius_m() && form.apart_m(&other.form()) < -TOUCH_M {
             let what = format!("the robots `{}` and `{}` overlap", other.name, robot.name);
-            let help = format!(
-                "their middles must be {needed_m:.3} m apart or more, not {apart_m:.3} m; the other one is at {}",
-                other.place
-            );
+            let help = format!("they may touch, but not overlap; the other one is at {}", other.place);
             sources.error(robot.at, &what, "", &help);
         }
     }

@@ -22,23 +22,31 @@
 //! | `position` | a robot |
 //! | `drive`, `wheelbase`, `velocity_bounds`, `acceleration_bounds` | [`StageRobot`] |
 //! | `localization`, `localization_origin`, `odom_error` | [`OdometryError`] |
-//! | `ranger` with `sensor`s, and the older `laser` | [`StageLaser`] |
-//! | `samples`, `fov`, `range`, `range_min`, `range_max`, `noise`, `update_interval` | of a laser |
+//! | the body of a robot | its convex outline, or a disc where that is one or does not hold the point that the robot turns about |
+//! | `ranger` with `sensor`s, and the older `laser` | [`StageLaser`]; a `sensor` of one sample is a cone as wide as its `fov`, a [`StageSonar`] |
+//! | `samples`, `fov`, `range`, `range_min`, `range_max`, `noise`, `update_interval` | of a laser or a sonar |
+//! | `fiducial` | [`StageFiducial`], as far as it tells tags apart (`range_max_id`) |
+//! | `fiducial_return` | the tag of a robot, or of a box that stands about its pose |
 //! | `color`, `mass`, `ctrl` | kept in [`StageRobot`] |
 //!
-//! Everything else (windows, cameras, fiducial and blob finders, grippers, energy, …) is named in a
-//! warning.
+//! Everything else (windows, cameras, blob finders, bumpers, grippers, energy, …) is named in a
+//! warning. Bumpers are no exception: those of Stage are short beams that may lie anywhere, ours
+//! are the parts of a ring around the robot, and feel touches.
 
 mod body;
 mod heights;
 mod known;
 mod lexer;
 mod load;
+mod outline;
 mod pictures;
 mod polygon;
 mod robot;
+mod robots;
+mod senses;
 mod sources;
 mod step;
+mod tags;
 #[cfg(test)]
 mod tests;
 mod toml;
@@ -51,7 +59,7 @@ use sources::{Place, Sources};
 use crate::files::Files;
 use crate::findings::Findings;
 use crate::floor_plan::FloorPlan;
-use crate::physics::{FleetSpec, OdometryError, Rectangle};
+use crate::physics::{FleetSpec, Form, OdometryError, Rectangle};
 use nalgebra::{Isometry2, Point2};
 use std::path::Path;
 
@@ -85,6 +93,8 @@ pub struct StageWall {
     pub plan: Option<FloorPlan>,
     /// What it is made of, those of the plan included.
     pub rectangles: Vec<Rectangle>,
+    /// The tag by which fiducial finders know it; it is of one rectangle then.
+    pub tag: Option<u32>,
 }
 
 /// A thing that drives.
@@ -100,6 +110,9 @@ pub struct StageRobot {
     pub pose: Isometry2<f64>,
     /// Polygons that its body is made of, in its own frame, m.
     pub footprint: Vec<Vec<Point2<f64>>>,
+    /// The corners of the convex outline that it has here, counter-clockwise, in its own frame, m;
+    /// none: it is a disc.
+    pub outline: Vec<Point2<f64>>,
     /// How it drives.
     pub drive: Drive,
     /// The bounds of its velocity.
@@ -108,8 +121,14 @@ pub struct StageRobot {
     pub acceleration: Option<Bounds>,
     /// How its odometry errs.
     pub odometry: OdometryError,
-    /// What it sees with, all of which it has here; of Stage's single rays there are none.
+    /// What it sees with; Stage's single rays are sonars.
     pub lasers: Vec<StageLaser>,
+    /// What it hears with.
+    pub sonars: Vec<StageSonar>,
+    /// What it finds tags with.
+    pub fiducial: Option<StageFiducial>,
+    /// Its own tag.
+    pub tag: Option<u32>,
     /// Its mass, kg.
     pub mass_kg: Option<f64>,
     /// The controllers that Stage would load.
@@ -164,11 +183,57 @@ pub struct StageLaser {
     at: Place,
 }
 
+/// A sonar: in Stage a single ray, here a cone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageSonar {
+    /// Where the file speaks of it.
+    pub place: String,
+    /// Where it sits on the robot.
+    pub mount: Isometry2<f64>,
+    /// The angle of its cone, rad.
+    pub cone_rad: f64,
+    /// Nearer things are too close, m.
+    pub range_min_m: f64,
+    /// Farther things are not heard, m.
+    pub range_max_m: f64,
+    /// The time between two measurements, ms.
+    pub interval_ms: u32,
+    /// Standard deviation of a range, m.
+    pub noise_std_m: f64,
+    at: Place,
+}
+
+/// A fiducial finder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageFiducial {
+    /// Where the file speaks of it.
+    pub place: String,
+    /// Where it sits on the robot.
+    pub mount: Isometry2<f64>,
+    /// The angle that it sees, rad.
+    pub fov_rad: f64,
+    /// Tags farther away are not found, m.
+    pub range_max_m: f64,
+    /// The time between two looks, ms.
+    pub interval_ms: u32,
+    at: Place,
+}
+
 impl StageRobot {
     /// The radius of the circle about its turning point that holds its body, m.
     pub fn radius_m(&self) -> f64 {
         let corners = self.footprint.iter().flatten();
         corners.map(|corner| corner.coords.norm()).fold(0.0, f64::max)
+    }
+
+    /// What it covers here, where it starts.
+    fn form(&self) -> Form {
+        Form::new(&self.outline, self.radius_m(), &self.pose)
+    }
+
+    /// The radius of the circle about its turning point that lies within what it covers here, m.
+    fn inner_m(&self) -> f64 {
+        if self.outline.is_empty() { self.radius_m() } else { outline::inner_m(&self.outline) }
     }
 
     /// Whether its body is a disc about its turning point, as good as a polygon can be one.

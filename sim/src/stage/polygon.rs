@@ -52,7 +52,8 @@ fn clean(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
     corners
 }
 
-fn area(corners: &[Point2<f64>]) -> f64 {
+/// Positive if the corners go counter-clockwise.
+pub(super) fn area(corners: &[Point2<f64>]) -> f64 {
     let Some(first) = corners.first() else { return 0.0 };
     corners.windows(2).map(|pair| (pair[0] - first).perp(&(pair[1] - first))).sum::<f64>() / 2.0
 }

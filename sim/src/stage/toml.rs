@@ -1,9 +1,9 @@
 //! A Stage world written as a world file of ours.
 
-use super::{Drive, StageLaser, StageRobot, StageWorld};
+use super::{Drive, StageRobot, StageWall, StageWorld};
 use crate::physics::{OdometryError, Rectangle};
 use geometry::heading_rad;
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Isometry2, Point2, Vector2};
 use std::fmt::{Result, Write};
 
 /// The side of a cell of the truth grid, m, where the map is not too large for it.
@@ -53,10 +53,9 @@ impl StageWorld {
             rectangle.corners().into_iter().for_each(&mut reach);
         }
         for robot in &self.robots {
-            let (at, radius) =
-                (Point2::from(robot.pose.translation.vector), Vector2::repeat(robot.radius_m()));
-            reach(at - radius);
-            reach(at + radius);
+            let (low, high) = robot.form().bounds();
+            reach(low);
+            reach(high);
         }
         if low.x > high.x {
             (low, high) = (Point2::origin(), Point2::new(1.0, 1.0));
@@ -82,7 +81,10 @@ impl StageWorld {
         number(to, "step_s", self.step_s)?;
         for wall in &self.walls {
             for rectangle in &wall.rectangles {
-                map.write_wall(to, rectangle, &wall.place)?;
+                match wall.tag {
+                    Some(tag) => map.write_tagged(to, wall, rectangle, tag)?,
+                    None => map.write_wall(to, rectangle, &wall.place)?,
+                }
             }
         }
         for robot in &self.robots {
@@ -122,12 +124,26 @@ impl Map {
         number(to, "thickness_m", 2.0 * rectangle.half_m.y)
     }
 
+    fn write_tagged(&self, to: &mut String, wall: &StageWall, shape: &Rectangle, tag: u32) -> Result {
+        writeln!(to, "\n[[obstacle]]  # {}\nname = {}\ntag = {tag}", wall.place, quoted(&wall.name))?;
+        pair(to, "center_m", &self.point(&shape.pose.translation.vector.into()))?;
+        pair(to, "size_m", &(2.0 * shape.half_m).into())?;
+        number(to, "heading_deg", heading_rad(&shape.pose).to_degrees())
+    }
+
     fn write_robot(&self, to: &mut String, robot: &StageRobot) -> Result {
         let StageRobot { name, place, velocity, odometry, .. } = robot;
         let most = |[least, most]: [f64; 2]| most.max(-least);
         writeln!(to, "\n[[robot]]  # {place}\nname = {}", quoted(name))?;
-        number(to, "radius_m", robot.radius_m())?;
+        if robot.outline.is_empty() {
+            number(to, "radius_m", robot.radius_m())?;
+        } else {
+            let corner = |corner: &Point2<f64>| format!("[{:?}, {:?}]", short(corner.x), short(corner.y));
+            let corners: Vec<String> = robot.outline.iter().map(corner).collect();
+            writeln!(to, "footprint_m = [{}]", corners.join(", "))?;
+        }
         robot.mass_kg.map_or(Ok(()), |mass_kg| number(to, "mass_kg", mass_kg))?;
+        robot.tag.map_or(Ok(()), |tag| writeln!(to, "tag = {tag}"))?;
         pair(to, "pose_m", &self.point(&robot.pose.translation.vector.into()))?;
         number(to, "heading_deg", heading_rad(&robot.pose).to_degrees())?;
         writeln!(to, "\n[robot.drive]  # {place}")?;
@@ -156,7 +172,7 @@ impl Map {
             number(to, "distance_gain", odometry.distance_gain)?;
             number(to, "turn_gain", odometry.turn_gain)?;
         }
-        write_lasers(to, &robot.lasers, place)?;
+        write_senses(to, robot)?;
         writeln!(to, "\n[robot.behaviour]  # {place}")?;
         let wanders = |name: &String| name.split_whitespace().next() == Some("wander");
         // A car cannot turn in place, as ours do.
@@ -168,24 +184,42 @@ impl Map {
     }
 }
 
-fn write_lasers(to: &mut String, lasers: &[StageLaser], robot_place: &str) -> Result {
-    if lasers.is_empty() {
-        writeln!(to, "\n[robot.laser]  # {robot_place}: none there")?;
-        return writeln!(to, "beams = 180\nfov_deg = 180.0\nrange_max_m = 8.0\nrate_hz = 10.0");
+fn write_senses(to: &mut String, robot: &StageRobot) -> Result {
+    let table = if robot.lasers.len() == 1 { "[robot.laser]" } else { "[[robot.laser]]" };
+    for laser in &robot.lasers {
+        writeln!(to, "\n{table}  # {}\nbeams = {}", laser.place, laser.beams)?;
+        number(to, "fov_deg", laser.fov_rad.to_degrees())?;
+        number(to, "range_min_m", laser.range_min_m)?;
+        number(to, "range_max_m", laser.range_max_m)?;
+        write_place(to, laser.interval_ms, &laser.mount)?;
+        number(to, "noise_std_m", laser.noise_std_m)?;
     }
-    let table = if lasers.len() == 1 { "[robot.laser]" } else { "[[robot.laser]]" };
-    lasers.iter().try_for_each(|laser| write_laser(to, laser, table))
+    if robot.lasers.is_empty() {
+        writeln!(to, "\n[robot.laser]  # {}: none there", robot.place)?;
+        writeln!(to, "beams = 180\nfov_deg = 180.0\nrange_max_m = 8.0\nrate_hz = 10.0")?;
+    }
+    for sonar in &robot.sonars {
+        writeln!(to, "\n[[robot.sonar]]  # {}", sonar.place)?;
+        number(to, "cone_deg", sonar.cone_rad.to_degrees())?;
+        number(to, "range_min_m", sonar.range_min_m)?;
+        number(to, "range_max_m", sonar.range_max_m)?;
+        write_place(to, sonar.interval_ms, &sonar.mount)?;
+        number(to, "noise_std_m", sonar.noise_std_m)?;
+    }
+    if let Some(finder) = &robot.fiducial {
+        writeln!(to, "\n[robot.fiducial]  # {}", finder.place)?;
+        number(to, "fov_deg", finder.fov_rad.to_degrees())?;
+        number(to, "range_max_m", finder.range_max_m)?;
+        write_place(to, finder.interval_ms, &finder.mount)?;
+    }
+    Ok(())
 }
 
-fn write_laser(to: &mut String, laser: &StageLaser, table: &str) -> Result {
-    writeln!(to, "\n{table}  # {}\nbeams = {}", laser.place, laser.beams)?;
-    number(to, "fov_deg", laser.fov_rad.to_degrees())?;
-    number(to, "range_min_m", laser.range_min_m)?;
-    number(to, "range_max_m", laser.range_max_m)?;
-    number(to, "rate_hz", 1000.0 / f64::from(laser.interval_ms))?;
-    pair(to, "mount_m", &laser.mount.translation.vector.into())?;
-    number(to, "mount_deg", heading_rad(&laser.mount).to_degrees())?;
-    number(to, "noise_std_m", laser.noise_std_m)
+/// How often a sensor senses, and where it sits.
+fn write_place(to: &mut String, interval_ms: u32, mount: &Isometry2<f64>) -> Result {
+    number(to, "rate_hz", 1000.0 / f64::from(interval_ms))?;
+    pair(to, "mount_m", &mount.translation.vector.into())?;
+    number(to, "mount_deg", heading_rad(mount).to_degrees())
 }
 
 fn number(to: &mut String, key: &str, value: f64) -> Result {

@@ -1,42 +1,45 @@
 //! From the tree of things to walls and robots.
 
 use super::body::Body;
-use super::heights::{Beam, Heights, Solid};
+use super::heights::{Heights, Solid};
 use super::known;
 use super::pictures::Pictures;
-use super::sources::Sources;
+use super::sources::{Place, Sources};
 use super::step;
 use super::tree::Thing;
 use super::values::{Pose, Reader};
-use super::{StageLaser, StageRobot, StageWall, StageWorld};
+use super::{StageRobot, StageWall, StageWorld, tags};
 use crate::files::Files;
-use nalgebra::Isometry2;
+use nalgebra::Point2;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// More robots than this are an error.
 const MAX_ROBOTS: usize = 10_000;
 /// The size of a model, where the file gives none, m.
-const DEFAULT_SIZE_M: [f64; 3] = [0.1; 3];
-/// The same for a ranger and a laser.
-const DEFAULT_RANGER_SIZE_M: [f64; 3] = [0.15, 0.15, 0.2];
+pub(super) const DEFAULT_SIZE_M: [f64; 3] = [0.1; 3];
 
-struct Builder<'a, 'b> {
-    reader: Reader<'a, 'b>,
+/// Makes walls and robots of things.
+pub(super) struct Builder<'a, 'b> {
+    pub(super) reader: Reader<'a, 'b>,
     names: BTreeSet<String>,
     /// How many names of each kind were made up.
     made_up: BTreeMap<String, usize>,
     walls: Vec<StageWall>,
-    robots: Vec<StageRobot>,
-    heights: Heights,
+    /// The walls that have a tag, with their pose and where the file speaks of the tag.
+    tagged: Vec<(usize, Point2<f64>, Place)>,
+    pub(super) robots: Vec<StageRobot>,
+    pub(super) heights: Heights,
 }
 
 /// What a thing is called, and what it is to others.
-struct Looks {
-    name: String,
-    color: Option<String>,
+pub(super) struct Looks {
+    pub(super) name: String,
+    pub(super) color: Option<String>,
     /// Whether robots bump into it or lasers see it.
-    is_there: bool,
+    pub(super) is_there: bool,
+    /// Its tag, and where the file speaks of it.
+    pub(super) tag: Option<(u32, Place)>,
 }
 
 /// Makes the world of a tree. What it leaves out it names; whether there were errors is for the
@@ -58,6 +61,7 @@ pub(super) fn convert(
         names: BTreeSet::new(),
         made_up: BTreeMap::new(),
         walls: Vec::new(),
+        tagged: Vec::new(),
         robots: Vec::new(),
         heights: Heights::default(),
     };
@@ -69,6 +73,7 @@ pub(super) fn convert(
             return None;
         }
     }
+    tags::check(builder.reader.sources, &mut builder.walls, &builder.tagged);
     builder.heights.compare(builder.reader.sources);
     builder.warn_of_unused(tree);
     let step_s = step::step_s(builder.reader.sources, longest_ms, &builder.robots)?;
@@ -121,12 +126,16 @@ impl Builder<'_, '_> {
                 let help = "only robots have lasers here";
                 self.left_out(thing, "a laser that stands alone is left out", help);
             }
+            "fiducial" => {
+                let help = "only robots have fiducial finders here";
+                self.left_out(thing, "a fiducial finder that stands alone is left out", help);
+            }
             _ => self.other(thing),
         }
     }
 
     /// A kind of thing that is neither a wall nor a robot.
-    fn other(&mut self, thing: &Thing) {
+    pub(super) fn other(&mut self, thing: &Thing) {
         let kind = thing.kind.as_str();
         if let Some((_, why)) = known::KINDS_LEFT_OUT.iter().find(|(known, _)| *known == kind) {
             return self.left_out(thing, &format!("`{kind}` is left out"), why);
@@ -143,12 +152,12 @@ impl Builder<'_, '_> {
         use_all(thing);
     }
 
-    fn left_out(&mut self, thing: &Thing, what: &str, why: &str) {
+    pub(super) fn left_out(&mut self, thing: &Thing, what: &str, why: &str) {
         self.reader.sources.warning(thing.place, what, "", why);
         use_all(thing);
     }
 
-    fn looks(&mut self, thing: &Thing) -> Looks {
+    pub(super) fn looks(&mut self, thing: &Thing) -> Looks {
         let given = self.reader.text(thing, "name");
         let mut name = given.as_ref().map_or_else(|| thing.kind.clone(), |(name, _)| name.clone());
         if given.is_none() || self.names.contains(&name) {
@@ -192,11 +201,11 @@ impl Builder<'_, '_> {
                 "what is not a robot cannot be moved",
             );
         }
-        Looks { name, color, is_there: collides || is_seen }
+        Looks { name, color, is_there: collides || is_seen, tag: self.reader.tag(thing) }
     }
 
     /// The pose of a thing on another one, its body, and the place on top of it for its parts.
-    fn place(
+    pub(super) fn place(
         &mut self,
         thing: &Thing,
         on: &Pose,
@@ -214,7 +223,7 @@ impl Builder<'_, '_> {
 
     fn wall(&mut self, thing: &Thing, on: &Pose) {
         let looks = self.looks(thing);
-        let (_, body, top) = self.place(thing, on, DEFAULT_SIZE_M, true);
+        let (at, body, top) = self.place(thing, on, DEFAULT_SIZE_M, true);
         if let Some((_, place)) = self.reader.text(thing, "ctrl") {
             self.reader.sources.warning(
                 place,
@@ -223,7 +232,12 @@ impl Builder<'_, '_> {
                 "this thing stands still",
             );
         }
-        if looks.is_there && !body.is_empty() {
+        let has_body = looks.is_there && !body.is_empty();
+        if let Some((_, place)) = looks.tag.filter(|_| !has_body) {
+            let help = "only what robots bump into has a tag here";
+            self.reader.sources.warning(place, "the tag of a thing without a body is left out", "", help);
+        }
+        if has_body {
             let (rectangles, off_m) = body.rectangles();
             self.warn_of_cover(thing, off_m);
             self.heights.solids.push(Solid {
@@ -232,12 +246,16 @@ impl Builder<'_, '_> {
                 place: thing.place,
                 z_m: body.z_m,
             });
+            if let Some((_, place)) = looks.tag {
+                self.tagged.push((self.walls.len(), at.flat.translation.vector.into(), place));
+            }
             self.walls.push(StageWall {
                 name: looks.name,
                 color: looks.color,
                 place: self.reader.sources.name(thing.place),
                 plan: body.plan,
                 rectangles,
+                tag: looks.tag.map(|(tag, _)| tag),
             });
         }
         for part in thing.parts.iter().filter(|part| part.kind != "block") {
@@ -254,102 +272,6 @@ impl Builder<'_, '_> {
             let help = "walls here are made of rectangles, which do not fill a corner of less than 90°";
             self.reader.sources.warning(thing.place, &what, "", help);
         }
-    }
-
-    fn robot(&mut self, thing: &Thing) {
-        let looks = self.looks(thing);
-        if !looks.is_there {
-            let help = "here every robot is solid and seen";
-            self.reader.sources.warning(thing.place, "this robot is a ghost in Stage", "", help);
-        }
-        let (at, body, top) = self.place(thing, &Pose::origin(), DEFAULT_SIZE_M, true);
-        let motion = self.reader.motion(thing);
-        let mass_kg = self.reader.number(thing, "mass", 0.0..=1e5);
-        let controllers = self.controllers(thing);
-        let index = self.robots.len();
-        let mut robot = StageRobot {
-            name: looks.name,
-            color: looks.color,
-            place: self.reader.sources.name(thing.place),
-            pose: at.flat,
-            footprint: Vec::new(),
-            drive: motion.drive,
-            velocity: motion.velocity,
-            acceleration: motion.acceleration,
-            odometry: motion.odometry,
-            lasers: Vec::new(),
-            mass_kg,
-            controllers,
-            at: thing.place,
-        };
-        self.add_body(&mut robot, thing, &body, index);
-        for part in thing.parts.iter().filter(|part| part.kind != "block") {
-            self.carried(part, &top, &mut robot, index);
-        }
-        if robot.footprint.is_empty() {
-            let help = "give it a `size`, a `block` or a `bitmap`";
-            self.reader.sources.error(thing.place, "a robot without a body", "", help);
-        }
-        self.robots.push(robot);
-    }
-
-    /// A thing on a robot.
-    fn carried(&mut self, thing: &Thing, on: &Pose, robot: &mut StageRobot, index: usize) {
-        let (is_laser, size_m) = match thing.kind.as_str() {
-            "ranger" | "laser" => (true, DEFAULT_RANGER_SIZE_M),
-            "model" | "puck" => (false, DEFAULT_SIZE_M),
-            "position" => {
-                let help = "here it is a part of the robot that carries it";
-                self.reader.sources.warning(thing.place, "a robot on a robot", "", help);
-                self.reader.motion(thing);
-                (false, DEFAULT_SIZE_M)
-            }
-            _ => return self.other(thing),
-        };
-        let looks = self.looks(thing);
-        let (at, body, top) = self.place(thing, on, size_m, !is_laser);
-        if looks.is_there {
-            self.add_body(robot, thing, &body, index);
-        }
-        if is_laser {
-            let origin = self.reader.pose(thing, "origin").unwrap_or(Pose::origin());
-            let mount = at.then(&origin);
-            let mount = Pose { flat: robot.pose.inverse() * mount.flat, ..mount };
-            let lasers: Vec<(StageLaser, f64)> = match thing.kind.as_str() {
-                "laser" => self.reader.old_laser(thing, &mount).into_iter().collect(),
-                _ => self.reader.ranger(thing, &mount),
-            };
-            for (laser, z_m) in lasers {
-                robot.lasers.push(laser);
-                self.heights.beams.push(Beam { robot: index, place: thing.place, z_m });
-            }
-        }
-        for part in thing.parts.iter().filter(|part| part.kind != "block" && part.kind != "sensor") {
-            self.carried(part, &top, robot, index);
-        }
-    }
-
-    fn add_body(&mut self, robot: &mut StageRobot, thing: &Thing, body: &Body, index: usize) {
-        if body.is_empty() {
-            return;
-        }
-        let to_robot: Isometry2<f64> = robot.pose.inverse();
-        let corners = body.corners().map(|polygon| polygon.iter().map(|corner| to_robot * corner).collect());
-        robot.footprint.extend(corners);
-        let name = robot.name.clone();
-        self.heights.solids.push(Solid { name, robot: Some(index), place: thing.place, z_m: body.z_m });
-    }
-
-    fn controllers(&mut self, robot: &Thing) -> Vec<String> {
-        let Some(property) = self.reader.property(robot, "ctrl") else {
-            return Vec::new();
-        };
-        let names: Vec<String> =
-            property.values.iter().map(|value| self.reader.sources.text(value.place).to_owned()).collect();
-        let help =
-            "Stage's controllers are programs of its own; `wander` is replaced by our own, others by none";
-        self.reader.sources.warning(property.place(), "controllers of Stage cannot be loaded", "", help);
-        names
     }
 
     fn warn_of_unused(&mut self, thing: &Thing) {

@@ -8,7 +8,7 @@ use super::command::Velocity;
 use super::report::Body;
 use super::shape::Rectangle;
 use super::snapshot::{Played, Tape, Torn};
-use super::spec::RobotSpec;
+use super::spec::{FleetSpec, Motion, RobotSpec};
 use geometry::{heading_rad, rotation};
 use nalgebra::{Isometry2, Point2, Translation2, Vector2};
 use rapier2d::prelude as rapier;
@@ -17,12 +17,19 @@ use rapier2d::prelude as rapier;
 /// less.
 const PART_M: f32 = 0.001;
 
+/// The most that an obstacle's surface moves by itself in a step, m, with some room.
+const MOVER_M: f64 = 0.125;
+/// How far corners turn in a step is foreseen up to this way, m: farther on, they do not go straight.
+const MOST_TURN_M: f64 = 0.25;
+
 /// All bodies: walls and obstacles that stand, robots that drive.
 pub(super) struct Bodies {
     world: rapier::PhysicsWorld,
     robots: Vec<Robot>,
     /// What boxes rub on.
     floor: Option<rapier::RigidBodyHandle>,
+    /// Whether contacts are foreseen alike for all bodies, and not by each one's own velocity.
+    foresees_all: bool,
 }
 
 #[derive(Clone)]
@@ -62,18 +69,24 @@ impl Clone for Bodies {
             impulse_joints: self.world.impulse_joints.clone(),
             ..Default::default()
         };
-        Self { world, robots: self.robots.clone(), floor: self.floor }
+        Self { world, robots: self.robots.clone(), floor: self.floor, foresees_all: self.foresees_all }
     }
 }
 
 impl Bodies {
-    /// No bodies yet; time goes in steps of `step_s`.
-    pub(super) fn new(step_s: f64) -> Self {
+    /// No bodies yet, but all of `spec` are to come.
+    pub(super) fn new(spec: &FleetSpec) -> Self {
         let mut world = rapier::PhysicsWorld { gravity: rapier::Vector::ZERO, ..Default::default() };
-        world.integration_parameters.dt = step_s as f32;
+        world.integration_parameters.dt = spec.step_s() as f32;
+        let foreseen_m = foreseen_m(spec);
+        if let Some(foreseen_m) = foreseen_m {
+            let parameters = &mut world.integration_parameters;
+            parameters.normalized_prediction_distance =
+                parameters.normalized_prediction_distance.max(foreseen_m);
+        }
         // Distances of contacts are read at every step, so they must not be stale.
         world.integration_parameters.contact_recycling = false;
-        Self { world, robots: Vec::new(), floor: None }
+        Self { world, robots: Vec::new(), floor: None, foresees_all: foreseen_m.is_some() }
     }
 
     /// Writes or reads all that moves and touches. The same bodies must have been added before.
@@ -131,11 +144,13 @@ impl Bodies {
             Some(mass_kg) => collider.mass(mass_kg as f32),
             None => collider,
         };
-        // Contacts are foreseen over a step's way, so that a fast robot does not enter a wall.
+        // Contacts are foreseen over a step's way, so that a fast robot does not enter a wall. (rapier
+        // would leave those out that a body does not drive into by itself.)
+        let own_way_m = if self.foresees_all { 0.0 } else { 2.0 * spec.drive.fastest_mps() * step_s };
         let body = rapier::RigidBodyBuilder::dynamic()
             .pose(to_rapier(&spec.pose))
             .can_sleep(false)
-            .soft_ccd_prediction((2.0 * spec.drive.fastest_mps() * step_s) as f32);
+            .soft_ccd_prediction(own_way_m as f32);
         let body = if is_round { body } else { body.additional_mass_properties(disc_mass(spec)) };
         let (body, collider) = self.world.insert(body, collider);
         self.robots.push(Robot { body, collider, forward: Vector2::x() });
@@ -227,6 +242,24 @@ impl Bodies {
         let ray = rapier::Ray::new(origin, rapier::Vector::new(along.x as f32, along.y as f32));
         query.cast_ray(&ray, max_m as f32, true).map(|(_, range_m)| f64::from(range_m))
     }
+}
+
+/// Over which way contacts are foreseen for all bodies, m, if there are any that each one's own
+/// velocity does not foretell: what is pushed moves as others drive, and corners move as they turn.
+/// Where all robots are round and nothing else moves, that is rare enough to do without.
+fn foreseen_m(spec: &FleetSpec) -> Option<f32> {
+    let has_movers = spec.obstacles().iter().any(|obstacle| !matches!(obstacle.motion, Motion::Fixed));
+    if !has_movers && spec.robots().iter().all(|robot| robot.corners.is_empty()) {
+        return None;
+    }
+    let ways_m = spec.robots().iter().map(|robot| {
+        let turn_radps = if robot.corners.is_empty() { 0.0 } else { robot.drive.max_angular_radps };
+        let turn_m = (turn_radps * robot.radius_m * spec.step_s()).min(MOST_TURN_M);
+        robot.drive.fastest_mps() * spec.step_s() + turn_m
+    });
+    let farthest_m = ways_m.fold(if has_movers { MOVER_M } else { 0.0 }, f64::max);
+    // Twice: another one may come towards it.
+    Some((2.0 * farthest_m) as f32)
 }
 
 /// The mass of a disc about a robot's middle.

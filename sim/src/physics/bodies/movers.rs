@@ -7,9 +7,6 @@ use crate::physics::spec::PushedSpec;
 use nalgebra::Isometry2;
 use rapier2d::prelude as rapier;
 
-/// Contacts of obstacles that move are foreseen over this way, m: the most that their surface goes
-/// in a step, and what drives against it.
-const FORESEEN_M: f32 = 0.25;
 /// Standard gravity: what presses boxes onto the floor.
 const GRAVITY_MPS2: f64 = 9.806_65;
 /// How hard friction holds, as long as its force is enough, 1/s: what is left of a speed after a
@@ -30,8 +27,7 @@ impl Bodies {
         let collider = cuboid(body, shape);
         let body = rapier::RigidBodyBuilder::kinematic_position_based()
             .pose(to_rapier(&shape.pose))
-            .can_sleep(false)
-            .soft_ccd_prediction(FORESEEN_M);
+            .can_sleep(false);
         Mover { body: self.world.insert(body, collider).0, rubs: None }
     }
 
@@ -48,8 +44,7 @@ impl Bodies {
         pushed: &PushedSpec,
     ) -> Mover {
         let collider = cuboid(body, shape).mass(pushed.mass_kg as f32);
-        let body =
-            rapier::RigidBodyBuilder::dynamic().pose(to_rapier(&shape.pose)).soft_ccd_prediction(FORESEEN_M);
+        let body = rapier::RigidBodyBuilder::dynamic().pose(to_rapier(&shape.pose));
         let body = self.world.insert(body, collider).0;
         let mut mover = Mover { body, rubs: None };
         let weight_n = pushed.friction * pushed.mass_kg * GRAVITY_MPS2;

@@ -52,7 +52,7 @@ impl Fleet {
     /// The place of `spec` at its start. `seed` starts all chance: the noise of lasers, that of
     /// odometry, and what robots do by themselves, each in a stream of its own.
     pub fn new(spec: &FleetSpec, seed: u64) -> Self {
-        let mut bodies = Bodies::new(spec.step_s);
+        let mut bodies = Bodies::new(spec);
         for (index, wall) in spec.walls.iter().enumerate() {
             bodies.add_box(Body::Wall(index), wall);
         }

@@ -67,7 +67,7 @@ pub(super) struct Tally {
 
 impl Place {
     pub(super) fn new(spec: FleetSpec) -> Self {
-        let mut bodies = Bodies::new(spec.step_s());
+        let mut bodies = Bodies::new(&spec);
         for (i, shape) in spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).enumerate() {
             bodies.add_box(Body::Wall(i), shape);
         }

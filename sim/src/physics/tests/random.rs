@@ -1,11 +1,13 @@
 //! Random worlds: nothing leaves its place, whatever stands in it.
 
 use super::*;
+use crate::physics::form::Form;
 use geometry::LaserReading;
 use nalgebra::Point2;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// As many as a run of all tests can wait for; SIM_RANDOM_WORLDS=1000 asks for more.
@@ -114,11 +116,68 @@ fn passes(fleet: &Fleet, from: &Point2<f64>, to: &Point2<f64>) -> bool {
     fleet.spec().walls().iter().any(|wall| wall.segment_distance_m(from, to) <= 0.0)
 }
 
+/// How deep the bodies of two kinds lay in each other at most, m, and where.
+#[derive(Debug, Default)]
+struct Deepest(BTreeMap<(&'static str, &'static str), (f64, String)>);
+
+impl Deepest {
+    fn note(&mut self, fleet: &Fleet, seed: u64) {
+        let mut note = |a: &'static str, b: &'static str, gap_m: f64| {
+            let entry = self.0.entry((a, b)).or_default();
+            if -gap_m > entry.0 {
+                *entry = (-gap_m, format!("world {seed} at {:.2} s", fleet.time_s()));
+            }
+        };
+        let walls: Vec<[Point2<f64>; 4]> = fleet.walls().collect();
+        let kind = |obstacle: &ObstacleView<'_>| match fleet.spec().obstacles()[obstacle.index].motion {
+            Motion::Pushed(_) => "box",
+            _ => "mover",
+        };
+        let robots = fleet.robots().zip(fleet.spec().robots());
+        let robots: Vec<(&str, Form)> = robots
+            .map(|(robot, spec)| {
+                let name = if robot.corners.is_empty() { "round" } else { "pointed" };
+                (name, spec.form(&robot.pose))
+            })
+            .collect();
+        for (index, (name, form)) in robots.iter().enumerate() {
+            walls.iter().for_each(|wall| note(name, "wall", form.gap_m(wall)));
+            fleet.obstacles().for_each(|thing| note(name, kind(&thing), form.gap_m(&thing.corners)));
+            robots[..index].iter().for_each(|(_, other)| note(name, "robot", form.apart_m(other)));
+        }
+        for pushed in fleet.obstacles().filter(|thing| kind(thing) == "box") {
+            walls.iter().for_each(|wall| note("box", "wall", convex::gap_m(&pushed.corners, wall)));
+        }
+    }
+
+    /// The bounds are for the steps of up to 0.1 s of these worlds, in which a robot of any shape
+    /// may go its inner radius and turn by 40°. Of 1000 worlds, the deepest were 16 mm (a round
+    /// robot in a wall, door or block), 54 mm (a pointed one), 158 mm (robots in each other) and
+    /// 105 mm (a box in a wall).
+    fn check(&self) {
+        for ((a, b), (depth_m, place)) in &self.0 {
+            let most_m = match (*a, *b) {
+                ("round", "wall") | (_, "mover") => 0.02,
+                ("pointed", "wall") => 0.06,
+                (_, "robot") => 0.2,
+                ("box", "wall") => 0.15,
+                // Not held: a light box between heavy robots or walls spins and lets a robot of 20
+                // times its mass in, by 0.24 m in world 92 and 0.41 m in world 493. More iterations
+                // of rapier's solver do not help: its contacts stay where they were when the step
+                // began. Shorter steps would.
+                _ => f64::INFINITY,
+            };
+            assert!(*depth_m < most_m, "{a} is {depth_m} m deep in {b}: {place}");
+        }
+    }
+}
+
 #[test]
 fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
     let asked = std::env::var("SIM_RANDOM_WORLDS").ok().and_then(|worlds| worlds.parse().ok());
     let worlds = asked.unwrap_or(WORLDS);
     let (mut robots, mut contacts, mut things) = (0, 0, 0);
+    let mut deepest = Deepest::default();
     for seed in 0..worlds {
         let spec = world(seed);
         let mut fleet = Fleet::new(&spec, seed);
@@ -167,18 +226,11 @@ fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
                     place()
                 );
                 before[index] = now;
-                // No wall, door or block goes through a robot, or a robot through it. (A heavy robot
-                // can run over a light box that something else holds.)
-                let boxes = fleet
-                    .obstacles()
-                    .filter(|obstacle| !matches!(spec.obstacles()[obstacle.index].motion, Motion::Pushed(_)));
-                let is_in =
-                    |obstacle: &ObstacleView<'_>| convex::disc_gap_m(&obstacle.corners, &at, 0.0) < 0.0;
-                let holds = boxes.filter(is_in).map(|obstacle| obstacle.name.to_owned()).next();
-                assert_eq!(holds, None, "{} is in something", place());
             }
+            deepest.note(&fleet, seed);
         }
     }
+    deepest.check();
     assert!(robots > 4 * worlds as usize, "too few robots fitted in: {robots}");
     assert!(things > 1000 * worlds as usize, "hardly anything moved: {things}");
     assert!(contacts > robots, "they hardly ever met: {contacts}");

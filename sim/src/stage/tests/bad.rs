@@ -67,7 +67,7 @@ fn what_is_not_here_is_named() {
         &[
             (
                 "things",
-                "window( size [1 2] )\nmodel( camera( range [0 8] ) fiducial( ) )\nposition( gripper( ) )\nlaser( )",
+                "window( size [1 2] )\nmodel( camera( range [0 8] ) blobfinder( ) )\nposition( gripper( ) )\nlaser( )",
             ),
             (
                 "keys",
@@ -82,6 +82,22 @@ fn what_is_not_here_is_named() {
             (
                 "sensors",
                 "position( ranger( sensor( samples 1 ) ) ranger( ) laser( noise [0.1 0.1 1] fov 360 ) )",
+            ),
+            ("bumpers", "position( bumper( bcount 1 bpose[0] [0 0 0 0] blength 0.1 ) )"),
+            (
+                "tags",
+                "model( fiducial_return -1 )\nmodel( pose [1 0 0 0] origin [1 0 0 0] fiducial_return 1 )
+model( pose [5 0 0 0] bitmap \"p.png\" fiducial_return 2 )\nmodel( pose [5 0 0 0] fiducial_return 3 )
+model( pose [9 0 0 0] noblocks 1 fiducial_return 4 )\nposition( pose [7 0 0 0] model( fiducial_return 5 ) )",
+            ),
+            (
+                "fiducial finders",
+                "fiducial( )\nposition( fiducial( range_min 1 fiducial_key 3 ) fiducial( ) )
+position( pose [1 0 0 0] fiducial( range_max 0 ) )",
+            ),
+            (
+                "outlines",
+                "position( origin [1 0 0 0] )\nposition( pose [1 0 0 0] model( pose [0.1 0.1 0 0] ) )",
             ),
             ("robots on things", "model( position( ) )\nposition( position( drive \"omni\" ) )"),
             ("names", "model( name \"a\" )\nmodel( name \"a\" )"),

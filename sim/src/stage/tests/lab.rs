@@ -33,6 +33,7 @@ fn the_example_says_what_is_in_it() {
     // 0.25 m ahead of the point that it turns about, 0.15 m to the side.
     assert!((r0.radius_m() - 0.25_f64.hypot(0.15)).abs() < 1e-12);
     assert_eq!(r1.odometry.distance_gain, 0.02);
+    assert_eq!((r0.outline.len(), r0.sonars.len()), (4, 3));
     let [laser] = r0.lasers.as_slice() else { panic!() };
     assert_eq!((laser.beams, laser.interval_ms, laser.range_max_m), (361, 100, 6.0));
     assert!((laser.mount.translation.vector.x - 0.1).abs() < 1e-12);

@@ -1,7 +1,7 @@
 //! What Stage's words mean, by numbers.
 
-use super::{good, one};
-use crate::physics::Rectangle;
+use super::{good, load_one, one};
+use crate::physics::{FleetSpec, Rectangle};
 use crate::stage::Bounds;
 use nalgebra::Point2;
 use std::f64::consts::FRAC_PI_2;
@@ -108,10 +108,65 @@ fn lasers_old_and_new() {
 }
 
 #[test]
+fn single_rays_are_sonars_and_count_for_the_step() {
+    let text = "position( size [0.4 0.4 0.2]
+        ranger( update_interval 40 sensor( pose [0.1 0 0 90] range [0.2 3] fov 20 noise [0.01 0 0] ) ) )";
+    let world = good(text);
+    let [sonar] = world.robots[0].sonars.as_slice() else { panic!() };
+    assert!((sonar.cone_rad - 20.0_f64.to_radians()).abs() < 1e-12);
+    assert!((sonar.mount.rotation.angle() - FRAC_PI_2).abs() < 1e-12);
+    assert_eq!((sonar.range_min_m, sonar.range_max_m, sonar.interval_ms), (0.2, 3.0, 40));
+    // The laser that it is given scans every 100 ms.
+    assert!((world.step_s - 0.02).abs() < 1e-12 && world.robots[0].lasers.is_empty());
+}
+
+#[test]
+fn tags_and_those_who_find_them() {
+    let text = "position( name \"a\" pose [0 0 0 0] size [0.4 0.4 0.4] fiducial_return 7
+          fiducial( pose [0.1 0 0 90] range_max 6 range_max_id 3 fov 90 update_interval 200 ) laser( ) )
+        model( name \"post\" pose [3 0 0 45] size [0.2 0.2 1] fiducial_return 12 )";
+    let (world, findings) = one(text);
+    let world = world.unwrap_or_else(|| panic!("{findings}"));
+    let finder = world.robots[0].fiducial.as_ref().unwrap();
+    assert_eq!((finder.range_max_m, finder.fov_rad, finder.interval_ms), (3.0, FRAC_PI_2, 200));
+    assert_eq!((world.robots[0].tag, world.walls[0].tag), (Some(7), Some(12)));
+    assert!(findings.iter().any(|finding| finding.what.contains("from 3 to 6 m, but not which")));
+    // In the fleet that it becomes, others find them.
+    let spec = FleetSpec::parse("x.toml", &world.to_toml()).unwrap();
+    assert_eq!((spec.robots()[0].tag, spec.obstacles()[0].tag), (Some(7), Some(12)));
+    let finder = spec.robots()[0].fiducial.unwrap();
+    assert_eq!((finder.range_max_m, finder.period_steps), (3.0, 4));
+}
+
+#[test]
+fn bodies_become_convex_outlines() {
+    // It turns about a point 0.1 m behind its middle.
+    let world = good("position( size [0.6 0.4 0.2] origin [0.1 0 0 0] laser( ) )");
+    let outline: Vec<[f64; 2]> = world.robots[0].outline.iter().map(|corner| (*corner).into()).collect();
+    let expected = [[-0.2, -0.2], [0.4, -0.2], [0.4, 0.2], [-0.2, 0.2]];
+    assert_eq!(outline.len(), 4);
+    let is_there = |[x, y]: &[f64; 2]| {
+        outline.iter().any(|[u, v]: &[f64; 2]| (x - u).abs() < 1e-9 && (y - v).abs() < 1e-9)
+    };
+    assert!(expected.iter().all(is_there), "{outline:?}");
+    // A long robot starts beside a wall, where its disc would not have room.
+    let (spec, findings) = load_one(
+        "model( size [4 0.1 1] pose [0 0.3 0 0] )\nposition( size [1 0.4 1] laser( pose [0 0 -0.5 0] ) )",
+    );
+    let spec = spec.unwrap_or_else(|| panic!("{findings}"));
+    assert_eq!((spec.robots()[0].corners.len(), findings.warnings()), (4, 0), "{findings}");
+    // An L of three quarters of a square; its hull has seven eighths.
+    let (world, findings) = one("position( size [2 2 1] origin [0.2 0.2 0 0] laser( ) block( points 6
+        point[0] [0 0] point[1] [2 0] point[2] [2 1] point[3] [1 1] point[4] [1 2] point[5] [0 2] ) )");
+    assert_eq!(world.unwrap().robots[0].outline.len(), 5);
+    assert!(findings.iter().any(|finding| finding.what.ends_with("not convex: here it covers 17 % more")));
+}
+
+#[test]
 fn fast_small_robots_have_short_steps() {
     let text = "position( size [0.06 0.08 0.2] velocity_bounds [-2 2 0 0 0 0 -90 90] laser( ) )";
-    // 0.05 m at 2 m/s is 25 ms, and a hair less.
-    assert_eq!(good(text).step_s, 0.02);
+    // Its outline holds 0.03 m about its middle: at 2 m/s that is 15 ms, and a hair less.
+    assert!((good(text).step_s - 0.1 / 7.0).abs() < 1e-12);
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod meaning;
 
 use super::{StageWorld, read};
 use crate::Findings;
+use crate::physics::FleetSpec;
 use image::{DynamicImage, GrayImage, ImageFormat, Luma};
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -42,6 +43,13 @@ fn one(text: &str) -> (Option<StageWorld>, Findings) {
     let (world, findings) = read(Path::new("x.world"), &files);
     assert_eq!(world.is_none(), findings.errors() > 0, "{findings}");
     (world, findings)
+}
+
+/// Reads one text and makes a fleet of it.
+fn load_one(text: &str) -> (Option<FleetSpec>, Findings) {
+    let mut files = Table::new();
+    files.insert("x.world".into(), text.as_bytes().to_vec());
+    super::load(Path::new("x.world"), &files)
 }
 
 /// The same where there must be a world.
