@@ -1,8 +1,14 @@
-//! Files that a run leaves behind: whole, or not at all.
+//! What a program leaves behind: words for whoever listens, and files that are whole, or not there at all.
 
+use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+
+/// Says `what` to whoever listens. When nobody does any more, as behind `| head`, the run goes on.
+pub fn say(mut to: impl Write, what: impl Display) {
+    let _ = writeln!(to, "{what}");
+}
 
 /// A file or folder that could not be written.
 #[derive(Debug, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! Does the paper's claim hold? The tables and figures of docs/figure3.md.
 //!
 //! ```text
-//! cargo run --example paper_claim                     everything, some ten minutes on two cores
+//! cargo run --example paper_claim                     everything, a quarter of an hour on two cores
 //! cargo run --example paper_claim -- /tmp/quick 5     into another folder, with fewer seeds
 //! ```
 //!

@@ -26,18 +26,15 @@ pub(crate) fn markdown(findings: &[Finding], seeds: u64) -> String {
 
 /// A row per condition: the verdict in each world, and how curious does over all generated ones.
 fn overview(findings: &[Finding]) -> String {
-    let mut text = String::from("\n## All conditions\n\n");
-    let mut is_first = true;
+    let first = findings.first().map_or_else(Vec::new, Finding::claims);
+    let worlds = first.iter().map(|claim| claim.world.as_str()).collect::<Vec<_>>().join(" | ");
+    let rules = "---|".repeat(first.len() + 4);
+    let mut text = format!(
+        "\n## All conditions\n\n\
+         | condition | {worlds} | generated: to recency | to coin | to poisson |\n|{rules}\n"
+    );
     for finding in findings {
         let claims = finding.claims();
-        if std::mem::take(&mut is_first) {
-            let worlds = claims.iter().map(|claim| claim.world.as_str()).collect::<Vec<_>>().join(" | ");
-            let rules = "---|".repeat(claims.len() + 4);
-            let _ = writeln!(
-                text,
-                "| condition | {worlds} | generated: to recency | to coin | to poisson |\n|{rules}"
-            );
-        }
         let verdicts = claims.iter().map(|claim| claim.verdict.name()).collect::<Vec<_>>().join(" | ");
         let generated = finding.runs().map(|(_, run)| run).find(|run| run.worlds > 1);
         let ratios = ["recency", "coin", "poisson"].map(|other| {

@@ -50,7 +50,7 @@ pub(crate) struct Source<'a> {
 pub(crate) type Mark<'a> = (Range<usize>, &'a str);
 
 impl WorldError {
-    /// What is wrong, one message each, in the order of the file's parts; at least one.
+    /// What is wrong, one message each; at least one.
     pub fn messages(&self) -> &[String] {
         &self.messages
     }

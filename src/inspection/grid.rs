@@ -1,24 +1,17 @@
 //! Grid worlds.
 
 use super::{Content, Plan, Robot, Thing};
+use crate::trials::{rectangle, scene};
 use geometry::Cell;
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Isometry2;
 use sim::grid::{BlockSpec, Course, GridSpec};
 
 pub(super) fn content(world: &GridSpec) -> Content {
     let frame = *world.frame();
-    let walls: Vec<usize> = (0..frame.len()).filter(|&cell| world.walls().cells()[cell]).collect();
+    let free = world.walls().cells().iter().filter(|is_wall| !**is_wall).count();
     let chance = |what: &str, chance: f64| format!("{what} moves with probability {chance}");
     let mut lines = vec![
-        (
-            "size",
-            format!(
-                "{} × {} cells, {} of them free",
-                frame.width(),
-                frame.height(),
-                frame.len() - walls.len()
-            ),
-        ),
+        ("size", format!("{} × {} cells, {free} of them free", frame.width(), frame.height())),
         (
             "robot",
             format!(
@@ -34,14 +27,8 @@ pub(super) fn content(world: &GridSpec) -> Content {
         lines.push(("chance", both.join(", ")));
     }
     lines.extend(world.blocks().iter().map(|block| ("block", describe(block))));
-    let square = |cell: Cell| {
-        let middle = frame.center(cell);
-        [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
-            .map(|(x, y)| {
-                Point2::new(middle.x + x * frame.resolution_m(), middle.y + y * frame.resolution_m())
-            })
-            .to_vec()
-    };
+    let square = |cell: Cell| rectangle(cell, cell, 0.0);
+    let start = frame.center(world.start());
     let thing = |block: &BlockSpec| Thing {
         name: block.name.clone(),
         outline: block.path.first().map_or(Vec::new(), |&cell| square(cell)),
@@ -55,12 +42,12 @@ pub(super) fn content(world: &GridSpec) -> Content {
         plan: Plan {
             unit: "cells",
             frame,
-            walls: walls.iter().map(|&cell| square(frame.cell(cell))).collect(),
+            walls: scene(world).walls,
             things: world.blocks().iter().map(thing).collect(),
             robots: vec![Robot {
                 name: "robot".to_owned(),
-                pose: Isometry2::translation(frame.center(world.start()).x, frame.center(world.start()).y),
-                radius: 0.4 * frame.resolution_m(),
+                pose: Isometry2::translation(start.x, start.y),
+                radius: 0.4,
                 is_driven: true,
             }],
         },

@@ -84,7 +84,7 @@ pub struct Robot {
 /// Reads a file as what it is: a shipped world by its name, a world file (physics or grid), a `.world` file of
 /// Stage, or a `map.yaml` of ROS.
 pub fn inspect(name: &str) -> Inspection {
-    let shipped = worlds::text(name).filter(|_| !Path::new(name).exists());
+    let shipped = worlds::text(name);
     let path = Path::new(name);
     let mut inspection = match (shipped, path.extension().and_then(|ending| ending.to_str())) {
         (Some(text), _) => world_file(&format!("{name}.toml"), text, &worlds::pictures()),

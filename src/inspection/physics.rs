@@ -98,22 +98,13 @@ fn thing(obstacle: &ObstacleSpec) -> Thing {
         Motion::Path(path) => {
             path.keys.iter().map(|(_, middle)| corners(moved(&obstacle.shape, middle))).collect()
         }
-        Motion::Door(door) => match door.leaf {
-            Leaf::Hinged { hinge, open_rad } => {
-                let turn = Isometry2::translation(hinge.x, hinge.y)
-                    * Isometry2::rotation(open_rad)
-                    * Isometry2::translation(-hinge.x, -hinge.y);
-                vec![corners(Rectangle { pose: turn * obstacle.shape.pose, ..obstacle.shape })]
-            }
-            Leaf::Sliding { by_m } => {
-                let pose = Isometry2::translation(by_m.x, by_m.y) * obstacle.shape.pose;
-                vec![corners(Rectangle { pose, ..obstacle.shape })]
-            }
-        },
+        Motion::Door(door) => {
+            [0.0, 1.0].map(|openness| corners(door.shape(&obstacle.shape, openness))).to_vec()
+        }
     };
-    let is_there = obstacle.appears_s.is_none();
-    let outline = if is_there { corners(obstacle.shape) } else { Vec::new() };
-    let later = if is_there { Vec::new() } else { vec![corners(obstacle.shape)] };
+    let start = corners(obstacle.start());
+    let (outline, later) =
+        if obstacle.appears_s.is_none() { (start, Vec::new()) } else { (Vec::new(), vec![start]) };
     Thing { name: obstacle.name.clone(), outline, reach: [later, reach].concat() }
 }
 

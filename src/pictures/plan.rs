@@ -2,13 +2,13 @@
 
 use super::canvas::{Area, INK, ink, px, text, why};
 use super::panel::{self, Chart};
+use super::trajectory::WALL;
 use crate::inspection::{Content, Robot, Thing};
 use crate::layer::{CURIOUS, OTHERS, Rgb};
 use nalgebra::Point2;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-const WALL: Rgb = [70, 74, 82];
 const THING: Rgb = [214, 110, 20];
 const REACH: Rgb = [250, 226, 198];
 /// The corners of the polygon that a robot is drawn as.

@@ -8,7 +8,7 @@ use crate::view::Trail;
 use nalgebra::Point2;
 use plotters::prelude::*;
 
-const WALL: Rgb = [70, 74, 82];
+pub(super) const WALL: Rgb = [70, 74, 82];
 const GOAL: Rgb = [214, 30, 60];
 
 /// Draws the walls, every trail with its start, and the goals.

@@ -10,6 +10,7 @@ mod recorded;
 mod strategy;
 
 pub use life::{Life, Look, live};
+pub(crate) use recorded::rectangle;
 pub use recorded::{RECORDED_STEPS, Recorded, record, scene};
 pub use strategy::TrialStrategy;
 

@@ -171,7 +171,7 @@ fn measure(look: &Look) -> (Scores, RateErrors) {
 
 /// The rectangle from one cell to another, both included, with its sides moved inwards, m. Cells are
 /// 1 m wide, with `[0, 0]` at the origin.
-fn rectangle(low: Cell, high: Cell, inset_m: f64) -> Outline {
+pub(crate) fn rectangle(low: Cell, high: Cell, inset_m: f64) -> Outline {
     let from = Point2::new(f64::from(low.x), f64::from(low.y)).map(|side| side + inset_m);
     let to = Point2::new(f64::from(high.x), f64::from(high.y)).map(|side| side + 1.0 - inset_m);
     vec![from, Point2::new(to.x, from.y), to, Point2::new(from.x, to.y)]

@@ -2,10 +2,9 @@
 
 use clap::Parser;
 use curious::inspection::{Content, Inspection, inspect};
-use curious::output::make_folder;
+use curious::output::{make_folder, say};
 use curious::pictures::draw_plan;
-use std::fmt::Display;
-use std::io::{Write, stderr, stdout};
+use std::io::{stderr, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -60,11 +59,6 @@ fn main() -> ExitCode {
         }
     }
     code
-}
-
-/// Says `what` to whoever listens, if anybody does.
-fn say(mut to: impl Write, what: impl Display) {
-    let _ = writeln!(to, "{what}");
 }
 
 fn tell(inspection: &Inspection) {

@@ -9,7 +9,7 @@ use anyhow::Context;
 use args::{Args, DriveChoice};
 use clap::Parser;
 use curious::observer::Observer;
-use curious::output::make_folder;
+use curious::output::{make_folder, say};
 use curious::pilot::{Now, Pilot};
 use curious::recording::{Live, Recorder, RecordingOptions};
 use curious::{explore, worlds};
@@ -18,8 +18,7 @@ use mapper::Mapper;
 use parts::{Failure, Parts};
 use progress::Progress;
 use sim::physics::PhysicsWorld;
-use std::fmt::Display;
-use std::io::{Write, stderr, stdout};
+use std::io::{stderr, stdout};
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -49,11 +48,6 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-/// Says `what` to whoever listens. When nobody does any more, as behind `| head`, the run goes on.
-fn say(mut to: impl Write, what: impl Display) {
-    let _ = writeln!(to, "{what}");
 }
 
 /// Why a run ended.

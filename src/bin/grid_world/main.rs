@@ -7,7 +7,7 @@ use anyhow::{Context, bail};
 use args::Args;
 use clap::Parser;
 use controller::CellDrive;
-use curious::output::{make_folder, write_file};
+use curious::output::{make_folder, say, write_file};
 use curious::recording::{Recorder, RecordingError, RecordingOptions};
 use curious::report::{Report, ReportSettings, Trial, WorldPicture};
 use curious::trials::{Experiment, Recorded, SettingsError, record, scene};
@@ -16,8 +16,7 @@ use mapper::{Estimator, MapperSettings};
 use progress::Progress;
 use sim::grid::{GenerateSettings, GridSpec};
 use std::collections::BTreeSet;
-use std::fmt::Display;
-use std::io::{Write, stderr, stdout};
+use std::io::{stderr, stdout};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -47,11 +46,6 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-/// Says `what` to whoever listens. When nobody does any more, as behind `| head`, the run goes on.
-fn say(mut to: impl Write, what: impl Display) {
-    let _ = writeln!(to, "{what}");
 }
 
 /// What the arguments ask for.

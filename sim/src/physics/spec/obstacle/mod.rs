@@ -33,7 +33,7 @@ impl ObstacleSpec {
     }
 
     /// Where it is at the start, a door open or closed.
-    pub(in crate::physics) fn start(&self) -> Rectangle {
+    pub fn start(&self) -> Rectangle {
         match &self.motion {
             Motion::Door(door) => door.shape(&self.shape, f64::from(u8::from(door.starts_open))),
             Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) => self.shape,
@@ -118,7 +118,7 @@ pub struct DoorSpec {
 
 impl DoorSpec {
     /// Where a leaf is that is at `closed` while closed; `openness`: 0 closed, 1 open.
-    pub(in crate::physics) fn shape(&self, closed: &Rectangle, openness: f64) -> Rectangle {
+    pub fn shape(&self, closed: &Rectangle, openness: f64) -> Rectangle {
         match self.leaf {
             Leaf::Hinged { hinge, open_rad } => {
                 closed.turned(&geometry::rotation(open_rad * openness), &hinge)
