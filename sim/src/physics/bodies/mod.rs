@@ -1,5 +1,6 @@
 //! Rigid bodies and contacts: the only folder that knows rapier.
 
+mod hold;
 mod movers;
 
 pub(super) use movers::Mover;
@@ -26,6 +27,8 @@ const MOST_TURN_M: f64 = 0.25;
 pub(super) struct Bodies {
     world: rapier::PhysicsWorld,
     robots: Vec<Robot>,
+    /// Robots and what is pushed, with their poses before the last step.
+    free: Vec<(rapier::RigidBodyHandle, rapier::Pose)>,
     /// What boxes rub on.
     floor: Option<rapier::RigidBodyHandle>,
     /// Whether contacts are foreseen alike for all bodies, and not by each one's own velocity.
@@ -69,7 +72,13 @@ impl Clone for Bodies {
             impulse_joints: self.world.impulse_joints.clone(),
             ..Default::default()
         };
-        Self { world, robots: self.robots.clone(), floor: self.floor, foresees_all: self.foresees_all }
+        Self {
+            world,
+            robots: self.robots.clone(),
+            free: self.free.clone(),
+            floor: self.floor,
+            foresees_all: self.foresees_all,
+        }
     }
 }
 
@@ -86,7 +95,7 @@ impl Bodies {
         }
         // Distances of contacts are read at every step, so they must not be stale.
         world.integration_parameters.contact_recycling = false;
-        Self { world, robots: Vec::new(), floor: None, foresees_all: foreseen_m.is_some() }
+        Self { world, robots: Vec::new(), free: Vec::new(), floor: None, foresees_all: foreseen_m.is_some() }
     }
 
     /// Writes or reads all that moves and touches. The same bodies must have been added before.
@@ -153,6 +162,7 @@ impl Bodies {
             .soft_ccd_prediction(own_way_m as f32);
         let body = if is_round { body } else { body.additional_mass_properties(disc_mass(spec)) };
         let (body, collider) = self.world.insert(body, collider);
+        self.free.push((body, to_rapier(&spec.pose)));
         self.robots.push(Robot { body, collider, forward: Vector2::x() });
     }
 
@@ -170,12 +180,16 @@ impl Bodies {
 
     /// Lets one step pass.
     pub(super) fn step(&mut self) {
+        for (body, was) in &mut self.free {
+            *was = *self.world.bodies[*body].position();
+        }
         self.world.step();
+        self.hold();
     }
 
     /// Where a robot is.
     pub(super) fn pose(&self, robot: usize) -> Isometry2<f64> {
-        pose_of(&self.world.bodies[self.robots[robot].body])
+        from_rapier(self.world.bodies[self.robots[robot].body].position())
     }
 
     /// The velocity that the contacts left a robot in the last step.
@@ -281,8 +295,7 @@ fn cuboid(body: Body, shape: &Rectangle) -> rapier::ColliderBuilder {
         .user_data(pack(body))
 }
 
-fn pose_of(body: &rapier::RigidBody) -> Isometry2<f64> {
-    let pose = body.position();
+fn from_rapier(pose: &rapier::Pose) -> Isometry2<f64> {
     let at = Translation2::new(f64::from(pose.translation.x), f64::from(pose.translation.y));
     Isometry2::from_parts(at, rotation(f64::from(pose.rotation.angle())))
 }

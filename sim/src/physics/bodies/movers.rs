@@ -1,6 +1,6 @@
 //! Obstacles that move: driven ones, and those that are pushed.
 
-use super::{Bodies, cuboid, pose_of, to_rapier};
+use super::{Bodies, cuboid, from_rapier, to_rapier};
 use crate::physics::report::Body;
 use crate::physics::shape::Rectangle;
 use crate::physics::spec::PushedSpec;
@@ -46,6 +46,7 @@ impl Bodies {
         let collider = cuboid(body, shape).mass(pushed.mass_kg as f32);
         let body = rapier::RigidBodyBuilder::dynamic().pose(to_rapier(&shape.pose));
         let body = self.world.insert(body, collider).0;
+        self.free.push((body, to_rapier(&shape.pose)));
         let mut mover = Mover { body, rubs: None };
         let weight_n = pushed.friction * pushed.mass_kg * GRAVITY_MPS2;
         if weight_n > 0.0 {
@@ -73,7 +74,7 @@ impl Bodies {
     pub(in crate::physics) fn pushed_pose(&mut self, mover: &Mover) -> Isometry2<f64> {
         let body = &self.world.bodies[mover.body];
         let velocity = body.linvel();
-        let at = pose_of(body);
+        let at = from_rapier(body.position());
         if let Some((joint, weight_n)) = mover.rubs
             && let Some(joint) = self.world.impulse_joints.get_mut(joint, false)
         {

@@ -100,6 +100,34 @@ fn a_light_box_is_pushed_and_a_heavy_one_is_not() {
 }
 
 #[test]
+fn a_light_box_holds_a_heavy_robot_where_something_holds_the_box() {
+    // The wall of the house is at x = 5.9; between it and a robot of 20 kg are 0.3 m of 0.02 kg.
+    for (side_m, mass_kg) in [([0.3, 0.3], 0.02), ([0.3, 0.05], 0.02), ([0.3, 0.3], 1.0)] {
+        let box_ = pushed("crate", [5.7, 2.05], mass_kg, 0.2)
+            .replace("[0.3, 0.3]", &format!("{side_m:?}"))
+            .replace("mass_kg", "heading_deg = 20.0\nmass_kg");
+        let mut fleet = Fleet::new(&yard(&box_), 0);
+        let mut deepest_m = f64::NEG_INFINITY;
+        while fleet.time_s() < 15.0 {
+            fleet.step(&mut ahead);
+            let corners = fleet.obstacles().next().unwrap().corners;
+            let at = robot_at(&fleet, 0);
+            deepest_m = deepest_m.max(-convex::disc_gap_m(&corners, &at, 0.2));
+            deepest_m = deepest_m.max(at.x + 0.2 - 5.95);
+        }
+        assert!(deepest_m > -0.002, "{mass_kg} kg: they never met: {deepest_m} m");
+        assert!(deepest_m < 0.0051, "{mass_kg} kg: {deepest_m} m");
+        // And it comes free again.
+        let met = robot_at(&fleet, 0);
+        fleet.run_until(18.0, &mut |_: usize, _: &LaserReading| Twist {
+            linear_mps: -0.5,
+            angular_radps: 0.0,
+        });
+        assert!((met - robot_at(&fleet, 0)).norm() > 1.0, "{mass_kg} kg: stuck at {met}");
+    }
+}
+
+#[test]
 fn a_box_slows_down_by_its_friction() {
     for friction in [0.03, 0.08] {
         let mut fleet = Fleet::new(&yard(&pushed("puck", [1.8, 2.0], 0.5, friction)), 0);
