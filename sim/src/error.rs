@@ -6,7 +6,7 @@ use std::ops::Range;
 /// A world file that cannot be read or makes no sense.
 ///
 /// Each of its messages has several lines, without colour, that name the file, the line, the key, what is
-/// wrong and what would be right. Its `Display` is all of them; the second and further ones begin with
+/// wrong and what would be right; the first in the file comes first. Its `Display` is all of them; the second and further ones begin with
 /// `error: `, as whoever prints it begins the first.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", messages.join("\n\nerror: "))]
@@ -73,11 +73,20 @@ impl WorldError {
 impl Source<'_> {
     /// An error at `mark`, with `others` that explain it and `help` that says what would be right.
     pub(crate) fn error(&self, what: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> WorldError {
+        // Only the lines that matter are looked at: a large file may have many errors.
+        let spans = || std::iter::once(&mark).chain(others).map(|(span, _)| self.first_line(span));
+        let first = spans().map(|span| span.start).min().unwrap_or_default();
+        let last = spans().map(|span| span.end).max().unwrap_or_default();
+        let start = self.text[..first].rfind('\n').map_or(0, |at| at + 1);
+        let end = self.text[last..].find('\n').map_or(self.text.len(), |length| last + length + 1);
+        let line = 1 + self.text[..start].bytes().filter(|byte| *byte == b'\n').count();
         let annotation = |kind: AnnotationKind, (span, label): &Mark<'_>| {
             let label = (!label.is_empty()).then(|| (*label).to_owned());
-            kind.span(self.first_line(span)).label(label)
+            let span = self.first_line(span);
+            kind.span(span.start - start..span.end - start).label(label)
         };
-        let snippet = Snippet::source(self.text)
+        let snippet = Snippet::source(&self.text[start..end])
+            .line_start(line)
             .path(self.name)
             .annotation(annotation(AnnotationKind::Primary, &mark))
             .annotations(others.iter().map(|other| annotation(AnnotationKind::Context, other)));
@@ -108,8 +117,8 @@ impl Source<'_> {
 
     /// The part of a span on its first line: a whole table would be underlined otherwise.
     fn first_line(&self, span: &Range<usize>) -> Range<usize> {
-        let start = span.start.min(self.text.len());
-        let end = span.end.clamp(start, self.text.len());
+        let start = self.text.floor_char_boundary(span.start);
+        let end = self.text.floor_char_boundary(span.end).max(start);
         let line = self.text.get(start..end).and_then(|part| part.find('\n'));
         start..line.map_or(end, |length| start + length)
     }
