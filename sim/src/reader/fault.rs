@@ -166,8 +166,8 @@ fn nearest<'a>(unknown: &str, known: &[&'a str]) -> Option<&'a str> {
     let most = 1 + length / 3;
     // It takes an edit for every character that one is longer: a key of a megabyte is near to none.
     let known = known.iter().filter(|known| known.len().abs_diff(length) <= most);
-    let near = known.map(|known| (edits(unknown, known), *known)).min()?;
-    (near.0 <= most).then_some(near.1)
+    let near = known.map(|known| (edits(unknown, known), known.len().abs_diff(length), *known)).min()?;
+    (near.0 <= most).then_some(near.2)
 }
 
 /// Levenshtein's distance.
@@ -194,6 +194,7 @@ mod tests {
     fn near_names_are_found_and_far_ones_are_not() {
         let known = ["radius_m", "heading_deg", "name"];
         assert_eq!(nearest("raduis_m", &known), Some("radius_m"));
+        assert_eq!(nearest("nmae", &["map", "name"]), Some("name"));
         assert_eq!(nearest("heading", &known), None);
         assert_eq!(nearest("colour", &known), None);
         assert_eq!(edits("kitten", "sitting"), 3);

@@ -72,7 +72,13 @@ pub(crate) fn read<T: DeserializeOwned>(source: &Source<'_>, kind: Kind) -> Resu
     let root = Spanned::new(root.span(), DeValue::Table(root.into_inner()));
     let faults = Faults::default();
     let file = T::deserialize(Value::root(&root, &faults));
-    let file =
-        file.map_err(|error| source.error(&error.to_string(), (0..0, ""), &[], "see worlds/keys.md"))?;
+    let file = file.map_err(|error| {
+        source.error(
+            &error.to_string(),
+            (0..0, ""),
+            &[],
+            "the keys of world files are in `sim/worlds/keys.md`",
+        )
+    })?;
     Ok(Reading { file, is_root_sound: !faults.is_any_at_root(), wrong: faults.told(source) })
 }
