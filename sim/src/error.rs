@@ -6,8 +6,8 @@ use std::ops::Range;
 /// A world file that cannot be read or makes no sense.
 ///
 /// Each of its messages has several lines, without colour, that name the file, the line, the key, what is
-/// wrong and what would be right; the first in the file comes first. Its `Display` is all of them; the second and further ones begin with
-/// `error: `, as whoever prints it begins the first.
+/// wrong and what would be right; the first in the file comes first. Its `Display` is all of them; the second
+/// and further ones begin with `error: `, as whoever prints it begins the first.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", messages.join("\n\nerror: "))]
 pub struct WorldError {
