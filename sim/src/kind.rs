@@ -11,31 +11,23 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// What is wrong with a file that was to describe a world of this kind: that it describes one
-    /// of the other, or else what the TOML reader says.
-    pub(crate) fn explain(self, source: &Source<'_>, error: toml::de::Error) -> WorldError {
-        let other = DeTable::parse(source.text).ok().and_then(|table| {
-            let (key, value) = table.get_ref().get_key_value("map")?;
-            // A drawing, or a table of sizes.
-            match (self, value.get_ref()) {
-                (Self::Physics, DeValue::String(_)) | (Self::Grid, DeValue::Table(_)) => Some(key.span()),
-                _ => None,
-            }
-        });
-        match (self, other) {
-            (_, None) => source.toml_error(error),
-            (Self::Grid, Some(place)) => source.error(
+    /// Refuses a file that describes a world of the other kind.
+    pub(crate) fn check(self, source: &Source<'_>, file: &DeTable<'_>) -> Result<(), WorldError> {
+        let Some((key, value)) = file.get_key_value("map") else { return Ok(()) };
+        // A drawing, or a table of sizes.
+        let (what, label, help) = match (self, value.get_ref()) {
+            (Self::Grid, DeValue::Table(_)) => (
                 "this is a physics world, not a grid world",
-                (place, "sizes, not a drawing"),
-                &[],
+                "sizes, not a drawing",
                 "a grid world draws its `map` as text: `#` wall, `.` free, one row of text per row of cells",
             ),
-            (Self::Physics, Some(place)) => source.error(
+            (Self::Physics, DeValue::String(_)) => (
                 "this is a grid world, not a physics world",
-                (place, "a drawing, not sizes"),
-                &[],
+                "a drawing, not sizes",
                 "a physics world has a table `[map]` with `size_m` and `cell_m`",
             ),
-        }
+            _ => return Ok(()),
+        };
+        Err(source.error(what, (key.span(), label), &[], help))
     }
 }

@@ -34,6 +34,7 @@ pub mod grid;
 mod kind;
 mod names;
 pub mod physics;
+mod reader;
 pub mod stage;
 
 pub use error::WorldError;

@@ -1,40 +1,52 @@
 //! From the file as written to a world that makes sense.
 
-use super::file::{BlockFile, GridFile, Whole};
+use super::file::{BlockFile, GridFile, TransitionsFile, Whole};
 use super::map::{Drawing, drawing};
 use super::{BlockSpec, Course, GridSpec, MAX_DWELL, MAX_SENSOR_RADIUS, parts, path};
-use crate::error::{Source, WorldError, Wrong};
+use crate::error::{Source, WorldError};
+use crate::reader::Reading;
 use serde_spanned::Spanned;
 use std::ops::RangeInclusive;
 
-pub(super) fn check(source: &Source<'_>, file: &GridFile) -> Result<GridSpec, WorldError> {
-    let mut wrong = Wrong::default();
-    let name = wrong.keep(source.name("", &file.name));
-    let sensor_radius =
-        wrong.keep(whole(source, "sensor_radius", &file.sensor_radius, 1..=MAX_SENSOR_RADIUS));
-    let block_chance = wrong.keep(chance(source, "block_chance", &file.transitions.block_chance));
-    let robot_chance = wrong.keep(chance(source, "robot_chance", &file.transitions.robot_chance));
-    wrong.keep(source.unique("block", file.blocks.iter().map(|block| &block.name)));
-    let drawing = wrong.keep(drawing(source, file));
-    // By their places in the file; none where one is wrong.
+pub(super) fn check(source: &Source<'_>, reading: Reading<GridFile>) -> Result<GridSpec, WorldError> {
+    let Reading { file, mut wrong, .. } = reading;
+    let files: Vec<&BlockFile> = file.blocks.sound().into_iter().map(Spanned::get_ref).collect();
+    let name = file.name.get().and_then(|name| wrong.keep(source.name("", name)));
+    let sensor_radius = file
+        .sensor_radius
+        .get()
+        .and_then(|radius| wrong.keep(whole(source, "sensor_radius", radius, 1..=MAX_SENSOR_RADIUS)));
+    let chances = file.transitions.get().map(|transitions| {
+        let TransitionsFile { block_chance, robot_chance } = transitions.get_ref();
+        let block = wrong.keep(chance(source, "block_chance", block_chance));
+        (block, wrong.keep(chance(source, "robot_chance", robot_chance)))
+    });
+    wrong.keep(source.unique("block", files.iter().map(|block| &block.name)));
+    let drawing = file.map.get().and_then(|map| wrong.keep(drawing(source, map)));
+    // By their places among the files; none where one is wrong.
     let mut blocks: Vec<Option<BlockSpec>> = Vec::new();
-    for written in &file.blocks {
+    for written in &files {
         // Without a map there is nothing to judge a path by.
         let Some(drawing) = &drawing else { break };
         let block = wrong.keep(block(source, written, drawing));
         if let Some(block) = &block {
-            wrong.keep(apart(source, file, written, block, &blocks, drawing));
+            wrong.keep(apart(source, &files, written, block, &blocks, drawing));
         }
         blocks.push(block);
     }
-    let (Some(name), Some(sensor_radius), Some(block_chance), Some(robot_chance), Some(drawing), true) =
-        (name, sensor_radius, block_chance, robot_chance, drawing, wrong.is_empty())
+    let (
+        Some(name),
+        Some(sensor_radius),
+        Some((Some(block_chance), Some(robot_chance))),
+        Some(drawing),
+        true,
+    ) = (name, sensor_radius, chances, drawing, wrong.is_empty())
     else {
         return Err(wrong.into_error());
     };
     Ok(GridSpec {
         name,
-        description: file.description.clone(),
+        description: file.description.unwrap_or_default(),
         warnings: parts::warnings(&drawing.walls, drawing.start),
         walls: drawing.walls,
         blocks: blocks.into_iter().flatten().collect(),
@@ -67,7 +79,7 @@ fn block(source: &Source<'_>, file: &BlockFile, drawing: &Drawing) -> Result<Blo
 /// Refuses a block that starts where another one or the robot does.
 fn apart(
     source: &Source<'_>,
-    file: &GridFile,
+    files: &[&BlockFile],
     written: &BlockFile,
     block: &BlockSpec,
     others: &[Option<BlockSpec>],
@@ -80,7 +92,7 @@ fn apart(
         let help = "begin the path elsewhere, or draw an `R` where the robot starts";
         return Err(source.error(&what, (place(written), "the robot starts here"), &[], help));
     }
-    let mut others = others.iter().zip(&file.blocks);
+    let mut others = others.iter().zip(files);
     let other = others.find(|(other, _)| other.as_ref().is_some_and(|other| other.path[0] == start));
     if let Some((_, other)) = other {
         let what = format!("the blocks `{}` and `{}` start on one cell", other.name.get_ref(), block.name);

@@ -1,5 +1,6 @@
 //! The world file as it is written: every key with its place in the text.
 
+use crate::reader::{Sound, Tables};
 use serde::Deserialize;
 use serde_spanned::Spanned;
 
@@ -11,18 +12,16 @@ pub(super) type WayPoint = Spanned<Vec<i64>>;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GridFile {
-    pub(super) name: Spanned<String>,
-    #[serde(default)]
-    pub(super) description: String,
-    pub(super) sensor_radius: Whole,
-    pub(super) map: Spanned<String>,
-    #[serde(default)]
-    pub(super) transitions: TransitionsFile,
-    #[serde(default, rename = "block")]
-    pub(super) blocks: Vec<BlockFile>,
+    pub(super) name: Sound<String>,
+    pub(super) description: Option<String>,
+    pub(super) sensor_radius: Sound<i64>,
+    pub(super) map: Sound<String>,
+    pub(super) transitions: Sound<TransitionsFile>,
+    #[serde(rename = "block")]
+    pub(super) blocks: Tables<BlockFile>,
 }
 
-#[derive(Default, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TransitionsFile {
     pub(super) block_chance: Option<Spanned<f64>>,

@@ -1,9 +1,9 @@
 //! The drawing of the map: one character per cell, the top row first.
 
-use super::file::GridFile;
 use crate::error::{Source, WorldError};
 use geometry::{Cell, Grid, GridFrame};
 use nalgebra::Point2;
+use serde_spanned::Spanned;
 use std::ops::Range;
 
 /// More cells than this are refused before anything is allocated for them.
@@ -23,9 +23,9 @@ struct Row<'a> {
     place: Range<usize>,
 }
 
-pub(super) fn drawing(source: &Source<'_>, file: &GridFile) -> Result<Drawing, WorldError> {
-    let rows = rows(source, file);
-    let frame = frame(source, file, &rows)?;
+pub(super) fn drawing(source: &Source<'_>, map: &Spanned<String>) -> Result<Drawing, WorldError> {
+    let rows = rows(source, map);
+    let frame = frame(source, map, &rows)?;
     let mut walls = Grid::filled(frame, false);
     let mut start: Option<(Cell, Range<usize>)> = None;
     for (row, y) in rows.iter().zip((0..frame.height() as i32).rev()) {
@@ -58,7 +58,7 @@ pub(super) fn drawing(source: &Source<'_>, file: &GridFile) -> Result<Drawing, W
     }
     if walls.cells().iter().all(|wall| *wall) {
         let help = "draw free cells as `.`";
-        return Err(source.error("no cell of the map is free", (file.map.span(), "all wall"), &[], help));
+        return Err(source.error("no cell of the map is free", (map.span(), "all wall"), &[], help));
     }
     let start = match start {
         Some((cell, _)) => cell,
@@ -85,13 +85,13 @@ fn centre(source: &Source<'_>, walls: &Grid<bool>, rows: &[Row<'_>]) -> Result<C
 }
 
 /// The cells of the drawing, of 1 m each.
-fn frame(source: &Source<'_>, file: &GridFile, rows: &[Row<'_>]) -> Result<GridFrame, WorldError> {
+fn frame(source: &Source<'_>, map: &Spanned<String>, rows: &[Row<'_>]) -> Result<GridFrame, WorldError> {
     let width = rows.first().map_or(0, |row| row.text.chars().count());
     let height = rows.len();
     let said = |what: &str| {
         let label = format!("{width} × {height} cells");
         let help = "3 × 3 cells are the least, 4 million the most; one row of text is one row of cells";
-        source.error(what, (file.map.span(), &label), &[], help)
+        source.error(what, (map.span(), &label), &[], help)
     };
     for row in rows {
         let length = row.text.chars().count();
@@ -119,8 +119,8 @@ fn characters(count: usize) -> String {
 
 /// The rows of the drawing from the top, each with its place in the file. Where escapes make the
 /// file differ from what it says, the place is that of the whole map.
-fn rows<'a>(source: &Source<'a>, file: &'a GridFile) -> Vec<Row<'a>> {
-    let whole = file.map.span();
+fn rows<'a>(source: &Source<'a>, map: &'a Spanned<String>) -> Vec<Row<'a>> {
+    let whole = map.span();
     let raw = source.text.get(whole.clone()).unwrap_or_default();
     let mut at = whole.start + raw.len() - raw.trim_start_matches(['"', '\'']).len();
     let body = &raw[at - whole.start..];
@@ -129,7 +129,7 @@ fn rows<'a>(source: &Source<'a>, file: &'a GridFile) -> Vec<Row<'a>> {
     at = whole.end - body.len();
     let mut written = body.split_inclusive('\n');
     let mut rows = Vec::new();
-    for text in file.map.get_ref().lines() {
+    for text in map.get_ref().lines() {
         let line = written.next().unwrap_or_default();
         let is_exact = line.starts_with(text);
         rows.push(Row { text, place: if is_exact { at..at + text.len() } else { whole.clone() } });

@@ -30,6 +30,7 @@ mod write;
 
 use crate::error::{Source, WorldError};
 use crate::kind::Kind;
+use crate::reader;
 use geometry::{Cell, Grid, GridFrame};
 use std::path::Path;
 
@@ -94,11 +95,11 @@ impl GridSpec {
     /// # Errors
     ///
     /// When the text is no TOML, a key is unknown or missing, a value out of range, or the things
-    /// in the world contradict each other. The message says where, and what would be right.
+    /// in the world contradict each other. The messages say where, and what would be right: of everything
+    /// that is wrong, as far as one thing does not hide another.
     pub fn parse(file_name: &str, text: &str) -> Result<Self, WorldError> {
         let source = Source { name: file_name, text };
-        let file = toml::from_str(text).map_err(|error| Kind::Grid.explain(&source, error))?;
-        check::check(&source, &file)
+        check::check(&source, reader::read(&source, Kind::Grid)?)
     }
 
     /// What the world is called.

@@ -5,10 +5,10 @@ use super::numbers::Table;
 use super::obstacle::{Motion, ObstacleSpec, obstacle};
 use super::robot::robot;
 use super::{Behaviour, FleetSpec, RobotSpec, floor_plan};
-use crate::error::{Source, WorldError, Wrong};
+use crate::error::{Source, WorldError};
 use crate::files::Files;
-use crate::kind::Kind;
 use crate::physics::shape::{Rectangle, TOUCH_M, turned};
+use crate::reader::Reading;
 use geometry::{GridFrame, rotation};
 use nalgebra::Point2;
 use serde_spanned::Spanned;
@@ -25,40 +25,42 @@ pub(super) struct Solid {
     pub(super) span: Range<usize>,
 }
 
-/// The file as it is written.
-pub(super) fn file(source: &Source<'_>) -> Result<WorldFile, WorldError> {
-    toml::from_str(source.text).map_err(|error| Kind::Physics.explain(source, error))
-}
-
 /// Checks everything but who is driven.
 pub(super) fn check(
     source: &Source<'_>,
-    file: &WorldFile,
+    reading: &Reading<WorldFile>,
     files: &dyn Files,
 ) -> Result<FleetSpec, WorldError> {
-    let mut wrong = Wrong::default();
-    let name = wrong.keep(source.name("", &file.name)).unwrap_or_default();
+    let file = &reading.file;
+    let mut wrong = reading.wrong.clone();
+    let misread = wrong.count();
+    let name = file.name.get().and_then(|name| wrong.keep(source.name("", name))).unwrap_or_default();
     let physics = Table { source, path: "physics" };
-    let step_s = wrong.keep(physics.number_or("step_s", &file.physics.step_s, 0.05, 0.001..=0.1));
-    let map = wrong.keep(map(source, &file.map));
+    let step_s = file
+        .physics
+        .get()
+        .and_then(|file| wrong.keep(physics.number_or("step_s", &file.get_ref().step_s, 0.05, 0.001..=0.1)));
+    let map =
+        file.map.get().and_then(|file| Some((file.get_ref(), wrong.keep(map(source, file.get_ref()))?)));
     // Without these two there is nothing to judge the rest by.
-    let (Some((size, cell_m, turn_rad)), Some(step_s)) = (map, step_s) else {
+    let (Some((map, (size, cell_m, turn_rad))), Some(step_s)) = (map, step_s) else {
         return Err(wrong.into_error());
     };
     let mut solids = Vec::new();
-    for wall in &file.walls {
+    for wall in file.walls.sound() {
         let shape = wrong.keep(self::wall(source, wall, &size));
         solids.extend(shape.map(|shape| Solid { shape, span: wall.span() }));
     }
-    for plan in &file.floor_plans {
+    for plan in file.floor_plans.sound() {
         let walls = wrong.keep(floor_plan::walls(source, files, plan, &size)).unwrap_or_default();
         solids.extend(walls.into_iter().map(|shape| Solid { shape, span: plan.span() }));
     }
     let walls = solids.iter().map(|wall| wall.shape).collect::<Vec<_>>();
+    let obstacle_files = file.obstacles.sound();
     let mut obstacles = Vec::new();
     // What stands at the start but may be gone when a robot comes by.
     let mut movers = Vec::new();
-    for file in &file.obstacles {
+    for file in &obstacle_files {
         let obstacle = obstacle(source, file.get_ref(), &size, &solids[..walls.len()], step_s);
         let Some(obstacle) = wrong.keep(obstacle) else { continue };
         let solid = |shape| Solid { shape, span: file.span() };
@@ -69,27 +71,32 @@ pub(super) fn check(
         }
         obstacles.push(obstacle);
     }
-    wrong.keep(source.unique("obstacle", file.obstacles.iter().map(|obstacle| &obstacle.get_ref().name)));
-    wrong.keep(source.unique("robot", file.robots.iter().map(|robot| &robot.get_ref().name)));
+    let robot_files = file.robots.sound();
+    wrong.keep(source.unique("obstacle", obstacle_files.iter().map(|obstacle| &obstacle.get_ref().name)));
+    wrong.keep(source.unique("robot", robot_files.iter().map(|robot| &robot.get_ref().name)));
     let mut robots = Vec::new();
     // A robot that follows a wall is not wrong because the wall is.
-    let is_built = wrong.is_empty();
-    for file in file.robots.iter().filter(|_| is_built) {
+    let is_read = reading.is_root_sound
+        && file.walls.are_sound()
+        && file.floor_plans.are_sound()
+        && file.obstacles.are_sound();
+    let is_built = is_read && wrong.count() == misread;
+    for file in robot_files.iter().filter(|_| is_built) {
         robots.extend(wrong.keep(robot(source, file.get_ref(), &size, step_s, &solids, &movers)));
     }
-    let frame = covering(&size, cell_m, turn_rad).ok_or_else(|| too_many_cells(source, &file.map));
+    let frame = covering(&size, cell_m, turn_rad).ok_or_else(|| too_many_cells(source, map));
     let frame = wrong.keep(frame);
     // What things are to each other is asked of things that are right.
-    if obstacles.len() == file.obstacles.len() {
-        wrong.keep(boxes_apart(source, &file.obstacles, &obstacles));
+    if obstacles.len() == obstacle_files.len() {
+        wrong.keep(boxes_apart(source, &obstacle_files, &obstacles));
     }
-    if robots.len() == file.robots.len() {
-        wrong.keep(apart(source, &file.robots, &robots));
+    if robots.len() == robot_files.len() {
+        wrong.keep(apart(source, &robot_files, &robots));
     }
     let (Some(frame), true) = (frame, wrong.is_empty()) else { return Err(wrong.into_error()) };
 
-    let mut spec =
-        FleetSpec { name, description: file.description.clone(), frame, step_s, walls, obstacles, robots };
+    let description = file.description.clone().unwrap_or_default();
+    let mut spec = FleetSpec { name, description, frame, step_s, walls, obstacles, robots };
     turn(&mut spec, turn_rad, &(size / 2.0));
     Ok(spec)
 }
@@ -198,7 +205,7 @@ pub(super) fn inside(
 /// Refuses boxes that can be pushed and start in something else: they would burst apart.
 fn boxes_apart(
     source: &Source<'_>,
-    files: &[Spanned<ObstacleFile>],
+    files: &[&Spanned<ObstacleFile>],
     obstacles: &[ObstacleSpec],
 ) -> Result<(), WorldError> {
     let is_pushed = |obstacle: &ObstacleSpec| matches!(obstacle.motion, Motion::Pushed(_));
@@ -217,7 +224,7 @@ fn boxes_apart(
 }
 
 /// Refuses robots that start in each other.
-fn apart(source: &Source<'_>, files: &[Spanned<RobotFile>], robots: &[RobotSpec]) -> Result<(), WorldError> {
+fn apart(source: &Source<'_>, files: &[&Spanned<RobotFile>], robots: &[RobotSpec]) -> Result<(), WorldError> {
     for (b, second) in robots.iter().enumerate() {
         for (a, first) in robots[..b].iter().enumerate() {
             let needed_m = first.radius_m + second.radius_m;
@@ -250,12 +257,14 @@ pub(super) fn driven(
 ) -> Result<usize, WorldError> {
     let driven: Vec<usize> =
         (0..robots.len()).filter(|&i| robots[i].behaviour == Behaviour::Driven).collect();
-    let kind = |i: usize| file.robots[i].get_ref().behaviour.get_ref().kind.span();
+    let files = file.robots.sound();
+    let kind = |i: usize| files[i].get_ref().behaviour.get_ref().kind.span();
     let help = "exactly one robot has `kind = \"driven\"`: the one that explores";
     match driven[..] {
         [one] => Ok(one),
         [] => {
-            let mark = robots.first().map_or(file.name.span(), |_| kind(0));
+            let mark =
+                robots.first().map_or_else(|| file.name.get().map_or(0..0, Spanned::span), |_| kind(0));
             Err(source.error("no robot is driven", (mark, "not driven"), &[], help))
         }
         [first, second, ..] => {

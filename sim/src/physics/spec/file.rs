@@ -1,80 +1,28 @@
 //! The world file as it is written: every key with its place in the text.
 
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use crate::reader::{OneOrMore, Sound, Tables};
+use serde::Deserialize;
 use serde_spanned::Spanned;
-use std::fmt;
-use std::marker::PhantomData;
 use std::ops::Range;
 
 pub(super) type Number = Spanned<f64>;
-pub(super) type Pair = Spanned<Two>;
-
-/// Exactly two numbers: an array would let a third one pass.
-#[derive(Clone, Copy, Deserialize)]
-#[serde(try_from = "Vec<f64>")]
-pub(super) struct Two(pub(super) [f64; 2]);
-
-impl TryFrom<Vec<f64>> for Two {
-    type Error = String;
-
-    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        let count = numbers.len();
-        numbers
-            .try_into()
-            .map(Self)
-            .map_err(|_| format!("invalid length {count}, expected an array of length 2"))
-    }
-}
-
-/// A table, or a list of tables.
-pub(super) struct OneOrMore<T>(pub(super) Vec<T>);
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMore<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Tables<T>(PhantomData<T>);
-        impl<'de, T: Deserialize<'de>> Visitor<'de> for Tables<T> {
-            type Value = OneOrMore<T>;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a table of keys, or a list of them")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<OneOrMore<T>, A::Error> {
-                Ok(OneOrMore(vec![T::deserialize(MapAccessDeserializer::new(map))?]))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<OneOrMore<T>, A::Error> {
-                let mut tables = Vec::new();
-                while let Some(table) = list.next_element()? {
-                    tables.push(table);
-                }
-                Ok(OneOrMore(tables))
-            }
-        }
-        // Not an untagged enum: that would forget where in the file an error is.
-        deserializer.deserialize_any(Tables(PhantomData))
-    }
-}
+pub(super) type Pair = Spanned<[f64; 2]>;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WorldFile {
-    pub(super) name: Spanned<String>,
-    #[serde(default)]
-    pub(super) description: String,
-    pub(super) map: MapFile,
-    #[serde(default)]
-    pub(super) physics: PhysicsFile,
-    #[serde(default, rename = "wall")]
-    pub(super) walls: Vec<Spanned<WallFile>>,
-    #[serde(default, rename = "floor_plan")]
-    pub(super) floor_plans: Vec<Spanned<FloorPlanFile>>,
-    #[serde(default, rename = "obstacle")]
-    pub(super) obstacles: Vec<Spanned<ObstacleFile>>,
-    #[serde(default, rename = "robot")]
-    pub(super) robots: Vec<Spanned<RobotFile>>,
+    pub(super) name: Sound<String>,
+    pub(super) description: Option<String>,
+    pub(super) map: Sound<MapFile>,
+    pub(super) physics: Sound<PhysicsFile>,
+    #[serde(rename = "wall")]
+    pub(super) walls: Tables<WallFile>,
+    #[serde(rename = "floor_plan")]
+    pub(super) floor_plans: Tables<FloorPlanFile>,
+    #[serde(rename = "obstacle")]
+    pub(super) obstacles: Tables<ObstacleFile>,
+    #[serde(rename = "robot")]
+    pub(super) robots: Tables<RobotFile>,
 }
 
 #[derive(Deserialize)]
@@ -85,7 +33,7 @@ pub(super) struct MapFile {
     pub(super) turn_deg: Option<Number>,
 }
 
-#[derive(Default, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PhysicsFile {
     pub(super) step_s: Option<Number>,
@@ -192,13 +140,12 @@ pub(super) struct RobotFile {
     pub(super) pose_m: Pair,
     pub(super) heading_deg: Option<Number>,
     pub(super) drive: DriveFile,
-    #[serde(default)]
     pub(super) odometry: OdometryFile,
     #[serde(rename = "laser")]
     pub(super) lasers: Spanned<OneOrMore<LaserFile>>,
     pub(super) bumper: Option<BumperFile>,
-    #[serde(default, rename = "sonar")]
-    pub(super) sonars: Vec<Spanned<SonarFile>>,
+    #[serde(rename = "sonar")]
+    pub(super) sonars: Option<Vec<Spanned<SonarFile>>>,
     pub(super) fiducial: Option<FiducialFile>,
     pub(super) tag: Option<Spanned<u32>>,
     pub(super) behaviour: Spanned<BehaviourFile>,
@@ -218,7 +165,7 @@ pub(super) struct DriveFile {
     pub(super) max_steer_deg: Option<Number>,
 }
 
-#[derive(Default, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct OdometryFile {
     pub(super) distance_gain: Option<Number>,

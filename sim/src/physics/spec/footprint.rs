@@ -1,6 +1,6 @@
 //! The outline of a robot: a circle, or a convex polygon.
 
-use super::file::{Pair, RobotFile, Two};
+use super::file::{Pair, RobotFile};
 use super::numbers::Table;
 use crate::error::{Source, WorldError};
 use crate::physics::convex;
@@ -37,7 +37,7 @@ pub(super) fn footprint(source: &Source<'_>, file: &RobotFile) -> Result<Footpri
             let mut corners = Vec::new();
             for pair in pairs {
                 table.pair("footprint_m", pair, -10.0..=10.0)?;
-                let Two([x, y]) = *pair.get_ref();
+                let [x, y] = *pair.get_ref();
                 corners.push(Point2::new(x, y));
             }
             // Either way around is fine.

@@ -24,6 +24,8 @@ pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 use super::shape::Rectangle;
 use crate::error::{Source, WorldError};
 use crate::files::{Disk, Files};
+use crate::kind::Kind;
+use crate::reader;
 use geometry::GridFrame;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -58,7 +60,8 @@ impl FleetSpec {
     /// # Errors
     ///
     /// When the text is no TOML, a key is unknown or missing, a value out of range, or the things
-    /// in the world contradict each other. The message says where, and what would be right.
+    /// in the world contradict each other. The messages say where, and what would be right: of everything
+    /// that is wrong, as far as one thing does not hide another.
     pub fn parse(name: &str, text: &str) -> Result<Self, WorldError> {
         Self::parse_with(name, text, &no_files())
     }
@@ -71,7 +74,7 @@ impl FleetSpec {
     /// As [`FleetSpec::parse`], and when a picture cannot be read.
     pub fn parse_with(name: &str, text: &str, files: &dyn Files) -> Result<Self, WorldError> {
         let source = Source { name, text };
-        check::check(&source, &check::file(&source)?, files)
+        check::check(&source, &reader::read(&source, Kind::Physics)?, files)
     }
 
     /// What the world is called.
@@ -145,9 +148,9 @@ impl WorldSpec {
     /// As [`WorldSpec::parse`], and when a picture cannot be read.
     pub fn parse_with(name: &str, text: &str, files: &dyn Files) -> Result<Self, WorldError> {
         let source = Source { name, text };
-        let file = check::file(&source)?;
-        let fleet = check::check(&source, &file, files)?;
-        let driven = check::driven(&source, &file, &fleet.robots)?;
+        let reading = reader::read(&source, Kind::Physics)?;
+        let fleet = check::check(&source, &reading, files)?;
+        let driven = check::driven(&source, &reading.file, &fleet.robots)?;
         Ok(Self { fleet, driven })
     }
 

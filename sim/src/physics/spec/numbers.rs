@@ -1,6 +1,6 @@
 //! Single values: in range or not.
 
-use super::file::{Number, Pair, Two};
+use super::file::{Number, Pair};
 use crate::error::{Source, WorldError};
 use nalgebra::Point2;
 use serde_spanned::Spanned;
@@ -58,7 +58,7 @@ impl Table<'_> {
         value: &Pair,
         range: RangeInclusive<f64>,
     ) -> Result<Point2<f64>, WorldError> {
-        let Two([x, y]) = *value.get_ref();
+        let [x, y] = *value.get_ref();
         if range.contains(&x) && range.contains(&y) {
             return Ok(Point2::new(x, y));
         }
@@ -91,7 +91,7 @@ impl Table<'_> {
         value: &Pair,
         size: &Point2<f64>,
     ) -> Result<Point2<f64>, WorldError> {
-        let Two([x, y]) = *value.get_ref();
+        let [x, y] = *value.get_ref();
         if (0.0..=size.x).contains(&x) && (0.0..=size.y).contains(&y) {
             return Ok(Point2::new(x, y));
         }

@@ -67,7 +67,7 @@ pub(super) fn robot(
         laser,
         more_lasers,
         bumper: file.bumper.as_ref().map(|file| senses::bumper(source, file)).transpose()?,
-        sonars: senses::sonars(source, &file.sonars, step_s, radius_m)?,
+        sonars: senses::sonars(source, file.sonars.as_deref().unwrap_or_default(), step_s, radius_m)?,
         fiducial: file
             .fiducial
             .as_ref()

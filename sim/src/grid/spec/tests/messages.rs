@@ -181,11 +181,11 @@ fn a_world_of_the_other_kind_is_called_what_it_is() {
       = help: a physics world has a table `[map]` with `size_m` and `cell_m`
     "#);
     // But not when something else is wrong with it.
-    insta::assert_snapshot!(WorldSpec::parse("yard.toml", "map = 3").unwrap_err(), @r"
+    insta::assert_snapshot!(WorldSpec::parse("yard.toml", "name = 'n'\nmap = 3").unwrap_err(), @r"
     `map` has the wrong type
-     --> yard.toml:1:7
+     --> yard.toml:2:7
       |
-    1 | map = 3
+    2 | map = 3
       |       ^ this is the number `3`
       |
       = help: it must be a table of keys
