@@ -101,7 +101,7 @@ fn a_light_box_is_pushed_and_a_heavy_one_is_not() {
 
 #[test]
 fn a_light_box_holds_a_heavy_robot_where_something_holds_the_box() {
-    // The wall of the house is at x = 5.9; between it and a robot of 20 kg are 0.3 m of 0.02 kg.
+    // A wall begins at x = 5.95; between it and a robot of 20 kg is a box.
     for (side_m, mass_kg) in [([0.3, 0.3], 0.02), ([0.3, 0.05], 0.02), ([0.3, 0.3], 1.0)] {
         let box_ = pushed("crate", [5.7, 2.05], mass_kg, 0.2)
             .replace("[0.3, 0.3]", &format!("{side_m:?}"))
