@@ -2,7 +2,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use geometry::{LaserReading, Twist, World};
+use geometry::{Twist, World};
 use sim::physics::{Fleet, FleetSpec, PhysicsWorld, WorldSpec};
 
 const WORLDS: [&str; 2] = ["four_rooms", "turned_house"];
@@ -77,12 +77,11 @@ fn fleet(robots: usize) -> FleetSpec {
 #[divan::bench(args = [1, 10, 100])]
 fn tick_of_a_fleet(bencher: Bencher<'_, '_>, robots: usize) {
     let mut fleet = Fleet::new(&fleet(robots), 0);
-    let nobody = |_: usize, _: &LaserReading| Twist::STOP;
     // Away from where they started.
-    fleet.run_until(20.0, &mut { nobody });
+    fleet.run_until(20.0, &mut ());
     bencher.counter(ItemsCount::new(robots * BEAMS)).bench_local(|| {
-        fleet.step(&mut { nobody });
-        fleet.step(&mut { nobody });
+        fleet.step(&mut ());
+        fleet.step(&mut ());
     });
 }
 

@@ -2,7 +2,7 @@
 //! `cargo run -p sim --example golden -- [THREADS]`.
 
 use geometry::{LaserReading, Twist};
-use sim::physics::{Fleet, FleetSpec};
+use sim::physics::{Fleet, FleetSpec, RobotView};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let threads = std::env::args().nth(1).map_or(Ok(1), |text| text.parse())?;
@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let spec = FleetSpec::parse("yard.toml", include_str!("../worlds/yard.toml"))?;
     let mut fleet = Fleet::new(&spec, 7);
     fleet.set_parallel_lasers(threads > 1);
-    let mut ahead = |_: usize, _: &LaserReading| Twist { linear_mps: 0.3, angular_radps: 0.2 };
+    let mut ahead = |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps: 0.3, angular_radps: 0.2 };
     pool.install(|| fleet.run_until(60.0, &mut ahead));
     // FNV-1a of all bytes of the state.
     let eat = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);

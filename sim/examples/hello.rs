@@ -2,7 +2,7 @@
 //! Explained line by line in the documentation of the crate `sim`.
 
 use geometry::{LaserReading, Twist};
-use sim::physics::{Fleet, FleetSpec};
+use sim::physics::{Fleet, FleetSpec, RobotView};
 
 const PLACE: &str = r#"
 name = "hello"
@@ -35,7 +35,7 @@ laser = { beams = 180, range_max_m = 5.0, rate_hz = 10.0 }
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let spec = FleetSpec::parse("hello.toml", PLACE)?;
     let mut fleet = Fleet::new(&spec, 7);
-    let mut controller = |_robot: usize, reading: &LaserReading| {
+    let mut controller = |_robot: &RobotView<'_>, reading: &LaserReading| {
         let ahead_m = reading.scan.ranges_m[90];
         let linear_mps = if ahead_m > 1.0 { 0.5 } else { 0.0 };
         Twist { linear_mps, angular_radps: 0.0 }

@@ -12,7 +12,6 @@ mod place;
 mod usage;
 
 use clap::Parser;
-use geometry::{LaserReading, Twist};
 use place::Wish;
 use sim::physics::Fleet;
 use std::process::ExitCode;
@@ -74,7 +73,7 @@ fn main() -> ExitCode {
     let load_s = start.elapsed().as_secs_f64();
     let cpu_before_s = usage::cpu_s();
     let start = Instant::now();
-    pool.install(|| fleet.run_until(args.seconds, &mut |_: usize, _: &LaserReading| Twist::STOP));
+    pool.install(|| fleet.run_until(args.seconds, &mut ()));
     let wall_s = start.elapsed().as_secs_f64();
     let cpu_s = usage::cpu_s().zip(cpu_before_s).map_or(f64::NAN, |(after, before)| after - before);
 

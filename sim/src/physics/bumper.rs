@@ -1,14 +1,19 @@
 use super::spec::BumperSpec;
 use nalgebra::{Isometry2, Point2};
+use std::f64::consts::TAU;
 
-/// The bumpers that a touch at a place (m) presses, of a robot at `pose`, as bits; none if the ring
-/// does not reach there.
-pub(super) fn pressed(spec: &BumperSpec, pose: &Isometry2<f64>, at: &Point2<f64>) -> u64 {
-    let local = pose.inverse_transform_point(at);
-    let share = libm::atan2(local.y, local.x) / spec.fov_rad + 0.5;
-    if !(0.0..=1.0).contains(&share) {
-        return 0;
-    }
-    // The left end of the ring belongs to the last bumper.
-    1 << ((share * spec.sectors as f64) as usize).min(spec.sectors - 1)
+/// The bumpers, as bits, that a touch along a stretch between two places (m) presses, of a robot at `pose`.
+pub(super) fn pressed(spec: &BumperSpec, pose: &Isometry2<f64>, ends: &[Point2<f64>; 2]) -> u64 {
+    let [a, b] = ends.map(|end| pose.inverse_transform_point(&end).coords);
+    let turn_rad = libm::atan2(a.perp(&b), a.dot(&b));
+    let right = if turn_rad < 0.0 { b } else { a };
+    let right_rad = libm::atan2(right.y, right.x);
+    let sector_rad = spec.fov_rad / spec.sectors as f64;
+    let is_pressed = |sector: usize| {
+        let begin_rad = sector as f64 * sector_rad - spec.fov_rad / 2.0;
+        // One of the two begins within the other.
+        (right_rad - begin_rad).rem_euclid(TAU) < sector_rad
+            || (begin_rad - right_rad).rem_euclid(TAU) < turn_rad.abs()
+    };
+    (0..spec.sectors).filter(|sector| is_pressed(*sector)).fold(0, |pressed, sector| pressed | 1 << sector)
 }

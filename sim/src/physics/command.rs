@@ -92,6 +92,18 @@ impl From<Twist> for Command {
     }
 }
 
+impl From<Velocity> for Command {
+    fn from(velocity: Velocity) -> Self {
+        Self::Velocity(velocity)
+    }
+}
+
+impl From<Acceleration> for Command {
+    fn from(acceleration: Acceleration) -> Self {
+        Self::Acceleration(acceleration)
+    }
+}
+
 impl Velocity {
     /// Writes or reads it.
     pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {

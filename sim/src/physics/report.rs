@@ -78,8 +78,11 @@ pub struct RobotView<'a> {
     pub twist: Twist,
     /// What of it goes to the left, m/s: 0 but for an omni drive.
     pub left_mps: f64,
-    /// Whether it was held back in the last step: by a wall that it drives against, or another robot.
+    /// Whether it was held back in the last step: by a wall that it drives against, or another robot, or a
+    /// box that it pushes, which costs it some of its speed.
     pub is_stalled: bool,
+    /// What it touches now.
+    pub touching: &'a [Body],
     /// What its main laser saw last, if it has looked yet.
     pub sweep: Option<&'a Sweep>,
     /// What its fiducial finder found last, robots first, each in the order of the file.
@@ -94,15 +97,13 @@ impl<'a> RobotView<'a> {
     pub fn sweeps(&self) -> impl ExactSizeIterator<Item = Option<&'a Sweep>> + use<'a> {
         self.eyes.iter().map(|eye| eye.sweep.as_ref())
     }
-}
 
-impl<'a> RobotView<'a> {
     /// What each of its sonars heard last, in the order of the file; `None`: it has not listened yet.
     pub fn pings(&self) -> impl ExactSizeIterator<Item = Option<Ping>> + use<'a> {
         self.ears.iter().map(|ear| ear.ping)
     }
 
-    /// Whether each of its bumpers was pressed in the last step, from right to left.
+    /// Whether each of its bumpers touches something now, from right to left.
     pub fn bumpers(&self) -> impl ExactSizeIterator<Item = bool> + use<> {
         let (pressed, sectors) = self.bumpers;
         (0..sectors).map(move |sector| pressed >> sector & 1 == 1)

@@ -40,7 +40,7 @@ pub(super) struct Robot {
     eyes: Vec<Eye>,
     ears: Vec<Ear>,
     finder: Option<Finder>,
-    /// The bumpers that were pressed in the last step, as bits.
+    /// The bumpers that touch something, as bits.
     pub(super) pressed: u64,
 }
 
@@ -152,6 +152,7 @@ impl Robot {
             twist: self.velocity.twist(),
             left_mps: self.velocity.left_mps,
             is_stalled: self.drive.is_stalled(),
+            touching: &self.touching,
             sweep: self.sweep(),
             fiducials: self.finder.as_ref().map_or(&[], |finder| finder.found.as_slice()),
             eyes: &self.eyes,

@@ -9,7 +9,7 @@ use geometry::Twist;
 use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 
 /// What every snapshot begins with: the kind of file, and the version of its contents.
-const MAGIC: u64 = u64::from_le_bytes(*b"fleet\0\0\x02");
+const MAGIC: u64 = u64::from_le_bytes(*b"fleet\0\0\x03");
 
 /// Why bytes are no snapshot of a fleet.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -100,8 +100,8 @@ impl PhysicsWorld {
                 }
             }
         }
-        let own = self.fleet.contacts().iter().filter(|contact| contact.robot == self.spec.driven);
-        self.contacts.extend(own);
+        let contacts = self.fleet.take_contacts().into_iter();
+        self.contacts.extend(contacts.filter(|contact| contact.robot == self.spec.driven));
         self.fleet.move_obstacles(|obstacle, what, standing| {
             let spec = &self.spec.fleet.obstacles[obstacle];
             let cells = self.truth.change_box(&spec.shape, standing, Some(Body::Obstacle(obstacle)));
@@ -129,7 +129,7 @@ impl World for PhysicsWorld {
 
     fn act(&mut self, command: &Twist) {
         self.truth.forget_changes();
-        self.fleet.command(self.spec.driven, &(*command).into());
+        self.fleet.command(self.spec.driven, *command);
         for _ in 0..self.spec.driven().laser.period_steps {
             self.advance();
         }

@@ -41,6 +41,7 @@ impl Bodies {
             if !is_held {
                 return;
             }
+            self.world.bodies.propagate_modified_body_positions_to_colliders(&mut self.world.colliders);
         }
     }
 
@@ -60,10 +61,7 @@ impl Bodies {
 
     fn form(&self, collider: rapier::ColliderHandle, was: Option<&Was>) -> Form {
         let collider = &self.world.colliders[collider];
-        let body = collider.parent();
-        let before = body.zip(was).and_then(|(body, was)| was.get(&body.into_raw_parts()));
-        // Those that were put back do not take their colliders along before the next step.
-        let now = body.map_or(collider.position(), |body| self.world.bodies[body].position());
+        let before = collider.parent().zip(was).and_then(|(body, was)| was.get(&body.into_raw_parts()));
         let shape = collider.shape();
         let corners = match (shape.as_cuboid(), shape.as_convex_polygon()) {
             (Some(rectangle), _) => rectangle.to_polyline(),
@@ -73,7 +71,7 @@ impl Bodies {
         let corners: Vec<_> =
             corners.iter().map(|corner| Point2::new(f64::from(corner.x), f64::from(corner.y))).collect();
         let radius_m = shape.as_ball().map_or(0.0, |disc| f64::from(disc.radius));
-        Form::new(&corners, radius_m, &from_rapier(before.unwrap_or(now)))
+        Form::new(&corners, radius_m, &from_rapier(before.unwrap_or(collider.position())))
     }
 
     /// Puts a collider's body back, at rest, if it is free and not back yet; says whether it was.

@@ -2,8 +2,12 @@
 
 mod hold;
 mod movers;
+#[cfg(test)]
+mod oracle;
+mod touch;
 
 pub(super) use movers::Mover;
+pub(super) use touch::Touch;
 
 use super::command::Velocity;
 use super::report::Body;
@@ -11,12 +15,8 @@ use super::shape::Rectangle;
 use super::snapshot::{Played, Tape, Torn};
 use super::spec::{FleetSpec, Motion, RobotSpec};
 use geometry::{heading_rad, rotation};
-use nalgebra::{Isometry2, Point2, Translation2, Vector2};
+use nalgebra::{Isometry2, Translation2, Vector2};
 use rapier2d::prelude as rapier;
-
-/// Bodies farther apart than this no longer touch, m. A contact that rapier keeps open flickers by
-/// less.
-const PART_M: f32 = 0.001;
 
 /// The most that an obstacle's surface moves by itself in a step, m, with some room.
 const MOVER_M: f64 = 0.125;
@@ -126,17 +126,6 @@ impl Bodies {
         self.world.remove_collider(handle.0);
     }
 
-    /// The energy of motion of everything that is pushed or drives, J.
-    #[cfg(test)]
-    pub(super) fn kinetic_j(&self) -> f64 {
-        let energy = |body: &rapier::RigidBody| {
-            let inertia = body.mass_properties().effective_angular_inertia();
-            let spin = body.angvel() * body.angvel() * inertia;
-            f64::from(body.mass() * body.linvel().length_squared() + spin) / 2.0
-        };
-        self.world.bodies.iter().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| energy(body)).sum()
-    }
-
     /// Adds a robot; robots are numbered in the order in which they are added.
     pub(super) fn add_robot(&mut self, spec: &RobotSpec, step_s: f64) {
         // Friction 0: a round robot slides along a wall, as one with a bumper ring does.
@@ -210,51 +199,6 @@ impl Bodies {
         body.set_position(to_rapier(pose), true);
         body.set_linvel(rapier::Vector::ZERO, true);
         body.set_angvel(0.0, true);
-    }
-
-    /// Everything near a robot that it presses against, with where (m) and the impulse of the last
-    /// step (N·s), or has not yet parted from (0).
-    pub(super) fn touches(&self, robot: usize) -> impl Iterator<Item = (Body, Point2<f64>, f64)> {
-        let own = self.robots[robot].collider;
-        self.world.narrow_phase.contact_pairs_with(own).filter_map(move |pair| {
-            let contact = pair.find_deepest_contact()?.1;
-            let impulse_ns = f64::from(pair.total_impulse_magnitude());
-            if impulse_ns <= 0.0 && contact.dist >= PART_M {
-                return None;
-            }
-            let at = self.world.colliders[pair.collider1].position().transform_point(contact.local_p1);
-            let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
-            let body = unpack(self.world.colliders[other].user_data);
-            Some((body, Point2::new(f64::from(at.x), f64::from(at.y)), impulse_ns))
-        })
-    }
-
-    /// Finds out again where everything is, for rays.
-    #[cfg(test)]
-    pub(super) fn find_again(&mut self) {
-        self.world.detect_collisions(&(), &());
-    }
-
-    /// The nearest body that a ray meets, m; the oracle for our own rays.
-    #[cfg(test)]
-    pub(super) fn ray_m(
-        &self,
-        from: &Point2<f64>,
-        along: &Vector2<f64>,
-        own: usize,
-        max_m: f64,
-    ) -> Option<f64> {
-        let filter = rapier::QueryFilter::default().exclude_rigid_body(self.robots[own].body);
-        let world = &self.world;
-        let query = world.broad_phase.as_query_pipeline(
-            world.narrow_phase.query_dispatcher(),
-            &world.bodies,
-            &world.colliders,
-            filter,
-        );
-        let origin = rapier::Vector::new(from.x as f32, from.y as f32);
-        let ray = rapier::Ray::new(origin, rapier::Vector::new(along.x as f32, along.y as f32));
-        query.cast_ray(&ray, max_m as f32, true).map(|(_, range_m)| f64::from(range_m))
     }
 }
 

@@ -1,23 +1,30 @@
 use crate::physics::command::Command;
 use crate::physics::report::RobotView;
-use geometry::{LaserReading, Twist};
+use geometry::LaserReading;
 
-/// What tells driven robots where to go: any type, or a closure from a robot (by its place in the
-/// world file) and its reading to a command.
+/// What tells driven robots where to go: any type, or a closure from a robot and the reading of its
+/// main laser to a velocity ([`geometry::Twist`]) or any other [`Command`].
+///
+/// It is asked at every scan of the robot's main laser. `&mut ()` has nothing to say: robots go on
+/// with what [`Fleet::command`](super::Fleet::command) told them.
 pub trait Controller {
-    /// What the robot is to do from this reading on until its next one. Not a number stops it;
-    /// what is beyond its bounds is cut to them.
-    fn command(&mut self, robot: usize, reading: &LaserReading) -> Twist;
+    /// What the robot is to do from now on; `None`: what it does already. All else that it senses is in
+    /// its view. Not a number stops it; what is beyond its bounds is cut to them.
+    fn drive(&mut self, robot: &RobotView<'_>, reading: &LaserReading) -> Option<Command>;
+}
 
-    /// The same for any kind of command, from the reading of the robot's main laser and all else
-    /// that it could know: that is asked for, and as a rule asks [`Controller::command`].
-    fn drive(&mut self, robot: &RobotView<'_>, reading: &LaserReading) -> Command {
-        self.command(robot.index, reading).into()
+impl<F, C> Controller for F
+where
+    F: FnMut(&RobotView<'_>, &LaserReading) -> C,
+    C: Into<Command>,
+{
+    fn drive(&mut self, robot: &RobotView<'_>, reading: &LaserReading) -> Option<Command> {
+        Some(self(robot, reading).into())
     }
 }
 
-impl<F: FnMut(usize, &LaserReading) -> Twist> Controller for F {
-    fn command(&mut self, robot: usize, reading: &LaserReading) -> Twist {
-        self(robot, reading)
+impl Controller for () {
+    fn drive(&mut self, _: &RobotView<'_>, _: &LaserReading) -> Option<Command> {
+        None
     }
 }

@@ -121,7 +121,8 @@ impl Fleet {
         standing.map(|(index, o)| ObstacleView { index, name: &o.spec.name, corners: o.shape.corners() })
     }
 
-    /// The contacts that began in the last step, robot by robot.
+    /// The contacts that began in the last [`Fleet::step`] or since the last [`Fleet::run_until`] began, step by
+    /// step and robot by robot. No snapshot has them.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
     }
@@ -132,9 +133,16 @@ impl Fleet {
         self.parallel_lasers = parallel;
     }
 
-    /// Tells a driven robot what to do.
-    pub(super) fn command(&mut self, robot: usize, wanted: &Command) {
-        self.robots[robot].command(wanted);
+    /// Tells a robot (by its place in the world file) what to do, until it is told otherwise: at any step,
+    /// and not only when it has a new scan. Returns whether it obeys; one that is not driven does not.
+    pub fn command(&mut self, robot: usize, wanted: impl Into<Command>) -> bool {
+        let driven = self.robots.get_mut(robot).filter(|robot| robot.is_driven());
+        driven.map(|robot| robot.command(&wanted.into())).is_some()
+    }
+
+    /// The contacts since they were last taken.
+    pub(super) fn take_contacts(&mut self) -> Vec<Contact> {
+        std::mem::take(&mut self.contacts)
     }
 
     /// One robot.

@@ -1,7 +1,6 @@
 //! The state of a fleet: back to the start, to bytes, and from bytes.
 
 use super::Fleet;
-use crate::physics::report::{Body, Contact};
 use crate::physics::snapshot::{Played, SnapshotError, Tape, fingerprint};
 use crate::physics::spec::FleetSpec;
 
@@ -53,17 +52,7 @@ impl Fleet {
         tape.u64(&mut self.step)?;
         self.bodies.play(tape)?;
         self.robots.iter_mut().try_for_each(|robot| robot.play(tape))?;
-        self.obstacles.iter_mut().try_for_each(|obstacle| obstacle.play(tape))?;
-        let at = nalgebra::Point2::origin();
-        let new = Contact { time_s: 0.0, robot: 0, with: Body::Wall(0), at, moving: false, impulse_ns: 0.0 };
-        tape.list(&mut self.contacts, new, |tape, contact| {
-            tape.f64(&mut contact.time_s)?;
-            tape.usize(&mut contact.robot)?;
-            tape.body(&mut contact.with)?;
-            tape.point(&mut contact.at)?;
-            tape.bool(&mut contact.moving)?;
-            tape.f64(&mut contact.impulse_ns)
-        })
+        self.obstacles.iter_mut().try_for_each(|obstacle| obstacle.play(tape))
     }
 }
 

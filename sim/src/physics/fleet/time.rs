@@ -1,6 +1,7 @@
 //! How time passes.
 
 use super::{Controller, Fleet};
+use crate::physics::bodies::Touch;
 use crate::physics::bumper;
 use crate::physics::form::Form;
 use crate::physics::obstacles::{InTheWay, Obstacle};
@@ -14,13 +15,18 @@ impl Fleet {
     /// Lets one physics step pass. Robots whose scan is due look around first, and decide; those
     /// that are driven ask `controller`.
     pub fn step(&mut self, controller: &mut impl Controller) {
+        self.contacts.clear();
+        self.take_step(controller);
+    }
+
+    fn take_step(&mut self, controller: &mut impl Controller) {
         self.think(|_| true);
         for robot in &mut self.robots {
             if robot.is_driven()
                 && robot.is_due(self.step)
                 && let Some(sweep) = robot.sweep()
+                && let Some(wanted) = controller.drive(&robot.view(), &sweep.reading)
             {
-                let wanted = controller.drive(&robot.view(), &sweep.reading);
                 robot.command(&wanted);
             }
         }
@@ -30,9 +36,10 @@ impl Fleet {
 
     /// Steps until `time_s` has come, s.
     pub fn run_until(&mut self, time_s: f64, controller: &mut impl Controller) {
+        self.contacts.clear();
         // Half a microsecond of slack: times are multiples of the step.
         while self.time_s() < time_s - 5e-7 {
-            self.step(controller);
+            self.take_step(controller);
         }
     }
 
@@ -103,25 +110,25 @@ impl Fleet {
         in_the_way
     }
 
-    /// Notes what robots have begun to touch.
+    /// Notes what robots touch, and have begun to touch.
     fn note_contacts(&mut self) {
         let time_s = self.time_s();
-        self.contacts.clear();
         for (index, robot) in self.robots.iter_mut().enumerate() {
             let mut touching = Vec::new();
             robot.pressed = 0;
-            for (with, at, impulse_ns) in self.bodies.touches(index) {
-                if let Some(spec) = robot.spec.bumper.as_ref().filter(|_| impulse_ns > 0.0) {
-                    robot.pressed |= bumper::pressed(spec, &robot.pose, &at);
-                }
+            for Touch { with, at, ends, impulse_ns } in self.bodies.touches(index) {
                 let touched_before = robot.touching.contains(&with);
-                if impulse_ns > 0.0 && !touched_before {
+                if impulse_ns <= 0.0 && !touched_before {
+                    continue;
+                }
+                if let Some(spec) = &robot.spec.bumper {
+                    robot.pressed |= bumper::pressed(spec, &robot.pose, &ends);
+                }
+                if !touched_before {
                     let moving = robot.drove;
                     self.contacts.push(Contact { time_s, robot: index, with, at, moving, impulse_ns });
                 }
-                if impulse_ns > 0.0 || touched_before {
-                    touching.push(with);
-                }
+                touching.push(with);
             }
             robot.touching = touching;
         }

@@ -9,12 +9,8 @@ use nalgebra::Isometry2;
 struct Say(Command);
 
 impl Controller for Say {
-    fn command(&mut self, _: usize, _: &LaserReading) -> Twist {
-        Twist::STOP
-    }
-
-    fn drive(&mut self, _: &RobotView<'_>, _: &LaserReading) -> Command {
-        self.0
+    fn drive(&mut self, _: &RobotView<'_>, _: &LaserReading) -> Option<Command> {
+        Some(self.0)
     }
 }
 

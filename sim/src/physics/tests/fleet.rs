@@ -32,8 +32,8 @@ pub(super) fn crowd() -> FleetSpec {
 }
 
 /// No robot obeys commands.
-pub(super) fn nobody(robot: usize, _: &LaserReading) -> Twist {
-    panic!("robot {robot} is not driven")
+pub(super) fn nobody(robot: &RobotView<'_>, _: &LaserReading) -> Twist {
+    panic!("robot {} is not driven", robot.name)
 }
 
 fn pose(fleet: &Fleet, robot: usize) -> Isometry2<f64> {
@@ -193,9 +193,9 @@ fn several_driven_robots_ask_the_controller_at_every_scan() {
     let robots = [robot("one", [2.0, 2.0], 0.0, driven), robot("two", [2.0, 4.0], 0.0, driven)];
     let mut fleet = Fleet::new(&house(&robots, ""), 0);
     let mut asked = Vec::new();
-    fleet.run_until(1.0, &mut |robot: usize, reading: &LaserReading| {
-        asked.push((robot, (reading.time_s * 10.0).round() as i32));
-        Twist { linear_mps: if robot == 0 { 0.5 } else { -0.2 }, angular_radps: 0.0 }
+    fleet.run_until(1.0, &mut |robot: &RobotView<'_>, reading: &LaserReading| {
+        asked.push((robot.index, (reading.time_s * 10.0).round() as i32));
+        Twist { linear_mps: if robot.index == 0 { 0.5 } else { -0.2 }, angular_radps: 0.0 }
     });
     let expected: Vec<_> = (0..10).flat_map(|time| [(0, time), (1, time)]).collect();
     assert_eq!(asked, expected);
@@ -210,7 +210,7 @@ fn one_driven_robot_lives_alike_in_a_fleet_and_in_a_world() {
     for _ in 0..300 {
         let reading = world.sense();
         let mut heard = None;
-        fleet.run_until(fleet.time_s() + 0.1, &mut |_: usize, reading: &LaserReading| {
+        fleet.run_until(fleet.time_s() + 0.1, &mut |_: &RobotView<'_>, reading: &LaserReading| {
             heard = Some(reading.clone());
             wanted(reading.time_s)
         });
@@ -230,7 +230,7 @@ fn a_robot_against_a_wall_is_stalled_and_one_that_stands_is_not() {
     let mut fleet = Fleet::new(&house(&robots, ""), 0);
     let mut contacts = Vec::new();
     while fleet.time_s() < 3.0 {
-        fleet.step(&mut |_: usize, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.0 });
+        fleet.step(&mut |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.0 });
         contacts.extend_from_slice(fleet.contacts());
     }
     let stalled: Vec<bool> = fleet.robots().map(|robot| robot.is_stalled).collect();
@@ -254,7 +254,10 @@ fn a_heavy_robot_pushes_a_light_one_away() {
         let robots = [robot("one", [2.0, 2.0], 0.0, driven), robot("two", [3.0, 2.0], 180.0, driven)];
         let robots: Vec<_> = robots.into_iter().zip(masses_kg).map(|(robot, kg)| mass(robot, kg)).collect();
         let mut fleet = Fleet::new(&house(&robots, ""), 0);
-        fleet.run_until(3.0, &mut |_: usize, _: &LaserReading| Twist { linear_mps: 0.3, angular_radps: 0.0 });
+        fleet.run_until(3.0, &mut |_: &RobotView<'_>, _: &LaserReading| Twist {
+            linear_mps: 0.3,
+            angular_radps: 0.0,
+        });
         let middle_m = (at(&fleet, 0).x + at(&fleet, 1).x) / 2.0 - 2.5;
         assert!(middle_m * pushed > 0.1, "{middle_m}");
     }
@@ -267,7 +270,7 @@ fn a_robot_is_set_down_where_there_is_room() {
         robot("two", [4.0, 4.0], 0.0, "kind = \"standing\""),
     ];
     let mut fleet = Fleet::new(&house(&robots, ""), 0);
-    let mut forward = |_: usize, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.0 };
+    let mut forward = |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.0 };
     fleet.run_until(1.0, &mut forward);
     let before = fleet.snapshot();
     for (robot, x, y) in
@@ -281,12 +284,31 @@ fn a_robot_is_set_down_where_there_is_room() {
     );
     assert_eq!(fleet.snapshot(), before);
     assert_eq!(fleet.teleport(0, &geometry::pose(9.0, 9.0, 1.0)), Ok(()));
-    fleet.run_until(1.05, &mut |_: usize, _: &LaserReading| Twist::STOP);
+    fleet.run_until(1.05, &mut ());
     let pose = pose(&fleet, 0);
     assert!((pose.translation.vector - geometry::pose(9.0, 9.0, 1.0).translation.vector).norm() < 1e-6);
     assert!((geometry::heading_rad(&pose) - 1.0).abs() < 1e-6);
     let reading =
         fleet.robots().next().and_then(|robot| robot.sweep).map(|sweep| sweep.reading.clone()).unwrap();
     assert!((reading.pose.translation.x - 9.0).abs() < 1e-6);
+    assert_eq!(fleet.contacts(), []);
+}
+
+#[test]
+fn contacts_are_those_since_the_run_began_and_commands_are_heard_at_any_step() {
+    let driven = "kind = \"driven\"";
+    let robots =
+        [robot("one", [5.0, 2.0], 0.0, driven), robot("two", [2.0, 4.0], 0.0, "kind = \"standing\"")];
+    let mut fleet = Fleet::new(&house(&robots, ""), 0);
+    fleet.step(&mut ());
+    // Between two scans.
+    assert!(fleet.command(0, Twist { linear_mps: 0.5, angular_radps: 0.0 }));
+    fleet.step(&mut ());
+    assert!(fleet.robots().next().unwrap().twist.linear_mps > 0.01);
+    assert!(!fleet.command(1, Twist::STOP) && !fleet.command(2, Twist::STOP));
+    fleet.run_until(5.0, &mut ());
+    assert_eq!(fleet.contacts().len(), 1);
+    assert!(fleet.contacts()[0].time_s < 3.0);
+    fleet.run_until(6.0, &mut ());
     assert_eq!(fleet.contacts(), []);
 }

@@ -1,6 +1,6 @@
 //! Walls from pictures, and the worlds that are made of them.
 
-use crate::physics::{Fleet, FleetSpec, WorldSpec};
+use crate::physics::{Fleet, FleetSpec, RobotView, WorldSpec};
 use geometry::{LaserReading, Twist};
 use nalgebra::Point2;
 use std::collections::BTreeMap;
@@ -69,7 +69,7 @@ fn lasers_see_the_pixels() {
         assert_eq!(spec.walls().len(), 5);
         let mut fleet = Fleet::new(&spec, 0);
         let mut seen = Vec::new();
-        fleet.run_until(0.15, &mut |_: usize, reading: &LaserReading| {
+        fleet.run_until(0.15, &mut |_: &RobotView<'_>, reading: &LaserReading| {
             seen.clone_from(&reading.scan.ranges_m);
             Twist::STOP
         });
@@ -129,7 +129,7 @@ fn the_worlds_of_this_crate_run() {
             spec.frame().height() as f64 * spec.frame().resolution_m(),
         );
         for second in 1..=60 {
-            fleet.run_until(f64::from(second), &mut |_: usize, _: &LaserReading| Twist::STOP);
+            fleet.run_until(f64::from(second), &mut ());
             for (index, robot) in fleet.robots().enumerate() {
                 let at = Point2::from(robot.pose.translation.vector);
                 assert!(at.x > 0.0 && at.y > 0.0 && at.x < size.x && at.y < size.y, "{} at {at}", robot.name);

@@ -19,7 +19,10 @@ fn corners(fleet: &Fleet) -> Vec<Point2<f64>> {
 #[test]
 fn it_turns_about_its_middle() {
     let mut fleet = Fleet::new(&house(&[long(0.0)], ""), 0);
-    fleet.run_until(5.0, &mut |_: usize, _: &LaserReading| Twist { linear_mps: 0.0, angular_radps: 1.0 });
+    fleet.run_until(5.0, &mut |_: &RobotView<'_>, _: &LaserReading| Twist {
+        linear_mps: 0.0,
+        angular_radps: 1.0,
+    });
     let robot = fleet.robots().next().unwrap();
     assert!((robot.pose.translation.vector - nalgebra::Vector2::new(3.0, 3.0)).norm() < 1e-5);
     assert!((robot.twist.angular_radps - 1.0).abs() < 1e-5 && !robot.is_stalled);
@@ -33,7 +36,10 @@ fn its_corners_stay_out_of_walls_and_it_says_where_it_touches() {
         let mut contacts = Vec::new();
         while fleet.time_s() < 30.0 {
             let turn = libm::sin(fleet.time_s() * 0.7);
-            fleet.step(&mut |_: usize, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: turn });
+            fleet.step(&mut |_: &RobotView<'_>, _: &LaserReading| Twist {
+                linear_mps: 0.5,
+                angular_radps: turn,
+            });
             contacts.extend_from_slice(fleet.contacts());
             for corner in corners(&fleet) {
                 let depth_m = spec.walls().iter().map(|wall| depth_m(wall, &corner)).fold(f64::MIN, f64::max);

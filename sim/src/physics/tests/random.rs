@@ -178,12 +178,12 @@ fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
         while fleet.time_s() < SECONDS {
             let from: Vec<Point2<f64>> =
                 fleet.robots().map(|robot| robot.pose.translation.vector.into()).collect();
-            fleet.step(&mut |robot: usize, _: &LaserReading| {
+            fleet.step(&mut |robot: &RobotView<'_>, _: &LaserReading| {
                 if chance.between(0.0, 1.0) < 0.1 {
                     let [linear_mps, angular_radps] = [5.0, 8.0].map(|most| chance.between(-most, most));
-                    wanted[robot] = Twist { linear_mps, angular_radps };
+                    wanted[robot.index] = Twist { linear_mps, angular_radps };
                 }
-                wanted[robot]
+                wanted[robot.index]
             });
             contacts += fleet.contacts().len();
             for (index, before, after) in fleet.moved() {

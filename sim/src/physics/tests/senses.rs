@@ -16,7 +16,7 @@ fn place(more: &[String], things: &str) -> FleetSpec {
     house(&robots, things)
 }
 
-fn stop(_: usize, _: &LaserReading) -> Twist {
+fn stop(_: &RobotView<'_>, _: &LaserReading) -> Twist {
     Twist::STOP
 }
 
@@ -55,7 +55,10 @@ fn bumpers_feel_where_they_are_touched() {
         assert!(!fleet.robots().next().unwrap().bumpers().any(|pressed| pressed));
         let mut felt = vec![false; 4];
         for _ in 0..20 {
-            fleet.step(&mut |_: usize, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.0 });
+            fleet.step(&mut |_: &RobotView<'_>, _: &LaserReading| Twist {
+                linear_mps: 0.5,
+                angular_radps: 0.0,
+            });
             for (felt, pressed) in felt.iter_mut().zip(fleet.robots().next().unwrap().bumpers()) {
                 *felt |= pressed;
             }
@@ -68,6 +71,40 @@ fn bumpers_feel_where_they_are_touched() {
             assert_eq!(felt, expected, "turned by {turn_deg}°");
         }
     }
+}
+
+#[test]
+fn a_flat_touch_presses_every_bumper_along_it_until_they_part() {
+    let square = |heading_deg: f64| {
+        let robot = robot("one", [5.4, 1.5], heading_deg, "kind = \"driven\"")
+            .replace("[robot.drive]", "[robot.drive]\nkind = \"omni\"\nmax_left_mps = 0.5")
+            .replace("radius_m = 0.2", "footprint_m = [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]]");
+        // Three sectors of 32° each, right, middle and left; the front is nearly as wide as all of them.
+        let bumper = "[robot.bumper]\nsectors = 3\nfov_deg = 96.0\n[robot.behaviour]";
+        house(&[robot.replace("[robot.behaviour]", bumper)], "")
+    };
+    let drive =
+        |linear_mps| move |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps, angular_radps: 0.0 };
+    let mut fleet = Fleet::new(&square(0.0), 0);
+    let pressed = |fleet: &Fleet| fleet.robots().next().unwrap().bumpers().collect::<Vec<_>>();
+    fleet.run_until(2.0, &mut drive(0.5));
+    assert_eq!(pressed(&fleet), [true; 3]);
+    assert_eq!(fleet.contacts().len(), 1);
+    assert_eq!(fleet.robots().next().unwrap().touching, [fleet.contacts()[0].with]);
+    // At rest against the wall it still feels it.
+    fleet.run_until(4.0, &mut drive(0.0));
+    assert_eq!(pressed(&fleet), [true; 3]);
+    assert_eq!(fleet.contacts(), []);
+    fleet.run_until(5.0, &mut drive(-0.5));
+    assert_eq!(pressed(&fleet), [false; 3]);
+    // With a corner ahead it is that of the corner alone.
+    let mut fleet = Fleet::new(&square(45.0), 0);
+    fleet.run_until(3.0, &mut |_: &RobotView<'_>, _: &LaserReading| Velocity {
+        forward_mps: libm::sqrt(0.5) * 0.2,
+        left_mps: -libm::sqrt(0.5) * 0.2,
+        turn_radps: 0.0,
+    });
+    assert_eq!(pressed(&fleet), [true, false, false]);
 }
 
 #[test]
@@ -95,7 +132,7 @@ fn tags_are_found_where_nothing_is_in_front() {
 #[test]
 fn a_snapshot_knows_what_was_sensed() {
     let mut fleet = Fleet::new(&place(&[tagged("other", [2.0, 2.0], 1)], ""), 3);
-    let mut ahead = |_: usize, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.1 };
+    let mut ahead = |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.1 };
     fleet.run_until(1.25, &mut ahead);
     let snapshot = fleet.snapshot();
     let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();

@@ -29,9 +29,9 @@ fn zoo() -> FleetSpec {
 }
 
 /// The two driven robots go for each other.
-fn drivers(robot: usize, reading: &LaserReading) -> Twist {
+fn drivers(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
     let turn = libm::sin(reading.time_s) * 0.3;
-    Twist { linear_mps: if robot == 4 { 0.4 } else { -0.4 }, angular_radps: turn }
+    Twist { linear_mps: if robot.index == 4 { 0.4 } else { -0.4 }, angular_radps: turn }
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn a_fork_goes_its_own_way() {
     let mut fleet = Fleet::new(&zoo(), 4);
     fleet.run_until(5.0, &mut drivers);
     let (mut fork, before) = (fleet.clone(), hash(&fleet));
-    fork.run_until(6.0, &mut |_: usize, _: &LaserReading| Twist::STOP);
+    fork.run_until(6.0, &mut ());
     assert_eq!(hash(&fleet), before);
     fleet.run_until(6.0, &mut drivers);
     assert_ne!(hash(&fleet), hash(&fork));

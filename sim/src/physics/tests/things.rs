@@ -18,11 +18,11 @@ fn pushed(name: &str, center_m: [f64; 2], mass_kg: f64, friction: f64) -> String
     )
 }
 
-fn ahead(_: usize, _: &LaserReading) -> Twist {
+fn ahead(_: &RobotView<'_>, _: &LaserReading) -> Twist {
     Twist { linear_mps: 0.5, angular_radps: 0.0 }
 }
 
-fn stop(_: usize, _: &LaserReading) -> Twist {
+fn stop(_: &RobotView<'_>, _: &LaserReading) -> Twist {
     Twist::STOP
 }
 
@@ -77,8 +77,8 @@ pub(super) fn busy() -> FleetSpec {
 }
 
 /// Robots that look at nothing and drive in wild curves.
-pub(super) fn reckless(robot: usize, reading: &LaserReading) -> Twist {
-    let phase = reading.time_s * (0.3 + 0.1 * robot as f64);
+pub(super) fn reckless(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
+    let phase = reading.time_s * (0.3 + 0.1 * robot.index as f64);
     Twist { linear_mps: 0.5 * libm::cos(phase * 0.7), angular_radps: 1.5 * libm::sin(phase) }
 }
 
@@ -119,7 +119,7 @@ fn a_light_box_holds_a_heavy_robot_where_something_holds_the_box() {
         assert!(deepest_m < 0.0051, "{mass_kg} kg: {deepest_m} m");
         // And it comes free again.
         let met = robot_at(&fleet, 0);
-        fleet.run_until(18.0, &mut |_: usize, _: &LaserReading| Twist {
+        fleet.run_until(18.0, &mut |_: &RobotView<'_>, _: &LaserReading| Twist {
             linear_mps: -0.5,
             angular_radps: 0.0,
         });
@@ -256,7 +256,7 @@ fn a_door_never_closes_on_a_robot() {
             0,
         );
         // It stops in the doorway.
-        let mut into = |_: usize, reading: &LaserReading| Twist {
+        let mut into = |_: &RobotView<'_>, reading: &LaserReading| Twist {
             linear_mps: if reading.pose.translation.x < 2.9 { 0.5 } else { 0.0 },
             angular_radps: 0.0,
         };

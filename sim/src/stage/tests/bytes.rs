@@ -116,7 +116,7 @@ proptest! {
         files.insert(file.into(), format!("{}{number}{}", &text[..at], &text[end..]).into_bytes());
         if let (Some(spec), _) = load(Path::new("lab.world"), &files) {
             let mut fleet = crate::physics::Fleet::new(&spec, 0);
-            fleet.run_until(0.2, &mut |_: usize, _: &geometry::LaserReading| geometry::Twist::STOP);
+            fleet.run_until(0.2, &mut ());
         }
     }
 }

@@ -52,7 +52,7 @@ fn the_example_runs() {
     let mut fleet = Fleet::new(&spec, 1);
     let start = fleet.robots().next().unwrap().pose;
     let twist = Twist { linear_mps: 0.3, angular_radps: 0.0 };
-    fleet.run_until(5.0, &mut |_: usize, _: &geometry::LaserReading| twist);
+    fleet.run_until(5.0, &mut |_: &crate::physics::RobotView<'_>, _: &geometry::LaserReading| twist);
     let moved = fleet.robots().next().unwrap().pose.translation.vector - start.translation.vector;
     assert!(moved.norm() > 0.2, "{moved}");
 }
