@@ -1,8 +1,8 @@
 //! The worlds that ship with the program, so that it runs from any folder.
 
-use sim::WorldError;
 use sim::grid::GridSpec;
-use sim::physics::WorldSpec;
+use sim::physics::{Behaviour, WorldSpec};
+use sim::{Disk, Findings, WorldError, stage};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -66,19 +66,73 @@ pub enum LoadError {
     /// The file is not a world.
     #[error(transparent)]
     World(#[from] WorldError),
+    /// The file of Stage is not a world.
+    #[error("{0}")]
+    Stage(Findings),
+    /// A world of Stage in which nobody could explore.
+    #[error("`{name}` has no robot that could explore: it takes a `position` model")]
+    NoRobot {
+        /// As given.
+        name: String,
+    },
+    /// A map alone.
+    #[error(
+        "`{name}` is a map, without robots: a world file can have it as its walls, by `[[floor_plan]]` and \
+         `map = \"{name}\"`"
+    )]
+    Map {
+        /// As given.
+        name: String,
+    },
 }
 
-/// The world that `name` stands for: a shipped one by its name, else a file by its path.
+/// A world to run.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The world.
+    pub spec: WorldSpec,
+    /// What it will do otherwise than its file asks, one message each.
+    pub warnings: Vec<String>,
+}
+
+/// The world that `name` stands for: a shipped one by its name, else a file by its path, one of ours or of Stage's
+/// (`.world`).
 ///
 /// # Errors
 ///
 /// When there is no such file either, or it is not a world of this kind.
-pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
+pub fn load(name: &str) -> Result<Loaded, LoadError> {
     if SHIPPED_GRID.iter().any(|(grid, _)| *grid == name) {
         return Err(LoadError::OtherKind { name: name.to_owned(), kind: "grid", program: "grid_world" });
     }
+    match Path::new(name).extension().and_then(|ending| ending.to_str()) {
+        Some("world") if Path::new(name).exists() => return load_stage(name),
+        Some("yaml" | "yml") => return Err(LoadError::Map { name: name.to_owned() }),
+        _ => {}
+    }
     let parse = |name: &str, text: &str| WorldSpec::parse_with(name, text, &pictures());
-    find(name, &SHIPPED, parse, |path| WorldSpec::load(path))
+    let spec = find(name, &SHIPPED, parse, |path| WorldSpec::load(path))?;
+    Ok(Loaded { spec, warnings: Vec::new() })
+}
+
+fn load_stage(name: &str) -> Result<Loaded, LoadError> {
+    let (fleet, findings) = stage::load(Path::new(name), &Disk);
+    let mut warnings: Vec<String> = findings.iter().map(ToString::to_string).collect();
+    let fleet = fleet.ok_or(LoadError::Stage(findings))?;
+    let driven: Vec<usize> =
+        (0..fleet.robots().len()).filter(|&i| fleet.robots()[i].behaviour == Behaviour::Driven).collect();
+    let explorer = driven.first().copied().unwrap_or(0);
+    let spec =
+        WorldSpec::driving(fleet, explorer).ok_or_else(|| LoadError::NoRobot { name: name.to_owned() })?;
+    if driven.len() != 1 {
+        warnings.push(format!(
+            "warning: of the robots in `{name}`, `{}` explores{}\n  = help: for another one, make a world file with \
+             `check_world --toml {name}`, and change the behaviours there",
+            spec.driven().name,
+            if driven.is_empty() { "" } else { ", and the others that obey commands stand still" },
+        ));
+    }
+    Ok(Loaded { spec, warnings })
 }
 
 /// The grid world that `name` stands for, as [`load`].
@@ -128,6 +182,28 @@ mod tests {
             let world = load_grid(name).unwrap_or_else(|error| panic!("{error}"));
             assert!(world.warnings().is_empty(), "{:?}", world.warnings());
         }
+    }
+
+    #[test]
+    fn of_a_stage_world_one_robot_explores() {
+        let lab = concat!(env!("CARGO_MANIFEST_DIR"), "/sim/worlds/stage/lab.world");
+        assert_eq!(load(lab).unwrap().spec.driven().name, "r1");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("two.world");
+        let text = "define r position ( size [0.4 0.4 0.3] ranger ( sensor ( range [0 5] fov 180 samples 181 ) ) )\n";
+        let path = path.to_str().unwrap();
+        std::fs::write(path, format!("{text}r ( name \"a\" )\nr ( pose [2 0 0 0] name \"b\" )\n")).unwrap();
+        let Loaded { spec, warnings } = load(path).unwrap();
+        assert_eq!(
+            (spec.driven().name.as_str(), spec.robots()[1].behaviour.clone()),
+            ("a", Behaviour::Standing)
+        );
+        assert!(warnings.last().unwrap().contains("`a` explores, and the others"), "{warnings:?}");
+        std::fs::write(path, "model ( size [1 1 1] )\n").unwrap();
+        assert!(matches!(load(path), Err(LoadError::NoRobot { .. })));
+        std::fs::write(path, "model ( size [1 1 1 )\n").unwrap();
+        assert!(load(path).unwrap_err().to_string().contains("two.world:1"));
+        assert!(matches!(load("map.yaml"), Err(LoadError::Map { .. })));
     }
 
     #[test]

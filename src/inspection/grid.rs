@@ -48,9 +48,12 @@ pub(super) fn content(world: &GridSpec) -> Content {
                 name: "robot".to_owned(),
                 pose: Isometry2::translation(start.x, start.y),
                 radius: 0.4,
+                corners: Vec::new(),
+                views: Vec::new(),
                 is_driven: true,
             }],
         },
+        world_file: None,
     }
 }
 

@@ -40,6 +40,8 @@ pub struct Content {
     pub lines: Vec<(&'static str, String)>,
     /// What it looks like.
     pub plan: Plan,
+    /// The same as a world file of ours, if it is none.
+    pub world_file: Option<String>,
 }
 
 /// A world from above, at its start.
@@ -77,8 +79,23 @@ pub struct Robot {
     pub pose: Isometry2<f64>,
     /// The radius of the circle about it.
     pub radius: f64,
+    /// The corners of its body, in its own frame; none: it is that circle.
+    pub corners: Vec<Point2<f64>>,
+    /// What it looks around with.
+    pub views: Vec<View>,
     /// Whether it obeys commands.
     pub is_driven: bool,
+}
+
+/// Where a laser or a sonar looks.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Where it is mounted, in the frame of the robot.
+    pub mount: Isometry2<f64>,
+    /// The angle that it takes in, about its direction, rad.
+    pub angle_rad: f64,
+    /// How far it reaches.
+    pub range: f64,
 }
 
 /// Reads a file as what it is: a shipped world by its name, a world file (physics or grid), a `.world` file of
@@ -130,7 +147,11 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
 
 fn stage_file(path: &Path) -> Inspection {
     let (world, findings) = stage::load(path, &Disk);
-    found(world.map(|world| physics::content("Stage world", &world)), &findings)
+    let content = world.map(|world| Content {
+        world_file: stage::read(path, &Disk).0.map(|world| world.to_toml()),
+        ..physics::content("Stage world", &world)
+    });
+    found(content, &findings)
 }
 
 fn ros_file(path: &Path) -> Inspection {

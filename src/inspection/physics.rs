@@ -1,6 +1,6 @@
 //! Physics worlds, from whatever file.
 
-use super::{Content, Plan, Robot, Thing};
+use super::{Content, Plan, Robot, Thing, View};
 use geometry::GridFrame;
 use nalgebra::{Isometry2, Point2};
 use sim::floor_plan::FloorPlan;
@@ -36,6 +36,8 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
         name: robot.name.clone(),
         pose: robot.pose,
         radius: robot.radius_m,
+        corners: robot.corners.clone(),
+        views: views(robot).collect(),
         is_driven: robot.behaviour == Behaviour::Driven,
     };
     Content {
@@ -50,7 +52,15 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
             things: world.obstacles().iter().map(thing).collect(),
             robots: world.robots().iter().map(robot).collect(),
         },
+        world_file: None,
     }
+}
+
+/// Where the lasers and the sonars of a robot look.
+fn views(robot: &RobotSpec) -> impl Iterator<Item = View> {
+    let lasers = robot.lasers().map(|laser| (laser.mount, laser.fov_rad, laser.range_max_m));
+    let sonars = robot.sonars.iter().map(|sonar| (sonar.mount, sonar.cone_rad, sonar.range_max_m));
+    lasers.chain(sonars).map(|(mount, angle_rad, range)| View { mount, angle_rad, range })
 }
 
 /// A floor plan alone; none if it has no area.
@@ -88,6 +98,7 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
             things: Vec::new(),
             robots: Vec::new(),
         },
+        world_file: None,
     })
 }
 

@@ -123,7 +123,7 @@ mod tests {
     use sim::physics::PhysicsWorld;
 
     fn world() -> PhysicsWorld {
-        PhysicsWorld::new(&crate::worlds::load("four_rooms").unwrap(), 0)
+        PhysicsWorld::new(&crate::worlds::load("four_rooms").unwrap().spec, 0)
     }
 
     /// The map that says what is true, and what `otherwise` where a cell is covered in part.

@@ -3,20 +3,24 @@
 use super::canvas::{Area, INK, ink, px, text, why};
 use super::panel::{self, Chart};
 use super::trajectory::WALL;
-use crate::inspection::{Content, Robot, Thing};
+use crate::inspection::{Content, Robot, Thing, View};
 use crate::layer::{CURIOUS, OTHERS, Rgb};
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::f64::consts::TAU;
 
 const THING: Rgb = [214, 110, 20];
 const REACH: Rgb = [250, 226, 198];
-/// The corners of the polygon that a robot is drawn as.
+const VIEW: Rgb = [222, 235, 222];
+/// The sides of the polygon that a circle is drawn as.
 const CORNERS: usize = 48;
-/// More things than this are drawn without their names.
+/// More things than this are drawn without their names, and without what they look around with.
 const MOST_NAMES: usize = 40;
+/// How far views are drawn, as a multiple of the robot's radius: whole ones would cover the house.
+const VIEW_RADII: f64 = 2.5;
 
-/// Draws the walls, what moves with where it can get to, and the robots.
+/// Draws the walls, what moves with where it can get to, and the robots with where they look.
 pub(super) fn draw(area: &Area, content: &Content) -> Result<(), String> {
     let plan = &content.plan;
     let (chart, legend) = panel::axes_in(area, &content.name, &plan.frame, plan.unit)?;
@@ -27,6 +31,11 @@ pub(super) fn draw(area: &Area, content: &Content) -> Result<(), String> {
     for reach in plan.things.iter().flat_map(|thing| &thing.reach) {
         fill(reach, REACH)?;
     }
+    let is_crowded = plan.things.len() + plan.robots.len() > MOST_NAMES;
+    let watchful = plan.robots.iter().filter(|robot| !is_crowded && !robot.views.is_empty());
+    for robot in watchful.clone() {
+        robot.views.iter().try_for_each(|view| fill(&sector(robot, view), VIEW))?;
+    }
     for wall in &plan.walls {
         fill(wall, WALL)?;
     }
@@ -34,8 +43,9 @@ pub(super) fn draw(area: &Area, content: &Content) -> Result<(), String> {
         fill(&thing.outline, THING)?;
     }
     for robot in &plan.robots {
-        fill(&circle(robot), colour(robot))?;
-        let ahead = robot.pose * Point2::new(robot.radius, 0.0);
+        fill(&body(robot), colour(robot))?;
+        let front = robot.corners.iter().map(|corner| corner.x).reduce(f64::max).unwrap_or(robot.radius);
+        let ahead = robot.pose * Point2::new(front, 0.0);
         let middle = robot.pose * Point2::origin();
         let line = PathElement::new(
             vec![(middle.x, middle.y), (ahead.x, ahead.y)],
@@ -43,7 +53,7 @@ pub(super) fn draw(area: &Area, content: &Content) -> Result<(), String> {
         );
         chart.plotting_area().draw(&line).map_err(why)?;
     }
-    if plan.things.len() + plan.robots.len() <= MOST_NAMES {
+    if !is_crowded {
         names(&chart, &plan.things, &plan.robots)?;
     }
     panel::frame(&chart, &plan.frame)?;
@@ -55,6 +65,7 @@ pub(super) fn draw(area: &Area, content: &Content) -> Result<(), String> {
         (plan.things.iter().any(|thing| !thing.reach.is_empty()), REACH, "its way"),
         (is(true), CURIOUS, "driven robot"),
         (is(false), OTHERS, "other robot"),
+        (watchful.count() > 0, VIEW, "where it looks"),
     ];
     let mut top = px(13);
     for (_, colour, meaning) in lines.into_iter().filter(|(is_there, _, _)| *is_there) {
@@ -68,12 +79,30 @@ fn colour(robot: &Robot) -> Rgb {
     if robot.is_driven { CURIOUS } else { OTHERS }
 }
 
-fn circle(robot: &Robot) -> Vec<Point2<f64>> {
-    let corner = |number: usize| {
-        let angle = number as f64 / CORNERS as f64 * std::f64::consts::TAU;
-        robot.pose * Point2::new(robot.radius * angle.cos(), robot.radius * angle.sin())
+fn body(robot: &Robot) -> Vec<Point2<f64>> {
+    if robot.corners.is_empty() {
+        return arc(&robot.pose, robot.radius, TAU);
+    }
+    robot.corners.iter().map(|corner| robot.pose * corner).collect()
+}
+
+/// What of a view is drawn.
+fn sector(robot: &Robot, view: &View) -> Vec<Point2<f64>> {
+    let mount = robot.pose * view.mount;
+    let mut corners = arc(&mount, view.range.min(VIEW_RADII * robot.radius), view.angle_rad);
+    if view.angle_rad < TAU {
+        corners.push(mount * Point2::origin());
+    }
+    corners
+}
+
+/// Points on a circle about a middle, over an angle about its direction.
+fn arc(middle: &Isometry2<f64>, radius: f64, angle_rad: f64) -> Vec<Point2<f64>> {
+    let point = |number: usize| {
+        let angle = angle_rad * (number as f64 / CORNERS as f64 - 0.5);
+        middle * Point2::new(radius * angle.cos(), radius * angle.sin())
     };
-    (0..CORNERS).map(corner).collect()
+    (0..=CORNERS).map(point).collect()
 }
 
 /// Writes the names below what they belong to.
@@ -87,7 +116,7 @@ fn names(chart: &Chart, things: &[Thing], robots: &[Robot]) -> Result<(), String
         let corners = if thing.outline.is_empty() { thing.reach.first()? } else { &thing.outline };
         Some((thing.name.clone(), lowest(corners)))
     });
-    let of_robots = robots.iter().map(|robot| (robot.name.clone(), lowest(&circle(robot))));
+    let of_robots = robots.iter().map(|robot| (robot.name.clone(), lowest(&body(robot))));
     let plot = chart.plotting_area();
     for (name, at) in of_things.chain(of_robots) {
         let style = text(12).pos(Pos::new(HPos::Center, VPos::Top)).color(&INK);

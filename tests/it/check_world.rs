@@ -21,8 +21,8 @@ fn worlds_are_described_and_drawn() {
     assert!(said.contains("two_blocks: right, a grid world called `two blocks`"), "{said}");
     assert!(said.contains("`dummy` follows a wall back and forth"), "{said}");
     assert!(text(&ended.stderr).contains("warning: `window` is left out"));
-    for (name, is_wide) in [("two_blocks", false), ("four_rooms", false), ("lab", true)] {
-        let picture = image::open(folder.path().join("plans").join(name).with_extension("png")).unwrap();
+    for (name, is_wide) in [("two_blocks", false), ("four_rooms", false), ("lab.world", true)] {
+        let picture = image::open(folder.path().join("plans").join(format!("{name}.png"))).unwrap();
         let picture = picture.to_rgb8();
         // The plot is as wide as high in a square world, and lies in the middle of the rest.
         assert_eq!(picture.height() < 600, is_wide, "{name}: {:?}", picture.dimensions());

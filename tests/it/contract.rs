@@ -92,7 +92,7 @@ fn twists() -> Words<Twist> {
 #[test]
 fn physics_worlds() {
     for (name, _) in worlds::SHIPPED {
-        let spec = worlds::load(name).unwrap();
+        let spec = worlds::load(name).unwrap().spec;
         keeps_the_contract(|seed| PhysicsWorld::new(&spec, seed), &twists());
     }
 }

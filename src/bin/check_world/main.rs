@@ -1,9 +1,11 @@
 //! Says what is in world files, draws them, and tells all that is wrong with them.
 
+use anyhow::bail;
 use clap::Parser;
 use curious::inspection::{Content, Inspection, inspect};
-use curious::output::{make_folder, say};
+use curious::output::{make_folder, say, write_file};
 use curious::pictures::draw_plan;
+use std::collections::BTreeSet;
 use std::io::{stderr, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -21,26 +23,31 @@ use std::process::ExitCode;
     after_help = "Examples:\n  \
         check_world my_house.toml                  what is in it, or what is wrong with it\n  \
         check_world --png four_rooms two_blocks    shipped worlds, drawn to four_rooms.png, two_blocks.png\n  \
-        check_world --png --out plans lab.world    a world of Stage, drawn to plans/lab.png\n\n\
-        Exit codes: 0 all are right (warnings or not), 1 a picture cannot be written, 2 a file is wrong."
+        check_world --png --out plans lab.world    a world of Stage, drawn to plans/lab.world.png\n  \
+        check_world --toml lab.world               the same as a world file for four_rooms, lab.world.toml\n\n\
+        Exit codes: 0 all are right (warnings or not), 1 a file cannot be written, 2 a file is wrong."
 )]
 struct Args {
     /// World files, or names of worlds that ship
     #[arg(required = true, value_name = "FILE|NAME")]
     files: Vec<String>,
 
-    /// Draw each world that is right to NAME.png
+    /// Draw each world that is right to FILE.png
     #[arg(long)]
     png: bool,
 
-    /// The folder for the pictures; made unless it exists
+    /// Write each world of Stage that is right as a world file, FILE.toml
+    #[arg(long)]
+    toml: bool,
+
+    /// The folder for what is drawn and written; made unless it exists
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
 }
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    let mut code = ExitCode::SUCCESS;
+    let (mut code, mut written) = (ExitCode::SUCCESS, BTreeSet::new());
     for file in &args.files {
         let inspection = inspect(file);
         tell(&inspection);
@@ -48,14 +55,9 @@ fn main() -> ExitCode {
             code = ExitCode::from(2);
             continue;
         };
-        if args.png {
-            match draw(content, file, &args.out) {
-                Ok(picture) => say(stdout(), format_args!("  picture   {}", picture.display())),
-                Err(error) => {
-                    say(stderr(), format_args!("error: {error:#}"));
-                    return ExitCode::FAILURE;
-                }
-            }
+        if let Err(error) = leave(content, file, &args, &mut written) {
+            say(stderr(), format_args!("error: {error:#}"));
+            return ExitCode::FAILURE;
         }
     }
     code
@@ -83,11 +85,29 @@ fn tell(inspection: &Inspection) {
     }
 }
 
-/// Draws a world to a file that is called as the world's, in `folder`.
-fn draw(content: &Content, file: &str, folder: &Path) -> anyhow::Result<PathBuf> {
-    make_folder(folder)?;
-    let name = Path::new(file).file_stem().unwrap_or_default();
-    let picture = folder.join(name).with_extension("png");
-    draw_plan(&picture, content)?;
-    Ok(picture)
+/// Draws and writes what was asked for, to files that are called as the world's with another ending behind it:
+/// in its place that could be the name of the picture that its walls come from.
+fn leave(content: &Content, file: &str, args: &Args, written: &mut BTreeSet<PathBuf>) -> anyhow::Result<()> {
+    let name = Path::new(file).file_name().unwrap_or_default();
+    let mut place = |ending: &str| {
+        let mut name = name.to_owned();
+        name.push(ending);
+        let path = args.out.join(name);
+        if !written.insert(path.clone()) {
+            bail!("two files would be written to {}; check them one by one, with --out", path.display());
+        }
+        make_folder(&args.out)?;
+        Ok(path)
+    };
+    if args.png {
+        let picture = place(".png")?;
+        draw_plan(&picture, content)?;
+        say(stdout(), format_args!("  picture   {}", picture.display()));
+    }
+    if let Some(text) = content.world_file.as_ref().filter(|_| args.toml) {
+        let world_file = place(".toml")?;
+        write_file(&world_file, |to| to.write_all(text.as_bytes()))?;
+        say(stdout(), format_args!("  world     {}", world_file.display()));
+    }
+    Ok(())
 }

@@ -23,7 +23,7 @@ use std::path::PathBuf;
                   what was learned so far is written)."
 )]
 pub(crate) struct Args {
-    /// The world: a shipped one by its name (see --list-worlds), or a TOML file
+    /// The world: a shipped one by its name (see --list-worlds), a TOML file, or a world of Stage (.world)
     #[arg(long, value_name = "NAME|FILE", default_value = "four_rooms", help_heading = "What to run")]
     pub(crate) world: String,
 

@@ -4,15 +4,17 @@ use crate::args::{Args, DriveChoice};
 use agent::{Agent, AgentSettings};
 use anyhow::{Context, anyhow};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
+use curious::output::say;
 use curious::pilot::{Autonomous, Keyboard, Tour};
 use curious::ros_map::RosMap;
-use curious::worlds;
+use curious::worlds::{self, Loaded};
 use geometry::Twist;
 use mapper::{Mapper, MapperSettings};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::Serialize;
 use sim::physics::{PhysicsWorld, WorldSpec};
+use std::io::stderr;
 use std::path::Path;
 
 /// Why there is no result.
@@ -147,7 +149,10 @@ impl Parts {
         if args.tour.is_some() && args.drive != DriveChoice::Tour {
             return Err(input(anyhow!("--tour is for --drive tour")));
         }
-        let spec = worlds::load(&args.world).map_err(input)?;
+        let Loaded { spec, warnings } = worlds::load(&args.world).map_err(input)?;
+        for warning in warnings {
+            say(stderr(), format_args!("{warning}\n"));
+        }
         let settings = Settings::new(args, &spec);
         let mapper = match &args.map {
             None => Mapper::new(&settings.mapper, *spec.frame()),

@@ -154,6 +154,16 @@ impl WorldSpec {
         Ok(Self { fleet, driven })
     }
 
+    /// The place of `fleet` with one of its robots driven, by its place among them, whatever it does there;
+    /// others that would obey commands stand still. None if there is no such robot.
+    pub fn driving(mut fleet: FleetSpec, driven: usize) -> Option<Self> {
+        for robot in fleet.robots.iter_mut().filter(|robot| robot.behaviour == Behaviour::Driven) {
+            robot.behaviour = Behaviour::Standing;
+        }
+        fleet.robots.get_mut(driven)?.behaviour = Behaviour::Driven;
+        Some(Self { fleet, driven })
+    }
+
     /// The same place for the simulator of fleets.
     pub fn fleet(&self) -> &FleetSpec {
         &self.fleet
