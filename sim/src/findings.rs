@@ -10,7 +10,7 @@ use std::path::Path;
 /// So many findings of each severity are kept; further ones are only counted.
 const MOST_KEPT: usize = 100;
 /// So many warnings of one kind are kept, so that they leave room for others.
-const MOST_ALIKE: usize = 20;
+const MOST_ALIKE: usize = 10;
 /// Of a longer line only the part around the place is shown, in bytes.
 const LONG_LINE: usize = 200;
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
@@ -83,7 +83,7 @@ pub struct Findings {
 
 impl Findings {
     /// The findings that were kept: the first hundred of each severity, and of warnings with the same
-    /// help the first twenty.
+    /// help the first ten.
     pub fn iter(&self) -> impl Iterator<Item = &Finding> {
         self.kept.iter()
     }
@@ -267,9 +267,9 @@ mod tests {
         add(Severity::Warning, "rare", 200, "but told");
         add(Severity::Error, "bad", 201, "and first");
         let whats: Vec<&str> = findings.iter().map(|finding| finding.what.as_str()).collect();
-        assert_eq!((whats.len(), whats[0], whats[20], whats[21]), (122, "bad", "odd", "rare"));
+        assert_eq!((whats.len(), whats[0], whats[10], whats[11]), (112, "bad", "odd", "rare"));
         assert_eq!((findings.errors(), findings.warnings()), (1, 151));
-        assert_eq!(findings.messages(Severity::Warning).last().unwrap(), "… and 130 more warnings");
+        assert_eq!(findings.messages(Severity::Warning).last().unwrap(), "… and 140 more warnings");
         assert!(findings.to_string().ends_with("\n\n… and 50 more notes"));
     }
 }
