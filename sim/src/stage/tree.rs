@@ -1,8 +1,8 @@
 //! From tokens to a tree of things, with every definition written out.
 //!
 //! A `define` gives a name to a kind of thing with some of its keys and parts; a thing of that kind
-//! has these, then its own keys instead of or beside them, then its own parts. As in Stage, a name
-//! means what was defined last before it is used.
+//! has these, then its own keys instead of or beside them, then its own parts. As in Stage, the first
+//! definition of a name holds.
 
 use super::lexer::{Kind, Token};
 use super::sources::{Place, Sources};
@@ -127,9 +127,12 @@ impl Parser<'_, '_> {
         }
         let node = self.body(kind, 1)?;
         let text = self.sources.text(name).to_owned();
-        if self.definitions.insert(text.clone(), Rc::new(node)).is_some() {
+        if self.definitions.contains_key(&text) {
             let what = format!("`{text}` is defined again");
-            self.sources.warning(name, &what, "", "from here on this definition holds, as in Stage");
+            let help = "this definition has no effect: as in Stage, the first one holds";
+            self.sources.warning(name, &what, "", help);
+        } else {
+            self.definitions.insert(text, Rc::new(node));
         }
         Some(())
     }
