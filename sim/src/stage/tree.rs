@@ -8,6 +8,7 @@ use super::lexer::{Kind, Token};
 use super::sources::{Place, Sources};
 use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::rc::Rc;
 
 /// Brackets may not lie deeper in each other, nor definitions.
@@ -127,12 +128,15 @@ impl Parser<'_, '_> {
         }
         let node = self.body(kind, 1)?;
         let text = self.sources.text(name).to_owned();
-        if self.definitions.contains_key(&text) {
-            let what = format!("`{text}` is defined again");
-            let help = "this definition has no effect: as in Stage, the first one holds";
-            self.sources.warning(name, &what, "", help);
-        } else {
-            self.definitions.insert(text, Rc::new(node));
+        match self.definitions.entry(text) {
+            Entry::Vacant(place) => {
+                place.insert(Rc::new(node));
+            }
+            Entry::Occupied(first) => {
+                let what = format!("`{}` is defined again", first.key());
+                let help = "this definition has no effect: as in Stage, the first one holds";
+                self.sources.warning(name, &what, "", help);
+            }
         }
         Some(())
     }
