@@ -1,18 +1,25 @@
 //! What a reader has to say about a file: everything at once, each with its place.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use std::collections::BTreeSet;
 use std::fmt;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 use std::path::Path;
 
 /// So many findings of each severity are kept; further ones are only counted.
 const MOST_KEPT: usize = 100;
+/// So many warnings of one kind are kept, so that they leave room for others.
+const MOST_ALIKE: usize = 10;
 /// Of a longer line only the part around the place is shown, in bytes.
 const LONG_LINE: usize = 200;
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
+    /// Nothing is wrong, but it is good to know.
+    Note,
     /// The world can be made, but something in the file means nothing here, or not quite the same.
     Warning,
     /// The world cannot be made.
@@ -43,28 +50,64 @@ impl fmt::Display for Finding {
     }
 }
 
-/// All findings of a reader, in the order in which they were made.
+impl Severity {
+    const WORST_FIRST: [Self; 3] = [Self::Error, Self::Warning, Self::Note];
+
+    fn level(self) -> Level<'static> {
+        match self {
+            Self::Error => Level::ERROR,
+            Self::Warning => Level::WARNING,
+            Self::Note => Level::NOTE,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+            Self::Note => "note",
+        }
+    }
+}
+
+/// All findings of a reader: errors, then warnings, then notes, each in the order in which they were
+/// made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Findings {
     kept: Vec<Finding>,
-    errors: usize,
-    warnings: usize,
+    /// How many there are of each severity, from notes to errors, kept or not.
+    counts: [usize; 3],
+    /// What stands for each of them, kept or not: none is counted twice.
+    made: BTreeSet<u64>,
 }
 
 impl Findings {
-    /// The findings that were kept: the first hundred errors and the first hundred warnings.
+    /// The findings that were kept: the first hundred of each severity, and of warnings with the same
+    /// help the first ten.
     pub fn iter(&self) -> impl Iterator<Item = &Finding> {
         self.kept.iter()
     }
 
     /// How many errors there are, kept or not.
     pub fn errors(&self) -> usize {
-        self.errors
+        self.counts[Severity::Error as usize]
     }
 
     /// How many warnings there are, kept or not.
     pub fn warnings(&self) -> usize {
-        self.warnings
+        self.counts[Severity::Warning as usize]
+    }
+
+    /// The messages of one severity; the last one counts those that were not kept, if there are any.
+    pub fn messages(&self, severity: Severity) -> Vec<String> {
+        let kept = self.iter().filter(|finding| finding.severity == severity);
+        let mut messages: Vec<String> = kept.map(ToString::to_string).collect();
+        let left_out = self.counts[severity as usize] - messages.len();
+        if left_out > 0 {
+            let many = if left_out == 1 { "" } else { "s" };
+            messages.push(format!("… and {left_out} more {}{many}", severity.name()));
+        }
+        messages
     }
 
     /// Adds a finding about a place in a text. The same finding at the same place, as in a
@@ -90,8 +133,8 @@ impl Findings {
             let snippet = Snippet::source(text).path(&source.name).line_start(line);
             let label = (!mark.1.is_empty()).then(|| mark.1.to_owned());
             let snippet = snippet.annotation(AnnotationKind::Primary.span(span).label(label));
-            let level = if severity == Severity::Error { Level::ERROR } else { Level::WARNING };
-            let report = [level.primary_title(what).element(snippet).element(Level::HELP.message(help))];
+            let report =
+                [severity.level().primary_title(what).element(snippet).element(Level::HELP.message(help))];
             Renderer::plain().render(&report)
         });
     }
@@ -108,39 +151,33 @@ impl Findings {
             message: String::new(),
         };
         self.keep(new, |new| {
-            let name = if severity == Severity::Error { "error" } else { "warning" };
-            format!("{name}: {}: {}\n  = help: {}", new.file, new.what, new.help)
+            format!("{}: {}: {}\n  = help: {}", severity.name(), new.file, new.what, new.help)
         });
     }
 
     fn keep(&mut self, new: Finding, message: impl FnOnce(&Finding) -> String) {
-        let same = |old: &Finding| (old.line, &old.file, &old.what) == (new.line, &new.file, &new.what);
-        if self.kept.iter().any(same) {
+        let mut hasher = DefaultHasher::new();
+        (new.line, &new.file, &new.what).hash(&mut hasher);
+        if !self.made.insert(hasher.finish()) {
             return;
         }
-        let count = match new.severity {
-            Severity::Error => &mut self.errors,
-            Severity::Warning => &mut self.warnings,
-        };
-        *count += 1;
-        if *count <= MOST_KEPT {
+        let alike = |old: &&Finding| (old.severity, &old.help) == (new.severity, &new.help);
+        let is_one_of_many =
+            new.severity == Severity::Warning && self.kept.iter().filter(alike).count() >= MOST_ALIKE;
+        self.counts[new.severity as usize] += 1;
+        let kept = self.kept.iter().filter(|old| old.severity == new.severity).count();
+        if kept < MOST_KEPT && !is_one_of_many {
             let message = message(&new);
-            self.kept.push(Finding { message, ..new });
+            let place = self.kept.partition_point(|old| old.severity >= new.severity);
+            self.kept.insert(place, Finding { message, ..new });
         }
     }
 }
 
 impl fmt::Display for Findings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (place, finding) in self.kept.iter().enumerate() {
-            let gap = if place == 0 { "" } else { "\n\n" };
-            write!(f, "{gap}{finding}")?;
-        }
-        let left_out = self.errors + self.warnings - self.kept.len();
-        if left_out > 0 {
-            write!(f, "\n\n… and {left_out} more")?;
-        }
-        Ok(())
+        let messages = Severity::WORST_FIRST.map(|severity| self.messages(severity));
+        f.write_str(&messages.concat().join("\n\n"))
     }
 }
 
@@ -160,8 +197,11 @@ pub(crate) struct SourceText {
 
 impl SourceText {
     /// The text of a file, as UTF-8 or, where it is none, as Latin-1: old files have accents in
-    /// their comments.
-    pub(crate) fn new(name: String, bytes: Vec<u8>) -> Self {
+    /// their comments. A mark of the byte order at the start, as some editors leave it, is no part of it.
+    pub(crate) fn new(name: String, mut bytes: Vec<u8>) -> Self {
+        if bytes.starts_with(BYTE_ORDER_MARK) {
+            bytes.drain(..BYTE_ORDER_MARK.len());
+        }
         let text = String::from_utf8(bytes)
             .unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect());
         let starts = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
@@ -204,5 +244,32 @@ impl SourceText {
         let to = self.text.floor_char_boundary(to.min(end));
         let from = self.text.floor_char_boundary(from.min(to));
         (number, &self.text[start..end], from - start..to - start)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_alike_leave_room_for_others_and_are_counted() {
+        let source = SourceText::new("x".into(), "\n".repeat(300).into_bytes());
+        let mut findings = Findings::default();
+        let mut add = |severity, what: &str, line: usize, help| {
+            findings.add(severity, &source, what, (line..line, ""), help);
+        };
+        for line in 0..150 {
+            add(Severity::Note, "seen", line, "");
+            // Twice at one place is once.
+            add(Severity::Warning, "odd", line, "as often");
+            add(Severity::Warning, "odd", line, "as often");
+        }
+        add(Severity::Warning, "rare", 200, "but told");
+        add(Severity::Error, "bad", 201, "and first");
+        let whats: Vec<&str> = findings.iter().map(|finding| finding.what.as_str()).collect();
+        assert_eq!((whats.len(), whats[0], whats[10], whats[11]), (112, "bad", "odd", "rare"));
+        assert_eq!((findings.errors(), findings.warnings()), (1, 151));
+        assert_eq!(findings.messages(Severity::Warning).last().unwrap(), "… and 140 more warnings");
+        assert!(findings.to_string().ends_with("\n\n… and 50 more notes"));
     }
 }

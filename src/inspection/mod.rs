@@ -21,7 +21,7 @@ pub struct Inspection {
     pub file: String,
     /// The world, unless there are errors.
     pub content: Option<Content>,
-    /// What the world will do otherwise than the file asks, one message each.
+    /// What the world will do otherwise than the file asks, then what is good to know, one message each.
     pub warnings: Vec<String>,
     /// What is wrong with the file, one message each.
     pub errors: Vec<String>,
@@ -161,13 +161,10 @@ fn ros_file(path: &Path) -> Inspection {
 }
 
 fn found(content: Option<Content>, findings: &Findings) -> Inspection {
-    let of = |severity| {
-        let these = findings.iter().filter(move |finding| finding.severity == severity);
-        these.map(ToString::to_string).collect()
-    };
+    let of = |severity| findings.messages(severity);
     Inspection {
         content,
-        warnings: of(Severity::Warning),
+        warnings: [of(Severity::Warning), of(Severity::Note)].concat(),
         errors: of(Severity::Error),
         ..Inspection::default()
     }

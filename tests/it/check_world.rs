@@ -20,7 +20,7 @@ fn worlds_are_described_and_drawn() {
     let said = text(&ended.stdout);
     assert!(said.contains("two_blocks: right, a grid world called `two blocks`"), "{said}");
     assert!(said.contains("`dummy` follows a wall back and forth"), "{said}");
-    assert!(text(&ended.stderr).contains("warning: `window` is left out"));
+    assert!(text(&ended.stderr).contains("`gui_grid` (21)"));
     for (name, is_wide) in [("two_blocks", false), ("four_rooms", false), ("lab.world", true)] {
         let picture = image::open(folder.path().join("plans").join(format!("{name}.png"))).unwrap();
         let picture = picture.to_rgb8();

@@ -12,7 +12,7 @@
 //!
 //! p = (255 − v)/255 for a pixel of brightness v, or v/255 with `negate`. In the mode `raw` the
 //! pixel is p in percent, and above 100 unknown; in `scale` a transparent pixel is unknown. What is
-//! unknown is taken as free, with a warning that counts it.
+//! unknown is taken as free, with a note that counts it: most maps have such pixels.
 
 use super::{Bitmap, FloorPlan, MAX_FILE_BYTES, Pixel};
 use crate::files::Files;
@@ -49,8 +49,14 @@ pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<F
         Ok(values) => values,
         Err(error) => {
             let place = error.location().map(|at| at.line() as usize).unwrap_or(1);
-            let what = format!("not a map: {}", error.without_snippet());
-            findings.add(Severity::Error, &source, &what, (source.whole_line(place), ""), EXAMPLE);
+            // The parser's own words for it speak of its settings.
+            let (what, help) = match error.without_snippet() {
+                serde_saphyr::Error::DuplicateMappingKey { .. } => {
+                    ("a key is given twice".to_owned(), "leave one of them out")
+                }
+                error => (format!("not a map: {error}"), EXAMPLE),
+            };
+            findings.add(Severity::Error, &source, &what, (source.whole_line(place), ""), help);
             return None;
         }
     };
@@ -130,26 +136,19 @@ impl Keys<'_> {
         let free = self.number("free_thresh", 0.0..=1.0, "a number from 0 to 1, as in 0.196");
         let negate = self.negate();
         let mode = self.mode();
+        let rule = self.rule(negate, occupied, free, mode);
         let (image, image_place) = image?;
         let path = yaml.parent().unwrap_or(Path::new("")).join(image);
-        let picture = files.read(&path, MAX_FILE_BYTES);
-        let (resolution, origin) = (resolution?.0, origin?);
-        let ((occupied, _), (free, free_place)) = (occupied?, free?);
-        if free > occupied {
-            let what = format!("`free_thresh` is {free}, above `occupied_thresh`, which is {occupied}");
-            self.error(&what, free_place, "a pixel cannot be both free and blocked");
-            return None;
-        }
-        let rule = Rule { negate: negate?, occupied, free, mode: mode? };
         let unknown = Cell::new(0_u64);
-        let bitmap = picture.map_err(|error| error.to_string()).and_then(|bytes| {
-            let is_blocked = |pixel| {
-                let state = rule.state(pixel);
-                unknown.set(unknown.get() + u64::from(state == State::Unknown));
-                state == State::Blocked
-            };
-            Bitmap::decode(&bytes, is_blocked).map_err(|error| error.to_string())
-        });
+        let is_blocked = |pixel| {
+            let state = rule.as_ref().map(|rule| rule.state(pixel));
+            unknown.set(unknown.get() + u64::from(state == Some(State::Unknown)));
+            state == Some(State::Blocked)
+        };
+        let bitmap = files
+            .read(&path, MAX_FILE_BYTES)
+            .map_err(|error| error.to_string())
+            .and_then(|bytes| Bitmap::decode(&bytes, is_blocked).map_err(|error| error.to_string()));
         let bitmap = match bitmap {
             Ok(bitmap) => bitmap,
             Err(error) => {
@@ -158,17 +157,35 @@ impl Keys<'_> {
                 return None;
             }
         };
+        let (resolution, origin, _) = (resolution?.0, origin?, rule?);
         if unknown.get() > 0 {
             let pixels = u64::from(bitmap.width()) * u64::from(bitmap.height());
             let what = format!("{} of the {pixels} pixels are unknown", unknown.get());
             let help = "they are taken as free: no walls, and lasers look through";
-            self.findings.add(Severity::Warning, self.source, &what, (image_place, "in this picture"), help);
+            self.findings.add(Severity::Note, self.source, &what, (image_place, "in this picture"), help);
         }
         Some(FloorPlan {
             bitmap: Arc::new(bitmap),
             pixel_m: Vector2::repeat(resolution),
             origin: pose(origin[0], origin[1], origin[2]),
         })
+    }
+
+    /// How pixels become states, if all that says so is right.
+    fn rule(
+        &mut self,
+        negate: Option<bool>,
+        occupied: Option<(f64, Range<usize>)>,
+        free: Option<(f64, Range<usize>)>,
+        mode: Option<Mode>,
+    ) -> Option<Rule> {
+        let ((occupied, _), (free, place)) = (occupied?, free?);
+        if free > occupied {
+            let what = format!("`free_thresh` is {free}, above `occupied_thresh`, which is {occupied}");
+            self.error(&what, place, "a pixel cannot be both free and blocked");
+            return None;
+        }
+        Some(Rule { negate: negate?, occupied, free, mode: mode? })
     }
 
     fn error(&mut self, what: &str, place: Range<usize>, help: &str) {

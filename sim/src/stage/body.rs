@@ -110,12 +110,7 @@ impl Reader<'_, '_> {
         }
         let z = self.numbers(block, "z", 2..=2).map_or([0.0, 1.0], |(z, _)| [z[0], z[1]]);
         if let Some((_, place)) = self.text(block, "color") {
-            self.sources.warning(
-                place,
-                "a block has a colour of its own",
-                "",
-                "things are of one colour here",
-            );
+            self.sources.harmless(place, "color");
         }
         Some(Block { points, z: z.map(|z| z * self.length_m) })
     }

@@ -4,8 +4,9 @@
 //! [`StageWorld`]: the walls, the floor plans and the robots, in metres and radians, in Stage's own
 //! coordinates. [`load`] makes a fleet of it that runs, [`StageWorld::to_toml`] a world file of ours.
 //!
-//! Nothing that matters is dropped in silence. What makes no sense is an error; what Stage has and
-//! this simulator has not, or does otherwise, is a warning; both name the file and the line.
+//! Nothing is dropped in silence. What makes no sense is an error; what Stage has and this simulator
+//! has not, or does otherwise, is a warning; both name the file and the line. What changes nothing
+//! but how Stage draws or runs a world is in one note per file.
 //!
 //! # What is read
 //!
@@ -34,10 +35,13 @@
 //! are the parts of a ring around the robot, and feel touches.
 
 mod body;
+mod check;
+mod harmless;
 mod heights;
 mod known;
 mod lexer;
 mod load;
+mod looks;
 mod outline;
 mod pictures;
 mod polygon;
@@ -61,6 +65,7 @@ use crate::findings::Findings;
 use crate::floor_plan::FloorPlan;
 use crate::physics::{FleetSpec, Form, OdometryError, Rectangle};
 use nalgebra::{Isometry2, Point2};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A world as a Stage file describes it.
@@ -95,6 +100,7 @@ pub struct StageWall {
     pub rectangles: Vec<Rectangle>,
     /// The tag by which fiducial finders know it; it is of one rectangle then.
     pub tag: Option<u32>,
+    at: Place,
 }
 
 /// A thing that drives.
@@ -134,6 +140,8 @@ pub struct StageRobot {
     /// The controllers that Stage would load.
     pub controllers: Vec<String>,
     at: Place,
+    /// Where its keys stand.
+    keys: BTreeMap<String, Place>,
 }
 
 /// How a robot drives.
@@ -226,6 +234,11 @@ impl StageRobot {
         corners.map(|corner| corner.coords.norm()).fold(0.0, f64::max)
     }
 
+    /// Where the file gives this key, or else where it speaks of this robot.
+    fn key(&self, key: &str) -> Place {
+        self.keys.get(key).copied().unwrap_or(self.at)
+    }
+
     /// What it covers here, where it starts.
     fn form(&self) -> Form {
         Form::new(&self.outline, self.radius_m(), &self.pose)
@@ -252,6 +265,10 @@ pub fn read(path: &Path, files: &dyn Files) -> (Option<StageWorld>, Findings) {
 
 /// Reads a `.world` file and makes a fleet of it, whose robots obey commands, but for those that
 /// wander. Without a fleet there are errors among the findings.
+///
+/// The fleet has coordinates of its own: the world is moved, not turned, so that the lower left corner of
+/// all that is there is [0, 0]. What is at p in the file is at p − [`StageWorld::map_origin`] in the fleet;
+/// a note among the findings says by how much.
 pub fn load(path: &Path, files: &dyn Files) -> (Option<FleetSpec>, Findings) {
     let (world, mut sources) = open(path, files);
     let spec = world.and_then(|world| load::load(&mut sources, path, &world));
@@ -264,5 +281,6 @@ fn open<'a>(path: &Path, files: &'a dyn Files) -> (Option<StageWorld>, Sources<'
         .read(path)
         .and_then(|tokens| tree::read(&mut sources, &tokens))
         .and_then(|tree| world::convert(&mut sources, path, files, &tree));
+    sources.tell_harmless();
     (world.filter(|_| sources.findings.errors() == 0), sources)
 }

@@ -52,7 +52,7 @@ impl Reader<'_, '_> {
             drive,
             velocity: self.bounds(robot, "velocity_bounds").unwrap_or(DEFAULT_VELOCITY),
             acceleration: self.acceleration(robot),
-            odometry: self.odometry(robot),
+            odometry: self.odometry(robot, drive == Drive::Omni),
         }
     }
 
@@ -78,7 +78,7 @@ impl Reader<'_, '_> {
         Some(bounds)
     }
 
-    fn odometry(&mut self, robot: &Thing) -> OdometryError {
+    fn odometry(&mut self, robot: &Thing, is_omni: bool) -> OdometryError {
         let is_exact = match self.text(robot, "localization") {
             None => true,
             Some((kind, place)) => match kind.as_str() {
@@ -94,7 +94,8 @@ impl Reader<'_, '_> {
         if let Some((origin, place)) = self.numbers(robot, "localization_origin", 3..=4)
             && origin.iter().any(|value| *value != 0.0)
         {
-            let help = "robots here report their pose in the frame of the world, as with [0 0 0 0]";
+            let help = "here all poses are in the frame of the world that runs, which is that of the file moved \
+                        to the lower left corner of what is there";
             self.sources.warning(place, "the localization has an origin of its own", "", help);
         }
         let given = self.numbers(robot, "odom_error", 3..=4);
@@ -106,6 +107,10 @@ impl Reader<'_, '_> {
                 let help = "it is 0.05 for 5 %, as Stage's manual has it; Stage 4.3 itself takes it for degrees, and errs 57 times less";
                 if numbers[3] != 0.0 {
                     self.sources.warning(place, "the error of the turn is a proportion", "", help);
+                }
+                if is_omni && numbers[1] != numbers[0] {
+                    let what = "the odometry errs by another share sideways than along";
+                    self.sources.warning(place, what, "", "here the first number, that along, is for both");
                 }
                 [numbers[0], numbers[3]]
             }

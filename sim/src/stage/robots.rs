@@ -18,11 +18,12 @@ impl Builder<'_, '_> {
     /// A thing that drives, with all that it carries.
     pub(super) fn robot(&mut self, thing: &Thing) {
         let looks = self.looks(thing);
-        if !looks.is_there {
+        if !looks.is_there() {
             let help = "here every robot is solid and seen";
             self.reader.sources.warning(thing.place, "this robot is a ghost in Stage", "", help);
         }
         let (at, body, top) = self.place(thing, &Pose::origin(), DEFAULT_SIZE_M, true);
+        self.warn_of_half_ghost(thing, &looks, &body);
         let motion = self.reader.motion(thing);
         let mass_kg = self.reader.number(thing, "mass", 0.0..=1e5);
         let controllers = self.controllers(thing);
@@ -45,6 +46,7 @@ impl Builder<'_, '_> {
             mass_kg,
             controllers,
             at: thing.place,
+            keys: thing.properties.iter().map(|(name, key)| (name.clone(), key.place())).collect(),
         };
         self.add_body(&mut robot, thing, &body, index);
         for part in thing.parts.iter().filter(|part| part.kind != "block") {
@@ -80,7 +82,8 @@ impl Builder<'_, '_> {
             self.reader.sources.warning(place, "a tag of a part of a robot is left out", "", help);
         }
         let (at, body, top) = self.place(thing, on, size_m, !is_sensor);
-        if looks.is_there {
+        self.warn_of_half_ghost(thing, &looks, &body);
+        if looks.is_there() {
             self.add_body(robot, thing, &body, index);
         }
         if is_sensor {

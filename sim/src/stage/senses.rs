@@ -15,6 +15,8 @@ const DEFAULT_LASER_RANGE_M: [f64; 2] = [0.0, 8.0];
 const DEFAULT_LASER_SAMPLES: f64 = 180.0;
 /// Stage updates a model so often, ms.
 const DEFAULT_INTERVAL_MS: f64 = 100.0;
+/// The longest that a sensor may wait, ms.
+const MOST_INTERVAL_MS: f64 = 100_000.0;
 /// A fiducial finder of Stage: how far it sees tags at all, and how far it tells them apart, m.
 const DEFAULT_FIDUCIAL_RANGE_M: f64 = 8.0;
 const DEFAULT_FIDUCIAL_RANGE_ID_M: f64 = 5.0;
@@ -102,13 +104,15 @@ impl Reader<'_, '_> {
             }));
         }
         if fov_rad > TAU - 1e-6 {
-            let help = "Stage's first and last beam are one; here no beam is doubled, and all are 360° / samples apart";
+            let help = "Stage's first and last beam are one: here it is left out the second time, and the others have \
+                        Stage's angles";
             self.sources.warning(thing.place, "a laser sees all around", "", help);
         }
+        let doubled = if fov_rad > TAU - 1e-6 { 1 } else { 0 };
         Some(Sensor::Laser(StageLaser {
             place,
             mount,
-            beams: samples as usize,
+            beams: (samples as usize - doubled).max(2),
             fov_rad: fov_rad.min(TAU),
             range_min_m,
             range_max_m,
@@ -171,8 +175,22 @@ impl Reader<'_, '_> {
         self.number(thing, "fov", 0.0..=most).map(|fov| fov * self.angle_rad)
     }
 
+    /// Stage wakes a sensor in the first of its steps that is not too early.
     fn interval_ms(&mut self, thing: &Thing) -> u32 {
-        self.number(thing, "update_interval", 1.0..=100_000.0).unwrap_or(DEFAULT_INTERVAL_MS) as u32
+        let given_ms = self
+            .number(thing, "update_interval", 1.0..=MOST_INTERVAL_MS)
+            .unwrap_or(DEFAULT_INTERVAL_MS) as u32;
+        let step_ms = self.interval_sim_ms;
+        let interval_ms = given_ms.next_multiple_of(step_ms).min(MOST_INTERVAL_MS as u32);
+        if interval_ms != given_ms {
+            let place = thing.properties.get("update_interval").map_or(thing.place, |key| key.place());
+            let what = format!("every {given_ms} ms is no multiple of Stage's step, which is {step_ms} ms");
+            let help = format!(
+                "in Stage, too, this sensor senses every {interval_ms} ms; see `interval_sim` and `update_interval`"
+            );
+            self.sources.warning(place, &what, "", &help);
+        }
+        interval_ms
     }
 
     /// `[constant proportional angle]`: Stage adds an even spread over ±1 times each.

@@ -1,5 +1,6 @@
 //! The texts that make up a world: the file itself and what it includes.
 
+use super::harmless::Harmless;
 use super::lexer::{self, Kind, Token};
 use crate::files::Files;
 use crate::findings::{Findings, Severity, SourceText};
@@ -35,6 +36,9 @@ pub(super) struct Sources<'a> {
     paths: Vec<PathBuf>,
     /// How many bytes may still be read.
     bytes_left: u64,
+    /// Whether something could not be included: what is not defined is no error then.
+    pub(super) is_incomplete: bool,
+    pub(super) harmless: Harmless,
     pub(super) findings: Findings,
 }
 
@@ -45,12 +49,14 @@ impl<'a> Sources<'a> {
             texts: Vec::new(),
             paths: Vec::new(),
             bytes_left: MAX_BYTES,
+            is_incomplete: false,
+            harmless: Harmless::default(),
             findings: Findings::default(),
         }
     }
 
-    /// The tokens of a file, with those of all files that it includes in their places; `None` if
-    /// there are errors.
+    /// The tokens of a file, with those of all files that it includes in their places, as far as these
+    /// can be read; `None` if the file itself cannot.
     pub(super) fn read(&mut self, path: &Path) -> Option<Vec<Token>> {
         let bytes = match self.files.read(path, self.bytes_left) {
             Ok(bytes) => bytes,
@@ -65,7 +71,7 @@ impl<'a> Sources<'a> {
         self.append(path, bytes, &mut Vec::new(), &mut tokens).then_some(tokens)
     }
 
-    /// Appends the tokens of a text. `open`: the files that include it.
+    /// Appends the tokens of a text, unless it cannot be read as such. `open`: the files that include it.
     fn append(
         &mut self,
         path: &Path,
@@ -85,10 +91,9 @@ impl<'a> Sources<'a> {
             }
         };
         open.push(path.to_owned());
-        let mut is_good = true;
         let mut own = own.into_iter().peekable();
         while let Some(token) = own.next() {
-            if !is_good && self.findings.errors() >= MAX_ERRORS {
+            if self.is_incomplete && self.findings.errors() >= MAX_ERRORS {
                 break;
             }
             let is_include = token.kind == Kind::Word && self.text(token.place) == "include";
@@ -97,16 +102,17 @@ impl<'a> Sources<'a> {
                 continue;
             }
             match own.next_if(|next| next.kind == Kind::Text) {
-                Some(name) => is_good &= self.include(path, name.place, open, tokens),
+                Some(name) => self.is_incomplete |= !self.include(path, name.place, open, tokens),
                 None => {
                     let help = "write the name of a file after it, as in `include \"robots.inc\"`";
                     self.error(token.place, "an include without a file", "", help);
-                    is_good = false;
+                    own.next_if(|next| next.kind == Kind::Word);
+                    self.is_incomplete = true;
                 }
             }
         }
         open.pop();
-        is_good
+        true
     }
 
     fn include(
@@ -169,10 +175,14 @@ impl<'a> Sources<'a> {
         self.texts[place.file as usize].text.get(place.range()).unwrap_or_default()
     }
 
+    /// The line of a place in its file, from 1 on.
+    pub(super) fn line(&self, place: Place) -> usize {
+        self.texts[place.file as usize].line_number(place.start as usize)
+    }
+
     /// A place as a person would name it, as in `cave.world:12`.
     pub(super) fn name(&self, place: Place) -> String {
-        let text = &self.texts[place.file as usize];
-        format!("{}:{}", text.name, text.line_number(place.start as usize))
+        format!("{}:{}", self.texts[place.file as usize].name, self.line(place))
     }
 
     /// The files, as they are called in messages.
@@ -188,5 +198,10 @@ impl<'a> Sources<'a> {
     pub(super) fn warning(&mut self, place: Place, what: &str, label: &str, help: &str) {
         let text = &self.texts[place.file as usize];
         self.findings.add(Severity::Warning, text, what, (place.range(), label), help);
+    }
+
+    pub(super) fn note(&mut self, place: Place, what: &str, help: &str) {
+        let text = &self.texts[place.file as usize];
+        self.findings.add(Severity::Note, text, what, (place.range(), ""), help);
     }
 }

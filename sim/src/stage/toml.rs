@@ -28,9 +28,9 @@ struct Map {
 }
 
 impl StageWorld {
-    /// This world in a world file. Coordinates are moved so that the lower left corner of the map
-    /// is [0, 0]: [`StageWorld::map_origin`] says by how much. Every table names the line of the
-    /// Stage file that it comes from.
+    /// This world in a world file. Coordinates are moved, not turned, so that the lower left corner of
+    /// the map is [0, 0]: what is at p in the Stage file is at p − [`StageWorld::map_origin`] there.
+    /// Every table names the line of the Stage file that it comes from.
     pub fn to_toml(&self) -> String {
         let mut text = String::new();
         // Writing to a text cannot fail.
@@ -41,6 +41,11 @@ impl StageWorld {
     /// The lower left corner of the map in Stage's coordinates, m: on a whole number of cells.
     pub fn map_origin(&self) -> Point2<f64> {
         self.map().low
+    }
+
+    /// The width and height of the map, m.
+    pub(super) fn size_m(&self) -> Vector2<f64> {
+        self.map().size_m
     }
 
     fn map(&self) -> Map {
@@ -67,7 +72,11 @@ impl StageWorld {
         let cells = |value_m: f64, round: fn(f64) -> f64, hair: f64| round(value_m / cell_m + hair) * cell_m;
         let low = low.map(|value_m| cells(value_m, f64::floor, 1e-6));
         let high = high.map(|value_m| cells(value_m, f64::ceil, -1e-6));
-        Map { low, size_m: (high - low).map(|side_m| cells(side_m, f64::round, 0.0).max(cell_m)), cell_m }
+        Map {
+            low,
+            size_m: (high - low).map(|side_m| cells(side_m, f64::round, 0.0).max(2.0 * cell_m)),
+            cell_m,
+        }
     }
 
     fn write(&self, to: &mut String) -> Result {
@@ -112,16 +121,18 @@ impl Map {
 
     fn write_wall(&self, to: &mut String, rectangle: &Rectangle, place: &str) -> Result {
         writeln!(to, "\n[[wall]]  # {place}")?;
-        let turn = rectangle.pose.rotation;
-        if turn.re.abs() < 1e-12 || turn.im.abs() < 1e-12 {
+        if is_upright(rectangle) {
             let (low, high) = rectangle.bounds();
             pair(to, "min_m", &self.point(&low))?;
             return pair(to, "max_m", &self.point(&high));
         }
-        let end = |x: f64| self.point(&(rectangle.pose * Point2::new(x, 0.0)));
-        pair(to, "from_m", &end(-rectangle.half_m.x))?;
-        pair(to, "to_m", &end(rectangle.half_m.x))?;
-        number(to, "thickness_m", 2.0 * rectangle.half_m.y)
+        // Along its longer side: how long a wall is has no bounds, how thick it is has.
+        let (x, y) = (rectangle.half_m.x, rectangle.half_m.y);
+        let along = if x >= y { Vector2::new(x, 0.0) } else { Vector2::new(0.0, y) };
+        let end = |along: Vector2<f64>| self.point(&(rectangle.pose * Point2::from(along)));
+        pair(to, "from_m", &end(-along))?;
+        pair(to, "to_m", &end(along))?;
+        number(to, "thickness_m", 2.0 * x.min(y))
     }
 
     fn write_tagged(&self, to: &mut String, wall: &StageWall, shape: &Rectangle, tag: u32) -> Result {
@@ -185,13 +196,14 @@ impl Map {
 }
 
 fn write_senses(to: &mut String, robot: &StageRobot) -> Result {
+    let radius_m = robot.radius_m();
     let table = if robot.lasers.len() == 1 { "[robot.laser]" } else { "[[robot.laser]]" };
     for laser in &robot.lasers {
         writeln!(to, "\n{table}  # {}\nbeams = {}", laser.place, laser.beams)?;
         number(to, "fov_deg", laser.fov_rad.to_degrees())?;
         number(to, "range_min_m", laser.range_min_m)?;
         number(to, "range_max_m", laser.range_max_m)?;
-        write_place(to, laser.interval_ms, &laser.mount)?;
+        write_place(to, laser.interval_ms, &laser.mount, radius_m)?;
         number(to, "noise_std_m", laser.noise_std_m)?;
     }
     if robot.lasers.is_empty() {
@@ -203,23 +215,31 @@ fn write_senses(to: &mut String, robot: &StageRobot) -> Result {
         number(to, "cone_deg", sonar.cone_rad.to_degrees())?;
         number(to, "range_min_m", sonar.range_min_m)?;
         number(to, "range_max_m", sonar.range_max_m)?;
-        write_place(to, sonar.interval_ms, &sonar.mount)?;
+        write_place(to, sonar.interval_ms, &sonar.mount, radius_m)?;
         number(to, "noise_std_m", sonar.noise_std_m)?;
     }
     if let Some(finder) = &robot.fiducial {
         writeln!(to, "\n[robot.fiducial]  # {}", finder.place)?;
         number(to, "fov_deg", finder.fov_rad.to_degrees())?;
         number(to, "range_max_m", finder.range_max_m)?;
-        write_place(to, finder.interval_ms, &finder.mount)?;
+        write_place(to, finder.interval_ms, &finder.mount, radius_m)?;
     }
     Ok(())
 }
 
-/// How often a sensor senses, and where it sits.
-fn write_place(to: &mut String, interval_ms: u32, mount: &Isometry2<f64>) -> Result {
+/// How often a sensor senses, and where it sits: within the circle about its robot, where it cannot be in a
+/// wall, and off its border by more than rounding.
+fn write_place(to: &mut String, interval_ms: u32, mount: &Isometry2<f64>, radius_m: f64) -> Result {
+    let within_m = mount.translation.vector.cap_magnitude(radius_m - 1e-7);
     number(to, "rate_hz", 1000.0 / f64::from(interval_ms))?;
-    pair(to, "mount_m", &mount.translation.vector.into())?;
+    pair(to, "mount_m", &within_m.into())?;
     number(to, "mount_deg", heading_rad(mount).to_degrees())
+}
+
+/// Whether its sides are along the axes.
+pub(super) fn is_upright(rectangle: &Rectangle) -> bool {
+    let turn = rectangle.pose.rotation;
+    turn.re.abs() < 1e-12 || turn.im.abs() < 1e-12
 }
 
 fn number(to: &mut String, key: &str, value: f64) -> Result {
@@ -231,7 +251,7 @@ fn pair(to: &mut String, key: &str, point: &Point2<f64>) -> Result {
 }
 
 /// To a billionth: without what sums and units leave behind.
-fn short(value: f64) -> f64 {
+pub(super) fn short(value: f64) -> f64 {
     let rounded = (value * 1e9).round() / 1e9;
     // No −0.0.
     if rounded == 0.0 { 0.0 } else { rounded }

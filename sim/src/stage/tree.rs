@@ -1,13 +1,14 @@
 //! From tokens to a tree of things, with every definition written out.
 //!
 //! A `define` gives a name to a kind of thing with some of its keys and parts; a thing of that kind
-//! has these, then its own keys instead of or beside them, then its own parts. As in Stage, a name
-//! means what was defined last before it is used.
+//! has these, then its own keys instead of or beside them, then its own parts. As in Stage, the first
+//! definition of a name holds.
 
 use super::lexer::{Kind, Token};
 use super::sources::{Place, Sources};
 use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::rc::Rc;
 
 /// Brackets may not lie deeper in each other, nor definitions.
@@ -127,9 +128,15 @@ impl Parser<'_, '_> {
         }
         let node = self.body(kind, 1)?;
         let text = self.sources.text(name).to_owned();
-        if self.definitions.insert(text.clone(), Rc::new(node)).is_some() {
-            let what = format!("`{text}` is defined again");
-            self.sources.warning(name, &what, "", "from here on this definition holds, as in Stage");
+        match self.definitions.entry(text) {
+            Entry::Vacant(place) => {
+                place.insert(Rc::new(node));
+            }
+            Entry::Occupied(first) => {
+                let what = format!("`{}` is defined again", first.key());
+                let help = "this definition has no effect: as in Stage, the first one holds";
+                self.sources.warning(name, &what, "", help);
+            }
         }
         Some(())
     }

@@ -38,6 +38,8 @@ pub(super) struct Reader<'a, 'b> {
     pub(super) length_m: f64,
     /// Radians per unit of angle.
     pub(super) angle_rad: f64,
+    /// Stage's own step, ms.
+    pub(super) interval_sim_ms: u32,
     pub(super) pictures: Pictures<'a>,
 }
 

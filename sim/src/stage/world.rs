@@ -10,6 +10,7 @@ use super::tree::Thing;
 use super::values::{Pose, Reader};
 use super::{StageRobot, StageWall, StageWorld, tags};
 use crate::files::Files;
+use crate::findings::Severity;
 use nalgebra::Point2;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -19,27 +20,20 @@ const MAX_ROBOTS: usize = 10_000;
 /// The size of a model, where the file gives none, m.
 pub(super) const DEFAULT_SIZE_M: [f64; 3] = [0.1; 3];
 
+/// The step of Stage, where the file gives none, ms.
+const DEFAULT_INTERVAL_SIM_MS: u32 = 100;
+
 /// Makes walls and robots of things.
 pub(super) struct Builder<'a, 'b> {
     pub(super) reader: Reader<'a, 'b>,
-    names: BTreeSet<String>,
+    pub(super) names: BTreeSet<String>,
     /// How many names of each kind were made up.
-    made_up: BTreeMap<String, usize>,
+    pub(super) made_up: BTreeMap<String, usize>,
     walls: Vec<StageWall>,
     /// The walls that have a tag, with their pose and where the file speaks of the tag.
     tagged: Vec<(usize, Point2<f64>, Place)>,
     pub(super) robots: Vec<StageRobot>,
     pub(super) heights: Heights,
-}
-
-/// What a thing is called, and what it is to others.
-pub(super) struct Looks {
-    pub(super) name: String,
-    pub(super) color: Option<String>,
-    /// Whether robots bump into it or lasers see it.
-    pub(super) is_there: bool,
-    /// Its tag, and where the file speaks of it.
-    pub(super) tag: Option<(u32, Place)>,
 }
 
 /// Makes the world of a tree. What it leaves out it names; whether there were errors is for the
@@ -50,12 +44,23 @@ pub(super) fn convert(
     files: &dyn Files,
     tree: &Thing,
 ) -> Option<StageWorld> {
-    let mut reader =
-        Reader { sources, length_m: 1.0, angle_rad: 1.0_f64.to_radians(), pictures: Pictures::new(files) };
+    if tree.parts.is_empty() && !sources.is_incomplete {
+        let help = "it needs things such as `model( … )` and `position( … )`; a file that only defines some is to \
+                    be included";
+        sources.findings.add_file(Severity::Warning, path, "there is nothing in this world", help);
+    }
+    let mut reader = Reader {
+        sources,
+        length_m: 1.0,
+        angle_rad: 1.0_f64.to_radians(),
+        interval_sim_ms: DEFAULT_INTERVAL_SIM_MS,
+        pictures: Pictures::new(files),
+    };
     reader.units(tree);
     let name = reader.text(tree, "name").map(|(name, _)| name);
     let quit_time_s = reader.number(tree, "quit_time", 0.0..=1e5).filter(|time_s| *time_s > 0.0);
     let longest_ms = reader.number(tree, "interval_sim", 1.0..=1e5);
+    reader.interval_sim_ms = longest_ms.map_or(DEFAULT_INTERVAL_SIM_MS, |ms| ms.round() as u32);
     let mut builder = Builder {
         reader,
         names: BTreeSet::new(),
@@ -137,12 +142,18 @@ impl Builder<'_, '_> {
     /// A kind of thing that is neither a wall nor a robot.
     pub(super) fn other(&mut self, thing: &Thing) {
         let kind = thing.kind.as_str();
+        if known::is_harmless(kind) {
+            self.reader.sources.harmless(thing.place, kind);
+            return use_all(thing);
+        }
         if let Some((_, why)) = known::KINDS_LEFT_OUT.iter().find(|(known, _)| *known == kind) {
             return self.left_out(thing, &format!("`{kind}` is left out"), why);
         }
         let (what, help) = match kind {
             "block" => ("a block outside of a thing", "it belongs into the ( ) of a model or robot"),
             "sensor" => ("a sensor outside of a ranger", "it belongs into the ( ) of a `ranger`"),
+            // It may be defined in what could not be read.
+            _ if self.reader.sources.is_incomplete => return use_all(thing),
             _ => (
                 "an unknown kind of thing",
                 "Stage knows no such model; is the `include` of its `define` missing?",
@@ -155,53 +166,6 @@ impl Builder<'_, '_> {
     pub(super) fn left_out(&mut self, thing: &Thing, what: &str, why: &str) {
         self.reader.sources.warning(thing.place, what, "", why);
         use_all(thing);
-    }
-
-    pub(super) fn looks(&mut self, thing: &Thing) -> Looks {
-        let given = self.reader.text(thing, "name");
-        let mut name = given.as_ref().map_or_else(|| thing.kind.clone(), |(name, _)| name.clone());
-        if given.is_none() || self.names.contains(&name) {
-            // As Stage makes names up.
-            let count = self.made_up.entry(name.clone()).or_default();
-            let mut free = format!("{name}:{count}");
-            while self.names.contains(&free) {
-                *count += 1;
-                free = format!("{name}:{count}");
-            }
-            *count += 1;
-            if let Some((_, place)) = given {
-                let what = format!("two things are called `{name}`");
-                self.reader.sources.warning(place, &what, "", &format!("this one is called `{free}` here"));
-            }
-            name = free;
-        }
-        self.names.insert(name.clone());
-        let color = self.reader.text(thing, "color").map(|(color, _)| color);
-        let collides = self.reader.flag(thing, "obstacle_return").unwrap_or(true);
-        let is_seen_by_rangers =
-            self.reader.number(thing, "ranger_return", -1e5..=1e5).is_none_or(|value| value >= 0.0);
-        let is_seen_by_lasers = self.reader.flag(thing, "laser_return").unwrap_or(true);
-        let is_seen = is_seen_by_rangers && is_seen_by_lasers;
-        if collides != is_seen {
-            let (what, help) = match collides {
-                true => ("this thing cannot be seen in Stage", "here lasers see whatever robots bump into"),
-                false => {
-                    ("nothing bumps into this thing in Stage", "here robots bump into whatever lasers see")
-                }
-            };
-            self.reader.sources.warning(thing.place, what, "", help);
-        }
-        if let Some((_, place)) =
-            self.reader.numbers(thing, "mass", 1..=1).filter(|_| thing.kind != "position")
-        {
-            self.reader.sources.warning(
-                place,
-                "`mass` means nothing here",
-                "",
-                "what is not a robot cannot be moved",
-            );
-        }
-        Looks { name, color, is_there: collides || is_seen, tag: self.reader.tag(thing) }
     }
 
     /// The pose of a thing on another one, its body, and the place on top of it for its parts.
@@ -232,7 +196,8 @@ impl Builder<'_, '_> {
                 "this thing stands still",
             );
         }
-        let has_body = looks.is_there && !body.is_empty();
+        self.warn_of_half_ghost(thing, &looks, &body);
+        let has_body = looks.is_there() && !body.is_empty();
         if let Some((_, place)) = looks.tag.filter(|_| !has_body) {
             let help = "only what robots bump into has a tag here";
             self.reader.sources.warning(place, "the tag of a thing without a body is left out", "", help);
@@ -256,6 +221,7 @@ impl Builder<'_, '_> {
                 plan: body.plan,
                 rectangles,
                 tag: looks.tag.map(|(tag, _)| tag),
+                at: thing.place,
             });
         }
         for part in thing.parts.iter().filter(|part| part.kind != "block") {
@@ -276,8 +242,12 @@ impl Builder<'_, '_> {
 
     fn warn_of_unused(&mut self, thing: &Thing) {
         for (name, property) in thing.properties.iter().filter(|(_, property)| !property.is_used.get()) {
-            let what = format!("`{name}` means nothing here");
-            self.reader.sources.warning(property.name, &what, "", known::why_unused(name));
+            if known::is_harmless(name) {
+                self.reader.sources.harmless(property.name, name);
+            } else {
+                let what = format!("`{name}` means nothing here");
+                self.reader.sources.warning(property.name, &what, "", known::why_unused(name));
+            }
             property.is_used.set(true);
         }
         for part in &thing.parts {

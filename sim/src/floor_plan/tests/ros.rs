@@ -44,7 +44,7 @@ fn a_map_is_read() {
     // 0xcd is 205, p = 0.19608; 0x32 is 50, p = 0.804.
     assert_eq!(blocked(GOOD), "#...##");
     insta::assert_snapshot!(findings, @"
-    warning: 1 of the 6 pixels are unknown
+    note: 1 of the 6 pixels are unknown
      --> maps/house.yaml:1:8
       |
     1 | image: house.pgm
@@ -69,7 +69,13 @@ fn modes_and_negation() {
 fn everything_that_is_wrong_is_said_at_once() {
     let bad = "image: [1, 2]\nresolution: -0.05\norigin: [0.0, 0.0]\nnegate: 2\noccupied_thresh: high\n\
                free_thres: 0.1\nmode: fancy\n";
-    insta::assert_snapshot!(read(bad).1);
+    let no_picture = GOOD.replace("house.pgm", "home.pgm").replace("0.05", "-1").replace("0.65", "65");
+    insta::assert_snapshot!(format!("{}\n\n# No picture\n\n{}", read(bad).1, read(&no_picture).1));
+}
+
+#[test]
+fn a_mark_of_the_byte_order_is_skipped() {
+    assert_eq!(blocked(&format!("\u{feff}{GOOD}")), "#...##");
 }
 
 #[test]

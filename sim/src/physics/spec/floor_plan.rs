@@ -3,7 +3,7 @@
 use super::check::inside;
 use super::file::FloorPlanFile;
 use super::numbers::Table;
-use crate::error::{Source, WorldError};
+use crate::error::{Source, WorldError, Wrong};
 use crate::files::Files;
 use crate::findings::{Findings, Severity};
 use crate::floor_plan::{Bitmap, FloorPlan, MAX_FILE_BYTES, ros};
@@ -53,17 +53,7 @@ pub(super) fn walls(
             blocked_below: None,
             ..
         } => {
-            let mut findings = Findings::default();
-            let plan = ros::read(&beside(source, map), files, &mut findings).ok_or_else(|| {
-                let first = findings.iter().find(|finding| finding.severity == Severity::Error);
-                let said = first.map_or_else(String::new, |first| match first.line {
-                    0 => first.what.clone(),
-                    line => format!("line {line}: {}", first.what),
-                });
-                let help = first.map_or("", |first| first.help.as_str());
-                let what = format!("cannot read the map `{}`: {said}", map.get_ref());
-                source.error(&what, (map.span(), "this map"), &[], help)
-            })?;
+            let plan = read_map(source, files, map)?;
             let origin = pose(corner.x, corner.y, heading_rad(&plan.origin));
             (FloorPlan { origin, ..plan }, map)
         }
@@ -89,6 +79,20 @@ pub(super) fn walls(
         inside(source, "a floor plan reaches out of the map", named.span(), wall, size)?;
     }
     Ok(walls)
+}
+
+/// The map of ROS that the world file names. Everything that is wrong with it is told. A world file has
+/// no warnings: what is one for a map alone, a key that may be misspelt and change the walls, is an error here.
+fn read_map(source: &Source<'_>, files: &dyn Files, map: &Spanned<String>) -> Result<FloorPlan, WorldError> {
+    let mut findings = Findings::default();
+    let plan = ros::read(&beside(source, map), files, &mut findings);
+    let mut wrong = Wrong::default();
+    for finding in findings.iter().filter(|finding| finding.severity >= Severity::Warning) {
+        let line = if finding.line == 0 { String::new() } else { format!("line {}: ", finding.line) };
+        let what = format!("cannot use the map `{}`: {line}{}", map.get_ref(), finding.what);
+        wrong.keep::<()>(Err(source.error(&what, (map.span(), "this map"), &[], &finding.help)));
+    }
+    plan.filter(|_| wrong.is_empty()).ok_or_else(|| wrong.into_error())
 }
 
 /// The path of a file that the world file names.

@@ -51,8 +51,13 @@ kind = "driven"
 fn files() -> BTreeMap<PathBuf, Vec<u8>> {
     let yaml = "image: room.pgm\nresolution: 0.25\norigin: [-7.0, 3.0, 0.0]\nnegate: 0\noccupied_thresh: 0.6\n\
                 free_thresh: 0.2\n";
-    let all =
-        [("w/room.pgm", ROOM), ("w/room.yaml", yaml.as_bytes()), ("w/odd.yaml", &yaml.as_bytes()[..40])];
+    let misspelt = yaml.replace("negate: 0", "negat: 1");
+    let all = [
+        ("w/room.pgm", ROOM),
+        ("w/room.yaml", yaml.as_bytes()),
+        ("w/odd.yaml", &yaml.as_bytes()[..40]),
+        ("w/misspelt.yaml", misspelt.as_bytes()),
+    ];
     all.map(|(name, bytes)| (PathBuf::from(name), bytes.to_vec())).into()
 }
 
@@ -94,6 +99,7 @@ fn bad_plans_have_their_place() {
         ("no picture", "room.pgm", "hall.pgm"),
         ("no map", "image = \"room.pgm\"\npixel_m = 0.25", "map = \"hall.yaml\""),
         ("half a map", "image = \"room.pgm\"\npixel_m = 0.25", "map = \"odd.yaml\""),
+        ("a misspelt key", "image = \"room.pgm\"\npixel_m = 0.25", "map = \"misspelt.yaml\""),
         ("not a picture", "room.pgm", "room.yaml"),
         ("a picture and a map", "pixel_m = 0.25", "pixel_m = 0.25\nmap = \"room.yaml\""),
         ("no size", "pixel_m = 0.25\n", ""),

@@ -30,6 +30,10 @@ fn syntax() {
             ("a definition of itself", "define a b( )\ndefine b a( )\na( )"),
             ("an include without a file", "include lab.inc"),
             ("an include that is not there", "include \"lab.inc\""),
+            (
+                "no include, and what does not follow from it",
+                "include \"lab.inc\"\nrover( )\nmodel( size 1 )\ninclude rover.inc\nmodel( name 3 rover( ) )",
+            ),
         ],
     );
 }
@@ -69,6 +73,13 @@ fn what_is_not_here_is_named() {
                 "things",
                 "window( size [1 2] )\nmodel( camera( range [0 8] ) blobfinder( ) )\nposition( gripper( ) )\nlaser( )",
             ),
+            ("nothing", "define a model( )"),
+            (
+                "what changes nothing",
+                "threads 2\nspeedup 3\nmodel( color \"blurple\" )\nmodel( color \"red\" pose [1 0 0 0] )
+model( color \"red\" pose [2 0 0 0] )\nmodel( color \"red\" pose [3 0 0 0] mass 3 )\nwindow( size [1 2] )",
+            ),
+            ("old keys", "model( size3 [1 1 1] )"),
             (
                 "keys",
                 "resolution 0.02\nmodel( gui_nose 1 joules 10 friction 0.1 bitmap_resolution 3 mass 3 )",
@@ -82,6 +93,11 @@ fn what_is_not_here_is_named() {
             (
                 "sensors",
                 "position( ranger( sensor( samples 1 ) ) ranger( ) laser( noise [0.1 0.1 1] fov 360 ) )",
+            ),
+            (
+                "drifting sideways",
+                "position( drive \"omni\" localization \"odom\" odom_error [0.1 0.1 0 0] )
+position( pose [2 0 0 0] drive \"omni\" localization \"odom\" odom_error [0.1 0.3 0 0] )",
             ),
             ("bumpers", "position( bumper( bcount 1 bpose[0] [0 0 0 0] blength 0.1 ) )"),
             (
@@ -136,6 +152,18 @@ fn what_the_physics_cannot_do_is_said_at_its_line() {
             "position( name \"a\" size [0.4 0.4 1] laser( ) )\nposition( name \"b\" pose [0.3 0 0 0] size [0.4 0.4 1] laser( ) )",
         ),
         ("too large", "model( pose [2000 0 0 0] )\nposition( size [0.4 0.4 1] laser( ) )"),
+        (
+            "every figure out of range",
+            "position( size [0.4 0.4 1] laser( ) localization \"odom\" odom_error [0.6 0 0 -0.7]
+velocity_bounds [-1 1 0 0 0 0 -7200 7200]\nacceleration_bounds [0 0 0 0 0 0 0 0] )
+position( pose [3 0 0 0] size [0.4 0.4 1] laser( )\nacceleration_bounds [-200 200 0 0 0 0 -90 90]
+drive \"omni\" mass 0 )\nposition( pose [6 0 0 0] size [1 1 1] laser( ) drive \"car\"\nwheelbase 0.005 )",
+        ),
+        (
+            "walls too thin and too thick",
+            "model( size [4 0.0005 1] )\nmodel( size [300 200 1] pose [0 300 0 10] )
+model( size [300 200 1] pose [0 600 0 90] )",
+        ),
     ];
     let messages: String =
         cases.iter().map(|(case, text)| format!("# {case}\n\n{}\n\n", load_one(text))).collect();

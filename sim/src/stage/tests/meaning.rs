@@ -68,13 +68,15 @@ fn definitions_are_written_out() {
         define long slab( size [4 1 1] slab( pose [0 5 0 0] ) )
         long( name \"a\" pose [0 0 0 0] model( name \"on\" pose [0 -5 0 0] ) )
         define slab model( size [9 9 1] )
+        define slab slab( size [8 8 1] )
         slab( name \"b\" pose [50 0 0 0] )";
     let world = good(text);
     let names: Vec<&str> = world.walls.iter().map(|wall| wall.name.as_str()).collect();
     assert_eq!(names, ["a", "model:0", "on", "b"]);
     assert_eq!(world.walls[0].color.as_deref(), Some("grey"));
     assert_eq!(world.walls[1].rectangles[0].half_m.x, 0.5);
-    assert_eq!(world.walls[3].rectangles[0].half_m.x, 4.5);
+    // As in Stage, the first definition holds, and one of itself later on does no harm.
+    assert_eq!(world.walls[3].rectangles[0].half_m.x, 0.5);
 }
 
 #[test]
@@ -89,7 +91,7 @@ fn what_a_robot_has_when_nothing_is_said() {
 
 #[test]
 fn lasers_old_and_new() {
-    let text = "position( size [0.4 0.4 0.2] pose [1 1 0 90]
+    let text = "interval_sim 20 position( size [0.4 0.4 0.2] pose [1 1 0 90]
         laser( pose [0.1 0 0 180] range_min 0.2 range_max 4 fov 270 samples 271 update_interval 40 )
         ranger( pose [0 0.1 0 0] origin [0.05 0 0 0] sensor( pose [0.01 0 0 90] samples 5 )
           sensor( samples 9 fov 360 range [0.1 2] ) ) )";
@@ -101,7 +103,8 @@ fn lasers_old_and_new() {
     assert!((first.mount.translation.vector - nalgebra::Vector2::new(0.06, 0.1)).norm() < 1e-12);
     // Stage's own sensor: 0.1 rad, 5 m.
     assert_eq!((first.beams, first.fov_rad, first.range_max_m), (5, 0.1, 5.0));
-    assert_eq!((second.beams, second.fov_rad), (9, std::f64::consts::TAU));
+    // Stage's nine are 45° apart, the first and the last of them the same.
+    assert_eq!((second.beams, second.fov_rad), (8, std::f64::consts::TAU));
     // A step that both 40 and 100 ms are multiples of.
     assert!((world.step_s - 0.02).abs() < 1e-12);
     assert!(findings.iter().any(|finding| finding.what == "a laser sees all around"));
@@ -109,7 +112,7 @@ fn lasers_old_and_new() {
 
 #[test]
 fn single_rays_are_sonars_and_count_for_the_step() {
-    let text = "position( size [0.4 0.4 0.2]
+    let text = "interval_sim 20 position( size [0.4 0.4 0.2]
         ranger( update_interval 40 sensor( pose [0.1 0 0 90] range [0.2 3] fov 20 noise [0.01 0 0] ) ) )";
     let world = good(text);
     let [sonar] = world.robots[0].sonars.as_slice() else { panic!() };
@@ -170,10 +173,66 @@ fn fast_small_robots_have_short_steps() {
 }
 
 #[test]
+fn sensors_sense_in_steps_of_stage() {
+    let (world, findings) = one("position( size [0.4 0.4 0.2] laser( update_interval 33 ) )
+        interval_sim 30 position( size [0.4 0.4 0.2] pose [1 0 0 0] laser( update_interval 90 ) laser( ) )");
+    let intervals_ms =
+        world.unwrap().robots.into_iter().flat_map(|robot| robot.lasers).map(|l| l.interval_ms);
+    assert_eq!(intervals_ms.collect::<Vec<_>>(), [60, 90, 120]);
+    let told = findings.iter().filter(|finding| finding.what.ends_with("Stage's step, which is 30 ms"));
+    assert_eq!(told.count(), 2);
+}
+
+#[test]
+fn a_world_is_moved_and_says_by_how_much() {
+    let (spec, findings) =
+        load_one("position( size [0.4 0.4 1] pose [3 -4 0 90] laser( pose [0 0 -0.9 0] ) )");
+    let spec = spec.unwrap_or_else(|| panic!("{findings}"));
+    let at = spec.robots()[0].pose.translation.vector;
+    assert!((at - nalgebra::Vector2::new(0.2, 0.2)).norm() < 1e-9, "{at}");
+    insta::assert_snapshot!(findings, @"
+    note: x.world: [0, 0] of the world that runs is [2.8, -4.2] of this file
+      = help: it is the lower left corner of all that is there; headings are as in the file
+    ");
+}
+
+#[test]
+fn a_sensor_off_its_robot_is_moved_back() {
+    let (spec, findings) = load_one(
+        "position( size [0.6 0.8 1] laser( pose [3 4 -0.9 90] ) ranger( pose [-1 0 -0.9 0] sensor( ) ) )",
+    );
+    let spec = spec.unwrap_or_else(|| panic!("{findings}"));
+    let robot = &spec.robots()[0];
+    assert!((robot.laser.mount.translation.vector - nalgebra::Vector2::new(0.3, 0.4)).norm() < 1e-6);
+    assert!((robot.laser.mount.rotation.angle() - FRAC_PI_2).abs() < 1e-9);
+    assert!((robot.sonars[0].mount.translation.vector.x + 0.5).abs() < 1e-6);
+    let moved: Vec<&str> =
+        findings.iter().map(|f| f.what.as_str()).filter(|what| what.contains("mounted")).collect();
+    assert_eq!(
+        moved,
+        [
+            "a laser of `position:0` is mounted 4.500 m off its robot",
+            "a sonar of `position:0` is mounted 0.500 m off its robot"
+        ]
+    );
+}
+
+#[test]
+fn long_turned_walls_are_as_thick_as_their_shorter_side() {
+    let (spec, findings) = load_one("model( size [1 300 1] pose [0 0 0 30] )");
+    let spec = spec.unwrap_or_else(|| panic!("{findings}"));
+    let sides = 2.0 * spec.walls()[0].half_m;
+    assert!((sides - nalgebra::Vector2::new(300.0, 1.0)).norm() < 1e-6, "{sides}");
+}
+
+#[test]
 fn what_is_nowhere_is_left_out() {
     assert!(good("model( obstacle_return 0 ranger_return -1 )").walls.is_empty());
     let (world, findings) = one("model( obstacle_return 0 )");
     assert_eq!((world.unwrap().walls.len(), findings.warnings()), (1, 1));
+    // What has no body is no half a ghost, as the sonars of Stage's pioneer.
+    let text = "position( size [0.4 0.4 0.2] laser( pose [0 0 -0.1 0] obstacle_return 0 ) )";
+    assert_eq!(one(text).1.to_string(), "");
 }
 
 #[test]
