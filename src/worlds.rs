@@ -2,7 +2,7 @@
 
 use sim::grid::GridSpec;
 use sim::physics::{Behaviour, WorldSpec};
-use sim::{Disk, Findings, WorldError, stage};
+use sim::{Disk, Severity, WorldError, stage};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -66,9 +66,9 @@ pub enum LoadError {
     /// The file is not a world.
     #[error(transparent)]
     World(#[from] WorldError),
-    /// The file of Stage is not a world.
+    /// The file of Stage is not a world: all that is wrong with it, as in a [`WorldError`].
     #[error("{0}")]
-    Stage(Findings),
+    Stage(String),
     /// A world of Stage in which nobody could explore.
     #[error("`{name}` has no robot that could explore: it takes a `position` model")]
     NoRobot {
@@ -117,8 +117,12 @@ pub fn load(name: &str) -> Result<Loaded, LoadError> {
 
 fn load_stage(name: &str) -> Result<Loaded, LoadError> {
     let (fleet, findings) = stage::load(Path::new(name), &Disk);
-    let mut warnings: Vec<String> = findings.iter().map(ToString::to_string).collect();
-    let fleet = fleet.ok_or(LoadError::Stage(findings))?;
+    let Some(fleet) = fleet else {
+        let errors = findings.messages(Severity::Error).join("\n\n");
+        return Err(LoadError::Stage(errors.trim_start_matches("error: ").to_owned()));
+    };
+    let mut warnings =
+        [Severity::Warning, Severity::Note].map(|severity| findings.messages(severity)).concat();
     let driven: Vec<usize> =
         (0..fleet.robots().len()).filter(|&i| fleet.robots()[i].behaviour == Behaviour::Driven).collect();
     let explorer = driven.first().copied().unwrap_or(0);
