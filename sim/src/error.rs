@@ -1,6 +1,7 @@
 //! What is wrong with a world file, where, and what would be right.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use std::cell::OnceCell;
 use std::ops::Range;
 
 /// A world file that cannot be read or makes no sense.
@@ -69,12 +70,13 @@ impl Wrong {
 }
 
 /// The text of a world file, to point into.
-#[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
     /// What the file is called in messages.
     pub(crate) name: &'a str,
     /// All of its text.
     pub(crate) text: &'a str,
+    /// Where its lines end, once something is wrong: thousands of errors would count them thousands of times.
+    line_ends: OnceCell<Vec<usize>>,
 }
 
 /// A place in the file that has a part in an error, with what is to be said of it.
@@ -92,7 +94,11 @@ impl WorldError {
     }
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    pub(crate) fn new(name: &'a str, text: &'a str) -> Self {
+        Self { name, text, line_ends: OnceCell::new() }
+    }
+
     /// An error at `mark`, with `others` that explain it and `help` that says what would be right.
     pub(crate) fn error(&self, what: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> WorldError {
         // Only the lines that matter are looked at: a large file may have many errors.
@@ -101,7 +107,9 @@ impl Source<'_> {
         let last = spans().map(|span| span.end).max().unwrap_or_default();
         let start = self.text[..first].rfind('\n').map_or(0, |at| at + 1);
         let end = self.text[last..].find('\n').map_or(self.text.len(), |length| last + length + 1);
-        let line = 1 + self.text[..start].bytes().filter(|byte| *byte == b'\n').count();
+        let line_ends =
+            self.line_ends.get_or_init(|| self.text.match_indices('\n').map(|(at, _)| at).collect());
+        let line = 1 + line_ends.partition_point(|at| *at < start);
         let annotation = |kind: AnnotationKind, (span, label): &Mark<'_>| {
             let label = (!label.is_empty()).then(|| (*label).to_owned());
             let span = self.first_line(span);

@@ -169,11 +169,11 @@ fn wrong_values_have_no_consequences() {
 
 #[test]
 fn a_flood_of_wrong_values_is_counted() {
-    let walls = "[[wall]]\nmin_m = [1.0, 1.0]\nmax_m = [0.0, 0.0]\n".repeat(3000);
+    let walls = "[[wall]]\nmin_m = [1.0, 1.0]\nmax_m = [0.0, 0.0]\n".repeat(20_000);
     let messages = messages(&room(&format!("{walls}[[robot]]\ncolour = 1\n")));
     assert_eq!(messages.len(), 21);
     // The robot has one key too many and lacks five.
-    assert_eq!(messages[20], format!("world.toml: and {} more errors", 3000 + 6 - 20));
+    assert_eq!(messages[20], format!("world.toml: and {} more errors", 20_000 + 6 - 20));
 }
 
 /// The lines of a world that hold numbers which are wrong if they are as large as this, each with what comes
