@@ -1,6 +1,7 @@
 //! What is wrong with a world file, where, and what would be right.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use std::cell::OnceCell;
 use std::ops::Range;
 
 /// A world file that cannot be read or makes no sense.
@@ -12,47 +13,70 @@ use std::ops::Range;
 #[error("{}", messages.join("\n\nerror: "))]
 pub struct WorldError {
     messages: Vec<String>,
-    /// The byte of the text that the first message is about.
-    place: usize,
+    /// The bytes of the text that they are about.
+    places: Vec<usize>,
 }
+
+/// More than this are counted, but not told one by one: each message shows its lines of the file.
+pub(crate) const MOST_TOLD: usize = 20;
 
 /// Everything that is wrong with a file, as far as one thing being wrong does not hide another.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Wrong {
-    errors: Vec<WorldError>,
+    /// The messages, and the bytes of the text that they are about.
+    found: Vec<(usize, String)>,
+    /// How many more there are, all of them later in the file than [`MOST_TOLD`] that were found.
+    more: usize,
 }
 
 impl Wrong {
     /// What was asked for, if it is right; else what is wrong is kept.
     pub(crate) fn keep<T>(&mut self, outcome: Result<T, WorldError>) -> Option<T> {
-        outcome.map_err(|error| self.errors.push(error)).ok()
+        outcome.map_err(|error| self.found.extend(error.places.into_iter().zip(error.messages))).ok()
+    }
+
+    /// Counts what is wrong as well, but is not to be told.
+    pub(crate) fn and_more(&mut self, more: usize) {
+        self.more += more;
     }
 
     /// Whether nothing was wrong so far.
     pub(crate) fn is_empty(&self) -> bool {
-        self.errors.is_empty()
+        self.count() == 0
     }
 
     /// How many things were wrong so far.
     pub(crate) fn count(&self) -> usize {
-        self.errors.len()
+        self.found.len() + self.more
     }
 
-    /// Everything that was wrong, the first in the file first.
-    pub(crate) fn into_error(mut self) -> WorldError {
-        self.errors.sort_by_key(|error| error.place);
-        let place = self.errors.first().map_or(0, |error| error.place);
-        WorldError { messages: self.errors.into_iter().flat_map(|error| error.messages).collect(), place }
+    /// Everything that was wrong, as it was found; for whoever keeps it with the rest.
+    pub(crate) fn into_part(self) -> WorldError {
+        let (places, messages) = self.found.into_iter().unzip();
+        WorldError { messages, places }
+    }
+
+    /// Everything that was wrong, the first in the file first; of a flood only how much more it was.
+    pub(crate) fn into_error(mut self, source: &Source<'_>) -> WorldError {
+        self.found.sort_by_key(|(place, _)| *place);
+        let more = self.more + self.found.len().saturating_sub(MOST_TOLD);
+        self.found.truncate(MOST_TOLD);
+        if more > 0 {
+            let many = if more == 1 { "" } else { "s" };
+            self.found.push((usize::MAX, format!("{}: and {more} more error{many}", source.name)));
+        }
+        self.into_part()
     }
 }
 
 /// The text of a world file, to point into.
-#[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
     /// What the file is called in messages.
     pub(crate) name: &'a str,
     /// All of its text.
     pub(crate) text: &'a str,
+    /// Where its lines end, once something is wrong: thousands of errors would count them thousands of times.
+    line_ends: OnceCell<Vec<usize>>,
 }
 
 /// A place in the file that has a part in an error, with what is to be said of it.
@@ -66,11 +90,15 @@ impl WorldError {
 
     /// A file that could not be read at all.
     pub(crate) fn unreadable(name: &str, error: &std::io::Error) -> Self {
-        Self { messages: vec![format!("cannot read the world file `{name}`: {error}")], place: 0 }
+        Self { messages: vec![format!("cannot read the world file `{name}`: {error}")], places: vec![0] }
     }
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    pub(crate) fn new(name: &'a str, text: &'a str) -> Self {
+        Self { name, text, line_ends: OnceCell::new() }
+    }
+
     /// An error at `mark`, with `others` that explain it and `help` that says what would be right.
     pub(crate) fn error(&self, what: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> WorldError {
         // Only the lines that matter are looked at: a large file may have many errors.
@@ -79,7 +107,9 @@ impl Source<'_> {
         let last = spans().map(|span| span.end).max().unwrap_or_default();
         let start = self.text[..first].rfind('\n').map_or(0, |at| at + 1);
         let end = self.text[last..].find('\n').map_or(self.text.len(), |length| last + length + 1);
-        let line = 1 + self.text[..start].bytes().filter(|byte| *byte == b'\n').count();
+        let line_ends =
+            self.line_ends.get_or_init(|| self.text.match_indices('\n').map(|(at, _)| at).collect());
+        let line = 1 + line_ends.partition_point(|at| *at < start);
         let annotation = |kind: AnnotationKind, (span, label): &Mark<'_>| {
             let label = (!label.is_empty()).then(|| (*label).to_owned());
             let span = self.first_line(span);
@@ -92,7 +122,7 @@ impl Source<'_> {
             .annotations(others.iter().map(|other| annotation(AnnotationKind::Context, other)));
         let report =
             [Level::ERROR.no_name().primary_title(what).element(snippet).element(Level::HELP.message(help))];
-        WorldError { messages: vec![Renderer::plain().render(&report)], place: mark.0.start }
+        WorldError { messages: vec![Renderer::plain().render(&report)], places: vec![mark.0.start] }
     }
 
     /// That the text is no TOML, in the same form as every other error.
@@ -106,13 +136,6 @@ impl Source<'_> {
             None => (error.message(), "see https://toml.io for how a TOML file is written".to_owned()),
         };
         self.error(&format!("not a TOML file: {what}"), (span, ""), &[], &help)
-    }
-
-    /// That there are `more` errors in the keys, which are not told one by one; it comes last.
-    pub(crate) fn and_more(&self, more: usize) -> WorldError {
-        let many = if more == 1 { "" } else { "s" };
-        let message = format!("{}: and {more} more unknown, missing or mistyped key{many}", self.name);
-        WorldError { messages: vec![message], place: usize::MAX }
     }
 
     /// The part of a span on its first line: a whole table would be underlined otherwise.

@@ -36,6 +36,7 @@ mod names;
 pub mod physics;
 mod reader;
 pub mod stage;
+mod together;
 
 pub use error::WorldError;
 pub use files::{Disk, Files};

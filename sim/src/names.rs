@@ -1,6 +1,7 @@
 //! Names of worlds and of the things in them.
 
 use crate::error::{Source, WorldError};
+use crate::together::Together;
 use serde_spanned::Spanned;
 use std::collections::BTreeMap;
 
@@ -18,20 +19,19 @@ impl Source<'_> {
         Err(self.error(&what, (value.span(), "empty"), &[], help))
     }
 
-    /// Refuses a name that two things of a kind share.
+    /// Refuses every name that a thing shares with an earlier one of its kind.
     pub(crate) fn unique<'a>(
         &self,
         kind: &str,
         names: impl Iterator<Item = &'a Spanned<String>>,
     ) -> Result<(), WorldError> {
         let mut seen = BTreeMap::new();
-        for name in names {
-            if let Some(first) = seen.insert(name.get_ref(), name.span()) {
-                let what = format!("two {kind}s are called `{}`", name.get_ref());
-                let help = format!("every {kind} needs a name of its own");
-                return Err(self.error(&what, (name.span(), "again here"), &[(first, "first here")], &help));
-            }
-        }
-        Ok(())
+        let twice = names.filter_map(|name| {
+            let first = seen.insert(name.get_ref(), name.span())?;
+            let what = format!("two {kind}s are called `{}`", name.get_ref());
+            let help = format!("every {kind} needs a name of its own");
+            Some(Err(self.error(&what, (name.span(), "again here"), &[(first, "first here")], &help)))
+        });
+        twice.collect::<Vec<Result<(), _>>>().together().map(|_| ())
     }
 }

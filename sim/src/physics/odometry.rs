@@ -1,6 +1,6 @@
 use super::chance::Gaussian;
 use super::snapshot::{Played, Tape};
-use super::spec::OdometryError;
+use super::spec::{DriveKind, OdometryError, RobotSpec};
 use geometry::{Twist, pose, wrap_rad};
 use nalgebra::{Isometry2, Vector2};
 
@@ -8,6 +8,8 @@ use nalgebra::{Isometry2, Vector2};
 #[derive(Clone, Debug)]
 pub(super) struct Odometry {
     error: OdometryError,
+    /// Whether it rolls in every direction, not only to and fro.
+    is_omni: bool,
     noise: Gaussian,
     /// Where the robot believes it is.
     pose: Isometry2<f64>,
@@ -17,8 +19,15 @@ pub(super) struct Odometry {
 
 impl Odometry {
     /// A robot knows where it starts.
-    pub(super) fn new(error: OdometryError, noise: Gaussian, start: Isometry2<f64>) -> Self {
-        Self { error, noise, pose: start, heading_rad: geometry::heading_rad(&start) }
+    pub(super) fn new(robot: &RobotSpec, noise: Gaussian, start: Isometry2<f64>) -> Self {
+        let is_omni = matches!(robot.drive.kind, DriveKind::Omni { .. });
+        Self {
+            error: robot.odometry,
+            is_omni,
+            noise,
+            pose: start,
+            heading_rad: geometry::heading_rad(&start),
+        }
     }
 
     /// Writes or reads what has become of it.
@@ -62,11 +71,65 @@ impl Odometry {
         // A random walk: the variance grows with the way, however it is cut into steps.
         let slip_m = distance_noise_m * distance_m.sqrt() * self.noise.draw();
         let swerve_rad = turn_noise_rad * turn_rad.abs().sqrt() * self.noise.draw();
-        let felt = moved * (1.0 + distance_gain) + Vector2::new(slip_m, 0.0);
+        // Wheels slip along the way that they roll.
+        let along = if self.is_omni && distance_m > 0.0 { moved / distance_m } else { Vector2::x() };
+        let felt = moved * (1.0 + distance_gain) + along * slip_m;
         let felt_turn_rad = turn_rad * (1.0 + turn_gain) + moved.x * turn_radpm + swerve_rad;
         let at =
             self.pose.translation.vector + geometry::rotation(self.heading_rad + felt_turn_rad / 2.0) * felt;
         self.heading_rad = wrap_rad(self.heading_rad + felt_turn_rad);
         self.pose = pose(at.x, at.y, self.heading_rad);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::FleetSpec;
+    use crate::physics::chance::Purpose;
+
+    /// The standard deviation of where a robot believes it is after 1 m in a direction, m: along the way
+    /// and across.
+    fn spread_m(kind: &str, towards: Vector2<f64>) -> [f64; 2] {
+        let text = format!(
+            "name = \"room\"\n[map]\nsize_m = [4.0, 3.0]\ncell_m = 0.05\n\
+             [[robot]]\nname = \"a\"\nradius_m = 0.2\npose_m = [1.0, 1.0]\n\
+             behaviour = {{ kind = \"standing\" }}\nodometry = {{ distance_noise_m = 0.1 }}\n\
+             laser = {{ beams = 2, range_max_m = 1.0, rate_hz = 10.0 }}\n\
+             drive = {{ kind = \"{kind}\", max_linear_mps = 0.5, max_angular_degps = 90.0, \
+             max_linear_acceleration_mps2 = 1.0, max_angular_acceleration_degps2 = 360.0 }}\n"
+        );
+        let spec = FleetSpec::parse("room.toml", &text).unwrap();
+        let errors = (0..4000).map(|seed| {
+            let noise = Gaussian::new(seed, Purpose::Odometry, 0);
+            let mut odometry = Odometry::new(&spec.robots()[0], noise, Isometry2::identity());
+            for step in 0..10 {
+                let at = |step: i32| Isometry2::new(towards * f64::from(step) * 0.1, 0.0);
+                odometry.feel(&at(step), &at(step + 1));
+            }
+            let error = odometry.pose().translation.vector - towards;
+            [error.dot(&towards), error.perp(&towards)]
+        });
+        let squares = errors.fold([0.0; 2], |sum, error| [0, 1].map(|i| sum[i] + error[i] * error[i]));
+        squares.map(|sum: f64| (sum / 4000.0).sqrt())
+    }
+
+    #[test]
+    fn wheels_slip_along_their_way() {
+        let aslant = Vector2::new(-0.6, 0.8);
+        for (kind, towards) in [
+            ("diff", Vector2::x()),
+            ("diff", -Vector2::x()),
+            ("omni", Vector2::x()),
+            ("omni", -Vector2::y()),
+            ("omni", aslant),
+        ] {
+            let [along_m, across_m] = spread_m(kind, towards);
+            // Of 4000, the deviation of the deviation is about 1 %.
+            assert!(
+                (along_m - 0.1).abs() < 0.005 && across_m < 1e-9,
+                "{kind}, {towards}: {along_m}, {across_m}"
+            );
+        }
     }
 }

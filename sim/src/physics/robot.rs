@@ -71,7 +71,7 @@ impl Robot {
             touching: Vec::new(),
             wanted: Command::STOP,
             drive: Drive::new(spec.drive),
-            odometry: Odometry::new(spec.odometry, Gaussian::new(seed, Purpose::Odometry, index), pose),
+            odometry: Odometry::new(spec, Gaussian::new(seed, Purpose::Odometry, index), pose),
             mind: Mind::new(spec, step_s, &beams[0], Uniform::new(seed, Purpose::Behaviour, index)),
             eyes: spec
                 .lasers()

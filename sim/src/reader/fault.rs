@@ -1,14 +1,11 @@
 //! What is wrong with the keys of a file and their types.
 
-use crate::error::{Source, WorldError, Wrong};
+use crate::error::{MOST_TOLD, Source, WorldError, Wrong};
 use serde_spanned::Spanned;
 use std::cell::{Cell, RefCell};
 use std::fmt;
 use std::ops::Range;
 use toml::de::{DeString, DeValue};
-
-/// More than this are counted, but not told one by one: each message shows its lines of the file.
-const MOST_TOLD: usize = 20;
 
 /// Everything that is wrong, as it is found.
 #[derive(Default)]
@@ -71,7 +68,7 @@ impl Faults {
         self.found.borrow().iter().any(|fault| fault.is_at_root)
     }
 
-    /// The messages, the first in the file first.
+    /// The messages, the first in the file first; those that are too many to be told are counted.
     pub(super) fn told(self, source: &Source<'_>) -> Wrong {
         let mut faults = self.found.into_inner();
         faults.sort_by_key(|fault| fault.place.start);
@@ -79,9 +76,7 @@ impl Faults {
         for fault in faults.iter().take(MOST_TOLD) {
             wrong.keep::<()>(Err(fault.told(source)));
         }
-        if faults.len() > MOST_TOLD {
-            wrong.keep::<()>(Err(source.and_more(faults.len() - MOST_TOLD)));
-        }
+        wrong.and_more(faults.len().saturating_sub(MOST_TOLD));
         wrong
     }
 }

@@ -5,6 +5,7 @@ use crate::physics::FleetSpec;
 use proptest::prelude::*;
 
 const HOUSE: &str = include_str!("../../worlds/house.toml");
+const YARD: &str = include_str!("../../worlds/yard.toml");
 const FOUR_ROOMS: &str = include_str!("../../../worlds/four_rooms.toml");
 const TWO_BLOCKS: &str = include_str!("../../../worlds/two_blocks.toml");
 
@@ -101,8 +102,105 @@ fn a_flood_is_counted() {
     for (text, more) in [(keys.as_str(), 99_982), (&room(&walls), 49_980)] {
         let messages = messages(text);
         assert_eq!(messages.len(), 21);
-        assert_eq!(messages[20], format!("world.toml: and {more} more unknown, missing or mistyped keys"));
+        assert_eq!(messages[20], format!("world.toml: and {more} more errors"));
     }
+}
+
+/// Has everything wrong that a value can have.
+const ALL_WRONG: &str = r#"name = ""
+wall = [{ from_m = [0.0, 0.0], to_m = [20.0, 0.0], thickness_m = -1.0 }]
+map = { size_m = [10.0, -4.0], cell_m = 100.0 }
+physics = { step_s = 7.0 }
+[[obstacle]]
+name = "o"
+kind = "box"
+min_m = [1.0, 1.0]
+max_m = [0.0, 0.0]
+mass_kg = -3
+friction = 100
+[[obstacle]]
+name = "o"
+kind = "boxx"
+[[robot]]
+name = "a"
+radius_m = 100.0
+pose_m = [1.0, 1.0]
+heading_deg = 1000.0
+behaviour = { kind = "wander", speed_mps = 100.0 }
+drive = { max_linear_mps = -0.5, max_angular_degps = 90.0, max_linear_acceleration_mps2 = -1.0, max_angular_acceleration_degps2 = 360.0 }
+laser = { beams = 0, range_max_m = -5.0, rate_hz = 0.0 }
+bumper = { sectors = 0 }
+"#;
+
+#[test]
+fn every_wrong_value_is_told() {
+    insta::assert_snapshot!(messages(ALL_WRONG).join("\n\n"));
+}
+
+#[test]
+fn wrong_values_have_no_consequences() {
+    let one = |text: &str, first: &str| assert_eq!(firsts(text), [first], "{text}");
+    let along = "kind = \"wall_patrol\"\nfrom_m = [1.0, 1.0]\nto_m = [1.0, 2.0]\nspeed_mps = 0.3\nwall_side = \"right\"";
+    let patrol = room(&robot("a", "pose_m = [1.0, 1.0]").replace("kind = \"standing\"", along));
+    assert_eq!(firsts(&patrol), [] as [&str; 0]);
+    let but = |from: &str, to: &str, first: &str| one(&patrol.replace(from, to), first);
+    // A way without a wall, a robot beside its way, things out of the map or too fast for it.
+    but("max_m = [2.1, 3.0]", "max_m = [2.1, 9.0]", "`wall.max_m` is [2.1, 9], which is outside of the map");
+    but("pose_m = [1.0", "pose_m = [9.0", "`robot.pose_m` is [9, 1], which is outside of the map");
+    but("size_m = [4.0", "size_m = [-4.0", "`map.size_m` is [-4, 3], which is out of range");
+    but("cell_m = 0.05", "cell_m = 0", "`map.cell_m` is 0, which is out of range");
+    but("radius_m = 0.2", "radius_m = -0.2", "`robot.radius_m` is -0.2, which is out of range");
+    but(
+        "max_linear_mps = 0.5",
+        "max_linear_mps = 0",
+        "`robot.drive.max_linear_mps` is 0, which is out of range",
+    );
+    let step = format!("{patrol}[physics]\nstep_s = 0.3\n");
+    one(&step, "`physics.step_s` is 0.3, which is out of range");
+    // A course, a standing time and a path that are right without the rest.
+    let grid = TWO_BLOCKS.replacen("dwell = 7", "dwell = 0\nstood = 3", 1).replacen(
+        "map = \"\"\"",
+        "map = \"\"\"\n?",
+        1,
+    );
+    let expected = ["the rows of the map are not equally long", "`block.dwell` is 0, which is out of range"];
+    assert_eq!(firsts(&grid), expected);
+}
+
+#[test]
+fn a_flood_of_wrong_values_is_counted() {
+    let walls = "[[wall]]\nmin_m = [1.0, 1.0]\nmax_m = [0.0, 0.0]\n".repeat(20_000);
+    let messages = messages(&room(&format!("{walls}[[robot]]\ncolour = 1\n")));
+    assert_eq!(messages.len(), 21);
+    // The robot has one key too many and lacks five.
+    assert_eq!(messages[20], format!("world.toml: and {} more errors", 20_000 + 6 - 20));
+}
+
+/// The lines of a world that hold numbers which are wrong if they are as large as this, each with what comes
+/// before its value.
+fn numbers(text: &str) -> Vec<(usize, &str)> {
+    let limited = [
+        "_m = ",
+        "_s = ",
+        "_mps = ",
+        "_degps = ",
+        "_mps2 = ",
+        "_degps2 = ",
+        "_hz = ",
+        "_deg = ",
+        "_kg = ",
+        "beams = ",
+        "friction = ",
+        "sensor_radius = ",
+        "dwell = ",
+    ];
+    let lines = text.lines().enumerate().filter_map(|(line, text)| {
+        let key = limited.iter().find(|key| text.contains(*key) && !text.starts_with(['#', ' ']))?;
+        let at = text.find(key)? + key.len();
+        let is_alone = text[at..].trim_end().bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+        is_alone.then_some((line, &text[..at]))
+    });
+    lines.collect()
 }
 
 proptest! {
@@ -125,6 +223,26 @@ proptest! {
             let what = format!("unknown key `not_known_{more}`\n");
             let line = format!("world.toml:{}:1\n", place + more + 2);
             prop_assert!(message.starts_with(&what) && message.contains(&line), "{message}");
+        }
+    }
+
+    #[test]
+    fn every_wrong_number_is_told_with_its_line(
+        (text, places) in prop::sample::select(vec![HOUSE, YARD, FOUR_ROOMS, TWO_BLOCKS]).prop_flat_map(|text| {
+            let numbers = numbers(text);
+            let most = numbers.len().min(20);
+            (Just(text), prop::sample::subsequence(numbers, 0..=most))
+        })
+    ) {
+        let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        for (place, key) in &places {
+            lines[*place] = format!("{key}4000000000");
+        }
+        let messages = messages(&lines.join("\n"));
+        prop_assert_eq!(messages.len(), places.len(), "{}", messages.join("\n"));
+        for (message, (place, key)) in messages.iter().zip(&places) {
+            let line = format!("world.toml:{}:{}\n", place + 1, key.len() + 1);
+            prop_assert!(message.contains("which is out of range") && message.contains(&line), "{message}");
         }
     }
 

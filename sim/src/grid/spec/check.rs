@@ -5,6 +5,7 @@ use super::map::{Drawing, drawing};
 use super::{BlockSpec, Course, GridSpec, MAX_DWELL, MAX_SENSOR_RADIUS, parts, path};
 use crate::error::{Source, WorldError};
 use crate::reader::Reading;
+use crate::together::Together;
 use serde_spanned::Spanned;
 use std::ops::RangeInclusive;
 
@@ -26,10 +27,8 @@ pub(super) fn check(source: &Source<'_>, reading: Reading<GridFile>) -> Result<G
     // By their places among the files; none where one is wrong.
     let mut blocks: Vec<Option<BlockSpec>> = Vec::new();
     for written in &files {
-        // Without a map there is nothing to judge a path by.
-        let Some(drawing) = &drawing else { break };
-        let block = wrong.keep(block(source, written, drawing));
-        if let Some(block) = &block {
+        let block = wrong.keep(block(source, written, drawing.as_ref()));
+        if let (Some(block), Some(drawing)) = (&block, &drawing) {
             wrong.keep(apart(source, &files, written, block, &blocks, drawing));
         }
         blocks.push(block);
@@ -42,7 +41,7 @@ pub(super) fn check(source: &Source<'_>, reading: Reading<GridFile>) -> Result<G
         true,
     ) = (name, sensor_radius, chances, drawing, wrong.is_empty())
     else {
-        return Err(wrong.into_error());
+        return Err(wrong.into_error(source));
     };
     Ok(GridSpec {
         name,
@@ -57,23 +56,25 @@ pub(super) fn check(source: &Source<'_>, reading: Reading<GridFile>) -> Result<G
     })
 }
 
-fn block(source: &Source<'_>, file: &BlockFile, drawing: &Drawing) -> Result<BlockSpec, WorldError> {
-    let name = source.name("block", &file.name)?;
-    let dwell = whole(source, "block.dwell", &file.dwell, 1..=MAX_DWELL)?;
-    let stood = match &file.stood {
-        Some(stood) => whole(source, "block.stood", stood, 0..=dwell - 1)?,
-        None => 0,
-    };
+fn block(source: &Source<'_>, file: &BlockFile, drawing: Option<&Drawing>) -> Result<BlockSpec, WorldError> {
+    let name = source.name("block", &file.name);
+    let dwell = whole(source, "block.dwell", &file.dwell, 1..=MAX_DWELL);
+    let longest = dwell.as_ref().map_or(MAX_DWELL, |dwell| dwell - 1);
+    let stood = file.stood.as_ref().map(|stood| whole(source, "block.stood", stood, 0..=longest)).transpose();
     let course = match file.course.get_ref().as_str() {
-        "loop" => Course::Loop,
-        "back-and-forth" => Course::BackAndForth,
+        "loop" => Ok(Course::Loop),
+        "back-and-forth" => Ok(Course::BackAndForth),
         other => {
             let what = format!("`block.course` is `{other}`, which is not known");
             let help = "it must be \"loop\" or \"back-and-forth\"";
-            return Err(source.error(&what, (file.course.span(), "not known"), &[], help));
+            Err(source.error(&what, (file.course.span(), "not known"), &[], help))
         }
     };
-    Ok(BlockSpec { name, dwell, stood, course, path: path::cells(source, file, course, drawing)? })
+    // Without a map there is nothing to judge a path by, and any way round is right if the file has it wrong.
+    let way_round = *course.as_ref().unwrap_or(&Course::BackAndForth);
+    let path = drawing.map_or(Ok(Vec::new()), |drawing| path::cells(source, file, way_round, drawing));
+    let (name, dwell, stood, course, path) = (name, dwell, stood, course, path).together()?;
+    Ok(BlockSpec { name, dwell, stood: stood.unwrap_or_default(), course, path })
 }
 
 /// Refuses a block that starts where another one or the robot does.

@@ -98,7 +98,7 @@ impl GridSpec {
     /// in the world contradict each other. The messages say where, and what would be right: of everything
     /// that is wrong, as far as one thing does not hide another.
     pub fn parse(file_name: &str, text: &str) -> Result<Self, WorldError> {
-        let source = Source { name: file_name, text };
+        let source = Source::new(file_name, text);
         check::check(&source, reader::read(&source, Kind::Grid)?)
     }
 

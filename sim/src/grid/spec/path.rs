@@ -3,6 +3,7 @@
 use super::file::{BlockFile, WayPoint};
 use super::{Course, map::Drawing};
 use crate::error::{Source, WorldError};
+use crate::together::Together;
 use geometry::Cell;
 use std::ops::Range;
 
@@ -19,8 +20,9 @@ pub(super) fn cells(
     let name = block.name.get_ref();
     let mut path: Vec<Cell> = Vec::new();
     let mut previous: Option<&WayPoint> = None;
-    for point in block.path.get_ref() {
-        let end = cell(source, name, point, drawing)?;
+    let points = block.path.get_ref();
+    let ends = points.iter().map(|point| cell(source, name, point, drawing)).collect::<Vec<_>>();
+    for (point, end) in points.iter().zip(ends.together()?) {
         match (path.last().copied(), previous) {
             (Some(start), Some(previous)) => {
                 let marks = [(previous.span(), "from here")];

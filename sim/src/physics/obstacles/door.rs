@@ -37,31 +37,42 @@ impl Door {
         self.chance.play(tape)
     }
 
-    /// How far it would be open after a step that ends at `time_s`.
+    /// How far it would be open after a step that ends at `time_s`. It turns round at the very time at
+    /// which it is told to, also within the step.
     pub(super) fn next(&mut self, spec: &DoorSpec, time_s: f64, step_s: f64) -> f64 {
-        let most = step_s / spec.move_s;
-        let by = if self.is_told_open(spec, time_s) { most } else { -most };
-        (self.openness + by).clamp(0.0, 1.0)
+        let (mut openness, mut left_s) = (self.openness, step_s);
+        while left_s > SLACK_S {
+            let (is_told_open, until_s) = self.told(spec, time_s - left_s);
+            let for_s = left_s.min(until_s - (time_s - left_s));
+            let by = for_s / spec.move_s;
+            openness = (openness + if is_told_open { by } else { -by }).clamp(0.0, 1.0);
+            left_s -= for_s;
+        }
+        openness
     }
 
-    /// Whether it is told to be open at a time, s. Time never goes back.
-    fn is_told_open(&mut self, spec: &DoorSpec, time_s: f64) -> bool {
+    /// Whether it is told to be open from a time on, and until when, s. Time never goes back.
+    fn told(&mut self, spec: &DoorSpec, time_s: f64) -> (bool, f64) {
         let time_s = time_s + SLACK_S;
         match &spec.opening {
             Opening::Periodic { closed_s, open_s } => {
+                let first_s = if spec.starts_open { open_s } else { closed_s };
                 let since_s = time_s % (closed_s + open_s);
-                if spec.starts_open { since_s < *open_s } else { since_s >= *closed_s }
+                let is_first = since_s < *first_s;
+                let end_s = if is_first { *first_s } else { closed_s + open_s };
+                (is_first == spec.starts_open, time_s + (end_s - since_s))
             }
             Opening::Scripted { switches_s } => {
                 let switches = switches_s.partition_point(|switch_s| *switch_s <= time_s);
-                spec.starts_open != (switches % 2 == 1)
+                let until_s = switches_s.get(switches).copied().unwrap_or(f64::INFINITY);
+                (spec.starts_open != (switches % 2 == 1), until_s)
             }
             Opening::Random { .. } => {
                 while time_s >= self.next_s {
                     self.is_told_open = !self.is_told_open;
                     self.next_s += self.stay_s(spec);
                 }
-                self.is_told_open
+                (self.is_told_open, self.next_s)
             }
         }
     }
@@ -76,5 +87,52 @@ impl Door {
             }
             Opening::Periodic { .. } | Opening::Scripted { .. } => f64::INFINITY,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::spec::Leaf;
+    use nalgebra::Vector2;
+
+    /// How far a door that takes 2 s to open is open at some times, in steps of 0.05 s.
+    fn opennesses(opening: Opening, starts_open: bool, times_s: &[f64]) -> Vec<f64> {
+        let leaf = Leaf::Sliding { by_m: Vector2::x() };
+        let spec = DoorSpec { leaf, opening, move_s: 2.0, starts_open };
+        let mut door = Door::new(&spec, 0, 0);
+        let (mut steps, mut time_s) = (0.0, 0.0);
+        let at = times_s.iter().map(|until_s| {
+            while time_s < until_s - SLACK_S {
+                steps += 1.0;
+                time_s = steps * 0.05;
+                door.openness = door.next(&spec, time_s, 0.05);
+            }
+            (door.openness * 1e9).round() / 1e9
+        });
+        at.collect()
+    }
+
+    #[test]
+    fn doors_move_from_the_time_at_which_they_are_told_to() {
+        let scripted = |switches_s: &[f64]| Opening::Scripted { switches_s: switches_s.to_vec() };
+        let times_s = [1.0, 1.05, 2.0, 3.0, 5.0, 5.05, 6.0, 9.0];
+        let expected = [0.0, 0.025, 0.5, 1.0, 1.0, 0.975, 0.5, 0.0];
+        assert_eq!(opennesses(scripted(&[1.0, 5.0]), false, &times_s), expected);
+        assert_eq!(
+            opennesses(scripted(&[1.0, 5.0]), true, &times_s),
+            [1.0, 0.975, 0.5, 0.0, 0.0, 0.025, 0.5, 1.0]
+        );
+        // In the middle of a step, and three times in one.
+        assert_eq!(opennesses(scripted(&[1.02]), false, &[1.0, 1.05, 2.0]), [0.0, 0.015, 0.49]);
+        assert_eq!(opennesses(scripted(&[1.01, 1.02, 1.04]), false, &[1.05, 1.1]), [0.005, 0.03]);
+        let periodic = Opening::Periodic { closed_s: 3.0, open_s: 4.0 };
+        let times_s = [3.0, 4.0, 5.0, 7.0, 8.0, 9.0, 10.0, 11.0, 706.0, 707.0];
+        let expected = [0.0, 0.5, 1.0, 1.0, 0.5, 0.0, 0.0, 0.5, 1.0, 1.0];
+        assert_eq!(opennesses(periodic.clone(), false, &times_s), expected);
+        assert_eq!(
+            opennesses(periodic, true, &[4.0, 5.0, 6.0, 7.0, 8.0, 9.0]),
+            [1.0, 0.5, 0.0, 0.0, 0.5, 1.0]
+        );
     }
 }

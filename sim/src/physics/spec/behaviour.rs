@@ -1,11 +1,13 @@
 //! What a robot does by itself.
 
 use super::check::Solid;
-use super::file::{BehaviourFile, Number, Pair, RobotFile};
+use super::file::{BehaviourFile, RobotFile};
 use super::numbers::Table;
+use super::robot::Around;
 use super::{DriveKind, DriveLimits, patrol};
 use crate::error::{Source, WorldError};
 use crate::physics::shape::{TOUCH_M, turned_point};
+use crate::together::Together;
 use nalgebra::{Point2, UnitComplex};
 use serde_spanned::Spanned;
 use std::ops::Range;
@@ -69,6 +71,12 @@ pub enum Repeat {
     Once,
 }
 
+impl Repeat {
+    /// How the file calls it.
+    pub(super) const WORDS: [(&'static str, Self); 3] =
+        [("loop", Self::Loop), ("back_and_forth", Self::BackAndForth), ("once", Self::Once)];
+}
+
 /// A way along a wall, back and forth (paper, section 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatrolSpec {
@@ -105,12 +113,10 @@ impl Behaviour {
 pub(super) struct Context<'a> {
     pub(super) source: &'a Source<'a>,
     pub(super) robot: &'a RobotFile,
-    /// Of the circle that holds it, m.
-    pub(super) radius_m: f64,
-    pub(super) start: Point2<f64>,
+    /// The radius of the circle that holds it, m, and where it starts. No way is judged if that is wrong.
+    pub(super) place: Option<(f64, Point2<f64>)>,
     pub(super) drive: &'a DriveLimits,
-    pub(super) size: &'a Point2<f64>,
-    pub(super) solids: &'a [Solid],
+    pub(super) around: &'a Around<'a>,
 }
 
 /// The keys of each behaviour, and what it is.
@@ -140,21 +146,24 @@ impl Context<'_> {
             let help = "it cannot turn in place: it is \"driven\" or \"standing\", or drives a \"circle\"";
             return Err(self.source.error(&what, (file.kind.span(), "not for a car"), &[], help));
         }
-        if let Some((key, span)) = keys(file).into_iter().find(|(key, _)| !known.contains(key)) {
+        let foreign = keys(file).into_iter().filter(|(key, _)| !known.contains(key));
+        let foreign = foreign.map(|(key, span)| {
             let what = format!("a robot that is `{kind}` has no `{key}`");
             let keys =
                 if known.is_empty() { String::new() } else { format!("; its keys are {}", known.join(", ")) };
             let help = format!("leave it out: such a robot {does}{keys}");
-            return Err(self.source.error(&what, (span, "not for this robot"), &[], &help));
-        }
+            Err::<(), _>(self.source.error(&what, (span, "not for this robot"), &[], &help))
+        });
+        // Where such a key stands, the kind may be what is wrong: nothing else is judged by it.
+        foreign.collect::<Vec<_>>().together()?;
         match kind {
             "driven" => Ok(Behaviour::Driven),
             "standing" => Ok(Behaviour::Standing),
             "circle" => self.circle(file),
-            "wander" => Ok(Behaviour::Wander(WanderSpec {
-                speed_mps: self.speed_mps(file)?,
-                clearance_m: self.clearance_m(file)?,
-            })),
+            "wander" => {
+                let (speed_mps, clearance_m) = (self.speed_mps(file), self.clearance_m(file)).together()?;
+                Ok(Behaviour::Wander(WanderSpec { speed_mps, clearance_m }))
+            }
             "waypoints" => self.waypoints(file),
             _ => patrol::patrol(self, file),
         }
@@ -167,7 +176,11 @@ impl Context<'_> {
     }
 
     /// A key that this behaviour cannot do without.
-    fn needed<'f, T>(&self, key: &str, value: &'f Option<Spanned<T>>) -> Result<&'f Spanned<T>, WorldError> {
+    pub(super) fn needed<'f, T>(
+        &self,
+        key: &str,
+        value: &'f Option<Spanned<T>>,
+    ) -> Result<&'f Spanned<T>, WorldError> {
         value.as_ref().ok_or_else(|| {
             let (name, kind) = (self.robot.name.get_ref(), &self.robot.behaviour.get_ref().kind);
             let what = format!("the behaviour of `{name}` has no `{key}`");
@@ -186,9 +199,12 @@ impl Context<'_> {
     }
 
     fn circle(&self, file: &BehaviourFile) -> Result<Behaviour, WorldError> {
-        let speed_mps = self.speed_mps(file)?;
-        let radius = self.needed("turn_radius_m", &file.turn_radius_m)?;
-        let radius_m = self.table().number("turn_radius_m", radius, 0.01..=1000.0)?;
+        let radius = self
+            .needed("turn_radius_m", &file.turn_radius_m)
+            .and_then(|radius| Ok((radius, self.table().number("turn_radius_m", radius, 0.01..=1000.0)?)));
+        let sides = [("left", true), ("right", false)];
+        let is_left = self.table().choice("direction", &file.direction, &sides);
+        let (speed_mps, (radius, radius_m), is_left) = (self.speed_mps(file), radius, is_left).together()?;
         let curved_radps = speed_mps * self.drive.max_curvature_radpm();
         let fastest_radps = self.drive.max_angular_radps.min(curved_radps);
         if speed_mps / radius_m > fastest_radps {
@@ -205,33 +221,42 @@ impl Context<'_> {
                 &help,
             ));
         }
-        let is_left =
-            self.table().choice("direction", &file.direction, &[("left", true), ("right", false)])?;
         let turn_radps = speed_mps / radius_m * if is_left { 1.0 } else { -1.0 };
         Ok(Behaviour::Circle(CircleSpec { speed_mps, turn_radps }))
     }
 
     fn waypoints(&self, file: &BehaviourFile) -> Result<Behaviour, WorldError> {
-        /// Kept free beside the way, m.
-        const BESIDE_M: f64 = 0.05;
-        let list = self.needed("points_m", &file.points_m)?;
-        if !(1..=1000).contains(&list.get_ref().len()) {
+        let points = self.needed("points_m", &file.points_m).and_then(|list| {
+            if (1..=1000).contains(&list.get_ref().len()) {
+                return self.table().points("points_m", list.get_ref(), &self.around.size);
+            }
             let what = format!("`robot.behaviour.points_m` has {} points", list.get_ref().len());
             let help = "it must have 1 to 1000, as in `[[1.0, 2.0], [3.0, 2.0]]`";
-            return Err(self.source.error(&what, (list.span(), "these points"), &[], help));
-        }
-        let speed_mps = self.speed_mps(file)?;
-        let repeats =
-            [("loop", Repeat::Loop), ("back_and_forth", Repeat::BackAndForth), ("once", Repeat::Once)];
-        let repeat = self.table().choice("repeat", &file.repeat, &repeats)?;
-        let mut points: Vec<(Point2<f64>, Range<usize>)> = Vec::new();
-        for point in list.get_ref() {
-            points.push((self.table().point("points_m", point, self.size)?, point.span()));
-        }
-        let start = (self.start, self.robot.pose_m.span());
+            Err(self.source.error(&what, (list.span(), "these points"), &[], help))
+        });
+        let repeat = self.table().choice("repeat", &file.repeat, &Repeat::WORDS);
+        let (points, speed_mps, repeat, clearance_m) =
+            (points, self.speed_mps(file), repeat, self.clearance_m(file)).together()?;
+        self.is_way_free(file, &points, repeat)?;
+        Ok(Behaviour::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m }))
+    }
+
+    /// The way from the start to all points leads past everything.
+    fn is_way_free(
+        &self,
+        file: &BehaviourFile,
+        points: &[Point2<f64>],
+        repeat: Repeat,
+    ) -> Result<(), WorldError> {
+        /// Kept free beside the way, m.
+        const BESIDE_M: f64 = 0.05;
+        let Some((radius_m, start)) = self.place else { return Ok(()) };
+        let spans = file.points_m.iter().flat_map(|points| points.get_ref()).map(Spanned::span);
+        let points: Vec<(Point2<f64>, Range<usize>)> = points.iter().copied().zip(spans).collect();
+        let start = (start, self.robot.pose_m.span());
         let back = (repeat == Repeat::Loop && points.len() > 1).then(|| points[0].clone());
-        let way: Vec<_> = [start].into_iter().chain(points.iter().cloned()).chain(back).collect();
-        let keep_m = self.radius_m + BESIDE_M;
+        let way: Vec<_> = [start].into_iter().chain(points).chain(back).collect();
+        let keep_m = radius_m + BESIDE_M;
         for (leg, pair) in way.windows(2).enumerate() {
             let [(a, from), (b, to)] = pair else { continue };
             let marks = |label| (to.clone(), label);
@@ -242,7 +267,7 @@ impl Context<'_> {
                 return Err(self.source.error("two waypoints coincide", marks("to here"), &others, help));
             }
             let near = |solid: &&Solid| solid.shape.segment_distance_m(a, b) < keep_m - TOUCH_M;
-            if let Some(solid) = self.solids.iter().find(near) {
+            if let Some(solid) = self.around.solids.iter().find(near) {
                 let what =
                     format!("the way of `{}` leads through a wall or an obstacle", self.robot.name.get_ref());
                 let others = [(from.clone(), "from here"), (solid.span.clone(), "too near to this one")];
@@ -251,29 +276,25 @@ impl Context<'_> {
                 return Err(self.source.error(&what, marks("to here"), &others, &help));
             }
         }
-        let clearance_m = self.clearance_m(file)?;
-        let points = points.into_iter().map(|(point, _)| point).collect();
-        Ok(Behaviour::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m }))
+        Ok(())
     }
 }
 
 /// The keys that the file has, besides the kind, with their places.
 fn keys(file: &BehaviourFile) -> Vec<(&'static str, Range<usize>)> {
-    let number = |key: &'static str, value: &Option<Number>| value.as_ref().map(|value| (key, value.span()));
-    let pair = |key: &'static str, value: &Option<Pair>| value.as_ref().map(|value| (key, value.span()));
-    let text =
-        |key: &'static str, value: &Option<Spanned<String>>| value.as_ref().map(|value| (key, value.span()));
-    let points = file.points_m.as_ref().map(|points| ("points_m", points.span()));
+    fn place<T>(key: &'static str, value: &Option<Spanned<T>>) -> Option<(&'static str, Range<usize>)> {
+        value.as_ref().map(|value| (key, value.span()))
+    }
     let found = [
-        number("speed_mps", &file.speed_mps),
-        number("clearance_m", &file.clearance_m),
-        number("turn_radius_m", &file.turn_radius_m),
-        pair("from_m", &file.from_m),
-        pair("to_m", &file.to_m),
-        points,
-        text("wall_side", &file.wall_side),
-        text("direction", &file.direction),
-        text("repeat", &file.repeat),
+        place("speed_mps", &file.speed_mps),
+        place("clearance_m", &file.clearance_m),
+        place("turn_radius_m", &file.turn_radius_m),
+        place("from_m", &file.from_m),
+        place("to_m", &file.to_m),
+        place("points_m", &file.points_m),
+        place("wall_side", &file.wall_side),
+        place("direction", &file.direction),
+        place("repeat", &file.repeat),
     ];
     found.into_iter().flatten().collect()
 }

@@ -1,14 +1,15 @@
 //! From the file as written to a world that makes sense.
 
 use super::file::{MapFile, ObstacleFile, Pair, RobotFile, WallFile, WorldFile};
-use super::numbers::Table;
+use super::numbers::{Table, extent};
 use super::obstacle::{Motion, ObstacleSpec, obstacle};
-use super::robot::robot;
+use super::robot::{Around, robot};
 use super::{Behaviour, FleetSpec, RobotSpec, floor_plan};
-use crate::error::{Source, WorldError};
+use crate::error::{Source, WorldError, Wrong};
 use crate::files::Files;
 use crate::physics::shape::{Rectangle, TOUCH_M, turned};
 use crate::reader::Reading;
+use crate::together::Together;
 use geometry::{GridFrame, rotation};
 use nalgebra::Point2;
 use serde_spanned::Spanned;
@@ -33,19 +34,16 @@ pub(super) fn check(
 ) -> Result<FleetSpec, WorldError> {
     let file = &reading.file;
     let mut wrong = reading.wrong.clone();
-    let misread = wrong.count();
     let name = file.name.get().and_then(|name| wrong.keep(source.name("", name))).unwrap_or_default();
     let physics = Table { source, path: "physics" };
     let step_s = file
         .physics
         .get()
         .and_then(|file| wrong.keep(physics.number_or("step_s", &file.get_ref().step_s, 0.05, 0.001..=0.1)));
-    let map =
-        file.map.get().and_then(|file| Some((file.get_ref(), wrong.keep(map(source, file.get_ref()))?)));
-    // Without these two there is nothing to judge the rest by.
-    let (Some((map, (size, cell_m, turn_rad))), Some(step_s)) = (map, step_s) else {
-        return Err(wrong.into_error());
-    };
+    let (size, frame) = file.map.get().map_or((None, None), |file| map(source, file.get_ref(), &mut wrong));
+    // Where these are wrong, nothing else is wrong because of them: no map is so large, no step so short.
+    let (size, step_s) = (size.unwrap_or(Point2::from([f64::INFINITY; 2])), step_s.unwrap_or(1e-12));
+    let misbuilt = wrong.count();
     let mut solids = Vec::new();
     for wall in file.walls.sound() {
         let shape = wrong.keep(self::wall(source, wall, &size));
@@ -56,11 +54,9 @@ pub(super) fn check(
         solids.extend(walls.into_iter().map(|shape| Solid { shape, span: plan.span() }));
     }
     let walls = solids.iter().map(|wall| wall.shape).collect::<Vec<_>>();
-    let obstacle_files = file.obstacles.sound();
     let mut obstacles = Vec::new();
-    // What stands at the start but may be gone when a robot comes by.
     let mut movers = Vec::new();
-    for file in &obstacle_files {
+    for file in file.obstacles.sound() {
         let obstacle = obstacle(source, file.get_ref(), &size, &solids[..walls.len()], step_s);
         let Some(obstacle) = wrong.keep(obstacle) else { continue };
         let solid = |shape| Solid { shape, span: file.span() };
@@ -69,44 +65,49 @@ pub(super) fn check(
             Motion::Fixed => solids.push(solid(obstacle.shape)),
             Motion::Pushed(_) | Motion::Path(_) | Motion::Door(_) => movers.push(solid(obstacle.start())),
         }
-        obstacles.push(obstacle);
+        obstacles.push((file.get_ref(), obstacle));
     }
-    let robot_files = file.robots.sound();
-    wrong.keep(source.unique("obstacle", obstacle_files.iter().map(|obstacle| &obstacle.get_ref().name)));
-    wrong.keep(source.unique("robot", robot_files.iter().map(|robot| &robot.get_ref().name)));
-    let mut robots = Vec::new();
-    // A robot that follows a wall is not wrong because the wall is.
-    let is_read = reading.is_root_sound
+    let is_whole = reading.is_root_sound
         && file.walls.are_sound()
         && file.floor_plans.are_sound()
-        && file.obstacles.are_sound();
-    let is_built = is_read && wrong.count() == misread;
-    for file in robot_files.iter().filter(|_| is_built) {
-        robots.extend(wrong.keep(robot(source, file.get_ref(), &size, step_s, &solids, &movers)));
+        && file.obstacles.are_sound()
+        && wrong.count() == misbuilt;
+    let around = Around { size, step_s, solids: &solids, movers: &movers, is_whole };
+    let mut robots = Vec::new();
+    for file in file.robots.sound() {
+        let robot = wrong.keep(robot(source, file.get_ref(), &around));
+        robots.extend(robot.map(|robot| (file.get_ref(), robot)));
     }
-    let frame = covering(&size, cell_m, turn_rad).ok_or_else(|| too_many_cells(source, map));
-    let frame = wrong.keep(frame);
-    // What things are to each other is asked of things that are right.
-    if obstacles.len() == obstacle_files.len() {
-        wrong.keep(boxes_apart(source, &obstacle_files, &obstacles));
-    }
-    if robots.len() == robot_files.len() {
-        wrong.keep(apart(source, &robot_files, &robots));
-    }
-    let (Some(frame), true) = (frame, wrong.is_empty()) else { return Err(wrong.into_error()) };
+    wrong.keep(source.unique("obstacle", file.obstacles.sound().iter().map(|file| &file.get_ref().name)));
+    wrong.keep(source.unique("robot", file.robots.sound().iter().map(|file| &file.get_ref().name)));
+    wrong.keep(boxes_apart(source, &obstacles));
+    wrong.keep(apart(source, &robots));
+    let (Some((frame, turn_rad)), true) = (frame, wrong.is_empty()) else {
+        return Err(wrong.into_error(source));
+    };
 
     let description = file.description.clone().unwrap_or_default();
+    let obstacles = obstacles.into_iter().map(|(_, obstacle)| obstacle).collect();
+    let robots = robots.into_iter().map(|(_, robot)| robot).collect();
     let mut spec = FleetSpec { name, description, frame, step_s, walls, obstacles, robots };
     turn(&mut spec, turn_rad, &(size / 2.0));
     Ok(spec)
 }
 
-fn map(source: &Source<'_>, file: &MapFile) -> Result<(Point2<f64>, f64, f64), WorldError> {
+/// The size of the map (m); the cells that cover it after its turn, and that turn (rad).
+fn map(
+    source: &Source<'_>,
+    file: &MapFile,
+    wrong: &mut Wrong,
+) -> (Option<Point2<f64>>, Option<(GridFrame, f64)>) {
     let table = Table { source, path: "map" };
-    let size = table.pair("size_m", &file.size_m, 0.1..=1000.0)?;
-    let cell_m = table.number("cell_m", &file.cell_m, 0.005..=10.0)?;
-    let turn_deg = table.number_or("turn_deg", &file.turn_deg, 0.0, -360.0..=360.0)?;
-    Ok((size, cell_m, turn_deg.to_radians()))
+    let size = wrong.keep(table.pair("size_m", &file.size_m, 0.1..=1000.0));
+    let cell_m = wrong.keep(table.number("cell_m", &file.cell_m, 0.005..=10.0));
+    let turn_deg = wrong.keep(table.number_or("turn_deg", &file.turn_deg, 0.0, -360.0..=360.0));
+    let (Some(size), Some(cell_m), Some(turn_deg)) = (size, cell_m, turn_deg) else { return (size, None) };
+    let turn_rad = turn_deg.to_radians();
+    let frame = covering(&size, cell_m, turn_rad).ok_or_else(|| too_many_cells(source, file));
+    (Some(size), wrong.keep(frame).map(|frame| (frame, turn_rad)))
 }
 
 /// The cells that cover the map after its turn; `None` if they are too many.
@@ -142,8 +143,12 @@ fn wall(source: &Source<'_>, file: &Spanned<WallFile>, size: &Point2<f64>) -> Re
             min_m: None,
             max_m: None,
         } => {
-            let thickness_m = table.number("thickness_m", thickness, 0.001..=100.0)?;
-            let (a, b) = (table.point("from_m", from, size)?, table.point("to_m", to, size)?);
+            let (a, b, thickness_m) = (
+                table.point("from_m", from, size),
+                table.point("to_m", to, size),
+                table.number("thickness_m", thickness, 0.001..=100.0),
+            )
+                .together()?;
             if (b - a).norm() < 0.001 {
                 let marks = [(from.span(), "from here")];
                 let help = "the two points must be at least 0.001 m apart";
@@ -170,7 +175,7 @@ pub(super) fn upright(
     max: &Pair,
     size: &Point2<f64>,
 ) -> Result<Rectangle, WorldError> {
-    let (low, high) = (table.point("min_m", min, size)?, table.point("max_m", max, size)?);
+    let (low, high) = (table.point("min_m", min, size), table.point("max_m", max, size)).together()?;
     if (high - low).min() < 0.001 {
         let what = format!("`{}.max_m` is not above and to the right of `min_m`", table.path);
         let help = "`min_m` is the lower left corner, `max_m` the upper right one, at least 0.001 m away";
@@ -196,57 +201,58 @@ pub(super) fn inside(
         return Ok(());
     }
     let help = format!(
-        "it spans [{:.3}, {:.3}] to [{:.3}, {:.3}], the map [0, 0] to [{}, {}]",
-        low.x, low.y, high.x, high.y, size.x, size.y
+        "it spans [{:.3}, {:.3}] to [{:.3}, {:.3}], the map {}",
+        low.x,
+        low.y,
+        high.x,
+        high.y,
+        extent(size)
     );
     Err(source.error(what, (span, "this one"), &[], &help))
 }
 
 /// Refuses boxes that can be pushed and start in something else: they would burst apart.
-fn boxes_apart(
-    source: &Source<'_>,
-    files: &[&Spanned<ObstacleFile>],
-    obstacles: &[ObstacleSpec],
-) -> Result<(), WorldError> {
+fn boxes_apart(source: &Source<'_>, obstacles: &[(&ObstacleFile, ObstacleSpec)]) -> Result<(), WorldError> {
     let is_pushed = |obstacle: &ObstacleSpec| matches!(obstacle.motion, Motion::Pushed(_));
-    for (b, second) in obstacles.iter().enumerate() {
-        for (a, first) in obstacles[..b].iter().enumerate() {
-            if (is_pushed(first) || is_pushed(second)) && first.start().overlaps(&second.start()) {
-                let what = format!("the obstacles `{}` and `{}` overlap", first.name, second.name);
-                let marks = [(files[a].get_ref().name.span(), "and this one")];
-                let mark = (files[b].get_ref().name.span(), "this one");
-                let help = "a box that can be pushed may touch other things, but not overlap them";
-                return Err(source.error(&what, mark, &marks, help));
-            }
+    all_apart(obstacles, |(first_file, first), (file, second)| {
+        if !(is_pushed(first) || is_pushed(second)) || !first.start().overlaps(&second.start()) {
+            return Ok(());
         }
-    }
-    Ok(())
+        let what = format!("the obstacles `{}` and `{}` overlap", first.name, second.name);
+        let marks = [(first_file.name.span(), "and this one")];
+        let help = "a box that can be pushed may touch other things, but not overlap them";
+        Err(source.error(&what, (file.name.span(), "this one"), &marks, help))
+    })
 }
 
 /// Refuses robots that start in each other.
-fn apart(source: &Source<'_>, files: &[&Spanned<RobotFile>], robots: &[RobotSpec]) -> Result<(), WorldError> {
-    for (b, second) in robots.iter().enumerate() {
-        for (a, first) in robots[..b].iter().enumerate() {
-            let needed_m = first.radius_m + second.radius_m;
-            let apart_m: f64 = (first.pose.translation.vector - second.pose.translation.vector).norm();
-            // Circles first: nearly all are far apart.
-            if apart_m < needed_m - TOUCH_M
-                && first.form(&first.pose).apart_m(&second.form(&second.pose)) < -TOUCH_M
-            {
-                let what = format!("the robots `{}` and `{}` overlap", first.name, second.name);
-                let marks = [(files[a].get_ref().pose_m.span(), "the other one")];
-                let help = match first.corners.is_empty() && second.corners.is_empty() {
-                    true => {
-                        format!("their middles must be {needed_m:.3} m apart or more, not {apart_m:.3} m")
-                    }
-                    false => "their footprints may touch, but not overlap".to_owned(),
-                };
-                let mark = (files[b].get_ref().pose_m.span(), "one stands here");
-                return Err(source.error(&what, mark, &marks, &help));
-            }
+fn apart(source: &Source<'_>, robots: &[(&RobotFile, RobotSpec)]) -> Result<(), WorldError> {
+    all_apart(robots, |(first_file, first), (file, second)| {
+        let needed_m = first.radius_m + second.radius_m;
+        let apart_m: f64 = (first.pose.translation.vector - second.pose.translation.vector).norm();
+        // Circles first: nearly all are far apart.
+        if apart_m >= needed_m - TOUCH_M
+            || first.form(&first.pose).apart_m(&second.form(&second.pose)) >= -TOUCH_M
+        {
+            return Ok(());
         }
-    }
-    Ok(())
+        let what = format!("the robots `{}` and `{}` overlap", first.name, second.name);
+        let marks = [(first_file.pose_m.span(), "the other one")];
+        let help = match first.corners.is_empty() && second.corners.is_empty() {
+            true => format!("their middles must be {needed_m:.3} m apart or more, not {apart_m:.3} m"),
+            false => "their footprints may touch, but not overlap".to_owned(),
+        };
+        Err(source.error(&what, (file.pose_m.span(), "one stands here"), &marks, &help))
+    })
+}
+
+/// Compares each with those before it, up to the first that it is not apart from.
+fn all_apart<T>(things: &[T], apart: impl Fn(&T, &T) -> Result<(), WorldError>) -> Result<(), WorldError> {
+    let each = things
+        .iter()
+        .enumerate()
+        .map(|(i, second)| things[..i].iter().try_for_each(|first| apart(first, second)));
+    each.collect::<Vec<_>>().together().map(|_| ())
 }
 
 /// The place of the one driven robot.

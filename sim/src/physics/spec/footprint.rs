@@ -4,6 +4,7 @@ use super::file::{Pair, RobotFile};
 use super::numbers::Table;
 use crate::error::{Source, WorldError};
 use crate::physics::convex;
+use crate::together::Together;
 use nalgebra::Point2;
 
 const MOST_CORNERS: usize = 32;
@@ -34,12 +35,8 @@ pub(super) fn footprint(source: &Source<'_>, file: &RobotFile) -> Result<Footpri
                 let what = format!("`robot.footprint_m` has {} corners", pairs.len());
                 return error(&what, "it must have 3 to 32, as in `[[-0.2, -0.1], [0.3, 0.0], [-0.2, 0.1]]`");
             }
-            let mut corners = Vec::new();
-            for pair in pairs {
-                table.pair("footprint_m", pair, -10.0..=10.0)?;
-                let [x, y] = *pair.get_ref();
-                corners.push(Point2::new(x, y));
-            }
+            let corners = pairs.iter().map(|pair| table.pair("footprint_m", pair, -10.0..=10.0));
+            let mut corners = corners.collect::<Vec<_>>().together()?;
             // Either way around is fine.
             let area: f64 = convex::sides(&corners).map(|(a, b)| a.coords.perp(&b.coords)).sum();
             if area < 0.0 {

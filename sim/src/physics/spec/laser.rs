@@ -5,6 +5,7 @@ use super::file::{LaserFile, Number, Pair, RobotFile};
 use super::numbers::Table;
 use super::senses::range;
 use crate::error::{Source, WorldError};
+use crate::together::Together;
 use geometry::pose;
 use nalgebra::{Isometry2, Point2};
 
@@ -24,30 +25,34 @@ pub(super) fn lasers(
         let help = format!("it must have 1 to {MOST_LASERS}");
         return Err(source.error(&what, (robot.lasers.span(), "these lasers"), &[], &help));
     };
-    let others = others.iter().map(|file| laser(source, file, step_s, radius_m));
-    Ok((laser(source, first, step_s, radius_m)?, others.collect::<Result<_, _>>()?))
+    let others = others.iter().map(|file| laser(source, file, step_s, radius_m)).collect::<Vec<_>>();
+    (laser(source, first, step_s, radius_m), others.together()).together()
 }
 
 fn laser(source: &Source<'_>, file: &LaserFile, step_s: f64, radius_m: f64) -> Result<LaserSpec, WorldError> {
     let table = Table { source, path: "robot.laser" };
-    let beams = *file.beams.get_ref();
-    if !(2..=10_000).contains(&beams) {
-        let what = format!("`robot.laser.beams` is {beams}, which is out of range");
-        let help = "it must be a whole number from 2 to 10000";
-        return Err(source.error(&what, (file.beams.span(), "out of range"), &[], help));
-    }
-    let [range_min_m, range_max_m] = range(&table, &file.range_min_m, &file.range_max_m)?;
-    let (rate_hz, period_steps) = period_steps(&table, &file.rate_hz, step_s)?;
+    let (beams, fov_deg, range, rate, mount, noise_std_m, dropout) = (
+        table.count("beams", &file.beams, 2..=10_000),
+        table.number_or("fov_deg", &file.fov_deg, 360.0, 1.0..=360.0),
+        range(&table, &file.range_min_m, &file.range_max_m),
+        period_steps(&table, &file.rate_hz, step_s),
+        mount(&table, "a laser", &file.mount_m, &file.mount_deg, radius_m),
+        table.number_or("noise_std_m", &file.noise_std_m, 0.0, 0.0..=1.0),
+        table.number_or("dropout", &file.dropout, 0.0, 0.0..=1.0),
+    )
+        .together()?;
+    let ([range_min_m, range_max_m], (rate_hz, period_steps)) = (range, rate);
+    let fov_rad = fov_deg.to_radians();
     Ok(LaserSpec {
-        dropout: table.number_or("dropout", &file.dropout, 0.0, 0.0..=1.0)?,
-        beams: beams as usize,
-        fov_rad: table.number_or("fov_deg", &file.fov_deg, 360.0, 1.0..=360.0)?.to_radians(),
+        beams,
+        fov_rad,
         range_min_m,
         range_max_m,
         rate_hz,
         period_steps,
-        mount: mount(&table, "a laser", &file.mount_m, &file.mount_deg, radius_m)?,
-        noise_std_m: table.number_or("noise_std_m", &file.noise_std_m, 0.0, 0.0..=1.0)?,
+        mount,
+        noise_std_m,
+        dropout,
     })
 }
 
@@ -75,12 +80,15 @@ pub(super) fn mount(
     mount_deg: &Option<Number>,
     radius_m: f64,
 ) -> Result<Isometry2<f64>, WorldError> {
-    let at = mount_m.as_ref().map_or(Ok(Point2::origin()), |m| table.pair("mount_m", m, -10.0..=10.0))?;
+    let (at, mount_deg) = (
+        mount_m.as_ref().map_or(Ok(Point2::origin()), |m| table.pair("mount_m", m, -10.0..=10.0)),
+        table.number_or("mount_deg", mount_deg, 0.0, -360.0..=360.0),
+    )
+        .together()?;
     if let Some(file) = mount_m.as_ref().filter(|_| at.coords.norm() > radius_m) {
         let what = format!("{what} is mounted off its robot");
         let help = format!("it must lie within the robot's radius of {radius_m} m");
         return Err(table.source.error(&what, (file.span(), "off the robot"), &[], &help));
     }
-    let mount_deg = table.number_or("mount_deg", mount_deg, 0.0, -360.0..=360.0)?;
     Ok(pose(at.x, at.y, mount_deg.to_radians()))
 }

@@ -73,7 +73,7 @@ impl FleetSpec {
     ///
     /// As [`FleetSpec::parse`], and when a picture cannot be read.
     pub fn parse_with(name: &str, text: &str, files: &dyn Files) -> Result<Self, WorldError> {
-        let source = Source { name, text };
+        let source = Source::new(name, text);
         check::check(&source, &reader::read(&source, Kind::Physics)?, files)
     }
 
@@ -147,7 +147,7 @@ impl WorldSpec {
     ///
     /// As [`WorldSpec::parse`], and when a picture cannot be read.
     pub fn parse_with(name: &str, text: &str, files: &dyn Files) -> Result<Self, WorldError> {
-        let source = Source { name, text };
+        let source = Source::new(name, text);
         let reading = reader::read(&source, Kind::Physics)?;
         let fleet = check::check(&source, &reading, files)?;
         let driven = check::driven(&source, &reading.file, &fleet.robots)?;

@@ -2,6 +2,7 @@
 
 use super::file::{Number, Pair};
 use crate::error::{Source, WorldError};
+use crate::together::Together;
 use nalgebra::Point2;
 use serde_spanned::Spanned;
 use std::fmt;
@@ -14,6 +15,14 @@ impl fmt::Display for Figure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let plain = self.0 == 0.0 || !self.0.is_finite() || (1e-5..1e7).contains(&self.0.abs());
         if plain { write!(f, "{}", self.0) } else { write!(f, "{:e}", self.0) }
+    }
+}
+
+/// From where to where a map of `size` (m) reaches; infinite: its size is wrong.
+pub(super) fn extent(size: &Point2<f64>) -> String {
+    match size.x.is_finite() {
+        true => format!("[0, 0] to [{}, {}]", size.x, size.y),
+        false => "[0, 0] to its `size_m`".to_owned(),
     }
 }
 
@@ -49,6 +58,32 @@ impl Table<'_> {
         range: RangeInclusive<f64>,
     ) -> Result<f64, WorldError> {
         value.as_ref().map_or(Ok(default), |value| self.number(key, value, range))
+    }
+
+    /// The same for a key that has no default.
+    pub(super) fn number_if(
+        &self,
+        key: &str,
+        value: &Option<Number>,
+        range: RangeInclusive<f64>,
+    ) -> Result<Option<f64>, WorldError> {
+        value.as_ref().map(|value| self.number(key, value, range)).transpose()
+    }
+
+    /// A count, if it is in `range`.
+    pub(super) fn count(
+        &self,
+        key: &str,
+        value: &Spanned<u32>,
+        range: RangeInclusive<u32>,
+    ) -> Result<usize, WorldError> {
+        let count = *value.get_ref();
+        if range.contains(&count) {
+            return Ok(count as usize);
+        }
+        let what = format!("`{}.{key}` is {count}, which is out of range", self.path);
+        let help = format!("it must be a whole number from {} to {}", range.start(), range.end());
+        Err(self.source.error(&what, (value.span(), "out of range"), &[], &help))
     }
 
     /// Two values, if both are in `range`.
@@ -97,7 +132,27 @@ impl Table<'_> {
         }
         let what =
             format!("`{}.{key}` is [{}, {}], which is outside of the map", self.path, Figure(x), Figure(y));
-        let help = format!("the map reaches from [0, 0] to [{}, {}]", size.x, size.y);
+        let help = format!("the map reaches from {}", extent(size));
         Err(self.source.error(&what, (value.span(), "outside of the map"), &[], &help))
+    }
+
+    /// A list of points (m) in the map of `size` (m).
+    pub(super) fn points(
+        &self,
+        key: &str,
+        list: &[Pair],
+        size: &Point2<f64>,
+    ) -> Result<Vec<Point2<f64>>, WorldError> {
+        list.iter().map(|point| self.point(key, point, size)).collect::<Vec<_>>().together()
+    }
+
+    /// A list of numbers, if all are in `range`.
+    pub(super) fn numbers(
+        &self,
+        key: &str,
+        list: &[Number],
+        range: RangeInclusive<f64>,
+    ) -> Result<Vec<f64>, WorldError> {
+        list.iter().map(|number| self.number(key, number, range.clone())).collect::<Vec<_>>().together()
     }
 }

@@ -88,6 +88,15 @@ pub struct DriveLimits {
 }
 
 impl DriveLimits {
+    /// No robot is too fast for it: what others are judged by where a drive is wrong itself.
+    pub(super) const BOUNDLESS: Self = Self {
+        kind: DriveKind::Differential,
+        max_linear_mps: 5.0,
+        max_angular_radps: f64::INFINITY,
+        max_linear_acceleration_mps2: f64::INFINITY,
+        max_angular_acceleration_radps2: f64::INFINITY,
+    };
+
     /// The fastest in any direction, m/s.
     pub fn fastest_mps(&self) -> f64 {
         match self.kind {

@@ -2,11 +2,12 @@
 
 use super::behaviour::Context;
 use super::check::Solid;
-use super::file::{BehaviourFile, RobotFile};
+use super::file::{BehaviourFile, Pair, RobotFile};
 use super::{Behaviour, PatrolSpec};
 use crate::error::{Source, WorldError};
 use crate::physics::minds::WALL_RELIEF_M;
 use crate::physics::shape::{TOUCH_M, point_segment_m};
+use crate::together::Together;
 use nalgebra::{Point2, Vector2};
 
 /// A wall farther away than this is none to follow, m.
@@ -17,28 +18,38 @@ const SLACK_M: f64 = 0.05;
 const LOOK_EVERY_M: f64 = 0.1;
 
 pub(super) fn patrol(context: &Context<'_>, file: &BehaviourFile) -> Result<Behaviour, WorldError> {
-    let Context { source, robot, radius_m, start, size, solids, .. } = context;
-    let BehaviourFile { kind, from_m, to_m, speed_mps, wall_side, .. } = file;
-    let (Some(from_m), Some(to_m), Some(_), Some(side)) = (from_m, to_m, speed_mps, wall_side) else {
-        let what = format!("the patrol of `{}` is not complete", robot.name.get_ref());
-        let help = "it needs `from_m`, `to_m`, `speed_mps` and `wall_side`";
-        return Err(source.error(&what, (kind.span(), "this patrol"), &[], help));
-    };
+    let Context { source, robot, around, .. } = context;
     let table = context.table();
-    let (from, to) = (table.point("from_m", from_m, size)?, table.point("to_m", to_m, size)?);
-    let wall_on_left = match side.get_ref().as_str() {
-        "left" => true,
-        "right" => false,
+    let end = |key: &str, value| {
+        let value: &Pair = context.needed(key, value)?;
+        Ok((table.point(key, value, &around.size)?, value.span()))
+    };
+    let side = context.needed("wall_side", &file.wall_side).and_then(|side| match side.get_ref().as_str() {
+        "left" => Ok(true),
+        "right" => Ok(false),
         other => {
             let what = format!("`robot.behaviour.wall_side` is `{other}`");
             let help = "it must be \"left\" or \"right\", seen on the way from `from_m` to `to_m`";
-            return Err(source.error(&what, (side.span(), "no side"), &[], help));
+            Err(source.error(&what, (side.span(), "no side"), &[], help))
         }
-    };
-    let (speed_mps, clearance_m) = (context.speed_mps(file)?, context.clearance_m(file)?);
-    let way = Way { source, robot, radius_m: *radius_m, from, to, spans: [from_m.span(), to_m.span()] };
-    way.is_free(start, solids)?;
-    let wall_distance_m = way.wall_distance_m(wall_on_left, solids)?;
+    });
+    let ((from, from_span), (to, to_span), wall_on_left, speed_mps, clearance_m) = (
+        end("from_m", &file.from_m),
+        end("to_m", &file.to_m),
+        side,
+        context.speed_mps(file),
+        context.clearance_m(file),
+    )
+        .together()?;
+    let mut wall_distance_m = f64::NAN;
+    if let Some((radius_m, start)) = context.place {
+        let way = Way { source, robot, radius_m, from, to, spans: [from_span, to_span] };
+        way.is_free(&start, around.solids)?;
+        // A robot that follows a wall is not wrong because the wall is; the world is refused for that.
+        if around.is_whole {
+            wall_distance_m = way.wall_distance_m(wall_on_left, around.solids)?;
+        }
+    }
     Ok(Behaviour::WallPatrol(PatrolSpec { from, to, speed_mps, wall_on_left, wall_distance_m, clearance_m }))
 }
 

@@ -7,37 +7,106 @@ use super::file::{OdometryFile, RobotFile};
 use super::footprint::{Footprint, footprint};
 use super::laser::lasers;
 use super::numbers::Table;
-use super::{OdometryError, RobotSpec, senses};
+use super::{DriveLimits, OdometryError, RobotSpec, senses};
 use crate::error::{Source, WorldError};
 use crate::physics::convex;
 use crate::physics::form::Form;
 use crate::physics::shape::TOUCH_M;
+use crate::together::Together;
 use geometry::pose;
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2};
+
+/// What a robot is put into. What is wrong in the file is missing here.
+pub(super) struct Around<'a> {
+    pub(super) size: Point2<f64>,
+    pub(super) step_s: f64,
+    /// What stands from the start to the end.
+    pub(super) solids: &'a [Solid],
+    /// What stands at the start but may be gone when a robot comes by.
+    pub(super) movers: &'a [Solid],
+    /// Whether nothing is missing.
+    pub(super) is_whole: bool,
+}
 
 pub(super) fn robot(
     source: &Source<'_>,
     file: &RobotFile,
-    size: &Point2<f64>,
-    step_s: f64,
-    solids: &[Solid],
-    movers: &[Solid],
+    around: &Around<'_>,
 ) -> Result<RobotSpec, WorldError> {
     let table = Table { source, path: "robot" };
-    let name = source.name("robot", &file.name)?;
-    let Footprint { radius_m, inner_m, corners, .. } = footprint(source, file)?;
-    let mass_kg =
-        file.mass_kg.as_ref().map(|mass| table.number("mass_kg", mass, 0.001..=100_000.0)).transpose()?;
-    let at = table.point("pose_m", &file.pose_m, size)?;
-    let heading_deg = table.number_or("heading_deg", &file.heading_deg, 0.0, -360.0..=360.0)?;
+    let footprint = footprint(source, file);
+    // A robot whose size is wrong is not too fast for it as well, and its parts fit on it.
+    let (radius_m, inner_m) = footprint
+        .as_ref()
+        .map_or((f64::INFINITY, f64::INFINITY), |footprint| (footprint.radius_m, footprint.inner_m));
+    let step_s = around.step_s;
+    let place = stands(source, file, around, footprint);
+    let drive = drive(source, &file.drive, inner_m / step_s);
+    let behaviour = Context {
+        source,
+        robot: file,
+        place: place.as_ref().ok().map(|(body, pose)| (body.radius_m, pose.translation.vector.into())),
+        drive: drive.as_ref().unwrap_or(&DriveLimits::BOUNDLESS),
+        around,
+    }
+    .behaviour();
+    let all = (
+        source.name("robot", &file.name),
+        table.number_if("mass_kg", &file.mass_kg, 0.001..=100_000.0),
+        place,
+        drive,
+        behaviour,
+        odometry(source, &file.odometry),
+        lasers(source, file, step_s, radius_m),
+    );
+    let senses = (
+        file.bumper.as_ref().map(|file| senses::bumper(source, file)).transpose(),
+        senses::sonars(source, file.sonars.as_deref().unwrap_or_default(), step_s, radius_m),
+        file.fiducial.as_ref().map(|file| senses::fiducial(source, file, step_s, radius_m)).transpose(),
+    );
+    let (all, (bumper, sonars, fiducial)) = (all.together(), senses.together()).together()?;
+    let (name, mass_kg, (body, pose), drive, behaviour, odometry, (laser, more_lasers)) = all;
+    Ok(RobotSpec {
+        name,
+        radius_m: body.radius_m,
+        corners: body.corners,
+        mass_kg,
+        pose,
+        drive,
+        odometry,
+        laser,
+        more_lasers,
+        bumper,
+        sonars,
+        fiducial,
+        tag: file.tag.as_ref().map(|tag| *tag.get_ref()),
+        behaviour,
+    })
+}
+
+/// The body of the robot and where it stands: in the map, and clear of everything.
+fn stands(
+    source: &Source<'_>,
+    file: &RobotFile,
+    around: &Around<'_>,
+    footprint: Result<Footprint, WorldError>,
+) -> Result<(Footprint, Isometry2<f64>), WorldError> {
+    let table = Table { source, path: "robot" };
+    let (body, at, heading_deg) = (
+        footprint,
+        table.point("pose_m", &file.pose_m, &around.size),
+        table.number_or("heading_deg", &file.heading_deg, 0.0, -360.0..=360.0),
+    )
+        .together()?;
+    let (name, radius_m) = (file.name.get_ref(), body.radius_m);
     let pose = pose(at.x, at.y, heading_deg.to_radians());
-    let form = Form::new(&corners, radius_m, &pose);
+    let form = Form::new(&body.corners, radius_m, &pose);
     let help = match &form {
         Form::Disc { .. } => format!("its middle must keep its radius of {radius_m} m away"),
         Form::Convex(_) => "its footprint may touch other things, but not overlap them".to_owned(),
     };
     let (low, high) = form.bounds();
-    if low.coords.min().min((size - high).min()) < -TOUCH_M {
+    if low.coords.min().min((around.size - high).min()) < -TOUCH_M {
         let what = format!("the robot `{name}` reaches out of the map");
         return Err(source.error(&what, (file.pose_m.span(), "too near to the border"), &[], &help));
     }
@@ -45,48 +114,29 @@ pub(super) fn robot(
         Form::Disc { .. } => solid.shape.distance_m(&at) < radius_m - TOUCH_M,
         Form::Convex(corners) => convex::gap_m(corners, &solid.shape.corners()) < -TOUCH_M,
     };
-    if let Some(solid) = solids.iter().chain(movers).find(stands_in) {
+    if let Some(solid) = around.solids.iter().chain(around.movers).find(stands_in) {
         let what = format!("the robot `{name}` starts in a wall or an obstacle");
         let marks = [(solid.span.clone(), "in this one")];
         return Err(source.error(&what, (file.pose_m.span(), "stands here"), &marks, &help));
     }
-    let drive = drive(source, &file.drive, inner_m / step_s)?;
-    let lasers = lasers(source, file, step_s, radius_m)?;
-    let behaviour =
-        Context { source, robot: file, radius_m, start: at, drive: &drive, size, solids }.behaviour()?;
-    let odometry = odometry(source, &file.odometry)?;
-    let (laser, more_lasers) = lasers;
-    Ok(RobotSpec {
-        name,
-        radius_m,
-        corners,
-        mass_kg,
-        pose,
-        drive,
-        odometry,
-        laser,
-        more_lasers,
-        bumper: file.bumper.as_ref().map(|file| senses::bumper(source, file)).transpose()?,
-        sonars: senses::sonars(source, file.sonars.as_deref().unwrap_or_default(), step_s, radius_m)?,
-        fiducial: file
-            .fiducial
-            .as_ref()
-            .map(|file| senses::fiducial(source, file, step_s, radius_m))
-            .transpose()?,
-        tag: file.tag.as_ref().map(|tag| *tag.get_ref()),
-        behaviour,
-    })
+    Ok((body, pose))
 }
 
 fn odometry(source: &Source<'_>, file: &OdometryFile) -> Result<OdometryError, WorldError> {
     let table = Table { source, path: "robot.odometry" };
-    let per_m_deg = table.number_or("turn_per_m_deg", &file.turn_per_m_deg, 0.0, -90.0..=90.0)?;
-    let noise_deg = table.number_or("turn_noise_deg", &file.turn_noise_deg, 0.0, 0.0..=90.0)?;
+    let (distance_gain, turn_gain, per_m_deg, distance_noise_m, noise_deg) = (
+        table.number_or("distance_gain", &file.distance_gain, 0.0, -0.5..=0.5),
+        table.number_or("turn_gain", &file.turn_gain, 0.0, -0.5..=0.5),
+        table.number_or("turn_per_m_deg", &file.turn_per_m_deg, 0.0, -90.0..=90.0),
+        table.number_or("distance_noise_m", &file.distance_noise_m, 0.0, 0.0..=1.0),
+        table.number_or("turn_noise_deg", &file.turn_noise_deg, 0.0, 0.0..=90.0),
+    )
+        .together()?;
     Ok(OdometryError {
-        distance_gain: table.number_or("distance_gain", &file.distance_gain, 0.0, -0.5..=0.5)?,
-        turn_gain: table.number_or("turn_gain", &file.turn_gain, 0.0, -0.5..=0.5)?,
+        distance_gain,
+        turn_gain,
         turn_radpm: per_m_deg.to_radians(),
-        distance_noise_m: table.number_or("distance_noise_m", &file.distance_noise_m, 0.0, 0.0..=1.0)?,
+        distance_noise_m,
         turn_noise_rad: noise_deg.to_radians(),
     })
 }

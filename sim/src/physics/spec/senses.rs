@@ -4,6 +4,7 @@ use super::file::{BumperFile, FiducialFile, Number, Pair, SonarFile};
 use super::laser::{mount, period_steps};
 use super::numbers::Table;
 use crate::error::{Source, WorldError};
+use crate::together::Together;
 use nalgebra::Isometry2;
 use serde_spanned::Spanned;
 
@@ -51,14 +52,10 @@ pub struct FiducialSpec {
 
 pub(super) fn bumper(source: &Source<'_>, file: &BumperFile) -> Result<BumperSpec, WorldError> {
     let table = Table { source, path: "robot.bumper" };
-    let sectors = *file.sectors.get_ref();
-    if !(1..=64).contains(&sectors) {
-        let what = format!("`robot.bumper.sectors` is {sectors}, which is out of range");
-        let help = "it must be a whole number from 1 to 64";
-        return Err(source.error(&what, (file.sectors.span(), "out of range"), &[], help));
-    }
-    let fov_rad = table.number_or("fov_deg", &file.fov_deg, 360.0, 1.0..=360.0)?.to_radians();
-    Ok(BumperSpec { sectors: sectors as usize, fov_rad })
+    let sectors = table.count("sectors", &file.sectors, 1..=64);
+    let fov_deg = table.number_or("fov_deg", &file.fov_deg, 360.0, 1.0..=360.0);
+    let (sectors, fov_deg) = (sectors, fov_deg).together()?;
+    Ok(BumperSpec { sectors, fov_rad: fov_deg.to_radians() })
 }
 
 pub(super) fn sonars(
@@ -71,20 +68,22 @@ pub(super) fn sonars(
         let help = format!("{MOST_SONARS} are the most");
         return Err(source.error("a robot has too many sonars", (last.span(), "one too many"), &[], &help));
     }
-    files.iter().map(|file| sonar(source, file.get_ref(), step_s, radius_m)).collect()
+    let sonars = files.iter().map(|file| sonar(source, file.get_ref(), step_s, radius_m));
+    sonars.collect::<Vec<_>>().together()
 }
 
 fn sonar(source: &Source<'_>, file: &SonarFile, step_s: f64, radius_m: f64) -> Result<SonarSpec, WorldError> {
     let table = Table { source, path: "robot.sonar" };
-    let [range_min_m, range_max_m] = range(&table, &file.range_min_m, &file.range_max_m)?;
-    Ok(SonarSpec {
-        cone_rad: table.number("cone_deg", &file.cone_deg, 1.0..=180.0)?.to_radians(),
-        range_min_m,
-        range_max_m,
-        period_steps: period_steps(&table, &file.rate_hz, step_s)?.1,
-        mount: place(&table, &file.mount_m, &file.mount_deg, radius_m)?,
-        noise_std_m: table.number_or("noise_std_m", &file.noise_std_m, 0.0, 0.0..=1.0)?,
-    })
+    let (cone_deg, [range_min_m, range_max_m], (_, period_steps), mount, noise_std_m) = (
+        table.number("cone_deg", &file.cone_deg, 1.0..=180.0),
+        range(&table, &file.range_min_m, &file.range_max_m),
+        period_steps(&table, &file.rate_hz, step_s),
+        place(&table, &file.mount_m, &file.mount_deg, radius_m),
+        table.number_or("noise_std_m", &file.noise_std_m, 0.0, 0.0..=1.0),
+    )
+        .together()?;
+    let cone_rad = cone_deg.to_radians();
+    Ok(SonarSpec { cone_rad, range_min_m, range_max_m, period_steps, mount, noise_std_m })
 }
 
 pub(super) fn fiducial(
@@ -94,12 +93,14 @@ pub(super) fn fiducial(
     radius_m: f64,
 ) -> Result<FiducialSpec, WorldError> {
     let table = Table { source, path: "robot.fiducial" };
-    Ok(FiducialSpec {
-        fov_rad: table.number_or("fov_deg", &file.fov_deg, 360.0, 1.0..=360.0)?.to_radians(),
-        range_max_m: table.number("range_max_m", &file.range_max_m, 0.01..=1000.0)?,
-        period_steps: period_steps(&table, &file.rate_hz, step_s)?.1,
-        mount: place(&table, &file.mount_m, &file.mount_deg, radius_m)?,
-    })
+    let (fov_deg, range_max_m, (_, period_steps), mount) = (
+        table.number_or("fov_deg", &file.fov_deg, 360.0, 1.0..=360.0),
+        table.number("range_max_m", &file.range_max_m, 0.01..=1000.0),
+        period_steps(&table, &file.rate_hz, step_s),
+        place(&table, &file.mount_m, &file.mount_deg, radius_m),
+    )
+        .together()?;
+    Ok(FiducialSpec { fov_rad: fov_deg.to_radians(), range_max_m, period_steps, mount })
 }
 
 fn place(
@@ -117,8 +118,11 @@ pub(super) fn range(
     least: &Option<Number>,
     most: &Number,
 ) -> Result<[f64; 2], WorldError> {
-    let range_max_m = table.number("range_max_m", most, 0.01..=1000.0)?;
-    let range_min_m = table.number_or("range_min_m", least, 0.0, 0.0..=1000.0)?;
+    let (range_max_m, range_min_m) = (
+        table.number("range_max_m", most, 0.01..=1000.0),
+        table.number_or("range_min_m", least, 0.0, 0.0..=1000.0),
+    )
+        .together()?;
     if let Some(min) = least.as_ref().filter(|_| range_min_m >= range_max_m) {
         let marks = [(most.span(), "not below this")];
         let help = "`range_min_m` must be smaller than `range_max_m`";

@@ -239,8 +239,7 @@ fn doors_turn_and_slide_as_told() {
         {
             fleet.run_until(time_s, &mut stop);
             let off_m = (middle(&fleet, 0) - Point2::from(expected)).norm();
-            // The step in which it is told counts.
-            assert!(off_m < 0.05, "{kind} {more} at {time_s} s: {off_m} m off");
+            assert!(off_m < 1e-6, "{kind} {more} at {time_s} s: {off_m} m off");
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::physics::shape::{Rectangle, TOUCH_M};
 use crate::physics::spec::Repeat;
 use crate::physics::spec::check::{MAX_TIME_S, Solid, inside};
 use crate::physics::spec::file::{Number, Pair};
+use crate::together::Together;
 use nalgebra::{Point2, Vector2};
 use serde_spanned::Spanned;
 
@@ -17,41 +18,67 @@ const FASTEST_MPS: f64 = 5.0;
 
 type Keys = Vec<(f64, Point2<f64>)>;
 
+/// How fast a block goes on its path.
+enum Pace<'a> {
+    /// At each point at a time of its own.
+    Timed { times: &'a Spanned<Vec<Number>>, times_s: Vec<f64> },
+    /// Always alike, with a stay at each point.
+    Even { speed_mps: f64, dwell_s: f64 },
+}
+
 impl Context<'_> {
     pub(super) fn block(self) -> Result<ObstacleSpec, WorldError> {
-        let file = self.file;
-        let (Some(path), Some(size_m)) = (&file.path_m, &file.size_m) else {
-            return Err(self.incomplete("block", "it needs `size_m` and `path_m`"));
-        };
-        let table = self.table();
-        let sides = table.pair("size_m", size_m, 0.001..=100.0)?;
-        let heading_deg = table.number_or("heading_deg", &file.heading_deg, 0.0, -360.0..=360.0)?;
-        if !(1..=MOST_POINTS).contains(&path.get_ref().len()) {
+        let (table, file) = (self.table(), self.file);
+        let size = self.needed("size_m", &file.size_m);
+        let path = self.needed("path_m", &file.path_m).and_then(|path| {
+            if (1..=MOST_POINTS).contains(&path.get_ref().len()) {
+                return Ok((path, table.points("path_m", path.get_ref(), self.size)?));
+            }
             let what = format!("`obstacle.path_m` has {} points", path.get_ref().len());
             let help = format!("it must have 1 to {MOST_POINTS}, as in `[[1.0, 2.0], [3.0, 2.0]]`");
-            return Err(self.source.error(&what, (path.span(), "these points"), &[], &help));
-        }
-        let mut points = Vec::new();
-        for point in path.get_ref() {
-            points.push(table.point("path_m", point, self.size)?);
-        }
-        let repeats =
-            [("loop", Repeat::Loop), ("back_and_forth", Repeat::BackAndForth), ("once", Repeat::Once)];
-        let repeat = table.choice("repeat", &file.repeat, &repeats)?;
+            Err(self.source.error(&what, (path.span(), "these points"), &[], &help))
+        });
+        let (sides, heading_deg, (path, points), pace, repeat) = (
+            size.and_then(|size| table.pair("size_m", size, 0.001..=100.0)),
+            table.number_or("heading_deg", &file.heading_deg, 0.0, -360.0..=360.0),
+            path,
+            self.pace(),
+            table.choice("repeat", &file.repeat, &Repeat::WORDS),
+        )
+            .together()?;
         let shape = Rectangle::around(points[0], sides.coords, heading_deg.to_radians());
-        let keys = match (&file.times_s, &file.speed_mps) {
-            (Some(times), None) if file.dwell_s.is_none() => self.timed(path, &points, times, repeat)?,
-            (None, Some(speed)) => self.dwelling(&points, speed, repeat)?,
-            _ => {
-                let help =
-                    "it needs either `times_s`, or `speed_mps` and, if it stays at its points, `dwell_s`";
-                return Err(self.incomplete("block", help));
-            }
+        let keys = match pace {
+            Pace::Timed { times, times_s } => self.timed(path, &points, times, &times_s, repeat),
+            Pace::Even { speed_mps, dwell_s } => Ok(dwelling(&points, speed_mps, dwell_s, repeat)),
         };
-        self.is_way_free(path, &points, repeat, &shape)?;
+        let is_free = self.is_way_free(path, &points, repeat, &shape);
+        let (keys, ()) = (keys, is_free).together()?;
         // A block that never moves has no time to begin again at.
         let is_loop = repeat != Repeat::Once && keys[keys.len() - 1].0 > 0.0;
         Ok(self.spec(shape, Motion::Path(PathSpec { keys, is_loop })))
+    }
+
+    /// How fast it goes, as far as that makes sense without its path.
+    fn pace(&self) -> Result<Pace<'_>, WorldError> {
+        let (table, file) = (self.table(), self.file);
+        match (&file.times_s, &file.speed_mps) {
+            (Some(times), None) if file.dwell_s.is_none() => {
+                let times_s = table.numbers("times_s", times.get_ref(), 0.0..=MAX_TIME_S)?;
+                Ok(Pace::Timed { times, times_s })
+            }
+            (None, Some(speed)) => {
+                let speed_mps = table.number("speed_mps", speed, 0.001..=FASTEST_MPS);
+                let speed_mps = speed_mps.and_then(|mps| self.is_slow_enough(mps, speed).map(|()| mps));
+                let dwell_s = table.number_or("dwell_s", &file.dwell_s, 0.0, 0.0..=MAX_TIME_S);
+                let (speed_mps, dwell_s) = (speed_mps, dwell_s).together()?;
+                Ok(Pace::Even { speed_mps, dwell_s })
+            }
+            _ => {
+                let help =
+                    "it needs either `times_s`, or `speed_mps` and, if it stays at its points, `dwell_s`";
+                Err(self.incomplete("block", help))
+            }
+        }
     }
 
     /// At each point at a time of its own.
@@ -60,6 +87,7 @@ impl Context<'_> {
         path: &Spanned<Vec<Pair>>,
         points: &[Point2<f64>],
         times: &Spanned<Vec<Number>>,
+        times_s: &[f64],
         repeat: Repeat,
     ) -> Result<Keys, WorldError> {
         let (list, span) = (times.get_ref(), times.span());
@@ -76,8 +104,7 @@ impl Context<'_> {
             return error(&what, "`times_s` has one time for each point of `path_m`");
         }
         let mut keys = Keys::new();
-        for (time, at) in list.iter().zip(points) {
-            let time_s = self.table().number("times_s", time, 0.0..=MAX_TIME_S)?;
+        for ((time, &time_s), at) in list.iter().zip(times_s).zip(points) {
             let Some((before_s, before)) = keys.last() else {
                 if time_s != 0.0 {
                     return error("`times_s` does not begin at 0", "the block starts at its first point");
@@ -102,42 +129,6 @@ impl Context<'_> {
                 let end_s = keys[keys.len() - 1].0;
                 let back: Keys = keys.iter().rev().skip(1).map(|(s, at)| (2.0 * end_s - s, *at)).collect();
                 keys.extend(back);
-            }
-        }
-        Ok(keys)
-    }
-
-    /// Some time at each point, and then on.
-    fn dwelling(&self, points: &[Point2<f64>], speed: &Number, repeat: Repeat) -> Result<Keys, WorldError> {
-        let speed_mps = self.table().number("speed_mps", speed, 0.001..=FASTEST_MPS)?;
-        self.is_slow_enough(speed_mps, speed)?;
-        let dwell_s = self.table().number_or("dwell_s", &self.file.dwell_s, 0.0, 0.0..=MAX_TIME_S)?;
-        let mut keys = vec![(0.0, points[0])];
-        let mut stop = |at: &Point2<f64>| {
-            let (mut time_s, before) = keys[keys.len() - 1];
-            time_s += (at - before).norm() / speed_mps;
-            if *at != before {
-                keys.push((time_s, *at));
-            }
-            if dwell_s > 0.0 {
-                keys.push((time_s + dwell_s, *at));
-            }
-        };
-        points.iter().for_each(&mut stop);
-        match repeat {
-            Repeat::Once => {}
-            // The stay at the first point belongs to the next time around.
-            Repeat::Loop => {
-                stop(&points[0]);
-                if dwell_s > 0.0 {
-                    keys.pop();
-                }
-            }
-            Repeat::BackAndForth => {
-                points.iter().rev().skip(1).for_each(&mut stop);
-                if dwell_s > 0.0 && points.len() > 1 {
-                    keys.pop();
-                }
             }
         }
         Ok(keys)
@@ -185,6 +176,39 @@ impl Context<'_> {
         }
         Ok(())
     }
+}
+
+/// Some time at each point, and then on.
+fn dwelling(points: &[Point2<f64>], speed_mps: f64, dwell_s: f64, repeat: Repeat) -> Keys {
+    let mut keys = vec![(0.0, points[0])];
+    let mut stop = |at: &Point2<f64>| {
+        let (mut time_s, before) = keys[keys.len() - 1];
+        time_s += (at - before).norm() / speed_mps;
+        if *at != before {
+            keys.push((time_s, *at));
+        }
+        if dwell_s > 0.0 {
+            keys.push((time_s + dwell_s, *at));
+        }
+    };
+    points.iter().for_each(&mut stop);
+    match repeat {
+        Repeat::Once => {}
+        // The stay at the first point belongs to the next time around.
+        Repeat::Loop => {
+            stop(&points[0]);
+            if dwell_s > 0.0 {
+                keys.pop();
+            }
+        }
+        Repeat::BackAndForth => {
+            points.iter().rev().skip(1).for_each(&mut stop);
+            if dwell_s > 0.0 && points.len() > 1 {
+                keys.pop();
+            }
+        }
+    }
+    keys
 }
 
 /// What a rectangle sweeps on a straight way: a convex body of at most six corners.

@@ -4,9 +4,11 @@ use super::{Motion, ObstacleSpec, PushedSpec};
 use crate::error::{Source, WorldError};
 use crate::physics::shape::Rectangle;
 use crate::physics::spec::check::{MAX_TIME_S, Solid, inside, upright};
-use crate::physics::spec::file::{Number, ObstacleFile};
+use crate::physics::spec::file::ObstacleFile;
 use crate::physics::spec::numbers::Table;
+use crate::together::Together;
 use nalgebra::Point2;
+use serde_spanned::Spanned;
 use std::ops::Range;
 
 /// The keys of each kind, beside its name, and what it is.
@@ -60,7 +62,8 @@ const KINDS: [(&str, &[&str], &str); 5] = [
 pub(super) struct Context<'a> {
     pub(super) source: &'a Source<'a>,
     pub(super) file: &'a ObstacleFile,
-    pub(super) name: String,
+    pub(super) kind: &'a str,
+    pub(super) name: &'a str,
     pub(super) size: &'a Point2<f64>,
     pub(super) walls: &'a [Solid],
     pub(super) step_s: f64,
@@ -74,7 +77,6 @@ pub(in crate::physics::spec) fn obstacle(
     walls: &[Solid],
     step_s: f64,
 ) -> Result<ObstacleSpec, WorldError> {
-    let name = source.name("obstacle", &file.name)?;
     let kind = match &file.kind {
         None => "fixed",
         Some(kind) => {
@@ -88,18 +90,22 @@ pub(in crate::physics::spec) fn obstacle(
         }
     };
     let (_, known, does) = KINDS.iter().find(|(name, _, _)| *name == kind).unwrap_or(&KINDS[0]);
-    if let Some((key, span)) = file.keys().into_iter().find(|(key, _)| !known.contains(key)) {
+    let foreign = file.keys().into_iter().filter(|(key, _)| !known.contains(key)).map(|(key, span)| {
         let what = format!("an obstacle that is `{kind}` has no `{key}`");
         let help = format!("leave it out: such an obstacle {does}; its keys are {}", known.join(", "));
-        return Err(source.error(&what, (span, "not for this obstacle"), &[], &help));
-    }
-    let context = Context { source, file, name, size, walls, step_s };
-    match kind {
+        Err::<(), _>(source.error(&what, (span, "not for this obstacle"), &[], &help))
+    });
+    // Where such a key stands, the kind may be what is wrong, or missing: nothing else is judged by it.
+    let most = if file.kind.is_some() { usize::MAX } else { 1 };
+    foreign.take(most).collect::<Vec<_>>().together()?;
+    let context = Context { source, file, kind, name: file.name.get_ref(), size, walls, step_s };
+    let spec = match kind {
         "block" => context.block(),
         "hinged_door" | "sliding_door" => context.door(kind == "hinged_door"),
         "box" => context.pushed(),
         _ => context.fixed(),
-    }
+    };
+    (source.name("obstacle", &file.name), spec).together().map(|(_, spec)| spec)
 }
 
 impl Context<'_> {
@@ -119,19 +125,38 @@ impl Context<'_> {
         self.source.error(&what, (self.span(), "this one"), &[], help)
     }
 
+    /// A key that this kind cannot do without.
+    pub(super) fn needed<'f, T>(
+        &self,
+        key: &str,
+        value: &'f Option<Spanned<T>>,
+    ) -> Result<&'f Spanned<T>, WorldError> {
+        value.as_ref().ok_or_else(|| {
+            let what = format!("the obstacle `{}` has no `{key}`", self.name);
+            let help = format!("an obstacle that is `{}` needs a line `{key} = …`", self.kind);
+            self.source.error(&what, (self.span(), "this one"), &[], &help)
+        })
+    }
+
     pub(super) fn spec(self, shape: Rectangle, motion: Motion) -> ObstacleSpec {
         let tag = self.file.tag.as_ref().map(|tag| *tag.get_ref());
-        ObstacleSpec { name: self.name, shape, motion, tag, appears_s: None, disappears_s: None }
+        ObstacleSpec { name: self.name.to_owned(), shape, motion, tag, appears_s: None, disappears_s: None }
     }
 
     fn fixed(self) -> Result<ObstacleSpec, WorldError> {
-        let shape = self.shape()?;
-        let table = self.table();
-        let time = |key: &str, value: &Option<Number>| {
-            value.as_ref().map(|value| table.number(key, value, 0.001..=MAX_TIME_S)).transpose()
-        };
-        let appears_s = time("appears_s", &self.file.appears_s)?;
-        let disappears_s = time("disappears_s", &self.file.disappears_s)?;
+        let (shape, times_s) = (self.shape(), self.stay_s()).together()?;
+        let (appears_s, disappears_s) = times_s;
+        Ok(ObstacleSpec { appears_s, disappears_s, ..self.spec(shape, Motion::Fixed) })
+    }
+
+    /// When it comes and goes, s.
+    fn stay_s(&self) -> Result<(Option<f64>, Option<f64>), WorldError> {
+        let (table, file) = (self.table(), self.file);
+        let (appears_s, disappears_s) = (
+            table.number_if("appears_s", &file.appears_s, 0.001..=MAX_TIME_S),
+            table.number_if("disappears_s", &file.disappears_s, 0.001..=MAX_TIME_S),
+        )
+            .together()?;
         if let (Some(from), Some(to), Some(marked)) = (appears_s, disappears_s, &self.file.disappears_s)
             && to <= from
         {
@@ -139,16 +164,17 @@ impl Context<'_> {
             let help = format!("`disappears_s` must be later than `appears_s`, which is {from}");
             return Err(self.source.error(&what, (marked.span(), "too early"), &[], &help));
         }
-        Ok(ObstacleSpec { appears_s, disappears_s, ..self.spec(shape, Motion::Fixed) })
+        Ok((appears_s, disappears_s))
     }
 
     fn pushed(self) -> Result<ObstacleSpec, WorldError> {
-        let shape = self.shape()?;
-        let Some(mass) = &self.file.mass_kg else {
-            return Err(self.incomplete("box", "it needs a `mass_kg`"));
-        };
-        let mass_kg = self.table().number("mass_kg", mass, 0.001..=100_000.0)?;
-        let friction = self.table().number_or("friction", &self.file.friction, 0.5, 0.0..=10.0)?;
+        let mass = self.needed("mass_kg", &self.file.mass_kg);
+        let (shape, mass_kg, friction) = (
+            self.shape(),
+            mass.and_then(|mass| self.table().number("mass_kg", mass, 0.001..=100_000.0)),
+            self.table().number_or("friction", &self.file.friction, 0.5, 0.0..=10.0),
+        )
+            .together()?;
         // A thin box would lie in a wall as a whole before the physics pushes it out.
         if shape.half_m.min() < 0.01 {
             let help = "a box that can be pushed must be 0.02 m wide or more";
@@ -167,9 +193,12 @@ impl Context<'_> {
                 upright(&table, min, max, self.size)?
             }
             (None, None, Some(center), Some(sides)) => {
-                let center = table.point("center_m", center, self.size)?;
-                let sides = table.pair("size_m", sides, 0.001..=100.0)?;
-                let heading_deg = table.number_or("heading_deg", heading_deg, 0.0, -360.0..=360.0)?;
+                let (center, sides, heading_deg) = (
+                    table.point("center_m", center, self.size),
+                    table.pair("size_m", sides, 0.001..=100.0),
+                    table.number_or("heading_deg", heading_deg, 0.0, -360.0..=360.0),
+                )
+                    .together()?;
                 Rectangle::around(center, sides.coords, heading_deg.to_radians())
             }
             _ => {
