@@ -8,6 +8,7 @@ use crate::files::Files;
 use crate::findings::{Findings, Severity};
 use crate::floor_plan::{Bitmap, FloorPlan, MAX_FILE_BYTES, ros};
 use crate::physics::shape::Rectangle;
+use crate::together::Together;
 use geometry::{heading_rad, pose};
 use nalgebra::{Point2, Vector2};
 use serde_spanned::Spanned;
@@ -25,23 +26,27 @@ pub(super) fn walls(
 ) -> Result<Vec<Rectangle>, WorldError> {
     let table = Table { source, path: "floor_plan" };
     let corner = match &file.get_ref().corner_m {
-        Some(corner) => table.point("corner_m", corner, size)?,
-        None => Point2::origin(),
+        Some(corner) => table.point("corner_m", corner, size),
+        None => Ok(Point2::origin()),
     };
     let (plan, named) = match file.get_ref() {
         FloorPlanFile { image: Some(image), map: None, pixel_m: Some(pixel), .. } => {
-            let pixel_m = table.number("pixel_m", pixel, 0.001..=10.0)?;
+            let pixel_m = table.number("pixel_m", pixel, 0.001..=10.0);
             let heading_deg =
-                table.number_or("heading_deg", &file.get_ref().heading_deg, 0.0, -360.0..=360.0)?;
-            let below = table.number_or("blocked_below", &file.get_ref().blocked_below, 0.5, 0.0..=1.0)?;
+                table.number_or("heading_deg", &file.get_ref().heading_deg, 0.0, -360.0..=360.0);
+            let below = table.number_or("blocked_below", &file.get_ref().blocked_below, 0.5, 0.0..=1.0);
             let bytes = files.read(&beside(source, image), MAX_FILE_BYTES).map_err(|error| error.to_string());
-            let bitmap =
-                bytes.and_then(|bytes| Bitmap::decode_dark(&bytes, below).map_err(|error| error.to_string()));
+            // A threshold that is wrong has its own message.
+            let below_or = *below.as_ref().unwrap_or(&0.5);
+            let bitmap = bytes
+                .and_then(|bytes| Bitmap::decode_dark(&bytes, below_or).map_err(|error| error.to_string()));
             let bitmap = bitmap.map_err(|error| {
                 let what = format!("cannot read the picture `{}`: {error}", image.get_ref());
                 let help = "`image` names a PNG or PGM picture, in the folder of this file";
                 source.error(&what, (image.span(), "this picture"), &[], help)
-            })?;
+            });
+            let (corner, pixel_m, heading_deg, bitmap, _) =
+                (corner, pixel_m, heading_deg, bitmap, below).together()?;
             let origin = pose(corner.x, corner.y, heading_deg.to_radians());
             (FloorPlan { bitmap: bitmap.into(), pixel_m: Vector2::repeat(pixel_m), origin }, image)
         }
@@ -53,7 +58,7 @@ pub(super) fn walls(
             blocked_below: None,
             ..
         } => {
-            let plan = read_map(source, files, map)?;
+            let (corner, plan) = (corner, read_map(source, files, map)).together()?;
             let origin = pose(corner.x, corner.y, heading_rad(&plan.origin));
             (FloorPlan { origin, ..plan }, map)
         }
@@ -92,7 +97,7 @@ fn read_map(source: &Source<'_>, files: &dyn Files, map: &Spanned<String>) -> Re
         let what = format!("cannot use the map `{}`: {line}{}", map.get_ref(), finding.what);
         wrong.keep::<()>(Err(source.error(&what, (map.span(), "this map"), &[], &finding.help)));
     }
-    plan.filter(|_| wrong.is_empty()).ok_or_else(|| wrong.into_error())
+    plan.filter(|_| wrong.is_empty()).ok_or_else(|| wrong.into_part())
 }
 
 /// The path of a file that the world file names.
