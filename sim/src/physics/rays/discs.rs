@@ -12,15 +12,21 @@ use std::f32::consts::{FRAC_PI_2, PI};
 const SAFE_RAD: f32 = 3.0 * ROUGH_RAD as f32;
 const SAFE: f32 = 1.0 + 1e-5;
 
-/// Discs within the range of a laser, in its frame.
+/// A disc within the range of a laser, in its frame.
+#[derive(Clone, Copy, Debug, Default)]
+struct Near {
+    /// Its middle, m.
+    center: Vector2<f64>,
+    radius_m: f64,
+    /// The distance squared less the radius squared, m²: positive.
+    power: f64,
+}
+
+/// Discs within the range of a laser.
 #[derive(Clone, Debug, Default)]
 pub(in crate::physics) struct Discs {
-    /// How many there are; the lists below may be longer.
-    count: usize,
-    center: Vec<Vector2<f64>>,
-    /// The distance squared less the radius squared, m²: positive.
-    power: Vec<f64>,
-    /// What follows is rough. Middle and radius, m:
+    near: Vec<Near>,
+    /// What follows is rough, and as long. Middle and radius, m:
     x: Vec<f32>,
     y: Vec<f32>,
     radius: Vec<f32>,
@@ -34,23 +40,12 @@ pub(in crate::physics) struct Discs {
 impl Discs {
     /// No discs, but room for `most`.
     pub(super) fn clear(&mut self, most: usize) {
-        self.count = 0;
-        if self.center.len() < most {
-            self.center.resize(most, Vector2::zeros());
-            self.power.resize(most, 0.0);
-            let rough = [
-                &mut self.x,
-                &mut self.y,
-                &mut self.radius,
-                &mut self.angle,
-                &mut self.half,
-                &mut self.nearest,
-            ];
-            rough.into_iter().for_each(|list| list.resize(most, 0.0));
-        }
+        self.near.clear();
+        self.near.reserve(most);
     }
 
     /// Notes a disc, if it is within range. A laser inside of it sees nothing else.
+    #[inline(always)]
     pub(super) fn push(&mut self, disc: &Disc, hits: &mut Hits<'_>) {
         let to = disc.center - hits.laser().translation.vector;
         let power = to.coords.norm_squared() - disc.radius_m * disc.radius_m;
@@ -62,36 +57,33 @@ impl Discs {
             return hits.add_inside();
         }
         let center = hits.laser().rotation.inverse() * to.coords;
-        let i = self.count;
-        self.center[i] = center;
-        self.power[i] = power;
-        self.x[i] = center.x as f32;
-        self.y[i] = center.y as f32;
-        self.radius[i] = disc.radius_m as f32;
-        self.count += 1;
+        self.near.push(Near { center, radius_m: disc.radius_m, power });
     }
 
     /// Adds all discs to the hits.
     pub(super) fn add_to(&mut self, hits: &mut Hits<'_>) {
         self.work_out();
-        for i in 0..self.count {
-            let (angle, half, nearest) = (self.angle[i], self.half[i], self.nearest[i]);
-            hits.add_disc(
-                &self.center[i],
-                self.power[i],
-                f64::from(angle),
-                f64::from(half),
-                f64::from(nearest),
-            );
+        let rough = self.angle.iter().zip(&self.half).zip(&self.nearest);
+        for (disc, ((&angle, &half), &nearest)) in self.near.iter().zip(rough) {
+            hits.add_disc(&disc.center, disc.power, f64::from(angle), f64::from(half), f64::from(nearest));
         }
     }
 
-    /// Works out what is rough. No branches: several discs at once.
+    /// Works out what is rough.
     fn work_out(&mut self) {
-        let count = self.count;
-        let (x, y, radius) = (&self.x[..count], &self.y[..count], &self.radius[..count]);
-        let (angle, half, nearest) =
-            (&mut self.angle[..count], &mut self.half[..count], &mut self.nearest[..count]);
+        let count = self.near.len();
+        let rough =
+            [&mut self.x, &mut self.y, &mut self.radius, &mut self.angle, &mut self.half, &mut self.nearest];
+        let [x, y, radius, angle, half, nearest] = rough.map(|list| {
+            if list.len() < count {
+                list.resize(count, 0.0);
+            }
+            &mut list[..count]
+        });
+        for (i, disc) in self.near.iter().enumerate() {
+            (x[i], y[i], radius[i]) = (disc.center.x as f32, disc.center.y as f32, disc.radius_m as f32);
+        }
+        // No branches: several discs at once.
         for i in 0..count {
             angle[i] = rough_atan2(y[i], x[i]);
             let distance = (x[i] * x[i] + y[i] * y[i]).sqrt();
@@ -130,9 +122,7 @@ mod tests {
             let radius_m = 0.02 + f64::from(i % 50) * 0.01;
             let distance_m = radius_m * (1.0 + 1e-6 + f64::from(i * i % 977) * 0.1);
             let center = Vector2::new(x, y) * distance_m;
-            discs.clear(1);
-            (discs.count, discs.center[0]) = (1, center);
-            (discs.x[0], discs.y[0], discs.radius[0]) = (center.x as f32, center.y as f32, radius_m as f32);
+            discs.near = vec![Near { center, radius_m, power: 1.0 }];
             discs.work_out();
             let off = geometry::wrap_rad(f64::from(discs.angle[0]) - libm::atan2(y, x)).abs();
             let half = libm::asin(radius_m / distance_m);

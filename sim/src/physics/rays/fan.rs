@@ -89,20 +89,20 @@ impl Beams {
         self.runs(first, end)
     }
 
-    /// The beams that are less than `half_rad` away from `angle_rad`, and a few more perhaps.
-    fn around(&self, angle_rad: f64, half_rad: f64) -> [Range<usize>; 2] {
-        let place = |angle_rad: f64| (angle_rad - self.angle_min_rad) * self.per_rad;
+    /// The beams that are less than `half_rad` away from `angle_rad`, and a few more perhaps: the first,
+    /// and the one after the last, counted on past the last beam of all.
+    fn around(&self, angle_rad: f64, half_rad: f64) -> (usize, usize) {
+        // Through 32 bits, since that is three instructions and not ten.
+        let place =
+            |angle_rad: f64| (((angle_rad - self.angle_min_rad) * self.per_rad) as i32).max(0) as usize;
         let (low, high) = (angle_rad - half_rad, angle_rad + half_rad);
-        let (first, end) = (place(low) as usize, place(high) as usize + 1);
         if low < -PI {
             // The back, seen from the right: that is the end of the beams.
-            let first = place(low + 2.0 * PI) as usize;
-            self.runs(first, end + self.count)
+            (place(low + 2.0 * PI), place(high) + 1 + self.count)
         } else if high > PI {
-            let end = place(high - 2.0 * PI) as usize + 1;
-            self.runs(first, end + self.count)
+            (place(low), place(high - 2.0 * PI) + 1 + self.count)
         } else {
-            self.runs(first, end)
+            (place(low), place(high) + 1)
         }
     }
 
@@ -177,23 +177,29 @@ impl<'a> Hits<'a> {
         half_rad: f64,
         nearest: f64,
     ) {
-        let runs = self.beams.around(angle_rad, half_rad);
-        let is_hidden = |run: &Range<usize>| {
-            self.inverse[run.clone()].iter().fold(true, |all, &inverse| all & (inverse >= nearest))
-        };
-        if runs.iter().all(is_hidden) {
+        let (first, end) = self.beams.around(angle_rad, half_rad);
+        if end <= self.beams.count {
+            self.add_disc_to(first..end, center, power, nearest);
+        } else {
+            let runs = self.beams.runs(first, end);
+            runs.into_iter().for_each(|run| self.add_disc_to(run, center, power, nearest));
+        }
+    }
+
+    #[inline]
+    fn add_disc_to(&mut self, run: Range<usize>, center: &Vector2<f64>, power: f64, nearest: f64) {
+        let inverse = &mut self.inverse[run.clone()];
+        if inverse.iter().all(|&inverse| inverse >= nearest) {
             return;
         }
         let per_power = 1.0 / power;
-        for run in runs {
-            let directions = self.beams.x[run.clone()].iter().zip(&self.beams.y[run.clone()]);
-            for (inverse, (x, y)) in self.inverse[run].iter_mut().zip(directions) {
-                // The nearer root of t² − 2bt + power = 0 is power / (b + √(b² − power)).
-                let b = center.x * x + center.y * y;
-                let root2 = b * b - power;
-                let hit = if root2 >= 0.0 { (b + root2.max(0.0).sqrt()) * per_power } else { 0.0 };
-                *inverse = if hit > *inverse { hit } else { *inverse };
-            }
+        let directions = self.beams.x[run.clone()].iter().zip(&self.beams.y[run]);
+        for (inverse, (x, y)) in inverse.iter_mut().zip(directions) {
+            // The nearer root of t² − 2bt + power = 0 is power / (b + √(b² − power)).
+            let b = center.x * x + center.y * y;
+            let root2 = b * b - power;
+            let hit = if root2 >= 0.0 { (b + root2.max(0.0).sqrt()) * per_power } else { 0.0 };
+            *inverse = if hit > *inverse { hit } else { *inverse };
         }
     }
 }
