@@ -34,6 +34,7 @@ mod truth;
 mod world;
 
 pub(crate) use form::Form;
+pub(crate) use spec::MOST_OUT_M;
 
 pub use command::{Acceleration, Command, Velocity};
 pub use fleet::{Controller, Fleet, TeleportError};

@@ -4,6 +4,7 @@ use super::sources::{Place, Sources};
 use super::toml::{STEER_DEG, is_upright, short};
 use super::{Drive, StageRobot, StageWorld};
 use crate::findings::Severity;
+use crate::physics::MOST_OUT_M;
 use nalgebra::{Isometry2, Point2};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -128,11 +129,13 @@ fn check_senses(sources: &mut Sources<'_>, robot: &StageRobot) {
     let radius_m = robot.radius_m();
     let mut check = |at: Place, what: &str, mount: &Isometry2<f64>, range_max_m: f64, is_fine: bool| {
         let off_m = mount.translation.vector.norm() - radius_m;
-        if off_m > TOUCH_M {
+        if off_m > MOST_OUT_M {
             let what = format!("a {what} of `{}` is mounted {off_m:.3} m off its robot", robot.name);
-            let help = "here it is moved back, straight towards the point that the robot turns about, to the circle \
-                        about the body: it measures from there";
-            sources.warning(robot.at, &what, "", help);
+            let help = format!(
+                "here it is moved back, straight towards the point that the robot turns about, to {MOST_OUT_M} m from \
+                 the circle about the body: it measures from there"
+            );
+            sources.warning(robot.at, &what, "", &help);
         }
         if !(0.01..=1000.0).contains(&range_max_m) || !is_fine {
             let help = "it sees over 1° or more, up to 0.01 to 1000 m, with a noise of at most 1 m";

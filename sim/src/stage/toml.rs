@@ -1,7 +1,7 @@
 //! A Stage world written as a world file of ours.
 
 use super::{Drive, StageRobot, StageWall, StageWorld};
-use crate::physics::{OdometryError, Rectangle};
+use crate::physics::{MOST_OUT_M, OdometryError, Rectangle};
 use geometry::heading_rad;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::fmt::{Result, Write};
@@ -227,10 +227,9 @@ fn write_senses(to: &mut String, robot: &StageRobot) -> Result {
     Ok(())
 }
 
-/// How often a sensor senses, and where it sits: within the circle about its robot, where it cannot be in a
-/// wall, and off its border by more than rounding.
+/// How often a sensor senses, and where it sits: not farther out than it may be, by more than rounding.
 fn write_place(to: &mut String, interval_ms: u32, mount: &Isometry2<f64>, radius_m: f64) -> Result {
-    let within_m = mount.translation.vector.cap_magnitude(radius_m - 1e-7);
+    let within_m = mount.translation.vector.cap_magnitude(radius_m + MOST_OUT_M - 1e-7);
     number(to, "rate_hz", 1000.0 / f64::from(interval_ms))?;
     pair(to, "mount_m", &within_m.into())?;
     number(to, "mount_deg", heading_rad(mount).to_degrees())

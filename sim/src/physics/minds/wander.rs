@@ -47,7 +47,8 @@ impl Wander {
     ) -> Self {
         let pace = Pace::new(robot, spec.speed_mps, step_s);
         let needed_m = spec.clearance_m + pace.stopping_m;
-        let mount = robot.laser.mount.translation.vector;
+        // What sticks out counts as if it were at the border: then things seem nearer.
+        let mount = robot.laser.mount.translation.vector.cap_magnitude(robot.radius_m);
         let beams = super::in_robot_frame(robot, beams);
         let table = |free_m: f64| {
             beams.iter().map(|beam| way_m(&mount, beam, robot.radius_m, free_m) as f32).collect()

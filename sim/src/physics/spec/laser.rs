@@ -11,6 +11,8 @@ use nalgebra::{Isometry2, Point2};
 
 /// More lasers on one robot than this are refused.
 const MOST_LASERS: usize = 100;
+/// Sensors stick out of the circle about their robot by this at most, m.
+pub(crate) const MOST_OUT_M: f64 = 1.0;
 
 /// The first laser of a robot, and the others.
 pub(super) fn lasers(
@@ -72,7 +74,7 @@ pub(super) fn period_steps(table: &Table<'_>, rate: &Number, step_s: f64) -> Res
     Err(table.source.error(&what, (rate.span(), "not whole steps apart"), &[], &help))
 }
 
-/// Where `what` sits on a robot that lies within `radius_m`.
+/// Where `what` sits on a robot that lies within `radius_m`, or how it sticks out of that.
 pub(super) fn mount(
     table: &Table<'_>,
     what: &str,
@@ -85,9 +87,11 @@ pub(super) fn mount(
         table.number_or("mount_deg", mount_deg, 0.0, -360.0..=360.0),
     )
         .together()?;
-    if let Some(file) = mount_m.as_ref().filter(|_| at.coords.norm() > radius_m) {
+    if let Some(file) = mount_m.as_ref().filter(|_| at.coords.norm() > radius_m + MOST_OUT_M) {
         let what = format!("{what} is mounted off its robot");
-        let help = format!("it must lie within the robot's radius of {radius_m} m");
+        let help = format!(
+            "it must lie within the robot's radius of {radius_m} m, or stick out by {MOST_OUT_M} m at most"
+        );
         return Err(table.source.error(&what, (file.span(), "off the robot"), &[], &help));
     }
     Ok(pose(at.x, at.y, mount_deg.to_radians()))

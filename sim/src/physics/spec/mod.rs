@@ -16,6 +16,8 @@ mod senses;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use laser::MOST_OUT_M;
+
 pub use behaviour::{Behaviour, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
 pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
 pub use parts::{DriveKind, DriveLimits, LaserSpec, OdometryError, RobotSpec};

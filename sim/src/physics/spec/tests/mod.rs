@@ -173,7 +173,7 @@ fn robots() {
         "robots",
         &[
             ("laser sees nothing", "range_max_m = 10.0", "range_min_m = 11.0\nrange_max_m = 10.0"),
-            ("laser off the robot", "range_max_m = 10.0", "range_max_m = 10.0\nmount_m = [0.3, 0.0]"),
+            ("laser off the robot", "range_max_m = 10.0", "range_max_m = 10.0\nmount_m = [1.3, 0.0]"),
             ("robot in a wall", "pose_m = [1.0, 1.0]", "pose_m = [1.9, 1.0]"),
             (
                 "robot in an obstacle",

@@ -120,12 +120,12 @@ fn senses() {
     let cases = [
         ("no bumpers", with("[robot.bumper]\nsectors = 0")),
         ("sonar that hears nothing", with(&format!("{sonar}\nrange_min_m = 3.0"))),
-        ("sonar off the robot", with(&format!("{sonar}\nmount_m = [0.3, 0.0]"))),
+        ("sonar off the robot", with(&format!("{sonar}\nmount_m = [1.3, 0.0]"))),
         ("sonar between steps", with(&sonar.replace("10.0", "15.0"))),
         ("sonar as a table", with(&sonar.replace("[[robot.sonar]]", "[robot.sonar]"))),
         (
             "finder off the robot",
-            with("[robot.fiducial]\nrange_max_m = 3.0\nrate_hz = 10.0\nmount_m = [1.0, 0.0]"),
+            with("[robot.fiducial]\nrange_max_m = 3.0\nrate_hz = 10.0\nmount_m = [2.0, 0.0]"),
         ),
         ("wrong tag", with("").replacen("[robot.behaviour]", "[robot.behaviour]\ntag = 3", 1)),
     ];
