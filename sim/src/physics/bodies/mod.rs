@@ -1,6 +1,6 @@
 //! Rigid bodies and contacts: the only folder that knows rapier.
 
-mod hold;
+mod mend;
 mod movers;
 #[cfg(test)]
 mod oracle;
@@ -173,7 +173,7 @@ impl Bodies {
             *was = *self.world.bodies[*body].position();
         }
         self.world.step();
-        self.hold();
+        self.mend();
     }
 
     /// Where a robot is.

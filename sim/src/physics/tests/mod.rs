@@ -8,6 +8,7 @@ mod drives;
 mod fleet;
 mod floor_plan;
 mod footprint;
+mod jams;
 mod keys;
 mod obstacles;
 mod oracle;
