@@ -15,6 +15,8 @@ pub struct WorldError {
     messages: Vec<String>,
     /// The bytes of the text that they are about.
     places: Vec<usize>,
+    /// How many more there are than messages, but for the last message, which says so.
+    more: usize,
 }
 
 /// More than this are counted, but not told one by one: each message shows its lines of the file.
@@ -53,7 +55,7 @@ impl Wrong {
     /// Everything that was wrong, as it was found; for whoever keeps it with the rest.
     pub(crate) fn into_part(self) -> WorldError {
         let (places, messages) = self.found.into_iter().unzip();
-        WorldError { messages, places }
+        WorldError { messages, places, more: 0 }
     }
 
     /// Everything that was wrong, the first in the file first; of a flood only how much more it was.
@@ -65,7 +67,7 @@ impl Wrong {
             let many = if more == 1 { "" } else { "s" };
             self.found.push((usize::MAX, format!("{}: and {more} more error{many}", source.name)));
         }
-        self.into_part()
+        WorldError { more: more.saturating_sub(1), ..self.into_part() }
     }
 }
 
@@ -88,9 +90,18 @@ impl WorldError {
         &self.messages
     }
 
+    /// How many things are wrong: as many as there are messages, unless the last one counts further ones.
+    pub fn count(&self) -> usize {
+        self.messages.len() + self.more
+    }
+
     /// A file that could not be read at all.
     pub(crate) fn unreadable(name: &str, error: &std::io::Error) -> Self {
-        Self { messages: vec![format!("cannot read the world file `{name}`: {error}")], places: vec![0] }
+        Self {
+            messages: vec![format!("cannot read the world file `{name}`: {error}")],
+            places: vec![0],
+            more: 0,
+        }
     }
 }
 
@@ -122,7 +133,7 @@ impl<'a> Source<'a> {
             .annotations(others.iter().map(|other| annotation(AnnotationKind::Context, other)));
         let report =
             [Level::ERROR.no_name().primary_title(what).element(snippet).element(Level::HELP.message(help))];
-        WorldError { messages: vec![Renderer::plain().render(&report)], places: vec![mark.0.start] }
+        WorldError { messages: vec![Renderer::plain().render(&report)], places: vec![mark.0.start], more: 0 }
     }
 
     /// That the text is no TOML, in the same form as every other error.

@@ -23,8 +23,10 @@ pub struct Inspection {
     pub content: Option<Content>,
     /// What the world will do otherwise than the file asks, then what is good to know, one message each.
     pub warnings: Vec<String>,
-    /// What is wrong with the file, one message each.
+    /// What is wrong with the file, one message each; the last one can be about several.
     pub errors: Vec<String>,
+    /// How many things are wrong with it.
+    pub error_count: usize,
 }
 
 /// What is in a world.
@@ -120,7 +122,7 @@ pub fn inspect(name: &str) -> Inspection {
 }
 
 fn wrong(error: String) -> Inspection {
-    Inspection { errors: vec![error], ..Inspection::default() }
+    Inspection { errors: vec![error], error_count: 1, ..Inspection::default() }
 }
 
 /// A world file of ours: with a drawing for a `map` it is a grid world.
@@ -140,7 +142,7 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
         }
         Err(error) => {
             let errors = error.messages().iter().map(|message| format!("error: {message}")).collect();
-            Inspection { errors, ..Inspection::default() }
+            Inspection { errors, error_count: error.count(), ..Inspection::default() }
         }
     }
 }
@@ -166,6 +168,7 @@ fn found(content: Option<Content>, findings: &Findings) -> Inspection {
         content,
         warnings: [of(Severity::Warning), of(Severity::Note)].concat(),
         errors: of(Severity::Error),
+        error_count: findings.errors(),
         ..Inspection::default()
     }
 }

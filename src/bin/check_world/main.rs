@@ -10,7 +10,8 @@ use std::io::{stderr, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Checks world files: says what is in them, draws them, and tells everything that is wrong at once.
+/// Checks world files: says what is in them, draws them, and tells everything that is wrong at once, but for what
+/// hangs on something that is wrong.
 ///
 /// It reads physics worlds and grid worlds (TOML), world files of the simulator Stage (.world) with all that
 /// they include, and maps of ROS (map.yaml). What is in a file goes to the standard output, warnings and errors
@@ -78,7 +79,7 @@ fn tell(inspection: &Inspection) {
             }
         }
         None => {
-            let errors = inspection.errors.len();
+            let errors = inspection.error_count;
             let many = if errors == 1 { "" } else { "s" };
             say(stdout(), format_args!("{}: wrong, {errors} error{many}", inspection.file));
         }
@@ -104,10 +105,17 @@ fn leave(content: &Content, file: &str, args: &Args, written: &mut BTreeSet<Path
         draw_plan(&picture, content)?;
         say(stdout(), format_args!("  picture   {}", picture.display()));
     }
-    if let Some(text) = content.world_file.as_ref().filter(|_| args.toml) {
+    if args.toml {
+        let Some(text) = &content.world_file else {
+            say(stdout(), "  world     none written: only those of Stage can be");
+            return Ok(());
+        };
         let world_file = place(".toml")?;
         write_file(&world_file, |to| to.write_all(text.as_bytes()))?;
         say(stdout(), format_args!("  world     {}", world_file.display()));
+        if content.plan.robots.iter().filter(|robot| robot.is_driven).count() != 1 {
+            say(stdout(), "            for four_rooms give exactly one robot `kind = \"driven\"` there");
+        }
     }
     Ok(())
 }
