@@ -53,7 +53,6 @@ pub(super) fn content(world: &GridSpec) -> Content {
                 is_driven: true,
             }],
         },
-        world_file: None,
     }
 }
 

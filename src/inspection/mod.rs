@@ -42,8 +42,6 @@ pub struct Content {
     pub lines: Vec<(&'static str, String)>,
     /// What it looks like.
     pub plan: Plan,
-    /// The same as a world file of ours, if it is none.
-    pub world_file: Option<String>,
 }
 
 /// A world from above, at its start.
@@ -107,7 +105,7 @@ pub fn inspect(name: &str) -> Inspection {
     let path = Path::new(name);
     let mut inspection = match (shipped, path.extension().and_then(|ending| ending.to_str())) {
         (Some(text), _) => world_file(&format!("{name}.toml"), text, &worlds::pictures()),
-        (None, Some("world" | "inc")) => stage_file(path),
+        (None, _) if is_of_stage(path) => stage_file(path),
         (None, Some("yaml" | "yml")) => ros_file(path),
         (None, _) => match std::fs::read(path) {
             Ok(bytes) => match String::from_utf8(bytes) {
@@ -119,6 +117,17 @@ pub fn inspect(name: &str) -> Inspection {
     };
     inspection.file = name.to_owned();
     inspection
+}
+
+/// The same world as a world file of ours, of a `.world` file of Stage that is right.
+pub fn as_world_file(name: &str) -> Option<String> {
+    let path = Path::new(name);
+    let (world, _) = is_of_stage(path).then(|| stage::read(path, &Disk))?;
+    world.map(|world| world.to_toml())
+}
+
+fn is_of_stage(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "world" || ending == "inc")
 }
 
 fn wrong(error: String) -> Inspection {
@@ -149,11 +158,7 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
 
 fn stage_file(path: &Path) -> Inspection {
     let (world, findings) = stage::load(path, &Disk);
-    let content = world.map(|world| Content {
-        world_file: stage::read(path, &Disk).0.map(|world| world.to_toml()),
-        ..physics::content("Stage world", &world)
-    });
-    found(content, &findings)
+    found(world.map(|world| physics::content("Stage world", &world)), &findings)
 }
 
 fn ros_file(path: &Path) -> Inspection {

@@ -52,7 +52,6 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
             things: world.obstacles().iter().map(thing).collect(),
             robots: world.robots().iter().map(robot).collect(),
         },
-        world_file: None,
     }
 }
 
@@ -98,7 +97,6 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
             things: Vec::new(),
             robots: Vec::new(),
         },
-        world_file: None,
     })
 }
 

@@ -34,7 +34,8 @@ mod truth;
 mod world;
 
 pub(crate) use form::Form;
-pub(crate) use spec::MOST_OUT_M;
+pub(crate) use shape::TOUCH_M;
+pub(crate) use spec::{MAX_PIECES, MOST_OUT_M};
 
 pub use command::{Acceleration, Command, Velocity};
 pub use fleet::{Controller, Fleet, TeleportError};

@@ -4,16 +4,12 @@ use super::sources::{Place, Sources};
 use super::toml::{STEER_DEG, is_upright, short};
 use super::{Drive, StageRobot, StageWorld};
 use crate::findings::Severity;
-use crate::physics::MOST_OUT_M;
+use crate::physics::{MAX_PIECES, MOST_OUT_M, TOUCH_M};
 use nalgebra::{Isometry2, Point2};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// What touches may overlap by rounding, m.
-const TOUCH_M: f64 = 1e-6;
-/// More pieces of wall than this are refused: looking for what hides what takes their square.
-const MAX_PIECES: usize = 20_000;
 /// A robot has no more lasers than this, nor sonars.
 const MOST_SENSORS: usize = 100;
 /// The least that a laser or a fiducial finder sees, rad: 1°.

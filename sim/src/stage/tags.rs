@@ -2,12 +2,11 @@
 
 use super::StageWall;
 use super::sources::{Place, Sources};
+use crate::physics::MAX_PIECES;
 use nalgebra::Point2;
 
 /// A box lies about its pose if its middle is so near, m.
 const NEAR_M: f64 = 1e-6;
-/// In worlds of more pieces than this nothing runs anyway.
-const MAX_PIECES: usize = 20_000;
 
 /// Leaves the tags of all things out that cannot be obstacles of their own here, which have the tag
 /// in their middle and lie outside of walls. `tagged`: the wall, its pose, and the place of its tag.
@@ -33,7 +32,7 @@ pub(super) fn check(
         let (what, help) = if (shape.pose.translation.vector - pose.coords).norm() > NEAR_M {
             let help = "here a tag is in the middle of its thing: give it no `origin`";
             ("the tag of a thing that does not lie about its pose is left out", help)
-        } else if pieces <= MAX_PIECES
+        } else if pieces <= MAX_PIECES // or it does not run anyway
             && others.flat_map(|(_, wall)| &wall.rectangles).any(|other| overlaps(&other))
         {
             ("the tag of a thing that lies in another one is left out", "here what has a tag lies by itself")

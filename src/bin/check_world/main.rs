@@ -2,7 +2,7 @@
 
 use anyhow::bail;
 use clap::Parser;
-use curious::inspection::{Content, Inspection, inspect};
+use curious::inspection::{Content, Inspection, as_world_file, inspect};
 use curious::output::{make_folder, say, write_file};
 use curious::pictures::draw_plan;
 use std::collections::BTreeSet;
@@ -106,7 +106,7 @@ fn leave(content: &Content, file: &str, args: &Args, written: &mut BTreeSet<Path
         say(stdout(), format_args!("  picture   {}", picture.display()));
     }
     if args.toml {
-        let Some(text) = &content.world_file else {
+        let Some(text) = as_world_file(file) else {
             say(stdout(), "  world     none written: only those of Stage can be");
             return Ok(());
         };

@@ -15,7 +15,7 @@ use serde_spanned::Spanned;
 use std::path::Path;
 
 /// More pieces of wall than this are refused: looking for what hides what takes their square.
-const MAX_PIECES: usize = 20_000;
+pub(crate) const MAX_PIECES: usize = 20_000;
 
 /// The walls of a floor plan: solid rectangles, which overlap.
 pub(super) fn walls(

@@ -16,6 +16,7 @@ mod senses;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use floor_plan::MAX_PIECES;
 pub(crate) use laser::MOST_OUT_M;
 
 pub use behaviour::{Behaviour, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};

@@ -1,5 +1,6 @@
 //! Whoever is in the way of each other is parted, and goes on.
 
+use super::things::pushed;
 use super::*;
 use geometry::LaserReading;
 
@@ -17,13 +18,6 @@ fn robot(name: &str, body: &str, mass_kg: f64, at: [f64; 2]) -> String {
         "[[robot]]\nname = \"{name}\"\n{body}\nmass_kg = {mass_kg:?}\npose_m = {at:?}\nbehaviour = {{ kind = \"driven\" }}\n\
          drive = {{ max_linear_mps = 1.0, max_angular_degps = 180.0, max_linear_acceleration_mps2 = 5.0, max_angular_acceleration_degps2 = 720.0 }}\n\
          laser = {{ beams = 2, range_max_m = 5.0, rate_hz = 10.0 }}\n"
-    )
-}
-
-fn pushed(name: &str, at: [f64; 2], heading_deg: f64, mass_kg: f64, friction: f64) -> String {
-    format!(
-        "[[obstacle]]\nname = \"{name}\"\nkind = \"box\"\ncenter_m = {at:?}\nsize_m = [0.3, 0.3]\nheading_deg = {heading_deg:?}\n\
-         mass_kg = {mass_kg:?}\nfriction = {friction:?}\n"
     )
 }
 
@@ -46,7 +40,8 @@ fn a_row_of_boxes_goes_on_before_a_heavy_robot() {
         let boxes: String = (0..3)
             .map(|i| {
                 let at = [1.7 + 0.35 * f64::from(i), 2.0 + 0.02 * f64::from(i)];
-                pushed(&format!("b{i}"), at, 7.0 * f64::from(i), 1.0, 0.0)
+                let turned = format!("heading_deg = {}\nmass_kg", 7 * i);
+                pushed(&format!("b{i}"), at, 1.0, 0.0).replace("mass_kg", &turned)
             })
             .collect();
         let fleet = hall(step_s, &(boxes + &robot("r", "radius_m = 0.2", 20.0, [1.0, 2.0])));
@@ -75,7 +70,7 @@ fn a_light_box_between_a_robot_and_a_wall_does_not_stop_it() {
     let body = "footprint_m = [[-0.3, -0.2], [0.3, -0.2], [0.3, 0.2], [-0.3, 0.2]]";
     for step_s in [0.1, 0.05] {
         let corridor = format!("{WALL}[[wall]]\nmin_m = [0.0, 0.85]\nmax_m = [20.0, 0.95]\n");
-        let things = pushed("b", [1.6, 0.69], 0.0, 0.02, 0.3) + &robot("r", body, 20.0, [1.0, 0.317]);
+        let things = pushed("b", [1.6, 0.69], 0.02, 0.3) + &robot("r", body, 20.0, [1.0, 0.317]);
         let way_m = way_m(hall(step_s, &(corridor + &things)), |_| 0.087);
         assert!(way_m > 2.0, "{way_m} m at steps of {step_s} s");
     }

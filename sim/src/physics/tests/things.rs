@@ -12,7 +12,7 @@ fn yard(things: &str) -> FleetSpec {
     house(&[driver], things)
 }
 
-fn pushed(name: &str, center_m: [f64; 2], mass_kg: f64, friction: f64) -> String {
+pub(super) fn pushed(name: &str, center_m: [f64; 2], mass_kg: f64, friction: f64) -> String {
     format!(
         "[[obstacle]]\nname = \"{name}\"\nkind = \"box\"\ncenter_m = {center_m:?}\nsize_m = [0.3, 0.3]\nmass_kg = {mass_kg:?}\nfriction = {friction:?}\n"
     )
