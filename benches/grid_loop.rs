@@ -15,7 +15,7 @@ use curious::pilot::{Autonomous, Guide, Now, Pilot, Visit};
 use curious::worlds;
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use geometry::Step;
+use interfaces::Step;
 use mapper::{Mapper, MapperSettings, ReadingError};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

@@ -23,7 +23,7 @@ use curious::explore;
 use curious::observer::Observer;
 use curious::pilot::{Autonomous, Now, Pilot};
 use curious::summary::map_hash;
-use geometry::World;
+use interfaces::World;
 use mapper::Mapper;
 use parts::Parts;
 use sim::physics::PhysicsWorld;

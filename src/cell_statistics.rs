@@ -1,7 +1,7 @@
 //! What was learned of every cell, as a table.
 
 use crate::output::{OutputError, write_file};
-use geometry::CellState;
+use interfaces::CellState;
 use mapper::Mapper;
 use std::io;
 use std::path::Path;

@@ -4,7 +4,7 @@
 use crate::view::{
     Level, Message, ObstacleView, Outline, RobotView, Scene, Scores, Sight, StrategyView, View,
 };
-use geometry::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
+use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::TAU;

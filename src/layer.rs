@@ -2,7 +2,7 @@
 //! meaning. The recording and the pictures share them, so that a colour means the same in both.
 
 use crate::view::TimeUnit;
-use geometry::CellState;
+use interfaces::CellState;
 use mapper::Mapper;
 
 /// A colour: red, green, blue.

@@ -28,7 +28,7 @@ pub mod trials;
 pub mod view;
 pub mod worlds;
 
-use geometry::{Reading, World};
+use interfaces::{Reading, World};
 use mapper::{Evidence, Mapper, ReadingError};
 use pilot::{Now, Pilot};
 use std::ops::ControlFlow;

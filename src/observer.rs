@@ -9,7 +9,7 @@ use crate::view::{
     Level, Message, ObstacleView, Outline, RobotView, Scene, Scores, Sight, StrategyView, TimeUnit, Trail,
     View,
 };
-use geometry::{LaserReading, Twist};
+use interfaces::{LaserReading, Twist};
 use mapper::Mapper;
 use nalgebra::Point2;
 use sim::physics::{Body, PhysicsWorld};

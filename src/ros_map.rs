@@ -5,8 +5,8 @@
 //! highest y.
 
 use crate::output::{OutputError, write_file};
-use geometry::{CellState, Grid, GridFrame, pose};
 use image::{DynamicImage, ImageDecoder, ImageReader};
+use interfaces::{CellState, Grid, GridFrame, pose};
 use nalgebra::{Isometry2, Point2};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! What a run looks like, as plain data: all that the recording and the pictures are told.
 
 use crate::pilot::StrategyState;
-use geometry::{CellReading, LaserReading};
+use interfaces::{CellReading, LaserReading};
 use mapper::{Features, Mapper};
 use nalgebra::{Isometry2, Point2};
 

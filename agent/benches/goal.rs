@@ -2,7 +2,7 @@
 //! 2000 cells that ever changed: once per goal, so every few seconds of a robot's life.
 
 use agent::{Agent, AgentSettings, AsTheCrowFlies, StrategyChoice};
-use geometry::{Cell, CellReading, GridFrame};
+use interfaces::{Cell, CellReading, GridFrame};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
 use rand::SeedableRng;

@@ -3,7 +3,7 @@ use crate::knowledge::knowledge;
 use crate::{
     AgentSettings, Chooser, Reward, SettingsError, Situation, Strategy, StrategyChoice, Trajectory, Travel,
 };
-use geometry::Transition;
+use interfaces::Transition;
 use mapper::{Features, Mapper};
 use nalgebra::Isometry2;
 use rand_chacha::ChaCha8Rng;

@@ -9,7 +9,7 @@
 
 use crate::draw::proportional;
 use crate::{Pick, Situation, Stay, Strategy};
-use geometry::Cell;
+use interfaces::Cell;
 use mapper::Mapper;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

@@ -18,7 +18,7 @@ pub(crate) fn knowledge(mapper: &Mapper) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::{Cell, CellReading, GridFrame};
+    use interfaces::{Cell, CellReading, GridFrame};
     use mapper::MapperSettings;
     use nalgebra::{Isometry2, Point2};
 

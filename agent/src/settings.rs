@@ -1,4 +1,4 @@
-use geometry::{CellState, Transition};
+use interfaces::{CellState, Transition};
 
 /// What counts as a map update when a trajectory is rewarded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
@@ -119,7 +119,7 @@ impl AgentSettings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::Cell;
+    use interfaces::Cell;
 
     fn message(text: &str) -> String {
         match toml::from_str::<AgentSettings>(text) {

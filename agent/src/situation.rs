@@ -1,4 +1,4 @@
-use geometry::Cell;
+use interfaces::Cell;
 use mapper::{Features, Mapper};
 use nalgebra::Isometry2;
 

@@ -1,6 +1,6 @@
 use crate::Situation;
 use crate::view::{Outlook, Places};
-use geometry::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame};
 use mapper::Mapper;
 
 /// For strategies that go where much comes into view: what is in view from where, and what should

@@ -4,7 +4,7 @@
 //! cast anew only where a wall has come or gone since. A fine grid under a far sensor is judged by
 //! squares of cells, since the view from one cell is that from the next.
 
-use geometry::{Cell, CellState, GridFrame};
+use interfaces::{Cell, CellState, GridFrame};
 use mapper::Mapper;
 
 /// A view reaches at most this many places far: more would cost much and tell little.
@@ -228,7 +228,7 @@ fn cast(places: &Places, opaque: &[bool], origin: usize, reach: f64) -> Vec<u32>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::CellReading;
+    use interfaces::CellReading;
     use mapper::MapperSettings;
     use nalgebra::{Isometry2, Point2};
     use proptest::prelude::*;

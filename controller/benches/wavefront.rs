@@ -5,7 +5,7 @@ use controller::{
     Planner, STRAIGHT, Settings, Situation, Wavefront,
 };
 use divan::{Bencher, black_box};
-use geometry::{Cell, CellState, Grid, GridFrame, Transition, pose};
+use interfaces::{Cell, CellState, Grid, GridFrame, Transition, pose};
 use nalgebra::{Point2, Vector2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

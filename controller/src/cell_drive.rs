@@ -1,5 +1,5 @@
 use crate::{Body, Drive, InflationSettings, Moves, Path, PatienceSettings, Scene, Settings};
-use geometry::Step;
+use interfaces::Step;
 
 /// The robot of a grid world: as large as its cell, and each step it stays or moves to one of the
 /// four cells that share a side. The cells are 1 m wide, and a step of time lasts 1 s.

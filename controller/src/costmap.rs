@@ -1,4 +1,4 @@
-use geometry::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame};
 
 /// The price of a cell that the robot's centre may not enter.
 pub const CLOSED: u8 = 0;

@@ -1,7 +1,7 @@
 //! Maps drawn in ASCII, for tests: the first line is the highest row.
 
 use crate::{CLOSED, Costmap, OPEN};
-use geometry::{Cell, CellState, Grid, GridFrame};
+use interfaces::{Cell, CellState, Grid, GridFrame};
 use nalgebra::Point2;
 
 fn frame(rows: &[&str], resolution_m: f64) -> GridFrame {

@@ -1,5 +1,5 @@
 use crate::costmap::{CLOSED, Costmap, MAX_PRICE, OPEN};
-use geometry::{Cell, CellState, Grid, Transition};
+use interfaces::{Cell, CellState, Grid, Transition};
 use serde::{Deserialize, Serialize};
 
 /// How far paths keep from what is blocked.
@@ -173,7 +173,7 @@ fn stencil(closed: f64, comfort: f64) -> Vec<Near> {
 mod tests {
     use super::*;
     use crate::drawing::states;
-    use geometry::GridFrame;
+    use interfaces::GridFrame;
     use nalgebra::Point2;
     use proptest::prelude::*;
 

@@ -1,4 +1,4 @@
-use geometry::Cell;
+use interfaces::Cell;
 use nalgebra::{Point2, Vector2};
 
 /// A way through the map as points joined by straight lines, and how far along it the robot is.

@@ -2,7 +2,7 @@ use crate::costmap::{Costmap, Moves, STRAIGHT, line};
 use crate::inflation::{Inflation, InflationSettings};
 use crate::path::{Path, corners};
 use crate::wavefront::Wavefront;
-use geometry::{Cell, CellState, Grid, Transition};
+use interfaces::{Cell, CellState, Grid, Transition};
 use nalgebra::Point2;
 
 /// How a plan ends.
@@ -240,7 +240,7 @@ fn nearest(middle: Cell, reach: i32, wanted: impl Fn(&Cell) -> bool) -> Option<C
 mod tests {
     use super::*;
     use crate::drawing::{find, states};
-    use geometry::GridFrame;
+    use interfaces::GridFrame;
     use proptest::prelude::*;
 
     const POINT: InflationSettings = InflationSettings { margin_m: 0.0, comfort_m: 0.0, comfort_price: 1 };

@@ -1,4 +1,4 @@
-use geometry::{Cell, CellState, Grid};
+use interfaces::{Cell, CellState, Grid};
 use nalgebra::Point2;
 
 use crate::Situation;
@@ -51,7 +51,7 @@ fn around(cell: Cell) -> impl Iterator<Item = Cell> {
 mod tests {
     use super::*;
     use crate::drawing::{find, states};
-    use geometry::Transition;
+    use interfaces::Transition;
 
     #[test]
     fn walls_are_still_and_what_changed_or_is_new_is_not() {
@@ -62,7 +62,7 @@ mod tests {
         let transition =
             Transition { cell: find(&rows, 'C'), before: CellState::Free, after: CellState::Blocked };
         *map.get_mut(transition.cell).unwrap() = transition.after;
-        let pose = geometry::pose(0.0, 0.0, 0.0);
+        let pose = interfaces::pose(0.0, 0.0, 0.0);
         let mut restless = Restless::new(&map);
         let situation =
             |time, transitions| Situation { time, pose: &pose, map: &map, transitions, points: &[] };

@@ -1,4 +1,4 @@
-use geometry::{Cell, CellState, Grid, Transition};
+use interfaces::{Cell, CellState, Grid, Transition};
 use nalgebra::{Isometry2, Point2};
 
 /// What the controller is told at every tick.

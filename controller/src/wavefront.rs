@@ -1,5 +1,5 @@
 use crate::costmap::{CLOSED, Costmap, DIAGONAL, MAX_PRICE, Moves, STRAIGHT};
-use geometry::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame};
 
 /// The cost of a cell that no wave has reached.
 const UNREACHED: u32 = u32::MAX;

@@ -7,7 +7,7 @@
 mod robots;
 
 use divan::Bencher;
-use geometry::{CellReading, World};
+use interfaces::{CellReading, World};
 use mapper::{Estimator, Mapper, MapperSettings};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

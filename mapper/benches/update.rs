@@ -8,8 +8,8 @@
 mod house;
 
 use divan::Bencher;
-use geometry::LaserReading;
 use house::House;
+use interfaces::LaserReading;
 use mapper::{Mapper, MapperSettings, OccupancyModel};
 
 /// Scans of one round; the next repeats them later.

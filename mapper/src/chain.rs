@@ -1,6 +1,6 @@
 //! A cell as a two-state Markov chain that steps with the readings.
 
-use geometry::CellState;
+use interfaces::CellState;
 
 /// The rates at which a cell leaves its states, per unit of time.
 ///

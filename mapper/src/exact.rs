@@ -2,7 +2,7 @@
 //! to weigh.
 
 use crate::{Evidence, Mapper, ReadingError};
-use geometry::CellReading;
+use interfaces::CellReading;
 
 impl Evidence for CellReading {
     fn enter(&self, mapper: &mut Mapper) -> Result<(), ReadingError> {

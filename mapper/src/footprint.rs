@@ -9,7 +9,7 @@
 //! unseen between them. There the fan ends, and only the cells on the beams themselves count.
 
 use crate::projection::PointCloud;
-use geometry::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame};
 use nalgebra::{Point2, Vector2};
 
 /// Scratch space for filling footprints, reused from scan to scan.

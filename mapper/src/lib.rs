@@ -24,7 +24,7 @@ pub use estimator::Estimator;
 pub use settings::{MapperSettings, OccupancyModel, SettingsError, SteadySettings};
 pub use statistics::{CellStatistics, GapWorth};
 
-use geometry::{CellState, Grid, GridFrame, LaserReading, Reading, ScanError, Transition};
+use interfaces::{CellState, Grid, GridFrame, LaserReading, Reading, ScanError, Transition};
 use ledger::Ledger;
 use naive::Naive;
 use nalgebra::{Isometry2, Point2};

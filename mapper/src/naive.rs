@@ -5,7 +5,7 @@
 use crate::footprint::cells_along;
 use crate::ledger::Ledger;
 use crate::projection::{PointCloud, Return};
-use geometry::CellState;
+use interfaces::CellState;
 
 /// Log-odds for a hit, a miss, and the bounds of the sum.
 const HIT: f32 = 0.85;

@@ -1,6 +1,6 @@
 //! Scan and pose → point cloud, with the meaning of ROS `laser_geometry` and REP-117.
 
-use geometry::{LaserReading, Scan};
+use interfaces::{LaserReading, Scan};
 use nalgebra::{Point2, UnitComplex, Vector2};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
@@ -72,7 +72,7 @@ impl PointCloud {
             self.angle_min_rad = scan.angle_min_rad;
             self.increment_rad = scan.angle_increment_rad;
             self.in_laser = (0..scan.ranges_m.len())
-                .map(|beam| geometry::rotation(scan.angle_rad(beam)) * Vector2::x())
+                .map(|beam| interfaces::rotation(scan.angle_rad(beam)) * Vector2::x())
                 .collect();
         }
         self.rotation = laser.rotation;
@@ -154,14 +154,14 @@ fn rough_atan2(y: f64, x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::Twist;
+    use interfaces::Twist;
 
     fn reading(ranges_m: Vec<f32>) -> LaserReading {
         LaserReading {
             time_s: 0.0,
-            pose: geometry::pose(1.0, 2.0, FRAC_PI_2),
+            pose: interfaces::pose(1.0, 2.0, FRAC_PI_2),
             twist: Twist::STOP,
-            mount: geometry::pose(0.1, 0.0, 0.0),
+            mount: interfaces::pose(0.1, 0.0, 0.0),
             scan: Scan {
                 angle_min_rad: 0.0,
                 angle_increment_rad: TAU / ranges_m.len() as f64,
@@ -203,7 +203,7 @@ mod tests {
         for step in 0..10_000 {
             let angle = -PI + TAU * f64::from(step) / 10_000.0;
             let (y, x) = libm::sincos(angle);
-            let error = geometry::wrap_rad(rough_atan2(3.0 * y, 3.0 * x) - angle);
+            let error = interfaces::wrap_rad(rough_atan2(3.0 * y, 3.0 * x) - angle);
             assert!(error.abs() < ROUGH_RAD, "{angle}: {error}");
         }
     }
@@ -220,7 +220,7 @@ mod tests {
             let mut cloud = PointCloud::default();
             cloud.project(&reading);
             let laser = reading.pose * reading.mount;
-            let point = laser * (geometry::rotation(bearing) * Point2::new(distance_m, 0.0));
+            let point = laser * (interfaces::rotation(bearing) * Point2::new(distance_m, 0.0));
             let turn = (sweep * (bearing - start)).rem_euclid(TAU) / cloud.spacing_rad;
             let (beam, rest) = (turn.floor() as usize, turn.fract());
             if (1e-6..1.0 - 1e-6).contains(&rest) {

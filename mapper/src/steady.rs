@@ -25,7 +25,7 @@ use crate::footprint::{Footprint, beyond_fan, cells_along};
 use crate::ledger::{Ledger, ReadingIndex};
 use crate::outline::Outline;
 use crate::projection::PointCloud;
-use geometry::{Cell, CellState, GridFrame};
+use interfaces::{Cell, CellState, GridFrame};
 use nalgebra::{Point2, Vector2};
 
 /// Range noise stays within so many standard deviations. At three, one hit in 700 would not, and a

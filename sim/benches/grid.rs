@@ -1,7 +1,7 @@
 //! What a step of a grid world costs: `cargo bench -p sim --bench grid`.
 
 use divan::{Bencher, black_box};
-use geometry::{Step, World};
+use interfaces::{Step, World};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

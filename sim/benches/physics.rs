@@ -2,7 +2,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use geometry::{Twist, World};
+use interfaces::{Twist, World};
 use sim::physics::{Fleet, FleetSpec, PhysicsWorld, WorldSpec};
 
 const WORLDS: [&str; 2] = ["four_rooms", "turned_house"];

@@ -1,7 +1,7 @@
 //! One number for a minute in a place where everything moves, to compare builds and machines by:
 //! `cargo run -p sim --example golden -- [THREADS]`.
 
-use geometry::{LaserReading, Twist};
+use interfaces::{LaserReading, Twist};
 use sim::physics::{Fleet, FleetSpec, RobotView};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

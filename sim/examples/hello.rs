@@ -1,7 +1,7 @@
 //! A place, two robots, a controller: `cargo run -p sim --example hello`.
 //! Explained line by line in the documentation of the crate `sim`.
 
-use geometry::{LaserReading, Twist};
+use interfaces::{LaserReading, Twist};
 use sim::physics::{Fleet, FleetSpec, RobotView};
 
 const PLACE: &str = r#"

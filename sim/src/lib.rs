@@ -6,11 +6,11 @@
 //! [`grid`] is the world of the paper's figure 3: cells that are blocked or free, blocks that move
 //! from cell to cell, a robot that takes a step at a time and sees exactly.
 //!
-//! Both implement [`geometry::World`], and keep the truth that metrics (and nothing else) may look
+//! Both implement [`interfaces::World`], and keep the truth that metrics (and nothing else) may look
 //! at.
 //!
 //! ```
-//! use geometry::{Twist, World};
+//! use interfaces::{Twist, World};
 //! use sim::physics::{PhysicsWorld, WorldSpec};
 //!
 //! let spec = WorldSpec::parse("four_rooms.toml", include_str!("../../worlds/four_rooms.toml"))?;

@@ -2,7 +2,7 @@
 
 use super::{Content, Plan, Robot, Thing};
 use crate::trials::{rectangle, scene};
-use geometry::Cell;
+use interfaces::Cell;
 use nalgebra::Isometry2;
 use sim::grid::{BlockSpec, Course, GridSpec};
 

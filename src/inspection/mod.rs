@@ -6,7 +6,7 @@ mod physics;
 mod tests;
 
 use crate::worlds;
-use geometry::GridFrame;
+use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2};
 use sim::floor_plan::{FloorPlan, ros};
 use sim::grid::GridSpec;

@@ -1,7 +1,7 @@
 //! Physics worlds, from whatever file.
 
 use super::{Content, Plan, Robot, Thing, View};
-use geometry::GridFrame;
+use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2};
 use sim::floor_plan::FloorPlan;
 use sim::physics::{

@@ -1,6 +1,6 @@
 //! How right a mind is about a grid world, whose truth is known cell by cell.
 
-use geometry::CellState;
+use interfaces::CellState;
 use mapper::Mapper;
 use sim::grid::GridTruth;
 
@@ -188,7 +188,7 @@ impl Average {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::{Cell, CellReading, Step, World};
+    use interfaces::{Cell, CellReading, Step, World};
     use mapper::{Estimator, MapperSettings};
     use nalgebra::Isometry2;
     use sim::grid::{GridSpec, GridWorld};

@@ -1,6 +1,6 @@
 //! How soon the map follows a change that a beam has shown.
 
-use geometry::{Cell, CellState, Event, GridFrame, LaserReading};
+use interfaces::{Cell, CellState, Event, GridFrame, LaserReading};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use serde::Serialize;
@@ -149,7 +149,7 @@ impl Beams<'_> {
         let distance_m = toward.coords.norm();
         // The beams that can touch the cell lie around the direction to its middle.
         let half_rad = (side_m / distance_m.max(side_m)).min(1.0);
-        let beam = geometry::wrap_rad(libm::atan2(toward.y, toward.x) - scan.angle_min_rad);
+        let beam = interfaces::wrap_rad(libm::atan2(toward.y, toward.x) - scan.angle_min_rad);
         let (first, last) = (beam - half_rad, beam + half_rad);
         let place = |angle_rad: f64| (angle_rad / scan.angle_increment_rad).ceil() as i64;
         (place(first)..place(last)).any(|beam| {
@@ -159,7 +159,7 @@ impl Beams<'_> {
                 beam as usize
             };
             scan.ranges_m.get(index).is_some_and(|&range_m| {
-                let along = self.laser.rotation * geometry::rotation(scan.angle_rad(index));
+                let along = self.laser.rotation * interfaces::rotation(scan.angle_rad(index));
                 match event {
                     Event::Block => {
                         // A hair behind the surface: one on a border belongs to the solid cell.

@@ -17,7 +17,7 @@ pub use rates::{RateScores, rate_scores};
 pub use things::{ThingReport, Things};
 
 use crate::view::Scores;
-use geometry::CellState;
+use interfaces::CellState;
 use mapper::Mapper;
 use serde::Serialize;
 use sim::physics::{TrueState, Truth};
@@ -118,7 +118,7 @@ impl Changing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::{CellReading, Grid};
+    use interfaces::{CellReading, Grid};
     use mapper::MapperSettings;
     use sim::physics::PhysicsWorld;
 

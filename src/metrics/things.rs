@@ -1,7 +1,7 @@
 //! When a thing that appeared or went was noticed, and when the map was right about it.
 
 use super::latency::Beams;
-use geometry::{CellState, Event, LaserReading};
+use interfaces::{CellState, Event, LaserReading};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use serde::Serialize;

@@ -2,7 +2,7 @@ use super::*;
 use crate::trials::{Life, TrialStrategy, live};
 use agent::{AgentSettings, StrategyChoice};
 use controller::CellDrive;
-use geometry::{Cell, Step, World};
+use interfaces::{Cell, Step, World};
 use mapper::{Features, MapperSettings};
 use nalgebra::Isometry2;
 use sim::grid::{GenerateSettings, GridWorld};

@@ -3,7 +3,7 @@
 use super::canvas::{Area, INK, ink, px, text, why};
 use crate::layer::{Layer, Rgb};
 use crate::view::TimeUnit;
-use geometry::GridFrame;
+use interfaces::GridFrame;
 use mapper::Mapper;
 use plotters::chart::ChartContext;
 use plotters::coord::types::RangedCoordf64;

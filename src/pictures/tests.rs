@@ -1,8 +1,8 @@
 use super::*;
 use crate::fake::FakeRun;
 use crate::layer::Rgb;
-use geometry::CellState;
 use image::RgbImage;
+use interfaces::CellState;
 
 struct Drawn {
     folder: tempfile::TempDir,

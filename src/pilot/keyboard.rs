@@ -3,7 +3,7 @@
 use super::{Now, Pilot};
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use crossterm::terminal;
-use geometry::Twist;
+use interfaces::Twist;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 

@@ -1,6 +1,6 @@
 //! What a laser sees, as a polygon of few corners.
 
-use geometry::{Cell, GridFrame, LaserReading};
+use interfaces::{Cell, GridFrame, LaserReading};
 use nalgebra::Point2;
 
 /// How far the drawn outline may lie beside the measured one, m.
@@ -84,7 +84,7 @@ fn distance_m(point: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::{Scan, Twist, pose};
+    use interfaces::{Scan, Twist, pose};
     use std::f64::consts::TAU;
 
     fn reading(sweep_rad: f64, ranges_m: Vec<f32>) -> LaserReading {

@@ -1,7 +1,7 @@
 //! How often each part of a run is logged.
 
 use crate::view::TimeUnit;
-use geometry::GridFrame;
+use interfaces::GridFrame;
 
 /// Where time is counted in steps, a picture with more cells than this comes the more seldom: a viewer
 /// holds 20,000 of them in 50 MB.

@@ -4,7 +4,7 @@ use super::columns::Place;
 use super::{entity, sight};
 use crate::layer::{CURIOUS, Layer, OTHERS, Rgb};
 use crate::view::{RobotView, Scene, TimeUnit, View};
-use geometry::GridFrame;
+use interfaces::GridFrame;
 use nalgebra::Point2;
 use rerun::external::re_sdk_types::datatypes;
 use rerun::{

@@ -6,7 +6,7 @@ use super::scenery::{self, Picture, order};
 use super::tracks::place;
 use super::{entity, outline};
 use crate::view::{Sight, TimeUnit, View};
-use geometry::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame};
 use nalgebra::Point2;
 use rerun::external::re_sdk_types::datatypes;
 use rerun::{AnnotationContext, LineStrips2D, Radius, RecordingStream, RecordingStreamResult};

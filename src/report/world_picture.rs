@@ -1,6 +1,6 @@
 //! A grid world as it is drawn beside its curves.
 
-use geometry::Cell;
+use interfaces::Cell;
 use sim::grid::{BlockSpec, GridSpec};
 
 /// The plan of a grid world. Cells are (column, row), rows counted from the bottom.

@@ -1,5 +1,5 @@
 use super::*;
-use geometry::Cell;
+use interfaces::Cell;
 
 /// A map drawn with the highest row first: `.` free, `#` blocked, ` ` unknown.
 fn drawn(origin: (f64, f64), resolution_m: f64, rows: &[&str]) -> Grid<CellState> {

@@ -7,7 +7,7 @@ use crate::report::{Sample, Trial};
 use crate::summary::map_hash;
 use agent::{Agent, AgentSettings};
 use controller::{CellDrive, Controller};
-use geometry::CellReading;
+use interfaces::CellReading;
 use mapper::{Mapper, MapperSettings, ReadingError};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -47,7 +47,7 @@ pub struct Look<'a> {
     /// What is known.
     pub now: &'a Now<'a>,
     /// Who decides.
-    pub pilot: &'a mut dyn Pilot<Command = geometry::Step>,
+    pub pilot: &'a mut dyn Pilot<Command = interfaces::Step>,
     /// What was measured in this step, if it was.
     pub sample: Option<&'a Sample>,
 }

@@ -8,7 +8,7 @@ use crate::view::{
     Level, Message, ObstacleView, Outline, RateErrors, RobotView, Scene, Scores, Sight, StrategyView,
     TimeUnit, View,
 };
-use geometry::{Cell, Grid, pose};
+use interfaces::{Cell, Grid, pose};
 use nalgebra::{Isometry2, Point2};
 use sim::grid::GridSpec;
 use std::sync::atomic::{AtomicBool, Ordering};

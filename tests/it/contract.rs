@@ -1,7 +1,7 @@
 //! What holds in every world that a robot can live in.
 
 use curious::worlds;
-use geometry::{Reading, Step, Twist, World};
+use interfaces::{Reading, Step, Twist, World};
 use sim::grid::{GenerateSettings, GridSpec, GridWorld};
 use sim::physics::PhysicsWorld;
 use std::fmt::Debug;

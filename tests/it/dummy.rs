@@ -2,7 +2,7 @@
 
 use curious::explore;
 use curious::pilot::{Now, Pilot};
-use geometry::{CellState, Twist};
+use interfaces::{CellState, Twist};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::Point2;
 use sim::physics::{PhysicsWorld, WorldSpec};

@@ -59,7 +59,7 @@ fn softmax(values: &[f64], temperature: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::GridFrame;
+    use interfaces::GridFrame;
     use mapper::{Mapper, MapperSettings};
     use nalgebra::{Isometry2, Point2};
     use rand::SeedableRng;

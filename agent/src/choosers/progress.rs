@@ -111,7 +111,7 @@ impl Chooser for Progress {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::GridFrame;
+    use interfaces::GridFrame;
     use mapper::{Mapper, MapperSettings};
     use nalgebra::{Isometry2, Point2};
     use proptest::prelude::*;

@@ -1,6 +1,6 @@
 use crate::survey::Survey;
 use crate::{Pick, Situation, Stay, Strategy};
-use geometry::{Cell, CellState};
+use interfaces::{Cell, CellState};
 
 /// How long to look around at a goal, in the unit of the readings' times. It counts as part of the
 /// way: without it, the next cell would always be worth more than the next room.

@@ -13,7 +13,7 @@ pub use random::Random;
 pub use recency::Recency;
 
 use crate::Situation;
-use geometry::Cell;
+use interfaces::Cell;
 
 /// How a goal is picked from the weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

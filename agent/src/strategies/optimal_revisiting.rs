@@ -1,6 +1,6 @@
 use crate::survey::Survey;
 use crate::{Pick, Situation, Stay, Strategy};
-use geometry::{Cell, CellState};
+use interfaces::{Cell, CellState};
 
 /// How long to stand at a goal, in the unit of the readings' times. Part of the price of a visit.
 const WATCH: f64 = 8.0;

@@ -5,7 +5,7 @@ use agent::{
     Agent, AgentSettings, AsTheCrowFlies, Chooser, Random, Recency, Reward, Situation, StrategyChoice,
     Trajectory,
 };
-use geometry::{Cell, CellReading, CellState, Transition};
+use interfaces::{Cell, CellReading, CellState, Transition};
 use mapper::{Features, Mapper};
 use nalgebra::Isometry2;
 use rand_chacha::ChaCha8Rng;
@@ -28,7 +28,7 @@ const HOUSE: [&str; 9] = [
 fn look(time: f64, cell: Cell) -> CellReading {
     let block = Cell::new(1 + (time / 3.0) as i32 % 12, 1);
     let mut seen = reading(time, &HOUSE);
-    seen.pose = geometry::pose(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5, 0.0);
+    seen.pose = interfaces::pose(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5, 0.0);
     seen.cells.retain(|(other, _)| (other.x - cell.x).abs() <= 3 && (other.y - cell.y).abs() <= 3);
     for (other, is_blocked) in &mut seen.cells {
         *is_blocked |= *other == block;

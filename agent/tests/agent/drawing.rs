@@ -1,7 +1,7 @@
 //! Maps drawn by hand: `#` blocked, `.` free, a blank not seen; the top line has the highest y.
 
 use agent::{Agent, AgentSettings, Situation, Strategy, StrategyChoice};
-use geometry::{Cell, CellReading, CellState, GridFrame};
+use interfaces::{Cell, CellReading, CellState, GridFrame};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
 use rand::SeedableRng;

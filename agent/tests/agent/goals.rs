@@ -5,7 +5,7 @@ use agent::{
     Agent, AgentSettings, Always, AsTheCrowFlies, Poisson, Random, Recency, Situation, Strategy,
     StrategyChoice,
 };
-use geometry::{Cell, CellReading};
+use interfaces::{Cell, CellReading};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use proptest::prelude::*;
@@ -168,7 +168,7 @@ fn without_a_candidate_the_goal_is_where_the_robot_is() {
     for mapper in [empty(3, 2), inside_a_wall] {
         for (x, y, cell) in [(1.5, 0.5, Cell::new(1, 0)), (-7.5, 99.5, Cell::new(-8, 99))] {
             for choice in StrategyChoice::ALL {
-                let pose = geometry::pose(x, y, 0.0);
+                let pose = interfaces::pose(x, y, 0.0);
                 assert_eq!(agent(choice, 5).next_goal(&mapper, &pose, &mut AsTheCrowFlies).cell, cell);
             }
         }
@@ -214,7 +214,7 @@ proptest! {
         let mut mapper = empty(width, height);
         let seen = (0..cells.len()).filter(|&index| cells[index] > 0);
         let cells = seen.map(|index| (mapper.frame().cell(index), cells[index] == 2)).collect();
-        let pose = geometry::pose(-5.0, 0.0, 0.0);
+        let pose = interfaces::pose(-5.0, 0.0, 0.0);
         mapper.update(&CellReading { time: 1.0, pose, cells }).unwrap();
 
         let frame = *mapper.frame();

@@ -2,7 +2,7 @@
 
 use crate::drawing::{map, reading};
 use agent::{InformationGain, Situation, Stay, Strategy};
-use geometry::{Cell, CellReading, GridFrame};
+use interfaces::{Cell, CellReading, GridFrame};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
 use proptest::prelude::*;
@@ -101,7 +101,7 @@ fn what_a_visit_did_not_show_is_worth_less_from_there() {
     for visit in 0..100 {
         let Stay::Watch(watch) = strategy.stay(Cell::new(0, 0)) else { panic!("it watches") };
         assert!((0.0..=5.0).contains(&watch));
-        let pose = geometry::pose(0.5, 0.5, 0.0);
+        let pose = interfaces::pose(0.5, 0.5, 0.0);
         mapper.update(&CellReading { pose, ..reading(f64::from(visit), &[".     "]) }).unwrap();
         let mut weights = vec![0.0; 6];
         let situation = Situation::new(&mapper, &pose, Default::default()).with_travel(&travel);

@@ -2,7 +2,7 @@
 
 use crate::drawing::{map, reading};
 use agent::{Frontier, OptimalRevisiting, Situation, Stay, Strategy};
-use geometry::{Cell, CellReading};
+use interfaces::{Cell, CellReading};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use proptest::prelude::*;

@@ -1,5 +1,5 @@
 use crate::Scene;
-use geometry::CellState;
+use interfaces::CellState;
 use nalgebra::{Point2, Vector2};
 
 /// Points nearer to each other than this are one obstacle, m.
@@ -82,7 +82,7 @@ impl Guard {
         let (first, last) = (frame.cell_at(&(robot - corner)), frame.cell_at(&(robot + corner)));
         for y in first.y.max(0)..=last.y.min(frame.height() as i32 - 1) {
             for x in first.x.max(0)..=last.x.min(frame.width() as i32 - 1) {
-                let cell = geometry::Cell::new(x, y);
+                let cell = interfaces::Cell::new(x, y);
                 if scene.situation.map.get(cell) == Some(&CellState::Blocked) {
                     let center = frame.center(cell);
                     if (center - robot).norm_squared() < reach_m * reach_m {

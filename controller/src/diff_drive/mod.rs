@@ -4,8 +4,8 @@ mod guard;
 mod settings;
 
 use crate::{Body, Costmap, Drive, Moves, Path, Scene, SettingsError};
-use geometry::Twist;
 use guard::{Braking, Guard};
+use interfaces::Twist;
 use nalgebra::Point2;
 pub use settings::DiffDriveSettings;
 use std::f64::consts::PI;

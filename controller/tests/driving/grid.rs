@@ -1,7 +1,7 @@
 //! The same controller in a world of cells, where a command is one move to a neighbour.
 
 use controller::{CellDrive, Controller, Outcome, Situation, Status};
-use geometry::{Cell, CellState, Grid, GridFrame, Step, Transition, pose};
+use interfaces::{Cell, CellState, Grid, GridFrame, Step, Transition, pose};
 use nalgebra::{Isometry2, Point2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

@@ -2,7 +2,7 @@
 //! accelerations, a laser with exact rays, and a map that lags behind as a real one does.
 
 use controller::{Controller, DiffDrive, DiffDriveSettings, Settings, Situation, Status};
-use geometry::{Cell, CellState, Grid, GridFrame, Transition, Twist, heading_rad, pose};
+use interfaces::{Cell, CellState, Grid, GridFrame, Transition, Twist, heading_rad, pose};
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

@@ -2,7 +2,7 @@
 
 use crate::robots::{Habit, Robot};
 use crate::score::{MASS, Mean, log_error};
-use geometry::{CellState, World};
+use interfaces::{CellState, World};
 use mapper::{Estimator, Mapper};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

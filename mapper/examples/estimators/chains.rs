@@ -3,7 +3,7 @@
 use crate::information::Information;
 use crate::patterns::{Looker, Pattern};
 use crate::score::{MASS, Mean, log_error};
-use geometry::{Cell, CellReading, GridFrame};
+use interfaces::{Cell, CellReading, GridFrame};
 use nalgebra::Point2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -70,7 +70,7 @@ fn run(chains: &[Chain], pattern: Pattern, apart: usize, steps: u64) -> anyhow::
     let mut cells: Vec<(bool, Looker)> =
         (0..CELLS).map(|number| (rng.random_bool(of(number).share_blocked()), Looker::default())).collect();
     let mut information = Information::new(chains[0]);
-    let mut reading = CellReading { time: 0.0, pose: geometry::pose(0.0, 0.0, 0.0), cells: Vec::new() };
+    let mut reading = CellReading { time: 0.0, pose: interfaces::pose(0.0, 0.0, 0.0), cells: Vec::new() };
     for step in 0..steps {
         reading.time = step as f64;
         reading.cells.clear();

@@ -22,7 +22,7 @@ const TABLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/estimators/ta
 const CURVES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/estimators/chains.svg");
 
 /// One mapper per estimator, in the order of [`Estimator::ALL`].
-fn mappers(frame: geometry::GridFrame) -> Result<Vec<Mapper>, SettingsError> {
+fn mappers(frame: interfaces::GridFrame) -> Result<Vec<Mapper>, SettingsError> {
     let mapper = |estimator| Mapper::new(&MapperSettings { estimator, ..MapperSettings::default() }, frame);
     Estimator::ALL.map(mapper).into_iter().collect()
 }

@@ -1,6 +1,6 @@
 //! Robots that look at a grid world in different ways, whatever a mapper makes of it.
 
-use geometry::{Cell, CellReading, Grid, Step};
+use interfaces::{Cell, CellReading, Grid, Step};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use sim::grid::GridSpec;

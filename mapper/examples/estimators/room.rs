@@ -2,7 +2,7 @@
 //! in visits.
 
 use crate::score::{MASS, Mean, log_error};
-use geometry::{Twist, World};
+use interfaces::{Twist, World};
 use mapper::{Estimator, Mapper, MapperSettings};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

@@ -14,8 +14,8 @@ mod curve;
 mod house;
 mod things;
 
-use geometry::LaserReading;
 use house::House;
+use interfaces::LaserReading;
 use mapper::{Mapper, MapperSettings, OccupancyModel, SteadySettings};
 use std::fmt::Write as _;
 use things::{cleared_after, latencies, median};

@@ -2,7 +2,7 @@
 
 use crate::PERIOD_S;
 use crate::house::{CELL_M, House, Thing, rectangle};
-use geometry::CellState;
+use interfaces::CellState;
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
 
@@ -20,7 +20,7 @@ const DISC_PATH_M: f64 = 0.35;
 fn pose(house: &House, time_s: f64) -> Isometry2<f64> {
     let angle = 0.1 * time_s;
     let at = house.turned(Point2::new(3.0 + 0.8 * angle.cos(), 2.0 + 0.8 * angle.sin()));
-    geometry::pose(at.x, at.y, angle)
+    interfaces::pose(at.x, at.y, angle)
 }
 
 /// How long after a box went half and nine tenths of its cells are free, s; ∞ if they never are
@@ -144,12 +144,12 @@ fn disc_truth(middle: Point2<f64>, disc: Point2<f64>) -> CellState {
 }
 
 /// The cells that beams ended in, and those that beams crossed.
-fn touched(house: &House, reading: &geometry::LaserReading) -> (Vec<bool>, Vec<bool>) {
+fn touched(house: &House, reading: &interfaces::LaserReading) -> (Vec<bool>, Vec<bool>) {
     let (mut ended, mut crossed) = (vec![false; house.frame.len()], vec![false; house.frame.len()]);
     for (beam, &range_m) in reading.scan.ranges_m.iter().enumerate() {
         let range_m = f64::from(range_m).min(reading.scan.range_max_m);
         let at = |along_m: f64| {
-            let point = geometry::rotation(reading.scan.angle_rad(beam)) * Point2::new(along_m, 0.0);
+            let point = interfaces::rotation(reading.scan.angle_rad(beam)) * Point2::new(along_m, 0.0);
             house.frame.index(house.frame.cell_at(&(reading.pose * point)))
         };
         let end = at(range_m);

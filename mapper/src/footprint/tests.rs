@@ -1,7 +1,7 @@
 //! The oracles ask every cell of the grid on its own, with exact angles and no state.
 
 use super::*;
-use geometry::{LaserReading, Scan, Twist};
+use interfaces::{LaserReading, Scan, Twist};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -53,9 +53,9 @@ impl Case {
         let mut cloud = PointCloud::default();
         cloud.project(&LaserReading {
             time_s: 0.0,
-            pose: geometry::pose(self.x_m, self.y_m, self.heading_rad),
+            pose: interfaces::pose(self.x_m, self.y_m, self.heading_rad),
             twist: Twist::STOP,
-            mount: geometry::pose(0.0, 0.0, 0.0),
+            mount: interfaces::pose(0.0, 0.0, 0.0),
             scan: Scan {
                 angle_min_rad: self.angle_min_rad,
                 angle_increment_rad: self.increment_rad,

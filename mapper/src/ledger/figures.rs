@@ -5,7 +5,7 @@ use super::{Ledger, PRIOR, ReadingIndex};
 use crate::chain::Chain;
 use crate::gaps::{Belief, MEAN_EVENTS, Watch};
 use crate::{CellStatistics, GapWorth, credible};
-use geometry::CellState;
+use interfaces::CellState;
 
 impl Ledger {
     #[inline]

@@ -10,7 +10,7 @@ mod turn;
 
 use crate::Estimator;
 use crate::gaps::{Gaps, Regularity};
-use geometry::{Cell, CellState, Grid, GridFrame, Transition};
+use interfaces::{Cell, CellState, Grid, GridFrame, Transition};
 use recency::Recency;
 use record::Record;
 use survival::Survival;

@@ -1,6 +1,6 @@
 use super::survival::Slot;
 use super::{NEVER, ReadingIndex};
-use geometry::CellState;
+use interfaces::CellState;
 use std::num::NonZeroU32;
 
 /// The change record of one cell, except for the time of its last sighting, which is written at

@@ -2,7 +2,7 @@
 
 use super::record::place;
 use super::{Ledger, PRIOR, ReadingIndex};
-use geometry::{Cell, CellState};
+use interfaces::{Cell, CellState};
 
 /// Set in the number of a cell's last sighting while the cell needs a closer look at every
 /// sighting; see [`Ledger::see_run`].

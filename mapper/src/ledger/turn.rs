@@ -3,7 +3,7 @@
 use super::record::{Record, place};
 use super::{Ledger, PRIOR, ReadingIndex};
 use crate::gaps::{Gaps, Near};
-use geometry::{Cell, CellState, Transition};
+use interfaces::{Cell, CellState, Transition};
 
 /// Cells as far as this from a cell, along either axis, tell how it may change.
 const NEAR: i32 = 3;

@@ -2,7 +2,7 @@
 //! as simple as can be. It knows nothing of the simulator.
 #![allow(dead_code)] // every test file takes what it needs
 
-use geometry::{CellState, GridFrame, LaserReading, Scan, Twist};
+use interfaces::{CellState, GridFrame, LaserReading, Scan, Twist};
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -121,7 +121,7 @@ impl House {
     /// The point of the turned house that belongs to one of the unturned house.
     pub(crate) fn turned(&self, point: Point2<f64>) -> Point2<f64> {
         let middle = Point2::new(6.0, 6.0);
-        middle + geometry::rotation(self.turn_rad) * (point - middle)
+        middle + interfaces::rotation(self.turn_rad) * (point - middle)
     }
 
     /// A round trip through the four rooms at 0.3 m/s, given in the unturned house.
@@ -152,7 +152,7 @@ impl House {
             if left_m <= length_m {
                 let at = self.turned(from + (to - from) * (left_m / length_m));
                 let along = self.turned(to) - self.turned(from);
-                return geometry::pose(at.x, at.y, along.y.atan2(along.x));
+                return interfaces::pose(at.x, at.y, along.y.atan2(along.x));
             }
             left_m -= length_m;
         }
@@ -173,7 +173,7 @@ impl House {
         let ranges_m = (0..self.beams)
             .map(|beam| {
                 let along =
-                    pose.rotation * geometry::rotation(-TAU / 2.0 + beam as f64 * increment) * Vector2::x();
+                    pose.rotation * interfaces::rotation(-TAU / 2.0 + beam as f64 * increment) * Vector2::x();
                 let mut range_m = f64::INFINITY;
                 for thing in &standing {
                     for (i, &a) in thing.corners.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::house::{House, Thing, rectangle};
 use crate::observed::{Observed, assert_sound};
-use geometry::{CellState, GridFrame, LaserReading, Scan, ScanError, Twist};
+use interfaces::{CellState, GridFrame, LaserReading, Scan, ScanError, Twist};
 use mapper::{Mapper, MapperSettings, OccupancyModel, ReadingError, SteadySettings};
 use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 use proptest::prelude::*;
@@ -19,7 +19,7 @@ fn mapper(occupancy: OccupancyModel) -> Mapper {
 fn reading(time_s: f64) -> LaserReading {
     LaserReading {
         time_s,
-        pose: geometry::pose(2.0, 2.0, 0.3),
+        pose: interfaces::pose(2.0, 2.0, 0.3),
         twist: Twist::STOP,
         mount: Isometry2::identity(),
         scan: Scan {
@@ -107,7 +107,7 @@ fn along_first_beam(range_m: f32) -> String {
     let mut mapper = mapper(OccupancyModel::Steady);
     for scan in 0..30 {
         let mut reading = reading(f64::from(scan) * 0.1);
-        reading.pose = geometry::pose(2.05, 2.05, 0.0);
+        reading.pose = interfaces::pose(2.05, 2.05, 0.0);
         reading.scan.angle_min_rad = 0.0;
         reading.scan.range_max_m = 1.22;
         reading.scan.ranges_m = vec![range_m; BEAMS];
@@ -174,12 +174,12 @@ fn odd_scans_are_taken() {
                 r.scan.ranges_m.fill(f32::INFINITY);
             }),
         ),
-        ("far away", Box::new(move |r| r.pose = geometry::pose(far, -far, 1.0))),
+        ("far away", Box::new(move |r| r.pose = interfaces::pose(far, -far, 1.0))),
         (
             "far away, with a mount that leads back",
             Box::new(move |r| {
-                r.pose = geometry::pose(far, 0.0, 0.0);
-                r.mount = geometry::pose(2.0 - far, 2.0, 0.0);
+                r.pose = interfaces::pose(far, 0.0, 0.0);
+                r.mount = interfaces::pose(2.0 - far, 2.0, 0.0);
             }),
         ),
     ];
@@ -207,7 +207,7 @@ fn a_laser_outside_of_the_grid_sees_into_it() {
         (Mapper::new(&settings, part).unwrap(), Mapper::new(&settings, whole).unwrap());
     for scan in 0..100 {
         let time_s = f64::from(scan) * 0.1;
-        let reading = house.reading(time_s, geometry::pose(1.5, 2.0 + 0.1 * time_s, 0.0), &[]);
+        let reading = house.reading(time_s, interfaces::pose(1.5, 2.0 + 0.1 * time_s, 0.0), &[]);
         outside.update(&reading).unwrap();
         inside.update(&reading).unwrap();
     }
@@ -291,7 +291,7 @@ proptest! {
             let mut reading = reading(number as f64 * 0.1);
             reading.scan.range_min_m = 0.0;
             reading.scan.ranges_m = ranges_m;
-            reading.pose = geometry::pose(x_m, y_m, heading_rad);
+            reading.pose = interfaces::pose(x_m, y_m, heading_rad);
             for _ in 0..if repeated { 15 } else { 1 } {
                 for mapper in &mut mappers {
                     prop_assert_eq!(mapper.update(&reading), Ok(()));

@@ -2,7 +2,7 @@
 //! from the definitions each time.
 
 use crate::observed::assert_sound;
-use geometry::{Cell, CellReading, CellState, Grid, GridFrame, Transition};
+use interfaces::{Cell, CellReading, CellState, Grid, GridFrame, Transition};
 use mapper::{CellStatistics, Estimator, Features, Mapper, MapperSettings};
 use nalgebra::Point2;
 use proptest::prelude::*;
@@ -209,7 +209,7 @@ proptest! {
                     expected.push(Transition { cell, before, after });
                 }
             }
-            mapper.update(&CellReading { time: book.now, pose: geometry::pose(0.5, 0.5, 0.0), cells }).unwrap();
+            mapper.update(&CellReading { time: book.now, pose: interfaces::pose(0.5, 0.5, 0.0), cells }).unwrap();
 
             prop_assert_eq!(mapper.transitions(), expected);
             for index in 0..frame.len() {
@@ -246,7 +246,7 @@ proptest! {
         for (wait, cells) in readings {
             time = (time + wait).min(f64::MAX);
             let cells = cells.into_iter().map(|(x, y, blocked)| (Cell::new(x, y), blocked)).collect();
-            mapper.update(&CellReading { time, pose: geometry::pose(0.5, 0.5, 0.0), cells }).unwrap();
+            mapper.update(&CellReading { time, pose: interfaces::pose(0.5, 0.5, 0.0), cells }).unwrap();
             assert_sound(&mapper);
         }
     }

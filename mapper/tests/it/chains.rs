@@ -1,6 +1,6 @@
 //! The estimators on cells that are simulated two-state Markov chains: the truth is known.
 
-use geometry::{Cell, CellReading, GridFrame};
+use interfaces::{Cell, CellReading, GridFrame};
 use mapper::{Estimator, Mapper, MapperSettings};
 use nalgebra::Point2;
 use rand_chacha::ChaCha8Rng;
@@ -63,7 +63,7 @@ fn estimates(chain: Chain, looks: impl Fn(usize, bool, usize) -> bool) -> impl F
                 seen.push((Cell::new(x as i32, 0), *blocked));
             }
         }
-        let reading = CellReading { time, pose: geometry::pose(0.0, 0.0, 0.0), cells: seen };
+        let reading = CellReading { time, pose: interfaces::pose(0.0, 0.0, 0.0), cells: seen };
         for mapper in &mut mappers {
             mapper.update(&reading).unwrap();
         }

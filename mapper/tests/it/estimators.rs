@@ -1,6 +1,6 @@
 //! What must hold of estimates whatever was seen, and how `two-state-gaps` deals with what is no Markov chain.
 
-use geometry::{Cell, CellReading, GridFrame};
+use interfaces::{Cell, CellReading, GridFrame};
 use mapper::{Estimator, Mapper, MapperSettings};
 use nalgebra::Point2;
 use proptest::prelude::*;
@@ -17,7 +17,7 @@ fn mapper(estimator: Estimator, cells: usize) -> Mapper {
 /// Shows a mapper the states of some cells, given with their columns.
 fn show(mapper: &mut Mapper, time: f64, cells: impl IntoIterator<Item = (usize, bool)>) {
     let cells = cells.into_iter().map(|(x, blocked)| (Cell::new(x as i32, 0), blocked)).collect();
-    mapper.update(&CellReading { time, pose: geometry::pose(0.0, 0.0, 0.0), cells }).unwrap();
+    mapper.update(&CellReading { time, pose: interfaces::pose(0.0, 0.0, 0.0), cells }).unwrap();
 }
 
 /// Chains that leave their states with `leave` (free, blocked) per step, `apart` columns from each other, all seen

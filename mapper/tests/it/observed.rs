@@ -1,6 +1,6 @@
 //! Everything that can be read of a mapper, to compare.
 
-use geometry::{Cell, CellState, Transition};
+use interfaces::{Cell, CellState, Transition};
 use mapper::{CellStatistics, Features, Mapper};
 use nalgebra::Point2;
 

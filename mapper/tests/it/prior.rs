@@ -2,7 +2,7 @@
 
 use crate::house::{House, Thing, rectangle};
 use crate::observed::{assert_sound, changes};
-use geometry::{CellState, Event, Grid};
+use interfaces::{CellState, Event, Grid};
 use mapper::{Mapper, MapperSettings, OccupancyModel};
 
 /// A house as it was, with a box that is gone by now and without one that has come.
@@ -36,7 +36,7 @@ fn changes_are_found_against_it_and_nothing_else() {
     let mut mapper = Mapper::with_prior(&MapperSettings::default(), prior(&house)).unwrap();
     let (mut went, mut came) = (0, 0);
     for scan in 1..=50 {
-        let reading = house.reading(f64::from(scan) * 0.1, geometry::pose(3.0, 2.0, 0.0), &[]);
+        let reading = house.reading(f64::from(scan) * 0.1, interfaces::pose(3.0, 2.0, 0.0), &[]);
         mapper.update(&reading).unwrap();
         for transition in mapper.transitions() {
             let place = house.frame.center(transition.cell);

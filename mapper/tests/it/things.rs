@@ -2,7 +2,7 @@
 
 use crate::house::{House, Thing, rectangle};
 use crate::observed::changes;
-use geometry::CellState;
+use interfaces::CellState;
 use mapper::{Mapper, MapperSettings, SteadySettings};
 use nalgebra::{Isometry2, Point2};
 
@@ -14,7 +14,7 @@ const MOMENT_S: f64 = 30.0;
 fn circle(house: &House, time_s: f64) -> Isometry2<f64> {
     let angle = 0.1 * time_s;
     let at = house.turned(Point2::new(3.0 + 0.8 * angle.cos(), 2.0 + 0.8 * angle.sin()));
-    geometry::pose(at.x, at.y, angle)
+    interfaces::pose(at.x, at.y, angle)
 }
 
 /// Scans the house up to `until_s`, and tells after every scan.

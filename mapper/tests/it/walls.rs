@@ -2,7 +2,7 @@
 
 use crate::house::House;
 use crate::observed::{Observed, assert_sound, changes};
-use geometry::{CellState, LaserReading};
+use interfaces::{CellState, LaserReading};
 use mapper::{Mapper, MapperSettings, OccupancyModel};
 
 const SCANS: u32 = 1500;

@@ -17,7 +17,7 @@
 use super::{Bitmap, FloorPlan, MAX_FILE_BYTES, Pixel};
 use crate::files::Files;
 use crate::findings::{Findings, Severity, SourceText};
-use geometry::pose;
+use interfaces::pose;
 use nalgebra::Vector2;
 use serde::Deserialize;
 use serde_saphyr::Spanned;

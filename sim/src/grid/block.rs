@@ -1,6 +1,6 @@
 use super::luck::{Luck, Whose};
 use super::spec::{BlockSpec, Course};
-use geometry::Cell;
+use interfaces::Cell;
 
 /// A block on its way.
 #[derive(Clone, Debug)]

@@ -10,7 +10,7 @@
 //! chance if the world says so.
 //!
 //! ```
-//! use geometry::{Cell, Step, World};
+//! use interfaces::{Cell, Step, World};
 //! use sim::grid::{GridSpec, GridWorld};
 //!
 //! let spec = GridSpec::parse("two_blocks.toml", include_str!("../../../worlds/two_blocks.toml"))?;

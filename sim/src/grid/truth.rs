@@ -1,5 +1,5 @@
 use super::spec::{GridSpec, parts};
-use geometry::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame};
 
 /// What really is in every cell, and what has happened there. For metrics and pictures only: no
 /// robot may look at it.

@@ -3,7 +3,7 @@ use super::luck::{Luck, Whose};
 use super::sight::{BlockedCells, Sight};
 use super::spec::GridSpec;
 use super::truth::GridTruth;
-use geometry::{Cell, CellReading, Step, World};
+use interfaces::{Cell, CellReading, Step, World};
 use nalgebra::Isometry2;
 
 /// A grid in which a robot steps and looks around.

@@ -1,5 +1,5 @@
 use super::snapshot::{Played, Tape, Torn};
-use geometry::Twist;
+use interfaces::Twist;
 use nalgebra::Isometry2;
 
 /// A velocity in a robot's own frame.

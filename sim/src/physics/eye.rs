@@ -4,7 +4,7 @@ use super::rays::{Beams, Scene, Scratch};
 use super::report::Sweep;
 use super::snapshot::{Played, Tape};
 use super::spec::LaserSpec;
-use geometry::{LaserReading, Twist};
+use interfaces::{LaserReading, Twist};
 use nalgebra::Isometry2;
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@ use super::rays::{Beams, Scene, Scratch};
 use super::report::{Body, Fiducial};
 use super::snapshot::{Played, Tape};
 use super::spec::FiducialSpec;
-use geometry::rotation;
+use interfaces::rotation;
 use nalgebra::{Isometry2, Point2};
 
 /// A ray counts as meeting a thing if it ends within this of its surface, m.

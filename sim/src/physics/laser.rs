@@ -2,7 +2,7 @@ use super::chance::{Gaussian, Uniform};
 use super::rays::{Beams, Scene, Scratch};
 use super::snapshot::{Played, Tape};
 use super::spec::LaserSpec;
-use geometry::Scan;
+use interfaces::Scan;
 use nalgebra::Isometry2;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 use super::chance::Gaussian;
 use super::snapshot::{Played, Tape};
 use super::spec::{DriveKind, OdometryError, RobotSpec};
-use geometry::{Twist, pose, wrap_rad};
+use interfaces::{Twist, pose, wrap_rad};
 use nalgebra::{Isometry2, Vector2};
 
 /// What a robot feels of its own motion, added up since the start.
@@ -26,7 +26,7 @@ impl Odometry {
             is_omni,
             noise,
             pose: start,
-            heading_rad: geometry::heading_rad(&start),
+            heading_rad: interfaces::heading_rad(&start),
         }
     }
 
@@ -40,7 +40,7 @@ impl Odometry {
     /// It is set down somewhere, and knows where.
     pub(super) fn restart(&mut self, at: Isometry2<f64>) {
         self.pose = at;
-        self.heading_rad = geometry::heading_rad(&at);
+        self.heading_rad = interfaces::heading_rad(&at);
     }
 
     pub(super) fn pose(&self) -> &Isometry2<f64> {
@@ -64,8 +64,8 @@ impl Odometry {
         }
         let OdometryError { distance_gain, turn_gain, turn_radpm, distance_noise_m, turn_noise_rad } =
             self.error;
-        let turn_rad = wrap_rad(geometry::heading_rad(after) - geometry::heading_rad(before));
-        let moved = geometry::rotation(-geometry::heading_rad(before) - turn_rad / 2.0)
+        let turn_rad = wrap_rad(interfaces::heading_rad(after) - interfaces::heading_rad(before));
+        let moved = interfaces::rotation(-interfaces::heading_rad(before) - turn_rad / 2.0)
             * (after.translation.vector - before.translation.vector);
         let distance_m = moved.norm();
         // A random walk: the variance grows with the way, however it is cut into steps.
@@ -75,8 +75,8 @@ impl Odometry {
         let along = if self.is_omni && distance_m > 0.0 { moved / distance_m } else { Vector2::x() };
         let felt = moved * (1.0 + distance_gain) + along * slip_m;
         let felt_turn_rad = turn_rad * (1.0 + turn_gain) + moved.x * turn_radpm + swerve_rad;
-        let at =
-            self.pose.translation.vector + geometry::rotation(self.heading_rad + felt_turn_rad / 2.0) * felt;
+        let at = self.pose.translation.vector
+            + interfaces::rotation(self.heading_rad + felt_turn_rad / 2.0) * felt;
         self.heading_rad = wrap_rad(self.heading_rad + felt_turn_rad);
         self.pose = pose(at.x, at.y, self.heading_rad);
     }

@@ -2,7 +2,7 @@
 
 use super::ear::Ear;
 use super::eye::Eye;
-use geometry::{Cell, LaserReading, Twist};
+use interfaces::{Cell, LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
 use std::fmt;
 

@@ -12,7 +12,7 @@ use super::rays::{Beams, Scene, Scratch};
 use super::report::{Body, RobotView, Sweep};
 use super::snapshot::{Played, Tape};
 use super::spec::RobotSpec;
-use geometry::LaserReading;
+use interfaces::LaserReading;
 use nalgebra::{Isometry2, Point2};
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-use geometry::rotation;
+use interfaces::rotation;
 use nalgebra::{Isometry2, Point2, Rotation2, Translation2, UnitComplex, Vector2};
 
 /// Bodies closer than this touch, but do not overlap, m. Far above rounding, far below anything

@@ -5,7 +5,7 @@
 //! can't drift apart.
 
 use super::report::{Body, Sweep};
-use geometry::Twist;
+use interfaces::Twist;
 use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 
 /// What every snapshot begins with: the kind of file, and the version of its contents.

@@ -2,7 +2,7 @@ use super::fleet::Fleet;
 use super::report::{Body, Contact, Move, ObstacleEvent, ObstacleView, RobotView};
 use super::spec::WorldSpec;
 use super::truth::Truth;
-use geometry::{LaserReading, Twist, World};
+use interfaces::{LaserReading, Twist, World};
 use nalgebra::{Isometry2, Point2};
 
 /// A house in which one robot is driven, with the truth about every cell.

@@ -6,7 +6,7 @@ use super::tree::Thing;
 use super::values::{Pose, Reader};
 use crate::floor_plan::{Bitmap, FloorPlan};
 use crate::physics::Rectangle;
-use geometry::pose;
+use interfaces::pose;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::sync::Arc;
 

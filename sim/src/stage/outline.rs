@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn many_corners_become_few_and_the_origin_lies_within() {
         let ring = |radius_m: f64, count: usize| -> Vec<Point2<f64>> {
-            let corner = |i: usize| geometry::rotation(i as f64 * std::f64::consts::TAU / count as f64);
+            let corner = |i: usize| interfaces::rotation(i as f64 * std::f64::consts::TAU / count as f64);
             (0..count).map(|i| corner(i) * Point2::new(radius_m, 0.0)).collect()
         };
         let outline = of(&[ring(0.3, 1000)]).unwrap();

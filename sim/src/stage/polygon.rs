@@ -190,7 +190,7 @@ mod tests {
         let cover_of_square = cover(&square);
         assert_eq!(cover_of_square.rectangles.len(), 1);
         assert_eq!(cover_of_square.rectangles[0].bounds(), ([0.0, 0.0].into(), [1.0, 2.0].into()));
-        let turn = geometry::pose(3.0, 4.0, 0.7);
+        let turn = interfaces::pose(3.0, 4.0, 0.7);
         let hook = polygon(&[[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]);
         let turned: Vec<_> = hook.iter().map(|point| turn * point).collect();
         let cover = cover(&turned);
@@ -237,7 +237,7 @@ mod tests {
         fn covers_lie_inside(radii in proptest::collection::vec(0.05..1.0_f64, 3..12)) {
             let step = std::f64::consts::TAU / radii.len() as f64;
             let points: Vec<Point2<f64>> = radii.iter().enumerate()
-                .map(|(i, radius)| geometry::rotation(step * i as f64) * Point2::new(*radius, 0.0)).collect();
+                .map(|(i, radius)| interfaces::rotation(step * i as f64) * Point2::new(*radius, 0.0)).collect();
             let cover = cover(&points);
             for rectangle in &cover.rectangles {
                 let middle = Point2::from(rectangle.pose.translation.vector);

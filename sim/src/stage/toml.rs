@@ -2,7 +2,7 @@
 
 use super::{Drive, StageRobot, StageWall, StageWorld};
 use crate::physics::{MOST_OUT_M, OdometryError, Rectangle};
-use geometry::heading_rad;
+use interfaces::heading_rad;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::fmt::{Result, Write};
 

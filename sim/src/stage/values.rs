@@ -4,7 +4,7 @@ use super::lexer::Kind;
 use super::pictures::Pictures;
 use super::sources::{Place, Sources};
 use super::tree::{Property, Thing};
-use geometry::pose;
+use interfaces::pose;
 use nalgebra::Isometry2;
 use std::ops::RangeInclusive;
 use std::rc::Rc;

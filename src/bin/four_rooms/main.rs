@@ -13,7 +13,7 @@ use curious::output::{make_folder, say};
 use curious::pilot::{Now, Pilot};
 use curious::recording::{Live, Recorder, RecordingOptions};
 use curious::{explore, worlds};
-use geometry::{Reading, Twist};
+use interfaces::{Reading, Twist};
 use mapper::Mapper;
 use parts::{Failure, Parts};
 use progress::Progress;

@@ -11,7 +11,7 @@ use curious::pictures::{self, Pictures};
 use curious::pilot::Pilot;
 use curious::ros_map;
 use curious::summary::{Liveliest, Summary, map_hash};
-use geometry::Twist;
+use interfaces::Twist;
 use mapper::Mapper;
 use sim::physics::PhysicsWorld;
 use std::path::Path;

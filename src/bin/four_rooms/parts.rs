@@ -8,7 +8,7 @@ use curious::output::say;
 use curious::pilot::{Autonomous, Keyboard, Tour};
 use curious::ros_map::RosMap;
 use curious::worlds::{self, Loaded};
-use geometry::Twist;
+use interfaces::Twist;
 use mapper::{Mapper, MapperSettings};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

@@ -3,7 +3,7 @@
 use super::{ran, rows};
 use crate::recording::Recording;
 use curious::worlds::load_grid;
-use geometry::Cell;
+use interfaces::Cell;
 
 /// The cell that holds a place.
 fn cell([x, y]: [f32; 2]) -> Cell {

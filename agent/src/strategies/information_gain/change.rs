@@ -7,7 +7,7 @@
 
 use super::rates::{Gains, Odds, RATES, Rates};
 use super::things::{Position, Things};
-use geometry::CellState;
+use interfaces::CellState;
 use mapper::Mapper;
 
 /// θ far from all that changed, and the number of cells that this is believed as strongly as.

@@ -10,7 +10,7 @@ mod ways;
 use crate::view::{Outlook, Places};
 use crate::{Pick, Situation, Stay, Strategy};
 use change::Change;
-use geometry::{Cell, CellState};
+use interfaces::{Cell, CellState};
 use mapper::Mapper;
 use rates::{Gains, Rates, WATCHES};
 use runs::Runs;

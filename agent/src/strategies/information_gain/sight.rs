@@ -2,7 +2,7 @@
 
 use super::things::Things;
 use crate::view::{Outlook, Places};
-use geometry::Cell;
+use interfaces::Cell;
 use mapper::Mapper;
 
 /// For so long, in the unit of the readings' times, a view is believed to be what it should be.

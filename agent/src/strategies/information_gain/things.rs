@@ -1,6 +1,6 @@
 //! Cells that changed hang together in things, and what lies beside them is likelier to change too.
 
-use geometry::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame};
 use mapper::Mapper;
 
 /// The pseudocounts of a thing's pace: half a cycle in fifty units of time.

@@ -2,7 +2,7 @@
 
 use super::things::beside;
 use crate::Situation;
-use geometry::CellState;
+use interfaces::CellState;
 use std::collections::VecDeque;
 
 /// What it costs to pass a cell that was blocked when it was last seen, and may still be.

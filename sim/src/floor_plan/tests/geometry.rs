@@ -1,7 +1,7 @@
 //! Outline and rectangles against what they stand for: the blocked pixels.
 
 use crate::floor_plan::{Bitmap, FloorPlan, PixelSegment};
-use geometry::pose;
+use interfaces::pose;
 use nalgebra::{Point2, Vector2};
 use proptest::prelude::*;
 

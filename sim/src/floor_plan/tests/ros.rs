@@ -39,7 +39,7 @@ fn blocked(yaml: &str) -> String {
 fn a_map_is_read() {
     let (plan, findings) = read(GOOD);
     let plan = plan.unwrap();
-    assert_eq!(plan.origin, geometry::pose(-6.0, -5.0, 0.0));
+    assert_eq!(plan.origin, interfaces::pose(-6.0, -5.0, 0.0));
     assert_eq!(plan.pixel_m.x, 0.05);
     // 0xcd is 205, p = 0.19608; 0x32 is 50, p = 0.804.
     assert_eq!(blocked(GOOD), "#...##");

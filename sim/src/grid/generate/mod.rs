@@ -6,7 +6,7 @@ mod rooms;
 mod tests;
 
 use super::spec::{BlockSpec, GridSpec, MAX_DWELL, MAX_SENSOR_RADIUS, parts};
-use geometry::{Cell, Grid, GridFrame};
+use interfaces::{Cell, Grid, GridFrame};
 use nalgebra::Point2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

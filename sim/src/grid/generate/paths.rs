@@ -3,7 +3,7 @@
 
 use super::super::spec::Course;
 use super::{GenerateSettings, PathKind, cut};
-use geometry::{Cell, Grid};
+use interfaces::{Cell, Grid};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 

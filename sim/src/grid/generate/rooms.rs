@@ -2,7 +2,7 @@
 //! opening, so that all rooms stay connected.
 
 use super::{GenerateSettings, between, stands_free};
-use geometry::{Cell, Grid, GridFrame};
+use interfaces::{Cell, Grid, GridFrame};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::grid::{Course, GridWorld};
-use geometry::{Step, World};
+use interfaces::{Step, World};
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 

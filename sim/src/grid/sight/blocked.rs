@@ -1,5 +1,5 @@
 use super::shifted;
-use geometry::{Cell, Grid};
+use interfaces::{Cell, Grid};
 
 /// Which cells are blocked: a bit each, in rows of words, with a rim as wide as the sensor sees, so
 /// that no look leaves it.

@@ -17,7 +17,7 @@ mod tests;
 
 use super::spec::GridSpec;
 pub(super) use blocked::BlockedCells;
-use geometry::Cell;
+use interfaces::Cell;
 use shadows::{Reach, Shadows};
 
 /// The sight of a sensor.

@@ -1,7 +1,7 @@
 //! What a blocked cell hides, worked out once for a radius, in whole numbers.
 
 use super::BlockedCells;
-use geometry::Cell;
+use interfaces::Cell;
 use std::cmp::Ordering;
 use std::ops::Range;
 

@@ -1,5 +1,5 @@
 use super::*;
-use geometry::{Grid, GridFrame};
+use interfaces::{Grid, GridFrame};
 use nalgebra::Point2;
 use proptest::prelude::*;
 

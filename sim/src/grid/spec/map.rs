@@ -1,7 +1,7 @@
 //! The drawing of the map: one character per cell, the top row first.
 
 use crate::error::{Source, WorldError};
-use geometry::{Cell, Grid, GridFrame};
+use interfaces::{Cell, Grid, GridFrame};
 use nalgebra::Point2;
 use serde_spanned::Spanned;
 use std::ops::Range;

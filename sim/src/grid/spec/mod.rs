@@ -31,7 +31,7 @@ mod write;
 use crate::error::{Source, WorldError};
 use crate::kind::Kind;
 use crate::reader;
-use geometry::{Cell, Grid, GridFrame};
+use interfaces::{Cell, Grid, GridFrame};
 use std::path::Path;
 
 /// The farthest that a sensor can see, in cells.

@@ -1,6 +1,6 @@
 //! Which free cells hang together.
 
-use geometry::{Cell, Grid};
+use interfaces::{Cell, Grid};
 
 /// At most so many parts are named one by one.
 const MAX_NAMED: usize = 5;

@@ -4,7 +4,7 @@ use super::file::{BlockFile, WayPoint};
 use super::{Course, map::Drawing};
 use crate::error::{Source, WorldError};
 use crate::together::Together;
-use geometry::Cell;
+use interfaces::Cell;
 use std::ops::Range;
 
 /// Longer paths are refused before anything is allocated for them.

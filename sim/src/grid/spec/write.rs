@@ -1,7 +1,7 @@
 //! A world as the text of its file.
 
 use super::{Course, GridSpec};
-use geometry::Cell;
+use interfaces::Cell;
 use std::fmt::Write;
 
 /// The text of a world file that says the same as `spec`.

@@ -1,5 +1,5 @@
 use super::*;
-use geometry::CellReading;
+use interfaces::CellReading;
 
 fn run(spec: &GridSpec, seed: u64, steps: usize) -> Vec<CellReading> {
     let mut world = GridWorld::new(spec, seed);

@@ -49,7 +49,7 @@ fn it_sees_its_own_cell_free_and_knows_where_it_is() {
     let mut world = GridWorld::new(&spec("...\n.R.\n...", ""), 0);
     world.act(&Step::Right);
     let reading = world.sense();
-    assert_eq!((reading.time, reading.pose), (1.0, geometry::pose(2.5, 1.5, 0.0)));
+    assert_eq!((reading.time, reading.pose), (1.0, interfaces::pose(2.5, 1.5, 0.0)));
     assert_eq!(reading.cells[0], (Cell::new(2, 1), false));
     assert_eq!(reading.cells.len(), 9);
 }

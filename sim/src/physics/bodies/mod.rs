@@ -14,7 +14,7 @@ use super::report::Body;
 use super::shape::Rectangle;
 use super::snapshot::{Played, Tape, Torn};
 use super::spec::{FleetSpec, Motion, RobotSpec};
-use geometry::{heading_rad, rotation};
+use interfaces::{heading_rad, rotation};
 use nalgebra::{Isometry2, Translation2, Vector2};
 use rapier2d::prelude as rapier;
 

@@ -2,7 +2,7 @@
 
 use crate::physics::command::Velocity;
 use crate::physics::spec::{DriveKind, DriveLimits};
-use geometry::wrap_rad;
+use interfaces::wrap_rad;
 use nalgebra::{Isometry2, Vector2};
 
 /// Nearer than this it is there, m and rad.
@@ -19,7 +19,7 @@ const SLOW_DOWN_PER_S: f64 = 3.0;
 pub(super) fn velocity(limits: &DriveLimits, at: &Isometry2<f64>, goal: &Isometry2<f64>) -> Velocity {
     let way = at.inverse_transform_vector(&(goal.translation.vector - at.translation.vector));
     let way_m = way.norm();
-    let turn_rad = wrap_rad(geometry::heading_rad(goal) - geometry::heading_rad(at));
+    let turn_rad = wrap_rad(interfaces::heading_rad(goal) - interfaces::heading_rad(at));
     let speed_mps = as_fast_as(limits.max_linear_mps, limits.max_linear_acceleration_mps2, way_m);
     let turn = |angle_rad: f64| {
         let most = (limits.max_angular_radps, limits.max_angular_acceleration_radps2);

@@ -1,9 +1,9 @@
 use crate::physics::command::Command;
 use crate::physics::report::RobotView;
-use geometry::LaserReading;
+use interfaces::LaserReading;
 
 /// What tells driven robots where to go: any type, or a closure from a robot and the reading of its
-/// main laser to a velocity ([`geometry::Twist`]) or any other [`Command`].
+/// main laser to a velocity ([`interfaces::Twist`]) or any other [`Command`].
 ///
 /// It is asked at every scan of the robot's main laser. `&mut ()` has nothing to say: robots go on
 /// with what [`Fleet::command`](super::Fleet::command) told them.

@@ -19,7 +19,7 @@ use super::report::{Body, Contact, ObstacleView, RobotView};
 use super::robot::{Now, Robot};
 use super::shape::Rectangle;
 use super::spec::{FleetSpec, LaserSpec, RobotSpec};
-use geometry::{GridFrame, LaserReading};
+use interfaces::{GridFrame, LaserReading};
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 

@@ -3,7 +3,7 @@
 use super::{Fleet, corners};
 use crate::physics::robot::Robot;
 use crate::physics::shape::{Rectangle, TOUCH_M};
-use geometry::heading_rad;
+use interfaces::heading_rad;
 use nalgebra::{Isometry2, Point2};
 
 /// Why a robot stayed where it was.
@@ -61,7 +61,7 @@ impl Fleet {
         if self.standing_boxes().iter().any(is_in) || others.any(meets) {
             return Err(TeleportError::Occupied { x_m: at.x, y_m: at.y });
         }
-        self.bodies.put(robot, &geometry::pose(at.x, at.y, heading_rad));
+        self.bodies.put(robot, &interfaces::pose(at.x, at.y, heading_rad));
         self.robots[robot].put(self.bodies.pose(robot));
         self.show_robot(robot);
         Ok(())

@@ -9,7 +9,7 @@ use super::chance::Uniform;
 use super::rays::Beams;
 use super::snapshot::{Played, Tape};
 use super::spec::{Behaviour, RobotSpec};
-use geometry::{LaserReading, Twist};
+use interfaces::{LaserReading, Twist};
 use nalgebra::Vector2;
 pub(super) use patrol::WALL_RELIEF_M;
 use patrol::WallPatrol;

@@ -2,7 +2,7 @@ use super::pace::{HEADING_GAIN, Pace};
 use crate::physics::rays::Beams;
 use crate::physics::snapshot::{Played, Tape};
 use crate::physics::spec::{PatrolSpec, RobotSpec};
-use geometry::{LaserReading, Twist};
+use interfaces::{LaserReading, Twist};
 use nalgebra::{Point2, UnitComplex, Vector2};
 
 /// The end of the way counts as reached this far before it, m.

@@ -3,7 +3,7 @@ use crate::physics::chance::Uniform;
 use crate::physics::rays::Beams;
 use crate::physics::snapshot::{Played, Tape};
 use crate::physics::spec::{RobotSpec, WanderSpec};
-use geometry::{LaserReading, Twist};
+use interfaces::{LaserReading, Twist};
 use nalgebra::Vector2;
 use std::ops::Range;
 

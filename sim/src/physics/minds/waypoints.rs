@@ -2,7 +2,7 @@ use super::pace::{HEADING_GAIN, Pace};
 use crate::physics::rays::Beams;
 use crate::physics::snapshot::{Played, Tape, Torn};
 use crate::physics::spec::{Repeat, RobotSpec, WaypointsSpec};
-use geometry::{LaserReading, Twist};
+use interfaces::{LaserReading, Twist};
 use nalgebra::{Point2, UnitComplex, Vector2};
 
 /// A waypoint counts as reached this near, m.

@@ -124,7 +124,7 @@ mod tests {
             let center = Vector2::new(x, y) * distance_m;
             discs.near = vec![Near { center, radius_m, power: 1.0 }];
             discs.work_out();
-            let off = geometry::wrap_rad(f64::from(discs.angle[0]) - libm::atan2(y, x)).abs();
+            let off = interfaces::wrap_rad(f64::from(discs.angle[0]) - libm::atan2(y, x)).abs();
             let half = libm::asin(radius_m / distance_m);
             assert!(off + half <= f64::from(discs.half[0]), "{i}");
             assert!(1.0 / (distance_m - radius_m) <= f64::from(discs.nearest[0]), "{i}");

@@ -10,7 +10,7 @@ use crate::files::Files;
 use crate::physics::shape::{Rectangle, TOUCH_M, turned};
 use crate::reader::Reading;
 use crate::together::Together;
-use geometry::{GridFrame, rotation};
+use interfaces::{GridFrame, rotation};
 use nalgebra::Point2;
 use serde_spanned::Spanned;
 use std::ops::Range;

@@ -9,7 +9,7 @@ use crate::findings::{Findings, Severity};
 use crate::floor_plan::{Bitmap, FloorPlan, MAX_FILE_BYTES, ros};
 use crate::physics::shape::Rectangle;
 use crate::together::Together;
-use geometry::{heading_rad, pose};
+use interfaces::{heading_rad, pose};
 use nalgebra::{Point2, Vector2};
 use serde_spanned::Spanned;
 use std::path::Path;

@@ -50,7 +50,7 @@ pub(super) fn footprint(source: &Source<'_>, file: &RobotFile) -> Result<Footpri
             let turns = convex::sides(&corners).map(|(a, b)| libm::atan2((b - a).y, (b - a).x));
             let turns: Vec<f64> = turns.collect();
             let around: f64 =
-                (0..turns.len()).map(|i| geometry::wrap_rad(turns[(i + 1) % turns.len()] - turns[i])).sum();
+                (0..turns.len()).map(|i| interfaces::wrap_rad(turns[(i + 1) % turns.len()] - turns[i])).sum();
             if (0..corners.len()).any(|i| turn(i) < 1e-6) || around > 7.0 {
                 return error("`robot.footprint_m` is not convex", "every corner must point outwards");
             }

@@ -6,7 +6,7 @@ use super::numbers::Table;
 use super::senses::range;
 use crate::error::{Source, WorldError};
 use crate::together::Together;
-use geometry::pose;
+use interfaces::pose;
 use nalgebra::{Isometry2, Point2};
 
 /// More lasers on one robot than this are refused.

@@ -29,7 +29,7 @@ use crate::error::{Source, WorldError};
 use crate::files::{Disk, Files};
 use crate::kind::Kind;
 use crate::reader;
-use geometry::GridFrame;
+use interfaces::GridFrame;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

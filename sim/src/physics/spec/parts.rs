@@ -2,7 +2,7 @@
 
 use super::{Behaviour, BumperSpec, FiducialSpec, SonarSpec};
 use crate::physics::form::Form;
-use geometry::Scan;
+use interfaces::Scan;
 use nalgebra::{Isometry2, Point2};
 use std::f64::consts::{PI, TAU};
 

@@ -13,7 +13,7 @@ use crate::physics::convex;
 use crate::physics::form::Form;
 use crate::physics::shape::TOUCH_M;
 use crate::together::Together;
-use geometry::pose;
+use interfaces::pose;
 use nalgebra::{Isometry2, Point2};
 
 /// What a robot is put into. What is wrong in the file is missing here.

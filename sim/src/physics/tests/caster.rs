@@ -5,7 +5,7 @@ use super::*;
 use crate::physics::fleet::corners;
 use crate::physics::laser::{Laser, beams};
 use crate::physics::rays::{Scene, Scratch};
-use geometry::{pose, rotation};
+use interfaces::{pose, rotation};
 use nalgebra::Point2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

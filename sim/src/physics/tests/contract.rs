@@ -1,5 +1,5 @@
 use super::*;
-use geometry::LaserReading;
+use interfaces::LaserReading;
 
 fn run(spec: &WorldSpec, seed: u64, steps: usize) -> Vec<LaserReading> {
     let mut world = PhysicsWorld::new(spec, seed);
@@ -90,8 +90,8 @@ fn exact_odometry_is_the_truth_and_drifting_odometry_drifts() {
     assert_eq!(drifting.true_pose(), exact.true_pose());
     assert!((reading.twist.linear_mps - 0.55).abs() < 1e-5);
     // Both started at heading 0, and were up to speed within the first step.
-    let felt_rad = geometry::heading_rad(&reading.pose);
-    assert!(geometry::wrap_rad(felt_rad - 1.05 * 0.5 * 10.0).abs() < 1e-3, "{felt_rad}");
+    let felt_rad = interfaces::heading_rad(&reading.pose);
+    assert!(interfaces::wrap_rad(felt_rad - 1.05 * 0.5 * 10.0).abs() < 1e-3, "{felt_rad}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::fleet::{house, robot};
 use super::*;
-use geometry::{LaserReading, pose, wrap_rad};
+use interfaces::{LaserReading, pose, wrap_rad};
 use nalgebra::Isometry2;
 
 /// A controller that always says the same.
@@ -110,7 +110,7 @@ fn every_drive_gets_where_it_is_told_to_go() {
             fleet.run_until(40.0, &mut Say(Command::GoTo(goal)));
             let (at, velocity) = now(&fleet);
             let off_m = (at.translation.vector - goal.translation.vector).norm();
-            let off_rad = wrap_rad(geometry::heading_rad(&at) - heading).abs();
+            let off_rad = wrap_rad(interfaces::heading_rad(&at) - heading).abs();
             let (near_m, near_rad) = if drive.contains("car") { (0.05, 4.0) } else { (0.0101, 0.0101) };
             assert!(
                 off_m <= near_m && off_rad <= near_rad,

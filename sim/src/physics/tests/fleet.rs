@@ -1,7 +1,7 @@
 //! Many robots, each with a behaviour of its own.
 
 use super::*;
-use geometry::LaserReading;
+use interfaces::LaserReading;
 use nalgebra::{Isometry2, Point2};
 
 const ROBOT: &str = "radius_m = 0.2\n[robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 120.0\n\
@@ -276,18 +276,18 @@ fn a_robot_is_set_down_where_there_is_room() {
     for (robot, x, y) in
         [(0, 4.0, 3.7), (0, 6.0, 1.0), (0, 0.1, 2.0), (0, -3.0, 2.0), (0, f64::NAN, 2.0), (2, 3.0, 3.0)]
     {
-        assert!(fleet.teleport(robot, &geometry::pose(x, y, 0.0)).is_err(), "{robot} to {x}, {y}");
+        assert!(fleet.teleport(robot, &interfaces::pose(x, y, 0.0)).is_err(), "{robot} to {x}, {y}");
     }
     assert_eq!(
-        fleet.teleport(0, &geometry::pose(3.0, 3.0, f64::NAN)),
+        fleet.teleport(0, &interfaces::pose(3.0, 3.0, f64::NAN)),
         Err(TeleportError::Outside { x_m: 3.0, y_m: 3.0 })
     );
     assert_eq!(fleet.snapshot(), before);
-    assert_eq!(fleet.teleport(0, &geometry::pose(9.0, 9.0, 1.0)), Ok(()));
+    assert_eq!(fleet.teleport(0, &interfaces::pose(9.0, 9.0, 1.0)), Ok(()));
     fleet.run_until(1.05, &mut ());
     let pose = pose(&fleet, 0);
-    assert!((pose.translation.vector - geometry::pose(9.0, 9.0, 1.0).translation.vector).norm() < 1e-6);
-    assert!((geometry::heading_rad(&pose) - 1.0).abs() < 1e-6);
+    assert!((pose.translation.vector - interfaces::pose(9.0, 9.0, 1.0).translation.vector).norm() < 1e-6);
+    assert!((interfaces::heading_rad(&pose) - 1.0).abs() < 1e-6);
     let reading =
         fleet.robots().next().and_then(|robot| robot.sweep).map(|sweep| sweep.reading.clone()).unwrap();
     assert!((reading.pose.translation.x - 9.0).abs() < 1e-6);

@@ -1,7 +1,7 @@
 //! Walls from pictures, and the worlds that are made of them.
 
 use crate::physics::{Fleet, FleetSpec, RobotView, WorldSpec};
-use geometry::{LaserReading, Twist};
+use interfaces::{LaserReading, Twist};
 use nalgebra::Point2;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

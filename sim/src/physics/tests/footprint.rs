@@ -2,7 +2,7 @@
 
 use super::fleet::{house, robot};
 use super::*;
-use geometry::LaserReading;
+use interfaces::LaserReading;
 use nalgebra::Point2;
 
 /// A robot of 0.6 × 0.3 m at [3, 3], whose middle is 0.1 m behind that of its outline.
@@ -88,7 +88,7 @@ fn others_see_its_sides_and_truth_knows_its_cells() {
 fn it_can_be_set_down_where_it_fits() {
     let mut fleet = Fleet::new(&house(&[long(0.0)], ""), 0);
     // The outer wall ends at 0.1 m.
-    let put = |fleet: &mut Fleet, y: f64, heading: f64| fleet.teleport(0, &geometry::pose(3.0, y, heading));
+    let put = |fleet: &mut Fleet, y: f64, heading: f64| fleet.teleport(0, &interfaces::pose(3.0, y, heading));
     assert_eq!(put(&mut fleet, 0.26, 0.0), Ok(()));
     assert!(matches!(put(&mut fleet, 0.26, 1.57), Err(TeleportError::Occupied { .. })));
     assert!(matches!(put(&mut fleet, 0.1, 1.57), Err(TeleportError::Outside { .. })));

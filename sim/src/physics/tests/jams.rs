@@ -2,7 +2,7 @@
 
 use super::things::pushed;
 use super::*;
-use geometry::LaserReading;
+use interfaces::LaserReading;
 
 /// A hall of 20 m × 4 m, and what is in it.
 fn hall(step_s: f64, things: &str) -> Fleet {

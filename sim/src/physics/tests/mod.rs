@@ -19,7 +19,7 @@ mod snapshot;
 mod things;
 
 use super::*;
-use geometry::{Twist, World};
+use interfaces::{Twist, World};
 
 const FOUR_ROOMS: &str = include_str!("../../../../worlds/four_rooms.toml");
 

@@ -1,5 +1,5 @@
 use super::*;
-use geometry::Cell;
+use interfaces::Cell;
 
 const BOX: &str = "[[obstacle]]\nname = \"box\"\nmin_m = [3.0, 1.8]\nmax_m = [3.4, 2.2]\n";
 

@@ -5,7 +5,7 @@ use crate::physics::fleet::corners;
 use crate::physics::laser::{Laser, beams};
 use crate::physics::rays::{Disc, Scene, Scratch};
 use crate::physics::{bodies::Bodies, chance};
-use geometry::rotation;
+use interfaces::rotation;
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::physics::form::Form;
-use geometry::LaserReading;
+use interfaces::LaserReading;
 use nalgebra::Point2;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;

@@ -2,7 +2,7 @@
 
 use super::fleet::{house, robot};
 use super::*;
-use geometry::LaserReading;
+use interfaces::LaserReading;
 
 const SENSES: &str = "[robot.bumper]\nsectors = 4\nfov_deg = 180.0\n\
     [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0\n\
@@ -51,7 +51,7 @@ fn bumpers_feel_where_they_are_touched() {
         let mut fleet = Fleet::new(&text, 0);
         // The outer wall on the left ends at 0.1 m: it drives into it, turned.
         let heading: f64 = std::f64::consts::PI + f64::to_radians(turn_deg);
-        fleet.teleport(0, &geometry::pose(0.305, 3.0, heading)).unwrap();
+        fleet.teleport(0, &interfaces::pose(0.305, 3.0, heading)).unwrap();
         assert!(!fleet.robots().next().unwrap().bumpers().any(|pressed| pressed));
         let mut felt = vec![false; 4];
         for _ in 0..20 {

@@ -2,7 +2,7 @@
 
 use super::fleet::{crowd, hash, nobody, robot};
 use super::*;
-use geometry::LaserReading;
+use interfaces::LaserReading;
 use proptest::prelude::*;
 
 /// Every kind of robot and obstacle, and two robots that collide.

@@ -2,7 +2,7 @@
 
 use super::fleet::{house, robot};
 use super::*;
-use geometry::LaserReading;
+use interfaces::LaserReading;
 use nalgebra::Point2;
 
 /// A heavy robot at [1, 2] that drives straight on along x, and things.

@@ -3,7 +3,7 @@
 use crate::physics::convex;
 use crate::physics::form::Form;
 use crate::physics::shape::{Rectangle, TOUCH_M};
-use geometry::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame};
 use nalgebra::{Point2, Vector2};
 
 /// Less of a cell than this is rounding, as a share of its area.

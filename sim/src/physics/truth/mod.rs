@@ -8,7 +8,7 @@ mod tests;
 use super::form::Form;
 use super::report::Body;
 use super::shape::Rectangle;
-use geometry::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame};
 use nalgebra::Point2;
 
 /// What really is in a cell.

@@ -3,7 +3,7 @@
 use super::TrueState;
 use super::cover;
 use crate::physics::shape::Rectangle;
-use geometry::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame};
 
 /// The state of a cell of which a share is not covered.
 pub(super) fn state_of(open_share: f64) -> TrueState {

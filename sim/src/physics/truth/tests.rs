@@ -1,6 +1,6 @@
 use super::*;
 use crate::physics::{PhysicsWorld, WorldSpec};
-use geometry::{Twist, World};
+use interfaces::{Twist, World};
 use nalgebra::Vector2;
 
 const TURNED: &str = include_str!("../../../../worlds/turned_house.toml");
@@ -131,7 +131,7 @@ fn truth_is_what_sampled_points_say() {
 fn of_an_askew_wall_the_inner_side_can_be_seen() {
     let world = PhysicsWorld::new(&WorldSpec::parse("t", TURNED).unwrap(), 0);
     let truth = world.truth();
-    let (middle, back) = (Point2::new(6.0, 6.0), geometry::rotation(-10.0_f64.to_radians()));
+    let (middle, back) = (Point2::new(6.0, 6.0), interfaces::rotation(-10.0_f64.to_radians()));
     let (mut free, mut blocked) = (0, 0);
     for index in 0..truth.frame().len() {
         let cell = truth.frame().cell(index);

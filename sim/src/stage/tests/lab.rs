@@ -3,7 +3,7 @@
 use super::{lab_files, read};
 use crate::physics::{Behaviour, Fleet};
 use crate::stage::{Drive, load};
-use geometry::Twist;
+use interfaces::Twist;
 use std::path::Path;
 
 #[test]
@@ -52,7 +52,7 @@ fn the_example_runs() {
     let mut fleet = Fleet::new(&spec, 1);
     let start = fleet.robots().next().unwrap().pose;
     let twist = Twist { linear_mps: 0.3, angular_radps: 0.0 };
-    fleet.run_until(5.0, &mut |_: &crate::physics::RobotView<'_>, _: &geometry::LaserReading| twist);
+    fleet.run_until(5.0, &mut |_: &crate::physics::RobotView<'_>, _: &interfaces::LaserReading| twist);
     let moved = fleet.robots().next().unwrap().pose.translation.vector - start.translation.vector;
     assert!(moved.norm() > 0.2, "{moved}");
 }

@@ -153,8 +153,8 @@ proptest::proptest! {
 /// Lets a few steps pass.
 fn run(spec: &GridSpec) {
     let mut world = crate::grid::GridWorld::new(spec, 0);
-    for step in geometry::Step::ALL {
-        geometry::World::act(&mut world, &step);
-        geometry::World::sense(&mut world);
+    for step in interfaces::Step::ALL {
+        interfaces::World::act(&mut world, &step);
+        interfaces::World::sense(&mut world);
     }
 }

@@ -121,7 +121,7 @@ impl DoorSpec {
     pub fn shape(&self, closed: &Rectangle, openness: f64) -> Rectangle {
         match self.leaf {
             Leaf::Hinged { hinge, open_rad } => {
-                closed.turned(&geometry::rotation(open_rad * openness), &hinge)
+                closed.turned(&interfaces::rotation(open_rad * openness), &hinge)
             }
             Leaf::Sliding { by_m } => closed.moved(by_m * openness),
         }

@@ -292,7 +292,7 @@ proptest::proptest! {
         let changed = format!("{}{number}{}", &GOOD[..at], &GOOD[end..]);
         if let Ok(spec) = WorldSpec::parse("closet.toml", &changed) {
             let mut world = crate::physics::PhysicsWorld::new(&spec, 0);
-            geometry::World::act(&mut world, &geometry::Twist { linear_mps: 1.0, angular_radps: 1.0 });
+            interfaces::World::act(&mut world, &interfaces::Twist { linear_mps: 1.0, angular_radps: 1.0 });
         }
     }
 }

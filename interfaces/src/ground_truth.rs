@@ -1,0 +1,66 @@
+use crate::{Cell, GridFrame};
+use std::borrow::Cow;
+
+/// The true state of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum TrueState {
+    /// No solid overlaps the cell. Touching the border of the cell is not overlapping.
+    #[default]
+    Free,
+    /// Solids cover a part of the cell. Metrics leave out such a cell.
+    PartlyCovered,
+    /// Solids cover the whole cell.
+    Blocked,
+}
+
+/// A change of the true state of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrueChange {
+    /// The time of the change: seconds, or steps in a grid world.
+    pub time: f64,
+    /// The cell that changed.
+    pub cell: Cell,
+    /// The state before the change.
+    pub before: TrueState,
+    /// The state after the change.
+    pub after: TrueState,
+}
+
+/// What is true in a simulated world, cell by cell: the reference of every metric. No localizer, mapper,
+/// agent or controller may read it.
+///
+/// Cells are addressed by their index in row-major order of [`GroundTruth::frame`]. The robot that explores
+/// is not part of the ground truth: its own body covers no cell.
+pub trait GroundTruth {
+    /// The position and the size of the grid of cells.
+    fn frame(&self) -> &GridFrame;
+
+    /// The time since the start of the world: seconds, or steps in a grid world.
+    fn elapsed(&self) -> f64;
+
+    /// The state of a cell now.
+    fn state(&self, index: usize) -> TrueState;
+
+    /// Whether a cell can be seen now: it is free, or it is blocked and shares a side with a cell that is
+    /// not blocked; and no wall separates it from the start of the robot.
+    fn can_be_seen(&self, index: usize) -> bool;
+
+    /// The number of times that a cell has become blocked so far.
+    fn block_events(&self, index: usize) -> u32;
+
+    /// The true cycle rate of a cell so far: block events per unit of time; 0 at the start.
+    fn cycle_rate(&self, index: usize) -> f64 {
+        let elapsed = self.elapsed();
+        if elapsed > 0.0 { f64::from(self.block_events(index)) / elapsed } else { 0.0 }
+    }
+
+    /// Whether any moving thing has touched a cell (physics world) or can enter it (grid world).
+    fn is_swept(&self, index: usize) -> bool;
+
+    /// The swept cells of every moving thing, sorted by index. In a physics world a cell belongs to the
+    /// first thing that touched it; in a grid world it belongs to every block whose path contains it.
+    fn moving_things(&self) -> Cow<'_, [Vec<usize>]>;
+
+    /// The changes since the last command, in the order in which they happened.
+    fn changes(&self) -> &[TrueChange];
+}

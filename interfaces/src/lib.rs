@@ -1,0 +1,31 @@
+//! The values and traits that the crates exchange: cells and grids, scans and readings, commands, the
+//! traits [`World`] and [`GroundTruth`], errors in settings, and seeded random streams.
+//!
+//! This crate knows no other crate of the workspace. It has no clock and no input or output.
+//!
+//! Units are SI; the name of a scalar carries its unit. Frames follow REP-103 (x forward, y left,
+//! counter-clockwise radians). Grids are row-major with row 0 at the lowest y.
+
+mod angle;
+mod cell;
+mod command;
+mod grid;
+mod ground_truth;
+mod random;
+mod reading;
+mod scan;
+mod settings_error;
+mod state;
+mod world;
+
+pub use angle::{heading_rad, pose, rotation, wrap_rad};
+pub use cell::Cell;
+pub use command::{Step, Twist};
+pub use grid::{Grid, GridFrame};
+pub use ground_truth::{GroundTruth, TrueChange, TrueState};
+pub use random::{Purpose, RandomStream};
+pub use reading::{CellReading, LaserReading, Reading};
+pub use scan::{Scan, ScanError};
+pub use settings_error::SettingsError;
+pub use state::{CellState, Event, Transition};
+pub use world::World;
