@@ -53,7 +53,8 @@ fn main() -> anyhow::Result<()> {
     for path in std::env::args().skip(1) {
         let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {path}"))?;
         let run: Value = serde_json::from_str(&text).with_context(|| format!("{path} is not JSON"))?;
-        let world = run["world"].as_str().with_context(|| format!("{path} is not a summary.json"))?.to_owned();
+        let world =
+            run["world"].as_str().with_context(|| format!("{path} is not a summary.json"))?.to_owned();
         match worlds.iter_mut().find(|(name, _)| *name == world) {
             Some((_, runs)) => runs.push(run),
             None => worlds.push((world, vec![run])),
@@ -76,7 +77,8 @@ fn entry((_, key, factor, decimals, unit, worst): &Row, runs: &[Value]) -> Strin
     let value = |run: &Value| {
         let number = run.pointer(key)?.as_f64()?;
         // The report counts approached goals as reached.
-        let approached = if *key == "/goals/reached" { run.pointer("/goals/nearest")?.as_f64()? } else { 0.0 };
+        let approached =
+            if *key == "/goals/reached" { run.pointer("/goals/nearest")?.as_f64()? } else { 0.0 };
         Some((number - approached) * factor)
     };
     let values: Vec<f64> = runs.iter().filter_map(value).collect();
