@@ -11,7 +11,7 @@ pub trait Reading {
 }
 
 /// A laser scan with the pose of the same instant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct LaserReading {
     /// The time of scan and pose, s.
     pub time_s: f64,

@@ -6,11 +6,9 @@ mod rooms;
 mod tests;
 
 use super::spec::{BlockSpec, GridSpec, MAX_DWELL, MAX_SENSOR_RADIUS, parts};
-use interfaces::{Cell, Grid, GridFrame};
+use interfaces::{Cell, Grid, GridFrame, Purpose, RandomStream};
 use nalgebra::Point2;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use std::ops::RangeInclusive;
 
 /// A map that had no room for all blocks is drawn anew, at most so often.
@@ -86,7 +84,7 @@ impl GridSpec {
     /// free-standing walls, blocks whose paths keep apart, the robot in the centre. All free cells
     /// are connected. The same settings and seed give the same world, on every machine.
     pub fn generate(settings: &GenerateSettings, seed: u64) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut rng = RandomStream::new(seed, Purpose::WorldGenerator);
         let wanted = between(&mut rng, settings.blocks, 0..=1000) as usize;
         let mut best = draw(settings, wanted, seed, &mut rng);
         for _ in 1..MAX_MAPS {
@@ -103,7 +101,7 @@ impl GridSpec {
 }
 
 /// A world with as many of the `wanted` blocks as there is room for.
-fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut ChaCha8Rng) -> GridSpec {
+fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomStream) -> GridSpec {
     let (width, height) = (between(rng, settings.width, 9..=1000), between(rng, settings.height, 9..=1000));
     let frame = GridFrame::new(Point2::origin(), 1.0, width as usize, height as usize);
     let frame = frame.expect("at most a million cells of 1 m make a frame");
@@ -125,7 +123,7 @@ fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut ChaCha8
     }
 }
 
-fn block(settings: &GenerateSettings, number: usize, path: paths::Path, rng: &mut ChaCha8Rng) -> BlockSpec {
+fn block(settings: &GenerateSettings, number: usize, path: paths::Path, rng: &mut RandomStream) -> BlockSpec {
     let (low, high) = cut(settings.dwell, 1..=MAX_DWELL);
     let (log_low, log_high) = (libm::log(f64::from(low)), libm::log(f64::from(high) + 1.0));
     let log_dwell = log_low + rng.random::<f64>() * (log_high - log_low);
@@ -135,7 +133,7 @@ fn block(settings: &GenerateSettings, number: usize, path: paths::Path, rng: &mu
 }
 
 /// A number between the two of a setting.
-fn between(rng: &mut ChaCha8Rng, pair: [u32; 2], sense: RangeInclusive<u32>) -> i32 {
+fn between(rng: &mut RandomStream, pair: [u32; 2], sense: RangeInclusive<u32>) -> i32 {
     let (low, high) = cut(pair, sense);
     rng.random_range(low..=high) as i32
 }

@@ -3,9 +3,8 @@
 
 use super::super::spec::Course;
 use super::{GenerateSettings, PathKind, cut};
-use interfaces::{Cell, Grid};
+use interfaces::{Cell, Grid, RandomStream};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 /// A path that finds no place is drawn anew, at most so often.
 const MAX_TRIES: usize = 400;
@@ -23,7 +22,7 @@ pub(super) fn paths(
     walls: &Grid<bool>,
     start: Cell,
     wanted: usize,
-    rng: &mut ChaCha8Rng,
+    rng: &mut RandomStream,
 ) -> Vec<Path> {
     let mut open = walls.map(|wall| !wall);
     close_around(&mut open, start);
@@ -37,7 +36,7 @@ pub(super) fn paths(
 }
 
 /// A path over open cells, if there is one where it was drawn.
-fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut ChaCha8Rng) -> Option<Path> {
+fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut RandomStream) -> Option<Path> {
     let kinds = if settings.paths.is_empty() { &PathKind::ALL[..] } else { &settings.paths };
     let kind = kinds[rng.random_range(0..kinds.len())];
     let (low, high) = cut(settings.path_cells, 2..=1000);
@@ -51,7 +50,7 @@ fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut ChaCha8Rng) ->
     cells.iter().all(|cell| open.get(*cell) == Some(&true)).then_some(Path { cells, course })
 }
 
-fn line(first: Cell, length: u32, rng: &mut ChaCha8Rng) -> Vec<Cell> {
+fn line(first: Cell, length: u32, rng: &mut RandomStream) -> Vec<Cell> {
     let toward = first.neighbours4()[rng.random_range(0..4)];
     let (dx, dy) = (toward.x - first.x, toward.y - first.y);
     (0..length as i32).map(|step| Cell::new(first.x + step * dx, first.y + step * dy)).collect()
@@ -59,7 +58,7 @@ fn line(first: Cell, length: u32, rng: &mut ChaCha8Rng) -> Vec<Cell> {
 
 /// The border of a rectangle of `low` to `high` cells, either way round; `None` where no rectangle
 /// has such a border.
-fn ring(first: Cell, low: u32, high: u32, rng: &mut ChaCha8Rng) -> Option<Vec<Cell>> {
+fn ring(first: Cell, low: u32, high: u32, rng: &mut RandomStream) -> Option<Vec<Cell>> {
     // A border of c cells belongs to sides of c / 2 + 2 cells together, each of two or more.
     let (low, high) = (low.max(4).div_ceil(2), high / 2);
     if low > high {
@@ -85,7 +84,7 @@ fn ring(first: Cell, low: u32, high: u32, rng: &mut ChaCha8Rng) -> Option<Vec<Ce
     Some(cells)
 }
 
-fn winding(first: Cell, length: u32, open: &Grid<bool>, rng: &mut ChaCha8Rng) -> Option<Vec<Cell>> {
+fn winding(first: Cell, length: u32, open: &Grid<bool>, rng: &mut RandomStream) -> Option<Vec<Cell>> {
     let mut cells = vec![first];
     let mut side = rng.random_range(0..4);
     while cells.len() < length as usize {

@@ -2,9 +2,8 @@
 //! opening, so that all rooms stay connected.
 
 use super::{GenerateSettings, between, stands_free};
-use interfaces::{Cell, Grid, GridFrame};
+use interfaces::{Cell, Grid, GridFrame, RandomStream};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 /// No room is narrower, cells.
 const MIN_ROOM: i32 = 4;
@@ -20,7 +19,7 @@ pub(super) fn walls(
     settings: &GenerateSettings,
     frame: GridFrame,
     start: Cell,
-    rng: &mut ChaCha8Rng,
+    rng: &mut RandomStream,
 ) -> Grid<bool> {
     let mut walls = Grid::filled(frame, true);
     let (right, top) = (frame.width() as i32 - 2, frame.height() as i32 - 2);
@@ -52,7 +51,7 @@ fn divide(
     walls: &mut Grid<bool>,
     rooms: &mut Vec<Room>,
     start: Cell,
-    rng: &mut ChaCha8Rng,
+    rng: &mut RandomStream,
 ) -> bool {
     let index = rng.random_range(0..rooms.len());
     let (low, high) = rooms[index];
@@ -94,7 +93,7 @@ fn divide(
 }
 
 /// Puts up a short straight wall that nothing touches, if the place drawn allows it.
-fn pillar(walls: &mut Grid<bool>, start: Cell, rng: &mut ChaCha8Rng) -> bool {
+fn pillar(walls: &mut Grid<bool>, start: Cell, rng: &mut RandomStream) -> bool {
     let length = between(rng, PILLAR, 1..=100);
     let frame = *walls.frame();
     let first = frame.cell(rng.random_range(0..frame.len()));

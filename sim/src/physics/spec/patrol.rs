@@ -5,7 +5,7 @@ use super::check::Solid;
 use super::file::{BehaviourFile, Pair, RobotFile};
 use super::{Behaviour, PatrolSpec};
 use crate::error::{Source, WorldError};
-use crate::physics::minds::WALL_RELIEF_M;
+use crate::physics::behaviors::WALL_RELIEF_M;
 use crate::physics::shape::{TOUCH_M, point_segment_m};
 use crate::together::Together;
 use nalgebra::{Point2, Vector2};
