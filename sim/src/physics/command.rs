@@ -50,7 +50,7 @@ pub enum Command {
     Acceleration(Acceleration),
     /// To drive straight to this pose by odometry, and to stop there to within 0.01 m and 0.01 rad, without
     /// regard to obstacles. A car stops within 0.05 m, with any heading.
-    GoTo(Isometry2<f64>),
+    GoTo(#[serde(with = "interfaces::serde_pose")] Isometry2<f64>),
 }
 
 impl Command {

@@ -3,7 +3,8 @@
 //! The spec of a fleet is not in a snapshot. Every part of a fleet lists its changing values once, as
 //! [`Values`]; serde and postcard write them and read them back in the same order.
 
-use serde::{Serialize, de::DeserializeOwned};
+use nalgebra::Isometry2;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 /// The first eight bytes of a snapshot: the kind of data, and the version of the format.
 const MAGIC: u64 = u64::from_le_bytes(*b"fleet\0\0\x04");
@@ -22,7 +23,7 @@ pub enum SnapshotError {
     OtherSpec,
 }
 
-/// A value that a snapshot holds: any type that serde can write and read.
+/// A changing value of a fleet.
 pub(super) trait Value {
     /// Appends the value to `bytes`.
     fn write(&self, bytes: &mut Vec<u8>) -> postcard::Result<()>;
@@ -31,19 +32,48 @@ pub(super) trait Value {
     fn read(&mut self, bytes: &mut &[u8]) -> postcard::Result<()>;
 }
 
-impl<T: Serialize + DeserializeOwned> Value for T {
+impl<T: Serialize + DeserializeOwned> Value for &mut T {
     fn write(&self, bytes: &mut Vec<u8>) -> postcard::Result<()> {
-        postcard::to_io(self, bytes).map(|_| ())
+        postcard::to_io(&**self, bytes).map(|_| ())
     }
 
     fn read(&mut self, bytes: &mut &[u8]) -> postcard::Result<()> {
-        (*self, *bytes) = postcard::take_from_bytes(bytes)?;
+        (**self, *bytes) = postcard::take_from_bytes(bytes)?;
         Ok(())
     }
 }
 
-/// The changing values of a part of a fleet.
-pub(super) type Values<'a> = Vec<&'a mut dyn Value>;
+/// The changing values of a part of a fleet, each a [`value`] or a [`pose`].
+pub(super) type Values<'a> = Vec<Box<dyn Value + 'a>>;
+
+/// A value of any type that serde can write and read.
+pub(super) fn value<'a, T: Serialize + DeserializeOwned>(value: &'a mut T) -> Box<dyn Value + 'a> {
+    Box::new(value)
+}
+
+/// A pose.
+pub(super) fn pose(pose: &mut Isometry2<f64>) -> Box<dyn Value + '_> {
+    /// nalgebra knows no serde here.
+    struct Pose<'a>(&'a mut Isometry2<f64>);
+
+    #[derive(Deserialize, Serialize)]
+    struct Saved(#[serde(with = "interfaces::serde_pose")] Isometry2<f64>);
+
+    impl Value for Pose<'_> {
+        fn write(&self, bytes: &mut Vec<u8>) -> postcard::Result<()> {
+            (&mut Saved(*self.0)).write(bytes)
+        }
+
+        fn read(&mut self, bytes: &mut &[u8]) -> postcard::Result<()> {
+            let mut saved = Saved(*self.0);
+            (&mut saved).read(bytes)?;
+            *self.0 = saved.0;
+            Ok(())
+        }
+    }
+
+    Box::new(Pose(pose))
+}
 
 /// The snapshot of a fleet with these values. `spec` is the fingerprint of its spec.
 pub(super) fn write(spec: u64, values: Values<'_>) -> Vec<u8> {
@@ -74,7 +104,7 @@ pub(super) fn check(snapshot: &[u8], spec: u64) -> Result<&[u8], SnapshotError> 
 
 /// Reads values from the front of `bytes`.
 pub(super) fn read(bytes: &mut &[u8], values: Values<'_>) -> Result<(), SnapshotError> {
-    values.into_iter().try_for_each(|value| value.read(bytes)).map_err(|_| SnapshotError::Damaged)
+    values.into_iter().try_for_each(|mut value| value.read(bytes)).map_err(|_| SnapshotError::Damaged)
 }
 
 /// FNV-1a, word by word. It detects damage, not malice.

@@ -1,6 +1,6 @@
 use super::pace::Pace;
 use crate::physics::rays::Beams;
-use crate::physics::snapshot::Values;
+use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::RobotSpec;
 use interfaces::{LaserReading, Twist};
 use nalgebra::{UnitComplex, Vector2};
@@ -46,7 +46,7 @@ impl Legs {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        vec![&mut self.turning, &mut self.blocked]
+        vec![value(&mut self.turning), value(&mut self.blocked)]
     }
 
     /// The rotation from the frame of the robot to the frame of the leg along the unit vector `along`.

@@ -2,7 +2,7 @@ use super::Behavior;
 use super::legs::Legs;
 use super::pace::HEADING_GAIN;
 use crate::physics::rays::Beams;
-use crate::physics::snapshot::Values;
+use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::{PatrolSpec, RobotSpec};
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Point2, UnitComplex, Vector2};
@@ -97,7 +97,7 @@ impl Behavior for WallPatrol {
     }
 
     fn values(&mut self) -> Values<'_> {
-        let mut values: Values<'_> = vec![&mut self.outbound];
+        let mut values = vec![value(&mut self.outbound)];
         values.extend(self.legs.values());
         values
     }

@@ -1,7 +1,7 @@
 use super::Behavior;
 use super::pace::Pace;
 use crate::physics::rays::Beams;
-use crate::physics::snapshot::Values;
+use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::{RobotSpec, WanderSpec};
 use interfaces::{LaserReading, RandomStream, Twist};
 use nalgebra::Vector2;
@@ -111,7 +111,12 @@ impl Behavior for Wander {
     }
 
     fn values(&mut self) -> Values<'_> {
-        vec![&mut self.random, &mut self.turning, &mut self.curve_radps, &mut self.scans_left]
+        vec![
+            value(&mut self.random),
+            value(&mut self.turning),
+            value(&mut self.curve_radps),
+            value(&mut self.scans_left),
+        ]
     }
 
     fn boxed(&self) -> Box<dyn Behavior> {

@@ -2,7 +2,7 @@ use super::Behavior;
 use super::legs::Legs;
 use super::pace::HEADING_GAIN;
 use crate::physics::rays::Beams;
-use crate::physics::snapshot::Values;
+use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::{Repeat, RobotSpec, WaypointsSpec};
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Point2, UnitComplex, Vector2};
@@ -82,7 +82,7 @@ impl Behavior for Waypoints {
     }
 
     fn values(&mut self) -> Values<'_> {
-        let mut values: Values<'_> = vec![&mut self.next, &mut self.is_returning];
+        let mut values = vec![value(&mut self.next), value(&mut self.is_returning)];
         values.extend(self.legs.values());
         values
     }

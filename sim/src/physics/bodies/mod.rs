@@ -12,7 +12,7 @@ pub(super) use touch::Touch;
 use super::command::Velocity;
 use super::report::Body;
 use super::shape::Rectangle;
-use super::snapshot::Values;
+use super::snapshot::{Values, value};
 use super::spec::{FleetSpec, Motion, RobotSpec};
 use interfaces::{heading_rad, rotation};
 use nalgebra::{Isometry2, Translation2, Vector2};
@@ -36,7 +36,7 @@ pub(super) struct Bodies {
     predicts_for_all: bool,
 }
 
-#[derive(Clone, Deserialize, Serialize)]
+#[derive(Clone)]
 struct Robot {
     body: rapier::RigidBodyHandle,
     collider: rapier::ColliderHandle,
@@ -96,7 +96,9 @@ impl Bodies {
 
     /// The values that a snapshot holds. The same bodies must have been added before.
     pub(super) fn values(&mut self) -> Values<'_> {
-        vec![&mut self.world, &mut self.robots]
+        let mut values = vec![value(&mut self.world)];
+        values.extend(self.robots.iter_mut().flat_map(|robot| &mut robot.forward).map(value));
+        values
     }
 
     /// Adds a body that stands still.

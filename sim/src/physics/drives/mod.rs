@@ -3,7 +3,7 @@
 mod go_to;
 
 use super::command::{Command, Velocity};
-use super::snapshot::Values;
+use super::snapshot::{Values, value};
 use super::spec::{DriveKind, DriveLimits};
 use nalgebra::Isometry2;
 
@@ -29,7 +29,7 @@ impl Drive {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        vec![&mut self.velocity, &mut self.is_stalled]
+        vec![value(&mut self.velocity), value(&mut self.is_stalled)]
     }
 
     /// The velocity of the next physics step under a command. `at` is the pose by odometry. A command that is

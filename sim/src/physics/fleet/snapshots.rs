@@ -1,7 +1,7 @@
 //! The state of a fleet: back to the start, to bytes, and from bytes.
 
 use super::Fleet;
-use crate::physics::snapshot::{self, SnapshotError, Values};
+use crate::physics::snapshot::{self, SnapshotError, Values, value};
 use crate::physics::spec::FleetSpec;
 
 impl Fleet {
@@ -17,7 +17,8 @@ impl Fleet {
     pub fn snapshot(&self) -> Vec<u8> {
         let mut fleet = self.clone();
         let mut seed = fleet.seed;
-        let values = std::iter::chain([&mut seed as _], fleet.values()).collect();
+        let mut values = vec![value(&mut seed)];
+        values.extend(fleet.values());
         snapshot::write(fingerprint(&self.spec), values)
     }
 
@@ -29,7 +30,7 @@ impl Fleet {
     pub fn restored(spec: &FleetSpec, snapshot: &[u8]) -> Result<Self, SnapshotError> {
         let mut bytes = snapshot::check(snapshot, fingerprint(spec))?;
         let mut seed = 0_u64;
-        snapshot::read(&mut bytes, vec![&mut seed])?;
+        snapshot::read(&mut bytes, vec![value(&mut seed)])?;
         let mut fleet = Self::new(spec, seed);
         snapshot::read(&mut bytes, fleet.values())?;
         if !bytes.is_empty() {
@@ -41,7 +42,7 @@ impl Fleet {
     }
 
     fn values(&mut self) -> Values<'_> {
-        let mut values: Values<'_> = vec![&mut self.step];
+        let mut values = vec![value(&mut self.step)];
         values.extend(self.bodies.values());
         values.extend(self.robots.iter_mut().flat_map(|robot| robot.values()));
         values.extend(self.obstacles.iter_mut().flat_map(|obstacle| obstacle.values()));

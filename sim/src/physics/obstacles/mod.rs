@@ -6,7 +6,7 @@ mod door;
 use super::bodies::{Bodies, Handle, Mover};
 use super::report::Body;
 use super::shape::Rectangle;
-use super::snapshot::Values;
+use super::snapshot::{Values, pose, value};
 use super::spec::{Motion, ObstacleSpec};
 pub(super) use blockers::Blockers;
 use door::Door;
@@ -51,7 +51,7 @@ impl Obstacle {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        vec![&mut self.shape.pose, &mut self.state]
+        vec![pose(&mut self.shape.pose), value(&mut self.state)]
     }
 
     /// Whether the obstacle is present.

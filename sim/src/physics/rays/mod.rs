@@ -15,4 +15,5 @@ mod scene;
 mod visibility;
 
 pub(super) use beams::Beams;
-pub(super) use scene::{Disc, Scene, Scratch};
+pub(super) use circles::Disc;
+pub(super) use scene::{Scene, Scratch};

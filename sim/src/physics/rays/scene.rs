@@ -1,5 +1,5 @@
 use super::beams::{Beams, Hits};
-use super::circles::Discs;
+use super::circles::{Disc, Discs};
 use super::edges::{Edge, visible_edges};
 use super::polygons::{Polygons, Tested};
 use super::visibility::{PotentiallyVisibleSet, Reach};
@@ -7,15 +7,6 @@ use crate::physics::shape::Rectangle;
 use nalgebra::{Isometry2, Point2};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// A round body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::physics) struct Disc {
-    /// The centre, m.
-    pub(in crate::physics) center: Point2<f64>,
-    /// The radius, m.
-    pub(in crate::physics) radius_m: f64,
-}
 
 /// Memory for casting rays, kept from cast to cast.
 #[derive(Clone, Debug, Default)]

@@ -13,7 +13,7 @@ use super::form::Form;
 use super::rays::{Beams, Scratch};
 use super::report::Body;
 use super::sensors::{self, Platform, Sensor, SensorReading, Surroundings};
-use super::snapshot::Values;
+use super::snapshot::{Values, pose, value};
 use super::spec::RobotSpec;
 use interfaces::{LaserReading, Purpose, RandomStream};
 use nalgebra::{Isometry2, Point2};
@@ -75,14 +75,14 @@ impl Robot {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let mut values: Values<'_> = vec![
-            &mut self.pose,
-            &mut self.previous_pose,
-            &mut self.velocity,
-            &mut self.drove,
-            &mut self.touching,
-            &mut self.pressed_bumpers,
-            &mut self.command,
+        let mut values = vec![
+            pose(&mut self.pose),
+            pose(&mut self.previous_pose),
+            value(&mut self.velocity),
+            value(&mut self.drove),
+            value(&mut self.touching),
+            value(&mut self.pressed_bumpers),
+            value(&mut self.command),
         ];
         values.extend(self.drive.values());
         values.extend(self.odometry.values());

@@ -1,4 +1,4 @@
-use crate::physics::snapshot::Values;
+use crate::physics::snapshot::{self, Values, value};
 use crate::physics::spec::{DriveKind, OdometryError, RobotSpec};
 use interfaces::{RandomStream, Twist, pose, wrap_rad};
 use nalgebra::{Isometry2, Vector2};
@@ -30,7 +30,7 @@ impl Odometry {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        vec![&mut self.noise, &mut self.pose, &mut self.heading_rad]
+        vec![value(&mut self.noise), snapshot::pose(&mut self.pose), value(&mut self.heading_rad)]
     }
 
     /// Starts anew at a true pose.

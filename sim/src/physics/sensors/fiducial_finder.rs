@@ -2,7 +2,7 @@ use super::{Platform, Sensor, SensorReading, Surroundings};
 use crate::physics::form::Form;
 use crate::physics::rays::{Beams, Scratch};
 use crate::physics::report::Body;
-use crate::physics::snapshot::Values;
+use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::FiducialSpec;
 use interfaces::rotation;
 use nalgebra::{Isometry2, Point2};
@@ -83,7 +83,7 @@ impl Sensor for FiducialFinder {
     }
 
     fn values(&mut self) -> Values<'_> {
-        vec![&mut self.found]
+        vec![value(&mut self.found)]
     }
 
     fn boxed(&self) -> Box<dyn Sensor> {

@@ -1,6 +1,6 @@
 use super::{Platform, Sensor, SensorReading, Surroundings, reported};
 use crate::physics::rays::{Beams, Scratch};
-use crate::physics::snapshot::Values;
+use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::LaserSpec;
 use interfaces::{LaserReading, Purpose, RandomStream, Twist};
 use nalgebra::Isometry2;
@@ -85,7 +85,7 @@ impl Sensor for LaserScanner {
     }
 
     fn values(&mut self) -> Values<'_> {
-        vec![&mut self.noise, &mut self.dropout, &mut self.reading]
+        vec![value(&mut self.noise), value(&mut self.dropout), value(&mut self.reading)]
     }
 
     fn boxed(&self) -> Box<dyn Sensor> {

@@ -1,6 +1,6 @@
 use super::{Platform, Sensor, SensorReading, Surroundings, reported};
 use crate::physics::rays::{Beams, Scratch};
-use crate::physics::snapshot::Values;
+use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::SonarSpec;
 use interfaces::{Purpose, RandomStream};
 use serde::{Deserialize, Serialize};
@@ -66,7 +66,7 @@ impl Sensor for Sonar {
     }
 
     fn values(&mut self) -> Values<'_> {
-        vec![&mut self.noise, &mut self.reading]
+        vec![value(&mut self.noise), value(&mut self.reading)]
     }
 
     fn boxed(&self) -> Box<dyn Sensor> {
