@@ -11,7 +11,6 @@ use super::snapshot::Values;
 use super::spec::{Behaviour, RobotSpec};
 use interfaces::{LaserReading, RandomStream, Twist};
 use nalgebra::Vector2;
-pub(super) use wall_patrol::WALL_RELIEF_M;
 use wall_patrol::WallPatrol;
 use wander::Wander;
 use waypoints::Waypoints;

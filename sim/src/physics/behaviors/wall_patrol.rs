@@ -11,8 +11,6 @@ use nalgebra::{Point2, UnitComplex, Vector2};
 const ARRIVED_M: f64 = 0.01;
 /// Points this near to the expected wall belong to the wall, m.
 const WALL_SLACK_M: f64 = 0.1;
-/// Bodies that protrude from the wall by more than this are in the way, m.
-pub(in crate::physics) const WALL_RELIEF_M: f64 = 0.05;
 /// Free space kept on the open side, m.
 const SIDE_MARGIN_M: f64 = 0.05;
 /// Steering towards the distance of the wall, rad per m, and its bound, rad.
@@ -55,7 +53,7 @@ impl WallPatrol {
         let wall_m = self.spec.wall_distance_m;
         let (side, radius_m) = (self.wall_side(), self.legs.radius_m);
         let open_m = radius_m + SIDE_MARGIN_M;
-        let walled_m = open_m.min(wall_m - WALL_RELIEF_M);
+        let walled_m = open_m.min(wall_m - PatrolSpec::WALL_RELIEF_M);
         let (mut sum_m, mut count, mut gap_m) = (0.0, 0.0, f64::INFINITY);
         for point in self.legs.points(reading, lean) {
             let toward_wall_m = point.y * side;

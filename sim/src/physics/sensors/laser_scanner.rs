@@ -17,7 +17,7 @@ pub(in crate::physics) struct LaserScanner {
 }
 
 impl LaserScanner {
-    /// A scanner with `beams`, which are [`beams`] of its spec, and random streams with the index `stream`.
+    /// A scanner with the `beams` of its spec (see [`SharedBeams`]), and random streams with the index `stream`.
     pub(in crate::physics) fn new(spec: &LaserSpec, beams: Arc<Beams>, seed: u64, stream: usize) -> Self {
         Self {
             spec: *spec,
@@ -93,11 +93,6 @@ impl Sensor for LaserScanner {
     }
 }
 
-/// The beams of a laser.
-pub(in crate::physics) fn beams(spec: &LaserSpec) -> Beams {
-    Beams::new(spec.angle_min_rad(), spec.angle_increment_rad(), spec.beams, spec.range_max_m)
-}
-
 /// The beams of all lasers. Lasers with the same spec share them.
 #[derive(Default)]
 pub(in crate::physics) struct SharedBeams {
@@ -109,7 +104,8 @@ impl SharedBeams {
         if let Some((_, beams)) = self.known.iter().find(|(known, _)| known == spec) {
             return Arc::clone(beams);
         }
-        let beams = Arc::new(beams(spec));
+        let (first_rad, spacing_rad) = (spec.angle_min_rad(), spec.angle_increment_rad());
+        let beams = Arc::new(Beams::new(first_rad, spacing_rad, spec.beams, spec.range_max_m));
         self.known.push((*spec, Arc::clone(&beams)));
         beams
     }

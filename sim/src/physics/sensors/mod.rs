@@ -12,8 +12,6 @@ pub use fiducial_finder::Fiducial;
 pub(super) use fiducial_finder::Tagged;
 pub(super) use laser_scanner::LaserScanner;
 pub(super) use laser_scanner::SharedBeams;
-#[cfg(test)]
-pub(super) use laser_scanner::beams;
 pub use sonar::SonarReading;
 
 use super::rays::{Beams, Scene, Scratch};
