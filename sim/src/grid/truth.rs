@@ -141,6 +141,10 @@ impl GroundTruth for GridTruth {
         self.is_swept[index]
     }
 
+    fn swept(&self) -> Cow<'_, [usize]> {
+        Cow::Borrowed(&self.swept)
+    }
+
     /// The cells of the path of every block, in the order of the world file.
     fn moving_things(&self) -> Cow<'_, [Vec<usize>]> {
         Cow::Borrowed(&self.things)
