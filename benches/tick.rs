@@ -15,7 +15,7 @@ mod args;
 #[expect(dead_code, reason = "a bench is driven by the agent alone")]
 mod parts;
 
-use agent::Agent;
+use agent::{Agent, Features};
 use args::Args;
 use clap::Parser;
 use controller::DiffDrive;
@@ -51,7 +51,7 @@ impl Life {
     fn tick(&mut self) {
         let reading = self.world.sense();
         self.mapper.update(&reading).expect("the physics world gives readings that make sense");
-        let now = Now { pose: &reading.pose, features: self.mapper.features(), mapper: &self.mapper };
+        let now = Now { pose: &reading.pose, features: Features::of(&mut self.mapper), mapper: &self.mapper };
         let command = self.pilot.command(&now);
         self.pilot.take_messages();
         self.world.act(&command);

@@ -28,6 +28,7 @@ pub mod trials;
 pub mod view;
 pub mod worlds;
 
+use agent::Features;
 use interfaces::{Reading, World};
 use mapper::{Evidence, Mapper, ReadingError};
 use pilot::{Now, Pilot};
@@ -55,7 +56,7 @@ where
     loop {
         let reading = world.sense();
         mapper.update(&reading)?;
-        let now = Now { pose: reading.pose(), features: mapper.features(), mapper };
+        let now = Now { pose: reading.pose(), features: Features::of(mapper), mapper };
         let command = pilot.command(&now);
         if watch(world, &reading, &now, pilot)?.is_break() {
             return Ok(());

@@ -5,12 +5,10 @@ use crate::oracle::Oracle;
 use crate::pilot::{Autonomous, Guide, Now, Pilot};
 use crate::report::{Sample, Trial};
 use crate::summary::map_hash;
-use agent::{Agent, AgentSettings};
+use agent::{Agent, AgentSettings, Features};
 use controller::{CellDrive, Controller};
-use interfaces::CellReading;
+use interfaces::{CellReading, Purpose, RandomStream};
 use mapper::{Mapper, MapperSettings, ReadingError};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use sim::grid::{GridSpec, GridTruth, GridWorld};
 use std::ops::ControlFlow;
 
@@ -52,34 +50,19 @@ pub struct Look<'a> {
     pub sample: Option<&'a Sample>,
 }
 
-/// Streams of chance, one per purpose; the world has its own.
-enum Purpose {
-    Agent,
-    Controller,
-}
-
-fn chance(seed: u64, purpose: Purpose) -> ChaCha8Rng {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream(match purpose {
-        Purpose::Agent => 1 << 32,
-        Purpose::Controller => 2 << 32,
-    });
-    rng
-}
-
 /// Runs one trial. `watch` is called at every step; when it says false, the trial is given up.
 ///
 /// # Errors
 ///
 /// When settings make no sense.
 pub fn live(life: &Life, mut watch: impl FnMut(Look) -> bool) -> Result<Option<Trial>, SettingsError> {
-    let controller = chance(life.seed, Purpose::Controller);
+    let controller = RandomStream::new(life.seed, Purpose::GridController);
     let controller = Controller::new(life.controller, CellDrive, controller)?;
-    match life.strategy {
-        TrialStrategy::Agent(choice) => {
+    match &life.strategy {
+        TrialStrategy::Agent(policy) => {
             let sensor_radius_m = f64::from(life.world.sensor_radius()) * life.world.frame().resolution_m();
             let settings = AgentSettings { sensor_radius_m, ..life.agent.clone() };
-            let agent = Agent::new(&settings, choice, chance(life.seed, Purpose::Agent))?;
+            let agent = Agent::new(&settings, policy, RandomStream::new(life.seed, Purpose::GridAgent))?;
             run(life, Autonomous::new(agent, controller), |_, _| (), &mut watch)
         }
         TrialStrategy::Oracle => {
@@ -128,7 +111,7 @@ fn run<G: Guide>(
         seed: life.seed,
         samples,
         strategy_share: pilot
-            .strategies(mapper.features())
+            .strategies(Features::of(&mut mapper))
             .iter()
             .map(|strategy| (strategy.name.to_owned(), strategy.share))
             .collect(),

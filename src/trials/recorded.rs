@@ -206,7 +206,7 @@ mod tests {
     use super::*;
     use crate::recording::RecordingOptions;
     use crate::trials::{Experiment, TrialStrategy};
-    use agent::{AgentSettings, StrategyChoice};
+    use agent::AgentSettings;
     use controller::CellDrive;
     use mapper::{Estimator, MapperSettings};
     use std::path::Path;
@@ -216,7 +216,7 @@ mod tests {
         Experiment {
             worlds: vec![crate::worlds::load_grid("two_blocks").unwrap()],
             estimators: vec![Estimator::Paper],
-            strategies: vec![TrialStrategy::Agent(StrategyChoice::Recency)],
+            strategies: vec![TrialStrategy::Agent("recency".parse().unwrap())],
             trials: 1,
             seed: 3,
             steps,

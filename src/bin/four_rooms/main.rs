@@ -5,6 +5,7 @@ mod output;
 mod parts;
 mod progress;
 
+use agent::Features;
 use anyhow::Context;
 use args::{Args, DriveChoice};
 use clap::Parser;
@@ -122,7 +123,7 @@ fn live(
         say(stderr(), format_args!("note: {problem}"));
     }
 
-    let now = Now { pose: world.true_pose(), features: mapper.features(), mapper: &mapper };
+    let now = Now { pose: world.true_pose(), features: Features::of(&mut mapper), mapper: &mapper };
     observer.finish(&world, &now, &pilot).map_err(anyhow::Error::from)?;
     let summary = output::summary(args, settings, &world, &mapper, &pilot, &observer, ended, wall_s);
     drop(pilot); // gives the terminal back before anything is printed
