@@ -7,7 +7,7 @@ use crate::report::{Sample, Trial};
 use crate::summary::map_hash;
 use agent::{Agent, AgentSettings, Features};
 use controller::{CellDrive, Controller};
-use interfaces::{CellReading, Purpose, RandomStream};
+use interfaces::{CellReading, GroundTruth, Purpose, RandomStream};
 use mapper::{Mapper, MapperSettings, ReadingError};
 use sim::grid::{GridSpec, GridTruth, GridWorld};
 use std::ops::ControlFlow;
