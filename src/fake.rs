@@ -2,6 +2,7 @@
 //! forth, and scans from a few lines of geometry. No physics, no agent.
 
 use crate::view::{ObstacleView, Outline, RobotView, Scene, Sight, StrategyView, View};
+use agent::Features;
 use evaluation::metrics::Scores;
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use mapper::{Mapper, MapperSettings};
@@ -154,7 +155,7 @@ impl FakeRun {
 
     /// Hands the run as it is now to `look`.
     pub(crate) fn with_view<T>(&mut self, look: impl FnOnce(&View) -> T) -> T {
-        let features = self.mapper.features();
+        let features = Features::of(&mut self.mapper);
         let goal = self.curious.waypoints[self.curious.next % self.curious.waypoints.len()];
         let robot = |name, driver: &Driver, is_curious: bool| RobotView {
             name,

@@ -1,8 +1,9 @@
 //! What a run looks like, as plain data: all that the recording and the pictures are told.
 
+use agent::Features;
 use evaluation::metrics::{RateErrors, Scores};
 use interfaces::{CellReading, LaserReading};
-use mapper::{Features, Mapper};
+use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use robot::{Message, StrategyState};
 

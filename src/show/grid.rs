@@ -203,7 +203,7 @@ fn rectangles(cells: &Grid<bool>) -> Vec<Outline> {
 mod tests {
     use super::*;
     use crate::recording::RecordingOptions;
-    use agent::{AgentSettings, StrategyChoice};
+    use agent::AgentSettings;
     use controller::CellDrive;
     use evaluation::trials::{Experiment, TrialStrategy};
     use mapper::{Estimator, MapperSettings};
@@ -214,7 +214,7 @@ mod tests {
         Experiment {
             worlds: vec![crate::worlds::load_grid("two_blocks").unwrap()],
             estimators: vec![Estimator::Paper],
-            strategies: vec![TrialStrategy::Agent(StrategyChoice::Recency)],
+            strategies: vec![TrialStrategy::Agent("recency".parse().unwrap())],
             trials: 1,
             seed: 3,
             steps,

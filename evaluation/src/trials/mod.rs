@@ -108,7 +108,7 @@ impl Experiment {
         let mapper = MapperSettings { estimator: self.estimators[job.estimator], ..self.mapper.clone() };
         Life {
             world: &self.worlds[job.world],
-            strategy: self.strategies[job.strategy],
+            strategy: self.strategies[job.strategy].clone(),
             seed: job.seed,
             steps: self.steps,
             mapper,
@@ -124,10 +124,7 @@ pub enum SettingsError {
     /// One of the mapper's.
     #[error(transparent)]
     Mapper(#[from] mapper::SettingsError),
-    /// One of the agent's.
+    /// One of the agent's or the controller's.
     #[error(transparent)]
-    Agent(#[from] agent::SettingsError),
-    /// One of the controller's.
-    #[error(transparent)]
-    Controller(#[from] controller::SettingsError),
+    Other(#[from] interfaces::SettingsError),
 }

@@ -3,7 +3,7 @@ use crate::map_hash::map_hash;
 use crate::metrics::{ChangingAccuracy, Prediction, map_scores, rate_scores};
 use crate::oracle::Oracle;
 use crate::report::{Sample, Trial};
-use agent::{Agent, AgentSettings};
+use agent::{Agent, AgentSettings, Features};
 use controller::{CellDrive, Controller};
 use interfaces::{CellReading, GroundTruth, Purpose, RandomStream, Step};
 use mapper::{Mapper, MapperSettings, ReadingError};
@@ -114,7 +114,7 @@ fn run<G: GoalSelector>(
         seed: trial.seed,
         samples,
         strategy_share: pilot
-            .strategies(mapper.features())
+            .strategies(Features::of(&mut mapper))
             .into_iter()
             .map(|strategy| (strategy.name, strategy.share))
             .collect(),
