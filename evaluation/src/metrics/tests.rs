@@ -3,7 +3,7 @@ use interfaces::{Cell, CellReading, CellState, Grid, GroundTruth, Step, TrueStat
 use mapper::{Estimator, Mapper, MapperSettings};
 use nalgebra::Isometry2;
 use sim::grid::{GridSpec, GridWorld};
-use sim::physics::{PhysicsWorld, Truth, WorldSpec};
+use sim::physics::{PhysicsWorld, Truth};
 
 fn physics_world() -> PhysicsWorld {
     let text = include_str!("../../../worlds/four_rooms.toml");
@@ -36,15 +36,14 @@ fn the_true_map_is_correct_and_the_empty_map_is_not() {
 fn coverage_and_age_count_the_cells_that_can_be_seen() {
     let world = physics_world();
     let truth = world.truth();
-    let visible: Vec<_> = (0..truth.frame().len())
-        .filter(|&index| GroundTruth::can_be_seen(truth, index))
-        .collect();
+    let visible: Vec<_> =
+        (0..truth.frame().len()).filter(|&index| GroundTruth::can_be_seen(truth, index)).collect();
     let mut mapper = Mapper::new(&MapperSettings::default(), *truth.frame()).unwrap();
     let half = visible.len() / 2;
     for (time, seen) in [(10.0, &visible[..half]), (30.0, &visible[..0])] {
-        let cells = seen.iter().map(|&index| {
-            (truth.frame().cell(index), truth.states()[index] == TrueState::Blocked)
-        });
+        let cells = seen
+            .iter()
+            .map(|&index| (truth.frame().cell(index), truth.states()[index] == TrueState::Blocked));
         let reading = CellReading { time, pose: *world.true_pose(), cells: cells.collect() };
         mapper.update(&reading).unwrap();
     }
@@ -90,8 +89,7 @@ fn mapper(world: &GridWorld) -> Mapper {
 /// Shows `mapper` the true state of the cells that `sees` picks.
 fn show(world: &GridWorld, mapper: &mut Mapper, sees: impl Fn(Cell) -> bool) {
     let truth = world.truth();
-    let cells =
-        (0..truth.frame().len()).map(|index| (truth.frame().cell(index), truth.is_blocked(index)));
+    let cells = (0..truth.frame().len()).map(|index| (truth.frame().cell(index), truth.is_blocked(index)));
     let cells = cells.filter(|&(cell, _)| sees(cell)).collect();
     mapper.update(&CellReading { time: truth.elapsed(), pose: Isometry2::identity(), cells }).unwrap();
 }
@@ -109,10 +107,7 @@ fn a_robot_that_sees_everything_is_correct() {
     let scores = rate_scores(&mapper, world.truth());
     assert_eq!((scores.rate_error_all, scores.log_error, scores.false_rate_hz), (Some(0.0), Some(0.0), 0.0));
     assert_eq!(scores.false_change_events, 0);
-    assert_eq!(
-        map_scores(&mapper, world.truth()),
-        MapScores { coverage: 1.0, map_quality: 1.0 }
-    );
+    assert_eq!(map_scores(&mapper, world.truth()), MapScores { coverage: 1.0, map_quality: 1.0 });
     let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
     accuracy.sample(&mapper, world.truth());
     prediction.sample(&mapper, world.truth());
@@ -128,10 +123,7 @@ fn a_robot_that_sees_nothing_is_incorrect_by_definition() {
     let scores = rate_scores(&mapper, world.truth());
     assert_eq!(scores.rate_error_all, Some(1.0));
     assert!((scores.log_error.unwrap() - 10.0_f64.ln()).abs() < 1e-12);
-    assert_eq!(
-        map_scores(&mapper, world.truth()),
-        MapScores { coverage: 0.0, map_quality: 0.0 }
-    );
+    assert_eq!(map_scores(&mapper, world.truth()), MapScores { coverage: 0.0, map_quality: 0.0 });
     let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
     accuracy.sample(&mapper, world.truth());
     prediction.sample(&mapper, world.truth());

@@ -61,7 +61,11 @@ impl Things {
         laser: &Isometry2<f64>,
     ) {
         for event in &events[self.events_taken..] {
-            self.messages.push(format!("{} {}", event.name, if event.appeared { "appeared" } else { "disappeared" }));
+            self.messages.push(format!(
+                "{} {}",
+                event.name,
+                if event.appeared { "appeared" } else { "disappeared" }
+            ));
             let old = if event.appeared { CellState::Free } else { CellState::Blocked };
             let cells = event.cells.iter().filter_map(|&cell| frame.index(cell));
             let has_old = |index: &usize| mapper.states().cells()[*index] == old;

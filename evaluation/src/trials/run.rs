@@ -87,25 +87,30 @@ fn run<G: GoalSelector>(
     let (mut step, mut due) = (0, sample_step(0, trial.steps));
     let mut measured = Measured::default();
     let mut is_complete = false;
-    explore(&mut world, &mut mapper, &mut pilot, |world, reading, belief, pilot| -> Result<_, ReadingError> {
-        let truth = world.truth();
-        reveal(pilot.selector_mut(), truth);
-        measured.count(truth, reading);
-        if step == due || step % COMPARE_EVERY == 0 {
-            measured.compare(belief.mapper, truth);
-        }
-        let mut sample = None;
-        if step == due {
-            samples.push(measured.sample(step, belief.mapper, truth));
-            sample = samples.last();
-            due = sample_step(samples.len() as u64, trial.steps);
-        }
-        is_complete = step == trial.steps;
-        step += 1;
-        let goes_on = observe(TrialStep { world, reading, belief, pilot, sample });
-        pilot.take_messages(); // messages that `observe` has not taken must not accumulate
-        Ok(if goes_on && !is_complete { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
-    })
+    explore(
+        &mut world,
+        &mut mapper,
+        &mut pilot,
+        |world, reading, belief, pilot| -> Result<_, ReadingError> {
+            let truth = world.truth();
+            reveal(pilot.selector_mut(), truth);
+            measured.count(truth, reading);
+            if step == due || step % COMPARE_EVERY == 0 {
+                measured.compare(belief.mapper, truth);
+            }
+            let mut sample = None;
+            if step == due {
+                samples.push(measured.sample(step, belief.mapper, truth));
+                sample = samples.last();
+                due = sample_step(samples.len() as u64, trial.steps);
+            }
+            is_complete = step == trial.steps;
+            step += 1;
+            let goes_on = observe(TrialStep { world, reading, belief, pilot, sample });
+            pilot.take_messages(); // messages that `observe` has not taken must not accumulate
+            Ok(if goes_on && !is_complete { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+        },
+    )
     .expect("a grid world gives valid readings");
     Ok(is_complete.then(|| Trial {
         world: trial.world.name().to_owned(),
@@ -145,9 +150,8 @@ struct Measured {
 
 impl Measured {
     fn count(&mut self, truth: &GridTruth, reading: &CellReading) {
-        let is_swept = |&(cell, _): &(_, bool)| {
-            truth.frame().index(cell).is_some_and(|index| truth.is_swept(index))
-        };
+        let is_swept =
+            |&(cell, _): &(_, bool)| truth.frame().index(cell).is_some_and(|index| truth.is_swept(index));
         self.steps += 1;
         self.steps_near_changes += u64::from(reading.cells.iter().any(is_swept));
     }
