@@ -139,6 +139,10 @@ impl GroundTruth for GridGroundTruth {
         self.is_swept[index]
     }
 
+    fn swept(&self) -> Cow<'_, [usize]> {
+        Cow::Borrowed(&self.swept)
+    }
+
     /// The cells of the path of every block, in the order of the world file.
     fn moving_things(&self) -> Cow<'_, [Vec<usize>]> {
         Cow::Borrowed(&self.things)
