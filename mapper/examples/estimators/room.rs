@@ -2,7 +2,7 @@
 //! in visits.
 
 use crate::score::{MASS, Mean, log_error};
-use interfaces::TrueState;
+use interfaces::{GroundTruth, TrueState};
 use interfaces::{Twist, World};
 use mapper::{Estimator, Mapper, MapperSettings};
 use rand::RngExt;
@@ -65,13 +65,13 @@ pub(crate) fn judge() -> anyhow::Result<Vec<Vec<Score>>> {
 fn score(mapper: &Mapper, world: &PhysicsWorld) -> Score {
     let (truth, mut score) = (world.truth(), Score::default());
     for index in 0..mapper.frame().len() {
-        let (rate, true_rate) = (mapper.rate(index), truth.cycle_rate_hz(mapper.frame().cell(index)));
+        let (rate, true_rate) = (mapper.rate(index), truth.cycle_rate(index));
         if true_rate > 0.0 {
             score.log_error.add(log_error(rate, true_rate));
             score.bias.add(rate / true_rate - 1.0);
             let (low, high) = mapper.credible_interval(index, MASS);
             score.covered.add_if((low..=high).contains(&true_rate));
-        } else if truth.movers()[index].is_none() && truth.states()[index] == TrueState::Free {
+        } else if !truth.is_swept(index) && truth.state(index) == TrueState::Free {
             score.false_rate.add(mapper.rate(index));
         }
     }

@@ -33,7 +33,7 @@ pub(crate) use spec::{MAX_PIECES, MOST_OUT_M};
 
 pub use command::{Acceleration, Command, Velocity};
 pub use fleet::{Controller, Fleet, TeleportError};
-pub use ground_truth::{PhysicsGroundTruth, PhysicsGroundTruth as Truth};
+pub use ground_truth::PhysicsGroundTruth;
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView};
 pub use robot::RobotView;
 pub use sensors::{Fiducial, SensorReading, SonarReading};
