@@ -37,7 +37,7 @@ pub struct Observer {
 impl Observer {
     /// An observer that also shows the run to `recorder`.
     pub fn new(world: &PhysicsWorld, recorder: Option<Recorder>) -> Self {
-        let obstacles = world.spec().obstacles().iter();
+        let obstacles = world.spec().obstacles.iter();
         Self {
             recorder,
             latency: Latency::default(),
@@ -55,7 +55,7 @@ impl Observer {
     /// What stays the same for a whole run in this world.
     pub fn scene(world: &PhysicsWorld) -> Scene {
         Scene {
-            title: world.spec().name().to_owned(),
+            title: world.spec().name.to_owned(),
             place: "house",
             unit: TimeUnit::Second,
             walls: world.walls().map(|corners| corners.to_vec()).collect(),
@@ -230,7 +230,7 @@ pub struct Findings {
 fn name(world: &PhysicsWorld, body: Body) -> String {
     match body {
         Body::Wall(_) => "a wall".into(),
-        Body::Obstacle(index) => world.spec().obstacles()[index].name.clone(),
-        Body::Robot(index) => world.spec().robots()[index].name.clone(),
+        Body::Obstacle(index) => world.spec().obstacles[index].name.clone(),
+        Body::Robot(index) => world.spec().robots[index].name.clone(),
     }
 }

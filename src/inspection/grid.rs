@@ -18,7 +18,7 @@ pub(super) fn content(world: &GridSpec) -> Content {
                 "starts at [{}, {}], sees {} cells far",
                 world.start().x,
                 world.start().y,
-                world.sensor_radius()
+                world.sensor_radius
             ),
         ),
     ];

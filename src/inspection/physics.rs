@@ -3,9 +3,9 @@
 use super::{Content, Plan, Robot, Thing, View};
 use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2};
-use sim::floor_plan::FloorPlan;
+use worldfile::floor_plan::FloorPlan;
 use sim::physics::{
-    Behaviour, DriveKind, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec,
+    Behavior, DriveKind, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec,
 };
 use std::path::Path;
 
@@ -38,7 +38,7 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
         radius: robot.radius_m,
         corners: robot.corners.clone(),
         views: views(robot).collect(),
-        is_driven: robot.behaviour == Behaviour::Driven,
+        is_driven: robot.behaviour == Behavior::Driven,
     };
     Content {
         kind,
@@ -170,12 +170,12 @@ fn robot_lines(robots: &[RobotSpec]) -> impl Iterator<Item = (&'static str, Stri
 
 fn robot_line(robot: &RobotSpec) -> String {
     let does = match &robot.behaviour {
-        Behaviour::Driven => "is driven",
-        Behaviour::Standing => "stands",
-        Behaviour::Circle(_) => "drives a circle",
-        Behaviour::Wander(_) => "wanders",
-        Behaviour::Waypoints(_) => "drives from point to point",
-        Behaviour::WallPatrol(_) => "follows a wall back and forth",
+        Behavior::Driven => "is driven",
+        Behavior::Standing => "stands",
+        Behavior::Circle(_) => "drives a circle",
+        Behavior::Wander(_) => "wanders",
+        Behavior::Waypoints(_) => "drives from point to point",
+        Behavior::WallPatrol(_) => "follows a wall back and forth",
     };
     let body = match robot.corners.len() {
         0 => format!("radius {} m", short(robot.radius_m)),

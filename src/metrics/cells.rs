@@ -217,7 +217,7 @@ mod tests {
 
     fn world() -> GridWorld {
         let unindented: String = WORLD.lines().map(|line| line.trim_start().to_owned() + "\n").collect();
-        GridWorld::new(&GridSpec::parse("shelf.toml", &unindented).unwrap(), 0)
+        GridWorld::new(&worldfile::grid::parse("shelf.toml", &unindented).unwrap(), 0)
     }
 
     fn mapper(world: &GridWorld) -> Mapper {

@@ -28,7 +28,7 @@ impl WorldPicture {
             walls: world.walls().cells().chunks(world.frame().width()).map(<[bool]>::to_vec).collect(),
             things: world.blocks().iter().map(block).collect(),
             start: at(&world.start()),
-            sensor_radius: world.sensor_radius(),
+            sensor_radius: world.sensor_radius,
         }
     }
 

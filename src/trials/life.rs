@@ -77,7 +77,7 @@ pub fn live(life: &Life, mut watch: impl FnMut(Look) -> bool) -> Result<Option<T
     let controller = Controller::new(life.controller, CellDrive, controller)?;
     match life.strategy {
         TrialStrategy::Agent(choice) => {
-            let sensor_radius_m = f64::from(life.world.sensor_radius()) * life.world.frame().resolution_m();
+            let sensor_radius_m = f64::from(life.world.sensor_radius) * life.world.frame().resolution_m();
             let settings = AgentSettings { sensor_radius_m, ..life.agent.clone() };
             let agent = Agent::new(&settings, choice, chance(life.seed, Purpose::Agent))?;
             run(life, Autonomous::new(agent, controller), |_, _| (), &mut watch)

@@ -133,7 +133,7 @@ impl Observer {
             pose: self.pose,
             radius_m: ROBOT_RADIUS_M,
             is_curious: true,
-            sight: Some(Sight::Cells { reading: look.reading, radius: look.world.spec().sensor_radius() }),
+            sight: Some(Sight::Cells { reading: look.reading, radius: look.world.spec().sensor_radius }),
         };
         let outlines: Vec<Outline> =
             look.world.blocks().map(|(_, cell)| rectangle(cell, cell, INSET_M)).collect();
@@ -259,7 +259,7 @@ mod tests {
     /// The walls of a drawn world, as rectangles.
     fn walls(rows: &[&str]) -> (Grid<bool>, Vec<Outline>) {
         let text = format!("name = 'x'\nsensor_radius = 1\nmap = '''\n{}\n'''", rows.join("\n"));
-        let walls = GridSpec::parse("x.toml", &text).unwrap().walls().clone();
+        let walls = worldfile::grid::parse("x.toml", &text).unwrap().walls().clone();
         let rectangles = rectangles(&walls);
         (walls, rectangles)
     }

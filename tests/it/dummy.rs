@@ -28,7 +28,7 @@ fn world() -> PhysicsWorld {
     let (name, text) = curious::worlds::SHIPPED[0];
     let text = text.replacen("pose_m = [2.0, 2.0]", "pose_m = [9.5, 11.5]", 1);
     let text = text.replacen("heading_deg = 0.0", "heading_deg = 270.0", 1);
-    PhysicsWorld::new(&WorldSpec::parse(name, &text).unwrap(), 0)
+    PhysicsWorld::new(&worldfile::physics::parse_world(name, &text).unwrap(), 0)
 }
 
 #[test]

@@ -32,7 +32,7 @@ pub(crate) struct Score {
 
 /// Scores in the order of [`Estimator::ALL`], for every row of [`VISITS`].
 pub(crate) fn judge() -> anyhow::Result<Vec<Vec<Score>>> {
-    let spec = WorldSpec::parse("four_rooms.toml", &HOUSE.replace(START, PLACE))?;
+    let spec = worldfile::physics::parse_world("four_rooms.toml", &HOUSE.replace(START, PLACE))?;
     let mut scores = Vec::new();
     for (seen, of) in VISITS {
         eprintln!("The dummy robot, {seen} of {of} scans");

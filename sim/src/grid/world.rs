@@ -29,20 +29,20 @@ impl GridWorld {
     /// The world of `spec` at its start. `seed` starts all chance, in a stream for every block
     /// and one for the robot.
     pub fn new(spec: &GridSpec, seed: u64) -> Self {
-        let block = |(index, block)| Block::new(block, index, spec.block_chance(), seed);
-        let blocks: Vec<Block> = spec.blocks().iter().enumerate().map(block).collect();
-        let mut blocked = BlockedCells::new(spec.walls(), spec.sensor_radius());
+        let block = |(index, block)| Block::new(block, index, spec.block_probability, seed);
+        let blocks: Vec<Block> = spec.blocks.iter().enumerate().map(block).collect();
+        let mut blocked = BlockedCells::new(&spec.walls, spec.sensor_radius);
         for block in &blocks {
             blocked.set(block.cell(), true);
         }
         Self {
             step: 0,
-            robot: spec.start(),
-            robot_luck: Luck::new(seed, Whose::Robot, spec.robot_chance()),
+            robot: spec.start,
+            robot_luck: Luck::new(seed, Whose::Robot, spec.robot_probability),
             moved: Vec::with_capacity(blocks.len()),
             blocks,
             blocked,
-            sight: Sight::new(spec.sensor_radius()),
+            sight: Sight::new(spec.sensor_radius),
             truth: GridTruth::new(spec),
             spec: spec.clone(),
         }
@@ -65,7 +65,7 @@ impl GridWorld {
 
     /// The name and the cell of every block, in the order of the file.
     pub fn blocks(&self) -> impl ExactSizeIterator<Item = (&str, Cell)> {
-        self.spec.blocks().iter().zip(&self.blocks).map(|(spec, block)| (spec.name.as_str(), block.cell()))
+        self.spec.blocks.iter().zip(&self.blocks).map(|(spec, block)| (spec.name.as_str(), block.cell()))
     }
 
     /// The truth about every cell, for metrics only.

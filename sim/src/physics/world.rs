@@ -20,11 +20,11 @@ impl PhysicsWorld {
     /// The world of `spec` at its start. `seed` starts all chance: the noise of lasers, that of
     /// odometry, and what robots do by themselves, each in a stream of its own.
     pub fn new(spec: &WorldSpec, seed: u64) -> Self {
-        let fleet = Fleet::new(&spec.fleet, seed);
-        let start = fleet.robot(spec.driven).at();
-        let mut truth = Truth::new(spec.fleet.frame, &spec.fleet.walls, &start);
+        let fleet = Fleet::new(spec.fleet(), seed);
+        let start = fleet.robot(spec.driven_index()).at();
+        let mut truth = Truth::new(spec.frame, &spec.walls, &start);
         let boxes = fleet.standing_boxes();
-        for (index, obstacle) in spec.obstacles().iter().enumerate().filter(|(i, _)| fleet.is_standing(*i)) {
+        for (index, obstacle) in spec.obstacles.iter().enumerate().filter(|(i, _)| fleet.is_standing(*i)) {
             let mover = obstacle.is_mover().then_some(Body::Obstacle(index));
             truth.change_box(&obstacle.start(), &boxes, mover);
         }
@@ -53,7 +53,7 @@ impl PhysicsWorld {
 
     /// Where the driven robot truly is, for metrics only.
     pub fn true_pose(&self) -> &Isometry2<f64> {
-        &self.fleet.robot(self.spec.driven).pose
+        &self.fleet.robot(self.spec.driven_index()).pose
     }
 
     /// Every contact of the driven robot that has begun since the start, in order.
@@ -101,9 +101,9 @@ impl PhysicsWorld {
             }
         }
         let contacts = self.fleet.take_contacts().into_iter();
-        self.contacts.extend(contacts.filter(|contact| contact.robot == self.spec.driven));
+        self.contacts.extend(contacts.filter(|contact| contact.robot == self.spec.driven_index()));
         self.fleet.move_obstacles(|obstacle, what, standing| {
-            let spec = &self.spec.fleet.obstacles[obstacle];
+            let spec = &self.spec.obstacles[obstacle];
             let cells = self.truth.change_box(&spec.shape, standing, Some(Body::Obstacle(obstacle)));
             let (name, appeared) = (spec.name.clone(), what == Move::Appeared);
             self.obstacle_events.push(ObstacleEvent { time_s, obstacle, name, appeared, cells });
@@ -113,8 +113,8 @@ impl PhysicsWorld {
 
 /// The robots that are not driven.
 fn others(spec: &WorldSpec) -> impl Iterator<Item = usize> + use<> {
-    let driven = spec.driven;
-    (0..spec.robots().len()).filter(move |&index| index != driven)
+    let driven = spec.driven_index();
+    (0..spec.robots.len()).filter(move |&index| index != driven)
 }
 
 impl World for PhysicsWorld {
@@ -124,12 +124,12 @@ impl World for PhysicsWorld {
     /// The scan of the driven robot's main laser, with its pose by odometry at the same instant; its
     /// other senses look no oftener than that. Looking twice at the same time gives the same reading.
     fn sense(&mut self) -> LaserReading {
-        self.fleet.look(self.spec.driven).clone()
+        self.fleet.look(self.spec.driven_index()).clone()
     }
 
     fn act(&mut self, command: &Twist) {
         self.truth.forget_changes();
-        self.fleet.command(self.spec.driven, *command);
+        self.fleet.command(self.spec.driven_index(), *command);
         for _ in 0..self.spec.driven().laser.period_steps {
             self.advance();
         }

@@ -104,7 +104,7 @@ impl Settings {
                 acceleration_mps2: robot.drive.max_linear_acceleration_mps2,
                 angular_acceleration_radps2: robot.drive.max_angular_acceleration_radps2,
                 tolerance_m: defaults.tolerance_m.min(robot.radius_m / 2.0),
-                reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s(),
+                reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s,
                 ..defaults
             },
         }

@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     if args.list_worlds {
         for (name, _) in worlds::SHIPPED_GRID {
             match worlds::load_grid(name) {
-                Ok(spec) => say(stdout(), format_args!("{name:<20} {}", spec.description())),
+                Ok(spec) => say(stdout(), format_args!("{name:<20} {}", spec.description)),
                 Err(error) => say(stderr(), error),
             }
         }
@@ -92,7 +92,7 @@ fn worlds(args: &Args) -> anyhow::Result<Vec<GridSpec>> {
             changed = changed.with_sensor_radius(radius);
         }
         if let Some(chance) = args.stochastic {
-            changed = changed.with_chances(chance, chance);
+            changed = changed.with_probabilities(chance, chance);
         }
         *world = changed;
     }
@@ -166,7 +166,7 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
         arguments: std::env::args().skip(1).collect(),
         steps: args.steps,
         trials: args.trials,
-        sensor_radius: experiment.worlds[0].sensor_radius(),
+        sensor_radius: experiment.worlds[0].sensor_radius,
         interrupted: is_interrupted,
         worlds: experiment.worlds.iter().map(|world| world.name().to_owned()).collect(),
         estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),

@@ -82,13 +82,13 @@ impl GridSpec {
     /// their places in row-major order. From inside a wall it sees nothing.
     pub fn sights(&self) -> Vec<Vec<usize>> {
         let frame = self.frame();
-        let blocked = BlockedCells::new(self.walls(), self.sensor_radius());
-        let mut sight = Sight::new(self.sensor_radius());
+        let blocked = BlockedCells::new(&self.walls, self.sensor_radius);
+        let mut sight = Sight::new(self.sensor_radius);
         let mut from = |index: usize| {
             let seen = sight.look(&blocked, frame.cell(index));
             seen.into_iter().filter_map(|(cell, _)| frame.index(cell)).collect()
         };
-        let walls = self.walls().cells();
+        let walls = self.walls.cells();
         (0..frame.len()).map(|index| if walls[index] { Vec::new() } else { from(index) }).collect()
     }
 }

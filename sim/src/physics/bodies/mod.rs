@@ -86,7 +86,7 @@ impl Bodies {
     /// No bodies yet, but all of `spec` are to come.
     pub(super) fn new(spec: &FleetSpec) -> Self {
         let mut world = rapier::PhysicsWorld { gravity: rapier::Vector::ZERO, ..Default::default() };
-        world.integration_parameters.dt = spec.step_s() as f32;
+        world.integration_parameters.dt = spec.step_s as f32;
         let foreseen_m = foreseen_m(spec);
         if let Some(foreseen_m) = foreseen_m {
             let parameters = &mut world.integration_parameters;
@@ -206,14 +206,14 @@ impl Bodies {
 /// velocity does not foretell: what is pushed moves as others drive, and corners move as they turn.
 /// Where all robots are round and nothing else moves, that is rare enough to do without.
 fn foreseen_m(spec: &FleetSpec) -> Option<f32> {
-    let has_movers = spec.obstacles().iter().any(|obstacle| !matches!(obstacle.motion, Motion::Fixed));
-    if !has_movers && spec.robots().iter().all(|robot| robot.corners.is_empty()) {
+    let has_movers = spec.obstacles.iter().any(|obstacle| !matches!(obstacle.motion, Motion::Fixed));
+    if !has_movers && spec.robots.iter().all(|robot| robot.corners.is_empty()) {
         return None;
     }
-    let ways_m = spec.robots().iter().map(|robot| {
+    let ways_m = spec.robots.iter().map(|robot| {
         let turn_radps = if robot.corners.is_empty() { 0.0 } else { robot.drive.max_angular_radps };
-        let turn_m = (turn_radps * robot.radius_m * spec.step_s()).min(MOST_TURN_M);
-        robot.drive.fastest_mps() * spec.step_s() + turn_m
+        let turn_m = (turn_radps * robot.radius_m * spec.step_s).min(MOST_TURN_M);
+        robot.drive.fastest_mps() * spec.step_s + turn_m
     });
     let farthest_m = ways_m.fold(if has_movers { MOVER_M } else { 0.0 }, f64::max);
     // Twice: another one may come towards it.

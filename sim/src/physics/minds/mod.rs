@@ -8,10 +8,9 @@ mod waypoints;
 use super::chance::Uniform;
 use super::rays::Beams;
 use super::snapshot::{Played, Tape};
-use super::spec::{Behaviour, RobotSpec};
+use super::spec::{Behavior, RobotSpec};
 use interfaces::{LaserReading, Twist};
 use nalgebra::Vector2;
-pub(super) use patrol::WALL_RELIEF_M;
 use patrol::WallPatrol;
 use wander::Wander;
 use waypoints::Waypoints;
@@ -34,17 +33,17 @@ pub(super) enum Mind {
 impl Mind {
     /// The mind of `robot`, whose laser has `beams`; `chance` is its own.
     pub(super) fn new(robot: &RobotSpec, step_s: f64, beams: &Beams, chance: Uniform) -> Self {
-        match &robot.behaviour {
-            Behaviour::Driven => Self::Driven,
-            Behaviour::Standing => Self::Steady(Twist::STOP),
-            Behaviour::Circle(circle) => {
+        match &robot.behavior {
+            Behavior::Driven => Self::Driven,
+            Behavior::Standing => Self::Steady(Twist::STOP),
+            Behavior::Circle(circle) => {
                 Self::Steady(Twist { linear_mps: circle.speed_mps, angular_radps: circle.turn_radps })
             }
-            Behaviour::Wander(spec) => {
+            Behavior::Wander(spec) => {
                 Self::Wander(Box::new(Wander::new(*spec, robot, step_s, beams, chance)))
             }
-            Behaviour::Waypoints(spec) => Self::Waypoints(Waypoints::new(spec.clone(), robot, step_s, beams)),
-            Behaviour::WallPatrol(spec) => Self::WallPatrol(WallPatrol::new(*spec, robot, step_s, beams)),
+            Behavior::Waypoints(spec) => Self::Waypoints(Waypoints::new(spec.clone(), robot, step_s, beams)),
+            Behavior::WallPatrol(spec) => Self::WallPatrol(WallPatrol::new(*spec, robot, step_s, beams)),
         }
     }
 

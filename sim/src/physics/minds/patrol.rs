@@ -16,7 +16,7 @@ const TURNED_RAD: f64 = 0.03;
 /// End points this near to where the wall should be are the wall, m.
 const WALL_SLACK_M: f64 = 0.1;
 /// Things that stand out from the wall by more than this are in the way, m.
-pub(in crate::physics) const WALL_RELIEF_M: f64 = 0.05;
+const WALL_RELIEF_M: f64 = PatrolSpec::WALL_RELIEF_M;
 /// Free space kept on the open side, m.
 const SIDE_MARGIN_M: f64 = 0.05;
 /// Once stopped, so much more space must be free to go on, m: no stop and go at the limit.
