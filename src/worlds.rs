@@ -72,7 +72,7 @@ fn load_stage(name: &str) -> Result<Loaded, WorldError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sim::physics::Behavior;
+    use sim::physics::BehaviorSpec;
 
     #[test]
     fn of_a_stage_world_one_robot_explores() {
@@ -84,7 +84,7 @@ mod tests {
         let path = path.to_str().unwrap();
         std::fs::write(path, format!("{text}r ( name \"a\" )\nr ( pose [2 0 0 0] name \"b\" )\n")).unwrap();
         let Loaded { spec, warnings } = load(path).unwrap();
-        assert_eq!((spec.driven().name.as_str(), &spec.robots[1].behavior), ("a", &Behavior::Standing));
+        assert_eq!((spec.driven().name.as_str(), &spec.robots[1].behavior), ("a", &BehaviorSpec::Standing));
         assert!(warnings.last().unwrap().contains("`a` explores, and the others"), "{warnings:?}");
         std::fs::write(path, "model ( size [1 1 1] )\n").unwrap();
         assert!(matches!(load(path), Err(WorldError::NoRobot { .. })));

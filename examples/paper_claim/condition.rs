@@ -1,10 +1,10 @@
 //! What is changed, one thing at a time.
 
-use agent::{AgentSettings, Reward, StrategyChoice};
+use agent::{AgentSettings, Reward};
 use controller::CellDrive;
-use curious::report::{Report, ReportSettings, WorldPicture};
-use curious::trials::{Experiment, Job, TrialStrategy};
 use curious::worlds::{SHIPPED_GRID, load_grid};
+use evaluation::report::{Report, ReportSettings, WorldPicture};
+use evaluation::trials::{Experiment, Job, TrialStrategy};
 use mapper::{Estimator, MapperSettings};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::sync::atomic::AtomicBool;
@@ -13,13 +13,7 @@ use std::sync::atomic::AtomicBool;
 pub(crate) const BASE: &str = "the paper's";
 
 /// The strategies that the claim is about, and two baselines.
-const STRATEGIES: [StrategyChoice; 5] = [
-    StrategyChoice::Curious,
-    StrategyChoice::Recency,
-    StrategyChoice::Poisson,
-    StrategyChoice::Random,
-    StrategyChoice::Coin,
-];
+const STRATEGIES: [&str; 5] = ["curious", "recency", "poisson", "random", "coin"];
 
 /// Everything that can be changed.
 #[derive(Clone, Debug)]
@@ -98,7 +92,9 @@ impl Condition {
         Experiment {
             worlds: worlds.into_iter().map(set).collect(),
             estimators: vec![self.estimator],
-            strategies: STRATEGIES.map(TrialStrategy::Agent).to_vec(),
+            strategies: STRATEGIES
+                .map(|name| TrialStrategy::Agent(name.parse().expect("a built-in policy")))
+                .to_vec(),
             trials,
             seed: 0,
             steps: self.steps,
@@ -116,7 +112,7 @@ fn report(experiment: &Experiment, jobs: Vec<Job>) -> anyhow::Result<Report> {
         steps: experiment.steps,
         trials: experiment.trials,
         sensor_radius: experiment.worlds[0].sensor_radius,
-        worlds: experiment.worlds.iter().map(|world| world.name().to_owned()).collect(),
+        worlds: experiment.worlds.iter().map(|world| world.name.clone()).collect(),
         estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
         strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
         ..Default::default()

@@ -15,7 +15,7 @@
 //! use nalgebra::{Isometry2, Point2, Vector2};
 //! use sim::physics::*;
 //!
-//! let robot = RobotSpec::new("curious", Isometry2::translation(1.0, 2.0), Behavior::Driven);
+//! let robot = RobotSpec::new("curious", Isometry2::translation(1.0, 2.0), BehaviorSpec::Driven);
 //! let fleet = FleetSpec {
 //!     name: "hall".to_owned(),
 //!     description: String::new(),

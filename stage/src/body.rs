@@ -4,11 +4,11 @@ use super::polygon;
 use super::sources::Place;
 use super::tree::Thing;
 use super::values::{Pose, Reader};
-use worldfile::floor_plan::{Bitmap, FloorPlan};
-use sim::physics::Rectangle;
 use interfaces::pose;
 use nalgebra::{Isometry2, Point2, Vector2};
+use sim::physics::Rectangle;
 use std::sync::Arc;
+use worldfile::floor_plan::{Bitmap, FloorPlan};
 
 /// A block with more corners than this is an error.
 const MAX_POINTS: f64 = 1000.0;

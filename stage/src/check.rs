@@ -3,13 +3,13 @@
 use super::sources::{Place, Sources};
 use super::toml::{STEER_DEG, is_upright, short};
 use super::{Drive, StageRobot, StageWorld};
-use worldfile::Severity;
-use sim::physics::shape::TOUCH_M;
-use worldfile::physics::{MAX_PIECES, MOST_OUT_M};
 use nalgebra::{Isometry2, Point2};
+use sim::physics::shape::TOUCH_M;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 use std::path::Path;
+use worldfile::Severity;
+use worldfile::physics::{MAX_PIECES, MOST_OUT_M};
 
 /// A robot has no more lasers than this, nor sonars.
 const MOST_SENSORS: usize = 100;

@@ -1,9 +1,9 @@
 //! What changes nothing here, in one note per file: so that what does change something stands out.
 
 use super::sources::{Place, Sources};
-use worldfile::Severity;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use worldfile::Severity;
 
 /// Of a name that stands in more lines, only the first are told.
 const MOST_LINES: usize = 3;

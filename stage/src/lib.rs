@@ -60,13 +60,13 @@ mod world;
 
 use sources::{Place, Sources};
 
+use nalgebra::{Isometry2, Point2};
+use sim::physics::{FleetSpec, Form, OdometryError, Rectangle};
+use std::collections::BTreeMap;
+use std::path::Path;
 use worldfile::Files;
 use worldfile::Findings;
 use worldfile::floor_plan::FloorPlan;
-use sim::physics::{FleetSpec, Form, OdometryError, Rectangle};
-use nalgebra::{Isometry2, Point2};
-use std::collections::BTreeMap;
-use std::path::Path;
 
 /// A world as a Stage file describes it.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,11 +3,11 @@
 use super::check::check;
 use super::sources::Sources;
 use super::{StageWorld, toml};
-use worldfile::Severity;
-use sim::physics::FleetSpec;
 use nalgebra::Point2;
-use worldfile::physics::parse_fleet;
+use sim::physics::FleetSpec;
 use std::path::Path;
+use worldfile::Severity;
+use worldfile::physics::parse_fleet;
 
 /// Makes a fleet of a Stage world. Whatever the physics cannot do is said at the line of the Stage
 /// file.

@@ -1,8 +1,8 @@
 //! The convex outline of a body.
 
 use super::polygon;
-use sim::physics::Form;
 use nalgebra::Point2;
+use sim::physics::Form;
 
 /// An outline here has no more corners than this.
 const MOST_CORNERS: usize = 32;

@@ -1,10 +1,10 @@
 //! The bitmaps of a world, each decoded once.
 
-use worldfile::Files;
-use worldfile::floor_plan::{Bitmap, MAX_FILE_BYTES};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use worldfile::Files;
+use worldfile::floor_plan::{Bitmap, MAX_FILE_BYTES};
 
 /// The first colour of a pixel that is blocked is below this.
 const BLOCKED_BELOW: f64 = 128.0 / 255.0;

@@ -1,8 +1,8 @@
 //! From polygons to solid rectangles, of which walls are made.
 
-use worldfile::floor_plan::Bitmap;
-use sim::physics::Rectangle;
 use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
+use sim::physics::Rectangle;
+use worldfile::floor_plan::Bitmap;
 
 /// Corners closer than this are one, and angles right to within it, m and rad.
 const SAME: f64 = 1e-7;

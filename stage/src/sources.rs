@@ -2,11 +2,11 @@
 
 use super::harmless::Harmless;
 use super::lexer::{self, Kind, Token};
-use worldfile::Files;
-use worldfile::{Findings, Severity, SourceText};
 use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use worldfile::Files;
+use worldfile::{Findings, Severity, SourceText};
 
 /// All texts together may not be longer; an include in an include in an include would be.
 const MAX_BYTES: u64 = 8 << 20;

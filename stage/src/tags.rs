@@ -2,8 +2,8 @@
 
 use super::StageWall;
 use super::sources::{Place, Sources};
-use worldfile::physics::MAX_PIECES;
 use nalgebra::Point2;
+use worldfile::physics::MAX_PIECES;
 
 /// A box lies about its pose if its middle is so near, m.
 const NEAR_M: f64 = 1e-6;

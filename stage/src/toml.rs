@@ -1,11 +1,11 @@
 //! A Stage world written as a world file of ours.
 
 use super::{Drive, StageRobot, StageWall, StageWorld};
-use sim::physics::{OdometryError, Rectangle};
-use worldfile::physics::MOST_OUT_M;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Point2, Vector2};
+use sim::physics::{OdometryError, Rectangle};
 use std::fmt::{Result, Write};
+use worldfile::physics::MOST_OUT_M;
 
 /// The side of a cell of the truth grid, m, where the map is not too large for it.
 const CELL_M: f64 = 0.05;

@@ -9,11 +9,11 @@ use super::step;
 use super::tree::Thing;
 use super::values::{Pose, Reader};
 use super::{StageRobot, StageWall, StageWorld, tags};
-use worldfile::Files;
-use worldfile::Severity;
 use nalgebra::Point2;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use worldfile::Files;
+use worldfile::Severity;
 
 /// More robots than this are an error.
 const MAX_ROBOTS: usize = 10_000;

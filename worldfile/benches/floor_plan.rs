@@ -2,11 +2,11 @@
 
 use divan::{Bencher, black_box};
 use image::{DynamicImage, GrayImage, ImageFormat, Luma};
-use worldfile::floor_plan::Bitmap;
 use sim::physics::Fleet;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::PathBuf;
+use worldfile::floor_plan::Bitmap;
 
 const KINDS: [&str; 4] = ["office", "rooms", "cave", "ragged"];
 

@@ -112,14 +112,7 @@ impl Findings {
 
     /// Adds a finding about a place in a text. The same finding at the same place, as in a
     /// definition that is used often, is made once.
-    pub fn add(
-        &mut self,
-        severity: Severity,
-        source: &SourceText,
-        what: &str,
-        mark: Mark<'_>,
-        help: &str,
-    ) {
+    pub fn add(&mut self, severity: Severity, source: &SourceText, what: &str, mark: Mark<'_>, help: &str) {
         let (line, text, span) = source.line(&mark.0);
         let new = Finding {
             severity,

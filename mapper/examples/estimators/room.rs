@@ -2,12 +2,13 @@
 //! in visits.
 
 use crate::score::{MASS, Mean, log_error};
+use interfaces::TrueState;
 use interfaces::{Twist, World};
 use mapper::{Estimator, Mapper, MapperSettings};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sim::physics::{PhysicsWorld, TrueState, WorldSpec};
+use sim::physics::{PhysicsWorld, WorldSpec};
 
 const HOUSE: &str = include_str!("../../../worlds/four_rooms.toml");
 /// Where the curious robot starts in the file, and where it looks on from.
@@ -39,7 +40,7 @@ pub(crate) fn judge() -> anyhow::Result<Vec<Vec<Score>>> {
         let mut world = PhysicsWorld::new(&spec, 0);
         let mapper = |estimator| {
             let settings = MapperSettings { estimator, max_gap: HIDING_S, ..MapperSettings::default() };
-            Mapper::new(&settings, *spec.frame())
+            Mapper::new(&settings, spec.frame)
         };
         let mut mappers: Vec<Mapper> = Estimator::ALL.map(mapper).into_iter().collect::<Result<_, _>>()?;
         let (mut rng, mut next) = (ChaCha8Rng::seed_from_u64(1), 0);

@@ -2,45 +2,41 @@
 //!
 //! [`FleetSpec`] describes a world with any number of robots, and [`Fleet`] lets time pass in it.
 //! [`WorldSpec`] and [`PhysicsWorld`] are the same for a world in which one robot is driven, with the
-//! [`Truth`] about every cell, for metrics. Bodies and contacts are rapier's; rays are our own, exact
-//! to the geometry.
+//! [`PhysicsGroundTruth`] of every cell, for metrics. Bodies and contacts are those of rapier; rays are our
+//! own, exact to the geometry.
 
+mod behaviors;
 mod bodies;
-mod bumper;
-mod chance;
 mod command;
 pub mod convex;
-mod drive;
-mod ear;
-mod eye;
-mod finder;
+mod drives;
 mod fleet;
 mod form;
-mod laser;
-mod minds;
+mod ground_truth;
 mod obstacles;
-mod odometry;
 mod rays;
 mod report;
 mod robot;
+mod sensors;
 pub mod shape;
 mod snapshot;
 mod spec;
 #[cfg(test)]
 mod tests;
-mod truth;
 mod world;
 
 pub use command::{Acceleration, Command, Velocity};
-pub use form::Form;
 pub use fleet::{Controller, Fleet, TeleportError};
-pub use report::{Body, Contact, Fiducial, ObstacleEvent, ObstacleView, Ping, RobotView, Sweep};
+pub use form::Form;
+pub use ground_truth::{PhysicsGroundTruth, PhysicsGroundTruth as Truth};
+pub use report::{Body, Contact, ObstacleEvent, ObstacleView};
+pub use robot::RobotView;
+pub use sensors::{Fiducial, SensorReading, SonarReading};
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
-    Behavior, BumperSpec, CircleSpec, DoorSpec, DrivenError, DriveKind, DriveLimits, FiducialSpec, FleetSpec, LaserSpec,
-    Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec,
-    SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
+    BehaviorSpec, BumperSpec, CircleSpec, DoorSpec, DriveKind, DriveLimits, DrivenError, FiducialSpec,
+    FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec, PatrolSpec,
+    PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
 };
-pub use truth::{TrueChange, TrueState, Truth};
 pub use world::PhysicsWorld;

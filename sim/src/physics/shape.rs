@@ -125,11 +125,7 @@ pub fn turned(pose: &Isometry2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f6
 }
 
 /// The same point after the world has turned about `middle` (m).
-pub fn turned_point(
-    point: &Point2<f64>,
-    turn: &UnitComplex<f64>,
-    middle: &Point2<f64>,
-) -> Point2<f64> {
+pub fn turned_point(point: &Point2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Point2<f64> {
     middle + turn * (point - middle)
 }
 

@@ -3,16 +3,18 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use crate::parts::Settings;
-use curious::cell_statistics;
-use curious::metrics;
-use curious::observer::Observer;
-use curious::output::write_file;
 use curious::pictures::{self, Pictures};
-use curious::pilot::Pilot;
 use curious::ros_map;
-use curious::summary::{Liveliest, Summary, map_hash};
+use curious::show::PhysicsShow;
+use evaluation::cell_statistics;
+use evaluation::map_hash::map_hash;
+use evaluation::metrics;
+use evaluation::observer::Observer;
+use evaluation::output::write_file;
+use evaluation::summary::{Liveliest, Summary};
 use interfaces::Twist;
 use mapper::Mapper;
+use robot::Pilot;
 use sim::physics::PhysicsWorld;
 use std::path::Path;
 
@@ -21,11 +23,12 @@ pub(crate) fn write(
     folder: &Path,
     world: &PhysicsWorld,
     mapper: &Mapper,
+    show: &PhysicsShow,
     observer: &Observer,
     summary: &Summary,
 ) -> anyhow::Result<()> {
-    let (trails, goals) = observer.ways();
-    let scene = &Observer::scene(world);
+    let (trails, goals) = (show.trails(), observer.goals());
+    let scene = &PhysicsShow::scene(world);
     pictures::write_all(folder, &Pictures { scene, mapper, trails, goals })?;
     ros_map::write(folder, mapper.states())?;
     cell_statistics::write(&folder.join("cell_statistics.csv"), mapper)?;
@@ -45,7 +48,7 @@ pub(crate) fn summary(
     ended: Ended,
     wall_s: f64,
 ) -> Summary {
-    let scores = metrics::scores(mapper, world.truth());
+    let scores = metrics::map_scores(mapper, world.truth());
     let findings = observer.findings();
     let moving = world.contacts().iter().filter(|contact| contact.moving).count();
     let is_agent = args.drive == DriveChoice::Agent;
@@ -83,7 +86,11 @@ pub(crate) fn summary(
         collisions: moving,
         contacts_while_standing: world.contacts().len() - moving,
         goals: pilot.goals(),
-        strategy_share: pilot.strategies(Default::default()).iter().map(|s| (s.name, s.share)).collect(),
+        strategy_share: pilot
+            .strategies(Default::default())
+            .iter()
+            .map(|s| (s.name.clone(), s.share))
+            .collect(),
         things: findings.things,
         curve: findings.curve,
         map_hash: map_hash(mapper),

@@ -4,14 +4,14 @@ use crate::args::{Args, DriveChoice};
 use agent::{Agent, AgentSettings};
 use anyhow::{Context, anyhow};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
-use curious::output::say;
-use curious::pilot::{Autonomous, Keyboard, Tour};
+use curious::keyboard::Keyboard;
 use curious::ros_map::RosMap;
+use curious::tour_file::TourSpec;
 use curious::worlds::{self, Loaded};
-use interfaces::Twist;
+use evaluation::output::say;
+use interfaces::{Purpose, RandomStream, Twist};
 use mapper::{Mapper, MapperSettings};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
+use robot::{Autonomous, Tour};
 use serde::Serialize;
 use sim::physics::{PhysicsWorld, WorldSpec};
 use std::io::stderr;
@@ -33,19 +33,6 @@ impl From<anyhow::Error> for Failure {
 
 fn input(error: impl Into<anyhow::Error>) -> Failure {
     Failure::Input(error.into())
-}
-
-/// Streams of chance, apart from those of the world.
-#[derive(Clone, Copy)]
-enum Purpose {
-    Agent = 1,
-    Controller = 2,
-}
-
-fn chance(seed: u64, purpose: Purpose) -> ChaCha8Rng {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream((purpose as u64) << 48);
-    rng
 }
 
 /// The side of the patches in which goals are weighed, m.
@@ -82,7 +69,7 @@ impl Settings {
         // A laser's data sheet tells its noise.
         let noise_m = &mut mapper.steady.range_noise_std_m;
         *noise_m = noise_m.max(robot.laser.noise_std_m).min(MAX_NOISE_M);
-        let cell_m = spec.frame().resolution_m();
+        let cell_m = spec.frame.resolution_m();
         let mut agent = AgentSettings {
             patch_cells: (PATCH_M / cell_m).round().max(1.0) as _,
             sensor_radius_m: robot.laser.range_max_m,
@@ -112,22 +99,23 @@ impl Settings {
 
     fn controller(&self, seed: u64) -> Result<Controller<DiffDrive>, Failure> {
         let drive = DiffDrive::new(self.drive).map_err(input)?;
-        Controller::new(self.controller, drive, chance(seed, Purpose::Controller)).map_err(input)
+        Controller::new(self.controller, drive, RandomStream::new(seed, Purpose::Controller)).map_err(input)
     }
 
     pub(crate) fn agent(&self, args: &Args) -> Result<Autonomous<Agent, DiffDrive>, Failure> {
-        let agent =
-            Agent::new(&self.agent, args.strategy, chance(args.seed, Purpose::Agent)).map_err(input)?;
+        let agent = Agent::new(&self.agent, &args.strategy, RandomStream::new(args.seed, Purpose::Agent))
+            .map_err(input)?;
         Ok(Autonomous::new(agent, self.controller(args.seed)?))
     }
 
     pub(crate) fn tour(&self, args: &Args) -> Result<Autonomous<Tour, DiffDrive>, Failure> {
         let (name, text) = worlds::TOUR;
         let tour = match &args.tour {
-            Some(path) => Tour::load(path),
-            None => Tour::parse(Path::new(name), text),
+            Some(path) => TourSpec::load(path),
+            None => TourSpec::parse(Path::new(name), text),
         };
-        Ok(Autonomous::new(tour.map_err(input)?, self.controller(args.seed)?))
+        let TourSpec { waypoints, repeat } = tour.map_err(input)?;
+        Ok(Autonomous::new(Tour::new(waypoints, repeat), self.controller(args.seed)?))
     }
 
     pub(crate) fn keyboard(&self) -> Result<Keyboard, Failure> {
@@ -155,10 +143,10 @@ impl Parts {
         }
         let settings = Settings::new(args, &spec);
         let mapper = match &args.map {
-            None => Mapper::new(&settings.mapper, *spec.frame()),
+            None => Mapper::new(&settings.mapper, spec.frame),
             Some(path) => {
                 let map = RosMap::read(path).map_err(input)?;
-                Mapper::with_prior(&settings.mapper, map.onto(spec.frame()))
+                Mapper::with_prior(&settings.mapper, map.onto(&spec.frame))
             }
         };
         let mapper = mapper.context("cannot make the mapper").map_err(input)?;

@@ -7,11 +7,12 @@ use anyhow::{Context, bail};
 use args::Args;
 use clap::Parser;
 use controller::CellDrive;
-use curious::output::{make_folder, say, write_file};
 use curious::recording::{Recorder, RecordingError, RecordingOptions};
-use curious::report::{Report, ReportSettings, Trial, WorldPicture};
-use curious::trials::{Experiment, Recorded, SettingsError, record, scene};
+use curious::show::{Recorded, record, scene};
 use curious::worlds;
+use evaluation::output::{make_folder, say, write_file};
+use evaluation::report::{Report, ReportSettings, Trial, WorldPicture};
+use evaluation::trials::{Experiment, SettingsError};
 use mapper::{Estimator, MapperSettings};
 use progress::Progress;
 use sim::grid::{GenerateSettings, GridSpec};
@@ -85,7 +86,7 @@ fn worlds(args: &Args) -> anyhow::Result<Vec<GridSpec>> {
     }
     for world in &mut worlds {
         for warning in world.warnings().iter().filter(|_| !args.quiet) {
-            say(stderr(), format_args!("warning: {}: {warning}", world.name()));
+            say(stderr(), format_args!("warning: {}: {warning}", world.name));
         }
         let mut changed = world.clone();
         if let Some(radius) = args.sensor_radius {
@@ -157,8 +158,8 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     if args.save_worlds {
         let named = experiment.worlds.len() - args.generate.unwrap_or(0) as usize;
         for world in &experiment.worlds[named..] {
-            let path = args.out.join(format!("{}.toml", world.name()));
-            write_file(&path, |file| file.write_all(world.to_toml().as_bytes()))?;
+            let path = args.out.join(format!("{}.toml", world.name));
+            write_file(&path, |file| file.write_all(worldfile::grid::to_toml(world).as_bytes()))?;
         }
     }
     let settings = ReportSettings {
@@ -168,7 +169,7 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
         trials: args.trials,
         sensor_radius: experiment.worlds[0].sensor_radius,
         interrupted: is_interrupted,
-        worlds: experiment.worlds.iter().map(|world| world.name().to_owned()).collect(),
+        worlds: experiment.worlds.iter().map(|world| world.name.clone()).collect(),
         estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
         strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
     };

@@ -1,9 +1,9 @@
 //! The shipped example, from the file to robots that drive.
 
 use super::{lab_files, read};
-use sim::physics::{Behavior, Fleet};
 use crate::{Drive, load};
 use interfaces::Twist;
+use sim::physics::{BehaviorSpec, Fleet};
 use std::path::Path;
 
 #[test]
@@ -45,8 +45,8 @@ fn the_example_says_what_is_in_it() {
 fn the_example_runs() {
     let (spec, findings) = load(Path::new("lab.world"), &lab_files());
     let spec = spec.unwrap_or_else(|| panic!("{findings}"));
-    assert!(matches!(spec.robots[0].behaviour, Behavior::Wander(_)));
-    assert_eq!(spec.robots[1].behaviour, Behavior::Driven);
+    assert!(matches!(spec.robots[0].behaviour, BehaviorSpec::Wander(_)));
+    assert_eq!(spec.robots[1].behaviour, BehaviorSpec::Driven);
     // The border of 1 cm lies in the walls of the plan: nothing reaches out.
     assert_eq!((spec.frame.width(), spec.frame.height()), (160, 120));
     let mut fleet = Fleet::new(&spec, 1);

@@ -1,9 +1,9 @@
 //! What Stage's words mean, by numbers.
 
 use super::{good, load_one, one};
-use sim::physics::{FleetSpec, Rectangle};
 use crate::Bounds;
 use nalgebra::Point2;
+use sim::physics::{FleetSpec, Rectangle};
 use std::f64::consts::FRAC_PI_2;
 
 fn rectangle(min: [f64; 2], max: [f64; 2]) -> Rectangle {

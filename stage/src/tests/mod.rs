@@ -4,12 +4,12 @@ mod lab;
 mod meaning;
 
 use super::{StageWorld, read};
-use worldfile::Findings;
-use sim::physics::FleetSpec;
 use image::{DynamicImage, GrayImage, ImageFormat, Luma};
+use sim::physics::FleetSpec;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
+use worldfile::Findings;
 
 type Table = BTreeMap<PathBuf, Vec<u8>>;
 

@@ -3,10 +3,10 @@
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use worldfile::WorldError;
 use sim::physics::FleetSpec;
 use std::collections::HashMap;
 use std::fmt::Write;
+use worldfile::WorldError;
 
 /// The side of one house, m.
 const HOUSE_M: f64 = 12.0;

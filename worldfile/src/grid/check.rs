@@ -14,10 +14,9 @@ pub(super) fn check(source: &Source<'_>, reading: Reading<GridFile>) -> Result<G
     let Reading { file, mut wrong, .. } = reading;
     let files: Vec<&BlockFile> = file.blocks.sound().into_iter().map(Spanned::get_ref).collect();
     let name = file.name.get().and_then(|name| wrong.keep(source.name("", name)));
-    let sensor_radius = file
-        .sensor_radius
-        .get()
-        .and_then(|radius| wrong.keep(whole(source, "sensor_radius", radius, 1..=GridSpec::MAX_SENSOR_RADIUS)));
+    let sensor_radius = file.sensor_radius.get().and_then(|radius| {
+        wrong.keep(whole(source, "sensor_radius", radius, 1..=GridSpec::MAX_SENSOR_RADIUS))
+    });
     let chances = file.transitions.get().map(|transitions| {
         let TransitionsFile { block_chance, robot_chance } = transitions.get_ref();
         let block = wrong.keep(chance(source, "block_chance", block_chance));

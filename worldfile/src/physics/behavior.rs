@@ -10,7 +10,7 @@ use crate::together::Together;
 use nalgebra::Point2;
 use serde_spanned::Spanned;
 use sim::physics::shape::TOUCH_M;
-use sim::physics::{Behavior, CircleSpec, DriveKind, DriveLimits, Repeat, WanderSpec, WaypointsSpec};
+use sim::physics::{BehaviorSpec, CircleSpec, DriveKind, DriveLimits, Repeat, WanderSpec, WaypointsSpec};
 use std::ops::Range;
 
 /// What comes after the last waypoint, as the file calls it.
@@ -38,7 +38,7 @@ const KINDS: [(&str, &[&str], &str); 6] = [
 ];
 
 impl Context<'_> {
-    pub(super) fn behavior(&self) -> Result<Behavior, WorldError> {
+    pub(super) fn behavior(&self) -> Result<BehaviorSpec, WorldError> {
         let file = self.robot.behaviour.get_ref();
         let kind = file.kind.get_ref().as_str();
         let Some((_, known, does)) = KINDS.iter().find(|(name, _, _)| *name == kind) else {
@@ -65,12 +65,12 @@ impl Context<'_> {
         // Where such a key stands, the kind may be what is wrong: nothing else is judged by it.
         foreign.collect::<Vec<_>>().together()?;
         match kind {
-            "driven" => Ok(Behavior::Driven),
-            "standing" => Ok(Behavior::Standing),
+            "driven" => Ok(BehaviorSpec::Driven),
+            "standing" => Ok(BehaviorSpec::Standing),
             "circle" => self.circle(file),
             "wander" => {
                 let (speed_mps, clearance_m) = (self.speed_mps(file), self.clearance_m(file)).together()?;
-                Ok(Behavior::Wander(WanderSpec { speed_mps, clearance_m }))
+                Ok(BehaviorSpec::Wander(WanderSpec { speed_mps, clearance_m }))
             }
             "waypoints" => self.waypoints(file),
             _ => patrol::patrol(self, file),
@@ -106,7 +106,7 @@ impl Context<'_> {
         self.table().number_or("clearance_m", &file.clearance_m, 0.15, 0.05..=10.0)
     }
 
-    fn circle(&self, file: &BehaviourFile) -> Result<Behavior, WorldError> {
+    fn circle(&self, file: &BehaviourFile) -> Result<BehaviorSpec, WorldError> {
         let radius = self
             .needed("turn_radius_m", &file.turn_radius_m)
             .and_then(|radius| Ok((radius, self.table().number("turn_radius_m", radius, 0.01..=1000.0)?)));
@@ -130,10 +130,10 @@ impl Context<'_> {
             ));
         }
         let turn_radps = speed_mps / radius_m * if is_left { 1.0 } else { -1.0 };
-        Ok(Behavior::Circle(CircleSpec { speed_mps, turn_radps }))
+        Ok(BehaviorSpec::Circle(CircleSpec { speed_mps, turn_radps }))
     }
 
-    fn waypoints(&self, file: &BehaviourFile) -> Result<Behavior, WorldError> {
+    fn waypoints(&self, file: &BehaviourFile) -> Result<BehaviorSpec, WorldError> {
         let points = self.needed("points_m", &file.points_m).and_then(|list| {
             if (1..=1000).contains(&list.get_ref().len()) {
                 return self.table().points("points_m", list.get_ref(), &self.around.size);
@@ -146,7 +146,7 @@ impl Context<'_> {
         let (points, speed_mps, repeat, clearance_m) =
             (points, self.speed_mps(file), repeat, self.clearance_m(file)).together()?;
         self.is_way_free(file, &points, repeat)?;
-        Ok(Behavior::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m }))
+        Ok(BehaviorSpec::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m }))
     }
 
     /// The way from the start to all points leads past everything.

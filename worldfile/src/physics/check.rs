@@ -1,8 +1,8 @@
 //! From the file as written to a world that makes sense.
 
 use super::file::{MapFile, ObstacleFile, Pair, RobotFile, WallFile, WorldFile};
-use super::numbers::{Table, extent};
 use super::floor_plan;
+use super::numbers::{Table, extent};
 use super::obstacle::obstacle;
 use super::robot::{Around, robot};
 use crate::error::{Source, WorldError, Wrong};
@@ -257,7 +257,11 @@ fn all_apart<T>(things: &[T], apart: impl Fn(&T, &T) -> Result<(), WorldError>) 
 }
 
 /// The world of a fleet in which exactly one robot is driven.
-pub(super) fn world(source: &Source<'_>, file: &WorldFile, fleet: FleetSpec) -> Result<WorldSpec, WorldError> {
+pub(super) fn world(
+    source: &Source<'_>,
+    file: &WorldFile,
+    fleet: FleetSpec,
+) -> Result<WorldSpec, WorldError> {
     let files = file.robots.sound();
     let kind = |i: usize| files[i].get_ref().behaviour.get_ref().kind.span();
     let help = "exactly one robot has `kind = \"driven\"`: the one that explores";

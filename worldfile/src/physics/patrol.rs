@@ -7,10 +7,7 @@ use crate::error::{Source, WorldError};
 use crate::together::Together;
 use nalgebra::{Point2, Vector2};
 use sim::physics::shape::{TOUCH_M, point_segment_m};
-use sim::physics::{Behavior, PatrolSpec};
-
-/// The wall must be farther away than the robot's radius by this, m.
-const WALL_RELIEF_M: f64 = PatrolSpec::WALL_RELIEF_M;
+use sim::physics::{BehaviorSpec, PatrolSpec};
 
 /// A wall farther away than this is none to follow, m.
 const FARTHEST_WALL_M: f64 = 2.0;
@@ -19,7 +16,7 @@ const SLACK_M: f64 = 0.05;
 /// The way's distance to its wall is looked at in steps of this, m.
 const LOOK_EVERY_M: f64 = 0.1;
 
-pub(super) fn patrol(context: &Context<'_>, file: &BehaviourFile) -> Result<Behavior, WorldError> {
+pub(super) fn patrol(context: &Context<'_>, file: &BehaviourFile) -> Result<BehaviorSpec, WorldError> {
     let Context { source, robot, around, .. } = context;
     let table = context.table();
     let end = |key: &str, value| {
@@ -52,7 +49,14 @@ pub(super) fn patrol(context: &Context<'_>, file: &BehaviourFile) -> Result<Beha
             wall_distance_m = way.wall_distance_m(wall_on_left, around.solids)?;
         }
     }
-    Ok(Behavior::WallPatrol(PatrolSpec { from, to, speed_mps, wall_on_left, wall_distance_m, clearance_m }))
+    Ok(BehaviorSpec::WallPatrol(PatrolSpec {
+        from,
+        to,
+        speed_mps,
+        wall_on_left,
+        wall_distance_m,
+        clearance_m,
+    }))
 }
 
 /// The way of a patrol, and where the file speaks of its ends.
@@ -131,10 +135,11 @@ impl Way<'_> {
             i += 1.0;
         }
         let (name, radius_m) = (self.robot.name.get_ref(), self.radius_m);
-        if first_m < radius_m + WALL_RELIEF_M - TOUCH_M {
+        let relief_m = PatrolSpec::WALL_RELIEF_M;
+        if first_m < radius_m + relief_m - TOUCH_M {
             let what = format!("the patrol of `{name}` is too near to its wall");
             let help = format!(
-                "the wall is {first_m:.3} m away; a robot of radius {radius_m} m needs {WALL_RELIEF_M} m more"
+                "the wall is {first_m:.3} m away; a robot of radius {radius_m} m needs {relief_m} m more"
             );
             return Err(self.error(&what, &[], &help));
         }

@@ -5,7 +5,7 @@ use nalgebra::{Point2, UnitComplex};
 
 /// What a robot does.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Behavior {
+pub enum BehaviorSpec {
     /// It obeys commands.
     Driven,
     /// It stands.
@@ -85,7 +85,7 @@ impl PatrolSpec {
     pub const WALL_RELIEF_M: f64 = 0.05;
 }
 
-impl Behavior {
+impl BehaviorSpec {
     /// The same after the world has turned about `middle` (m).
     pub(super) fn turn(&mut self, turn: &UnitComplex<f64>, middle: &Point2<f64>) {
         let points: Vec<&mut Point2<f64>> = match self {

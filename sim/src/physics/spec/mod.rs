@@ -8,7 +8,7 @@ mod obstacle;
 mod robot;
 mod senses;
 
-pub use behavior::{Behavior, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
+pub use behavior::{BehaviorSpec, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
 pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
 pub use robot::{DriveKind, DriveLimits, LaserSpec, OdometryError, RobotSpec};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
@@ -57,7 +57,7 @@ impl FleetSpec {
 
     /// The indices of the robots that obey commands.
     pub fn driven_robots(&self) -> impl Iterator<Item = usize> {
-        let is_driven = |(_, robot): &(usize, &RobotSpec)| robot.behavior == Behavior::Driven;
+        let is_driven = |(_, robot): &(usize, &RobotSpec)| robot.behavior == BehaviorSpec::Driven;
         self.robots.iter().enumerate().filter(is_driven).map(|(index, _)| index)
     }
 }
@@ -102,10 +102,10 @@ impl WorldSpec {
     /// The world of `fleet` with the robot of index `driven` driven, whatever its behavior is there; other
     /// driven robots stand still. `None` if there is no such robot.
     pub fn driving(mut fleet: FleetSpec, driven: usize) -> Option<Self> {
-        for robot in fleet.robots.iter_mut().filter(|robot| robot.behavior == Behavior::Driven) {
-            robot.behavior = Behavior::Standing;
+        for robot in fleet.robots.iter_mut().filter(|robot| robot.behavior == BehaviorSpec::Driven) {
+            robot.behavior = BehaviorSpec::Standing;
         }
-        fleet.robots.get_mut(driven)?.behavior = Behavior::Driven;
+        fleet.robots.get_mut(driven)?.behavior = BehaviorSpec::Driven;
         Some(Self { fleet, driven })
     }
 

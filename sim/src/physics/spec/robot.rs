@@ -1,6 +1,6 @@
 //! A robot and its parts, checked and in SI.
 
-use super::{Behavior, BumperSpec, FiducialSpec, SonarSpec};
+use super::{BehaviorSpec, BumperSpec, FiducialSpec, SonarSpec};
 use crate::physics::form::Form;
 use interfaces::Scan;
 use nalgebra::{Isometry2, Point2};
@@ -36,13 +36,13 @@ pub struct RobotSpec {
     /// Its own tag, by which others find it.
     pub tag: Option<u32>,
     /// What it does.
-    pub behavior: Behavior,
+    pub behavior: BehaviorSpec,
 }
 
 impl RobotSpec {
     /// A round robot of 0.2 m on two wheels: up to 0.5 m/s and 120 °/s, exact odometry, a laser of 360 beams and
     /// 10 m at 10 Hz in a world of physics steps of 0.05 s, and no other sensors.
-    pub fn new(name: &str, pose: Isometry2<f64>, behavior: Behavior) -> Self {
+    pub fn new(name: &str, pose: Isometry2<f64>, behavior: BehaviorSpec) -> Self {
         Self {
             name: name.to_owned(),
             radius_m: 0.2,

@@ -1,10 +1,9 @@
 //! Our rays against rapier's.
 
-use super::oracle::{Place, Tally, dropout, noise, uniform};
+use super::oracle::{self, Place, Tally, uniform};
 use super::*;
 use crate::physics::fleet::corners;
-use crate::physics::laser::{Laser, beams};
-use crate::physics::rays::{Scene, Scratch};
+use crate::physics::rays::Scene;
 use interfaces::{GridFrame, pose, rotation};
 use nalgebra::{Point2, Vector2};
 use rand_chacha::ChaCha8Rng;
@@ -53,8 +52,11 @@ fn in_a_crowd_of_houses_every_beam_is_right() {
     let mut stream = ChaCha8Rng::seed_from_u64(3);
     let mut spec = four_rooms();
     let middle = Point2::new(12.0, 12.0);
-    spec.walls = [(0.0, 0.0), (12.0, 0.0), (0.0, 12.0), (12.0, 12.0)].into_iter().flat_map(|(x, y)| rooms(x, y)).collect();
-    let robot = RobotSpec { behavior: Behavior::Standing, ..spec.robots[0].clone() };
+    spec.walls = [(0.0, 0.0), (12.0, 0.0), (0.0, 12.0), (12.0, 12.0)]
+        .into_iter()
+        .flat_map(|(x, y)| rooms(x, y))
+        .collect();
+    let robot = RobotSpec { behavior: BehaviorSpec::Standing, ..spec.robots[0].clone() };
     spec.robots = (0..64)
         .map(|i| {
             // On a grid, but none in a wall.
@@ -137,11 +139,8 @@ fn nothing_is_seen_behind_a_narrow_laser() {
 #[test]
 fn a_laser_inside_of_a_solid_sees_nothing_else() {
     let spec = four_rooms();
-    let own = &spec.robots[0].laser;
-    let mut laser = Laser::new(own, beams(own).into(), noise(), dropout());
     let mut scene = Scene::new(corners(&spec.frame), &spec.walls, Vec::new(), 0, 10.0);
     scene.sort();
-    let mut scan = own.empty_scan();
-    laser.scan(&pose(6.0, 1.0, 0.3), &scene, 0, &mut Scratch::default(), &mut scan);
+    let scan = oracle::scan(&spec.robots[0].laser, &pose(6.0, 1.0, 0.3), &scene, 0);
     assert!(scan.ranges_m.iter().all(|range| *range == 0.0));
 }

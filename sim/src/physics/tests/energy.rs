@@ -4,9 +4,8 @@ use interfaces::{LaserReading, Twist};
 /// Total energy of all bodies after everyone has been told to stand.
 #[test]
 fn energy_never_grows_where_nobody_drives() {
-    let drive = |linear_mps| {
-        move |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps, angular_radps: 0.0 }
-    };
+    let drive =
+        |linear_mps| move |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps, angular_radps: 0.0 };
     let mut fleet = Fleet::new(&heap(), 0);
     fleet.run_until(1.9, &mut drive(0.5));
     fleet.run_until(2.6, &mut drive(0.0));

@@ -29,21 +29,32 @@ pub(super) fn rooms(x: f64, y: f64) -> impl Iterator<Item = Rectangle> {
 
 /// A laser of `beams` over a full turn, up to 10 m.
 fn laser(beams: usize) -> LaserSpec {
-    LaserSpec { beams, ..RobotSpec::new("", pose(0.0, 0.0, 0.0), Behavior::Standing).laser }
+    LaserSpec { beams, ..RobotSpec::new("", pose(0.0, 0.0, 0.0), BehaviorSpec::Standing).laser }
 }
 
 /// The four rooms with these robots and obstacles.
 fn house(robots: Vec<RobotSpec>, obstacles: Vec<ObstacleSpec>) -> FleetSpec {
     let frame = GridFrame::covering(Point2::origin(), 12.0, 12.0, 0.05).unwrap();
     let walls = rooms(0.0, 0.0).collect();
-    FleetSpec { name: "house".into(), description: String::new(), frame, step_s: 0.05, walls, obstacles, robots }
+    FleetSpec {
+        name: "house".into(),
+        description: String::new(),
+        frame,
+        step_s: 0.05,
+        walls,
+        obstacles,
+        robots,
+    }
 }
 
 /// The four rooms with the driven robot and the dummy, which stands here.
 pub(super) fn four_rooms() -> FleetSpec {
-    let curious = RobotSpec::new("curious", pose(2.0, 2.0, 0.0), Behavior::Driven);
-    let dummy = RobotSpec::new("dummy", pose(7.2, 11.5, 0.0), Behavior::Standing);
-    house(vec![RobotSpec { laser: laser(720), ..curious }, RobotSpec { laser: laser(180), ..dummy }], Vec::new())
+    let curious = RobotSpec::new("curious", pose(2.0, 2.0, 0.0), BehaviorSpec::Driven);
+    let dummy = RobotSpec::new("dummy", pose(7.2, 11.5, 0.0), BehaviorSpec::Standing);
+    house(
+        vec![RobotSpec { laser: laser(720), ..curious }, RobotSpec { laser: laser(180), ..dummy }],
+        Vec::new(),
+    )
 }
 
 /// Wandering robots in all rooms.
@@ -51,7 +62,7 @@ pub(super) fn crowd() -> FleetSpec {
     let robot = |i: u32| {
         let at = [1.0 + 2.0 * f64::from(i % 6), 1.0 + 2.0 * f64::from(i / 6)];
         let heading_rad = f64::from((40 * i) % 360).to_radians();
-        let wander = Behavior::Wander(WanderSpec { speed_mps: 0.4, clearance_m: 0.15 });
+        let wander = BehaviorSpec::Wander(WanderSpec { speed_mps: 0.4, clearance_m: 0.15 });
         let robot = RobotSpec::new(&format!("r{i}"), pose(at[0], at[1], heading_rad), wander);
         RobotSpec { laser: LaserSpec { noise_std_m: 0.005, ..laser(90) }, ..robot }
     };
@@ -70,7 +81,7 @@ fn pushed(center: Point2<f64>, heading_deg: f64, mass_kg: f64, friction: f64) ->
 
 /// A heavy robot at [1, 2] that drives along x, and twelve boxes ahead of it.
 pub(super) fn heap() -> FleetSpec {
-    let driver = RobotSpec::new("driver", pose(1.0, 2.0, 0.0), Behavior::Driven);
+    let driver = RobotSpec::new("driver", pose(1.0, 2.0, 0.0), BehaviorSpec::Driven);
     let boxes = (0..12_u32).map(|i| {
         let center = Point2::new(1.6 + 0.31 * f64::from(i % 4), 1.6 + 0.32 * f64::from(i / 4));
         pushed(center, 0.0, 0.3, 0.02 * f64::from(i % 3))
@@ -106,7 +117,7 @@ fn door(from: [f64; 2], to: [f64; 2], is_hinged: bool) -> ObstacleSpec {
 pub(super) fn busy() -> FleetSpec {
     let places = [[2.0, 2.0], [9.0, 3.0], [3.0, 9.0], [9.5, 9.0]];
     let robot = |[x, y]: [f64; 2]| {
-        let robot = RobotSpec::new("pusher", pose(x, y, 30.0_f64.to_radians()), Behavior::Driven);
+        let robot = RobotSpec::new("pusher", pose(x, y, 30.0_f64.to_radians()), BehaviorSpec::Driven);
         let laser = LaserSpec { noise_std_m: 0.005, ..laser(90) };
         let mut robot = RobotSpec { mass_kg: Some(20.0), laser, ..robot };
         // One of them is not round.

@@ -2,7 +2,6 @@
 
 use super::*;
 
-
 /// The message for the good world with one part replaced.
 fn error(from: &str, to: &str) -> String {
     assert!(GOOD.contains(from), "{from}");
@@ -145,8 +144,10 @@ fn a_map_may_be_too_large() {
       = help: 3 × 3 cells are the least, 4 million the most; one row of text is one row of cells
     ");
     let most = format!("{}\n", ".".repeat(2000)).repeat(2000);
-    let spec =
-        crate::grid::parse("yard.toml", &format!("name = \"plain\"\nsensor_radius = 4\nmap = '''\n{most}'''"));
+    let spec = crate::grid::parse(
+        "yard.toml",
+        &format!("name = \"plain\"\nsensor_radius = 4\nmap = '''\n{most}'''"),
+    );
     assert_eq!(spec.unwrap().start, Cell::new(1000, 1000));
 }
 

@@ -1,7 +1,5 @@
 mod parts;
 
-
-
 /// A small world in which every line can be made wrong.
 const GOOD: &str = r#"name = "closet"
 

@@ -77,7 +77,8 @@ fn drives_and_lasers() {
     compare("drives_and_lasers", &cases);
     let car = GOOD.replacen("max_linear_mps", "kind = \"car\"\nwheelbase_m = 0.3\nmax_linear_mps", 1);
     let wander = |kind: &str| car.replacen("kind = \"driven\"", kind, 1);
-    let error = |text: String| crate::physics::parse_fleet("closet.toml", &text).map(|_| ()).unwrap_err().to_string();
+    let error =
+        |text: String| crate::physics::parse_fleet("closet.toml", &text).map(|_| ()).unwrap_err().to_string();
     assert!(error(wander("kind = \"wander\"\nspeed_mps = 0.3")).contains("a car cannot be `wander`"));
     let tight = "kind = \"circle\"\nspeed_mps = 0.3\nturn_radius_m = 0.4";
     assert!(

@@ -7,8 +7,8 @@ fn chi_square(counts: &[(f64, f64)]) -> f64 {
 
 #[test]
 fn a_block_that_is_due_moves_with_its_chance() {
-    let spec =
-        spec("####\n#R##\n....", &block("b", 3, "back-and-forth", "[[0, 0], [3, 0]]")).with_probabilities(0.3, 1.0);
+    let spec = spec("####\n#R##\n....", &block("b", 3, "back-and-forth", "[[0, 0], [3, 0]]"))
+        .with_probabilities(0.3, 1.0);
     let mut world = GridWorld::new(&spec, 11);
     let (mut waits, mut since, mut before) = (vec![0.0; 8], 0, world.blocks().next().unwrap().1);
     let mut moves = 0.0;
@@ -70,7 +70,8 @@ fn what_the_robot_does_is_no_chance_of_a_block() {
 #[test]
 fn blocks_have_chances_of_their_own() {
     let line = |name: &str, y: u32| block(name, 1, "back-and-forth", &format!("[[0, {y}], [3, {y}]]"));
-    let spec = |blocks: &[String]| spec("....\n....\n....\nR...", &blocks.concat()).with_probabilities(0.5, 1.0);
+    let spec =
+        |blocks: &[String]| spec("....\n....\n....\nR...", &blocks.concat()).with_probabilities(0.5, 1.0);
     let run = |spec: &GridSpec| {
         let mut world = GridWorld::new(spec, 5);
         let step = |_| {

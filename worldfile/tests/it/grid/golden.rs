@@ -39,7 +39,8 @@ fn shipped_worlds_run_as_they_always_did() {
     for (name, text) in SHIPPED {
         let spec = worldfile::grid::parse(name, text).unwrap();
         let by_the_clock = hash(&spec);
-        hashes += &format!("{name}: {by_the_clock}, by chance {}\n", hash(&spec.with_probabilities(0.7, 0.9)));
+        hashes +=
+            &format!("{name}: {by_the_clock}, by chance {}\n", hash(&spec.with_probabilities(0.7, 0.9)));
     }
     insta::assert_snapshot!(hashes, @r"
     two_blocks: e970a69e6c41a6cd, by chance 4ac944466eb1f7bd
@@ -52,6 +53,7 @@ fn shipped_worlds_run_as_they_always_did() {
 
 #[test]
 fn generated_worlds_are_what_they_always_were() {
-    let worlds = (0..3).map(|seed| worldfile::grid::to_toml(&GridSpec::generate(&GenerateSettings::default(), seed)));
+    let worlds =
+        (0..3).map(|seed| worldfile::grid::to_toml(&GridSpec::generate(&GenerateSettings::default(), seed)));
     insta::assert_snapshot!(worlds.collect::<Vec<_>>().join("\n"));
 }

@@ -7,8 +7,8 @@ mod robot;
 mod schedule;
 mod truth;
 
+use interfaces::{Cell, GroundTruth, Step, World};
 use sim::grid::{GenerateSettings, GridSpec, GridWorld};
-use interfaces::{Cell, Step, World};
 
 /// The shipped grid worlds.
 const SHIPPED: [(&str, &str); 5] = [

@@ -110,7 +110,12 @@ fn bad_plans_have_their_place() {
     let messages: String =
         cases.iter().map(|(case, from, to)| format!("# {case}\n\n{}\n\n", said(from, to))).collect();
     insta::with_settings!({ omit_expression => true }, { insta::assert_snapshot!(messages) });
-    assert!(worldfile::physics::parse_fleet("w/room.toml", WORLD).unwrap_err().to_string().contains("no such file"));
+    assert!(
+        worldfile::physics::parse_fleet("w/room.toml", WORLD)
+            .unwrap_err()
+            .to_string()
+            .contains("no such file")
+    );
 }
 
 /// The worlds beside this crate: each can be read, and its robots drive without getting stuck or

@@ -9,7 +9,10 @@ fn hall(step_s: f64, things: &str) -> Fleet {
     let text = format!(
         "name = \"hall\"\n[map]\nsize_m = [20.0, 4.0]\ncell_m = 0.1\n[physics]\nstep_s = {step_s:?}\n{things}"
     );
-    Fleet::new(&worldfile::physics::parse_fleet("hall.toml", &text).unwrap_or_else(|error| panic!("{error}")), 0)
+    Fleet::new(
+        &worldfile::physics::parse_fleet("hall.toml", &text).unwrap_or_else(|error| panic!("{error}")),
+        0,
+    )
 }
 
 /// A quick robot that looks along x.

@@ -39,7 +39,8 @@ fn world(seed: u64) -> FleetSpec {
         let _ = write!(text, "[[wall]]\nfrom_m = {a:?}\nto_m = {b:?}\nthickness_m = 0.05\n");
     }
     text += &format!("[physics]\nstep_s = {:?}\n", [0.02, 0.05, 0.1][seed as usize % 3]);
-    let mut spec = worldfile::physics::parse_fleet("random.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+    let mut spec =
+        worldfile::physics::parse_fleet("random.toml", &text).unwrap_or_else(|error| panic!("{error}"));
     for thing in 0..26 {
         let at = chance.point();
         let more = if thing < 5 {
@@ -188,7 +189,9 @@ fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
             });
             contacts += fleet.contacts().len();
             let now = fleet.obstacles().map(|obstacle| (obstacle.index, obstacle.corners));
-            for ((index, before), (_, after)) in stood.into_iter().zip(now).filter(|(before, now)| before != now) {
+            for ((index, before), (_, after)) in
+                stood.into_iter().zip(now).filter(|(before, now)| before != now)
+            {
                 let spec = &spec.obstacles[index];
                 let place = || format!("obstacle {} of world {seed} at {:.2} s", spec.name, fleet.time_s());
                 let [from, to] = [before, after].map(|corners| nalgebra::center(&corners[0], &corners[2]));

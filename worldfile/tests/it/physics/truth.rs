@@ -55,7 +55,7 @@ fn truth_is_what_sampled_points_say() {
             match state {
                 TrueState::Free => assert_eq!(inside, 0, "cell {index}"),
                 TrueState::Blocked => assert_eq!(inside, count, "cell {index}"),
-                TrueState::Partly => {
+                TrueState::PartlyCovered => {
                     partly += 1;
                     // A sliver may fall between the samples.
                     blurred += usize::from(inside == 0 || inside == count);
