@@ -7,7 +7,7 @@ use sim::physics::{PhysicsGroundTruth, PhysicsWorld};
 
 fn physics_world() -> PhysicsWorld {
     let text = include_str!("../../../worlds/four_rooms.toml");
-    PhysicsWorld::new(&sim::physics::WorldSpec::parse("four_rooms.toml", text).unwrap(), 0)
+    PhysicsWorld::new(&worldfile::physics::parse_world("four_rooms.toml", text).unwrap(), 0)
 }
 
 /// The true map, with `otherwise` in partly covered cells.
@@ -77,7 +77,7 @@ const WORLD: &str = r##"
 
 fn grid_world() -> GridWorld {
     let unindented: String = WORLD.lines().map(|line| line.trim_start().to_owned() + "\n").collect();
-    GridWorld::new(&GridSpec::parse("shelf.toml", &unindented).unwrap(), 0)
+    GridWorld::new(&worldfile::grid::parse("shelf.toml", &unindented).unwrap(), 0)
 }
 
 fn mapper(world: &GridWorld) -> Mapper {

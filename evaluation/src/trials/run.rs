@@ -63,7 +63,7 @@ pub fn run_trial(
     let controller = Controller::new(trial.controller, CellDrive, stream)?;
     match &trial.strategy {
         TrialStrategy::Agent(policy) => {
-            let sensor_radius_m = f64::from(trial.world.sensor_radius()) * trial.world.frame().resolution_m();
+            let sensor_radius_m = f64::from(trial.world.sensor_radius) * trial.world.frame().resolution_m();
             let settings = AgentSettings { sensor_radius_m, ..trial.agent.clone() };
             let agent = Agent::new(&settings, policy, RandomStream::new(trial.seed, Purpose::GridAgent))?;
             run(trial, Autonomous::new(agent, controller), |_, _| (), &mut observe)
@@ -113,7 +113,7 @@ fn run<G: GoalSelector>(
     )
     .expect("a grid world gives valid readings");
     Ok(is_complete.then(|| Trial {
-        world: trial.world.name().to_owned(),
+        world: trial.world.name.clone(),
         estimator: trial.mapper.estimator.name().to_owned(),
         strategy: trial.strategy.name().to_owned(),
         seed: trial.seed,

@@ -55,12 +55,12 @@ impl Set {
             Self::Generated => Ok(seeds.map(|seed| (generated(seed), seed)).collect()),
             Self::Stochastic => {
                 let (block, robot) = CHANCES;
-                Ok(seeds.map(|seed| (generated(seed).with_chances(block, robot), seed)).collect())
+                Ok(seeds.map(|seed| (generated(seed).with_probabilities(block, robot), seed)).collect())
             }
             Self::Shipped => {
                 let mut worlds = Vec::new();
                 for (name, text) in SHIPPED {
-                    let spec = GridSpec::parse(name, text)?;
+                    let spec = worldfile::grid::parse(name, text)?;
                     worlds.extend((0..SHIPPED_SEEDS).map(|seed| (spec.clone(), seed)));
                 }
                 Ok(worlds)

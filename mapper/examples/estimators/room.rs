@@ -33,14 +33,14 @@ pub(crate) struct Score {
 
 /// Scores in the order of [`Estimator::ALL`], for every row of [`VISITS`].
 pub(crate) fn judge() -> anyhow::Result<Vec<Vec<Score>>> {
-    let spec = WorldSpec::parse("four_rooms.toml", &HOUSE.replace(START, PLACE))?;
+    let spec = worldfile::physics::parse_world("four_rooms.toml", &HOUSE.replace(START, PLACE))?;
     let mut scores = Vec::new();
     for (seen, of) in VISITS {
         eprintln!("The dummy robot, {seen} of {of} scans");
         let mut world = PhysicsWorld::new(&spec, 0);
         let mapper = |estimator| {
             let settings = MapperSettings { estimator, max_gap: HIDING_S, ..MapperSettings::default() };
-            Mapper::new(&settings, *spec.frame())
+            Mapper::new(&settings, spec.frame)
         };
         let mut mappers: Vec<Mapper> = Estimator::ALL.map(mapper).into_iter().collect::<Result<_, _>>()?;
         let (mut rng, mut next) = (ChaCha8Rng::seed_from_u64(1), 0);

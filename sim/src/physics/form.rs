@@ -3,7 +3,7 @@ use nalgebra::{Isometry2, Point2};
 
 /// The body of a robot somewhere.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Form {
+pub enum Form {
     /// A disc.
     Disc {
         /// Its middle, m.
@@ -18,7 +18,7 @@ pub(crate) enum Form {
 impl Form {
     /// The body of a robot at `pose`: a disc of `radius_m` without corners, else with these, in
     /// its own frame.
-    pub(crate) fn new(corners: &[Point2<f64>], radius_m: f64, pose: &Isometry2<f64>) -> Self {
+    pub fn new(corners: &[Point2<f64>], radius_m: f64, pose: &Isometry2<f64>) -> Self {
         if corners.is_empty() {
             return Self::Disc { center: pose.translation.vector.into(), radius_m };
         }
@@ -26,7 +26,7 @@ impl Form {
     }
 
     /// How far it is from a convex body, m; negative if they overlap.
-    pub(crate) fn gap_m(&self, body: &[Point2<f64>]) -> f64 {
+    pub fn gap_m(&self, body: &[Point2<f64>]) -> f64 {
         match self {
             Self::Disc { center, radius_m } => convex::disc_gap_m(body, center, *radius_m),
             Self::Convex(corners) => convex::gap_m(corners, body),
@@ -34,7 +34,7 @@ impl Form {
     }
 
     /// How far it is from a point, m; negative inside.
-    pub(crate) fn gap_m_to(&self, point: &Point2<f64>) -> f64 {
+    pub fn gap_m_to(&self, point: &Point2<f64>) -> f64 {
         match self {
             Self::Disc { center, radius_m } => (point - center).norm() - radius_m,
             Self::Convex(corners) => convex::disc_gap_m(corners, point, 0.0),
@@ -42,7 +42,7 @@ impl Form {
     }
 
     /// How far it is from another robot's body, m; negative if they overlap.
-    pub(crate) fn apart_m(&self, other: &Self) -> f64 {
+    pub fn apart_m(&self, other: &Self) -> f64 {
         match (self, other) {
             (Self::Disc { center, radius_m }, Self::Disc { center: other, radius_m: other_m }) => {
                 (center - other).norm() - radius_m - other_m
@@ -52,7 +52,7 @@ impl Form {
     }
 
     /// The corners of the upright box around it, m.
-    pub(crate) fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
+    pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
         match self {
             Self::Disc { center, radius_m } => {
                 let reach = nalgebra::Vector2::repeat(*radius_m);

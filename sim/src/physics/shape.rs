@@ -1,9 +1,11 @@
+//! Rectangles, and how points, segments and poses lie to each other.
+
 use interfaces::rotation;
 use nalgebra::{Isometry2, Point2, Rotation2, Translation2, UnitComplex, Vector2};
 
 /// Bodies closer than this touch, but do not overlap, m. Far above rounding, far below anything
 /// that a laser or a map can tell.
-pub(crate) const TOUCH_M: f64 = 1e-6;
+pub const TOUCH_M: f64 = 1e-6;
 
 /// A rectangle that lies anywhere: a wall or a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +76,7 @@ impl Rectangle {
     }
 
     /// How far the segment from `a` to `b` (m) keeps from the rectangle, m; 0 if it enters.
-    pub(crate) fn segment_distance_m(&self, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
+    pub fn segment_distance_m(&self, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
         let corners = self.corners();
         let sides = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
         if sides.into_iter().any(|(p, q)| crosses(a, b, &p, &q)) {
@@ -85,7 +87,7 @@ impl Rectangle {
     }
 
     /// Whether two rectangles overlap by more than a touch, by separating axes.
-    pub(crate) fn overlaps(&self, other: &Self) -> bool {
+    pub fn overlaps(&self, other: &Self) -> bool {
         let (ours, theirs) = (self.corners(), other.corners());
         let axes = [self, other].map(|r| [r.pose.rotation * Vector2::x(), r.pose.rotation * Vector2::y()]);
         axes.iter().flatten().all(|axis| {
@@ -99,17 +101,17 @@ impl Rectangle {
     }
 
     /// The same rectangle somewhere else (m).
-    pub(crate) fn moved(&self, by_m: Vector2<f64>) -> Self {
+    pub fn moved(&self, by_m: Vector2<f64>) -> Self {
         Self { pose: Translation2::from(by_m) * self.pose, half_m: self.half_m }
     }
 
     /// The same rectangle after the world has turned about `middle` (m).
-    pub(crate) fn turned(&self, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Self {
+    pub fn turned(&self, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Self {
         Self { pose: turned(&self.pose, turn, middle), half_m: self.half_m }
     }
 
     /// The corners of the upright box around it, m.
-    pub(crate) fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
+    pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
         let turn = Rotation2::from(self.pose.rotation).into_inner().abs();
         let (middle, reach) = (Point2::from(self.pose.translation.vector), turn * self.half_m);
         (middle - reach, middle + reach)
@@ -117,22 +119,18 @@ impl Rectangle {
 }
 
 /// The same pose after the world has turned about `middle` (m).
-pub(crate) fn turned(pose: &Isometry2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Isometry2<f64> {
+pub fn turned(pose: &Isometry2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Isometry2<f64> {
     let at = turned_point(&pose.translation.vector.into(), turn, middle);
     Isometry2::from_parts(Translation2::from(at), turn * pose.rotation)
 }
 
 /// The same point after the world has turned about `middle` (m).
-pub(crate) fn turned_point(
-    point: &Point2<f64>,
-    turn: &UnitComplex<f64>,
-    middle: &Point2<f64>,
-) -> Point2<f64> {
+pub fn turned_point(point: &Point2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Point2<f64> {
     middle + turn * (point - middle)
 }
 
 /// The distance from a point to a segment, m.
-pub(crate) fn point_segment_m(point: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
+pub fn point_segment_m(point: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
     let (along, to) = (b - a, point - a);
     let length2 = along.norm_squared();
     let share = if length2 > 0.0 { (to.dot(&along) / length2).clamp(0.0, 1.0) } else { 0.0 };
