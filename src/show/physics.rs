@@ -113,7 +113,7 @@ impl PhysicsShow {
         }
         let obstacles: Vec<ObstacleView> = world
             .spec()
-            .obstacles()
+            .obstacles
             .iter()
             .zip(outlines.iter().zip(present))
             .map(|(obstacle, (outline, is_present))| ObstacleView {

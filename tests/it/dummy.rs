@@ -4,7 +4,7 @@ use interfaces::{CellState, Twist};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::Point2;
 use robot::{Belief, Pilot, explore};
-use sim::physics::{PhysicsWorld, WorldSpec};
+use sim::physics::PhysicsWorld;
 use std::ops::ControlFlow;
 
 const STANDS_UNTIL_S: f64 = 30.0;

@@ -81,7 +81,7 @@ fn worlds(args: &Args) -> anyhow::Result<Vec<GridSpec>> {
     let made = 0..args.generate.unwrap_or(0);
     worlds.extend(made.map(|number| GridSpec::generate(&settings, args.seed.wrapping_add(number))));
     let mut names = BTreeSet::new();
-    if let Some(twin) = worlds.iter().map(GridSpec::name).find(|name| !names.insert(*name)) {
+    if let Some(twin) = worlds.iter().map(|world| &world.name).find(|name| !names.insert(*name)) {
         bail!("two worlds are called `{twin}`: give each a name of its own, by which results are told");
     }
     for world in &mut worlds {

@@ -6,8 +6,6 @@ mod physics;
 mod tests;
 
 use curious::pictures::Plan;
-use sim::grid::GridSpec;
-use sim::physics::FleetSpec;
 use std::path::Path;
 use worldfile::floor_plan::{FloorPlan, ros};
 use worldfile::{Disk, Files, Findings, Severity, shipped};
@@ -83,7 +81,7 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
     let is_grid =
         text.parse::<toml::Table>().is_ok_and(|file| file.get("map").is_some_and(toml::Value::is_str));
     let outcome = if is_grid {
-        worldfile::grid::parse(name, text).map(|world| (grid::content(&world), world.warnings().to_vec()))
+        worldfile::grid::parse(name, text).map(|world| (grid::content(&world), world.warnings()))
     } else {
         worldfile::physics::parse_fleet_with(name, text, files)
             .map(|world| (physics::content("physics world", &world), Vec::new()))
