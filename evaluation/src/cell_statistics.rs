@@ -91,8 +91,9 @@ mod tests {
     fn mapper() -> Mapper {
         let text = include_str!("../../worlds/four_rooms.toml");
         let text = text.replacen("pose_m = [2.0, 2.0]", "pose_m = [9.0, 9.0]", 1);
-        let mut world = PhysicsWorld::new(&WorldSpec::parse("four_rooms.toml", &text).unwrap(), 0);
-        let mut mapper = Mapper::new(&MapperSettings::default(), *world.spec().frame()).unwrap();
+        let mut world =
+            PhysicsWorld::new(&worldfile::physics::parse_world("four_rooms.toml", &text).unwrap(), 0);
+        let mut mapper = Mapper::new(&MapperSettings::default(), world.spec().frame).unwrap();
         for _ in 0..600 {
             mapper.update(&world.sense()).unwrap();
             world.act(&interfaces::Twist::STOP);

@@ -114,7 +114,7 @@ pub struct Findings {
 fn name(world: &PhysicsWorld, body: Body) -> String {
     match body {
         Body::Wall(_) => "a wall".into(),
-        Body::Obstacle(index) => world.spec().obstacles()[index].name.clone(),
-        Body::Robot(index) => world.spec().robots()[index].name.clone(),
+        Body::Obstacle(index) => world.spec().obstacles[index].name.clone(),
+        Body::Robot(index) => world.spec().robots[index].name.clone(),
     }
 }

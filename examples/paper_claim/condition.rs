@@ -85,7 +85,7 @@ impl Condition {
 
     fn experiment(&self, worlds: Vec<GridSpec>, trials: u64) -> Experiment {
         let set = |world: GridSpec| {
-            world.with_sensor_radius(self.sensor_radius).with_chances(self.chance, self.chance)
+            world.with_sensor_radius(self.sensor_radius).with_probabilities(self.chance, self.chance)
         };
         let mut controller = CellDrive::settings();
         controller.exploration.max_steps = self.max_steps;
@@ -111,8 +111,8 @@ fn report(experiment: &Experiment, jobs: Vec<Job>) -> anyhow::Result<Report> {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         steps: experiment.steps,
         trials: experiment.trials,
-        sensor_radius: experiment.worlds[0].sensor_radius(),
-        worlds: experiment.worlds.iter().map(|world| world.name().to_owned()).collect(),
+        sensor_radius: experiment.worlds[0].sensor_radius,
+        worlds: experiment.worlds.iter().map(|world| world.name.clone()).collect(),
         estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
         strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
         ..Default::default()

@@ -26,7 +26,7 @@ fn main() {
 /// What a robot sees that follows what moves.
 fn readings() -> (GridSpec, Vec<CellReading>) {
     let world = include_str!("../../worlds/two_blocks.toml");
-    let spec = GridSpec::parse("two_blocks.toml", world).unwrap();
+    let spec = worldfile::grid::parse("two_blocks.toml", world).unwrap();
     let mut robot = Robot::new(&spec, Habit::Follows, ChaCha8Rng::seed_from_u64(1));
     let mut world = GridWorld::new(&spec, 1);
     let readings = (0..STEPS)

@@ -1,4 +1,4 @@
-//! Places for a robot to live in.
+//! Worlds for a robot to live in, with their ground truth: this crate simulates.
 //!
 //! [`physics`] is the two-dimensional world of the paper's section 5 and figures 4 and 5: walls,
 //! robots with real contacts, lasers.
@@ -7,37 +7,33 @@
 //! from cell to cell, a robot that takes a step at a time and sees exactly.
 //!
 //! Both implement [`interfaces::World`], and keep the truth that metrics (and nothing else) may look
-//! at.
+//! at. This crate is the only one that knows the physics engine. It reads no file and parses no text: a world is
+//! a plain struct, which the crates `worldfile` and `stage` can make from files.
 //!
 //! ```
-//! use interfaces::{Twist, World};
-//! use sim::physics::{PhysicsWorld, WorldSpec};
+//! use interfaces::{GridFrame, Twist, World};
+//! use nalgebra::{Isometry2, Point2, Vector2};
+//! use sim::physics::*;
 //!
-//! let spec = WorldSpec::parse("four_rooms.toml", include_str!("../../worlds/four_rooms.toml"))?;
-//! let mut world = PhysicsWorld::new(&spec, 7);
+//! let robot = RobotSpec::new("curious", Isometry2::translation(1.0, 2.0), BehaviorSpec::Driven);
+//! let fleet = FleetSpec {
+//!     name: "hall".to_owned(),
+//!     description: String::new(),
+//!     frame: GridFrame::covering(Point2::origin(), 6.0, 4.0, 0.05).unwrap(),
+//!     step_s: 0.05,
+//!     walls: vec![Rectangle::around(Point2::new(5.0, 2.0), Vector2::new(0.1, 4.0), 0.0)],
+//!     obstacles: Vec::new(),
+//!     robots: vec![robot],
+//! };
+//! let mut world = PhysicsWorld::new(&WorldSpec::new(fleet)?, 7);
 //! let before = world.sense();
 //! world.act(&Twist { linear_mps: 0.5, angular_radps: 0.0 });
 //! let after = world.sense();
-//! assert_eq!(after.scan.ranges_m.len(), 720);
+//! assert_eq!(after.scan.ranges_m.len(), 360);
 //! assert!((after.time_s - before.time_s - 0.1).abs() < 1e-9);
 //! assert!(after.pose.translation.x > before.pose.translation.x);
-//! # Ok::<(), sim::WorldError>(())
+//! # Ok::<(), DrivenError>(())
 //! ```
-//!
-#![doc = include_str!("hello.md")]
 
-mod error;
-mod files;
-mod findings;
-pub mod floor_plan;
 pub mod grid;
-mod kind;
-mod names;
 pub mod physics;
-mod reader;
-pub mod stage;
-mod together;
-
-pub use error::WorldError;
-pub use files::{Disk, Files};
-pub use findings::{Finding, Findings, Severity};

@@ -37,12 +37,7 @@ pub struct Recorded {
 
 /// What stays the same in a trial in `world`.
 pub fn scene(world: &GridSpec) -> Scene {
-    Scene {
-        title: world.name().to_owned(),
-        place: "grid",
-        unit: TimeUnit::Step,
-        walls: rectangles(world.walls()),
-    }
+    Scene { title: world.name.clone(), place: "grid", unit: TimeUnit::Step, walls: rectangles(&world.walls) }
 }
 
 /// Runs one trial, the first steps of which go to `recorder`. When `is_cancelled` is set the trial is
@@ -82,7 +77,7 @@ struct Observer {
 
 impl Observer {
     fn new(life: &TrialSettings, recorder: Recorder) -> Self {
-        let start = life.world.frame().center(life.world.start());
+        let start = life.world.frame().center(life.world.start);
         Self {
             recorder: Some(recorder),
             steps: life.steps,
@@ -135,7 +130,7 @@ impl Observer {
             pose: self.pose,
             radius_m: ROBOT_RADIUS_M,
             is_curious: true,
-            sight: Some(Sight::Cells { reading: look.reading, radius: look.world.spec().sensor_radius() }),
+            sight: Some(Sight::Cells { reading: look.reading, radius: look.world.spec().sensor_radius }),
         };
         let outlines: Vec<Outline> =
             look.world.blocks().map(|(_, cell)| rectangle(cell, cell, INSET_M)).collect();
@@ -257,7 +252,7 @@ mod tests {
     /// The walls of a drawn world, as rectangles.
     fn walls(rows: &[&str]) -> (Grid<bool>, Vec<Outline>) {
         let text = format!("name = 'x'\nsensor_radius = 1\nmap = '''\n{}\n'''", rows.join("\n"));
-        let walls = GridSpec::parse("x.toml", &text).unwrap().walls().clone();
+        let walls = worldfile::grid::parse("x.toml", &text).unwrap().walls;
         let rectangles = rectangles(&walls);
         (walls, rectangles)
     }

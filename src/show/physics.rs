@@ -18,7 +18,7 @@ pub struct PhysicsShow {
 impl PhysicsShow {
     /// Shows a run in `world` to `recorder`, if there is one.
     pub fn new(world: &PhysicsWorld, recorder: Option<Recorder>) -> Self {
-        let obstacles = world.spec().obstacles().iter();
+        let obstacles = world.spec().obstacles.iter();
         Self {
             recorder,
             trails: world.robots().map(|robot| Trail::new(robot.name, robot.is_driven)).collect(),
@@ -29,7 +29,7 @@ impl PhysicsShow {
     /// What stays the same for a whole run in this world.
     pub fn scene(world: &PhysicsWorld) -> Scene {
         Scene {
-            title: world.spec().name().to_owned(),
+            title: world.spec().name.to_owned(),
             place: "house",
             unit: TimeUnit::Second,
             walls: world.walls().map(|corners| corners.to_vec()).collect(),
@@ -113,7 +113,7 @@ impl PhysicsShow {
         }
         let obstacles: Vec<ObstacleView> = world
             .spec()
-            .obstacles()
+            .obstacles
             .iter()
             .zip(outlines.iter().zip(present))
             .map(|(obstacle, (outline, is_present))| ObstacleView {

@@ -14,7 +14,7 @@ fn text(bytes: &[u8]) -> &str {
 #[test]
 fn worlds_are_described_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
-    let lab = concat!(env!("CARGO_MANIFEST_DIR"), "/sim/worlds/stage/lab.world");
+    let lab = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/stage/lab.world");
     let ended = check(folder.path(), &["--png", "--out", "plans", "two_blocks", "four_rooms", lab]);
     assert_eq!(ended.status.code(), Some(0), "{ended:?}");
     let said = text(&ended.stdout);

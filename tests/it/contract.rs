@@ -108,7 +108,7 @@ fn grid_worlds() {
     let shipped = worlds::SHIPPED_GRID.map(|(name, _)| worlds::load_grid(name).unwrap());
     let made = (0..5).map(|seed| GridSpec::generate(&GenerateSettings::default(), seed));
     for spec in shipped.into_iter().chain(made) {
-        for spec in [spec.clone(), spec.with_chances(0.7, 0.9)] {
+        for spec in [spec.clone(), spec.with_probabilities(0.7, 0.9)] {
             keeps_the_contract(|seed| GridWorld::new(&spec, seed), &steps());
         }
     }

@@ -4,7 +4,7 @@ use interfaces::{CellState, Twist};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::Point2;
 use robot::{Belief, Pilot, explore};
-use sim::physics::{PhysicsWorld, WorldSpec};
+use sim::physics::PhysicsWorld;
 use std::ops::ControlFlow;
 
 const STANDS_UNTIL_S: f64 = 30.0;
@@ -27,13 +27,13 @@ fn world() -> PhysicsWorld {
     let (name, text) = curious::worlds::SHIPPED[0];
     let text = text.replacen("pose_m = [2.0, 2.0]", "pose_m = [9.5, 11.5]", 1);
     let text = text.replacen("heading_deg = 0.0", "heading_deg = 270.0", 1);
-    PhysicsWorld::new(&WorldSpec::parse(name, &text).unwrap(), 0)
+    PhysicsWorld::new(&worldfile::physics::parse_world(name, &text).unwrap(), 0)
 }
 
 #[test]
 fn it_waits_and_goes_on() {
     let mut world = world();
-    let mut mapper = Mapper::new(&MapperSettings::default(), *world.spec().frame()).unwrap();
+    let mut mapper = Mapper::new(&MapperSettings::default(), world.spec().frame).unwrap();
     let mut way: Vec<(f64, f64)> = Vec::new();
     let mut seen_waiting = Vec::new();
     explore(&mut world, &mut mapper, &mut Visitor, |world, reading, belief, _| -> anyhow::Result<_> {

@@ -3,21 +3,21 @@ use interfaces::{Cell, CellReading, CellState, Grid, GroundTruth, Step, TrueStat
 use mapper::{Estimator, Mapper, MapperSettings};
 use nalgebra::Isometry2;
 use sim::grid::{GridSpec, GridWorld};
-use sim::physics::{PhysicsWorld, Truth};
+use sim::physics::{PhysicsGroundTruth, PhysicsWorld};
 
 fn physics_world() -> PhysicsWorld {
     let text = include_str!("../../../worlds/four_rooms.toml");
-    PhysicsWorld::new(&sim::physics::WorldSpec::parse("four_rooms.toml", text).unwrap(), 0)
+    PhysicsWorld::new(&worldfile::physics::parse_world("four_rooms.toml", text).unwrap(), 0)
 }
 
 /// The true map, with `otherwise` in partly covered cells.
-fn true_map(truth: &Truth, otherwise: CellState) -> Grid<CellState> {
-    let state = |state: &TrueState| match state {
+fn true_map(truth: &PhysicsGroundTruth, otherwise: CellState) -> Grid<CellState> {
+    let state = |index: usize| match truth.state(index) {
         TrueState::Free => CellState::Free,
         TrueState::Blocked => CellState::Blocked,
         TrueState::PartlyCovered => otherwise,
     };
-    Grid::from_cells(*truth.frame(), truth.states().iter().map(state).collect()).unwrap()
+    Grid::from_cells(*truth.frame(), (0..truth.frame().len()).map(state).collect()).unwrap()
 }
 
 #[test]
@@ -41,9 +41,8 @@ fn coverage_and_age_count_the_cells_that_can_be_seen() {
     let mut mapper = Mapper::new(&MapperSettings::default(), *truth.frame()).unwrap();
     let half = visible.len() / 2;
     for (time, seen) in [(10.0, &visible[..half]), (30.0, &visible[..0])] {
-        let cells = seen
-            .iter()
-            .map(|&index| (truth.frame().cell(index), truth.states()[index] == TrueState::Blocked));
+        let cells =
+            seen.iter().map(|&index| (truth.frame().cell(index), truth.state(index) == TrueState::Blocked));
         let reading = CellReading { time, pose: *world.true_pose(), cells: cells.collect() };
         mapper.update(&reading).unwrap();
     }
@@ -78,7 +77,7 @@ const WORLD: &str = r##"
 
 fn grid_world() -> GridWorld {
     let unindented: String = WORLD.lines().map(|line| line.trim_start().to_owned() + "\n").collect();
-    GridWorld::new(&GridSpec::parse("shelf.toml", &unindented).unwrap(), 0)
+    GridWorld::new(&worldfile::grid::parse("shelf.toml", &unindented).unwrap(), 0)
 }
 
 fn mapper(world: &GridWorld) -> Mapper {

@@ -10,7 +10,7 @@ use interfaces::GroundTruth;
 use mapper::Mapper;
 use nalgebra::Point2;
 use robot::{Belief, Destination, GoalSelector};
-use sim::grid::{GridSpec, GridTruth};
+use sim::grid::{GridGroundTruth, GridSpec};
 
 /// How long it considers to stay, steps.
 const STAYS: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
@@ -63,8 +63,8 @@ impl Oracle {
     }
 
     /// Takes in how often every cell has truly changed so far. To be told at every step.
-    pub fn learn(&mut self, truth: &GridTruth) {
-        for &cell in truth.swept() {
+    pub fn learn(&mut self, truth: &GridGroundTruth) {
+        for &cell in truth.swept().iter() {
             self.rates[cell] = truth.cycle_rate(cell);
             self.weights[cell] = 0.0;
         }

@@ -41,7 +41,7 @@ impl Travel for Straight {
 
 /// The rooms after so many steps of a robot that stays where it is, and what it has learned.
 fn after(steps: usize) -> (GridWorld, Mapper, Oracle) {
-    let spec = GridSpec::parse("rooms.toml", ROOMS).unwrap();
+    let spec = worldfile::grid::parse("rooms.toml", ROOMS).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), *spec.frame()).unwrap();
     let (mut world, mut oracle) = (GridWorld::new(&spec, 0), Oracle::new(&spec));
     for _ in 0..steps {

@@ -24,11 +24,11 @@ impl WorldPicture {
         let at = |cell: &Cell| (cell.x as usize, cell.y as usize);
         let block = |block: &BlockSpec| (block.name.clone(), block.path.iter().map(at).collect());
         Self {
-            name: world.name().to_owned(),
-            walls: world.walls().cells().chunks(world.frame().width()).map(<[bool]>::to_vec).collect(),
-            things: world.blocks().iter().map(block).collect(),
-            start: at(&world.start()),
-            sensor_radius: world.sensor_radius(),
+            name: world.name.to_owned(),
+            walls: world.walls.cells().chunks(world.frame().width()).map(<[bool]>::to_vec).collect(),
+            things: world.blocks.iter().map(block).collect(),
+            start: at(&world.start),
+            sensor_radius: world.sensor_radius,
         }
     }
 

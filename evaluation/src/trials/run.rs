@@ -8,7 +8,7 @@ use controller::{CellDrive, Controller};
 use interfaces::{CellReading, GroundTruth, Purpose, RandomStream, Step};
 use mapper::{Mapper, MapperSettings, ReadingError};
 use robot::{Autonomous, Belief, GoalSelector, Pilot, explore};
-use sim::grid::{GridSpec, GridTruth, GridWorld};
+use sim::grid::{GridGroundTruth, GridSpec, GridWorld};
 use std::ops::ControlFlow;
 
 /// The number of samples of a trial.
@@ -63,7 +63,7 @@ pub fn run_trial(
     let controller = Controller::new(trial.controller, CellDrive, stream)?;
     match &trial.strategy {
         TrialStrategy::Agent(policy) => {
-            let sensor_radius_m = f64::from(trial.world.sensor_radius()) * trial.world.frame().resolution_m();
+            let sensor_radius_m = f64::from(trial.world.sensor_radius) * trial.world.frame().resolution_m();
             let settings = AgentSettings { sensor_radius_m, ..trial.agent.clone() };
             let agent = Agent::new(&settings, policy, RandomStream::new(trial.seed, Purpose::GridAgent))?;
             run(trial, Autonomous::new(agent, controller), |_, _| (), &mut observe)
@@ -78,7 +78,7 @@ pub fn run_trial(
 fn run<G: GoalSelector>(
     trial: &TrialSettings,
     mut pilot: Autonomous<G, CellDrive>,
-    reveal: impl Fn(&mut G, &GridTruth),
+    reveal: impl Fn(&mut G, &GridGroundTruth),
     observe: &mut impl FnMut(TrialStep) -> bool,
 ) -> Result<Option<Trial>, SettingsError> {
     let mut world = GridWorld::new(trial.world, trial.seed);
@@ -113,7 +113,7 @@ fn run<G: GoalSelector>(
     )
     .expect("a grid world gives valid readings");
     Ok(is_complete.then(|| Trial {
-        world: trial.world.name().to_owned(),
+        world: trial.world.name.clone(),
         estimator: trial.mapper.estimator.name().to_owned(),
         strategy: trial.strategy.name().to_owned(),
         seed: trial.seed,
@@ -149,19 +149,19 @@ struct Measured {
 }
 
 impl Measured {
-    fn count(&mut self, truth: &GridTruth, reading: &CellReading) {
+    fn count(&mut self, truth: &GridGroundTruth, reading: &CellReading) {
         let is_swept =
             |&(cell, _): &(_, bool)| truth.frame().index(cell).is_some_and(|index| truth.is_swept(index));
         self.steps += 1;
         self.steps_near_changes += u64::from(reading.cells.iter().any(is_swept));
     }
 
-    fn compare(&mut self, mapper: &Mapper, truth: &GridTruth) {
+    fn compare(&mut self, mapper: &Mapper, truth: &GridGroundTruth) {
         self.accuracy.sample(mapper, truth);
         self.prediction.sample(mapper, truth);
     }
 
-    fn sample(&mut self, step: u64, mapper: &Mapper, truth: &GridTruth) -> Sample {
+    fn sample(&mut self, step: u64, mapper: &Mapper, truth: &GridGroundTruth) -> Sample {
         let (rates, map) = (rate_scores(mapper, truth), map_scores(mapper, truth));
         let brier = std::mem::take(&mut self.prediction).scores();
         let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);

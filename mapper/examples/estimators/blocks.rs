@@ -7,7 +7,7 @@ use interfaces::{CellState, World};
 use mapper::{Estimator, Mapper};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sim::grid::{GenerateSettings, GridSpec, GridTruth, GridWorld};
+use sim::grid::{GenerateSettings, GridGroundTruth, GridSpec, GridWorld};
 
 /// The first seed. The constants of the estimators were chosen on worlds below it.
 const FIRST_SEED: u64 = 1000;
@@ -55,12 +55,12 @@ impl Set {
             Self::Generated => Ok(seeds.map(|seed| (generated(seed), seed)).collect()),
             Self::Stochastic => {
                 let (block, robot) = CHANCES;
-                Ok(seeds.map(|seed| (generated(seed).with_chances(block, robot), seed)).collect())
+                Ok(seeds.map(|seed| (generated(seed).with_probabilities(block, robot), seed)).collect())
             }
             Self::Shipped => {
                 let mut worlds = Vec::new();
                 for (name, text) in SHIPPED {
-                    let spec = GridSpec::parse(name, text)?;
+                    let spec = worldfile::grid::parse(name, text)?;
                     worlds.extend((0..SHIPPED_SEEDS).map(|seed| (spec.clone(), seed)));
                 }
                 Ok(worlds)
@@ -88,7 +88,7 @@ pub(crate) struct Score {
 
 impl Score {
     /// Judges one life at its end.
-    fn add_life(&mut self, habit: usize, mapper: &Mapper, truth: &GridTruth) {
+    fn add_life(&mut self, habit: usize, mapper: &Mapper, truth: &GridGroundTruth) {
         let [mut things, mut bias] = [Mean::default(); 2];
         for thing in truth.moving_things().iter() {
             let mut cells = Mean::default();
@@ -118,7 +118,7 @@ impl Score {
     }
 
     /// Judges what is believed now of the cells out of view.
-    fn add_predictions(&mut self, mapper: &Mapper, truth: &GridTruth) {
+    fn add_predictions(&mut self, mapper: &Mapper, truth: &GridGroundTruth) {
         for index in out_of_view(mapper, truth) {
             self.brier.add(square_error(mapper.blocked_probability(index), truth.is_blocked(index)));
         }
@@ -135,7 +135,7 @@ pub(crate) struct Naive {
 }
 
 impl Naive {
-    fn add_predictions(&mut self, mapper: &Mapper, truth: &GridTruth) {
+    fn add_predictions(&mut self, mapper: &Mapper, truth: &GridGroundTruth) {
         for index in out_of_view(mapper, truth) {
             let (is_blocked, seen) = (truth.is_blocked(index), mapper.statistics(index));
             let last = match mapper.states().cells()[index] {
@@ -150,8 +150,8 @@ impl Naive {
     }
 }
 
-fn out_of_view<'a>(mapper: &'a Mapper, truth: &'a GridTruth) -> impl Iterator<Item = usize> + 'a {
-    truth.swept().iter().copied().filter(|&index| !mapper.is_in_view(index))
+fn out_of_view<'a>(mapper: &'a Mapper, truth: &'a GridGroundTruth) -> impl Iterator<Item = usize> + 'a {
+    truth.swept().into_owned().into_iter().filter(|&index| !mapper.is_in_view(index))
 }
 
 fn square_error(probability: f64, is_blocked: bool) -> f64 {
@@ -194,7 +194,7 @@ impl Judged {
         for (mapper, score) in mappers.iter().zip(&mut self.scores) {
             score.add_life(habit, mapper, world.truth());
         }
-        for &index in world.truth().swept() {
+        for &index in world.truth().swept().iter() {
             let seen = mappers[0].statistics(index);
             self.events[0] += u64::from(seen.block_events);
             self.events[1] += u64::from(seen.free_events);

@@ -56,7 +56,7 @@ pub(crate) struct Robot {
 
 impl Robot {
     pub(crate) fn new(spec: &GridSpec, habit: Habit, rng: ChaCha8Rng) -> Self {
-        let walls = spec.walls().clone();
+        let walls = spec.walls.clone();
         let cells = walls.frame().len();
         let mut robot = Self {
             habit,

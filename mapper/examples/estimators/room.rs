@@ -2,7 +2,7 @@
 //! in visits.
 
 use crate::score::{MASS, Mean, log_error};
-use interfaces::TrueState;
+use interfaces::{GroundTruth, TrueState};
 use interfaces::{Twist, World};
 use mapper::{Estimator, Mapper, MapperSettings};
 use rand::RngExt;
@@ -33,14 +33,14 @@ pub(crate) struct Score {
 
 /// Scores in the order of [`Estimator::ALL`], for every row of [`VISITS`].
 pub(crate) fn judge() -> anyhow::Result<Vec<Vec<Score>>> {
-    let spec = WorldSpec::parse("four_rooms.toml", &HOUSE.replace(START, PLACE))?;
+    let spec = worldfile::physics::parse_world("four_rooms.toml", &HOUSE.replace(START, PLACE))?;
     let mut scores = Vec::new();
     for (seen, of) in VISITS {
         eprintln!("The dummy robot, {seen} of {of} scans");
         let mut world = PhysicsWorld::new(&spec, 0);
         let mapper = |estimator| {
             let settings = MapperSettings { estimator, max_gap: HIDING_S, ..MapperSettings::default() };
-            Mapper::new(&settings, *spec.frame())
+            Mapper::new(&settings, spec.frame)
         };
         let mut mappers: Vec<Mapper> = Estimator::ALL.map(mapper).into_iter().collect::<Result<_, _>>()?;
         let (mut rng, mut next) = (ChaCha8Rng::seed_from_u64(1), 0);
@@ -65,13 +65,13 @@ pub(crate) fn judge() -> anyhow::Result<Vec<Vec<Score>>> {
 fn score(mapper: &Mapper, world: &PhysicsWorld) -> Score {
     let (truth, mut score) = (world.truth(), Score::default());
     for index in 0..mapper.frame().len() {
-        let (rate, true_rate) = (mapper.rate(index), truth.cycle_rate_hz(mapper.frame().cell(index)));
+        let (rate, true_rate) = (mapper.rate(index), truth.cycle_rate(index));
         if true_rate > 0.0 {
             score.log_error.add(log_error(rate, true_rate));
             score.bias.add(rate / true_rate - 1.0);
             let (low, high) = mapper.credible_interval(index, MASS);
             score.covered.add_if((low..=high).contains(&true_rate));
-        } else if truth.movers()[index].is_none() && truth.states()[index] == TrueState::Free {
+        } else if !truth.is_swept(index) && truth.state(index) == TrueState::Free {
             score.false_rate.add(mapper.rate(index));
         }
     }

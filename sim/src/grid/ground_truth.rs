@@ -40,10 +40,10 @@ impl GridGroundTruth {
     pub(super) fn new(spec: &GridSpec) -> Self {
         let frame = *spec.frame();
         let wall = |is_blocked: &bool| CellTruth { is_blocked: *is_blocked, ..CellTruth::default() };
-        let mut cells: Vec<CellTruth> = spec.walls().cells().iter().map(wall).collect();
+        let mut cells: Vec<CellTruth> = spec.walls.cells().iter().map(wall).collect();
         let index = |cell: &Cell| frame.index(*cell);
         let mut things = Vec::new();
-        for block in spec.blocks() {
+        for block in &spec.blocks {
             if let Some(start) = block.path.first().and_then(index) {
                 cells[start].is_blocked = true;
             }
@@ -54,7 +54,7 @@ impl GridGroundTruth {
         for &index in &swept {
             is_swept[index] = true;
         }
-        let reachable = parts::connected(spec.walls(), spec.start());
+        let reachable = parts::connected(&spec.walls, spec.start);
         Self { frame, time: 0, cells, reachable, swept, is_swept, things, changes: Vec::new() }
     }
 
@@ -75,11 +75,6 @@ impl GridGroundTruth {
         let cell = &self.cells[index];
         let now = if cell.is_blocked { self.time - cell.since } else { 0 };
         (cell.blocked_before + now) as f64
-    }
-
-    /// The cells of all paths, each once and in order.
-    pub fn swept(&self) -> &[usize] {
-        &self.swept
     }
 
     /// Takes over a step, in which the blocks `moved` from cell to cell. `is_blocked` gives the present state of a

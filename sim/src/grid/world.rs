@@ -28,20 +28,20 @@ pub struct GridWorld {
 impl GridWorld {
     /// The world of `spec` at its start. `seed` seeds a random stream for every block and one for the robot.
     pub fn new(spec: &GridSpec, seed: u64) -> Self {
-        let block = |(index, block)| Block::new(block, index, spec.block_chance(), seed);
-        let blocks: Vec<Block> = spec.blocks().iter().enumerate().map(block).collect();
-        let mut blocked = BlockedCells::new(spec.walls(), spec.sensor_radius());
+        let block = |(index, block)| Block::new(block, index, spec.block_probability, seed);
+        let blocks: Vec<Block> = spec.blocks.iter().enumerate().map(block).collect();
+        let mut blocked = BlockedCells::new(&spec.walls, spec.sensor_radius);
         for block in &blocks {
             blocked.set(block.cell(), true);
         }
         Self {
             step: 0,
-            robot: spec.start(),
+            robot: spec.start,
             random: RandomStream::new(seed, Purpose::RobotTransition),
             moved: Vec::with_capacity(blocks.len()),
             blocks,
             blocked,
-            line_of_sight: LineOfSight::new(spec.sensor_radius()),
+            line_of_sight: LineOfSight::new(spec.sensor_radius),
             truth: GridGroundTruth::new(spec),
             spec: spec.clone(),
         }
@@ -64,7 +64,7 @@ impl GridWorld {
 
     /// The name and the cell of every block, in the order of the spec.
     pub fn blocks(&self) -> impl ExactSizeIterator<Item = (&str, Cell)> {
-        self.spec.blocks().iter().zip(&self.blocks).map(|(spec, block)| (spec.name.as_str(), block.cell()))
+        self.spec.blocks.iter().zip(&self.blocks).map(|(spec, block)| (spec.name.as_str(), block.cell()))
     }
 
     /// The ground truth of every cell, for metrics only.
@@ -91,7 +91,7 @@ impl World for GridWorld {
 
     fn act(&mut self, command: &Step) {
         let target = command.target(self.robot);
-        let is_obeyed = self.random.bernoulli(self.spec.robot_chance());
+        let is_obeyed = self.random.bernoulli(self.spec.robot_probability);
         if is_obeyed && self.spec.frame().contains(target) && !self.blocked.get(target) {
             self.robot = target;
         }

@@ -1,14 +1,14 @@
 use super::convex;
 use nalgebra::{Isometry2, Point2};
 
-/// The body of a robot somewhere.
+/// The outline of a robot at a pose.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Form {
+pub enum Form {
     /// A disc.
     Disc {
-        /// Its middle, m.
+        /// The centre, m.
         center: Point2<f64>,
-        /// Its radius, m.
+        /// The radius, m.
         radius_m: f64,
     },
     /// A convex body by its corners, counter-clockwise, m.
@@ -16,33 +16,33 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// The body of a robot at `pose`: a disc of `radius_m` without corners, else with these, in
-    /// its own frame.
-    pub(crate) fn new(corners: &[Point2<f64>], radius_m: f64, pose: &Isometry2<f64>) -> Self {
+    /// The outline of a robot at `pose`: a polygon with `corners` in the frame of the robot, or a disc of `radius_m`
+    /// if there are no corners.
+    pub fn new(corners: &[Point2<f64>], radius_m: f64, pose: &Isometry2<f64>) -> Self {
         if corners.is_empty() {
             return Self::Disc { center: pose.translation.vector.into(), radius_m };
         }
         Self::Convex(corners.iter().map(|corner| pose * corner).collect())
     }
 
-    /// How far it is from a convex body, m; negative if they overlap.
-    pub(crate) fn gap_m(&self, body: &[Point2<f64>]) -> f64 {
+    /// The gap to a convex body, m; negative if they overlap.
+    pub fn gap_m(&self, body: &[Point2<f64>]) -> f64 {
         match self {
             Self::Disc { center, radius_m } => convex::disc_gap_m(body, center, *radius_m),
             Self::Convex(corners) => convex::gap_m(corners, body),
         }
     }
 
-    /// How far it is from a point, m; negative inside.
-    pub(crate) fn gap_m_to(&self, point: &Point2<f64>) -> f64 {
+    /// The distance to a point, m; negative inside.
+    pub fn gap_m_to(&self, point: &Point2<f64>) -> f64 {
         match self {
             Self::Disc { center, radius_m } => (point - center).norm() - radius_m,
             Self::Convex(corners) => convex::disc_gap_m(corners, point, 0.0),
         }
     }
 
-    /// How far it is from another robot's body, m; negative if they overlap.
-    pub(crate) fn apart_m(&self, other: &Self) -> f64 {
+    /// The gap to the outline of another robot, m; negative if they overlap.
+    pub fn apart_m(&self, other: &Self) -> f64 {
         match (self, other) {
             (Self::Disc { center, radius_m }, Self::Disc { center: other, radius_m: other_m }) => {
                 (center - other).norm() - radius_m - other_m
@@ -51,8 +51,8 @@ impl Form {
         }
     }
 
-    /// The corners of the upright box around it, m.
-    pub(crate) fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
+    /// The corners of the upright box around the outline, m.
+    pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
         match self {
             Self::Disc { center, radius_m } => {
                 let reach = nalgebra::Vector2::repeat(*radius_m);

@@ -21,11 +21,11 @@ impl PhysicsWorld {
     /// The world of `spec` at its start. `seed` seeds all random streams: sensor noise, odometry noise, and the
     /// decisions of robots and doors, each in a stream of its own.
     pub fn new(spec: &WorldSpec, seed: u64) -> Self {
-        let fleet = Fleet::new(&spec.fleet, seed);
-        let start = fleet.robot(spec.driven).at();
-        let mut truth = PhysicsGroundTruth::new(spec.fleet.frame, &spec.fleet.walls, &start);
+        let fleet = Fleet::new(spec.fleet(), seed);
+        let start = fleet.robot(spec.driven_index()).at();
+        let mut truth = PhysicsGroundTruth::new(spec.frame, &spec.walls, &start);
         let boxes = fleet.standing_boxes();
-        for (index, obstacle) in spec.obstacles().iter().enumerate().filter(|(i, _)| fleet.is_standing(*i)) {
+        for (index, obstacle) in spec.obstacles.iter().enumerate().filter(|(i, _)| fleet.is_standing(*i)) {
             let mover = obstacle.is_mover().then_some(Body::Obstacle(index));
             truth.change_box(&obstacle.start(), &boxes, mover);
         }
@@ -54,7 +54,7 @@ impl PhysicsWorld {
 
     /// The true pose of the driven robot, for metrics only.
     pub fn true_pose(&self) -> &Isometry2<f64> {
-        &self.fleet.robot(self.spec.driven).pose
+        &self.fleet.robot(self.spec.driven_index()).pose
     }
 
     /// All contacts of the driven robot since the start, by the time of their beginning.
@@ -102,9 +102,9 @@ impl PhysicsWorld {
             }
         }
         let contacts = self.fleet.take_contacts().into_iter();
-        self.contacts.extend(contacts.filter(|contact| contact.robot == self.spec.driven));
+        self.contacts.extend(contacts.filter(|contact| contact.robot == self.spec.driven_index()));
         self.fleet.update_obstacles(|obstacle, appeared, standing| {
-            let spec = &self.spec.fleet.obstacles[obstacle];
+            let spec = &self.spec.obstacles[obstacle];
             let cells = self.truth.change_box(&spec.shape, standing, Some(Body::Obstacle(obstacle)));
             let name = spec.name.clone();
             self.obstacle_events.push(ObstacleEvent { time_s, obstacle, name, appeared, cells });
@@ -114,8 +114,8 @@ impl PhysicsWorld {
 
 /// The robots that are not driven.
 fn others(spec: &WorldSpec) -> impl Iterator<Item = usize> + use<> {
-    let driven = spec.driven;
-    (0..spec.robots().len()).filter(move |&index| index != driven)
+    let driven = spec.driven_index();
+    (0..spec.robots.len()).filter(move |&index| index != driven)
 }
 
 impl World for PhysicsWorld {
@@ -125,13 +125,13 @@ impl World for PhysicsWorld {
     /// The scan of the main laser of the driven robot, with the pose by odometry at the same instant. The other
     /// sensors of the robot measure at most as often. Two calls at the same time give the same reading.
     fn sense(&mut self) -> LaserReading {
-        let robot = self.fleet.look(self.spec.driven);
+        let robot = self.fleet.look(self.spec.driven_index());
         robot.reading().expect("the main laser scanner has just measured").clone()
     }
 
     fn act(&mut self, command: &Twist) {
         self.truth.forget_changes();
-        self.fleet.command(self.spec.driven, *command);
+        self.fleet.command(self.spec.driven_index(), *command);
         for _ in 0..self.spec.driven().laser.period_steps {
             self.advance();
         }

@@ -32,7 +32,7 @@ fn main() -> ExitCode {
     if args.list_worlds {
         for (name, _) in worlds::SHIPPED {
             match worlds::load(name) {
-                Ok(world) => say(stdout(), format_args!("{name:<18} {}", world.spec.description())),
+                Ok(world) => say(stdout(), format_args!("{name:<18} {}", world.spec.description)),
                 Err(error) => say(stderr(), error),
             }
         }

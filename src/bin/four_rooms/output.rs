@@ -56,7 +56,7 @@ pub(crate) fn summary(
         version: env!("CARGO_PKG_VERSION"),
         arguments: std::env::args().skip(1).collect(),
         settings: serde_json::to_value(settings).unwrap_or_default(),
-        world: world.spec().name().to_owned(),
+        world: world.spec().name.to_owned(),
         seed: args.seed,
         drive: match args.drive {
             DriveChoice::Agent => "agent",

@@ -69,7 +69,7 @@ impl Settings {
         // A laser's data sheet tells its noise.
         let noise_m = &mut mapper.steady.range_noise_std_m;
         *noise_m = noise_m.max(robot.laser.noise_std_m).min(MAX_NOISE_M);
-        let cell_m = spec.frame().resolution_m();
+        let cell_m = spec.frame.resolution_m();
         let mut agent = AgentSettings {
             patch_cells: (PATCH_M / cell_m).round().max(1.0) as _,
             sensor_radius_m: robot.laser.range_max_m,
@@ -91,7 +91,7 @@ impl Settings {
                 acceleration_mps2: robot.drive.max_linear_acceleration_mps2,
                 angular_acceleration_radps2: robot.drive.max_angular_acceleration_radps2,
                 tolerance_m: defaults.tolerance_m.min(robot.radius_m / 2.0),
-                reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s(),
+                reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s,
                 ..defaults
             },
         }
@@ -143,10 +143,10 @@ impl Parts {
         }
         let settings = Settings::new(args, &spec);
         let mapper = match &args.map {
-            None => Mapper::new(&settings.mapper, *spec.frame()),
+            None => Mapper::new(&settings.mapper, spec.frame),
             Some(path) => {
                 let map = RosMap::read(path).map_err(input)?;
-                Mapper::with_prior(&settings.mapper, map.onto(spec.frame()))
+                Mapper::with_prior(&settings.mapper, map.onto(&spec.frame))
             }
         };
         let mapper = mapper.context("cannot make the mapper").map_err(input)?;

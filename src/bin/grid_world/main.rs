@@ -27,7 +27,7 @@ fn main() -> ExitCode {
     if args.list_worlds {
         for (name, _) in worlds::SHIPPED_GRID {
             match worlds::load_grid(name) {
-                Ok(spec) => say(stdout(), format_args!("{name:<20} {}", spec.description())),
+                Ok(spec) => say(stdout(), format_args!("{name:<20} {}", spec.description)),
                 Err(error) => say(stderr(), error),
             }
         }
@@ -81,19 +81,19 @@ fn worlds(args: &Args) -> anyhow::Result<Vec<GridSpec>> {
     let made = 0..args.generate.unwrap_or(0);
     worlds.extend(made.map(|number| GridSpec::generate(&settings, args.seed.wrapping_add(number))));
     let mut names = BTreeSet::new();
-    if let Some(twin) = worlds.iter().map(GridSpec::name).find(|name| !names.insert(*name)) {
+    if let Some(twin) = worlds.iter().map(|world| &world.name).find(|name| !names.insert(*name)) {
         bail!("two worlds are called `{twin}`: give each a name of its own, by which results are told");
     }
     for world in &mut worlds {
         for warning in world.warnings().iter().filter(|_| !args.quiet) {
-            say(stderr(), format_args!("warning: {}: {warning}", world.name()));
+            say(stderr(), format_args!("warning: {}: {warning}", world.name));
         }
         let mut changed = world.clone();
         if let Some(radius) = args.sensor_radius {
             changed = changed.with_sensor_radius(radius);
         }
         if let Some(chance) = args.stochastic {
-            changed = changed.with_chances(chance, chance);
+            changed = changed.with_probabilities(chance, chance);
         }
         *world = changed;
     }
@@ -158,8 +158,8 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     if args.save_worlds {
         let named = experiment.worlds.len() - args.generate.unwrap_or(0) as usize;
         for world in &experiment.worlds[named..] {
-            let path = args.out.join(format!("{}.toml", world.name()));
-            write_file(&path, |file| file.write_all(world.to_toml().as_bytes()))?;
+            let path = args.out.join(format!("{}.toml", world.name));
+            write_file(&path, |file| file.write_all(worldfile::grid::to_toml(world).as_bytes()))?;
         }
     }
     let settings = ReportSettings {
@@ -167,9 +167,9 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
         arguments: std::env::args().skip(1).collect(),
         steps: args.steps,
         trials: args.trials,
-        sensor_radius: experiment.worlds[0].sensor_radius(),
+        sensor_radius: experiment.worlds[0].sensor_radius,
         interrupted: is_interrupted,
-        worlds: experiment.worlds.iter().map(|world| world.name().to_owned()).collect(),
+        worlds: experiment.worlds.iter().map(|world| world.name.clone()).collect(),
         estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
         strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
     };

@@ -25,15 +25,15 @@ fn a_recording_agrees_with_its_world_and_its_trial() {
 
     // The robot goes from cell to cell, through no wall.
     let robot = recording.places("/world/robots/robot/body");
-    assert_eq!((robot[0].0, cell(robot[0].1)), (0, world.start()));
+    assert_eq!((robot[0].0, cell(robot[0].1)), (0, world.start));
     assert!(robot.len() > 500, "{} moves", robot.len());
-    assert!(robot.iter().all(|(_, at)| world.walls().get(cell(*at)) == Some(&false)));
+    assert!(robot.iter().all(|(_, at)| world.walls.get(cell(*at)) == Some(&false)));
     for pair in robot.windows(2) {
         assert!(pair[0].0 < pair[1].0 && is_a_step(cell(pair[0].1), cell(pair[1].1)), "{pair:?}");
     }
 
     // So do the blocks, on their paths, and never faster than they may.
-    for block in world.blocks() {
+    for block in &world.blocks {
         let outlines = recording.outlines(&format!("/world/house/obstacles/{}", escaped(&block.name)));
         let ways: Vec<(i64, Cell)> =
             outlines.iter().map(|(step, corners)| (*step, middle(corners))).collect();

@@ -5,7 +5,7 @@ mod rooms;
 #[cfg(test)]
 mod tests;
 
-use super::spec::{BlockSpec, GridSpec, MAX_DWELL, MAX_SENSOR_RADIUS, parts};
+use super::spec::{BlockSpec, GridSpec};
 use interfaces::{Cell, Grid, GridFrame, Purpose, RandomStream};
 use nalgebra::Point2;
 use rand::RngExt;
@@ -111,18 +111,17 @@ fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomS
     GridSpec {
         name: format!("generated-{seed}"),
         description: format!("{width} × {height} cells made at random from the seed {seed}."),
-        warnings: parts::warnings(&walls, start),
         walls,
         blocks,
         start,
-        sensor_radius: settings.sensor_radius.clamp(1, MAX_SENSOR_RADIUS),
-        block_chance: 1.0,
-        robot_chance: 1.0,
+        sensor_radius: settings.sensor_radius.clamp(1, GridSpec::MAX_SENSOR_RADIUS),
+        block_probability: 1.0,
+        robot_probability: 1.0,
     }
 }
 
 fn block(settings: &GenerateSettings, number: usize, path: paths::Path, rng: &mut RandomStream) -> BlockSpec {
-    let (low, high) = cut(settings.dwell, 1..=MAX_DWELL);
+    let (low, high) = cut(settings.dwell, 1..=BlockSpec::MAX_DWELL);
     let (log_low, log_high) = (libm::log(f64::from(low)), libm::log(f64::from(high) + 1.0));
     let log_dwell = log_low + rng.random::<f64>() * (log_high - log_low);
     let dwell = (libm::exp(log_dwell) as u32).clamp(low, high);

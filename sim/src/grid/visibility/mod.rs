@@ -81,13 +81,13 @@ impl GridSpec {
     /// inside a wall the robot sees nothing.
     pub fn sights(&self) -> Vec<Vec<usize>> {
         let frame = self.frame();
-        let blocked = BlockedCells::new(self.walls(), self.sensor_radius());
-        let mut line_of_sight = LineOfSight::new(self.sensor_radius());
+        let blocked = BlockedCells::new(&self.walls, self.sensor_radius);
+        let mut line_of_sight = LineOfSight::new(self.sensor_radius);
         let mut from = |index: usize| {
             let seen = line_of_sight.look(&blocked, frame.cell(index));
             seen.into_iter().filter_map(|(cell, _)| frame.index(cell)).collect()
         };
-        let walls = self.walls().cells();
+        let walls = self.walls.cells();
         (0..frame.len()).map(|index| if walls[index] { Vec::new() } else { from(index) }).collect()
     }
 }

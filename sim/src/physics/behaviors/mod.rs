@@ -8,7 +8,7 @@ mod waypoints;
 
 use super::rays::Beams;
 use super::snapshot::Values;
-use super::spec::{Behaviour, RobotSpec};
+use super::spec::{BehaviorSpec, RobotSpec};
 use interfaces::{LaserReading, RandomStream, Twist};
 use nalgebra::Vector2;
 use wall_patrol::WallPatrol;
@@ -40,15 +40,15 @@ pub(super) fn of(
     beams: &Beams,
     random: RandomStream,
 ) -> Option<Box<dyn Behavior>> {
-    Some(match &robot.behaviour {
-        Behaviour::Driven => return None,
-        Behaviour::Standing => Box::new(Steady(Twist::STOP)),
-        Behaviour::Circle(circle) => {
+    Some(match &robot.behavior {
+        BehaviorSpec::Driven => return None,
+        BehaviorSpec::Standing => Box::new(Steady(Twist::STOP)),
+        BehaviorSpec::Circle(circle) => {
             Box::new(Steady(Twist { linear_mps: circle.speed_mps, angular_radps: circle.turn_radps }))
         }
-        Behaviour::Wander(spec) => Box::new(Wander::new(*spec, robot, step_s, beams, random)),
-        Behaviour::Waypoints(spec) => Box::new(Waypoints::new(spec.clone(), robot, step_s, beams)),
-        Behaviour::WallPatrol(spec) => Box::new(WallPatrol::new(*spec, robot, step_s, beams)),
+        BehaviorSpec::Wander(spec) => Box::new(Wander::new(*spec, robot, step_s, beams, random)),
+        BehaviorSpec::Waypoints(spec) => Box::new(Waypoints::new(spec.clone(), robot, step_s, beams)),
+        BehaviorSpec::WallPatrol(spec) => Box::new(WallPatrol::new(*spec, robot, step_s, beams)),
     })
 }
 

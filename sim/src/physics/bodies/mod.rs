@@ -76,7 +76,7 @@ impl Bodies {
     /// No bodies yet, with settings for all bodies of `spec`.
     pub(super) fn new(spec: &FleetSpec) -> Self {
         let mut world = rapier::PhysicsWorld { gravity: rapier::Vector::ZERO, ..Default::default() };
-        world.integration_parameters.dt = spec.step_s() as f32;
+        world.integration_parameters.dt = spec.step_s as f32;
         let prediction_m = prediction_m(spec);
         if let Some(prediction_m) = prediction_m {
             let parameters = &mut world.integration_parameters;
@@ -192,14 +192,14 @@ impl Bodies {
 /// enough. It is not enough where obstacles move (a pushed box moves as robots drive) or robots have corners
 /// (which move as the robot turns).
 fn prediction_m(spec: &FleetSpec) -> Option<f32> {
-    let has_movers = spec.obstacles().iter().any(|obstacle| !matches!(obstacle.motion, Motion::Fixed));
-    if !has_movers && spec.robots().iter().all(|robot| robot.corners.is_empty()) {
+    let has_movers = spec.obstacles.iter().any(|obstacle| !matches!(obstacle.motion, Motion::Fixed));
+    if !has_movers && spec.robots.iter().all(|robot| robot.corners.is_empty()) {
         return None;
     }
-    let motions_m = spec.robots().iter().map(|robot| {
+    let motions_m = spec.robots.iter().map(|robot| {
         let turn_radps = if robot.corners.is_empty() { 0.0 } else { robot.drive.max_angular_radps };
-        let turn_m = (turn_radps * robot.radius_m * spec.step_s()).min(MAX_TURN_M);
-        robot.drive.fastest_mps() * spec.step_s() + turn_m
+        let turn_m = (turn_radps * robot.radius_m * spec.step_s).min(MAX_TURN_M);
+        robot.drive.fastest_mps() * spec.step_s + turn_m
     });
     let farthest_m = motions_m.fold(if has_movers { MAX_MOVER_M } else { 0.0 }, f64::max);
     // Twice: two bodies may move towards each other.

@@ -81,24 +81,20 @@ impl Odometry {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::FleetSpec;
+    use crate::physics::spec::BehaviorSpec;
     use interfaces::Purpose;
 
     /// The standard deviation of where a robot believes it is after 1 m in a direction, m: along the way
     /// and across.
     fn spread_m(kind: &str, towards: Vector2<f64>) -> [f64; 2] {
-        let text = format!(
-            "name = \"room\"\n[map]\nsize_m = [4.0, 3.0]\ncell_m = 0.05\n\
-             [[robot]]\nname = \"a\"\nradius_m = 0.2\npose_m = [1.0, 1.0]\n\
-             behaviour = {{ kind = \"standing\" }}\nodometry = {{ distance_noise_m = 0.1 }}\n\
-             laser = {{ beams = 2, range_max_m = 1.0, rate_hz = 10.0 }}\n\
-             drive = {{ kind = \"{kind}\", max_linear_mps = 0.5, max_angular_degps = 90.0, \
-             max_linear_acceleration_mps2 = 1.0, max_angular_acceleration_degps2 = 360.0 }}\n"
-        );
-        let spec = FleetSpec::parse("room.toml", &text).unwrap();
+        let mut robot = RobotSpec::new("a", pose(1.0, 1.0, 0.0), BehaviorSpec::Standing);
+        robot.odometry.distance_noise_m = 0.1;
+        if kind == "omni" {
+            robot.drive.kind = DriveKind::Omni { max_left_mps: 0.5, max_left_acceleration_mps2: 1.0 };
+        }
         let errors = (0..4000).map(|seed| {
             let noise = RandomStream::new(seed, Purpose::OdometryNoise(0));
-            let mut odometry = Odometry::new(&spec.robots()[0], noise, Isometry2::identity());
+            let mut odometry = Odometry::new(&robot, noise, Isometry2::identity());
             for step in 0..10 {
                 let at = |step: i32| Isometry2::new(towards * f64::from(step) * 0.1, 0.0);
                 odometry.update(&at(step), &at(step + 1));

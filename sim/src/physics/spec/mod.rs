@@ -1,226 +1,134 @@
-//! What a world file says, checked and in SI. All keys are in `worlds/keys.md`.
+//! What a physics world is made of: plain values in SI units.
+//!
+//! Every field says its unit and its valid range. [`super::Fleet`] and [`super::PhysicsWorld`] take a spec as
+//! it is: they check no ranges. The crate `worldfile` makes specs from texts, and checks them.
 
-mod behaviour;
-mod check;
-mod drive;
-mod file;
-mod floor_plan;
-mod footprint;
-mod laser;
-mod numbers;
+mod behavior;
 mod obstacle;
-mod parts;
-mod patrol;
 mod robot;
 mod senses;
-#[cfg(test)]
-mod tests;
 
-pub(crate) use floor_plan::MAX_PIECES;
-pub(crate) use laser::MOST_OUT_M;
-
-pub use behaviour::{Behaviour, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
+pub use behavior::{BehaviorSpec, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
 pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
-pub use parts::{DriveKind, DriveLimits, LaserSpec, OdometryError, RobotSpec};
+pub use robot::{DriveKind, DriveLimits, LaserSpec, OdometryError, RobotSpec};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
-use super::shape::Rectangle;
-use crate::error::{Source, WorldError};
-use crate::files::{Disk, Files};
-use crate::kind::Kind;
-use crate::reader;
-use interfaces::GridFrame;
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use super::shape::{Rectangle, turned};
+use interfaces::{GridFrame, rotation};
+use nalgebra::Point2;
 
-/// A place with any number of robots, as its file describes it: every figure in range, every
-/// relation checked.
+/// A world with any number of robots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FleetSpec {
-    pub(super) name: String,
-    pub(super) description: String,
-    pub(super) frame: GridFrame,
-    pub(super) step_s: f64,
-    pub(super) walls: Vec<Rectangle>,
-    pub(super) obstacles: Vec<ObstacleSpec>,
-    pub(super) robots: Vec<RobotSpec>,
+    /// The name of the world.
+    pub name: String,
+    /// What the world shows, in a sentence or two; can be empty.
+    pub description: String,
+    /// The cells of the ground truth. They cover everything.
+    pub frame: GridFrame,
+    /// The physics step, s; 0.001 to 0.1.
+    pub step_s: f64,
+    /// The walls.
+    pub walls: Vec<Rectangle>,
+    /// The obstacles: boxes, moving blocks and doors.
+    pub obstacles: Vec<ObstacleSpec>,
+    /// The robots. At the start no two of them overlap, and none overlaps a wall or an obstacle.
+    pub robots: Vec<RobotSpec>,
 }
 
 impl FleetSpec {
-    /// Reads and checks a world file, in which any number of robots may be driven, or none.
-    ///
-    /// # Errors
-    ///
-    /// When the file cannot be read, or as in [`FleetSpec::parse`].
-    pub fn load(path: impl AsRef<Path>) -> Result<Self, WorldError> {
-        let (name, text) = read(path.as_ref())?;
-        Self::parse_with(&name, &text, &Disk)
+    /// Turns everything but the frame by `turn_rad` (counter-clockwise) about `center` (m).
+    pub fn turn(&mut self, turn_rad: f64, center: &Point2<f64>) {
+        if turn_rad == 0.0 {
+            return;
+        }
+        let by = rotation(turn_rad);
+        for wall in &mut self.walls {
+            *wall = wall.turned(&by, center);
+        }
+        for obstacle in &mut self.obstacles {
+            obstacle.turn(&by, center);
+        }
+        for robot in &mut self.robots {
+            robot.pose = turned(&robot.pose, &by, center);
+            robot.behavior.turn(&by, center);
+        }
     }
 
-    /// Checks the text of a world file; `name` is what messages call the file. There are no
-    /// pictures beside it.
-    ///
-    /// # Errors
-    ///
-    /// When the text is no TOML, a key is unknown or missing, a value out of range, or the things
-    /// in the world contradict each other. The messages say where, and what would be right: of everything
-    /// that is wrong, as far as one thing does not hide another.
-    pub fn parse(name: &str, text: &str) -> Result<Self, WorldError> {
-        Self::parse_with(name, text, &no_files())
-    }
-
-    /// The same with the pictures of its floor plans, which are looked for in the folder of the
-    /// path `name`.
-    ///
-    /// # Errors
-    ///
-    /// As [`FleetSpec::parse`], and when a picture cannot be read.
-    pub fn parse_with(name: &str, text: &str, files: &dyn Files) -> Result<Self, WorldError> {
-        let source = Source::new(name, text);
-        check::check(&source, &reader::read(&source, Kind::Physics)?, files)
-    }
-
-    /// What the world is called.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// What the world shows, in a sentence or two.
-    pub fn description(&self) -> &str {
-        &self.description
-    }
-
-    /// The cells of the truth grid, which cover the house, turned or not.
-    pub fn frame(&self) -> &GridFrame {
-        &self.frame
-    }
-
-    /// The physics step, s.
-    pub fn step_s(&self) -> f64 {
-        self.step_s
-    }
-
-    /// The walls, in the order of the file.
-    pub fn walls(&self) -> &[Rectangle] {
-        &self.walls
-    }
-
-    /// The obstacles, in the order of the file.
-    pub fn obstacles(&self) -> &[ObstacleSpec] {
-        &self.obstacles
-    }
-
-    /// The robots, in the order of the file.
-    pub fn robots(&self) -> &[RobotSpec] {
-        &self.robots
+    /// The indices of the robots that obey commands.
+    pub fn driven_robots(&self) -> impl Iterator<Item = usize> {
+        let is_driven = |(_, robot): &(usize, &RobotSpec)| robot.behavior == BehaviorSpec::Driven;
+        self.robots.iter().enumerate().filter(is_driven).map(|(index, _)| index)
     }
 }
 
-/// A place in which exactly one robot is driven: the one that explores.
+/// A world in which exactly one robot is driven: the one that explores.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldSpec {
-    pub(super) fleet: FleetSpec,
-    pub(super) driven: usize,
+    fleet: FleetSpec,
+    driven: usize,
+}
+
+/// Why a fleet is no world of one driven robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DrivenError {
+    /// No robot is driven.
+    #[error("no robot is driven")]
+    None,
+    /// At least two robots are driven.
+    #[error("more than one robot is driven")]
+    Several {
+        /// The index of the first driven robot.
+        first: usize,
+        /// The index of the second driven robot.
+        second: usize,
+    },
 }
 
 impl WorldSpec {
-    /// Reads and checks a world file.
+    /// The world of a fleet in which exactly one robot is driven.
     ///
     /// # Errors
     ///
-    /// When the file cannot be read, or as in [`WorldSpec::parse`].
-    pub fn load(path: impl AsRef<Path>) -> Result<Self, WorldError> {
-        let (name, text) = read(path.as_ref())?;
-        Self::parse_with(&name, &text, &Disk)
-    }
-
-    /// Checks the text of a world file; `name` is what messages call the file.
-    ///
-    /// # Errors
-    ///
-    /// As [`FleetSpec::parse`], and when not exactly one robot is driven.
-    pub fn parse(name: &str, text: &str) -> Result<Self, WorldError> {
-        Self::parse_with(name, text, &no_files())
-    }
-
-    /// The same with the pictures of its floor plans, which are looked for in the folder of the
-    /// path `name`.
-    ///
-    /// # Errors
-    ///
-    /// As [`WorldSpec::parse`], and when a picture cannot be read.
-    pub fn parse_with(name: &str, text: &str, files: &dyn Files) -> Result<Self, WorldError> {
-        let source = Source::new(name, text);
-        let reading = reader::read(&source, Kind::Physics)?;
-        let fleet = check::check(&source, &reading, files)?;
-        let driven = check::driven(&source, &reading.file, &fleet.robots)?;
-        Ok(Self { fleet, driven })
-    }
-
-    /// The place of `fleet` with one of its robots driven, by its place among them, whatever it does there;
-    /// others that would obey commands stand still. None if there is no such robot.
-    pub fn driving(mut fleet: FleetSpec, driven: usize) -> Option<Self> {
-        for robot in fleet.robots.iter_mut().filter(|robot| robot.behaviour == Behaviour::Driven) {
-            robot.behaviour = Behaviour::Standing;
+    /// When no robot is driven, or more than one.
+    pub fn new(fleet: FleetSpec) -> Result<Self, DrivenError> {
+        match fleet.driven_robots().collect::<Vec<_>>()[..] {
+            [driven] => Ok(Self { fleet, driven }),
+            [] => Err(DrivenError::None),
+            [first, second, ..] => Err(DrivenError::Several { first, second }),
         }
-        fleet.robots.get_mut(driven)?.behaviour = Behaviour::Driven;
+    }
+
+    /// The world of `fleet` with the robot of index `driven` driven, whatever its behavior is there; other
+    /// driven robots stand still. `None` if there is no such robot.
+    pub fn driving(mut fleet: FleetSpec, driven: usize) -> Option<Self> {
+        for robot in fleet.robots.iter_mut().filter(|robot| robot.behavior == BehaviorSpec::Driven) {
+            robot.behavior = BehaviorSpec::Standing;
+        }
+        fleet.robots.get_mut(driven)?.behavior = BehaviorSpec::Driven;
         Some(Self { fleet, driven })
     }
 
-    /// The same place for the simulator of fleets.
+    /// The same world as a fleet.
     pub fn fleet(&self) -> &FleetSpec {
         &self.fleet
     }
 
-    /// What the world is called.
-    pub fn name(&self) -> &str {
-        &self.fleet.name
+    /// The index of the driven robot.
+    pub fn driven_index(&self) -> usize {
+        self.driven
     }
 
-    /// What the world shows, in a sentence or two.
-    pub fn description(&self) -> &str {
-        &self.fleet.description
-    }
-
-    /// The cells of the truth grid, which cover the house, turned or not.
-    pub fn frame(&self) -> &GridFrame {
-        &self.fleet.frame
-    }
-
-    /// The physics step, s.
-    pub fn step_s(&self) -> f64 {
-        self.fleet.step_s
-    }
-
-    /// The walls, in the order of the file.
-    pub fn walls(&self) -> &[Rectangle] {
-        &self.fleet.walls
-    }
-
-    /// The obstacles, in the order of the file.
-    pub fn obstacles(&self) -> &[ObstacleSpec] {
-        &self.fleet.obstacles
-    }
-
-    /// The robots, in the order of the file.
-    pub fn robots(&self) -> &[RobotSpec] {
-        &self.fleet.robots
-    }
-
-    /// The one robot that commands drive.
+    /// The driven robot.
     pub fn driven(&self) -> &RobotSpec {
         &self.fleet.robots[self.driven]
     }
 }
 
-/// What messages call a world file, and its text.
-fn read(path: &Path) -> Result<(String, String), WorldError> {
-    let name = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| WorldError::unreadable(&name, &error))?;
-    Ok((name, text))
-}
+impl std::ops::Deref for WorldSpec {
+    type Target = FleetSpec;
 
-/// Where a world file without a folder finds its pictures: nowhere.
-fn no_files() -> BTreeMap<PathBuf, Vec<u8>> {
-    BTreeMap::new()
+    fn deref(&self) -> &FleetSpec {
+        &self.fleet
+    }
 }

@@ -1,142 +1,212 @@
-//! A robot: its body and its odometry.
+//! A robot and its parts, checked and in SI.
 
-use super::behaviour::Context;
-use super::check::Solid;
-use super::drive::drive;
-use super::file::{OdometryFile, RobotFile};
-use super::footprint::{Footprint, footprint};
-use super::laser::lasers;
-use super::numbers::Table;
-use super::{DriveLimits, OdometryError, RobotSpec, senses};
-use crate::error::{Source, WorldError};
-use crate::physics::convex;
+use super::{BehaviorSpec, BumperSpec, FiducialSpec, SonarSpec};
 use crate::physics::form::Form;
-use crate::physics::shape::TOUCH_M;
-use crate::together::Together;
-use interfaces::pose;
+use interfaces::Scan;
 use nalgebra::{Isometry2, Point2};
+use std::f64::consts::{PI, TAU};
 
-/// What a robot is put into. What is wrong in the file is missing here.
-pub(super) struct Around<'a> {
-    pub(super) size: Point2<f64>,
-    pub(super) step_s: f64,
-    /// What stands from the start to the end.
-    pub(super) solids: &'a [Solid],
-    /// What stands at the start but may be gone when a robot comes by.
-    pub(super) movers: &'a [Solid],
-    /// Whether nothing is missing.
-    pub(super) is_whole: bool,
+/// A robot with wheels and lasers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobotSpec {
+    /// What it is called.
+    pub name: String,
+    /// The radius of its body, m; with corners: that of the circle about its middle that holds it.
+    pub radius_m: f64,
+    /// The corners of its body in its own frame, convex, counter-clockwise, m; none: it is round.
+    pub corners: Vec<Point2<f64>>,
+    /// Its mass, kg; `None`: 1 kg per m² of the circle. It counts when robots push each other.
+    pub mass_kg: Option<f64>,
+    /// Where it starts.
+    pub pose: Isometry2<f64>,
+    /// What its wheels can do.
+    pub drive: DriveLimits,
+    /// How its odometry errs.
+    pub odometry: OdometryError,
+    /// What it sees with: the laser whose scans its mind and its controller decide by.
+    pub laser: LaserSpec,
+    /// Its other lasers.
+    pub more_lasers: Vec<LaserSpec>,
+    /// What it feels touches with.
+    pub bumper: Option<BumperSpec>,
+    /// Its sonars and infrared sensors.
+    pub sonars: Vec<SonarSpec>,
+    /// What it finds tags with.
+    pub fiducial: Option<FiducialSpec>,
+    /// Its own tag, by which others find it.
+    pub tag: Option<u32>,
+    /// What it does.
+    pub behavior: BehaviorSpec,
 }
 
-pub(super) fn robot(
-    source: &Source<'_>,
-    file: &RobotFile,
-    around: &Around<'_>,
-) -> Result<RobotSpec, WorldError> {
-    let table = Table { source, path: "robot" };
-    let footprint = footprint(source, file);
-    // A robot whose size is wrong is not too fast for it as well, and its parts fit on it.
-    let (radius_m, inner_m) = footprint
-        .as_ref()
-        .map_or((f64::INFINITY, f64::INFINITY), |footprint| (footprint.radius_m, footprint.inner_m));
-    let step_s = around.step_s;
-    let place = stands(source, file, around, footprint);
-    let drive = drive(source, &file.drive, inner_m / step_s);
-    let behaviour = Context {
-        source,
-        robot: file,
-        place: place.as_ref().ok().map(|(body, pose)| (body.radius_m, pose.translation.vector.into())),
-        drive: drive.as_ref().unwrap_or(&DriveLimits::BOUNDLESS),
-        around,
+impl RobotSpec {
+    /// A round robot of 0.2 m on two wheels: up to 0.5 m/s and 120 °/s, exact odometry, a laser of 360 beams and
+    /// 10 m at 10 Hz in a world of physics steps of 0.05 s, and no other sensors.
+    pub fn new(name: &str, pose: Isometry2<f64>, behavior: BehaviorSpec) -> Self {
+        Self {
+            name: name.to_owned(),
+            radius_m: 0.2,
+            corners: Vec::new(),
+            mass_kg: None,
+            pose,
+            drive: DriveLimits {
+                kind: DriveKind::Differential,
+                max_linear_mps: 0.5,
+                max_angular_radps: 120.0_f64.to_radians(),
+                max_linear_acceleration_mps2: 1.0,
+                max_angular_acceleration_radps2: 360.0_f64.to_radians(),
+            },
+            odometry: OdometryError::default(),
+            laser: LaserSpec {
+                beams: 360,
+                fov_rad: TAU,
+                range_min_m: 0.0,
+                range_max_m: 10.0,
+                rate_hz: 10.0,
+                period_steps: 2,
+                mount: Isometry2::identity(),
+                noise_std_m: 0.0,
+                dropout: 0.0,
+            },
+            more_lasers: Vec::new(),
+            bumper: None,
+            sonars: Vec::new(),
+            fiducial: None,
+            tag: None,
+            behavior,
+        }
     }
-    .behaviour();
-    let all = (
-        source.name("robot", &file.name),
-        table.number_if("mass_kg", &file.mass_kg, 0.001..=100_000.0),
-        place,
-        drive,
-        behaviour,
-        odometry(source, &file.odometry),
-        lasers(source, file, step_s, radius_m),
-    );
-    let senses = (
-        file.bumper.as_ref().map(|file| senses::bumper(source, file)).transpose(),
-        senses::sonars(source, file.sonars.as_deref().unwrap_or_default(), step_s, radius_m),
-        file.fiducial.as_ref().map(|file| senses::fiducial(source, file, step_s, radius_m)).transpose(),
-    );
-    let (all, (bumper, sonars, fiducial)) = (all.together(), senses.together()).together()?;
-    let (name, mass_kg, (body, pose), drive, behaviour, odometry, (laser, more_lasers)) = all;
-    Ok(RobotSpec {
-        name,
-        radius_m: body.radius_m,
-        corners: body.corners,
-        mass_kg,
-        pose,
-        drive,
-        odometry,
-        laser,
-        more_lasers,
-        bumper,
-        sonars,
-        fiducial,
-        tag: file.tag.as_ref().map(|tag| *tag.get_ref()),
-        behaviour,
-    })
+
+    /// Its body at a pose.
+    pub fn form(&self, pose: &Isometry2<f64>) -> Form {
+        Form::new(&self.corners, self.radius_m, pose)
+    }
+
+    /// All its lasers, the main one first.
+    pub fn lasers(&self) -> impl Iterator<Item = &LaserSpec> {
+        [&self.laser].into_iter().chain(&self.more_lasers)
+    }
 }
 
-/// The body of the robot and where it stands: in the map, and clear of everything.
-fn stands(
-    source: &Source<'_>,
-    file: &RobotFile,
-    around: &Around<'_>,
-    footprint: Result<Footprint, WorldError>,
-) -> Result<(Footprint, Isometry2<f64>), WorldError> {
-    let table = Table { source, path: "robot" };
-    let (body, at, heading_deg) = (
-        footprint,
-        table.point("pose_m", &file.pose_m, &around.size),
-        table.number_or("heading_deg", &file.heading_deg, 0.0, -360.0..=360.0),
-    )
-        .together()?;
-    let (name, radius_m) = (file.name.get_ref(), body.radius_m);
-    let pose = pose(at.x, at.y, heading_deg.to_radians());
-    let form = Form::new(&body.corners, radius_m, &pose);
-    let help = match &form {
-        Form::Disc { .. } => format!("its middle must keep its radius of {radius_m} m away"),
-        Form::Convex(_) => "its footprint may touch other things, but not overlap them".to_owned(),
-    };
-    let (low, high) = form.bounds();
-    if low.coords.min().min((around.size - high).min()) < -TOUCH_M {
-        let what = format!("the robot `{name}` reaches out of the map");
-        return Err(source.error(&what, (file.pose_m.span(), "too near to the border"), &[], &help));
-    }
-    let stands_in = |solid: &&Solid| match &form {
-        Form::Disc { .. } => solid.shape.distance_m(&at) < radius_m - TOUCH_M,
-        Form::Convex(corners) => convex::gap_m(corners, &solid.shape.corners()) < -TOUCH_M,
-    };
-    if let Some(solid) = around.solids.iter().chain(around.movers).find(stands_in) {
-        let what = format!("the robot `{name}` starts in a wall or an obstacle");
-        let marks = [(solid.span.clone(), "in this one")];
-        return Err(source.error(&what, (file.pose_m.span(), "stands here"), &marks, &help));
-    }
-    Ok((body, pose))
+/// How a robot moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DriveKind {
+    /// On two wheels: forwards, backwards, and turning, in place if need be.
+    Differential,
+    /// In every direction at once.
+    Omni {
+        /// To either side, m/s.
+        max_left_mps: f64,
+        /// The same, m/s².
+        max_left_acceleration_mps2: f64,
+    },
+    /// With steered front wheels (Ackermann); its middle is that of the rear axle.
+    Car {
+        /// From the rear to the front axle, m.
+        wheelbase_m: f64,
+        /// How far the front wheels turn to either side, rad.
+        max_steer_rad: f64,
+    },
 }
 
-fn odometry(source: &Source<'_>, file: &OdometryFile) -> Result<OdometryError, WorldError> {
-    let table = Table { source, path: "robot.odometry" };
-    let (distance_gain, turn_gain, per_m_deg, distance_noise_m, noise_deg) = (
-        table.number_or("distance_gain", &file.distance_gain, 0.0, -0.5..=0.5),
-        table.number_or("turn_gain", &file.turn_gain, 0.0, -0.5..=0.5),
-        table.number_or("turn_per_m_deg", &file.turn_per_m_deg, 0.0, -90.0..=90.0),
-        table.number_or("distance_noise_m", &file.distance_noise_m, 0.0, 0.0..=1.0),
-        table.number_or("turn_noise_deg", &file.turn_noise_deg, 0.0, 0.0..=90.0),
-    )
-        .together()?;
-    Ok(OdometryError {
-        distance_gain,
-        turn_gain,
-        turn_radpm: per_m_deg.to_radians(),
-        distance_noise_m,
-        turn_noise_rad: noise_deg.to_radians(),
-    })
+/// The bounds of a drive, which hold at every physics step. All positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveLimits {
+    /// How it moves.
+    pub kind: DriveKind,
+    /// Forwards and backwards, m/s.
+    pub max_linear_mps: f64,
+    /// Either way round, rad/s.
+    pub max_angular_radps: f64,
+    /// Speeding up and braking, m/s².
+    pub max_linear_acceleration_mps2: f64,
+    /// The same for turning, rad/s².
+    pub max_angular_acceleration_radps2: f64,
+}
+
+impl DriveLimits {
+    /// The fastest in any direction, m/s.
+    pub fn fastest_mps(&self) -> f64 {
+        match self.kind {
+            DriveKind::Omni { max_left_mps, .. } => libm::hypot(self.max_linear_mps, max_left_mps),
+            DriveKind::Differential | DriveKind::Car { .. } => self.max_linear_mps,
+        }
+    }
+
+    /// The tightest curve, rad/m; that of a car is as tight as its wheels can be turned, but no
+    /// tighter than leaves both bounds of acceleration true while it brakes in the curve.
+    pub fn max_curvature_radpm(&self) -> f64 {
+        match self.kind {
+            DriveKind::Differential | DriveKind::Omni { .. } => f64::INFINITY,
+            DriveKind::Car { wheelbase_m, max_steer_rad } => (libm::tan(max_steer_rad) / wheelbase_m)
+                .min(self.max_angular_acceleration_radps2 / self.max_linear_acceleration_mps2),
+        }
+    }
+}
+
+/// How a robot's odometry errs; all zero is exact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OdometryError {
+    /// Metres felt too many per metre.
+    pub distance_gain: f64,
+    /// Radians felt too many per radian.
+    pub turn_gain: f64,
+    /// Radians felt per metre driven straight on.
+    pub turn_radpm: f64,
+    /// Standard deviation of the distance after 1 m, m; it grows with the square root of the way.
+    pub distance_noise_m: f64,
+    /// Standard deviation of the heading after a turn of 1 rad, rad; it grows likewise.
+    pub turn_noise_rad: f64,
+}
+
+/// A planar laser.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaserSpec {
+    /// The number of beams.
+    pub beams: usize,
+    /// The angle they are spread over, rad, in (0, 2π].
+    pub fov_rad: f64,
+    /// Nearer things give −∞, m.
+    pub range_min_m: f64,
+    /// Farther things give +∞, m.
+    pub range_max_m: f64,
+    /// Scans per second, Hz.
+    pub rate_hz: f64,
+    /// The physics steps from one scan to the next; at least 1.
+    pub period_steps: u64,
+    /// Where it sits on the robot.
+    pub mount: Isometry2<f64>,
+    /// Standard deviation of a range, m.
+    pub noise_std_m: f64,
+    /// The share of ranges that are missing (not a number), at random.
+    pub dropout: f64,
+}
+
+impl LaserSpec {
+    /// The direction of the first beam in the laser's frame, rad.
+    pub fn angle_min_rad(&self) -> f64 {
+        if self.is_full_turn() { -PI } else { -self.fov_rad / 2.0 }
+    }
+
+    /// The angle from beam to beam, rad. Of a full turn the last beam is a neighbour of the
+    /// first; of less, the first and the last lie on the borders.
+    pub fn angle_increment_rad(&self) -> f64 {
+        let gaps = if self.is_full_turn() { self.beams } else { self.beams - 1 };
+        self.fov_rad / gaps as f64
+    }
+
+    /// A scan of this laser that has seen nothing: no return on any beam.
+    pub fn empty_scan(&self) -> Scan {
+        Scan {
+            angle_min_rad: self.angle_min_rad(),
+            angle_increment_rad: self.angle_increment_rad(),
+            range_min_m: self.range_min_m,
+            range_max_m: self.range_max_m,
+            ranges_m: vec![f32::INFINITY; self.beams],
+        }
+    }
+
+    fn is_full_turn(&self) -> bool {
+        self.fov_rad > TAU - 1e-9
+    }
 }

@@ -1,61 +1,9 @@
-//! The physics world as a whole.
+//! Our rays against two oracles. Tests of worlds as a whole are in the crate `worldfile`, where worlds are texts.
 
 mod caster;
-mod contacts;
-mod contract;
-mod docs;
-mod drives;
-mod fleet;
-mod floor_plan;
-mod footprint;
-mod jams;
-mod keys;
-mod obstacles;
+mod energy;
 mod oracle;
-mod patrol;
-mod random;
-mod senses;
-mod snapshot;
-mod things;
+mod specs;
 
 use super::*;
-use interfaces::{Twist, World};
-
-const FOUR_ROOMS: &str = include_str!("../../../../worlds/four_rooms.toml");
-
-fn four_rooms() -> WorldSpec {
-    parse(FOUR_ROOMS)
-}
-
-fn parse(text: &str) -> WorldSpec {
-    WorldSpec::parse("test.toml", text).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// The four rooms with parts of the file replaced.
-fn four_rooms_but(replacements: &[(&str, &str)], more: &str) -> WorldSpec {
-    let mut text = FOUR_ROOMS.to_owned();
-    for (from, to) in replacements {
-        assert!(text.contains(from), "{from}");
-        text = text.replacen(from, to, 1);
-    }
-    parse(&format!("{text}\n{more}"))
-}
-
-/// Lets the world go on under one command for some seconds, with a look at every reading.
-fn drive(world: &mut PhysicsWorld, twist: Twist, seconds: f64, mut see: impl FnMut(&PhysicsWorld)) {
-    for _ in 0..(seconds * 10.0).round() as usize {
-        world.act(&twist);
-        see(world);
-    }
-}
-
-/// How far the closest pair of the robots' bodies is apart, m.
-fn bodies_apart_m(world: &PhysicsWorld) -> f64 {
-    let robots: Vec<RobotView<'_>> = world.robots().collect();
-    let pairs = (0..robots.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
-    let gap = |(a, b): (usize, usize)| {
-        let between: f64 = (robots[a].pose.translation.vector - robots[b].pose.translation.vector).norm();
-        between - robots[a].radius_m - robots[b].radius_m
-    };
-    pairs.map(gap).fold(f64::INFINITY, f64::min)
-}
+use specs::{busy, crowd, four_rooms, heap, reckless, rooms};

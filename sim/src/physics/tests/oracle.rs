@@ -5,7 +5,7 @@ use crate::physics::bodies::Bodies;
 use crate::physics::fleet::corners;
 use crate::physics::rays::{Disc, Scene, Scratch};
 use crate::physics::sensors::{LaserScanner, Platform, Sensor, SensorReading, SharedBeams, Surroundings};
-use interfaces::{Scan, rotation};
+use interfaces::{Scan, Twist, rotation};
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -73,24 +73,24 @@ pub(super) struct Tally {
 impl Place {
     pub(super) fn new(spec: FleetSpec) -> Self {
         let mut bodies = Bodies::new(&spec);
-        for (i, shape) in spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).enumerate() {
+        for (i, shape) in spec.walls.iter().chain(spec.obstacles.iter().map(|o| &o.shape)).enumerate() {
             bodies.add_box(Body::Wall(i), shape);
         }
         let mut discs = Vec::new();
-        for (i, robot) in spec.robots().iter().enumerate() {
-            bodies.add_robot(robot, spec.step_s());
+        for (i, robot) in spec.robots.iter().enumerate() {
+            bodies.add_robot(robot, spec.step_s);
             // As rapier has it, so that both see the same.
             discs.push((bodies.pose(i).translation.vector.into(), f64::from(robot.radius_m as f32)));
         }
         bodies.step();
         let round = discs.iter().map(|&(center, radius_m)| Disc { center, radius_m });
-        let hulls = spec.obstacles().len();
-        let mut scene = Scene::new(corners(spec.frame()), spec.walls(), round.collect(), hulls, 10.0);
-        for (place, obstacle) in spec.obstacles().iter().enumerate() {
+        let hulls = spec.obstacles.len();
+        let mut scene = Scene::new(corners(&spec.frame), &spec.walls, round.collect(), hulls, 10.0);
+        for (place, obstacle) in spec.obstacles.iter().enumerate() {
             scene.set_polygon(place, None, &obstacle.shape.corners());
         }
         scene.sort();
-        let boxes = spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).copied().collect();
+        let boxes = spec.walls.iter().chain(spec.obstacles.iter().map(|o| &o.shape)).copied().collect();
         Self { spec, scene, bodies, boxes, discs, cornered: Vec::new() }
     }
 

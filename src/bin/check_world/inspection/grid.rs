@@ -9,7 +9,7 @@ use sim::grid::{BlockSpec, Course, GridSpec};
 
 pub(super) fn content(world: &GridSpec) -> Content {
     let frame = *world.frame();
-    let free = world.walls().cells().iter().filter(|is_wall| !**is_wall).count();
+    let free = world.walls.cells().iter().filter(|is_wall| !**is_wall).count();
     let chance = |what: &str, chance: f64| format!("{what} moves with probability {chance}");
     let mut lines = vec![
         ("size", format!("{} × {} cells, {free} of them free", frame.width(), frame.height())),
@@ -17,19 +17,17 @@ pub(super) fn content(world: &GridSpec) -> Content {
             "robot",
             format!(
                 "starts at [{}, {}], sees {} cells far",
-                world.start().x,
-                world.start().y,
-                world.sensor_radius()
+                world.start.x, world.start.y, world.sensor_radius
             ),
         ),
     ];
-    if world.block_chance() < 1.0 || world.robot_chance() < 1.0 {
-        let both = [chance("a block", world.block_chance()), chance("the robot", world.robot_chance())];
+    if world.block_probability < 1.0 || world.robot_probability < 1.0 {
+        let both = [chance("a block", world.block_probability), chance("the robot", world.robot_probability)];
         lines.push(("chance", both.join(", ")));
     }
-    lines.extend(world.blocks().iter().map(|block| ("block", describe(block))));
+    lines.extend(world.blocks.iter().map(|block| ("block", describe(block))));
     let square = |cell: Cell| rectangle(cell, cell, 0.0);
-    let start = frame.center(world.start());
+    let start = frame.center(world.start);
     let thing = |block: &BlockSpec| PlanThing {
         name: block.name.clone(),
         outline: block.path.first().map_or(Vec::new(), |&cell| square(cell)),
@@ -37,14 +35,14 @@ pub(super) fn content(world: &GridSpec) -> Content {
     };
     Content {
         kind: "grid world",
-        name: world.name().to_owned(),
-        description: world.description().to_owned(),
+        name: world.name.to_owned(),
+        description: world.description.to_owned(),
         lines,
         plan: Plan {
             unit: "cells",
             frame,
             walls: scene(world).walls,
-            things: world.blocks().iter().map(thing).collect(),
+            things: world.blocks.iter().map(thing).collect(),
             robots: vec![PlanRobot {
                 name: "robot".to_owned(),
                 pose: Isometry2::translation(start.x, start.y),

@@ -6,12 +6,9 @@ mod physics;
 mod tests;
 
 use curious::pictures::Plan;
-use curious::worlds;
-use sim::floor_plan::{FloorPlan, ros};
-use sim::grid::GridSpec;
-use sim::physics::FleetSpec;
-use sim::{Disk, Files, Findings, Severity, stage};
 use std::path::Path;
+use worldfile::floor_plan::{FloorPlan, ros};
+use worldfile::{Disk, Files, Findings, Severity, shipped};
 
 /// What was found in one file.
 #[derive(Clone, Debug, Default)]
@@ -46,10 +43,10 @@ pub(crate) struct Content {
 /// Reads a file as what it is: a shipped world by its name, a world file (physics or grid), a `.world` file of
 /// Stage, or a `map.yaml` of ROS.
 pub(crate) fn inspect(name: &str) -> Inspection {
-    let shipped = worlds::text(name);
+    let shipped = shipped::text(name);
     let path = Path::new(name);
     let mut inspection = match (shipped, path.extension().and_then(|ending| ending.to_str())) {
-        (Some(text), _) => world_file(&format!("{name}.toml"), text, &worlds::pictures()),
+        (Some(text), _) => world_file(&format!("{name}.toml"), text, &shipped::pictures()),
         (None, _) if is_of_stage(path) => stage_file(path),
         (None, Some("yaml" | "yml")) => ros_file(path),
         (None, _) => match std::fs::read(path) {
@@ -84,9 +81,9 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
     let is_grid =
         text.parse::<toml::Table>().is_ok_and(|file| file.get("map").is_some_and(toml::Value::is_str));
     let outcome = if is_grid {
-        GridSpec::parse(name, text).map(|world| (grid::content(&world), world.warnings().to_vec()))
+        worldfile::grid::parse(name, text).map(|world| (grid::content(&world), world.warnings()))
     } else {
-        FleetSpec::parse_with(name, text, files)
+        worldfile::physics::parse_fleet_with(name, text, files)
             .map(|world| (physics::content("physics world", &world), Vec::new()))
     };
     match outcome {

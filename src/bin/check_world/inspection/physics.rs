@@ -4,17 +4,17 @@ use super::Content;
 use curious::pictures::{Plan, PlanRobot, PlanThing, SensorView};
 use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2};
-use sim::floor_plan::FloorPlan;
 use sim::physics::{
-    Behaviour, DriveKind, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec,
+    BehaviorSpec, DriveKind, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec,
 };
 use std::path::Path;
+use worldfile::floor_plan::FloorPlan;
 
 /// The side of the cells that a floor plan is given for its frame, m.
 const PLAN_CELL_M: f64 = 0.05;
 
 pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
-    let frame = *world.frame();
+    let frame = world.frame;
     let cell_m = frame.resolution_m();
     let [width_m, height_m] = [frame.width(), frame.height()].map(|cells| cells as f64 * cell_m);
     let mut lines = vec![
@@ -28,30 +28,30 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
                 frame.height()
             ),
         ),
-        ("time", format!("physics steps of {} s", world.step_s())),
-        ("walls", format!("{}", world.walls().len())),
+        ("time", format!("physics steps of {} s", world.step_s)),
+        ("walls", format!("{}", world.walls.len())),
     ];
-    lines.extend(world.obstacles().iter().map(|obstacle| ("thing", thing_line(obstacle))));
-    lines.extend(robot_lines(world.robots()));
+    lines.extend(world.obstacles.iter().map(|obstacle| ("thing", thing_line(obstacle))));
+    lines.extend(robot_lines(&world.robots));
     let robot = |robot: &RobotSpec| PlanRobot {
         name: robot.name.clone(),
         pose: robot.pose,
         radius: robot.radius_m,
         corners: robot.corners.clone(),
         views: views(robot).collect(),
-        is_driven: robot.behaviour == Behaviour::Driven,
+        is_driven: robot.behavior == BehaviorSpec::Driven,
     };
     Content {
         kind,
-        name: world.name().to_owned(),
-        description: world.description().to_owned(),
+        name: world.name.to_owned(),
+        description: world.description.to_owned(),
         lines,
         plan: Plan {
             unit: "m",
             frame,
-            walls: world.walls().iter().map(|wall| wall.corners().to_vec()).collect(),
-            things: world.obstacles().iter().map(thing).collect(),
-            robots: world.robots().iter().map(robot).collect(),
+            walls: world.walls.iter().map(|wall| wall.corners().to_vec()).collect(),
+            things: world.obstacles.iter().map(thing).collect(),
+            robots: world.robots.iter().map(robot).collect(),
         },
     }
 }
@@ -170,13 +170,13 @@ fn robot_lines(robots: &[RobotSpec]) -> impl Iterator<Item = (&'static str, Stri
 }
 
 fn robot_line(robot: &RobotSpec) -> String {
-    let does = match &robot.behaviour {
-        Behaviour::Driven => "is driven",
-        Behaviour::Standing => "stands",
-        Behaviour::Circle(_) => "drives a circle",
-        Behaviour::Wander(_) => "wanders",
-        Behaviour::Waypoints(_) => "drives from point to point",
-        Behaviour::WallPatrol(_) => "follows a wall back and forth",
+    let does = match &robot.behavior {
+        BehaviorSpec::Driven => "is driven",
+        BehaviorSpec::Standing => "stands",
+        BehaviorSpec::Circle(_) => "drives a circle",
+        BehaviorSpec::Wander(_) => "wanders",
+        BehaviorSpec::Waypoints(_) => "drives from point to point",
+        BehaviorSpec::WallPatrol(_) => "follows a wall back and forth",
     };
     let body = match robot.corners.len() {
         0 => format!("radius {} m", short(robot.radius_m)),

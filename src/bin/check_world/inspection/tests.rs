@@ -9,7 +9,7 @@ fn file(path: &str) -> String {
 #[test]
 fn every_shipped_world_is_right_and_its_walls_lie_in_its_frame() {
     let of_sim = ["house.toml", "office.toml", "warehouse.toml", "cave.toml", "yard.toml", "stage/lab.world"];
-    let of_sim = of_sim.map(|name| file(&format!("sim/worlds/{name}")));
+    let of_sim = of_sim.map(|name| file(&format!("worlds/{name}")));
     let names = SHIPPED.iter().chain(&SHIPPED_GRID).map(|(name, _)| (*name).to_owned());
     for name in names.chain(of_sim) {
         let inspection = inspect(&name);
@@ -44,5 +44,5 @@ fn a_file_that_is_none_says_so() {
         "{:?}",
         inspection.errors
     );
-    assert!(inspect(&file("sim/worlds/office.png")).errors[0].contains("no text"));
+    assert!(inspect(&file("worlds/office.png")).errors[0].contains("no text"));
 }

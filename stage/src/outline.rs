@@ -1,0 +1,149 @@
+//! The convex outline of a body.
+
+use super::polygon;
+use nalgebra::Point2;
+use sim::physics::Form;
+
+/// An outline here has no more corners than this.
+const MOST_CORNERS: usize = 32;
+/// Nor any by which it gains less than half of this area, m².
+const LEAST_CORNER_M2: f64 = 4e-6;
+/// The point that a robot turns about lies so far within its outline or farther, m.
+const LEAST_INNER_M: f64 = 0.02;
+/// So many lines measure the area of a body of several parts.
+const LINES: usize = 256;
+
+/// The smallest convex outline around a body, as far as an outline can have that many corners.
+pub(super) struct Outline {
+    /// Counter-clockwise, m.
+    pub(super) corners: Vec<Point2<f64>>,
+    /// By which share its area is larger than that of the body.
+    pub(super) gain: f64,
+}
+
+/// The outline of a body of `parts`; none if it does not hold the origin.
+pub(super) fn of(parts: &[Vec<Point2<f64>>]) -> Option<Outline> {
+    let mut corners = hull(parts.iter().flatten().copied().collect());
+    while let Some((flattest, area_m2)) = flattest(&corners)
+        && (corners.len() > MOST_CORNERS || area_m2 < LEAST_CORNER_M2)
+    {
+        corners.remove(flattest);
+    }
+    if corners.len() < 3 || inner_m(&corners) < LEAST_INNER_M {
+        return None;
+    }
+    let area_m2 = polygon::area(&corners);
+    // Most bodies have one part that is nearly all of it, and that is quickly seen.
+    let largest_m2 = parts.iter().map(|part| polygon::area(part).abs()).fold(0.0, f64::max);
+    let gain = area_m2 / largest_m2 - 1.0;
+    let gain = if parts.len() < 2 || gain < 1e-9 { gain } else { gain.min(gain_by_lines(&corners, parts)) };
+    Some(Outline { corners, gain })
+}
+
+/// The radius of the circle about the origin that lies within, m; negative if it lies outside.
+pub(super) fn inner_m(corners: &[Point2<f64>]) -> f64 {
+    -Form::Convex(corners.to_vec()).gap_m_to(&Point2::origin())
+}
+
+/// The convex hull, counter-clockwise (Andrew's monotone chain).
+fn hull(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let chain = |points: &mut dyn Iterator<Item = &Point2<f64>>| {
+        let mut chain: Vec<Point2<f64>> = Vec::new();
+        for point in points {
+            while let [.., a, b] = chain.as_slice()
+                && (b - a).perp(&(point - b)) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(*point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut corners = chain(&mut points.iter());
+    corners.extend(chain(&mut points.iter().rev()));
+    corners
+}
+
+/// The corner without which an outline loses least, and twice the area that it loses, m².
+fn flattest(corners: &[Point2<f64>]) -> Option<(usize, f64)> {
+    let count = corners.len();
+    let twice_m2 = |i: usize| {
+        let (before, after) = (corners[(i + count - 1) % count], corners[(i + 1) % count]);
+        (corners[i] - before).perp(&(after - corners[i]))
+    };
+    (0..count).map(|i| (i, twice_m2(i))).min_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| count >= 3)
+}
+
+/// By which share a convex outline is larger than the parts in it together, measured along lines
+/// across both.
+fn gain_by_lines(corners: &[Point2<f64>], parts: &[Vec<Point2<f64>>]) -> f64 {
+    let ys = || corners.iter().map(|corner| corner.y);
+    let (low, high) = (ys().fold(f64::MAX, f64::min), ys().fold(f64::MIN, f64::max));
+    let (mut outline_m, mut body_m) = (0.0, 0.0);
+    for line in 0..LINES {
+        let y = low + (high - low) * (line as f64 + 0.5) / LINES as f64;
+        outline_m += length_m(&mut spans(corners, y));
+        body_m += length_m(&mut parts.iter().flat_map(|part| spans(part, y)).collect());
+    }
+    outline_m / body_m - 1.0
+}
+
+/// Where a line along x lies in a polygon, m.
+fn spans(corners: &[Point2<f64>], y: f64) -> Vec<[f64; 2]> {
+    let sides = (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
+    let crossing = sides.filter(|(a, b)| (a.y > y) != (b.y > y));
+    let mut xs: Vec<f64> = crossing.map(|(a, b)| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x)).collect();
+    xs.sort_by(f64::total_cmp);
+    xs.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
+}
+
+/// The length of spans that may overlap, together, m.
+fn length_m(spans: &mut Vec<[f64; 2]>) -> f64 {
+    spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let (mut length_m, mut reached) = (0.0, f64::NEG_INFINITY);
+    for [from, to] in spans {
+        length_m += (*to - from.max(reached)).max(0.0);
+        reached = reached.max(*to);
+    }
+    length_m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(left: f64, bottom: f64, side: f64) -> Vec<Point2<f64>> {
+        [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)]
+            .map(|(x, y)| Point2::new(left + x, bottom + y))
+            .to_vec()
+    }
+
+    #[test]
+    fn parts_may_overlap() {
+        // A square, one within it, and one that overlaps half of it: 2 × 1 with a notch of 0.5 × 0.
+        let parts = [square(-1.0, -0.5, 1.0), square(-0.5, -0.5, 1.0), square(-0.2, -0.2, 0.1)];
+        let outline = of(&parts).unwrap();
+        assert_eq!(outline.corners.len(), 4);
+        assert!(outline.gain.abs() < 1e-9, "{}", outline.gain);
+        // Two squares corner to corner cover 2 of the 3 of their hull.
+        let outline = of(&[square(-1.0, -1.0, 1.0), square(0.0, 0.0, 1.0)]).unwrap();
+        assert_eq!(outline.corners.len(), 6);
+        assert!((outline.gain - 0.5).abs() < 0.01, "{}", outline.gain);
+    }
+
+    #[test]
+    fn many_corners_become_few_and_the_origin_lies_within() {
+        let ring = |radius_m: f64, count: usize| -> Vec<Point2<f64>> {
+            let corner = |i: usize| interfaces::rotation(i as f64 * std::f64::consts::TAU / count as f64);
+            (0..count).map(|i| corner(i) * Point2::new(radius_m, 0.0)).collect()
+        };
+        let outline = of(&[ring(0.3, 1000)]).unwrap();
+        assert_eq!(outline.corners.len(), MOST_CORNERS);
+        assert!(outline.gain < 0.0 && outline.gain > -0.02, "{}", outline.gain);
+        assert!(inner_m(&outline.corners) > 0.29);
+        assert!(of(&[square(0.0, 0.0, 1.0)]).is_none());
+        assert!(of(&[vec![Point2::origin(); 4]]).is_none());
+    }
+}

@@ -1,0 +1,55 @@
+//! The bitmaps of a world, each decoded once.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use worldfile::Files;
+use worldfile::floor_plan::{Bitmap, MAX_FILE_BYTES};
+
+/// The first colour of a pixel that is blocked is below this.
+const BLOCKED_BELOW: f64 = 128.0 / 255.0;
+/// All bitmaps of a world together, each as often as it is used, may not have more pixels.
+const MAX_PIXELS: u64 = 1 << 27;
+/// Nor make more rectangles.
+const MAX_RECTANGLES: usize = 1 << 20;
+
+/// Bitmaps by their paths.
+pub(super) struct Pictures<'a> {
+    files: &'a dyn Files,
+    decoded: BTreeMap<PathBuf, Arc<Bitmap>>,
+    pixels: u64,
+    rectangles: usize,
+}
+
+impl<'a> Pictures<'a> {
+    pub(super) fn new(files: &'a dyn Files) -> Self {
+        Self { files, decoded: BTreeMap::new(), pixels: 0, rectangles: 0 }
+    }
+
+    /// The bitmap of a file: dark is blocked, by the first colour as in Stage.
+    pub(super) fn get(&mut self, path: &Path) -> Result<Arc<Bitmap>, String> {
+        let bitmap = match self.decoded.get(path) {
+            Some(bitmap) => Arc::clone(bitmap),
+            None => {
+                let bytes = self.files.read(path, MAX_FILE_BYTES).map_err(|error| error.to_string())?;
+                let bitmap = Bitmap::decode(&bytes, |pixel| pixel.red < BLOCKED_BELOW);
+                let bitmap = Arc::new(bitmap.map_err(|error| error.to_string())?);
+                self.decoded.insert(path.to_owned(), Arc::clone(&bitmap));
+                bitmap
+            }
+        };
+        self.pixels += u64::from(bitmap.width()) * u64::from(bitmap.height());
+        if self.pixels > MAX_PIXELS {
+            return Err(format!("the bitmaps of this world have more than {MAX_PIXELS} pixels together"));
+        }
+        if self.rectangles <= MAX_RECTANGLES {
+            self.rectangles += bitmap.rectangles().len();
+        }
+        if self.rectangles > MAX_RECTANGLES {
+            return Err(format!(
+                "the bitmaps of this world make more than {MAX_RECTANGLES} rectangles together"
+            ));
+        }
+        Ok(bitmap)
+    }
+}

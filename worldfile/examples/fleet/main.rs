@@ -1,0 +1,130 @@
+//! How fast the simulator is with many robots.
+//!
+//! ```text
+//! cargo run --release -p worldfile --example fleet -- --robots 10 --seconds 60
+//! ```
+//!
+//! Four rooms of 12 × 12 m (`--tiles 4`: 4 × 4 of these), walls of 0.05 m. Robot 1 drives a circle,
+//! the others wander; each has a radius of 0.15 m and a laser of 360 beams (`--rays`) over 360°,
+//! 10 m, at 10 Hz. Physics goes at 20 Hz, as in the shipped worlds. See docs/performance.md.
+
+mod place;
+mod usage;
+
+use clap::Parser;
+use place::Wish;
+use sim::physics::Fleet;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// How fast the simulator is with many robots.
+#[derive(Parser)]
+struct Args {
+    /// How many robots there are
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    robots: u32,
+    /// How long they drive, in simulated seconds
+    #[arg(long, default_value_t = 60.0)]
+    seconds: f64,
+    /// Beams of each laser
+    #[arg(long, default_value_t = 360, value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    rays: u32,
+    /// Houses along each side
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
+    tiles: u32,
+    /// Starts all chance
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Threads that the lasers are shared out to
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    threads: u32,
+    /// Prints one line of JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Whoever waits longer than this is told how far it is.
+const SILENCE: Duration = Duration::from_secs(2);
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    let wish = Wish {
+        robots: args.robots as usize,
+        rays: args.rays as usize,
+        tiles: args.tiles as usize,
+        seed: args.seed,
+    };
+    if let Err(error) = place::has_room(&wish) {
+        eprintln!("{error}");
+        return ExitCode::from(2);
+    }
+    // Each is compared with each other: that takes a while.
+    if args.robots > 10_000 {
+        eprintln!("placing {} robots", args.robots);
+    }
+    let spec = match place::place(&wish) {
+        Ok(spec) => spec,
+        Err(error) => {
+            eprintln!("{error}");
+            return ExitCode::from(2);
+        }
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build();
+    let pool = match pool {
+        Ok(pool) => pool,
+        Err(error) => {
+            eprintln!("cannot start {} threads: {error}", args.threads);
+            return ExitCode::FAILURE;
+        }
+    };
+
+    let start = Instant::now();
+    let mut fleet = Fleet::new(&spec, args.seed);
+    fleet.set_parallel_lasers(args.threads > 1);
+    let load_s = start.elapsed().as_secs_f64();
+    let cpu_before_s = usage::cpu_s();
+    let start = Instant::now();
+    pool.install(|| run(&mut fleet, args.seconds));
+    let wall_s = start.elapsed().as_secs_f64();
+    let cpu_s = usage::cpu_s().zip(cpu_before_s).map_or(f64::NAN, |(after, before)| after - before);
+
+    // A scan every 0.1 s from time 0 on, the last before the end.
+    let scans = (fleet.time_s() / 0.1 - 1e-6).ceil() * f64::from(args.robots);
+    let rays_per_s = scans * f64::from(args.rays) / wall_s;
+    let figures = [
+        ("robots", f64::from(args.robots), 0),
+        ("simulated_s", fleet.time_s(), 1),
+        ("wall_s", wall_s, 4),
+        ("real_time_factor", fleet.time_s() / wall_s, 2),
+        ("rays_per_s", rays_per_s, 0),
+        ("peak_mib", usage::peak_mib().unwrap_or(f64::NAN), 1),
+        ("load_s", load_s, 4),
+        ("cpu_s", cpu_s, 4),
+    ];
+    if args.json {
+        // JSON has no NaN.
+        let value = |value: f64, digits: usize| {
+            if value.is_finite() { format!("{value:.digits$}") } else { "null".to_owned() }
+        };
+        let pairs = figures.map(|(name, figure, digits)| format!("\"{name}\": {}", value(figure, digits)));
+        println!("{{{}}}", pairs.join(", "));
+    } else {
+        for (name, figure, digits) in figures {
+            println!("{name:>16}  {figure:.digits$}");
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+/// Lets the robots drive for some simulated seconds.
+fn run(fleet: &mut Fleet, seconds: f64) {
+    let mut told = Instant::now();
+    // As many steps as `run_until` the end would take.
+    while fleet.time_s() < seconds - 5e-7 {
+        fleet.step(&mut ());
+        if told.elapsed() > SILENCE {
+            eprintln!("{:.2} of {seconds} s", fleet.time_s());
+            told = Instant::now();
+        }
+    }
+}

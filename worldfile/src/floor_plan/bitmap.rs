@@ -1,0 +1,147 @@
+use super::picture::{Pixel, Raster};
+use super::{MAX_CORNERS, PlanError};
+
+/// Which pixels of a picture are blocked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bitmap {
+    width: u32,
+    height: u32,
+    /// Row by row from the bottom: y points upwards, as in the world.
+    blocked: Vec<bool>,
+}
+
+impl Bitmap {
+    /// The bitmap of the given rows, the topmost first; `#` is blocked. Rows are as long as the
+    /// longest one.
+    ///
+    /// # Errors
+    ///
+    /// When it is empty or has too many corners.
+    pub fn from_ascii(rows: &str) -> Result<Self, PlanError> {
+        let rows: Vec<&[u8]> = rows.lines().map(str::as_bytes).collect();
+        let width = rows.iter().map(|row| row.len()).max().unwrap_or(0);
+        let blocked =
+            rows.iter().rev().flat_map(|row| (0..width).map(|x| row.get(x) == Some(&b'#'))).collect();
+        Self::new(width as u32, rows.len() as u32, blocked)
+    }
+
+    /// Decodes a PNG, PBM, PGM or PPM picture. `is_blocked` decides over each pixel.
+    ///
+    /// # Errors
+    ///
+    /// When the picture is of another kind, too large by its header, damaged, empty, or noise.
+    pub fn decode(bytes: &[u8], is_blocked: impl Fn(Pixel) -> bool) -> Result<Self, PlanError> {
+        let raster = Raster::decode(bytes)?;
+        let (width, height) = (raster.width, raster.height);
+        let mut blocked = Vec::with_capacity(width as usize * height as usize);
+        for y in (0..height).rev() {
+            blocked.extend(raster.row(y).map(&is_blocked));
+        }
+        drop(raster);
+        Self::new(width, height, blocked)
+    }
+
+    /// The same by brightness alone: darker than `blocked_below` (0 black, 1 white) is blocked.
+    /// Where the picture is transparent, white shines through.
+    ///
+    /// # Errors
+    ///
+    /// As [`Bitmap::decode`].
+    pub fn decode_dark(bytes: &[u8], blocked_below: f64) -> Result<Self, PlanError> {
+        Self::decode(bytes, |pixel| pixel.on_white() < blocked_below)
+    }
+
+    /// The bitmap of `width` × `height` pixels, row by row from the bottom.
+    ///
+    /// # Errors
+    ///
+    /// When it is empty or has too many corners.
+    pub fn new(width: u32, height: u32, blocked: Vec<bool>) -> Result<Self, PlanError> {
+        if width == 0 || height == 0 || blocked.len() != width as usize * height as usize {
+            return Err(PlanError::Empty);
+        }
+        let bitmap = Self { width, height, blocked };
+        let corners = bitmap.corners();
+        if corners > MAX_CORNERS { Err(PlanError::TooManyCorners { corners }) } else { Ok(bitmap) }
+    }
+
+    /// Pixels per row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Whether the pixel in column `x` and row `y`, counted from the lower left one, is blocked;
+    /// beyond the picture nothing is.
+    pub fn is_blocked(&self, x: u32, y: u32) -> bool {
+        x < self.width && y < self.height && self.row(y)[x as usize]
+    }
+
+    /// The least box of pixels that holds all blocked ones, as its lower left and upper right
+    /// corner; `None` if none is blocked.
+    pub fn blocked_bounds(&self) -> Option<([u32; 2], [u32; 2])> {
+        let mut bounds: Option<([u32; 2], [u32; 2])> = None;
+        for y in 0..self.height {
+            let row = self.row(y);
+            let (Some(first), Some(last)) =
+                (row.iter().position(|blocked| *blocked), row.iter().rposition(|blocked| *blocked))
+            else {
+                continue;
+            };
+            let (low, high) = bounds.get_or_insert(([first as u32, y], [0, 0]));
+            low[0] = low[0].min(first as u32);
+            *high = [high[0].max(last as u32 + 1), y + 1];
+        }
+        bounds
+    }
+
+    /// The sides of pixels between a blocked pixel and a free one, or the border of the picture.
+    pub fn boundary_sides(&self) -> usize {
+        let mut sides = 0;
+        self.for_row_pairs(|_, below, above| {
+            sides += below.iter().zip(above).filter(|(below, above)| below != above).count();
+            let ends = usize::from(above.first() == Some(&true)) + usize::from(above.last() == Some(&true));
+            sides += ends + above.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        });
+        sides
+    }
+
+    /// One row of pixels.
+    pub(super) fn row(&self, y: u32) -> &[bool] {
+        let start = y as usize * self.width as usize;
+        &self.blocked[start..start + self.width as usize]
+    }
+
+    /// Visits every border between rows, from the bottom of the lowest row to the top of the
+    /// highest: its y, the row below and the row above.
+    pub(super) fn for_row_pairs(&self, mut visit: impl FnMut(u32, &[bool], &[bool])) {
+        let outside = vec![false; self.width as usize];
+        for y in 0..=self.height {
+            let below = if y == 0 { &outside } else { self.row(y - 1) };
+            let above = if y == self.height { &outside } else { self.row(y) };
+            visit(y, below, above);
+        }
+    }
+
+    /// The corners of the blocked area: as many as its outline has segments. Where two blocked
+    /// pixels touch in a point only, there are two.
+    fn corners(&self) -> usize {
+        let mut corners = 0;
+        self.for_row_pairs(|_, below, above| {
+            let (mut left_below, mut left_above) = (false, false);
+            let outside = std::iter::once((&false, &false));
+            for (&right_below, &right_above) in below.iter().zip(above).chain(outside) {
+                let turns = (left_below != left_above) != (right_below != right_above);
+                let meets_in_a_point =
+                    left_below == right_above && left_above == right_below && left_below != left_above;
+                corners += usize::from(turns) + 2 * usize::from(meets_in_a_point);
+                (left_below, left_above) = (right_below, right_above);
+            }
+        });
+        corners
+    }
+}

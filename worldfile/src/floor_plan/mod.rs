@@ -1,0 +1,121 @@
+//! Floor plans: pictures whose dark pixels are walls.
+//!
+//! A [`Bitmap`] knows which pixels are blocked. It is read from a PNG or PGM picture, alone or by
+//! way of a ROS `map.yaml` ([`ros`]), and a [`FloorPlan`] gives it a size and a place. From there
+//! come two descriptions of the same walls, both exact on the borders of pixels:
+//!
+//! - [`FloorPlan::outline`]: the segments between blocked and free, for rays. Of a plan with right
+//!   angles these are as many as it has corners.
+//! - [`FloorPlan::rectangles`]: solid rectangles whose union is the blocked area, for bodies. They
+//!   overlap where walls meet, so that no seam lies across a flat surface.
+//!
+//! Pictures are bounded before they are decoded: see [`PlanError`].
+
+mod bitmap;
+mod outline;
+mod picture;
+mod rectangles;
+pub mod ros;
+#[cfg(test)]
+mod tests;
+
+pub use bitmap::Bitmap;
+pub use outline::PixelSegment;
+pub use picture::{MAX_DECODED_BYTES, MAX_FILE_BYTES, MAX_PIXELS, Pixel};
+pub use rectangles::PixelRectangle;
+
+use nalgebra::{Isometry2, Point2, Vector2};
+use sim::physics::Rectangle;
+use std::sync::Arc;
+
+/// More corners than this make a picture no floor plan: this is a million pieces of wall.
+pub const MAX_CORNERS: usize = 1 << 20;
+
+/// Why a picture is no floor plan.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// Neither PNG nor PBM, PGM, PPM or PAM, by its first bytes.
+    #[error("this is neither a PNG nor a PGM picture")]
+    Format,
+    /// The header tells of more pixels than are allowed; nothing was decoded.
+    #[error("{width} × {height} pixels are too many: at most {MAX_PIXELS}")]
+    TooManyPixels {
+        /// Pixels per row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// The header tells of more bytes of pixels than are allowed; nothing was decoded.
+    #[error("its pixels take {bytes} bytes, which are too many: at most {MAX_DECODED_BYTES}")]
+    TooManyBytes {
+        /// The bytes that its pixels take in memory.
+        bytes: u64,
+    },
+    /// The picture has no pixels.
+    #[error("it has no pixels")]
+    Empty,
+    /// The picture is damaged.
+    #[error("it cannot be decoded: {0}")]
+    Damaged(String),
+    /// The blocked pixels have too many corners, as in a picture of noise.
+    #[error("its blocked pixels have {corners} corners, which are too many: at most {MAX_CORNERS}")]
+    TooManyCorners {
+        /// The corners.
+        corners: usize,
+    },
+}
+
+/// A piece of a wall's surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Where it starts, m. The wall is on the left on the way from here.
+    pub from: Point2<f64>,
+    /// Where it ends, m.
+    pub to: Point2<f64>,
+}
+
+/// A picture of walls with a size and a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloorPlan {
+    /// Which pixels are blocked; several plans may share them.
+    pub bitmap: Arc<Bitmap>,
+    /// The width and height of a pixel, m.
+    pub pixel_m: Vector2<f64>,
+    /// The lower left corner of the picture, and the direction of its rows.
+    pub origin: Isometry2<f64>,
+}
+
+impl FloorPlan {
+    /// The width and height of the picture, m.
+    pub fn size_m(&self) -> Vector2<f64> {
+        Vector2::new(f64::from(self.bitmap.width()), f64::from(self.bitmap.height()))
+            .component_mul(&self.pixel_m)
+    }
+
+    /// The surface of the walls.
+    pub fn outline(&self) -> impl Iterator<Item = Segment> {
+        let segments = self.bitmap.outline().into_iter();
+        segments.map(|segment| Segment { from: self.point(segment.from), to: self.point(segment.to) })
+    }
+
+    /// Solid rectangles whose union is the walls.
+    pub fn rectangles(&self) -> impl Iterator<Item = Rectangle> {
+        self.bitmap.rectangles().into_iter().map(|rectangle| {
+            let (low, high) = (self.local(rectangle.min), self.local(rectangle.max));
+            let middle = self.origin * nalgebra::center(&low, &high);
+            Rectangle {
+                pose: Isometry2::from_parts(middle.into(), self.origin.rotation),
+                half_m: (high - low) / 2.0,
+            }
+        })
+    }
+
+    fn point(&self, corner: [u32; 2]) -> Point2<f64> {
+        self.origin * self.local(corner)
+    }
+
+    /// A corner of a pixel in the picture's own frame, m.
+    fn local(&self, [x, y]: [u32; 2]) -> Point2<f64> {
+        Point2::new(f64::from(x) * self.pixel_m.x, f64::from(y) * self.pixel_m.y)
+    }
+}

@@ -1,0 +1,59 @@
+//! World files of the grid world.
+//!
+//! # Keys
+//!
+//! Cells are named `[x, y]`: column and row, from `[0, 0]` at the lower left. Times are in steps. An
+//! unknown key is an error. Ranges include their ends.
+//!
+//! | key | default | range |
+//! |---|---|---|
+//! | `name` | required | not empty |
+//! | `description` | `""` | |
+//! | `sensor_radius` | required | 1 to 100 cells |
+//! | `map` | required | rows of equal length, the top row first: `#` wall, `.` free, `R` where the robot starts (free; without one it starts in the centre, column width / 2 and row height / 2, rounded down); 3 × 3 to 4 million cells |
+//! | `transitions.block_chance` | 1 | above 0, at most 1: the probability per step that a block which is due moves |
+//! | `transitions.robot_chance` | 1 | above 0, at most 1: the probability that the robot's action happens |
+//! | `block.name` | required | unique |
+//! | `block.dwell` | required | 1 to 1 000 000 steps on every cell |
+//! | `block.stood` | 0 | 0 to `dwell` − 1: steps that it has stood on its first cell when time begins |
+//! | `block.course` | required | `"loop"`: from the last cell on to the first; `"back-and-forth"` |
+//! | `block.path` | required | way points, joined by straight lines along rows and columns, clear of walls; two cells or more |
+
+mod check;
+mod file;
+mod map;
+mod path;
+#[cfg(test)]
+mod tests;
+mod write;
+
+pub use write::to_toml;
+
+use crate::error::{Source, WorldError};
+use crate::kind::Kind;
+use crate::reader;
+use sim::grid::GridSpec;
+use std::path::Path;
+
+/// Reads and checks a world file.
+///
+/// # Errors
+///
+/// When the file cannot be read, or as in [`parse`].
+pub fn load(path: impl AsRef<Path>) -> Result<GridSpec, WorldError> {
+    let name = path.as_ref().display().to_string();
+    let text = std::fs::read_to_string(&path).map_err(|error| WorldError::unreadable(&name, &error))?;
+    parse(&name, &text)
+}
+
+/// Checks the text of a world file; `file_name` is what messages call the file.
+///
+/// # Errors
+///
+/// When the text is no TOML, a key is unknown or missing, a value out of range, or the things
+/// in the world contradict each other. The messages say where, and what would be valid: of everything
+/// that is invalid, as far as one error does not hide another.
+pub fn parse(file_name: &str, text: &str) -> Result<GridSpec, WorldError> {
+    let source = Source::new(file_name, text);
+    check::check(&source, reader::read(&source, Kind::Grid)?)
+}

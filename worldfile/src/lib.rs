@@ -1,0 +1,40 @@
+//! World files: from texts and pictures to the specs of the crate `sim`.
+//!
+//! [`physics`] and [`grid`] read the two kinds of world files (TOML), [`floor_plan`] makes walls of pictures and of
+//! maps of ROS, [`shipped`] has the worlds that ship with the program. Whatever is invalid in a file is reported at
+//! once, with its line and with what would be valid.
+//!
+//! This crate does not know how a world runs, and nothing of robots that learn.
+//!
+//! ```
+//! use interfaces::{Twist, World};
+//! use sim::physics::PhysicsWorld;
+//!
+//! let spec = worldfile::physics::parse_world("four_rooms.toml", include_str!("../../worlds/four_rooms.toml"))?;
+//! let mut world = PhysicsWorld::new(&spec, 7);
+//! let before = world.sense();
+//! world.act(&Twist { linear_mps: 0.5, angular_radps: 0.0 });
+//! let after = world.sense();
+//! assert_eq!(after.scan.ranges_m.len(), 720);
+//! assert!((after.time_s - before.time_s - 0.1).abs() < 1e-9);
+//! assert!(after.pose.translation.x > before.pose.translation.x);
+//! # Ok::<(), worldfile::WorldError>(())
+//! ```
+//!
+#![doc = include_str!("../hello.md")]
+
+mod error;
+mod files;
+mod findings;
+pub mod floor_plan;
+pub mod grid;
+mod kind;
+mod names;
+pub mod physics;
+mod reader;
+pub mod shipped;
+mod together;
+
+pub use error::WorldError;
+pub use files::{Disk, Files};
+pub use findings::{Finding, Findings, Severity, SourceText};

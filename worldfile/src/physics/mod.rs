@@ -1,0 +1,103 @@
+//! World files of the physics world.
+//!
+#![doc = include_str!("../../keys.md")]
+
+mod behavior;
+mod check;
+mod drive;
+mod file;
+mod floor_plan;
+mod footprint;
+mod laser;
+mod numbers;
+mod obstacle;
+mod patrol;
+mod robot;
+mod senses;
+#[cfg(test)]
+mod tests;
+
+pub use floor_plan::MAX_PIECES;
+pub use laser::MOST_OUT_M;
+
+use crate::error::{Source, WorldError};
+use crate::files::{Disk, Files};
+use crate::kind::Kind;
+use crate::reader;
+use sim::physics::{FleetSpec, WorldSpec};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Reads and checks a world file, in which any number of robots may be driven, or none.
+///
+/// # Errors
+///
+/// When the file cannot be read, or as in [`parse_fleet`].
+pub fn load_fleet(path: impl AsRef<Path>) -> Result<FleetSpec, WorldError> {
+    let (name, text) = read(path.as_ref())?;
+    parse_fleet_with(&name, &text, &Disk)
+}
+
+/// Checks the text of a world file; `name` is what messages call the file. There are no pictures beside it.
+///
+/// # Errors
+///
+/// When the text is no TOML, a key is unknown or missing, a value out of range, or the things in the world
+/// contradict each other. The messages say where, and what would be valid: of everything that is invalid, as far as
+/// one error does not hide another.
+pub fn parse_fleet(name: &str, text: &str) -> Result<FleetSpec, WorldError> {
+    parse_fleet_with(name, text, &no_files())
+}
+
+/// As [`parse_fleet`], with the pictures of its floor plans, which are looked for in the folder of the path `name`.
+///
+/// # Errors
+///
+/// As [`parse_fleet`], and when a picture cannot be read.
+pub fn parse_fleet_with(name: &str, text: &str, files: &dyn Files) -> Result<FleetSpec, WorldError> {
+    let source = Source::new(name, text);
+    check::check(&source, &reader::read(&source, Kind::Physics)?, files)
+}
+
+/// Reads and checks a world file.
+///
+/// # Errors
+///
+/// When the file cannot be read, or as in [`parse_world`].
+pub fn load_world(path: impl AsRef<Path>) -> Result<WorldSpec, WorldError> {
+    let (name, text) = read(path.as_ref())?;
+    parse_world_with(&name, &text, &Disk)
+}
+
+/// Checks the text of a world file; `name` is what messages call the file.
+///
+/// # Errors
+///
+/// As [`parse_fleet`], and when not exactly one robot is driven.
+pub fn parse_world(name: &str, text: &str) -> Result<WorldSpec, WorldError> {
+    parse_world_with(name, text, &no_files())
+}
+
+/// As [`parse_world`], with the pictures of its floor plans, which are looked for in the folder of the path `name`.
+///
+/// # Errors
+///
+/// As [`parse_world`], and when a picture cannot be read.
+pub fn parse_world_with(name: &str, text: &str, files: &dyn Files) -> Result<WorldSpec, WorldError> {
+    let source = Source::new(name, text);
+    let reading = reader::read(&source, Kind::Physics)?;
+    let fleet = check::check(&source, &reading, files)?;
+    check::world(&source, &reading.file, fleet)
+}
+
+/// What messages call a world file, and its text.
+fn read(path: &Path) -> Result<(String, String), WorldError> {
+    let name = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|error| WorldError::unreadable(&name, &error))?;
+    Ok((name, text))
+}
+
+/// Where a world file without a folder finds its pictures: nowhere.
+fn no_files() -> BTreeMap<PathBuf, Vec<u8>> {
+    BTreeMap::new()
+}

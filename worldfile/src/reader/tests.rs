@@ -1,0 +1,264 @@
+//! Whatever is wrong with a file, all of it is told, and nothing that is not.
+
+use proptest::prelude::*;
+
+const HOUSE: &str = include_str!("../../../worlds/house.toml");
+const YARD: &str = include_str!("../../../worlds/yard.toml");
+const FOUR_ROOMS: &str = include_str!("../../../worlds/four_rooms.toml");
+const TWO_BLOCKS: &str = include_str!("../../../worlds/two_blocks.toml");
+
+/// A robot of 0.2 m in a room of 4 m × 3 m.
+fn robot(name: &str, keys: &str) -> String {
+    format!(
+        "[[robot]]\nname = \"{name}\"\nradius_m = 0.2\n{keys}\n\
+         [robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 90.0\n\
+         max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\
+         [robot.laser]\nbeams = 360\nrange_max_m = 10.0\nrate_hz = 10.0\n\
+         [robot.behaviour]\nkind = \"standing\"\n"
+    )
+}
+
+fn room(parts: &str) -> String {
+    format!(
+        "name = \"room\"\n[map]\nsize_m = [4.0, 3.0]\ncell_m = 0.05\n\
+         [[wall]]\nmin_m = [2.0, 0.0]\nmax_m = [2.1, 3.0]\n{parts}"
+    )
+}
+
+fn messages(text: &str) -> Vec<String> {
+    let error = match is_grid(text) {
+        true => crate::grid::parse("world.toml", text).err(),
+        false => crate::physics::parse_fleet("world.toml", text).err(),
+    };
+    error.map(|error| error.messages().to_vec()).unwrap_or_default()
+}
+
+fn is_grid(text: &str) -> bool {
+    text.contains("sensor_radius")
+}
+
+/// What is wrong, without the places.
+fn firsts(text: &str) -> Vec<String> {
+    messages(text).iter().map(|message| message.lines().next().unwrap_or_default().to_owned()).collect()
+}
+
+#[test]
+fn keys_types_and_meaning_are_told_in_the_order_of_the_file() {
+    let text = [
+        robot("a", "pose_m = [1.0, 1.0]\ncolour = \"red\""),
+        robot("b", "pose_m = [2.0, 1.0]"),
+        robot("c", "pose_m = [1.0, 2.0]").replace("rate_hz = 10.0\n", ""),
+        robot("d", "pose_m = [3.0, 2.0]").replace("beams = 360", "beams = \"many\"\nbeens = 3"),
+        robot("e", "pose_m = [3.0, 1.0]").replace("kind = \"standing\"", "kind = \"standing\"\nmood = 1"),
+    ];
+    insta::assert_snapshot!(messages(&room(&text.concat())).join("\n\n"));
+}
+
+#[test]
+fn every_key_that_is_missing_is_told_but_none_twice() {
+    assert_eq!(
+        firsts("[map]\n"),
+        ["name", "size_m", "cell_m"].map(|key| format!("the key `{key}` is missing"))
+    );
+    assert_eq!(firsts("nmae = \"room\""), ["unknown key `nmae`", "the key `map` is missing"]);
+    let grid = crate::grid::parse("world.toml", "").unwrap_err();
+    let keys = ["name", "sensor_radius", "map"].map(|key| format!("the key `{key}` is missing"));
+    assert!(grid.messages().iter().zip(&keys).all(|(message, key)| message.starts_with(key)), "{grid}");
+    assert_eq!(grid.messages().len(), keys.len());
+}
+
+#[test]
+fn what_is_wrong_has_no_consequences() {
+    let one = |text: &str, first: &str| assert_eq!(firsts(text), [first], "{text}");
+    let good = robot("a", "pose_m = [1.0, 1.0]");
+    let wall = |keys: &str| room(&format!("[[wall]]\n{keys}\n{good}"));
+    assert_eq!(firsts(&room(&good)), [] as [&str; 0]);
+    // Without the key the wall would have no shape, the robot no outline.
+    one(&wall("min_m = [2.0, 0.0]\nmax_m = 2.1"), "`wall.max_m` has the wrong type");
+    one(&wall("min_m = [2.0, 0.0]\nmaxi_m = [2.1, 3.0]"), "unknown key `maxi_m`");
+    one(&room(&good.replace("radius_m = 0.2", "radius_m = \"0.2\"")), "`robot.radius_m` has the wrong type");
+    // The patrol has no wall only because the wall is misread.
+    let along = "kind = \"wall_patrol\"\nfrom_m = [1.0, 1.0]\nto_m = [1.0, 2.0]\nspeed_mps = 0.3\nwall_side = \"right\"";
+    let patrol = room(&good.replace("kind = \"standing\"", along));
+    assert_eq!(firsts(&patrol), [] as [&str; 0]);
+    one(&patrol.replace("[[wall]]", "[[walls]]"), "unknown key `walls`");
+    one(&patrol.replace("[2.1, 3.0]", "true"), "`wall.max_m` has the wrong type");
+    // Nothing in the laser is missing if there is none to look into.
+    let laser = "[robot.laser]\nbeams = 360\nrange_max_m = 10.0\nrate_hz = 10.0\n";
+    let good = room(&good);
+    one(&good.replace(laser, ""), "the key `laser` is missing");
+    let number = good.replace(laser, "").replace("radius_m = 0.2", "radius_m = 0.2\nlaser = 1");
+    one(&number, "`robot.laser` has the wrong type");
+    one(&TWO_BLOCKS.replacen("dwell =", "dwel =", 1), "unknown key `dwel`");
+    one(&TWO_BLOCKS.replacen("name = \"", "name = 5 #", 1), "`name` has the wrong type");
+}
+
+#[test]
+fn a_flood_is_counted() {
+    let keys: String = (0..100_000).map(|i| format!("k{i:05} = 1\n")).collect();
+    let walls = "[[wall]]\nmin_m = 5\n".repeat(50_000);
+    for (text, more) in [(keys.as_str(), 99_982), (&room(&walls), 49_980)] {
+        let messages = messages(text);
+        assert_eq!(messages.len(), 21);
+        assert_eq!(messages[20], format!("world.toml: and {more} more errors"));
+    }
+}
+
+/// Has everything wrong that a value can have.
+const ALL_WRONG: &str = r#"name = ""
+wall = [{ from_m = [0.0, 0.0], to_m = [20.0, 0.0], thickness_m = -1.0 }]
+map = { size_m = [10.0, -4.0], cell_m = 100.0 }
+physics = { step_s = 7.0 }
+[[obstacle]]
+name = "o"
+kind = "box"
+min_m = [1.0, 1.0]
+max_m = [0.0, 0.0]
+mass_kg = -3
+friction = 100
+[[obstacle]]
+name = "o"
+kind = "boxx"
+[[robot]]
+name = "a"
+radius_m = 100.0
+pose_m = [1.0, 1.0]
+heading_deg = 1000.0
+behaviour = { kind = "wander", speed_mps = 100.0 }
+drive = { max_linear_mps = -0.5, max_angular_degps = 90.0, max_linear_acceleration_mps2 = -1.0, max_angular_acceleration_degps2 = 360.0 }
+laser = { beams = 0, range_max_m = -5.0, rate_hz = 0.0 }
+bumper = { sectors = 0 }
+"#;
+
+#[test]
+fn every_wrong_value_is_told() {
+    insta::assert_snapshot!(messages(ALL_WRONG).join("\n\n"));
+}
+
+#[test]
+fn wrong_values_have_no_consequences() {
+    let one = |text: &str, first: &str| assert_eq!(firsts(text), [first], "{text}");
+    let along = "kind = \"wall_patrol\"\nfrom_m = [1.0, 1.0]\nto_m = [1.0, 2.0]\nspeed_mps = 0.3\nwall_side = \"right\"";
+    let patrol = room(&robot("a", "pose_m = [1.0, 1.0]").replace("kind = \"standing\"", along));
+    assert_eq!(firsts(&patrol), [] as [&str; 0]);
+    let but = |from: &str, to: &str, first: &str| one(&patrol.replace(from, to), first);
+    // A way without a wall, a robot beside its way, things out of the map or too fast for it.
+    but("max_m = [2.1, 3.0]", "max_m = [2.1, 9.0]", "`wall.max_m` is [2.1, 9], which is outside of the map");
+    but("pose_m = [1.0", "pose_m = [9.0", "`robot.pose_m` is [9, 1], which is outside of the map");
+    but("size_m = [4.0", "size_m = [-4.0", "`map.size_m` is [-4, 3], which is out of range");
+    but("cell_m = 0.05", "cell_m = 0", "`map.cell_m` is 0, which is out of range");
+    but("radius_m = 0.2", "radius_m = -0.2", "`robot.radius_m` is -0.2, which is out of range");
+    but(
+        "max_linear_mps = 0.5",
+        "max_linear_mps = 0",
+        "`robot.drive.max_linear_mps` is 0, which is out of range",
+    );
+    let step = format!("{patrol}[physics]\nstep_s = 0.3\n");
+    one(&step, "`physics.step_s` is 0.3, which is out of range");
+    // A course, a standing time and a path that are right without the rest.
+    let grid = TWO_BLOCKS.replacen("dwell = 7", "dwell = 0\nstood = 3", 1).replacen(
+        "map = \"\"\"",
+        "map = \"\"\"\n?",
+        1,
+    );
+    let expected = ["the rows of the map are not equally long", "`block.dwell` is 0, which is out of range"];
+    assert_eq!(firsts(&grid), expected);
+}
+
+#[test]
+fn a_flood_of_wrong_values_is_counted() {
+    let walls = "[[wall]]\nmin_m = [1.0, 1.0]\nmax_m = [0.0, 0.0]\n".repeat(20_000);
+    let messages = messages(&room(&format!("{walls}[[robot]]\ncolour = 1\n")));
+    assert_eq!(messages.len(), 21);
+    // The robot has one key too many and lacks five.
+    assert_eq!(messages[20], format!("world.toml: and {} more errors", 20_000 + 6 - 20));
+}
+
+/// The lines of a world that hold numbers which are wrong if they are as large as this, each with what comes
+/// before its value.
+fn numbers(text: &str) -> Vec<(usize, &str)> {
+    let limited = [
+        "_m = ",
+        "_s = ",
+        "_mps = ",
+        "_degps = ",
+        "_mps2 = ",
+        "_degps2 = ",
+        "_hz = ",
+        "_deg = ",
+        "_kg = ",
+        "beams = ",
+        "friction = ",
+        "sensor_radius = ",
+        "dwell = ",
+    ];
+    let lines = text.lines().enumerate().filter_map(|(line, text)| {
+        let key = limited.iter().find(|key| text.contains(*key) && !text.starts_with(['#', ' ']))?;
+        let at = text.find(key)? + key.len();
+        let is_alone = text[at..].trim_end().bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+        is_alone.then_some((line, &text[..at]))
+    });
+    lines.collect()
+}
+
+proptest! {
+    #[test]
+    fn every_unknown_key_is_told_with_its_line(
+        (text, places) in prop::sample::select(vec![HOUSE, FOUR_ROOMS, TWO_BLOCKS]).prop_flat_map(|text| {
+            let headers = text.lines().enumerate().filter(|(_, line)| line.starts_with('['));
+            let headers: Vec<usize> = headers.map(|(i, _)| i).collect();
+            let most = headers.len().min(20);
+            (Just(text), prop::sample::subsequence(headers, 0..=most))
+        })
+    ) {
+        let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        for (more, place) in places.iter().enumerate() {
+            lines.insert(place + more + 1, format!("not_known_{more} = [1, {{ a = 2 }}]"));
+        }
+        let messages = messages(&lines.join("\n"));
+        prop_assert_eq!(messages.len(), places.len(), "{}", messages.join("\n"));
+        for (more, (message, place)) in messages.iter().zip(&places).enumerate() {
+            let what = format!("unknown key `not_known_{more}`\n");
+            let line = format!("world.toml:{}:1\n", place + more + 2);
+            prop_assert!(message.starts_with(&what) && message.contains(&line), "{message}");
+        }
+    }
+
+    #[test]
+    fn every_wrong_number_is_told_with_its_line(
+        (text, places) in prop::sample::select(vec![HOUSE, YARD, FOUR_ROOMS, TWO_BLOCKS]).prop_flat_map(|text| {
+            let numbers = numbers(text);
+            let most = numbers.len().min(20);
+            (Just(text), prop::sample::subsequence(numbers, 0..=most))
+        })
+    ) {
+        let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        for (place, key) in &places {
+            lines[*place] = format!("{key}4000000000");
+        }
+        let messages = messages(&lines.join("\n"));
+        prop_assert_eq!(messages.len(), places.len(), "{}", messages.join("\n"));
+        for (message, (place, key)) in messages.iter().zip(&places) {
+            let line = format!("world.toml:{}:{}\n", place + 1, key.len() + 1);
+            prop_assert!(message.contains("which is out of range") && message.contains(&line), "{message}");
+        }
+    }
+
+    /// A value of any type in the place of any other.
+    #[test]
+    fn no_type_makes_it_panic(
+        text in prop::sample::select(vec![HOUSE, FOUR_ROOMS, TWO_BLOCKS]),
+        place: prop::sample::Index,
+        value in prop::sample::select(vec![
+            "true", "-1", "1e400", "99999999999999999999", "0xff", "nan", "\"\"", "[]", "[1.0]", "[[]]", "{}",
+            "{ a = 1 }", "[{}]", "1979-05-27",
+        ]),
+    ) {
+        let places: Vec<usize> = text.match_indices(" = ").map(|(at, _)| at + 3).collect();
+        let at = places[place.index(places.len())];
+        let end = at + text[at..].find('\n').unwrap();
+        for message in messages(&format!("{}{value}{}", &text[..at], &text[end..])) {
+            prop_assert!(message.contains("world.toml"), "{message}");
+        }
+    }
+}

@@ -1,0 +1,177 @@
+use super::*;
+use interfaces::TrueChange;
+use proptest::prelude::*;
+
+/// The truth from outside: walls, and where the blocks are now.
+fn blocked(world: &GridWorld) -> Vec<bool> {
+    let mut blocked = world.spec().walls.clone();
+    for (_, cell) in world.blocks() {
+        *blocked.get_mut(cell).unwrap() = true;
+    }
+    blocked.cells().to_vec()
+}
+
+/// The indices of the cells that changed in the last step.
+fn changed(world: &GridWorld) -> Vec<usize> {
+    let truth = world.truth();
+    let index = |change: &TrueChange| {
+        let (cell, state) = (change.cell, truth.frame().index(change.cell).map(|index| truth.state(index)));
+        assert_eq!((Some(change.after), change.time), (state, truth.elapsed()));
+        assert_ne!(change.before, change.after);
+        truth.frame().index(cell).unwrap()
+    };
+    truth.changes().iter().map(index).collect()
+}
+
+fn can_be_seen(world: &GridWorld) -> String {
+    let frame = world.truth().frame();
+    let row = |y: usize| {
+        let cells = y * frame.width()..(y + 1) * frame.width();
+        cells.map(|index| if world.truth().can_be_seen(index) { 'o' } else { '-' }).collect::<String>()
+    };
+    (0..frame.height()).rev().map(|y| row(y) + "\n").collect()
+}
+
+#[test]
+fn free_cells_and_the_sides_of_blocked_ones_can_be_seen() {
+    let drawing = "########\n#R....##\n#....###\n########\n#..#...#\n########";
+    let mut world = GridWorld::new(&spec(drawing, &block("b", 1, "back-and-forth", "[[3, 3], [4, 3]]")), 0);
+    insta::assert_snapshot!(can_be_seen(&world), @r"
+    -ooooo--
+    ooooooo-
+    oooooo--
+    -oo-o---
+    --------
+    --------
+    ");
+    // The wall on the right of the block has lost its last free neighbour, and the block's old cell
+    // is free.
+    world.act(&Step::Stay);
+    insta::assert_snapshot!(can_be_seen(&world), @r"
+    -ooooo--
+    ooooooo-
+    oooooo--
+    -ooo----
+    --------
+    --------
+    ");
+}
+
+#[test]
+fn what_a_block_shuts_in_can_still_be_seen() {
+    let drawing = "#####\n#R.##\n#.###\n#.###\n#####";
+    let spec = spec(drawing, &block("b", 5, "back-and-forth", "[[1, 2], [1, 1]]"));
+    let world = GridWorld::new(&spec, 0);
+    insta::assert_snapshot!(can_be_seen(&world), @r"
+    -oo--
+    oooo-
+    -oo--
+    ooo--
+    -o---
+    ");
+}
+
+#[test]
+fn a_block_behind_another_cannot_be_seen() {
+    let blocks = block("front", 5, "back-and-forth", "[[3, 1], [2, 1]]")
+        + &block("back", 5, "back-and-forth", "[[4, 1], [3, 1]]");
+    let world = GridWorld::new(&spec("######\n#R...#\n######", &blocks), 0);
+    insta::assert_snapshot!(can_be_seen(&world), @r"
+    -oo---
+    oooo--
+    -oo---
+    ");
+}
+
+#[test]
+fn a_cell_that_one_block_leaves_and_another_enters_has_not_changed() {
+    let ahead = block("ahead", 2, "loop", "[[1, 0], [2, 0], [2, 1], [1, 1], [0, 1], [0, 0]]");
+    let behind = block("behind", 2, "loop", "[[0, 0], [1, 0], [2, 0], [2, 1], [1, 1], [0, 1]]");
+    let mut world = GridWorld::new(
+        &spec("...\n...\n...\n..R", &(ahead + &behind).replace(", 0]", ", 2]").replace(", 1]", ", 3]")),
+        0,
+    );
+    world.act(&Step::Stay);
+    assert!(world.truth().changes().is_empty());
+    world.act(&Step::Stay);
+    let frame = *world.truth().frame();
+    let place = |x, y| frame.index(Cell::new(x, y)).unwrap();
+    let mut changes = changed(&world);
+    changes.sort_unstable();
+    assert_eq!(changes, [place(0, 2), place(2, 2)]);
+    assert_eq!(world.truth().block_events(place(1, 2)), 0);
+    assert_eq!(world.truth().block_events(place(2, 2)), 1);
+    assert_eq!(world.truth().free_events(place(0, 2)), 1);
+    assert_eq!(world.truth().blocked_time(place(0, 2)), 2.0);
+    assert_eq!(world.truth().blocked_time(place(1, 2)), 2.0);
+    assert_eq!(world.truth().cycle_rate(place(2, 2)), 0.5);
+}
+
+#[test]
+fn things_are_the_cells_of_paths() {
+    let blocks = block("a", 1, "back-and-forth", "[[2, 2], [0, 2]]")
+        + &block("b", 1, "loop", "[[0, 1], [0, 2], [1, 2], [1, 1]]");
+    let world = GridWorld::new(&spec("...\n...\n..R", &blocks), 0);
+    let truth = world.truth();
+    assert_eq!(*truth.moving_things(), [vec![6, 7, 8], vec![3, 4, 6, 7]]);
+    assert_eq!(*truth.swept(), [3, 4, 6, 7, 8]);
+    assert_eq!((0..9).filter(|&index| truth.is_swept(index)).collect::<Vec<_>>(), *truth.swept());
+    assert_eq!((truth.elapsed(), truth.cycle_rate(6)), (0.0, 0.0));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// Every figure is what one counts who looks at the world after every step.
+    #[test]
+    fn counts_are_those_of_a_recount(seed in 0..10_000_u64, chance in 0.2..1.3_f64, narrow: bool) {
+        // In a narrow map blocks and robot are in each other's way.
+        let side = if narrow { [9, 10] } else { [15, 25] };
+        let settings = GenerateSettings { width: side, height: side, dwell: [1, 8], ..GenerateSettings::default() };
+        let mut spec = GridSpec::generate(&settings, seed).with_probabilities(chance, chance);
+        if narrow {
+            // Every block once more the other way: they meet.
+            let mut more = spec.blocks.to_vec();
+            more.iter_mut().for_each(|block| {
+                block.path.reverse();
+                block.name += " again";
+            });
+            spec.blocks.extend(more);
+        }
+        let mut world = GridWorld::new(&spec, seed);
+        let cells = spec.frame().len();
+        let (mut before, mut time) = (blocked(&world), 0);
+        let (mut block_events, mut free_events) = (vec![0; cells], vec![0; cells]);
+        let mut blocked_time = vec![0.0; cells];
+        for step in way(seed).take(300) {
+            world.act(&step);
+            let now = blocked(&world);
+            time += 1;
+            let mut changes = Vec::new();
+            for index in 0..cells {
+                blocked_time[index] += f64::from(u8::from(before[index]));
+                match (before[index], now[index]) {
+                    (false, true) => block_events[index] += 1,
+                    (true, false) => free_events[index] += 1,
+                    _ => continue,
+                }
+                changes.push(index);
+            }
+            let truth = world.truth();
+            let mut told = changed(&world);
+            told.sort_unstable();
+            prop_assert_eq!(told, changes);
+            prop_assert!((0..cells).all(|index| truth.is_blocked(index) == now[index]));
+            prop_assert!(!now[spec.frame().index(world.robot()).unwrap()]);
+            before = now;
+        }
+        let truth = world.truth();
+        for index in 0..cells {
+            prop_assert_eq!(truth.block_events(index), block_events[index]);
+            prop_assert_eq!(truth.free_events(index), free_events[index]);
+            prop_assert_eq!(truth.blocked_time(index), blocked_time[index]);
+            prop_assert_eq!(truth.cycle_rate(index), f64::from(block_events[index]) / f64::from(time));
+            prop_assert!(block_events[index] == 0 || truth.is_swept(index));
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Worlds written as text, run by the crate `sim`.
+mod grid;
+mod physics;

@@ -1,0 +1,90 @@
+use super::*;
+use nalgebra::Point2;
+
+const AHEAD: Twist = Twist { linear_mps: 9.0, angular_radps: 0.0 };
+
+/// How deep the driven robot is in a wall, m.
+fn depth_m(world: &PhysicsWorld) -> f64 {
+    let at = Point2::from(world.true_pose().translation.vector);
+    let gap = world.spec().walls.iter().map(|wall| wall.distance_m(&at)).fold(f64::INFINITY, f64::min);
+    world.spec().driven().radius_m - gap
+}
+
+#[test]
+fn driving_into_a_wall_is_one_contact_and_no_tunnel() {
+    for heading in ["0.0", "20.0", "45.0", "200.0", "270.0"] {
+        let spec = four_rooms_but(&[("heading_deg = 0.0", &format!("heading_deg = {heading}"))], "");
+        let mut world = PhysicsWorld::new(&spec, 0);
+        let mut deepest_m = f64::NEG_INFINITY;
+        drive(&mut world, AHEAD, 12.0, |world| deepest_m = deepest_m.max(depth_m(world)));
+        assert!(deepest_m > -0.002, "never reached a wall: {deepest_m} m at heading {heading}");
+        assert!(deepest_m < 0.001, "{deepest_m} m deep at heading {heading}");
+        // One wall, or two where it slid along the first into the second.
+        assert!((1..=2).contains(&world.contacts().len()), "{:?}", world.contacts());
+        assert!(world.contacts().iter().all(|contact| contact.moving));
+        assert!(matches!(world.contacts()[0].with, Body::Wall(_)));
+    }
+}
+
+#[test]
+fn a_contact_counts_again_only_after_parting() {
+    let mut world =
+        PhysicsWorld::new(&four_rooms_but(&[("heading_deg = 0.0", "heading_deg = 180.0")], ""), 0);
+    drive(&mut world, AHEAD, 5.0, |_| ());
+    assert_eq!(world.contacts().len(), 1);
+    drive(&mut world, Twist { linear_mps: -0.5, angular_radps: 0.0 }, 1.0, |_| ());
+    drive(&mut world, AHEAD, 3.0, |_| ());
+    assert_eq!(world.contacts().len(), 2);
+    assert_eq!(world.contacts()[0].with, world.contacts()[1].with);
+}
+
+#[test]
+fn bounds_hold_at_every_reading_whatever_the_command() {
+    let mut world = PhysicsWorld::new(&four_rooms(), 0);
+    let limits = world.spec().driven().drive;
+    let inf = f64::INFINITY;
+    let commands = [(9.0, 0.0), (-9.0, 9.0), (inf, -inf), (f64::NAN, 1.0), (0.3, -9.0), (0.0, f64::NAN)];
+    let mut before = world.sense().twist;
+    for (linear_mps, angular_radps) in commands {
+        drive(&mut world, Twist { linear_mps, angular_radps }, 1.2, |world| {
+            let now = world.robots().next().unwrap().twist;
+            let slack = 1e-4;
+            assert!(now.linear_mps.abs() <= limits.max_linear_mps + slack);
+            assert!(now.angular_radps.abs() <= limits.max_angular_radps + slack);
+            let gain = (now.linear_mps - before.linear_mps).abs() / 0.1;
+            assert!(gain <= limits.max_linear_acceleration_mps2 + 0.01, "{gain}");
+            let spin = (now.angular_radps - before.angular_radps).abs() / 0.1;
+            assert!(spin <= limits.max_angular_acceleration_radps2 + 0.01, "{spin}");
+            before = now;
+        });
+    }
+    assert_eq!(world.contacts(), []);
+    // The last command was not a number: the robot stands.
+    assert_eq!(before, Twist::STOP);
+}
+
+#[test]
+fn a_circle_is_a_circle() {
+    let mut world = PhysicsWorld::new(&four_rooms(), 0);
+    let twist = Twist { linear_mps: 0.5, angular_radps: 0.5 };
+    // Up to speed first; then once around.
+    drive(&mut world, twist, 1.0, |_| ());
+    let start = *world.true_pose();
+    let middle = start * Point2::new(0.0, 1.0);
+    let turn_s = std::f64::consts::TAU / 0.5;
+    drive(&mut world, twist, turn_s, |world| {
+        let radius_m: f64 = (middle.coords - world.true_pose().translation.vector).norm();
+        assert!((radius_m - 1.0).abs() < 5e-4, "{radius_m}");
+    });
+}
+
+#[test]
+fn being_run_into_is_no_collision_of_ones_own() {
+    // A dummy that sees no farther than its own skin.
+    let blind =
+        [("range_max_m = 5.0", "range_max_m = 0.15"), ("pose_m = [2.0, 2.0]", "pose_m = [8.5, 11.5]")];
+    let mut world = PhysicsWorld::new(&four_rooms_but(&blind, ""), 0);
+    drive(&mut world, Twist::STOP, 6.0, |world| assert!(bodies_apart_m(world) > -0.001));
+    assert!(!world.contacts().is_empty());
+    assert!(world.contacts().iter().all(|contact| contact.with == Body::Robot(1) && !contact.moving));
+}

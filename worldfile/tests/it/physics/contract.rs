@@ -1,0 +1,128 @@
+use super::*;
+use interfaces::LaserReading;
+
+fn run(spec: &WorldSpec, seed: u64, steps: usize) -> Vec<LaserReading> {
+    let mut world = PhysicsWorld::new(spec, seed);
+    let mut readings = vec![world.sense()];
+    for step in 0..steps {
+        let angular_radps = libm::sin(step as f64 * 0.05);
+        world.act(&Twist { linear_mps: 0.4, angular_radps });
+        readings.push(world.sense());
+    }
+    readings
+}
+
+fn noisy() -> WorldSpec {
+    let odometry = "[robot.odometry]\ndistance_noise_m = 0.01\nturn_noise_deg = 1.0\n\n[robot.laser]";
+    four_rooms_but(&[("noise_std_m = 0.0 ", "noise_std_m = 0.01 "), ("[robot.laser]", odometry)], "")
+}
+
+#[test]
+fn time_goes_forward_by_the_scan_period() {
+    for (step, reading) in run(&four_rooms(), 0, 300).iter().enumerate() {
+        assert!((reading.time_s - step as f64 * 0.1).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn every_scan_is_whole_and_makes_sense() {
+    let spec = noisy();
+    for reading in run(&spec, 3, 100) {
+        assert_eq!(reading.scan.check(), Ok(()));
+        assert_eq!(reading.scan.ranges_m.len(), spec.driven().laser.beams);
+        assert!(reading.scan.is_full_turn());
+        let max_m = spec.driven().laser.range_max_m as f32;
+        let sensible = |range: &f32| (0.0..=max_m).contains(range) || *range == f32::INFINITY;
+        assert!(reading.scan.ranges_m.iter().all(sensible));
+    }
+}
+
+#[test]
+fn looking_twice_shows_the_same_and_changes_nothing() {
+    let spec = noisy();
+    let (mut one, mut two) = (PhysicsWorld::new(&spec, 5), PhysicsWorld::new(&spec, 5));
+    for _ in 0..20 {
+        let first = one.sense();
+        assert_eq!(first, one.sense());
+        assert_eq!(first, two.sense());
+        one.act(&Twist { linear_mps: 0.3, angular_radps: 0.2 });
+        two.act(&Twist { linear_mps: 0.3, angular_radps: 0.2 });
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_and_another_does_not() {
+    let spec = noisy();
+    let first = run(&spec, 1, 200);
+    assert_eq!(first, run(&spec, 1, 200));
+    let other = run(&spec, 2, 200);
+    assert_ne!(first[0].scan, other[0].scan);
+    assert_ne!(first[200].pose, other[200].pose);
+}
+
+#[test]
+fn without_noise_the_seed_does_not_matter() {
+    assert_eq!(run(&four_rooms(), 1, 50), run(&four_rooms(), 2, 50));
+}
+
+#[test]
+fn noise_has_its_standard_deviation() {
+    let (exact, noisy) = (run(&four_rooms(), 1, 0), run(&noisy(), 1, 0));
+    let pairs = exact[0].scan.ranges_m.iter().zip(&noisy[0].scan.ranges_m);
+    let seen = pairs.filter(|(a, b)| a.is_finite() && b.is_finite());
+    let errors: Vec<f64> = seen.map(|(a, b)| f64::from(b - a)).collect();
+    assert!(errors.len() > 600);
+    let std_m = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+    assert!((std_m - 0.01).abs() < 0.001, "{std_m}");
+}
+
+#[test]
+fn exact_odometry_is_the_truth_and_drifting_odometry_drifts() {
+    let twist = Twist { linear_mps: 0.5, angular_radps: 0.5 };
+    let mut exact = PhysicsWorld::new(&four_rooms(), 0);
+    drive(&mut exact, twist, 10.0, |_| ());
+    assert_eq!(exact.sense().pose, *exact.true_pose());
+
+    let gains = "[robot.odometry]\ndistance_gain = 0.1\nturn_gain = 0.05\n\n[robot.laser]";
+    let mut drifting = PhysicsWorld::new(&four_rooms_but(&[("[robot.laser]", gains)], ""), 0);
+    drive(&mut drifting, twist, 10.0, |_| ());
+    let reading = drifting.sense();
+    assert_eq!(drifting.true_pose(), exact.true_pose());
+    assert!((reading.twist.linear_mps - 0.55).abs() < 1e-5);
+    // Both started at heading 0, and were up to speed within the first step.
+    let felt_rad = interfaces::heading_rad(&reading.pose);
+    assert!(interfaces::wrap_rad(felt_rad - 1.05 * 0.5 * 10.0).abs() < 1e-3, "{felt_rad}");
+}
+
+#[test]
+fn the_three_worlds_that_ship_can_be_run() {
+    for (name, text, beams) in [
+        ("four_rooms", FOUR_ROOMS, 720),
+        ("toy_on_the_floor", include_str!("../../../../worlds/toy_on_the_floor.toml"), 720),
+        ("turned_house", include_str!("../../../../worlds/turned_house.toml"), 720),
+    ] {
+        let spec = parse(text);
+        assert!(!spec.name.is_empty() && !spec.description.is_empty(), "{name}");
+        let readings = run(&spec, 0, 20);
+        assert_eq!(readings[20].scan.ranges_m.len(), beams);
+        // The laser covers the room: what it cannot see lies behind doors.
+        let seen = readings[20].scan.ranges_m.iter().filter(|range| range.is_finite()).count();
+        assert!(seen > beams * 9 / 10, "{name}: {seen}");
+    }
+}
+
+/// A minute of the noisy four rooms, bit by bit. A change of this number is a change of the
+/// world: it must be meant.
+#[test]
+fn golden_hash() {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64; // FNV-1a
+    let mut eat = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
+    for reading in run(&noisy(), 42, 600) {
+        let at = reading.pose.translation.vector;
+        for value in [reading.time_s, at.x, at.y, reading.pose.rotation.im] {
+            eat(value.to_bits());
+        }
+        reading.scan.ranges_m.iter().for_each(|range| eat(u64::from(range.to_bits())));
+    }
+    assert_eq!(hash, 10_744_826_005_821_355_770);
+}

@@ -1,0 +1,193 @@
+//! Drives of every kind, and what they are told.
+
+use super::fleet::{house, robot};
+use super::*;
+use interfaces::{LaserReading, pose, wrap_rad};
+use nalgebra::Isometry2;
+
+/// A controller that always says the same.
+struct Say(Command);
+
+impl Controller for Say {
+    fn drive(&mut self, _: &RobotView<'_>, _: &LaserReading) -> Option<Command> {
+        Some(self.0)
+    }
+}
+
+/// A robot at [3, 3] with a drive of some kind, alone.
+fn alone(drive: &str) -> Fleet {
+    let robot = robot("one", [3.0, 3.0], 0.0, "kind = \"driven\"");
+    let robot = robot.replace("[robot.drive]", &format!("[robot.drive]\n{drive}"));
+    Fleet::new(&house(&[robot], ""), 0)
+}
+
+const KINDS: [&str; 3] =
+    ["kind = \"diff\"", "kind = \"omni\"\nmax_left_mps = 0.3", "kind = \"car\"\nwheelbase_m = 0.4"];
+
+fn now(fleet: &Fleet) -> (Isometry2<f64>, Velocity) {
+    let robot = fleet.robots().next().unwrap();
+    let Twist { linear_mps, angular_radps } = robot.twist;
+    (robot.pose, Velocity { forward_mps: linear_mps, left_mps: robot.left_mps, turn_radps: angular_radps })
+}
+
+#[test]
+fn bounds_hold_under_every_command_of_every_drive() {
+    let (inf, nan) = (f64::INFINITY, f64::NAN);
+    let numbers = [
+        (0.4, 0.1, 1.0),
+        (-0.4, -0.9, 3.0),
+        (inf, inf, -inf),
+        (nan, 0.0, 0.0),
+        (0.2, 0.0, -9.0),
+        (0.0, 0.0, 0.0),
+    ];
+    for drive in KINDS {
+        let mut fleet = alone(drive);
+        let limits = fleet.spec().robots[0].drive;
+        let (mut before, mut sideways_mps) = (Velocity::STOP, 0.0_f64);
+        for (index, (forward, left, turn)) in numbers.into_iter().cycle().take(36).enumerate() {
+            let command = match index % 3 {
+                0 => Command::Velocity(Velocity { forward_mps: forward, left_mps: left, turn_radps: turn }),
+                1 => Command::Acceleration(Acceleration {
+                    forward_mps2: forward,
+                    left_mps2: left,
+                    turn_radps2: turn,
+                }),
+                _ => Command::GoTo(pose(3.0 + forward, 3.0 + left, turn)),
+            };
+            for _ in 0..20 {
+                fleet.step(&mut Say(command));
+                let (_, now) = now(&fleet);
+                let case = format!("{drive} under {command:?}: {before:?}, {now:?}");
+                let slack = 1e-3;
+                assert!(now.forward_mps.abs() <= limits.max_linear_mps + slack, "{case}");
+                assert!(now.turn_radps.abs() <= limits.max_angular_radps + slack, "{case}");
+                assert!(now.left_mps.abs() <= 0.3 + slack, "{case}");
+                let gain = |a: f64, b: f64| (a - b).abs() / fleet.spec().step_s;
+                assert!(
+                    gain(now.forward_mps, before.forward_mps) <= limits.max_linear_acceleration_mps2 + 0.01,
+                    "{case}"
+                );
+                assert!(
+                    gain(now.left_mps, before.left_mps) <= limits.max_linear_acceleration_mps2 + 0.01,
+                    "{case}"
+                );
+                assert!(
+                    gain(now.turn_radps, before.turn_radps) <= limits.max_angular_acceleration_radps2 + 0.01,
+                    "{case}"
+                );
+                if drive.contains("car") {
+                    let tightest_radps = limits.max_curvature_radpm() * now.forward_mps.abs();
+                    assert!(now.turn_radps.abs() <= tightest_radps + slack, "{case}");
+                }
+                sideways_mps = sideways_mps.max(now.left_mps.abs());
+                before = now;
+            }
+        }
+        assert_eq!(fleet.contacts(), []);
+        assert_eq!(sideways_mps > 0.1, drive.contains("omni"));
+    }
+}
+
+#[test]
+fn accelerating_is_what_it_says() {
+    let mut fleet = alone(KINDS[0]);
+    let gain = Acceleration { forward_mps2: 0.2, turn_radps2: 0.1, ..Acceleration::default() };
+    fleet.run_until(2.0, &mut Say(Command::Acceleration(gain)));
+    let (_, velocity) = now(&fleet);
+    assert!((velocity.forward_mps - 0.4).abs() < 1e-3, "{velocity:?}");
+    assert!((velocity.turn_radps - 0.2).abs() < 1e-3, "{velocity:?}");
+}
+
+#[test]
+fn every_drive_gets_where_it_is_told_to_go() {
+    for drive in KINDS {
+        for (x, y, heading) in
+            [(4.5, 3.2, 0.5), (1.5, 2.0, 2.0), (3.0, 4.5, -1.0), (2.9, 3.1, 0.0), (3.0, 3.0, 3.0)]
+        {
+            let mut fleet = alone(drive);
+            let goal = pose(x, y, heading);
+            fleet.run_until(40.0, &mut Say(Command::GoTo(goal)));
+            let (at, velocity) = now(&fleet);
+            let off_m = (at.translation.vector - goal.translation.vector).norm();
+            let off_rad = wrap_rad(interfaces::heading_rad(&at) - heading).abs();
+            let (near_m, near_rad) = if drive.contains("car") { (0.05, 4.0) } else { (0.0101, 0.0101) };
+            assert!(
+                off_m <= near_m && off_rad <= near_rad,
+                "{drive} to [{x}, {y}]: {off_m} m, {off_rad} rad off"
+            );
+            assert!(velocity.forward_mps.abs() < 0.01, "{drive}: {velocity:?}");
+        }
+    }
+}
+
+#[test]
+fn a_car_drives_the_circle_of_its_wheels() {
+    let mut fleet = alone("kind = \"car\"\nwheelbase_m = 0.4\nmax_steer_deg = 30.0");
+    let tight = Command::Velocity(Velocity { forward_mps: 0.4, left_mps: 0.0, turn_radps: 9.0 });
+    fleet.run_until(2.0, &mut Say(tight));
+    let radius_m = 0.4 / 30.0_f64.to_radians().tan();
+    let middle = now(&fleet).0 * nalgebra::Point2::new(0.0, radius_m);
+    while fleet.time_s() < 20.0 {
+        fleet.step(&mut Say(tight));
+        let off_m: f64 = (now(&fleet).0.translation.vector - middle.coords).norm() - radius_m;
+        assert!(off_m.abs() < 2e-3, "{off_m}");
+    }
+    // It cannot turn in place.
+    let mut fleet = alone("kind = \"car\"\nwheelbase_m = 0.4");
+    fleet.run_until(2.0, &mut Say(Command::Velocity(Velocity { turn_radps: 1.0, ..Velocity::STOP })));
+    assert!((now(&fleet).0.rotation.angle()).abs() < 1e-9);
+}
+
+#[test]
+fn an_omni_drive_goes_sideways() {
+    let mut fleet = alone(KINDS[1]);
+    fleet.run_until(4.0, &mut Say(Command::Velocity(Velocity { left_mps: 0.3, ..Velocity::STOP })));
+    let (at, _) = now(&fleet);
+    assert!((at.translation.x - 3.0).abs() < 1e-4 && at.translation.y > 4.0, "{at:?}");
+}
+
+#[test]
+fn lasers_look_each_at_its_rate_and_from_its_place() {
+    let laser = "[[robot.laser]]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\n";
+    let more = "[[robot.laser]]\nbeams = 4\nrange_max_m = 10.0\nrate_hz = 20.0\nmount_m = [0.1, 0.0]\nmount_deg = 90.0\n\
+                [[robot.laser]]\nbeams = 50\nrange_max_m = 10.0\nrate_hz = 2.0\nnoise_std_m = 0.02\ndropout = 0.3\n";
+    let with = |lasers: &str| {
+        let text = robot("one", [3.0, 3.0], 0.0, "kind = \"driven\"");
+        let (start, rest) = text.split_once("[robot.laser]").unwrap();
+        let (_, end) = rest.split_once("[robot.behaviour]").unwrap();
+        house(&[format!("{start}{lasers}[robot.behaviour]{end}")], "")
+    };
+    let mut fleet = Fleet::new(&with(&format!("{laser}{more}")), 7);
+    let mut times: Vec<Vec<f64>> = vec![Vec::new(); 3];
+    for _ in 0..40 {
+        fleet.step(&mut Say(Command::STOP));
+        for (times, reading) in times.iter_mut().zip(fleet.robots().next().unwrap().lasers()) {
+            let time_s = reading.unwrap().time_s;
+            if times.last() != Some(&time_s) {
+                times.push(time_s);
+            }
+        }
+    }
+    assert_eq!(times.iter().map(Vec::len).collect::<Vec<_>>(), [20, 40, 4]);
+    let robot = fleet.robots().next().unwrap();
+    let readings: Vec<&LaserReading> = robot.lasers().flatten().collect();
+    // Of four beams over a full turn the third looks straight ahead: to the left of the robot.
+    let ranges_m = &readings[1].scan.ranges_m;
+    assert!(((readings[1].pose * readings[1].mount).translation.x - 3.1).abs() < 1e-6);
+    let main = &readings[0].scan.ranges_m;
+    assert!((main[45 + 22] - ranges_m[2]).abs() < 0.2, "{main:?} {ranges_m:?}");
+    let missing = readings[2].scan.ranges_m.iter().filter(|range_m| range_m.is_nan()).count();
+    assert!((5..30).contains(&missing), "{missing}");
+    // The other lasers change nothing that the first one sees.
+    let mut alone = Fleet::new(&with(laser), 7);
+    alone.run_until(2.0, &mut Say(Command::STOP));
+    assert_eq!(alone.robots().next().unwrap().reading, robot.reading);
+    // And a snapshot knows them all.
+    let snapshot = fleet.snapshot();
+    let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();
+    for fleet in [&mut fleet, &mut again] {
+        fleet.run_until(5.0, &mut Say(Command::GoTo(pose(4.0, 3.0, 1.0))));
+    }
+    assert_eq!(again.snapshot(), fleet.snapshot());
+}

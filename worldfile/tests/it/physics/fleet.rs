@@ -1,0 +1,313 @@
+//! Many robots, each with a behaviour of its own.
+
+use super::*;
+use interfaces::LaserReading;
+use nalgebra::{Isometry2, Point2};
+
+const ROBOT: &str = "radius_m = 0.2\n[robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 120.0\n\
+    max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\
+    [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\nnoise_std_m = 0.005\n";
+
+/// A robot of the file.
+pub(super) fn robot(name: &str, pose_m: [f64; 2], heading_deg: f64, behaviour: &str) -> String {
+    let place = format!("pose_m = {pose_m:?}\nheading_deg = {heading_deg:?}\n");
+    format!("[[robot]]\nname = \"{name}\"\n{place}{ROBOT}[robot.behaviour]\n{behaviour}\n")
+}
+
+/// The house of the four rooms with these robots and no others.
+pub(super) fn house(robots: &[String], more: &str) -> FleetSpec {
+    let rooms = &FOUR_ROOMS[..FOUR_ROOMS.find("[[robot]]").unwrap()];
+    let text = format!("{rooms}\n{}\n{more}", robots.concat());
+    worldfile::physics::parse_fleet("test.toml", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Wandering robots in all rooms.
+pub(super) fn crowd() -> FleetSpec {
+    let places = (0..36).map(|i| [1.0 + 2.0 * f64::from(i % 6), 1.0 + 2.0 * f64::from(i / 6)]);
+    let wander = "kind = \"wander\"\nspeed_mps = 0.4";
+    let robots = places
+        .enumerate()
+        .map(|(i, at)| robot(&format!("r{i}"), at, f64::from((40 * i as u32) % 360), wander));
+    house(&robots.collect::<Vec<_>>(), "")
+}
+
+/// No robot obeys commands.
+pub(super) fn nobody(robot: &RobotView<'_>, _: &LaserReading) -> Twist {
+    panic!("robot {} is not driven", robot.name)
+}
+
+fn pose(fleet: &Fleet, robot: usize) -> Isometry2<f64> {
+    fleet.robots().nth(robot).unwrap().pose
+}
+
+fn at(fleet: &Fleet, robot: usize) -> Point2<f64> {
+    pose(fleet, robot).translation.vector.into()
+}
+
+/// Every bit of where the robots are and what they see.
+pub(super) fn hash(fleet: &Fleet) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64; // FNV-1a
+    let mut eat = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
+    for robot in fleet.robots() {
+        let at = robot.pose.translation.vector;
+        [at.x, at.y, robot.pose.rotation.im].iter().for_each(|value| eat(value.to_bits()));
+        let ranges_m = robot.reading.map(|reading| &reading.scan.ranges_m);
+        ranges_m.into_iter().flatten().for_each(|range_m| eat(u64::from(range_m.to_bits())));
+    }
+    hash
+}
+
+/// Half a minute of a crowd, bit by bit. A change of this number is a change of the robots, the
+/// rays or the physics: it must be meant.
+#[test]
+fn golden_hash_on_any_number_of_threads() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut fleet = Fleet::new(&crowd(), 3);
+        fleet.set_parallel_lasers(threads > 1);
+        pool.install(|| fleet.run_until(30.0, &mut nobody));
+        hash(&fleet)
+    };
+    assert_eq!([run(1), run(2), run(3)], [1_296_816_393_682_788_571; 3]);
+}
+
+#[test]
+fn another_seed_is_another_life() {
+    let run = |seed| {
+        let mut fleet = Fleet::new(&crowd(), seed);
+        fleet.run_until(5.0, &mut nobody);
+        hash(&fleet)
+    };
+    assert_eq!(run(1), run(1));
+    assert_ne!(run(1), run(2));
+}
+
+#[test]
+fn a_crowd_keeps_moving_and_stays_apart_and_in_its_house() {
+    let spec = crowd();
+    let mut fleet = Fleet::new(&spec, 0);
+    let mut driven_m = vec![0.0; spec.robots.len()];
+    for _ in 0..60 {
+        let before: Vec<_> = (0..driven_m.len()).map(|i| at(&fleet, i)).collect();
+        fleet.run_until(fleet.time_s() + 1.0, &mut nobody);
+        for (i, before) in before.iter().enumerate() {
+            let now = at(&fleet, i);
+            driven_m[i] += (now - before).norm();
+            let wall_m = spec.walls.iter().map(|wall| wall.distance_m(&now)).fold(f64::MAX, f64::min);
+            let others = (0..i).map(|other| (at(&fleet, other) - now).norm());
+            assert!(wall_m > 0.199, "robot {i} is {wall_m} m from a wall");
+            assert!(others.fold(f64::MAX, f64::min) > 0.399, "robot {i} is in another");
+        }
+    }
+    // The way they could have gone is 24 m.
+    let mean_m = driven_m.iter().sum::<f64>() / driven_m.len() as f64;
+    assert!(mean_m > 10.0, "they mostly stand: {driven_m:?}");
+    assert!(driven_m.iter().all(|&way_m| way_m > 2.0), "{driven_m:?}");
+}
+
+#[test]
+fn alone_a_wanderer_never_touches_anything() {
+    let wander = "kind = \"wander\"\nspeed_mps = 0.5\nclearance_m = 0.2";
+    let mut fleet = Fleet::new(&house(&[robot("one", [2.0, 2.0], 0.0, wander)], ""), 5);
+    let mut rooms = [false; 4];
+    for _ in 0..20 * 600 {
+        fleet.step(&mut nobody);
+        assert_eq!(fleet.contacts(), []);
+        let at = at(&fleet, 0);
+        rooms[usize::from(at.x > 6.0) + 2 * usize::from(at.y > 6.0)] = true;
+    }
+    assert!(rooms.iter().filter(|&&was_there| was_there).count() > 1, "it never left its room");
+}
+
+#[test]
+fn a_circle_is_driven_and_standing_is_not_moving() {
+    let circle = "kind = \"circle\"\nspeed_mps = 0.4\nturn_radius_m = 1.0\ndirection = \"right\"";
+    let robots =
+        [robot("one", [3.0, 3.0], 90.0, circle), robot("two", [9.0, 9.0], 0.0, "kind = \"standing\"")];
+    let mut fleet = Fleet::new(&house(&robots, ""), 0);
+    let stands = pose(&fleet, 1);
+    fleet.run_until(2.0, &mut nobody);
+    let middle = pose(&fleet, 0) * Point2::new(0.0, -1.0);
+    for _ in 0..400 {
+        fleet.step(&mut nobody);
+        assert!(((at(&fleet, 0) - middle).norm() - 1.0).abs() < 1e-3);
+        assert_eq!(pose(&fleet, 1), stands);
+    }
+}
+
+/// The points of a way that the robot was near to, in order.
+fn visits(fleet: &mut Fleet, points: &[[f64; 2]], seconds: f64) -> Vec<usize> {
+    let mut visits = Vec::new();
+    let end_s = fleet.time_s() + seconds;
+    while fleet.time_s() < end_s {
+        fleet.step(&mut nobody);
+        let near = |point: &[f64; 2]| (at(fleet, 0) - Point2::from(*point)).norm() < 0.03;
+        visits.extend(points.iter().position(near));
+    }
+    visits.dedup();
+    visits
+}
+
+#[test]
+fn waypoints_are_visited_in_order() {
+    let points = [[3.0, 1.0], [3.0, 8.0], [1.0, 8.0]];
+    for (repeat, expected) in [
+        ("loop", &[0, 1, 2, 1, 0][..3]),
+        ("back_and_forth", &[0, 1, 2, 1, 0, 1, 2, 1, 0]),
+        ("once", &[0, 1, 2]),
+    ] {
+        // A loop back to the first point would lead through a wall.
+        let points = if repeat == "loop" { [[3.0, 1.0], [4.5, 4.5], [1.0, 4.0]] } else { points };
+        let way =
+            format!("kind = \"waypoints\"\npoints_m = {points:?}\nspeed_mps = 0.5\nrepeat = \"{repeat}\"");
+        let mut fleet = Fleet::new(&house(&[robot("one", [1.0, 1.0], 90.0, &way)], ""), 0);
+        let visits = visits(&mut fleet, &points, 120.0);
+        assert!(visits.starts_with(expected), "{repeat}: {visits:?}");
+        match repeat {
+            "loop" => {
+                assert!(visits.len() > 8 && visits.windows(2).all(|w| w[1] == (w[0] + 1) % 3), "{visits:?}")
+            }
+            "once" => assert_eq!(visits, expected),
+            _ => assert!(visits.len() > 8, "{visits:?}"),
+        }
+        assert_eq!(fleet.contacts(), []);
+    }
+}
+
+#[test]
+fn on_its_way_to_a_waypoint_a_robot_waits_for_what_is_in_its_way() {
+    let way = "kind = \"waypoints\"\npoints_m = [[4.5, 1.0]]\nspeed_mps = 0.5\nrepeat = \"once\"";
+    let toy = "[[obstacle]]\nname = \"toy\"\nmin_m = [3.0, 0.9]\nmax_m = [3.2, 1.1]\nappears_s = 0.5\ndisappears_s = 15.0\n";
+    let mut fleet = Fleet::new(&house(&[robot("one", [1.0, 1.0], 0.0, way)], toy), 0);
+    fleet.run_until(14.0, &mut nobody);
+    let waits_at = at(&fleet, 0);
+    assert!((2.3..2.8).contains(&waits_at.x), "{waits_at}");
+    fleet.run_until(25.0, &mut nobody);
+    assert!((at(&fleet, 0).x - 4.5).abs() < 0.03);
+    assert_eq!(fleet.contacts(), []);
+}
+
+#[test]
+fn several_driven_robots_ask_the_controller_at_every_scan() {
+    let driven = "kind = \"driven\"";
+    let robots = [robot("one", [2.0, 2.0], 0.0, driven), robot("two", [2.0, 4.0], 0.0, driven)];
+    let mut fleet = Fleet::new(&house(&robots, ""), 0);
+    let mut asked = Vec::new();
+    fleet.run_until(1.0, &mut |robot: &RobotView<'_>, reading: &LaserReading| {
+        asked.push((robot.index, (reading.time_s * 10.0).round() as i32));
+        Twist { linear_mps: if robot.index == 0 { 0.5 } else { -0.2 }, angular_radps: 0.0 }
+    });
+    let expected: Vec<_> = (0..10).flat_map(|time| [(0, time), (1, time)]).collect();
+    assert_eq!(asked, expected);
+    assert!(at(&fleet, 0).x > 2.3 && at(&fleet, 1).x < 1.9);
+}
+
+#[test]
+fn one_driven_robot_lives_alike_in_a_fleet_and_in_a_world() {
+    let spec = four_rooms();
+    let (mut world, mut fleet) = (PhysicsWorld::new(&spec, 1), Fleet::new(spec.fleet(), 1));
+    let wanted = |time_s: f64| Twist { linear_mps: 0.4, angular_radps: libm::sin(time_s) };
+    for _ in 0..300 {
+        let reading = world.sense();
+        let mut heard = None;
+        fleet.run_until(fleet.time_s() + 0.1, &mut |_: &RobotView<'_>, reading: &LaserReading| {
+            heard = Some(reading.clone());
+            wanted(reading.time_s)
+        });
+        assert_eq!(heard.as_ref(), Some(&reading));
+        world.act(&wanted(reading.time_s));
+    }
+    for (one, other) in world.robots().zip(fleet.robots()) {
+        assert_eq!((one.pose, one.twist, one.name), (other.pose, other.twist, other.name));
+    }
+}
+
+#[test]
+fn a_robot_against_a_wall_is_stalled_and_one_that_stands_is_not() {
+    let driven = "kind = \"driven\"";
+    let robots =
+        [robot("one", [0.5, 2.0], 180.0, driven), robot("two", [3.0, 3.0], 0.0, "kind = \"standing\"")];
+    let mut fleet = Fleet::new(&house(&robots, ""), 0);
+    let mut contacts = Vec::new();
+    while fleet.time_s() < 3.0 {
+        fleet.step(&mut |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.0 });
+        contacts.extend_from_slice(fleet.contacts());
+    }
+    let stalled: Vec<bool> = fleet.robots().map(|robot| robot.is_stalled).collect();
+    assert_eq!(stalled, [true, false]);
+    // It weighs π·0.04 kg, and was at full speed.
+    let impulse_ns = contacts[0].impulse_ns;
+    assert!((impulse_ns - 0.5 * 0.04 * std::f64::consts::PI).abs() < 1e-3, "{impulse_ns}");
+    let touched: Vec<_> =
+        contacts.iter().map(|contact| (contact.robot, contact.with, contact.moving)).collect();
+    assert_eq!(touched, [(0, Body::Wall(2), true)]);
+}
+
+#[test]
+fn a_heavy_robot_pushes_a_light_one_away() {
+    // Both go for each other.
+    let driven = "kind = \"driven\"";
+    let mass = |robot: String, mass_kg: f64| {
+        robot.replace("radius_m = 0.2", &format!("radius_m = 0.2\nmass_kg = {mass_kg:?}"))
+    };
+    for (masses_kg, pushed) in [([100.0, 1.0], 1.0), ([1.0, 100.0], -1.0)] {
+        let robots = [robot("one", [2.0, 2.0], 0.0, driven), robot("two", [3.0, 2.0], 180.0, driven)];
+        let robots: Vec<_> = robots.into_iter().zip(masses_kg).map(|(robot, kg)| mass(robot, kg)).collect();
+        let mut fleet = Fleet::new(&house(&robots, ""), 0);
+        fleet.run_until(3.0, &mut |_: &RobotView<'_>, _: &LaserReading| Twist {
+            linear_mps: 0.3,
+            angular_radps: 0.0,
+        });
+        let middle_m = (at(&fleet, 0).x + at(&fleet, 1).x) / 2.0 - 2.5;
+        assert!(middle_m * pushed > 0.1, "{middle_m}");
+    }
+}
+
+#[test]
+fn a_robot_is_set_down_where_there_is_room() {
+    let robots = [
+        robot("one", [2.0, 2.0], 0.0, "kind = \"driven\""),
+        robot("two", [4.0, 4.0], 0.0, "kind = \"standing\""),
+    ];
+    let mut fleet = Fleet::new(&house(&robots, ""), 0);
+    let mut forward = |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.0 };
+    fleet.run_until(1.0, &mut forward);
+    let before = fleet.snapshot();
+    for (robot, x, y) in
+        [(0, 4.0, 3.7), (0, 6.0, 1.0), (0, 0.1, 2.0), (0, -3.0, 2.0), (0, f64::NAN, 2.0), (2, 3.0, 3.0)]
+    {
+        assert!(fleet.teleport(robot, &interfaces::pose(x, y, 0.0)).is_err(), "{robot} to {x}, {y}");
+    }
+    assert_eq!(
+        fleet.teleport(0, &interfaces::pose(3.0, 3.0, f64::NAN)),
+        Err(TeleportError::Outside { x_m: 3.0, y_m: 3.0 })
+    );
+    assert_eq!(fleet.snapshot(), before);
+    assert_eq!(fleet.teleport(0, &interfaces::pose(9.0, 9.0, 1.0)), Ok(()));
+    fleet.run_until(1.05, &mut ());
+    let pose = pose(&fleet, 0);
+    assert!((pose.translation.vector - interfaces::pose(9.0, 9.0, 1.0).translation.vector).norm() < 1e-6);
+    assert!((interfaces::heading_rad(&pose) - 1.0).abs() < 1e-6);
+    let reading = fleet.robots().next().and_then(|robot| robot.reading).unwrap();
+    assert!((reading.pose.translation.x - 9.0).abs() < 1e-6);
+    assert_eq!(fleet.contacts(), []);
+}
+
+#[test]
+fn contacts_are_those_since_the_run_began_and_commands_are_heard_at_any_step() {
+    let driven = "kind = \"driven\"";
+    let robots =
+        [robot("one", [5.0, 2.0], 0.0, driven), robot("two", [2.0, 4.0], 0.0, "kind = \"standing\"")];
+    let mut fleet = Fleet::new(&house(&robots, ""), 0);
+    fleet.step(&mut ());
+    // Between two scans.
+    assert!(fleet.command(0, Twist { linear_mps: 0.5, angular_radps: 0.0 }));
+    fleet.step(&mut ());
+    assert!(fleet.robots().next().unwrap().twist.linear_mps > 0.01);
+    assert!(!fleet.command(1, Twist::STOP) && !fleet.command(2, Twist::STOP));
+    fleet.run_until(5.0, &mut ());
+    assert_eq!(fleet.contacts().len(), 1);
+    assert!(fleet.contacts()[0].time_s < 3.0);
+    fleet.run_until(6.0, &mut ());
+    assert_eq!(fleet.contacts(), []);
+}

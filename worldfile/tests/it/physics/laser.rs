@@ -1,0 +1,30 @@
+//! What a laser says: its limits, and other robots.
+
+use super::*;
+
+#[test]
+fn limits_follow_rep_117() {
+    let limits = "range_min_m = 2.0\nrange_max_m = 3.0";
+    let spec = four_rooms_but(&[("range_min_m = 0.0 ", ""), ("range_max_m = 10.0", limits)], "");
+    let text = spec.driven().laser;
+    assert_eq!((text.range_min_m, text.range_max_m), (2.0, 3.0));
+    let scan = PhysicsWorld::new(&spec, 0).sense().scan;
+    // At [2, 2]: walls 1.9 m to the left and 3.95 m to the right.
+    assert_eq!(scan.ranges_m[0], f32::NEG_INFINITY);
+    assert_eq!(scan.ranges_m[360], f32::INFINITY);
+    assert!((scan.ranges_m[90] - 1.9 * 2.0_f32.sqrt()).abs() < 1e-5);
+}
+
+#[test]
+fn a_robot_sees_the_other_but_not_itself() {
+    let spec = four_rooms_but(&[("pose_m = [2.0, 2.0]", "pose_m = [7.2, 10.5]")], "");
+    let mut world = PhysicsWorld::new(&spec, 0);
+    let scan = world.sense().scan;
+    // The dummy stands 1 m above, and is 0.2 m in radius.
+    assert!((scan.ranges_m[540] - 0.8).abs() < 1e-6, "{}", scan.ranges_m[540]);
+    assert!(scan.ranges_m.iter().all(|range| *range > 0.5));
+    world.act(&Twist::STOP);
+    let dummy = world.robots().nth(1).and_then(|robot| robot.reading).map(|reading| &reading.scan);
+    let down = dummy.map(|scan| scan.ranges_m[45]).unwrap();
+    assert!((down - 0.8).abs() < 1e-6, "{down}");
+}

@@ -1,0 +1,293 @@
+//! Boxes that are pushed, blocks on their paths, doors.
+
+use super::fleet::{house, robot};
+use super::*;
+use interfaces::LaserReading;
+use nalgebra::Point2;
+
+/// A heavy robot at [1, 2] that drives straight on along x, and things.
+fn yard(things: &str) -> FleetSpec {
+    let driver =
+        robot("driver", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("radius_m", "mass_kg = 20.0\nradius_m");
+    house(&[driver], things)
+}
+
+pub(super) fn pushed(name: &str, center_m: [f64; 2], mass_kg: f64, friction: f64) -> String {
+    format!(
+        "[[obstacle]]\nname = \"{name}\"\nkind = \"box\"\ncenter_m = {center_m:?}\nsize_m = [0.3, 0.3]\nmass_kg = {mass_kg:?}\nfriction = {friction:?}\n"
+    )
+}
+
+fn ahead(_: &RobotView<'_>, _: &LaserReading) -> Twist {
+    Twist { linear_mps: 0.5, angular_radps: 0.0 }
+}
+
+fn stop(_: &RobotView<'_>, _: &LaserReading) -> Twist {
+    Twist::STOP
+}
+
+fn middle(fleet: &Fleet, thing: usize) -> Point2<f64> {
+    let corners = fleet.obstacles().nth(thing).unwrap().corners;
+    nalgebra::center(&corners[0], &corners[2])
+}
+
+fn robot_at(fleet: &Fleet, robot: usize) -> Point2<f64> {
+    fleet.robots().nth(robot).unwrap().pose.translation.vector.into()
+}
+
+/// The four rooms with everything that moves, and robots that push.
+pub(super) fn busy() -> FleetSpec {
+    let robots = [[2.0, 2.0], [9.0, 3.0], [3.0, 9.0], [9.5, 9.0]].map(|at: [f64; 2]| {
+        let name = format!("r{at:?}");
+        let robot =
+            robot(&name, at, 30.0, "kind = \"driven\"").replace("radius_m", "mass_kg = 20.0\nradius_m");
+        // One of them is not round.
+        let outline = if at[0] < 9.2 {
+            "radius_m = 0.2"
+        } else {
+            "footprint_m = [[-0.3, -0.15], [0.3, -0.1], [0.3, 0.1], [-0.3, 0.15]]"
+        };
+        robot.replace("radius_m = 0.2", if at[1] > 8.0 { outline } else { "radius_m = 0.2" })
+    });
+    let mut things = String::new();
+    for (i, robot) in [[2.0, 2.0], [9.0, 3.0], [3.0, 9.0], [9.5, 9.0]].into_iter().enumerate() {
+        for (k, (dx, dy)) in [(0.6, 0.0), (0.0, 0.7), (-0.6, 0.3)].into_iter().enumerate() {
+            let at = [robot[0] + dx, robot[1] + dy];
+            things += &pushed(&format!("box {i} {k}"), at, 0.5 + k as f64, 0.1 * k as f64)
+                .replace("mass_kg", &format!("heading_deg = {}\nmass_kg", 20.0 * k as f64));
+        }
+    }
+    let block = |name: &str, size: [f64; 2], path: &str| {
+        format!(
+            "[[obstacle]]\nname = \"{name}\"\nkind = \"block\"\nsize_m = {size:?}\nheading_deg = 15.0\npath_m = {path}\nspeed_mps = 0.7\n"
+        )
+    };
+    things += &block("long", [1.6, 0.1], "[[4.5, 1.5], [4.0, 4.5]]");
+    things += &block("small", [0.2, 0.3], "[[7.0, 1.0], [11.0, 1.0], [11.0, 5.0]]");
+    for (i, (from, to)) in
+        [([6.0, 2.5], [6.0, 3.5]), ([8.5, 6.0], [9.5, 6.0]), ([2.5, 6.0], [3.5, 6.0])].iter().enumerate()
+    {
+        let kind = if i == 1 { "sliding" } else { "hinged" };
+        things += &format!(
+            "[[obstacle]]\nname = \"door {i}\"\nkind = \"{kind}_door\"\nfrom_m = {from:?}\nto_m = {to:?}\nthickness_m = 0.04\n\
+             opening = \"random\"\nclosed_s = 1.0\nopen_s = 1.5\n"
+        );
+    }
+    house(&robots, &things)
+}
+
+/// Robots that look at nothing and drive in wild curves.
+pub(super) fn reckless(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
+    let phase = reading.time_s * (0.3 + 0.1 * robot.index as f64);
+    Twist { linear_mps: 0.5 * libm::cos(phase * 0.7), angular_radps: 1.5 * libm::sin(phase) }
+}
+
+#[test]
+fn a_light_box_is_pushed_and_a_heavy_one_is_not() {
+    // The driver can push with 20 kg · 1 m/s²; the boxes rub with 0.5 · 9.81 m/s² · their mass. What
+    // they are hit with at 0.5 m/s moves the second one 0.06 m.
+    for (mass_kg, goes_m) in [(1.0, 1.0..2.0), (10.0, 0.04..0.07), (100.0, 0.0..0.003)] {
+        let mut fleet = Fleet::new(&yard(&pushed("crate", [1.8, 2.0], mass_kg, 0.5)), 0);
+        fleet.run_until(4.0, &mut ahead);
+        let gone_m = middle(&fleet, 0).x - 1.8;
+        assert!(goes_m.contains(&gone_m), "{mass_kg} kg: {gone_m} m");
+        let robot = fleet.robots().next().unwrap();
+        assert_eq!(robot.twist.linear_mps > 0.4, mass_kg < 5.0, "{mass_kg} kg: {:?}", robot.twist);
+        // In touch, not in each other.
+        let gap_m = middle(&fleet, 0).x - 0.15 - robot.pose.translation.x - 0.2;
+        assert!(gap_m.abs() < 0.003, "{mass_kg} kg: {gap_m} m");
+    }
+}
+
+#[test]
+fn a_light_box_holds_a_heavy_robot_where_something_holds_the_box() {
+    // A wall begins at x = 5.95; between it and a robot of 20 kg is a box.
+    for (side_m, mass_kg) in [([0.3, 0.3], 0.02), ([0.3, 0.05], 0.02), ([0.3, 0.3], 1.0)] {
+        let box_ = pushed("crate", [5.7, 2.05], mass_kg, 0.2)
+            .replace("[0.3, 0.3]", &format!("{side_m:?}"))
+            .replace("mass_kg", "heading_deg = 20.0\nmass_kg");
+        let mut fleet = Fleet::new(&yard(&box_), 0);
+        let mut deepest_m = f64::NEG_INFINITY;
+        while fleet.time_s() < 15.0 {
+            fleet.step(&mut ahead);
+            let corners = fleet.obstacles().next().unwrap().corners;
+            let at = robot_at(&fleet, 0);
+            deepest_m = deepest_m.max(-convex::disc_gap_m(&corners, &at, 0.2));
+            deepest_m = deepest_m.max(at.x + 0.2 - 5.95);
+        }
+        assert!(deepest_m > -0.002, "{mass_kg} kg: they never met: {deepest_m} m");
+        assert!(deepest_m < 0.0051, "{mass_kg} kg: {deepest_m} m");
+        // And it comes free again.
+        let met = robot_at(&fleet, 0);
+        fleet.run_until(18.0, &mut |_: &RobotView<'_>, _: &LaserReading| Twist {
+            linear_mps: -0.5,
+            angular_radps: 0.0,
+        });
+        assert!((met - robot_at(&fleet, 0)).norm() > 1.0, "{mass_kg} kg: stuck at {met}");
+    }
+}
+
+#[test]
+fn a_box_slows_down_by_its_friction() {
+    for friction in [0.03, 0.08] {
+        let mut fleet = Fleet::new(&yard(&pushed("puck", [1.8, 2.0], 0.5, friction)), 0);
+        fleet.run_until(2.0, &mut ahead);
+        let from = middle(&fleet, 0).x;
+        fleet.run_until(5.0, &mut stop);
+        // v²/2µg, from 0.5 m/s.
+        let glides_m = 0.25 / (2.0 * friction * 9.80665);
+        let gone_m = middle(&fleet, 0).x - from;
+        assert!((gone_m - glides_m).abs() < 0.06 * glides_m + 0.013, "{gone_m} m, not {glides_m} m");
+    }
+}
+
+fn block(keys: &str) -> String {
+    format!("[[obstacle]]\nname = \"block\"\nkind = \"block\"\nsize_m = [0.4, 0.4]\n{keys}\n")
+}
+
+/// Where the block is at some times, s.
+fn places(keys: &str, times_s: &[f64]) -> Vec<[f64; 2]> {
+    let mut fleet = Fleet::new(&yard(&block(keys)), 0);
+    times_s
+        .iter()
+        .map(|time_s| {
+            fleet.run_until(*time_s, &mut stop);
+            middle(&fleet, 0).coords.map(|x| (x * 1e6).round() / 1e6).into()
+        })
+        .collect()
+}
+
+#[test]
+fn blocks_keep_their_schedule() {
+    let dwelling = "path_m = [[3.0, 3.0], [4.0, 3.0]]\ndwell_s = 2.0\nspeed_mps = 0.5";
+    // Two seconds here, two on the way, two there, two back.
+    let expected = [[3.0, 3.0], [3.5, 3.0], [4.0, 3.0], [3.5, 3.0], [3.0, 3.0], [3.5, 3.0]];
+    assert_eq!(places(dwelling, &[2.0, 3.0, 5.0, 7.0, 9.0, 11.0]), expected);
+    let back = format!("{dwelling}\nrepeat = \"back_and_forth\"");
+    assert_eq!(places(&back, &[2.0, 3.0, 5.0, 7.0, 9.0, 11.0]), expected);
+    let once = format!("{dwelling}\nrepeat = \"once\"");
+    assert_eq!(places(&once, &[3.0, 7.0, 100.0]), [[3.5, 3.0], [4.0, 3.0], [4.0, 3.0]]);
+    let timed = "path_m = [[3.0, 3.0], [3.0, 4.0], [3.0, 4.0], [3.0, 3.0]]\ntimes_s = [0.0, 1.0, 5.0, 7.0]";
+    assert_eq!(
+        places(timed, &[0.5, 3.0, 6.0, 7.5, 14.5]),
+        [[3.0, 3.5], [3.0, 4.0], [3.0, 3.5], [3.0, 3.5], [3.0, 3.5]]
+    );
+}
+
+#[test]
+fn a_block_waits_for_a_robot_and_is_later_then() {
+    let spec = yard(&block("path_m = [[1.0, 3.5], [1.0, 0.6]]\nspeed_mps = 1.0\nrepeat = \"once\""));
+    let mut fleet = Fleet::new(&spec, 0);
+    fleet.run_until(5.0, &mut stop);
+    let gap_m = middle(&fleet, 0).y - 0.2 - 2.2;
+    assert!((0.0..0.06).contains(&gap_m), "{gap_m}");
+    assert!((robot_at(&fleet, 0) - Point2::new(1.0, 2.0)).norm() < 1e-6);
+    fleet.run_until(7.0, &mut ahead);
+    fleet.run_until(12.0, &mut stop);
+    assert!((middle(&fleet, 0) - Point2::new(1.0, 0.6)).norm() < 1e-6);
+}
+
+fn door(kind: &str, keys: &str) -> String {
+    format!(
+        "[[obstacle]]\nname = \"door\"\nkind = \"{kind}\"\nfrom_m = [3.0, 1.0]\nto_m = [3.0, 2.0]\nthickness_m = 0.04\n{keys}\n"
+    )
+}
+
+#[test]
+fn doors_turn_and_slide_as_told() {
+    let script = "opening = \"scripted\"\nswitches_s = [1.0, 5.0]\nmove_s = 2.0";
+    for (kind, more, half_way, open) in [
+        ("hinged_door", "", [3.0 - 0.5 * 0.5_f64.sqrt(), 1.0 + 0.5 * 0.5_f64.sqrt()], [2.5, 1.0]),
+        (
+            "hinged_door",
+            "open_deg = -90.0",
+            [3.0 + 0.5 * 0.5_f64.sqrt(), 1.0 + 0.5 * 0.5_f64.sqrt()],
+            [3.5, 1.0],
+        ),
+        ("sliding_door", "", [3.0, 1.0], [3.0, 0.5]),
+        ("sliding_door", "slide_m = -0.6", [3.0, 1.8], [3.0, 2.1]),
+    ] {
+        let mut fleet = Fleet::new(&yard(&door(kind, &format!("{script}\n{more}"))), 0);
+        for (time_s, expected) in
+            [(1.0, [3.0, 1.5]), (2.0, half_way), (4.0, open), (6.0, half_way), (9.0, [3.0, 1.5])]
+        {
+            fleet.run_until(time_s, &mut stop);
+            let off_m = (middle(&fleet, 0) - Point2::from(expected)).norm();
+            assert!(off_m < 1e-6, "{kind} {more} at {time_s} s: {off_m} m off");
+        }
+    }
+}
+
+#[test]
+fn a_door_never_closes_on_a_robot() {
+    let script = "opening = \"scripted\"\nswitches_s = [8.0]\nstarts_open = true";
+    for kind in ["hinged_door", "sliding_door"] {
+        let mut fleet = Fleet::new(
+            &yard(
+                &door(kind, script).replace("[3.0, 1.0]", "[3.0, 1.5]").replace("[3.0, 2.0]", "[3.0, 2.5]"),
+            ),
+            0,
+        );
+        // It stops in the doorway.
+        let mut into = |_: &RobotView<'_>, reading: &LaserReading| Twist {
+            linear_mps: if reading.pose.translation.x < 2.9 { 0.5 } else { 0.0 },
+            angular_radps: 0.0,
+        };
+        fleet.run_until(7.9, &mut into);
+        let before = robot_at(&fleet, 0);
+        fleet.run_until(20.0, &mut stop);
+        assert_eq!(robot_at(&fleet, 0), before, "{kind}");
+        assert_eq!(fleet.contacts(), []);
+        fleet.run_until(30.0, &mut ahead);
+        assert!((middle(&fleet, 0) - Point2::new(3.0, 2.0)).norm() < 1e-9, "{kind} is still open");
+    }
+}
+
+#[test]
+fn random_doors_have_their_means_and_their_seed() {
+    let spec = yard(&door(
+        "sliding_door",
+        "opening = \"random\"\nclosed_s = 6.0\nopen_s = 2.0\nmove_s = 0.1\nslide_m = 0.2",
+    ));
+    let run = |seed: u64| {
+        let mut fleet = Fleet::new(&spec, seed);
+        let (mut switches, mut open_s, mut was_open) = (0, 0.0_f64, false);
+        while fleet.time_s() < 4000.0 {
+            fleet.step(&mut stop);
+            let is_open = middle(&fleet, 0).y < 1.4;
+            open_s += if is_open { 0.05 } else { 0.0 };
+            switches += u32::from(is_open && !was_open);
+            was_open = is_open;
+        }
+        (switches, open_s)
+    };
+    let (switches, open_s) = run(1);
+    // 500 cycles of 8 s; the standard deviations are those of sums of exponential times. Stays
+    // below the time of a move don't show.
+    assert!((400..560).contains(&switches), "{switches}");
+    assert!(f64::abs(open_s - 1000.0) < 4.0 * 75.0, "{open_s}");
+    assert_eq!(run(1), (switches, open_s));
+    assert_ne!(run(2).1, open_s);
+}
+
+#[test]
+fn what_moves_is_truth_and_contact() {
+    let things = pushed("crate", [2.0, 2.0], 0.02, 0.1);
+    let spec = four_rooms_but(&[("pose_m = [2.0, 2.0]", "pose_m = [1.0, 2.0]")], &things);
+    let mut world = PhysicsWorld::new(&spec, 0);
+    let frame = *world.truth().frame();
+    let state = |world: &PhysicsWorld, x: f64| {
+        world.truth().state(frame.index(frame.cell_at(&Point2::new(x, 2.01))).unwrap())
+    };
+    assert_eq!((state(&world, 2.01), state(&world, 2.51)), (TrueState::Blocked, TrueState::Free));
+    drive(&mut world, Twist { linear_mps: 0.4, angular_radps: 0.0 }, 4.5, |_| ());
+    assert!(
+        world.contacts().iter().any(|contact| contact.with == Body::Obstacle(0)),
+        "{:?}",
+        world.contacts()
+    );
+    let cells = world.truth().movers().iter().filter(|mover| **mover == Some(Body::Obstacle(0))).count();
+    // It has swept more than its own 7 × 7 cells.
+    assert!(cells > 60, "{cells}");
+    assert_eq!(state(&world, 1.86), TrueState::Free);
+}
