@@ -37,7 +37,7 @@ fn next_goal(bencher: divan::Bencher, strategy: &str) {
     let settings = AgentSettings { patch_cells: 10, ..Default::default() };
     let choice: StrategyChoice = strategy.parse().unwrap();
     let mut agent = Agent::new(&settings, choice, ChaCha8Rng::seed_from_u64(0)).unwrap();
-    let (features, pose) = (mapper.features(), Isometry2::identity());
+    let (features, pose) = (agent::Features::of(&mut mapper), Isometry2::identity());
     // A trajectory of 5 s at 10 Hz, learned from in the same call.
     bencher.bench_local(|| {
         for _ in 0..50 {

@@ -1,10 +1,10 @@
 use crate::goal::{Goal, GoalSampler};
 use crate::knowledge::knowledge;
 use crate::{
-    AgentSettings, Chooser, Reward, SettingsError, Situation, Strategy, StrategyChoice, Trajectory, Travel,
+    AgentSettings, Chooser, Features, Reward, SettingsError, Situation, Strategy, StrategyChoice, Trajectory, Travel,
 };
 use interfaces::Transition;
-use mapper::{Features, Mapper};
+use mapper::Mapper;
 use nalgebra::Isometry2;
 use rand_chacha::ChaCha8Rng;
 

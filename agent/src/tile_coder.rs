@@ -1,5 +1,5 @@
 use crate::CuriousSettings;
-use mapper::Features;
+use crate::Features;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;

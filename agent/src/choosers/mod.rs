@@ -9,7 +9,7 @@ pub use curious::Curious;
 pub use progress::Progress;
 
 use crate::Situation;
-use mapper::Features;
+use crate::Features;
 use rand_chacha::ChaCha8Rng;
 
 /// What came of following a strategy to one goal.

@@ -6,7 +6,8 @@ use agent::{
     Trajectory,
 };
 use interfaces::{Cell, CellReading, CellState, Transition};
-use mapper::{Features, Mapper};
+use agent::Features;
+use mapper::Mapper;
 use nalgebra::Isometry2;
 use rand_chacha::ChaCha8Rng;
 use std::sync::{Arc, Mutex};
@@ -45,7 +46,7 @@ fn live(agent: &mut Agent, mut check: impl FnMut(&Agent, &Mapper, Cell)) -> Vec<
     for step in 0..1500 {
         let seen = look(f64::from(step), cell);
         mapper.update(&seen).unwrap();
-        let features = mapper.features();
+        let features = Features::of(&mut mapper);
         agent.watch(features, mapper.transitions());
         let target = *goal.get_or_insert_with(|| {
             let goal = agent.next_goal(&mapper, &seen.pose, &mut AsTheCrowFlies).cell;

@@ -245,7 +245,7 @@ fn readings_at_one_instant_leave_only_numbers() {
     for choice in StrategyChoice::ALL {
         let mut agent = agent(choice, 8);
         for _ in 0..20 {
-            let features = mapper.features();
+            let features = agent::Features::of(&mut mapper);
             agent.watch(features, mapper.transitions());
             assert!(can_be_a_goal(
                 &mapper,
