@@ -18,16 +18,17 @@ pub use things::{ThingReport, Things};
 
 use crate::view::Scores;
 use interfaces::CellState;
+use interfaces::TrueState;
 use mapper::Mapper;
 use serde::Serialize;
-use sim::physics::{TrueState, Truth};
+use sim::physics::Truth;
 
 /// Whether the map says what is true; `None` where the cell is covered in part.
 fn is_right(mapped: CellState, truth: TrueState) -> Option<bool> {
     match truth {
         TrueState::Free => Some(mapped == CellState::Free),
         TrueState::Blocked => Some(mapped == CellState::Blocked),
-        TrueState::Partly => None,
+        TrueState::PartlyCovered => None,
     }
 }
 
@@ -131,7 +132,7 @@ mod tests {
         let state = |state: &TrueState| match state {
             TrueState::Free => CellState::Free,
             TrueState::Blocked => CellState::Blocked,
-            TrueState::Partly => otherwise,
+            TrueState::PartlyCovered => otherwise,
         };
         Grid::from_cells(*truth.frame(), truth.states().iter().map(state).collect()).unwrap()
     }
