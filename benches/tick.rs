@@ -51,7 +51,8 @@ impl Life {
     fn tick(&mut self) {
         let reading = self.world.sense();
         self.mapper.update(&reading).expect("the physics world gives readings that make sense");
-        let now = Now { pose: &reading.pose, features: self.mapper.features(), mapper: &self.mapper };
+        let features = agent::Features::of(&mut self.mapper);
+        let now = Now { pose: &reading.pose, features, mapper: &self.mapper };
         let command = self.pilot.command(&now);
         self.pilot.take_messages();
         self.world.act(&command);

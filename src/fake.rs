@@ -154,7 +154,7 @@ impl FakeRun {
 
     /// Hands the run as it is now to `look`.
     pub(crate) fn with_view<T>(&mut self, look: impl FnOnce(&View) -> T) -> T {
-        let features = self.mapper.features();
+        let features = agent::Features::of(&mut self.mapper);
         let goal = self.curious.waypoints[self.curious.next % self.curious.waypoints.len()];
         let robot = |name, driver: &Driver, is_curious: bool| RobotView {
             name,

@@ -28,8 +28,9 @@ pub mod trials;
 pub mod view;
 pub mod worlds;
 
+use agent::Features;
 use interfaces::{Reading, World};
-use mapper::{Evidence, Mapper, ReadingError};
+use mapper::{Mapper, ReadingError};
 use pilot::{Now, Pilot};
 use std::ops::ControlFlow;
 
@@ -48,14 +49,14 @@ pub fn explore<W, P, E>(
     mut watch: impl FnMut(&W, &W::Reading, &Now, &mut P) -> Result<ControlFlow<()>, E>,
 ) -> Result<(), E>
 where
-    W: World<Reading: Evidence>,
+    W: World<Reading: Reading>,
     P: Pilot<Command = W::Command>,
     E: From<ReadingError>,
 {
     loop {
         let reading = world.sense();
         mapper.update(&reading)?;
-        let now = Now { pose: reading.pose(), features: mapper.features(), mapper };
+        let now = Now { pose: reading.pose(), features: Features::of(mapper), mapper };
         let command = pilot.command(&now);
         if watch(world, &reading, &now, pilot)?.is_break() {
             return Ok(());

@@ -1,8 +1,9 @@
 //! What a run looks like, as plain data: all that the recording and the pictures are told.
 
 use crate::pilot::StrategyState;
+use agent::Features;
 use interfaces::{CellReading, LaserReading};
-use mapper::{Features, Mapper};
+use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 
 /// The corners of a polygon, m; the last is joined to the first.

@@ -1,7 +1,8 @@
 use crate::goal::{Goal, GoalSampler};
 use crate::knowledge::knowledge;
 use crate::{
-    AgentSettings, Chooser, Features, Reward, SettingsError, Situation, Strategy, StrategyChoice, Trajectory, Travel,
+    AgentSettings, Chooser, Features, Reward, SettingsError, Situation, Strategy, StrategyChoice, Trajectory,
+    Travel,
 };
 use interfaces::Transition;
 use mapper::Mapper;

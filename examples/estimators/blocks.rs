@@ -4,7 +4,7 @@ use crate::robots::{Habit, Robot};
 use crate::score::{MASS, Mean, log_error};
 use interfaces::GroundTruth;
 use interfaces::{CellState, World};
-use mapper::{Estimator, Mapper};
+use mapper::{EstimatorChoice, Mapper};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sim::grid::{GenerateSettings, GridSpec, GridTruth, GridWorld};
@@ -14,11 +14,11 @@ const FIRST_SEED: u64 = 1000;
 /// Seeds per shipped world.
 const SHIPPED_SEEDS: u64 = 5;
 const SHIPPED: [(&str, &str); 5] = [
-    ("two_blocks.toml", include_str!("../../../worlds/two_blocks.toml")),
-    ("corridor_with_doors.toml", include_str!("../../../worlds/corridor_with_doors.toml")),
-    ("many_slow_blocks.toml", include_str!("../../../worlds/many_slow_blocks.toml")),
-    ("one_fast_block.toml", include_str!("../../../worlds/one_fast_block.toml")),
-    ("open_hall.toml", include_str!("../../../worlds/open_hall.toml")),
+    ("two_blocks.toml", include_str!("../../worlds/two_blocks.toml")),
+    ("corridor_with_doors.toml", include_str!("../../worlds/corridor_with_doors.toml")),
+    ("many_slow_blocks.toml", include_str!("../../worlds/many_slow_blocks.toml")),
+    ("one_fast_block.toml", include_str!("../../worlds/one_fast_block.toml")),
+    ("open_hall.toml", include_str!("../../worlds/open_hall.toml")),
 ];
 /// The chances per step that a block which is due moves, and that the robot's action happens.
 const CHANCES: (f64, f64) = (0.7, 0.9);
@@ -162,7 +162,7 @@ fn square_error(probability: f64, is_blocked: bool) -> f64 {
 pub(crate) struct Judged {
     pub(crate) worlds: usize,
     pub(crate) steps: u64,
-    /// In the order of [`Estimator::ALL`].
+    /// In the order of [`EstimatorChoice::all`].
     pub(crate) scores: Vec<Score>,
     pub(crate) naive: Naive,
     /// Block and free events in view, of all changing cells.
@@ -209,7 +209,7 @@ pub(crate) fn judge(set: Set, count: u64, steps: u64) -> anyhow::Result<Judged> 
     let mut judged = Judged {
         worlds: worlds.len(),
         steps,
-        scores: vec![Score::default(); Estimator::ALL.len()],
+        scores: vec![Score::default(); EstimatorChoice::all().len()],
         naive: Naive::default(),
         events: [0; 2],
     };

@@ -2,7 +2,7 @@
 
 use crate::chains::{Outcome, SHARES};
 use crate::patterns::Pattern;
-use mapper::Estimator;
+use mapper::EstimatorChoice;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
@@ -48,7 +48,7 @@ pub(crate) fn draw(outcomes: &[Outcome], path: &str) -> anyhow::Result<()> {
             .label_style(("sans-serif", 12))
             .light_line_style(TRANSPARENT)
             .draw()?;
-        for (at, estimator) in Estimator::ALL.iter().enumerate() {
+        for (at, estimator) in EstimatorChoice::all().iter().enumerate() {
             let of_panel = |outcome: &&Outcome| {
                 outcome.pattern == pattern && (outcome.share_blocked - SHARES[0]).abs() < 1e-9
             };

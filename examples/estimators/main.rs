@@ -2,8 +2,8 @@
 //! simulated two-state chains. Writes `docs/estimators/tables.md` and `docs/estimators/chains.svg`.
 //!
 //! ```text
-//! cargo run --release -p mapper --example estimators              60 block worlds of 20,000 steps
-//! cargo run --release -p mapper --example estimators -- 24 5000   fewer of them, shorter
+//! cargo run --release --example estimators              60 block worlds of 20,000 steps
+//! cargo run --release --example estimators -- 24 5000   fewer of them, shorter
 //! ```
 
 mod blocks;
@@ -16,15 +16,16 @@ mod room;
 mod score;
 mod tables;
 
-use mapper::{Estimator, Mapper, MapperSettings, SettingsError};
+use interfaces::SettingsError;
+use mapper::{EstimatorChoice, Mapper, MapperSettings};
 
-const TABLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/estimators/tables.md");
-const CURVES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/estimators/chains.svg");
+const TABLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/estimators/tables.md");
+const CURVES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/estimators/chains.svg");
 
-/// One mapper per estimator, in the order of [`Estimator::ALL`].
+/// One mapper per estimator, in the order of [`EstimatorChoice::all`].
 fn mappers(frame: interfaces::GridFrame) -> Result<Vec<Mapper>, SettingsError> {
     let mapper = |estimator| Mapper::new(&MapperSettings { estimator, ..MapperSettings::default() }, frame);
-    Estimator::ALL.map(mapper).into_iter().collect()
+    EstimatorChoice::all().into_iter().map(mapper).collect()
 }
 
 fn main() -> anyhow::Result<()> {
@@ -32,7 +33,7 @@ fn main() -> anyhow::Result<()> {
     let worlds = arguments.next().unwrap_or(Ok(60))?;
     let steps = arguments.next().unwrap_or(Ok(20_000))?;
     let mut text = format!(
-        "# Estimators: the tables\n\nMade by `cargo run --release -p mapper --example estimators -- {worlds} \
+        "# Estimators: the tables\n\nMade by `cargo run --release --example estimators -- {worlds} \
          {steps}`; what they mean is in [`estimators.md`](../estimators.md).\n"
     );
     for set in blocks::Set::ALL {

@@ -4,13 +4,13 @@
 use crate::score::{MASS, Mean, log_error};
 use interfaces::TrueState;
 use interfaces::{Twist, World};
-use mapper::{Estimator, Mapper, MapperSettings};
+use mapper::{EstimatorChoice, Mapper, MapperSettings};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sim::physics::{PhysicsWorld, WorldSpec};
 
-const HOUSE: &str = include_str!("../../../worlds/four_rooms.toml");
+const HOUSE: &str = include_str!("../../worlds/four_rooms.toml");
 /// Where the curious robot starts in the file, and where it looks on from.
 const START: &str = "pose_m = [2.0, 2.0]";
 const PLACE: &str = "pose_m = [9.2, 9.3]";
@@ -31,7 +31,7 @@ pub(crate) struct Score {
     pub(crate) covered: Mean,
 }
 
-/// Scores in the order of [`Estimator::ALL`], for every row of [`VISITS`].
+/// Scores in the order of [`EstimatorChoice::all`], for every row of [`VISITS`].
 pub(crate) fn judge() -> anyhow::Result<Vec<Vec<Score>>> {
     let spec = WorldSpec::parse("four_rooms.toml", &HOUSE.replace(START, PLACE))?;
     let mut scores = Vec::new();
@@ -42,7 +42,8 @@ pub(crate) fn judge() -> anyhow::Result<Vec<Vec<Score>>> {
             let settings = MapperSettings { estimator, max_gap: HIDING_S, ..MapperSettings::default() };
             Mapper::new(&settings, *spec.frame())
         };
-        let mut mappers: Vec<Mapper> = Estimator::ALL.map(mapper).into_iter().collect::<Result<_, _>>()?;
+        let mut mappers: Vec<Mapper> =
+            EstimatorChoice::all().into_iter().map(mapper).collect::<Result<_, _>>()?;
         let (mut rng, mut next) = (ChaCha8Rng::seed_from_u64(1), 0);
         for scan in 0..SCANS {
             let mut reading = world.sense();

@@ -6,14 +6,14 @@ use crate::patterns::Pattern;
 use crate::robots::Habit;
 use crate::room;
 use crate::score::{MASS, Mean};
-use mapper::Estimator;
+use mapper::EstimatorChoice;
 use std::fmt::Write as _;
 
 /// A pattern of looks identifies a rate if no estimator without bias need be off by more, relatively.
 const IDENTIFIED: f64 = 0.1;
 
 /// The name of a row.
-fn name(estimator: Estimator) -> String {
+fn name(estimator: &EstimatorChoice) -> String {
     format!("`{}`", estimator.name())
 }
 
@@ -36,12 +36,12 @@ pub(crate) fn blocks(set: Set, judged: &Judged) -> String {
         "---|".repeat(habits.len()),
     );
     let all = |at: usize| scores[at].log_error.iter().map(Mean::mean).sum::<f64>() / habits.len() as f64;
-    for (at, (estimator, score)) in Estimator::ALL.into_iter().zip(scores).enumerate() {
+    for (at, (estimator, score)) in EstimatorChoice::all().into_iter().zip(scores).enumerate() {
         let errors: Vec<String> = score.log_error.iter().map(|mean| figure(mean.mean(), 3)).collect();
         let _ = writeln!(
             text,
             "| {} | {} | {:.3} | {:.3} | {:+.2} | {} | {} | {} | {:.2} | {:.4} |",
-            name(estimator),
+            name(&estimator),
             errors.join(" | "),
             all(at),
             all(at) / all(0),
@@ -73,11 +73,11 @@ pub(crate) fn room(scores: &[Vec<room::Score>]) -> String {
          that hold the truth |\n|---|---|---|---|---|---|\n"
     );
     for ((seen, of), scores) in room::VISITS.into_iter().zip(scores) {
-        for (estimator, score) in Estimator::ALL.into_iter().zip(scores) {
+        for (estimator, score) in EstimatorChoice::all().into_iter().zip(scores) {
             let _ = writeln!(
                 text,
                 "| {seen} of {of} | {} | {:.3} | {:+.2} | {} | {:.2} |",
-                name(estimator),
+                name(&estimator),
                 score.log_error.mean(),
                 score.bias.mean(),
                 score.false_rate.mean(),
@@ -133,14 +133,14 @@ pub(crate) fn chains(outcomes: &[Outcome]) -> String {
          log error elsewhere | at most above `paper`'s |\n|---|---|---|---|---|---|---|---|---|\n"
     );
     for pattern in Pattern::ALL {
-        for (at, estimator) in Estimator::ALL.into_iter().enumerate() {
+        for (at, estimator) in EstimatorChoice::all().into_iter().enumerate() {
             let row = Row::of(outcomes, pattern, at);
             let bias = if row.identified == 0 { "–".to_owned() } else { format!("{:+.3}", row.bias) };
             let _ = writeln!(
                 text,
                 "| {} | {} | {} | {bias} | {} | {} | {} | {} | {:+.3} |",
                 pattern.name(),
-                name(estimator),
+                name(&estimator),
                 row.identified,
                 figure(row.over_least.mean(), 2),
                 figure(row.log_error.mean(), 3),
@@ -161,7 +161,8 @@ pub(crate) fn unlike_neighbours(rows: &[[Outcome; 3]]) -> String {
         .to_owned();
     for row in rows {
         let cell = |outcome: &Outcome| {
-            let at = Estimator::ALL.into_iter().position(|estimator| estimator == Estimator::TwoStateGaps);
+            let at =
+                EstimatorChoice::all().into_iter().position(|estimator| estimator.name() == "two-state-gaps");
             let score = outcome.scores[at.unwrap_or_default()];
             format!("{:+.3}, {:.3}", score.bias, score.log_error)
         };

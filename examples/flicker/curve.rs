@@ -2,7 +2,7 @@
 
 use crate::things::{BOXES, cleared_after};
 use crate::{TURNED, false_changes};
-use mapper::OccupancyModel;
+use mapper::OccupancyChoice;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
@@ -28,7 +28,7 @@ pub(crate) fn sweep() -> anyhow::Result<Vec<Point>> {
     for seed in 1..=SEEDS {
         let (house, readings) = TURNED.tour(seed);
         for point in &mut points {
-            let mut settings = TURNED.settings(OccupancyModel::Steady);
+            let mut settings = TURNED.settings(OccupancyChoice::steady());
             settings.steady.misses_to_free = point.misses_to_free;
             settings.steady.misses_to_free_fresh =
                 settings.steady.misses_to_free_fresh.min(point.misses_to_free);

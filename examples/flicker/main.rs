@@ -2,7 +2,7 @@
 //! prevent that? Prints the table of `docs/flicker.md` and draws `docs/flicker.svg`.
 //!
 //! ```text
-//! cargo run --release -p mapper --example flicker
+//! cargo run --release --example flicker
 //! ```
 //!
 //! Every house is toured for ten minutes (6000 scans) with nothing moving: each change that the map
@@ -10,13 +10,13 @@
 //! that drives by. One without the other says nothing: a map that never changes never flickers.
 
 mod curve;
-#[path = "../../tests/house/mod.rs"]
+#[path = "../../mapper/tests/house/mod.rs"]
 mod house;
 mod things;
 
 use house::House;
 use interfaces::LaserReading;
-use mapper::{Mapper, MapperSettings, OccupancyModel, SteadySettings};
+use mapper::{Mapper, MapperSettings, OccupancyChoice, SurfaceGridSettings};
 use std::fmt::Write as _;
 use things::{cleared_after, latencies, median};
 
@@ -73,9 +73,9 @@ impl Bench {
     }
 
     /// The default settings, told of the laser's noise.
-    fn settings(self, occupancy: OccupancyModel) -> MapperSettings {
-        let range_noise_std_m = self.noise_std_m.max(SteadySettings::default().range_noise_std_m);
-        let steady = SteadySettings { range_noise_std_m, ..SteadySettings::default() };
+    fn settings(self, occupancy: OccupancyChoice) -> MapperSettings {
+        let range_noise_std_m = self.noise_std_m.max(SurfaceGridSettings::default().range_noise_std_m);
+        let steady = SurfaceGridSettings { range_noise_std_m, ..SurfaceGridSettings::default() };
         MapperSettings { occupancy, steady, ..MapperSettings::default() }
     }
 
@@ -108,7 +108,7 @@ fn false_changes(
     Ok((changes, changes - cells.len()))
 }
 
-fn row(bench: Bench, occupancy: OccupancyModel) -> anyhow::Result<String> {
+fn row(bench: Bench, occupancy: OccupancyChoice) -> anyhow::Result<String> {
     let settings = bench.settings(occupancy);
     let (house, readings) = bench.tour(1);
     let (changes, repeated) = false_changes(&house, &readings, &settings)?;
@@ -125,7 +125,7 @@ fn row(bench: Bench, occupancy: OccupancyModel) -> anyhow::Result<String> {
 fn main() -> anyhow::Result<()> {
     println!("{HEADER}\n|---|---|---|---|---|---|---|---|");
     for bench in BENCHES {
-        for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
+        for occupancy in [OccupancyChoice::steady(), OccupancyChoice::naive()] {
             println!("{}", row(bench, occupancy)?);
         }
     }
@@ -135,5 +135,5 @@ fn main() -> anyhow::Result<()> {
     for point in &points {
         println!("| {} | {:.1} | {:.2} |", point.misses_to_free, point.false_changes, point.half_cleared_s);
     }
-    curve::draw(&points, concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/flicker.svg"))
+    curve::draw(&points, concat!(env!("CARGO_MANIFEST_DIR"), "/docs/flicker.svg"))
 }

@@ -5,7 +5,7 @@ use controller::CellDrive;
 use curious::report::{Report, ReportSettings, WorldPicture};
 use curious::trials::{Experiment, Job, TrialStrategy};
 use curious::worlds::{SHIPPED_GRID, load_grid};
-use mapper::{Estimator, MapperSettings};
+use mapper::{EstimatorChoice, MapperSettings, Paper, PaperAll};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::sync::atomic::AtomicBool;
 
@@ -27,7 +27,7 @@ pub(crate) struct Condition {
     pub(crate) name: String,
     sensor_radius: u32,
     steps: u64,
-    estimator: Estimator,
+    estimator: EstimatorChoice,
     reward: Reward,
     /// The probability of a move.
     chance: f64,
@@ -41,7 +41,7 @@ pub(crate) fn conditions() -> Vec<Condition> {
         name: BASE.to_owned(),
         sensor_radius: 4,
         steps: 20_000,
-        estimator: Estimator::Paper,
+        estimator: Paper.into(),
         reward: Reward::Changes,
         chance: 1.0,
         max_steps: 42,
@@ -58,9 +58,9 @@ pub(crate) fn conditions() -> Vec<Condition> {
     for (steps, name) in [(2_000, "2,000 steps"), (5_000, "5,000 steps"), (50_000, "50,000 steps")] {
         conditions.push(change(name.to_owned(), &|other| other.steps = steps));
     }
-    conditions.push(change("estimator paper-all".to_owned(), &|other| other.estimator = Estimator::PaperAll));
-    let best = Estimator::default();
-    conditions.push(change(format!("estimator {}", best.name()), &|other| other.estimator = best));
+    conditions.push(change("estimator paper-all".to_owned(), &|other| other.estimator = PaperAll.into()));
+    let best = EstimatorChoice::default();
+    conditions.push(change(format!("estimator {}", best.name()), &|other| other.estimator = best.clone()));
     conditions.push(change("reward with discoveries".to_owned(), &|other| {
         other.reward = Reward::ChangesAndDiscoveries;
     }));
@@ -97,7 +97,7 @@ impl Condition {
         controller.exploration.max_steps = self.max_steps;
         Experiment {
             worlds: worlds.into_iter().map(set).collect(),
-            estimators: vec![self.estimator],
+            estimators: vec![self.estimator.clone()],
             strategies: STRATEGIES.map(TrialStrategy::Agent).to_vec(),
             trials,
             seed: 0,

@@ -190,7 +190,7 @@ impl Average {
 mod tests {
     use super::*;
     use interfaces::{Cell, CellReading, Step, World};
-    use mapper::{Estimator, MapperSettings};
+    use mapper::{MapperSettings, Paper};
     use nalgebra::Isometry2;
     use sim::grid::{GridSpec, GridWorld};
 
@@ -222,7 +222,7 @@ mod tests {
     }
 
     fn mapper(world: &GridWorld) -> Mapper {
-        let settings = MapperSettings { estimator: Estimator::Paper, ..Default::default() };
+        let settings = MapperSettings { estimator: Paper.into(), ..Default::default() };
         Mapper::new(&settings, *world.truth().frame()).unwrap()
     }
 

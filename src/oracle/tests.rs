@@ -1,9 +1,10 @@
 use super::*;
 use crate::trials::{Life, TrialStrategy, live};
+use agent::Features;
 use agent::{AgentSettings, StrategyChoice};
 use controller::CellDrive;
 use interfaces::{Cell, Step, World};
-use mapper::{Features, MapperSettings};
+use mapper::MapperSettings;
 use nalgebra::Isometry2;
 use sim::grid::{GenerateSettings, GridWorld};
 

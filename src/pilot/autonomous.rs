@@ -1,8 +1,9 @@
 use super::{GoalCount, Now, Pilot, StrategyState};
 use crate::view::{Level, Message};
+use agent::Features;
 use agent::{Agent, Goal, Stay, Travel};
 use controller::{Controller, Drive, Outcome, Situation, Status};
-use mapper::{Features, Mapper};
+use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 
 /// Where to go next, m, and what to do there.

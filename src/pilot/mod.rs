@@ -9,7 +9,8 @@ pub use keyboard::{Keyboard, KeyboardError};
 pub use tour::{Tour, TourError};
 
 use crate::view::Message;
-use mapper::{Features, Mapper};
+use agent::Features;
+use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use serde::Serialize;
 

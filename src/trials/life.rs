@@ -129,7 +129,7 @@ fn run<G: Guide>(
         seed: life.seed,
         samples,
         strategy_share: pilot
-            .strategies(mapper.features())
+            .strategies(agent::Features::of(&mut mapper))
             .iter()
             .map(|strategy| (strategy.name.to_owned(), strategy.share))
             .collect(),

@@ -16,7 +16,7 @@ pub use strategy::TrialStrategy;
 
 use crate::report::Trial;
 use agent::AgentSettings;
-use mapper::{Estimator, MapperSettings};
+use mapper::{EstimatorChoice, MapperSettings};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use sim::grid::GridSpec;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -27,7 +27,7 @@ pub struct Experiment {
     /// The worlds.
     pub worlds: Vec<GridSpec>,
     /// The ways to estimate rates.
-    pub estimators: Vec<Estimator>,
+    pub estimators: Vec<EstimatorChoice>,
     /// The ways to choose goals.
     pub strategies: Vec<TrialStrategy>,
     /// Trials of each combination.
@@ -108,7 +108,8 @@ impl Experiment {
 
     /// What one trial is made of.
     pub fn life(&self, job: Job) -> Life<'_> {
-        let mapper = MapperSettings { estimator: self.estimators[job.estimator], ..self.mapper.clone() };
+        let estimator = self.estimators[job.estimator].clone();
+        let mapper = MapperSettings { estimator, ..self.mapper.clone() };
         Life {
             world: &self.worlds[job.world],
             strategy: self.strategies[job.strategy],
@@ -126,7 +127,7 @@ impl Experiment {
 pub enum SettingsError {
     /// One of the mapper's.
     #[error(transparent)]
-    Mapper(#[from] mapper::SettingsError),
+    Mapper(#[from] interfaces::SettingsError),
     /// One of the agent's.
     #[error(transparent)]
     Agent(#[from] agent::SettingsError),

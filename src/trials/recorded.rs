@@ -208,14 +208,14 @@ mod tests {
     use crate::trials::{Experiment, TrialStrategy};
     use agent::{AgentSettings, StrategyChoice};
     use controller::CellDrive;
-    use mapper::{Estimator, MapperSettings};
+    use mapper::{MapperSettings, Paper};
     use std::path::Path;
 
     /// The first trial of the shipped world, of so many steps.
     fn experiment(steps: u64) -> Experiment {
         Experiment {
             worlds: vec![crate::worlds::load_grid("two_blocks").unwrap()],
-            estimators: vec![Estimator::Paper],
+            estimators: vec![Paper.into()],
             strategies: vec![TrialStrategy::Agent(StrategyChoice::Recency)],
             trials: 1,
             seed: 3,

@@ -1,6 +1,6 @@
+use crate::Features;
 use crate::draw::proportional;
 use crate::{Chooser, CuriousSettings, Situation, TileCoder, Trajectory};
-use crate::Features;
 use rand_chacha::ChaCha8Rng;
 
 /// The paper's learner (section 4): one value function over (p, r) per strategy, learned from

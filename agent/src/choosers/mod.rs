@@ -8,8 +8,8 @@ pub use coin::Coin;
 pub use curious::Curious;
 pub use progress::Progress;
 
-use crate::Situation;
 use crate::Features;
+use crate::Situation;
 use rand_chacha::ChaCha8Rng;
 
 /// What came of following a strategy to one goal.

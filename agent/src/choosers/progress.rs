@@ -1,6 +1,6 @@
+use crate::Features;
 use crate::draw::gamma;
 use crate::{Chooser, Situation, Trajectory};
-use crate::Features;
 use rand_chacha::ChaCha8Rng;
 
 /// Readings after which what was learned of a strategy counts half.

@@ -1,12 +1,12 @@
 //! What holds for an agent of every kind, in a small place that changes.
 
 use crate::drawing::{agent, can_be_a_goal, empty, map, reading, rng};
+use agent::Features;
 use agent::{
     Agent, AgentSettings, AsTheCrowFlies, Chooser, Random, Recency, Reward, Situation, StrategyChoice,
     Trajectory,
 };
 use interfaces::{Cell, CellReading, CellState, Transition};
-use agent::Features;
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use rand_chacha::ChaCha8Rng;

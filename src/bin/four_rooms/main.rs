@@ -122,7 +122,8 @@ fn live(
         say(stderr(), format_args!("note: {problem}"));
     }
 
-    let now = Now { pose: world.true_pose(), features: mapper.features(), mapper: &mapper };
+    let features = agent::Features::of(&mut mapper);
+    let now = Now { pose: world.true_pose(), features, mapper: &mapper };
     observer.finish(&world, &now, &pilot).map_err(anyhow::Error::from)?;
     let summary = output::summary(args, settings, &world, &mapper, &pilot, &observer, ended, wall_s);
     drop(pilot); // gives the terminal back before anything is printed

@@ -12,7 +12,7 @@ use curious::recording::{Recorder, RecordingError, RecordingOptions};
 use curious::report::{Report, ReportSettings, Trial, WorldPicture};
 use curious::trials::{Experiment, Recorded, SettingsError, record, scene};
 use curious::worlds;
-use mapper::{Estimator, MapperSettings};
+use mapper::{EstimatorChoice, MapperSettings, Paper};
 use progress::Progress;
 use sim::grid::{GenerateSettings, GridSpec};
 use std::collections::BTreeSet;
@@ -52,7 +52,7 @@ fn main() -> ExitCode {
 fn experiment(args: &Args) -> anyhow::Result<Experiment> {
     let mut estimators = args.estimator.clone();
     if estimators.is_empty() {
-        estimators = vec![Estimator::Paper, Estimator::default()];
+        estimators = vec![Paper.into(), EstimatorChoice::default()];
     }
     let mut controller = CellDrive::settings();
     controller.exploration.max_steps = args.max_steps;
