@@ -1,10 +1,10 @@
 //! What a run looks like, as plain data: all that the recording and the pictures are told.
 
-use crate::pilot::StrategyState;
-use agent::Features;
+use evaluation::metrics::{RateErrors, Scores};
 use interfaces::{CellReading, LaserReading};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
+use robot::{Message, StrategyState};
 
 /// The corners of a polygon, m; the last is joined to the first.
 pub type Outline = Vec<Point2<f64>>;
@@ -126,26 +126,6 @@ pub struct ObstacleView<'a> {
     pub is_present: bool,
 }
 
-/// How right the map is, as the metrics define it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Scores {
-    /// Share of the cells that can be seen that were seen.
-    pub coverage: f64,
-    /// Share of the cells that can be seen whose mapped state is true now.
-    pub map_quality: f64,
-}
-
-/// How wrong the rates of change are, as the metrics define it; not a number while nothing has
-/// changed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RateErrors {
-    /// Mean of |estimate − truth| / truth over the cells that truly change.
-    pub relative: f64,
-    /// Mean of |ln(estimate / truth)|, cut to a factor of ten, per moving thing and then over the
-    /// things.
-    pub log: f64,
-}
-
 /// One strategy of the agent at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct StrategyView<'a> {
@@ -159,32 +139,12 @@ pub struct StrategyView<'a> {
     pub is_current: bool,
 }
 
-impl From<StrategyState> for StrategyView<'static> {
+impl<'a> From<&'a StrategyState> for StrategyView<'a> {
     /// A strategy about which nothing was learned is worth nothing.
-    fn from(state: StrategyState) -> Self {
+    fn from(state: &'a StrategyState) -> Self {
         let StrategyState { name, value, share, is_current } = state;
-        Self { name, value: value.unwrap_or(0.0), share, is_current }
+        Self { name, value: value.unwrap_or(0.0), share: *share, is_current: *is_current }
     }
-}
-
-/// How much a [`Message`] matters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
-    /// What the robot decided.
-    Decision,
-    /// Something in the place changed, or was noticed.
-    Event,
-    /// Something did not work: a goal given up, a robot stuck.
-    Trouble,
-}
-
-/// A line of the log.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Message {
-    /// How much it matters.
-    pub level: Level,
-    /// One sentence.
-    pub text: String,
 }
 
 /// Where a robot has been. Points nearer than a few centimetres to the last one are dropped, so

@@ -4,9 +4,10 @@ use super::columns::{Arrow, Classes, Item, Line, Now, Place, Rows, State, Strip}
 use super::pace::{Due, Pace};
 use super::{entity, sight};
 use crate::layer::Layer;
-use crate::view::{Level, RobotView, TimeUnit, Trail, View};
+use crate::view::{RobotView, TimeUnit, Trail, View};
 use nalgebra::{Isometry2, Point2};
 use rerun::RecordingStream;
+use robot::Level;
 
 /// Everything about one robot.
 struct Robot {
