@@ -166,7 +166,7 @@ impl Mapper {
 
     /// The cells that changed their state in the last update, in the order of the changes.
     pub fn transitions(&self) -> &[Transition] {
-        self.cells.transitions()
+        &self.cells.transitions
     }
 
     /// The end points of the hits of the last laser scan in the frame of the map, m.
@@ -186,7 +186,7 @@ impl Mapper {
 
     /// The estimator in use.
     pub fn estimator(&self) -> &EstimatorChoice {
-        self.cells.estimator()
+        &self.cells.estimator
     }
 
     /// The change statistics of a cell.
@@ -210,11 +210,11 @@ impl Mapper {
     /// a wall never is a candidate.
     #[inline]
     pub fn is_candidate(&self, index: usize) -> bool {
-        self.cells.is_candidate(index)
+        self.cells.candidates[index]
     }
 
     /// The indices of the cells that ever changed, in the order of their first change.
     pub fn changed(&self) -> impl Iterator<Item = usize> {
-        self.cells.changed().iter().map(|&index| index as usize)
+        self.cells.changed.iter().map(|&index| index as usize)
     }
 }

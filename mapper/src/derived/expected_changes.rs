@@ -40,14 +40,14 @@ pub(crate) struct ExpectedChanges {
 impl ExpectedChanges {
     /// Notes the cells that a reading brought into view, or found changed for the first time.
     pub(crate) fn note(&mut self, cells: &CellMap) {
-        for &slot in cells.returned() {
+        for &slot in &cells.returned {
             let slot = slot as usize;
             if !std::mem::replace(&mut self.is_in_view[slot], true) {
                 (self.survival[slot], self.factor[slot]) = (1.0, 1.0);
                 self.in_view.push(slot);
             }
         }
-        let (before, after) = (self.survival.len(), cells.changed().len());
+        let (before, after) = (self.survival.len(), cells.changed.len());
         self.survival.resize(after, 1.0);
         self.factor.resize(after, 1.0);
         self.rate.resize(after, 0.0);
@@ -63,7 +63,7 @@ impl ExpectedChanges {
         let mut kept = 0;
         for position in 0..self.in_view.len() {
             let slot = self.in_view[position];
-            let index = cells.changed()[slot] as usize;
+            let index = cells.changed[slot] as usize;
             if cells.is_seen_now(index) {
                 self.in_view[kept] = slot;
                 kept += 1;

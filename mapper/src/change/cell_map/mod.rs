@@ -23,7 +23,7 @@ pub(crate) type Slot = u32;
 /// Cells are addressed by their index in row-major order. An index outside of the map panics.
 #[derive(Clone, Debug)]
 pub struct CellMap {
-    estimator: EstimatorChoice,
+    pub(crate) estimator: EstimatorChoice,
     /// A time without an observation up to this does not interrupt the view of a cell.
     max_gap: f64,
     states: Grid<CellState>,
@@ -35,12 +35,12 @@ pub struct CellMap {
     gaps: Vec<CellGaps>,
     regularity: Regularity,
     /// The cells that ever changed, in the order of their first change.
-    changed: Vec<u32>,
+    pub(crate) changed: Vec<u32>,
     /// Those of them that came back into view with the open reading.
-    returned: Vec<Slot>,
-    transitions: Vec<Transition>,
+    pub(crate) returned: Vec<Slot>,
+    pub(crate) transitions: Vec<Transition>,
     /// Cells that can be a goal: free cells, and surfaces and frontiers beside them.
-    candidates: Vec<bool>,
+    pub(crate) candidates: Vec<bool>,
     last_seen_counts: LastSeenCounts,
 }
 

@@ -1,10 +1,8 @@
 use super::record::state_index;
-use super::{CellMap, PRIOR, Slot};
+use super::{CellMap, PRIOR};
 use crate::change::gaps::MEAN_EVENTS;
-use crate::change::{
-    Belief, CellStatistics, EstimatorChoice, Exposure, GapWorth, ReadingIndex, TransitionRates,
-};
-use interfaces::{CellState, Grid, GridFrame, Transition};
+use crate::change::{Belief, CellStatistics, Exposure, GapWorth, ReadingIndex, TransitionRates};
+use interfaces::{CellState, Grid, GridFrame};
 
 impl CellMap {
     /// The position and the size of the map.
@@ -40,19 +38,6 @@ impl CellMap {
         (self.reading() - PRIOR) as usize
     }
 
-    pub(crate) fn estimator(&self) -> &EstimatorChoice {
-        &self.estimator
-    }
-
-    pub(crate) fn transitions(&self) -> &[Transition] {
-        &self.transitions
-    }
-
-    #[inline]
-    pub(crate) fn is_candidate(&self, index: usize) -> bool {
-        self.candidates[index]
-    }
-
     #[inline]
     pub(crate) fn last_seen(&self, index: usize) -> f64 {
         self.times.at(self.last_reading(index))
@@ -60,16 +45,6 @@ impl CellMap {
 
     pub(crate) fn was_ever_seen(&self, index: usize) -> bool {
         self.last_reading(index) != super::NEVER
-    }
-
-    /// The cells that ever changed, in the order of their first change.
-    pub(crate) fn changed(&self) -> &[u32] {
-        &self.changed
-    }
-
-    /// Those of them that came back into view with the open reading.
-    pub(crate) fn returned(&self) -> &[Slot] {
-        &self.returned
     }
 
     /// The time of the last observation of the candidate that was not observed for longest.

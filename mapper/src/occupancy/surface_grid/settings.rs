@@ -67,43 +67,34 @@ impl SurfaceGridSettings {
     }
 
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
-        let error =
-            |key, expected, found: String| Err(SettingsError { part: "mapper", key, expected, found });
         // Every hit searches as far as the noise reaches.
-        let lengths = [
-            ("steady.range_noise_std_m", self.range_noise_std_m, 0.5, "from 0 to 0.5 m"),
-            ("steady.surface_depth_m", self.surface_depth_m, 0.5, "from 0 to 0.5 m"),
-            ("steady.body_m", self.body_m, 10.0, "from 0 to 10 m"),
-            ("steady.join_m", self.join_m, 10.0, "from 0 to 10 m"),
-            ("steady.max_gap_m", self.max_gap_m, 10.0, "from 0 to 10 m"),
+        let ranges = [
+            ("steady.range_noise_std_m", self.range_noise_std_m, 0.0..=0.5, "from 0 to 0.5 m"),
+            ("steady.surface_depth_m", self.surface_depth_m, 0.0..=0.5, "from 0 to 0.5 m"),
+            ("steady.body_m", self.body_m, 0.0..=10.0, "from 0 to 10 m"),
+            ("steady.join_m", self.join_m, 0.0..=10.0, "from 0 to 10 m"),
+            ("steady.max_gap_m", self.max_gap_m, 0.0..=10.0, "from 0 to 10 m"),
+            ("steady.confirm_s", self.confirm_s, 0.0..=3600.0, "from 0 to 3600 s"),
         ];
-        for (key, length_m, most_m, expected) in lengths {
-            if !(0.0..=most_m).contains(&length_m) {
-                return error(key, expected, length_m.to_string());
-            }
-        }
-        if !(0.0..=3600.0).contains(&self.confirm_s) {
-            return error("steady.confirm_s", "from 0 to 3600 s", self.confirm_s.to_string());
-        }
+        let count = |key, count: u8| (key, f64::from(count), 1.0..=100.0, "from 1 to 100");
         let counts = [
-            ("steady.hits_to_block", self.hits_to_block),
-            ("steady.hits_to_block_in_open", self.hits_to_block_in_open),
-            ("steady.misses_to_discover", self.misses_to_discover),
-            ("steady.misses_to_discover_beside", self.misses_to_discover_beside),
-            ("steady.misses_to_free_fresh", self.misses_to_free_fresh),
-            ("steady.misses_to_free", self.misses_to_free),
+            count("steady.hits_to_block", self.hits_to_block),
+            count("steady.hits_to_block_in_open", self.hits_to_block_in_open),
+            count("steady.misses_to_discover", self.misses_to_discover),
+            count("steady.misses_to_discover_beside", self.misses_to_discover_beside),
+            count("steady.misses_to_free_fresh", self.misses_to_free_fresh),
+            count("steady.misses_to_free", self.misses_to_free),
         ];
-        for (key, count) in counts {
-            if !(1..=100).contains(&count) {
-                return error(key, "from 1 to 100", count.to_string());
+        let order = (
+            "steady.misses_to_free_fresh",
+            f64::from(self.misses_to_free_fresh),
+            1.0..=f64::from(self.misses_to_free),
+            "at most steady.misses_to_free",
+        );
+        for (key, value, range, expected) in ranges.into_iter().chain(counts).chain([order]) {
+            if !range.contains(&value) {
+                return Err(SettingsError { part: "mapper", key, expected, found: value.to_string() });
             }
-        }
-        if self.misses_to_free_fresh > self.misses_to_free {
-            return error(
-                "steady.misses_to_free_fresh",
-                "at most steady.misses_to_free",
-                self.misses_to_free_fresh.to_string(),
-            );
         }
         Ok(())
     }
