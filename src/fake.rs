@@ -2,7 +2,8 @@
 //! forth, and scans from a few lines of geometry. No physics, no agent.
 
 use crate::view::{ObstacleView, Outline, RobotView, Scene, Sight, StrategyView, View};
-use evaluation::metrics::Scores;
+use agent::Features;
+use evaluation::metrics::MapScores;
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -154,7 +155,7 @@ impl FakeRun {
 
     /// Hands the run as it is now to `look`.
     pub(crate) fn with_view<T>(&mut self, look: impl FnOnce(&View) -> T) -> T {
-        let features = agent::Features::of(&mut self.mapper);
+        let features = Features::of(&mut self.mapper);
         let goal = self.curious.waypoints[self.curious.next % self.curious.waypoints.len()];
         let robot = |name, driver: &Driver, is_curious: bool| RobotView {
             name,
@@ -183,7 +184,7 @@ impl FakeRun {
             obstacles: &[ObstacleView { name: "toy", outline: &toy, is_present: self.time_s() > 20.0 }],
             path: &[Point2::from(self.curious.pose.translation.vector), goal],
             goal: Some(goal),
-            scores: Some(Scores { coverage, map_quality: 0.98 * coverage }),
+            scores: Some(MapScores { coverage, map_quality: 0.98 * coverage }),
             rate_errors: None,
             strategies: &[strategy("recency", 0.0), strategy("poisson", 2.0), strategy("random", 4.0)],
             messages: &self.messages,

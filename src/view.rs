@@ -1,6 +1,7 @@
 //! What a run looks like, as plain data: all that the recording and the pictures are told.
 
-use evaluation::metrics::{RateErrors, Scores};
+use agent::Features;
+use evaluation::metrics::{MapScores, RateErrors};
 use interfaces::{CellReading, LaserReading};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
@@ -70,7 +71,7 @@ pub struct View<'a> {
     /// Where the curious robot wants to be, m.
     pub goal: Option<Point2<f64>>,
     /// How right the map is; `None` where that was not measured.
-    pub scores: Option<Scores>,
+    pub scores: Option<MapScores>,
     /// How wrong the rates of change are; `None` where that is not measured.
     pub rate_errors: Option<RateErrors>,
     /// The agent's strategies, in an order that never changes; empty while a person drives.

@@ -1,6 +1,5 @@
 use crate::{Belief, GoalCount, Level, Message, Pilot, StrategyState};
-use agent::Features;
-use agent::{Agent, Goal, Stay, Travel};
+use agent::{Agent, Features, Goal, Stay, Travel};
 use controller::{Controller, Drive, Outcome, Situation, Status};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};

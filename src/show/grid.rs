@@ -2,9 +2,9 @@
 
 use crate::recording::{Recorder, RecordingError};
 use crate::view::{ObstacleView, Outline, RobotView, Scene, Sight, StrategyView, TimeUnit, View};
-use evaluation::metrics::{RateErrors, Scores, cell_map_scores, cell_rate_scores};
+use evaluation::metrics::{MapScores, RateErrors, map_scores, rate_scores};
 use evaluation::report::Trial;
-use evaluation::trials::{Life, Look, SettingsError, live};
+use evaluation::trials::{SettingsError, TrialSettings, TrialStep, run_trial};
 use interfaces::{Cell, Grid, pose};
 use nalgebra::{Isometry2, Point2};
 use robot::{Level, Message};
@@ -51,10 +51,14 @@ pub fn scene(world: &GridSpec) -> Scene {
 /// # Errors
 ///
 /// When settings make no sense.
-pub fn record(life: &Life, recorder: Recorder, is_cancelled: &AtomicBool) -> Result<Recorded, SettingsError> {
+pub fn record(
+    life: &TrialSettings,
+    recorder: Recorder,
+    is_cancelled: &AtomicBool,
+) -> Result<Recorded, SettingsError> {
     let mut observer = Observer::new(life, recorder);
     let mut problem = None;
-    let trial = live(life, |mut look| {
+    let trial = run_trial(life, |mut look| {
         let goes_on = !is_cancelled.load(Ordering::Relaxed);
         if let Err(error) = observer.watch(&mut look, !goes_on) {
             problem = Some(error);
@@ -77,7 +81,7 @@ struct Observer {
 }
 
 impl Observer {
-    fn new(life: &Life, recorder: Recorder) -> Self {
+    fn new(life: &TrialSettings, recorder: Recorder) -> Self {
         let start = life.world.frame().center(life.world.start());
         Self {
             recorder: Some(recorder),
@@ -89,7 +93,7 @@ impl Observer {
 
     /// Looks at one step, which is the last one if `is_cancelled`. After an error there is no recording
     /// any more.
-    fn watch(&mut self, look: &mut Look, is_cancelled: bool) -> Result<(), RecordingError> {
+    fn watch(&mut self, look: &mut TrialStep, is_cancelled: bool) -> Result<(), RecordingError> {
         let Some(mut recorder) = self.recorder.take() else { return Ok(()) };
         let step = look.reading.time as u64;
         let is_last = is_cancelled || step >= self.steps.min(RECORDED_STEPS);
@@ -109,7 +113,7 @@ impl Observer {
     }
 
     /// A cell has no direction: the robot is drawn as it last went.
-    fn turn(&mut self, look: &Look) {
+    fn turn(&mut self, look: &TrialStep) {
         let to = look.reading.pose.translation.vector;
         let way = to - self.pose.translation.vector;
         if way.norm() > 0.0 {
@@ -120,9 +124,9 @@ impl Observer {
     /// Puts together what the trial looks like now.
     fn show<T>(
         &self,
-        look: &Look,
+        look: &TrialStep,
         step: u64,
-        scores: Option<(Scores, RateErrors)>,
+        scores: Option<(MapScores, RateErrors)>,
         messages: &[Message],
         log: impl FnOnce(&View) -> T,
     ) -> T {
@@ -158,13 +162,9 @@ impl Observer {
 }
 
 /// How right the map is, and how wrong the rates are.
-fn measure(look: &Look) -> (Scores, RateErrors) {
+fn measure(look: &TrialStep) -> (MapScores, RateErrors) {
     let (mapper, truth) = (look.belief.mapper, look.world.truth());
-    let (map, rates) = (cell_map_scores(mapper, truth), cell_rate_scores(mapper, truth));
-    (
-        Scores { coverage: map.coverage, map_quality: map.map_quality },
-        RateErrors { relative: rates.rate_error, log: rates.log_error },
-    )
+    (map_scores(mapper, truth), RateErrors::from(&rate_scores(mapper, truth)))
 }
 
 /// The rectangle from one cell to another, both included, with its sides moved inwards, m. Cells are
@@ -203,7 +203,7 @@ fn rectangles(cells: &Grid<bool>) -> Vec<Outline> {
 mod tests {
     use super::*;
     use crate::recording::RecordingOptions;
-    use agent::{AgentSettings, StrategyChoice};
+    use agent::AgentSettings;
     use controller::CellDrive;
     use evaluation::trials::{Experiment, TrialStrategy};
     use mapper::{MapperSettings, Paper};
@@ -214,7 +214,7 @@ mod tests {
         Experiment {
             worlds: vec![crate::worlds::load_grid("two_blocks").unwrap()],
             estimators: vec![Paper.into()],
-            strategies: vec![TrialStrategy::Agent(StrategyChoice::Recency)],
+            strategies: vec![TrialStrategy::Agent("recency".parse().unwrap())],
             trials: 1,
             seed: 3,
             steps,

@@ -5,10 +5,10 @@
 //! does. Each trial depends on nothing but its own seed, so any number of threads gives the same
 //! results.
 
-mod life;
+mod run;
 mod strategy;
 
-pub use life::{Life, Look, live};
+pub use run::{TrialSettings, TrialStep, run_trial};
 pub use strategy::TrialStrategy;
 
 use crate::report::Trial;
@@ -100,16 +100,16 @@ impl Experiment {
     /// One trial; `None` if it was cancelled.
     fn trial(&self, job: Job, is_cancelled: &AtomicBool) -> Result<Option<Trial>, SettingsError> {
         let life = self.life(job);
-        live(&life, |_| !is_cancelled.load(Ordering::Relaxed))
+        run_trial(&life, |_| !is_cancelled.load(Ordering::Relaxed))
     }
 
     /// What one trial is made of.
-    pub fn life(&self, job: Job) -> Life<'_> {
-        let estimator = self.estimators[job.estimator].clone();
-        let mapper = MapperSettings { estimator, ..self.mapper.clone() };
-        Life {
+    pub fn life(&self, job: Job) -> TrialSettings<'_> {
+        let mapper =
+            MapperSettings { estimator: self.estimators[job.estimator].clone(), ..self.mapper.clone() };
+        TrialSettings {
             world: &self.worlds[job.world],
-            strategy: self.strategies[job.strategy],
+            strategy: self.strategies[job.strategy].clone(),
             seed: job.seed,
             steps: self.steps,
             mapper,
@@ -124,11 +124,8 @@ impl Experiment {
 pub enum SettingsError {
     /// One of the mapper's.
     #[error(transparent)]
-    Mapper(#[from] interfaces::SettingsError),
-    /// One of the agent's.
+    Mapper(#[from] mapper::SettingsError),
+    /// One of the agent's or the controller's.
     #[error(transparent)]
-    Agent(#[from] agent::SettingsError),
-    /// One of the controller's.
-    #[error(transparent)]
-    Controller(#[from] controller::SettingsError),
+    Other(#[from] interfaces::SettingsError),
 }

@@ -5,6 +5,7 @@ mod output;
 mod parts;
 mod progress;
 
+use agent::Features;
 use anyhow::Context;
 use args::{Args, DriveChoice};
 use clap::Parser;
@@ -124,8 +125,7 @@ fn live(
         say(stderr(), format_args!("note: {problem}"));
     }
 
-    let features = agent::Features::of(&mut mapper);
-    let belief = Belief { pose: world.true_pose(), features, mapper: &mapper };
+    let belief = Belief { pose: world.true_pose(), features: Features::of(&mut mapper), mapper: &mapper };
     show.finish(&world, &belief, &pilot, &observer).map_err(anyhow::Error::from)?;
     let summary = output::summary(args, settings, &world, &mapper, &pilot, &observer, ended, wall_s);
     drop(pilot); // gives the terminal back before anything is printed
