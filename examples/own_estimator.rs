@@ -4,7 +4,7 @@
 //! cargo run --example own_estimator
 //! ```
 
-use agent::{AgentSettings, Policy};
+use agent::AgentSettings;
 use controller::CellDrive;
 use curious::worlds::load_grid;
 use evaluation::trials::{Experiment, TrialStrategy};
@@ -29,7 +29,7 @@ fn main() -> anyhow::Result<()> {
     let experiment = Experiment {
         worlds: vec![load_grid("two_blocks")?],
         estimators: vec![AllTime.into(), Paper.into(), TwoStateGaps.into()],
-        strategies: vec![TrialStrategy::Agent(Policy::Recency)],
+        strategies: vec![TrialStrategy::Agent("recency".parse()?)],
         trials: 3,
         seed: 0,
         steps: 5000,

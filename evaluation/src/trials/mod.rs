@@ -13,6 +13,7 @@ pub use strategy::TrialStrategy;
 
 use crate::report::Trial;
 use agent::AgentSettings;
+use interfaces::SettingsError;
 use mapper::{EstimatorChoice, MapperSettings};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use sim::grid::GridSpec;
@@ -117,15 +118,4 @@ impl Experiment {
             controller: self.controller,
         }
     }
-}
-
-/// A setting that contradicts itself or another.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SettingsError {
-    /// One of the mapper's.
-    #[error(transparent)]
-    Mapper(#[from] mapper::SettingsError),
-    /// One of the agent's or the controller's.
-    #[error(transparent)]
-    Other(#[from] interfaces::SettingsError),
 }
