@@ -5,8 +5,7 @@ use crate::view::{ObstacleView, Outline, RobotView, Scene, Sight, StrategyView, 
 use evaluation::metrics::{MapScores, RateErrors, map_scores, rate_scores};
 use evaluation::report::Trial;
 use evaluation::trials::{TrialSettings, TrialStep, run_trial};
-use interfaces::SettingsError;
-use interfaces::{Cell, Grid, pose};
+use interfaces::{Cell, Grid, SettingsError, pose};
 use nalgebra::{Isometry2, Point2};
 use robot::{Level, Message};
 use sim::grid::GridSpec;
