@@ -4,8 +4,8 @@ use crate::recording::{Recorder, RecordingError};
 use crate::view::{ObstacleView, Outline, RobotView, Scene, Sight, StrategyView, TimeUnit, View};
 use evaluation::metrics::{MapScores, RateErrors, map_scores, rate_scores};
 use evaluation::report::Trial;
-use evaluation::trials::{SettingsError, TrialSettings, TrialStep, run_trial};
-use interfaces::{Cell, Grid, pose};
+use evaluation::trials::{TrialSettings, TrialStep, run_trial};
+use interfaces::{Cell, Grid, SettingsError, pose};
 use nalgebra::{Isometry2, Point2};
 use robot::{Level, Message};
 use sim::grid::GridSpec;
@@ -201,14 +201,14 @@ mod tests {
     use agent::AgentSettings;
     use controller::CellDrive;
     use evaluation::trials::{Experiment, TrialStrategy};
-    use mapper::{Estimator, MapperSettings};
+    use mapper::{MapperSettings, Paper};
     use std::path::Path;
 
     /// The first trial of the shipped world, of so many steps.
     fn experiment(steps: u64) -> Experiment {
         Experiment {
             worlds: vec![crate::worlds::load_grid("two_blocks").unwrap()],
-            estimators: vec![Estimator::Paper],
+            estimators: vec![Paper.into()],
             strategies: vec![TrialStrategy::Agent("recency".parse().unwrap())],
             trials: 1,
             seed: 3,

@@ -13,7 +13,8 @@ pub use strategy::TrialStrategy;
 
 use crate::report::Trial;
 use agent::AgentSettings;
-use mapper::{Estimator, MapperSettings};
+use interfaces::SettingsError;
+use mapper::{EstimatorChoice, MapperSettings};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use sim::grid::GridSpec;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,7 +25,7 @@ pub struct Experiment {
     /// The worlds.
     pub worlds: Vec<GridSpec>,
     /// The ways to estimate rates.
-    pub estimators: Vec<Estimator>,
+    pub estimators: Vec<EstimatorChoice>,
     /// The ways to choose goals.
     pub strategies: Vec<TrialStrategy>,
     /// Trials of each combination.
@@ -105,7 +106,8 @@ impl Experiment {
 
     /// What one trial is made of.
     pub fn life(&self, job: Job) -> TrialSettings<'_> {
-        let mapper = MapperSettings { estimator: self.estimators[job.estimator], ..self.mapper.clone() };
+        let mapper =
+            MapperSettings { estimator: self.estimators[job.estimator].clone(), ..self.mapper.clone() };
         TrialSettings {
             world: &self.worlds[job.world],
             strategy: self.strategies[job.strategy].clone(),
@@ -116,15 +118,4 @@ impl Experiment {
             controller: self.controller,
         }
     }
-}
-
-/// A setting that contradicts itself or another.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SettingsError {
-    /// One of the mapper's.
-    #[error(transparent)]
-    Mapper(#[from] mapper::SettingsError),
-    /// One of the agent's or the controller's.
-    #[error(transparent)]
-    Other(#[from] interfaces::SettingsError),
 }

@@ -4,7 +4,7 @@ use agent::Policy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use curious::recording::Live;
-use mapper::{Estimator, OccupancyModel};
+use mapper::{Choice, Estimator, EstimatorChoice, OccupancyChoice, OccupancyKind};
 use std::path::PathBuf;
 
 /// A curious robot maps a house that changes, and learns where it changes and how often.
@@ -60,13 +60,13 @@ pub(crate) struct Args {
     pub(crate) speed: Option<f64>,
 
     /// How rates of change are estimated
-    #[arg(long, default_value = "two-state-gaps", value_parser = estimators(), help_heading = "How to learn")]
-    pub(crate) estimator: Estimator,
+    #[arg(long, default_value = "two-state-gaps", value_parser = mapper_part::<dyn Estimator>(), help_heading = "How to learn")]
+    pub(crate) estimator: EstimatorChoice,
 
     /// How scans become a map: steady (walls never flicker) or naive (every beam counts, as in the
     /// paper)
-    #[arg(long, default_value = "steady", value_parser = occupancies(), help_heading = "How to learn")]
-    pub(crate) occupancy: OccupancyModel,
+    #[arg(long, default_value = "steady", value_parser = mapper_part::<OccupancyKind>(), help_heading = "How to learn")]
+    pub(crate) occupancy: OccupancyChoice,
 
     /// The folder for everything that comes out
     #[arg(long, value_name = "DIR", default_value = "four_rooms_out", help_heading = "What comes out")]
@@ -119,12 +119,10 @@ fn strategies() -> impl TypedValueParser<Value = Policy> {
     PossibleValuesParser::new(Policy::built_in().iter().map(named)).try_map(|name| name.parse::<Policy>())
 }
 
-fn estimators() -> impl TypedValueParser<Value = Estimator> {
-    one_of(&Estimator::ALL, Estimator::name)
-}
-
-fn occupancies() -> impl TypedValueParser<Value = OccupancyModel> {
-    one_of(&OccupancyModel::ALL, OccupancyModel::name)
+/// A parser of the name of a built-in part of the mapper.
+fn mapper_part<T: mapper::Named + ?Sized>() -> impl TypedValueParser<Value = Choice<T>> {
+    let names: Vec<_> = Choice::<T>::all().iter().map(Choice::name).collect();
+    PossibleValuesParser::new(names).try_map(Choice::try_from)
 }
 
 /// The longest run, s: 1000 hours.

@@ -61,8 +61,8 @@ impl Settings {
     fn new(args: &Args, spec: &WorldSpec) -> Self {
         let (robot, defaults) = (spec.driven(), DiffDriveSettings::default());
         let mut mapper = MapperSettings {
-            estimator: args.estimator,
-            occupancy: args.occupancy,
+            estimator: args.estimator.clone(),
+            occupancy: args.occupancy.clone(),
             max_gap: HIDING_S,
             ..MapperSettings::default()
         };

@@ -12,8 +12,9 @@ use curious::show::{Recorded, record, scene};
 use curious::worlds;
 use evaluation::output::{make_folder, say, write_file};
 use evaluation::report::{Report, ReportSettings, Trial, WorldPicture};
-use evaluation::trials::{Experiment, SettingsError};
-use mapper::{Estimator, MapperSettings};
+use evaluation::trials::Experiment;
+use interfaces::SettingsError;
+use mapper::{EstimatorChoice, MapperSettings, Paper};
 use progress::Progress;
 use sim::grid::{GenerateSettings, GridSpec};
 use std::collections::BTreeSet;
@@ -53,7 +54,7 @@ fn main() -> ExitCode {
 fn experiment(args: &Args) -> anyhow::Result<Experiment> {
     let mut estimators = args.estimator.clone();
     if estimators.is_empty() {
-        estimators = vec![Estimator::Paper, Estimator::default()];
+        estimators = vec![Paper.into(), EstimatorChoice::default()];
     }
     let mut controller = CellDrive::settings();
     controller.exploration.max_steps = args.max_steps;
