@@ -2,7 +2,7 @@
 
 use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng};
 use agent::{
-    Agent, AgentSettings, AsTheCrowFlies, Chooser, Features, Policy, Random, Recency, Reward, Situation,
+    Agent, AgentSettings, Chooser, Features, Policy, Random, Recency, Reward, Situation, StraightLineTravel,
     Trajectory,
 };
 use interfaces::{Cell, CellReading, CellState, RandomStream, Transition};
@@ -47,7 +47,7 @@ fn live(agent: &mut Agent, mut check: impl FnMut(&Agent, &Mapper, Cell)) -> Vec<
         let features = Features::of(&mut mapper);
         agent.watch(features, mapper.transitions());
         let target = *goal.get_or_insert_with(|| {
-            let goal = agent.next_goal(&mapper, &seen.pose, &mut AsTheCrowFlies).cell;
+            let goal = agent.next_goal(&mapper, &seen.pose, &mut StraightLineTravel).cell;
             check(agent, &mapper, goal);
             goals.push(goal);
             left = 5;
@@ -145,7 +145,7 @@ fn the_first_choice_and_the_coin_are_fair() {
     for choice in ["curious", "coin"] {
         let firsts = (0..1000).filter(|&seed| {
             let mut agent = agent(choice, seed);
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
             agent.current() == Some(0)
         });
         // Four standard deviations.
@@ -153,7 +153,7 @@ fn the_first_choice_and_the_coin_are_fair() {
     }
     let mut agent = agent("coin", 1);
     for _ in 0..1000 {
-        agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
+        agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
     }
     assert!(agent.shares().all(|share| (0.436..=0.564).contains(&share)));
 }
@@ -194,7 +194,7 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
         let strategies: Vec<Box<dyn agent::Strategy>> = vec![Box::new(Recency), Box::new(Random)];
         let mut agent = Agent::with(&settings, strategies, Box::new(pupil), rng(0)).unwrap();
         let goal = |agent: &mut Agent| {
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
         };
         agent.watch(at(9.0), &[found; 50]); // before the first goal: nobody's merit
         goal(&mut agent);
@@ -243,7 +243,7 @@ fn progress_is_what_the_events_of_a_trajectory_tell_per_reading() {
         // The first goal comes after one event, the next two readings and two events later, the last
         // when two readings showed nothing.
         if [1, 3, 5].contains(&step) {
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
         }
     }
     let heard = heard.lock().unwrap();
