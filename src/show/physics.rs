@@ -101,7 +101,7 @@ impl PhysicsShow {
                 pose: robot.pose,
                 radius_m: robot.radius_m,
                 is_curious: robot.is_driven,
-                sight: robot.sweep.map(|sweep| Sight::Laser(&sweep.reading)),
+                sight: robot.reading.map(Sight::Laser),
             })
             .collect();
         // Those that are there, where they are now; the others, where they were or will be.
