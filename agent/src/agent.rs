@@ -10,15 +10,6 @@ use mapper::Mapper;
 use nalgebra::Isometry2;
 use std::f64::consts::LN_10;
 
-/// The use of one strategy.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
-    /// The number of goals that it sampled.
-    pub goals: usize,
-    /// The number of readings while it was followed.
-    pub readings: usize,
-}
-
 /// Decides where to look next (section 4).
 ///
 /// [`Agent::watch`] takes every reading; [`Agent::next_goal`] is called when the controller is done with the
@@ -41,9 +32,9 @@ pub struct Agent {
     /// The rate information when the present goal was sampled.
     information: f64,
     features: Features,
-    tallies: Vec<Tally>,
+    /// The number of goals that each strategy sampled.
+    goal_counts: Vec<usize>,
     last_reward: f64,
-    last_length: usize,
 }
 
 impl Agent {
@@ -79,7 +70,7 @@ impl Agent {
             return Err(error("strategies", "at least one", "none"));
         }
         Ok(Self {
-            tallies: vec![Tally::default(); strategies.len()],
+            goal_counts: vec![0; strategies.len()],
             strategies,
             chooser,
             goals: GoalSampler::new(settings.patch_cells),
@@ -92,7 +83,6 @@ impl Agent {
             information: 0.0,
             features: Features::default(),
             last_reward: 0.0,
-            last_length: 0,
         })
     }
 
@@ -100,10 +90,9 @@ impl Agent {
     /// the first goal belong to no strategy.
     pub fn watch(&mut self, features: Features, transitions: &[Transition]) {
         self.features = features;
-        if let Some(strategy) = self.current {
+        if self.current.is_some() {
             self.trajectory.push(features);
             self.updates += self.reward.count(transitions);
-            self.tallies[strategy].readings += 1;
         }
     }
 
@@ -118,7 +107,7 @@ impl Agent {
         let situation = Situation::new(mapper, pose, self.features).with_travel(&self.travel);
         let strategy = self.chooser.choose(&situation, &mut self.rng).min(self.strategies.len() - 1);
         self.current = Some(strategy);
-        self.tallies[strategy].goals += 1;
+        self.goal_counts[strategy] += 1;
         self.goals.sample(&mut *self.strategies[strategy], &situation, &mut self.rng)
     }
 
@@ -126,10 +115,10 @@ impl Agent {
         let before = std::mem::replace(&mut self.information, rate_information(mapper));
         // A trajectory without a reading teaches nothing.
         let Some(strategy) = self.current.filter(|_| !self.trajectory.is_empty()) else { return };
-        self.last_length = self.trajectory.len();
-        self.last_reward = self.updates as f64 / self.last_length as f64;
+        let length = self.trajectory.len() as f64;
+        self.last_reward = self.updates as f64 / length;
         // A first sighting that proved wrong reduces the information.
-        let progress = (self.information - before).max(0.0) / self.last_length as f64;
+        let progress = (self.information - before).max(0.0) / length;
         let (features, reward) = (&self.trajectory[..], self.last_reward);
         self.chooser.learn(&Trajectory { strategy, features, reward, progress });
         self.trajectory.clear();
@@ -152,25 +141,15 @@ impl Agent {
         self.chooser.value(strategy, features)
     }
 
-    /// The use of each strategy, by index.
-    pub fn tallies(&self) -> &[Tally] {
-        &self.tallies
-    }
-
     /// The share of the goals that each strategy sampled, by index; all 0 before the first goal.
     pub fn shares(&self) -> impl ExactSizeIterator<Item = f64> {
-        let goals: usize = self.tallies.iter().map(|tally| tally.goals).sum();
-        self.tallies.iter().map(move |tally| tally.goals as f64 / goals.max(1) as f64)
+        let goals: usize = self.goal_counts.iter().sum();
+        self.goal_counts.iter().map(move |&count| count as f64 / goals.max(1) as f64)
     }
 
     /// The reward of the last finished trajectory, in map updates per reading; 0 before the first.
     pub fn last_reward(&self) -> f64 {
         self.last_reward
-    }
-
-    /// The length of the last finished trajectory, in readings; 0 before the first.
-    pub fn last_length(&self) -> usize {
-        self.last_length
     }
 }
 

@@ -20,7 +20,7 @@ mod situation;
 mod strategies;
 mod visibility;
 
-pub use agent::{Agent, Tally};
+pub use agent::Agent;
 pub use choosers::{Always, Chooser, Coin, Curious, Progress, TileCoder, Trajectory};
 pub use features::Features;
 pub use goal_sampler::Goal;

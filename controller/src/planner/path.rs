@@ -27,11 +27,6 @@ impl Path {
         self.points.last()
     }
 
-    /// The length of the whole path, m.
-    pub fn length_m(&self) -> f64 {
-        self.remaining_m.first().copied().unwrap_or(0.0)
-    }
-
     /// The distance from `position` to the end along the path, m.
     pub fn remaining_m(&self, position: &Point2<f64>) -> f64 {
         match self.ahead().first() {
@@ -165,6 +160,10 @@ pub(super) fn corners(
 mod tests {
     use super::*;
 
+    fn length_m(path: &Path) -> f64 {
+        path.remaining_m.first().copied().unwrap_or(0.0)
+    }
+
     fn path(points: &[(f64, f64)]) -> Path {
         let mut path = Path::default();
         path.set(points.iter().map(|(x, y)| Point2::new(*x, *y)));
@@ -174,7 +173,7 @@ mod tests {
     #[test]
     fn the_robot_goes_along_the_legs() {
         let mut path = path(&[(0.0, 0.0), (2.0, 0.0), (2.0, 2.0)]);
-        assert_eq!(path.length_m(), 4.0);
+        assert_eq!(length_m(&path), 4.0);
         assert_eq!(path.advance(&Point2::new(1.0, 0.1)), 0.1);
         assert_eq!(path.lookahead_point(&Point2::new(1.0, 0.1), 1.5), Some(Point2::new(2.0, 0.5)));
         assert_eq!(path.advance(&Point2::new(2.1, 0.5)), 2.1 - 2.0);
@@ -190,16 +189,16 @@ mod tests {
         let mut path = path(&[(0.0, 0.0), (2.0, 0.0), (2.0, 2.0)]);
         path.truncate(2.5);
         assert_eq!(path.end(), Some(&Point2::new(2.0, 0.5)));
-        assert_eq!(path.length_m(), 2.5);
+        assert_eq!(length_m(&path), 2.5);
         path.truncate(9.0);
-        assert_eq!(path.length_m(), 2.5);
+        assert_eq!(length_m(&path), 2.5);
     }
 
     #[test]
     fn no_path_and_a_single_point_are_valid() {
         let mut none = Path::default();
         assert_eq!(none.advance(&Point2::origin()), f64::INFINITY);
-        assert_eq!((none.lookahead_point(&Point2::origin(), 1.0), none.length_m()), (None, 0.0));
+        assert_eq!((none.lookahead_point(&Point2::origin(), 1.0), length_m(&none)), (None, 0.0));
         let mut point = path(&[(1.0, 0.0)]);
         point.truncate(0.5);
         assert_eq!(point.advance(&Point2::origin()), 1.0);
