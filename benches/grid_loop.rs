@@ -10,8 +10,6 @@
 
 use agent::{Agent, AgentSettings, StrategyChoice, Travel};
 use controller::{CellDrive, Controller};
-use curious::explore;
-use curious::pilot::{Autonomous, Guide, Now, Pilot, Visit};
 use curious::worlds;
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -19,6 +17,7 @@ use interfaces::Step;
 use mapper::{Mapper, MapperSettings, ReadingError};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use robot::{Autonomous, Belief, Destination, GoalSelector, Pilot, explore};
 use sim::grid::{GenerateSettings, GridSpec, GridWorld};
 use std::ops::ControlFlow;
 
@@ -91,7 +90,7 @@ impl<P: Pilot<Command = Step>> Life<P> {
     }
 }
 
-fn autonomous<G: Guide>(guide: G) -> Autonomous<G, CellDrive> {
+fn autonomous<G: GoalSelector>(guide: G) -> Autonomous<G, CellDrive> {
     let controller = Controller::new(CellDrive::settings(), CellDrive, chance(1));
     Autonomous::new(guide, controller.expect("the drive's own settings make sense"))
 }
@@ -103,18 +102,18 @@ fn agent(choice: StrategyChoice) -> Agent {
 /// An agent, and what it decided.
 struct Remembering {
     agent: Agent,
-    visits: Vec<Visit>,
+    visits: Vec<Destination>,
 }
 
-impl Guide for Remembering {
-    fn next_goal(&mut self, now: &Now, travel: &mut impl Travel) -> Option<Visit> {
-        let visit = Guide::next_goal(&mut self.agent, now, travel);
+impl GoalSelector for Remembering {
+    fn next_goal(&mut self, belief: &Belief, travel: &mut impl Travel) -> Option<Destination> {
+        let visit = GoalSelector::next_goal(&mut self.agent, belief, travel);
         self.visits.extend(visit);
         visit
     }
 
-    fn watch(&mut self, now: &Now) {
-        Guide::watch(&mut self.agent, now);
+    fn observe(&mut self, belief: &Belief) {
+        GoalSelector::observe(&mut self.agent, belief);
     }
 
     fn reason(&self) -> String {
@@ -123,10 +122,10 @@ impl Guide for Remembering {
 }
 
 /// Decides what was decided before.
-struct Repeating(std::vec::IntoIter<Visit>);
+struct Repeating(std::vec::IntoIter<Destination>);
 
-impl Guide for Repeating {
-    fn next_goal(&mut self, _: &Now, _: &mut impl Travel) -> Option<Visit> {
+impl GoalSelector for Repeating {
+    fn next_goal(&mut self, _: &Belief, _: &mut impl Travel) -> Option<Destination> {
         self.0.next()
     }
 
@@ -144,8 +143,8 @@ struct Followed<P> {
 impl<P: Pilot<Command = Step>> Pilot for Followed<P> {
     type Command = Step;
 
-    fn command(&mut self, now: &Now) -> Step {
-        let step = self.pilot.command(now);
+    fn command(&mut self, belief: &Belief) -> Step {
+        let step = self.pilot.command(belief);
         self.way.push(step);
         step
     }
@@ -157,7 +156,7 @@ struct Way(std::vec::IntoIter<Step>);
 impl Pilot for Way {
     type Command = Step;
 
-    fn command(&mut self, _: &Now) -> Step {
+    fn command(&mut self, _: &Belief) -> Step {
         self.0.next().unwrap_or_default()
     }
 }
@@ -181,7 +180,7 @@ fn known_goals(bencher: Bencher<'_, '_>, (name, choice): (&str, StrategyChoice))
     let spec = world(name);
     let remembering = Remembering { agent: agent(choice), visits: Vec::new() };
     let mut life = Life::new(&spec, autonomous(remembering)).live();
-    let visits = std::mem::take(&mut life.pilot.guide_mut().visits);
+    let visits = std::mem::take(&mut life.pilot.selector_mut().visits);
     let robot = life.world.robot();
     let again = || autonomous(Repeating(visits.clone().into_iter()));
     assert_eq!(Life::new(&spec, again()).live().world.robot(), robot, "the same goals, the same way");

@@ -19,13 +19,12 @@ use agent::Agent;
 use args::Args;
 use clap::Parser;
 use controller::DiffDrive;
-use curious::explore;
-use curious::observer::Observer;
-use curious::pilot::{Autonomous, Now, Pilot};
-use curious::summary::map_hash;
+use evaluation::observer::Observer;
+use evaluation::summary::map_hash;
 use interfaces::World;
-use mapper::Mapper;
+use mapper::{Mapper, ReadingError};
 use parts::Parts;
+use robot::{Autonomous, Belief, Pilot, explore};
 use sim::physics::PhysicsWorld;
 use std::ops::ControlFlow;
 
@@ -51,8 +50,8 @@ impl Life {
     fn tick(&mut self) {
         let reading = self.world.sense();
         self.mapper.update(&reading).expect("the physics world gives readings that make sense");
-        let now = Now { pose: &reading.pose, features: self.mapper.features(), mapper: &self.mapper };
-        let command = self.pilot.command(&now);
+        let belief = Belief { pose: &reading.pose, features: self.mapper.features(), mapper: &self.mapper };
+        let command = self.pilot.command(&belief);
         self.pilot.take_messages();
         self.world.act(&command);
     }
@@ -60,15 +59,15 @@ impl Life {
     /// Lives until `end_s`, watched or not.
     fn explore(&mut self, end_s: f64, mut observer: Option<Observer>) {
         let Self { world, mapper, pilot } = self;
-        explore(world, mapper, pilot, |world, reading, now, pilot| -> anyhow::Result<_> {
+        explore(world, mapper, pilot, |world, reading, belief, pilot| -> Result<_, ReadingError> {
             match &mut observer {
-                Some(observer) => observer.watch(world, reading, now, pilot)?,
+                Some(observer) => observer.observe(world, reading, belief, pilot),
                 None => drop(pilot.take_messages()),
             }
             let is_over = reading.time_s >= end_s;
             Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         })
-        .expect("nothing can fail without a recording");
+        .expect("the physics world gives readings that make sense");
     }
 }
 
@@ -85,7 +84,7 @@ fn tick(bencher: divan::Bencher) {
 fn explore_60_s(bencher: divan::Bencher, with_metrics: bool) {
     let prepared = || {
         let life = Life::new();
-        let observer = with_metrics.then(|| Observer::new(&life.world, None));
+        let observer = with_metrics.then(|| Observer::default());
         (life, observer)
     };
     bencher.with_inputs(prepared).bench_local_values(|(mut life, observer)| life.explore(60.0, observer));

@@ -4,7 +4,7 @@
 //! than `free_thresh` is free, anything else unknown, strictly. Row 0 of the picture has the
 //! highest y.
 
-use crate::output::{OutputError, write_file};
+use evaluation::output::{OutputError, write_file};
 use image::{DynamicImage, ImageDecoder, ImageReader};
 use interfaces::{CellState, Grid, GridFrame, pose};
 use nalgebra::{Isometry2, Point2};

@@ -2,9 +2,9 @@
 
 use agent::{AgentSettings, Reward, StrategyChoice};
 use controller::CellDrive;
-use curious::report::{Report, ReportSettings, WorldPicture};
-use curious::trials::{Experiment, Job, TrialStrategy};
 use curious::worlds::{SHIPPED_GRID, load_grid};
+use evaluation::report::{Report, ReportSettings, WorldPicture};
+use evaluation::trials::{Experiment, Job, TrialStrategy};
 use mapper::{Estimator, MapperSettings};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::sync::atomic::AtomicBool;

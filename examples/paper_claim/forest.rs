@@ -1,7 +1,7 @@
 //! The picture of all verdicts: a forest plot.
 
 use crate::Finding;
-use curious::report::{Claim, Comparison, Verdict};
+use evaluation::report::{Claim, Comparison, Verdict};
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 use std::path::Path;

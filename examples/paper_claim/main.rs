@@ -14,8 +14,8 @@ mod tables;
 
 use anyhow::Context;
 use condition::{BASE, Condition, conditions};
-use curious::output::{make_folder, write_file};
-use curious::report::{Claim, Report, Run};
+use evaluation::output::{make_folder, write_file};
+use evaluation::report::{Claim, Report, Run};
 use std::path::{Path, PathBuf};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/figure3");

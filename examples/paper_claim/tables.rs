@@ -1,7 +1,7 @@
 //! The tables of docs/figure3/results.md.
 
 use crate::Finding;
-use curious::report::{Claim, Measure, Metric, Part};
+use evaluation::report::{Claim, Measure, Metric, Part};
 use std::fmt::Write;
 
 pub(crate) fn markdown(findings: &[Finding], seeds: u64) -> String {

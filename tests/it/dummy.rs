@@ -1,10 +1,9 @@
 //! The dummy waits while the curious robot stands in its way, and the map tells so.
 
-use curious::explore;
-use curious::pilot::{Now, Pilot};
 use interfaces::{CellState, Twist};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::Point2;
+use robot::{Belief, Pilot, explore};
 use sim::physics::{PhysicsWorld, WorldSpec};
 use std::ops::ControlFlow;
 
@@ -17,8 +16,8 @@ struct Visitor;
 impl Pilot for Visitor {
     type Command = Twist;
 
-    fn command(&mut self, now: &Now) -> Twist {
-        let goes = now.mapper.time() > STANDS_UNTIL_S && now.pose.translation.y > 9.0;
+    fn command(&mut self, belief: &Belief) -> Twist {
+        let goes = belief.mapper.time() > STANDS_UNTIL_S && belief.pose.translation.y > 9.0;
         Twist { linear_mps: if goes { 0.5 } else { 0.0 }, angular_radps: 0.0 }
     }
 }
@@ -37,13 +36,13 @@ fn it_waits_and_goes_on() {
     let mut mapper = Mapper::new(&MapperSettings::default(), *world.spec().frame()).unwrap();
     let mut way: Vec<(f64, f64)> = Vec::new();
     let mut seen_waiting = Vec::new();
-    explore(&mut world, &mut mapper, &mut Visitor, |world, reading, now, _| -> anyhow::Result<_> {
+    explore(&mut world, &mut mapper, &mut Visitor, |world, reading, belief, _| -> anyhow::Result<_> {
         let dummy = world.robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
         way.push((reading.time_s, dummy.x));
         if reading.time_s < STANDS_UNTIL_S {
             // The front of the dummy's body, which the robot looks at.
             let front = Point2::new(dummy.x + 0.18, dummy.y);
-            seen_waiting.push(now.mapper.states().get(now.mapper.frame().cell_at(&front)).copied());
+            seen_waiting.push(belief.mapper.states().get(belief.mapper.frame().cell_at(&front)).copied());
         }
         let is_over = reading.time_s >= END_S;
         Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })

@@ -1,12 +1,12 @@
 //! A made-up run for tests: four rooms, a robot that drives a tour, another that goes back and
 //! forth, and scans from a few lines of geometry. No physics, no agent.
 
-use crate::view::{
-    Level, Message, ObstacleView, Outline, RobotView, Scene, Scores, Sight, StrategyView, View,
-};
+use crate::view::{ObstacleView, Outline, RobotView, Scene, Sight, StrategyView, View};
+use evaluation::metrics::Scores;
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2, Vector2};
+use robot::{Level, Message};
 use std::f64::consts::TAU;
 
 const TICK_S: f64 = 0.1;

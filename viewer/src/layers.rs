@@ -2,14 +2,10 @@
 //! meaning. The recording and the pictures share them, so that a colour means the same in both.
 
 use crate::view::TimeUnit;
+pub use evaluation::drawing::{CURIOUS, Rgb};
 use interfaces::CellState;
 use mapper::Mapper;
 
-/// A colour: red, green, blue.
-pub type Rgb = [u8; 3];
-
-/// The colour of the curious robot and all that is its own.
-pub const CURIOUS: Rgb = [31, 97, 209];
 /// The colour of the other robots: green, as in Figure 4.
 pub const OTHERS: Rgb = [26, 158, 64];
 

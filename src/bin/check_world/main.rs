@@ -1,10 +1,12 @@
 //! Says what is in world files, draws them, and tells all that is wrong with them.
 
+mod inspection;
+
 use anyhow::bail;
 use clap::Parser;
-use curious::inspection::{Content, Inspection, as_world_file, inspect};
-use curious::output::{make_folder, say, write_file};
 use curious::pictures::draw_plan;
+use evaluation::output::{make_folder, say, write_file};
+use inspection::{Content, Inspection, as_world_file, inspect};
 use std::collections::BTreeSet;
 use std::io::{stderr, stdout};
 use std::path::{Path, PathBuf};
@@ -102,7 +104,7 @@ fn leave(content: &Content, file: &str, args: &Args, written: &mut BTreeSet<Path
     };
     if args.png {
         let picture = place(".png")?;
-        draw_plan(&picture, content)?;
+        draw_plan(&picture, &content.name, &content.plan)?;
         say(stdout(), format_args!("  picture   {}", picture.display()));
     }
     if args.toml {

@@ -8,15 +8,16 @@ mod progress;
 use anyhow::Context;
 use args::{Args, DriveChoice};
 use clap::Parser;
-use curious::observer::Observer;
-use curious::output::{make_folder, say};
-use curious::pilot::{Now, Pilot};
 use curious::recording::{Live, Recorder, RecordingOptions};
-use curious::{explore, worlds};
+use curious::show::PhysicsShow;
+use curious::worlds;
+use evaluation::observer::Observer;
+use evaluation::output::{make_folder, say};
 use interfaces::{Reading, Twist};
 use mapper::Mapper;
 use parts::{Failure, Parts};
 use progress::Progress;
+use robot::{Belief, Pilot, explore};
 use sim::physics::PhysicsWorld;
 use std::io::{stderr, stdout};
 use std::ops::ControlFlow;
@@ -86,8 +87,8 @@ fn live(
 ) -> Result<Ended, Failure> {
     make_folder(&args.out).map_err(anyhow::Error::from)?;
     let recorder = recorder(args, &world)?;
-    let mut observer = Observer::new(&world, recorder);
-    let told = observer.live_problem();
+    let (mut observer, mut show) = (Observer::default(), PhysicsShow::new(&world, recorder));
+    let told = show.live_problem();
     told.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
     let is_interrupted = Arc::new(AtomicBool::new(false));
     let flag = is_interrupted.clone();
@@ -101,8 +102,9 @@ fn live(
     let mut progress = Progress::new(args.duration, args.quiet, is_keyboard);
     let mut ended = Ended::Duration;
     let start = Instant::now();
-    explore(&mut world, &mut mapper, &mut pilot, |world, reading, now, pilot| -> anyhow::Result<_> {
-        observer.watch(world, reading, now, pilot)?;
+    explore(&mut world, &mut mapper, &mut pilot, |world, reading, belief, pilot| -> anyhow::Result<_> {
+        observer.observe(world, reading, belief, pilot);
+        show.show(world, belief, pilot, &observer)?;
         progress.show(reading.time(), observer.scores());
         if speed.is_finite() {
             let due = Duration::from_secs_f64(reading.time() / speed);
@@ -118,15 +120,15 @@ fn live(
     })?;
     let wall_s = start.elapsed().as_secs_f64();
     progress.finish();
-    if let Some(problem) = observer.live_problem().filter(|problem| Some(problem) != told.as_ref()) {
+    if let Some(problem) = show.live_problem().filter(|problem| Some(problem) != told.as_ref()) {
         say(stderr(), format_args!("note: {problem}"));
     }
 
-    let now = Now { pose: world.true_pose(), features: mapper.features(), mapper: &mapper };
-    observer.finish(&world, &now, &pilot).map_err(anyhow::Error::from)?;
+    let belief = Belief { pose: world.true_pose(), features: mapper.features(), mapper: &mapper };
+    show.finish(&world, &belief, &pilot, &observer).map_err(anyhow::Error::from)?;
     let summary = output::summary(args, settings, &world, &mapper, &pilot, &observer, ended, wall_s);
     drop(pilot); // gives the terminal back before anything is printed
-    output::write(&args.out, &world, &mapper, &observer, &summary)?;
+    output::write(&args.out, &world, &mapper, &show, &observer, &summary)?;
     if !args.quiet {
         say(stdout(), format_args!("{summary}\n  files     {}", args.out.display()));
     }
@@ -141,6 +143,6 @@ fn recorder(args: &Args, world: &PhysicsWorld) -> Result<Option<Recorder>, Failu
         return Ok(None);
     }
     let options = RecordingOptions { file, live, ..RecordingOptions::default() };
-    let recorder = Recorder::new(&options, Observer::scene(world)).map_err(anyhow::Error::from)?;
+    let recorder = Recorder::new(&options, PhysicsShow::scene(world)).map_err(anyhow::Error::from)?;
     Ok(Some(recorder))
 }

@@ -3,16 +3,17 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use crate::parts::Settings;
-use curious::cell_statistics;
-use curious::metrics;
-use curious::observer::Observer;
-use curious::output::write_file;
 use curious::pictures::{self, Pictures};
-use curious::pilot::Pilot;
 use curious::ros_map;
-use curious::summary::{Liveliest, Summary, map_hash};
+use curious::show::PhysicsShow;
+use evaluation::cell_statistics;
+use evaluation::metrics;
+use evaluation::observer::Observer;
+use evaluation::output::write_file;
+use evaluation::summary::{Liveliest, Summary, map_hash};
 use interfaces::Twist;
 use mapper::Mapper;
+use robot::Pilot;
 use sim::physics::PhysicsWorld;
 use std::path::Path;
 
@@ -21,11 +22,12 @@ pub(crate) fn write(
     folder: &Path,
     world: &PhysicsWorld,
     mapper: &Mapper,
+    show: &PhysicsShow,
     observer: &Observer,
     summary: &Summary,
 ) -> anyhow::Result<()> {
-    let (trails, goals) = observer.ways();
-    let scene = &Observer::scene(world);
+    let (trails, goals) = (show.trails(), observer.goals());
+    let scene = &PhysicsShow::scene(world);
     pictures::write_all(folder, &Pictures { scene, mapper, trails, goals })?;
     ros_map::write(folder, mapper.states())?;
     cell_statistics::write(&folder.join("cell_statistics.csv"), mapper)?;
@@ -83,7 +85,11 @@ pub(crate) fn summary(
         collisions: moving,
         contacts_while_standing: world.contacts().len() - moving,
         goals: pilot.goals(),
-        strategy_share: pilot.strategies(Default::default()).iter().map(|s| (s.name, s.share)).collect(),
+        strategy_share: pilot
+            .strategies(Default::default())
+            .iter()
+            .map(|s| (s.name.clone(), s.share))
+            .collect(),
         things: findings.things,
         curve: findings.curve,
         map_hash: map_hash(mapper),

@@ -4,14 +4,16 @@ use crate::args::{Args, DriveChoice};
 use agent::{Agent, AgentSettings};
 use anyhow::{Context, anyhow};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
-use curious::output::say;
-use curious::pilot::{Autonomous, Keyboard, Tour};
+use curious::keyboard::Keyboard;
 use curious::ros_map::RosMap;
+use curious::tour_file::TourSpec;
 use curious::worlds::{self, Loaded};
+use evaluation::output::say;
 use interfaces::Twist;
 use mapper::{Mapper, MapperSettings};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use robot::{Autonomous, Tour};
 use serde::Serialize;
 use sim::physics::{PhysicsWorld, WorldSpec};
 use std::io::stderr;
@@ -124,10 +126,11 @@ impl Settings {
     pub(crate) fn tour(&self, args: &Args) -> Result<Autonomous<Tour, DiffDrive>, Failure> {
         let (name, text) = worlds::TOUR;
         let tour = match &args.tour {
-            Some(path) => Tour::load(path),
-            None => Tour::parse(Path::new(name), text),
+            Some(path) => TourSpec::load(path),
+            None => TourSpec::parse(Path::new(name), text),
         };
-        Ok(Autonomous::new(tour.map_err(input)?, self.controller(args.seed)?))
+        let TourSpec { waypoints, repeat } = tour.map_err(input)?;
+        Ok(Autonomous::new(Tour::new(waypoints, repeat), self.controller(args.seed)?))
     }
 
     pub(crate) fn keyboard(&self) -> Result<Keyboard, Failure> {

@@ -1,6 +1,6 @@
 //! How far a run is: a bar in a terminal, plain lines elsewhere.
 
-use curious::view::Scores;
+use evaluation::metrics::Scores;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};

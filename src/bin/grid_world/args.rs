@@ -3,7 +3,7 @@
 use agent::Reward;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use curious::trials::TrialStrategy;
+use evaluation::trials::TrialStrategy;
 use mapper::Estimator;
 use std::path::PathBuf;
 

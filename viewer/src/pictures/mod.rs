@@ -1,19 +1,19 @@
 //! Pictures of what was learned, without a viewer: the panels of the paper's Figure 5, and the
 //! trajectories of its Figure 4.
 
-pub(crate) mod canvas;
 mod panel;
 mod plan;
 mod trajectory;
 
-use crate::inspection::Content;
 use crate::layer::Layer;
-use crate::output::{OutputError, make_folder};
 use crate::view::{Scene, Trail};
-use canvas::Canvas;
+use evaluation::drawing::{Canvas, PictureError};
+use evaluation::output::make_folder;
 use mapper::Mapper;
 use nalgebra::Point2;
 use std::path::Path;
+
+pub use plan::{Plan, PlanRobot, PlanThing, SensorView};
 
 /// What there is to be drawn.
 #[derive(Clone, Copy)]
@@ -26,22 +26,6 @@ pub struct Pictures<'a> {
     pub trails: &'a [Trail],
     /// The curious robot's goals, m.
     pub goals: &'a [Point2<f64>],
-}
-
-/// Why a picture could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum PictureError {
-    /// The file cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// The drawing failed.
-    #[error("cannot draw {name}: {why}")]
-    Draw {
-        /// The picture.
-        name: String,
-        /// What the plotting library says.
-        why: String,
-    },
 }
 
 /// The panels of Figure 5, in its order.
@@ -73,14 +57,14 @@ pub fn write_all(folder: &Path, pictures: &Pictures) -> Result<(), PictureError>
     save("trajectory", Canvas::draw(panel_size, |area| trajectory::draw(area, pictures)))
 }
 
-/// Draws what is in a world, from above, to the PNG file `path`.
+/// Draws a world from above to the PNG file `path`; `name` is its title.
 ///
 /// # Errors
 ///
 /// When the picture cannot be drawn or written.
-pub fn draw_plan(path: &Path, content: &Content) -> Result<(), PictureError> {
-    let canvas = Canvas::draw(panel::size(&content.plan.frame), |area| plan::draw(area, content));
-    let canvas = canvas.map_err(|why| PictureError::Draw { name: content.name.clone(), why })?;
+pub fn draw_plan(path: &Path, name: &str, plan: &Plan) -> Result<(), PictureError> {
+    let canvas = Canvas::draw(panel::size(&plan.frame), |area| plan::draw(area, name, plan));
+    let canvas = canvas.map_err(|why| PictureError::Draw { name: name.to_owned(), why })?;
     Ok(canvas.write(path)?)
 }
 

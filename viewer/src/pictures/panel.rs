@@ -1,8 +1,8 @@
 //! One map with axes and a legend.
 
-use super::canvas::{Area, INK, ink, px, text, why};
 use crate::layer::{Layer, Rgb};
 use crate::view::TimeUnit;
+use evaluation::drawing::{Area, INK, ink, px, text, why};
 use interfaces::GridFrame;
 use mapper::Mapper;
 use plotters::chart::ChartContext;

@@ -1,10 +1,10 @@
 //! A world from above, at its start.
 
-use super::canvas::{Area, INK, ink, px, text, why};
 use super::panel::{self, Chart};
 use super::trajectory::WALL;
-use crate::inspection::{Content, Robot, Thing, View};
 use crate::layer::{CURIOUS, OTHERS, Rgb};
+use evaluation::drawing::{Area, INK, ink, px, text, why};
+use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -20,10 +20,63 @@ const MOST_NAMES: usize = 40;
 /// How far views are drawn, as a multiple of the robot's radius: whole ones would cover the house.
 const VIEW_RADII: f64 = 2.5;
 
+/// A world from above, at its start.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What lengths are counted in.
+    pub unit: &'static str,
+    /// The rectangle that is drawn.
+    pub frame: GridFrame,
+    /// Corners of what stands for good.
+    pub walls: Vec<Vec<Point2<f64>>>,
+    /// What can move, come or go.
+    pub things: Vec<PlanThing>,
+    /// Who lives there.
+    pub robots: Vec<PlanRobot>,
+}
+
+/// Something that is no wall and no robot.
+#[derive(Clone, Debug)]
+pub struct PlanThing {
+    /// What it is called.
+    pub name: String,
+    /// Where it is at the start; empty if it is not there yet.
+    pub outline: Vec<Point2<f64>>,
+    /// Where it can get to, as far as that is known beforehand.
+    pub reach: Vec<Vec<Point2<f64>>>,
+}
+
+/// A robot at its start.
+#[derive(Clone, Debug)]
+pub struct PlanRobot {
+    /// What it is called.
+    pub name: String,
+    /// Where it stands.
+    pub pose: Isometry2<f64>,
+    /// The radius of the circle about it.
+    pub radius: f64,
+    /// The corners of its body, in its own frame; none: it is that circle.
+    pub corners: Vec<Point2<f64>>,
+    /// What it looks around with.
+    pub views: Vec<SensorView>,
+    /// Whether it obeys commands.
+    pub is_driven: bool,
+}
+
+/// Where a laser or a sonar looks.
+#[derive(Clone, Copy, Debug)]
+pub struct SensorView {
+    /// Where it is mounted, in the frame of the robot.
+    pub mount: Isometry2<f64>,
+    /// The angle that it takes in, about its direction, rad.
+    pub angle_rad: f64,
+    /// How far it reaches.
+    pub range: f64,
+}
+
 /// Draws the walls, what moves with where it can get to, and the robots with where they look.
-pub(super) fn draw(area: &Area, content: &Content) -> Result<(), String> {
-    let plan = &content.plan;
-    let (chart, legend) = panel::axes_in(area, &content.name, &plan.frame, plan.unit)?;
+pub(super) fn draw(area: &Area, name: &str, plan: &Plan) -> Result<(), String> {
+    let (chart, legend) = panel::axes_in(area, name, &plan.frame, plan.unit)?;
     let fill = |corners: &[Point2<f64>], colour: Rgb| {
         let corners: Vec<(f64, f64)> = corners.iter().map(|corner| (corner.x, corner.y)).collect();
         chart.plotting_area().draw(&Polygon::new(corners, ink(colour).filled())).map_err(why)
@@ -75,11 +128,11 @@ pub(super) fn draw(area: &Area, content: &Content) -> Result<(), String> {
     Ok(())
 }
 
-fn colour(robot: &Robot) -> Rgb {
+fn colour(robot: &PlanRobot) -> Rgb {
     if robot.is_driven { CURIOUS } else { OTHERS }
 }
 
-fn body(robot: &Robot) -> Vec<Point2<f64>> {
+fn body(robot: &PlanRobot) -> Vec<Point2<f64>> {
     if robot.corners.is_empty() {
         return arc(&robot.pose, robot.radius, TAU);
     }
@@ -87,7 +140,7 @@ fn body(robot: &Robot) -> Vec<Point2<f64>> {
 }
 
 /// What of a view is drawn.
-fn sector(robot: &Robot, view: &View) -> Vec<Point2<f64>> {
+fn sector(robot: &PlanRobot, view: &SensorView) -> Vec<Point2<f64>> {
     let mount = robot.pose * view.mount;
     let mut corners = arc(&mount, view.range.min(VIEW_RADII * robot.radius), view.angle_rad);
     if view.angle_rad < TAU {
@@ -106,7 +159,7 @@ fn arc(middle: &Isometry2<f64>, radius: f64, angle_rad: f64) -> Vec<Point2<f64>>
 }
 
 /// Writes the names below what they belong to.
-fn names(chart: &Chart, things: &[Thing], robots: &[Robot]) -> Result<(), String> {
+fn names(chart: &Chart, things: &[PlanThing], robots: &[PlanRobot]) -> Result<(), String> {
     let lowest = |corners: &[Point2<f64>]| {
         let middle = corners.iter().map(|corner| corner.x).sum::<f64>() / corners.len() as f64;
         let bottom = corners.iter().map(|corner| corner.y).fold(f64::INFINITY, f64::min);

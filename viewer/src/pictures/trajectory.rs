@@ -1,10 +1,10 @@
 //! Where the robots have been, as the paper's Figure 4.
 
 use super::Pictures;
-use super::canvas::{Area, ink, px, why};
 use super::panel::{self, Chart};
 use crate::layer::{CURIOUS, OTHERS, Rgb};
 use crate::view::Trail;
+use evaluation::drawing::{Area, ink, px, why};
 use nalgebra::Point2;
 use plotters::prelude::*;
 

@@ -1,0 +1,131 @@
+//! What was learned of every cell, as a table.
+
+use crate::output::{OutputError, write_file};
+use interfaces::CellState;
+use mapper::Mapper;
+use std::io;
+use std::path::Path;
+
+/// One row: a cell that was ever seen. Times are in seconds.
+#[derive(serde::Serialize)]
+struct Row {
+    x_m: f64,
+    y_m: f64,
+    column: i32,
+    row: i32,
+    state: &'static str,
+    first_seen_s: f64,
+    last_seen_s: f64,
+    unobserved_s: f64,
+    watched_free_s: f64,
+    watched_blocked_s: f64,
+    block_events: u32,
+    free_events: u32,
+    block_events_after_gap: u32,
+    free_events_after_gap: u32,
+    /// `inf` for a cell that never changed.
+    interval_s: f64,
+    rate_hz: f64,
+    change_probability: f64,
+    recency_s: f64,
+}
+
+/// Writes a CSV file with a row for every cell that was ever seen, row by row from the lower left.
+///
+/// # Errors
+///
+/// When the file cannot be written.
+pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
+    write_file(path, |file| {
+        let mut table = csv::Writer::from_writer(file);
+        for index in (0..mapper.frame().len()).filter(|&index| mapper.was_ever_seen(index)) {
+            table.serialize(row(mapper, index)).map_err(io::Error::other)?;
+        }
+        table.flush()
+    })
+}
+
+fn row(mapper: &Mapper, index: usize) -> Row {
+    let (frame, seen) = (mapper.frame(), mapper.statistics(index));
+    let cell = frame.cell(index);
+    let center = frame.center(cell);
+    Row {
+        x_m: micro(center.x),
+        y_m: micro(center.y),
+        column: cell.x,
+        row: cell.y,
+        state: match mapper.states().cells()[index] {
+            CellState::Unknown => "unknown",
+            CellState::Free => "free",
+            CellState::Blocked => "blocked",
+        },
+        first_seen_s: micro(seen.first_seen),
+        last_seen_s: micro(seen.last_seen),
+        unobserved_s: micro(seen.unobserved),
+        watched_free_s: micro(seen.watched_free),
+        watched_blocked_s: micro(seen.watched_blocked),
+        block_events: seen.block_events,
+        free_events: seen.free_events,
+        block_events_after_gap: seen.block_events_after_gap,
+        free_events_after_gap: seen.free_events_after_gap,
+        interval_s: micro(mapper.interval(index)),
+        rate_hz: mapper.rate(index),
+        change_probability: mapper.change_probability(index),
+        recency_s: micro(mapper.recency(index)),
+    }
+}
+
+/// To whole millionths: a sum of tenths of a second reads 31.4 and not 31.400000000000002.
+fn micro(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::World;
+    use mapper::MapperSettings;
+    use sim::physics::{PhysicsWorld, WorldSpec};
+
+    /// The map of a robot that stands still in the shipped house for a minute.
+    fn mapper() -> Mapper {
+        let text = include_str!("../../worlds/four_rooms.toml");
+        let text = text.replacen("pose_m = [2.0, 2.0]", "pose_m = [9.0, 9.0]", 1);
+        let mut world = PhysicsWorld::new(&WorldSpec::parse("four_rooms.toml", &text).unwrap(), 0);
+        let mut mapper = Mapper::new(&MapperSettings::default(), *world.spec().frame()).unwrap();
+        for _ in 0..600 {
+            mapper.update(&world.sense()).unwrap();
+            world.act(&interfaces::Twist::STOP);
+        }
+        mapper
+    }
+
+    #[test]
+    fn the_table_says_what_the_mapper_knows() {
+        let mapper = mapper();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cell_statistics.csv");
+        write(&path, &mapper).unwrap();
+
+        let mut table = csv::Reader::from_path(&path).unwrap();
+        let header = table.headers().unwrap().clone();
+        let column = |name: &str| header.iter().position(|field| field == name).unwrap();
+        let (mut rows, mut changed) = (0, 0);
+        for record in table.records() {
+            let record = record.unwrap();
+            let number = |name: &str| record[column(name)].parse::<f64>().unwrap();
+            let at = nalgebra::Point2::new(number("x_m"), number("y_m"));
+            let cell = mapper.frame().cell_at(&at);
+            assert_eq!((f64::from(cell.x), f64::from(cell.y)), (number("column"), number("row")));
+            let index = mapper.frame().index(cell).unwrap();
+            assert!((number("recency_s") - mapper.recency(index)).abs() < 1e-6);
+            assert_eq!(number("rate_hz"), mapper.rate(index));
+            assert_eq!(number("block_events"), f64::from(mapper.statistics(index).block_events));
+            assert_eq!(number("interval_s").is_infinite(), mapper.interval(index).is_infinite());
+            rows += 1;
+            changed += usize::from(number("interval_s").is_finite());
+        }
+        assert_eq!(rows, (0..mapper.frame().len()).filter(|&index| mapper.was_ever_seen(index)).count());
+        assert!(rows > 10_000 && changed > 50, "{rows} {changed}");
+    }
+}

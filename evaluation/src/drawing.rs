@@ -1,0 +1,128 @@
+//! What reports and pictures share to draw: colours, a font, a canvas, and its way into a PNG file.
+
+use crate::output::{OutputError, write_file};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::{TextStyle, register_font};
+use std::path::Path;
+
+/// A colour: red, green, blue.
+pub type Rgb = [u8; 3];
+
+/// The colour of the curious robot in every figure and picture.
+pub const CURIOUS: Rgb = [31, 97, 209];
+
+/// Why a picture could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// The file cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// The drawing failed.
+    #[error("cannot draw {name}: {why}")]
+    Draw {
+        /// The picture.
+        name: String,
+        /// What the plotting library says.
+        why: String,
+    },
+}
+
+/// A part of a picture to draw on.
+pub type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
+
+/// Pictures are drawn this many times larger, and made smaller at the end: slanted lines and
+/// letters get smooth edges.
+const OVERSAMPLING: u32 = 2;
+
+/// A length in pixels of the finished picture, in pixels to draw with.
+pub const fn px(length: u32) -> i32 {
+    (length * OVERSAMPLING) as i32
+}
+
+/// Text of a height in pixels of the finished picture.
+pub fn text(height: u32) -> TextStyle<'static> {
+    (FONT, px(height)).into_font().color(&INK)
+}
+
+/// The colour of text and axes.
+pub const INK: RGBColor = RGBColor(40, 44, 52);
+/// The name of the font.
+pub const FONT: &str = "sans-serif";
+
+/// The plotting library's colour.
+pub fn ink([red, green, blue]: Rgb) -> RGBColor {
+    RGBColor(red, green, blue)
+}
+
+/// Makes an error of the plotting library a sentence.
+pub fn why(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+/// Makes text possible on machines that have no fonts at all.
+///
+/// # Errors
+///
+/// When the font cannot be read.
+pub fn register_fonts() -> Result<(), String> {
+    let registered = register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
+    registered.map_err(|_| "the font cannot be read".into())
+}
+
+/// A finished picture: rows from the top, three bytes per pixel.
+pub struct Canvas {
+    size: [u32; 2],
+    pixels: Vec<u8>,
+}
+
+impl Canvas {
+    /// A white picture of `size`, width and height in pixels, with what `draw` puts on it.
+    ///
+    /// # Errors
+    ///
+    /// When the drawing fails.
+    pub fn draw(size: [u32; 2], draw: impl FnOnce(&Area) -> Result<(), String>) -> Result<Self, String> {
+        register_fonts()?;
+        let [width, height] = size.map(|length| length * OVERSAMPLING);
+        let mut pixels = vec![255; width as usize * height as usize * 3];
+        let area = BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area();
+        draw(&area)?;
+        area.present().map_err(why)?;
+        drop(area);
+        Ok(Self { size, pixels: shrink(&pixels, width as usize) })
+    }
+
+    /// Writes a PNG file.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
+        let [width, height] = self.size;
+        write_file(path, |file| {
+            let encoder = PngEncoder::new(file);
+            let written = encoder.write_image(&self.pixels, width, height, ExtendedColorType::Rgb8);
+            written.map_err(std::io::Error::other)
+        })
+    }
+}
+
+/// The mean of every square of pixels.
+fn shrink(pixels: &[u8], width: usize) -> Vec<u8> {
+    let by = OVERSAMPLING as usize;
+    let stride = 3 * width;
+    let mut small = Vec::with_capacity(pixels.len() / (by * by));
+    for rows in pixels.chunks_exact(by * stride) {
+        for left in (0..stride).step_by(3 * by) {
+            for channel in 0..3 {
+                let square = (0..by).flat_map(|y| (0..by).map(move |x| y * stride + left + 3 * x + channel));
+                let sum: usize = square.map(|at| usize::from(rows[at])).sum();
+                small.push((sum / (by * by)) as u8);
+            }
+        }
+    }
+    small
+}

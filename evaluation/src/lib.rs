@@ -1,0 +1,13 @@
+//! How good a robot is: metrics over the ground truth of a simulated world, trials, statistics and reports.
+//!
+//! This crate does not know the command line, and no recording or screen.
+
+pub mod cell_statistics;
+pub mod drawing;
+pub mod metrics;
+pub mod observer;
+pub mod oracle;
+pub mod output;
+pub mod report;
+pub mod summary;
+pub mod trials;

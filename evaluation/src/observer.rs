@@ -1,0 +1,118 @@
+//! Measures a run in the physics world against the ground truth, from outside the loop.
+
+use crate::metrics::{self, Changing, ChangingScores, Delays, Latency, Scores, ThingReport, Things};
+use crate::summary::CurvePoint;
+use interfaces::{LaserReading, Twist};
+use mapper::Mapper;
+use nalgebra::Point2;
+use robot::{Belief, Level, Message, Pilot};
+use sim::physics::{Body, PhysicsWorld};
+
+/// Coverage and quality take a pass over the map: once in this many readings.
+const SCORE_EVERY: usize = 100;
+/// The accuracy on changing cells is sampled once in this many readings.
+const SAMPLE_EVERY: usize = 10;
+
+/// The measurements of a run so far.
+#[derive(Debug, Default)]
+pub struct Observer {
+    latency: Latency,
+    things: Things,
+    changing: Changing,
+    curve: Vec<CurvePoint>,
+    goals: Vec<Point2<f64>>,
+    contacts_reported: usize,
+    messages: Vec<Message>,
+}
+
+impl Observer {
+    /// Measures one tick: called once per reading.
+    pub fn observe(
+        &mut self,
+        world: &PhysicsWorld,
+        reading: &LaserReading,
+        belief: &Belief,
+        pilot: &mut impl Pilot<Command = Twist>,
+    ) {
+        self.measure(world, reading, belief.mapper);
+        self.collect_messages(world, pilot);
+    }
+
+    /// The results so far.
+    pub fn findings(&self) -> Findings {
+        let [block_latency, free_latency] = self.latency.delays();
+        Findings {
+            map_quality_changing: self.changing.scores(),
+            block_latency,
+            free_latency,
+            things: self.things.reports().cloned().collect(),
+            curve: self.curve.clone(),
+        }
+    }
+
+    /// The goals of the curious robot so far, m.
+    pub fn goals(&self) -> &[Point2<f64>] {
+        &self.goals
+    }
+
+    /// The messages of the last tick.
+    pub fn messages(&self) -> &[Message] {
+        &self.messages
+    }
+
+    /// The last coverage and map quality.
+    pub fn scores(&self) -> Option<Scores> {
+        self.curve.last().map(|&CurvePoint { coverage, map_quality, .. }| Scores { coverage, map_quality })
+    }
+
+    fn measure(&mut self, world: &PhysicsWorld, reading: &LaserReading, mapper: &Mapper) {
+        let (truth, laser) = (world.truth(), world.true_pose() * reading.mount);
+        self.latency.watch(truth, mapper, reading, &laser);
+        self.things.watch(world.obstacle_events(), truth, mapper, reading, &laser);
+        if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
+            self.changing.count(mapper, truth);
+        }
+        if mapper.readings() % SCORE_EVERY == 1 {
+            let Scores { coverage, map_quality } = metrics::scores(mapper, truth);
+            self.curve.push(CurvePoint { time_s: reading.time_s, coverage, map_quality });
+        }
+    }
+
+    /// Collects the messages of this tick, and the goal if there is a new one.
+    fn collect_messages(&mut self, world: &PhysicsWorld, pilot: &mut impl Pilot<Command = Twist>) {
+        self.messages = pilot.take_messages();
+        if self.messages.iter().any(|message| message.level == Level::Decision) {
+            self.goals.extend(pilot.goal());
+        }
+        let mut log = |level, text| self.messages.push(Message { level, text });
+        self.things.take_news().into_iter().for_each(|text| log(Level::Event, text));
+        for contact in &world.contacts()[self.contacts_reported..] {
+            let how = if contact.moving { "drove into" } else { "was hit by" };
+            log(Level::Trouble, format!("the curious robot {how} {}", name(world, contact.with)));
+        }
+        self.contacts_reported = world.contacts().len();
+    }
+}
+
+/// What was measured while the run went on.
+#[derive(Clone, Debug)]
+pub struct Findings {
+    /// Balanced accuracy on the cells that truly change.
+    pub map_quality_changing: ChangingScores,
+    /// How soon the map followed block events.
+    pub block_latency: Delays,
+    /// How soon the map followed free events.
+    pub free_latency: Delays,
+    /// Things that appeared or went.
+    pub things: Vec<ThingReport>,
+    /// Coverage and quality over time.
+    pub curve: Vec<CurvePoint>,
+}
+
+fn name(world: &PhysicsWorld, body: Body) -> String {
+    match body {
+        Body::Wall(_) => "a wall".into(),
+        Body::Obstacle(index) => world.spec().obstacles()[index].name.clone(),
+        Body::Robot(index) => world.spec().robots()[index].name.clone(),
+    }
+}

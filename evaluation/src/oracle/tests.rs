@@ -1,0 +1,129 @@
+use super::*;
+use crate::trials::{Life, TrialStrategy, live};
+use agent::{AgentSettings, StrategyChoice};
+use controller::CellDrive;
+use interfaces::{Cell, Step, World};
+use mapper::{Features, MapperSettings};
+use nalgebra::Isometry2;
+use sim::grid::{GenerateSettings, GridWorld};
+
+/// Two rooms; something moves in the right one.
+const ROOMS: &str = r##"
+name = "rooms"
+sensor_radius = 4
+map = """
+#############
+#R....#.....#
+#.....#.....#
+#...........#
+#############
+"""
+
+[[block]]
+name = "guard"
+dwell = 3
+course = "back-and-forth"
+path = [[8, 3], [11, 3]]
+"##;
+
+/// As many steps as there are cells to go left, right, up or down, through walls.
+struct Straight;
+
+impl Travel for Straight {
+    fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
+        let frame = mapper.frame();
+        let from = frame.cell_at(&pose.translation.vector.into());
+        let steps = |cell: Cell| (cell.x - from.x).abs() + (cell.y - from.y).abs();
+        times.clear();
+        times.extend((0..frame.len()).map(|index| f64::from(steps(frame.cell(index)))));
+    }
+}
+
+/// The rooms after so many steps of a robot that stays where it is, and what it has learned.
+fn after(steps: usize) -> (GridWorld, Mapper, Oracle) {
+    let spec = GridSpec::parse("rooms.toml", ROOMS).unwrap();
+    let mut mapper = Mapper::new(&MapperSettings::default(), *spec.frame()).unwrap();
+    let (mut world, mut oracle) = (GridWorld::new(&spec, 0), Oracle::new(&spec));
+    for _ in 0..steps {
+        mapper.update(&world.sense()).unwrap();
+        oracle.learn(world.truth());
+        world.act(&Step::Stay);
+    }
+    (world, mapper, oracle)
+}
+
+fn next_goal(world: &mut GridWorld, mapper: &Mapper, oracle: &mut Oracle) -> (usize, Stay) {
+    let pose = world.sense().pose;
+    let belief = Belief { pose: &pose, features: Features::default(), mapper };
+    let visit = oracle.next_goal(&belief, &mut Straight).unwrap();
+    let frame = mapper.frame();
+    (frame.index(frame.cell_at(&visit.position)).unwrap(), visit.stay)
+}
+
+#[test]
+fn it_goes_where_what_changes_is_in_view() {
+    let (mut world, mapper, mut oracle) = after(60);
+    assert!(mapper.changed().next().is_none(), "nothing of it is seen from the start");
+    let (goal, stay) = next_goal(&mut world, &mapper, &mut oracle);
+    let in_view = oracle.sights[goal].iter().filter(|&&cell| world.truth().is_swept(cell)).count();
+    assert!(in_view >= 3, "{:?} {in_view}", mapper.frame().cell(goal));
+    assert!(matches!(stay, Stay::Watch(steps) if steps > 1.0));
+    assert!(oracle.reason().starts_with("oracle: "));
+}
+
+#[test]
+fn where_nothing_has_moved_it_waits() {
+    let (mut world, mapper, mut oracle) = after(1);
+    let start = mapper.frame().index(world.robot()).unwrap();
+    assert_eq!(next_goal(&mut world, &mapper, &mut oracle), (start, Stay::Watch(1.0)));
+    assert_eq!(oracle.reason(), "oracle: nothing expected");
+}
+
+#[test]
+fn a_far_place_is_worth_less() {
+    let (_, mapper, oracle) = after(60);
+    let mut times = vec![1.0; mapper.frame().len()];
+    let first = oracle.best(&mapper, &times).unwrap();
+    times[first.place] = 1000.0;
+    let second = oracle.best(&mapper, &times).unwrap();
+    assert_ne!(first.place, second.place);
+    times.fill(f64::INFINITY);
+    assert!(oracle.best(&mapper, &times).is_none());
+    times[first.place] = 1000.0;
+    let far = oracle.best(&mapper, &times).unwrap();
+    assert!(far.place == first.place && far.stay >= first.stay, "a long way is for a long stay");
+}
+
+#[test]
+fn a_place_that_disappoints_is_left() {
+    let (mut world, mapper, mut oracle) = after(60);
+    // The map never learns anything, wherever it goes.
+    let mut goals: Vec<usize> = (0..30).map(|_| next_goal(&mut world, &mapper, &mut oracle).0).collect();
+    goals.sort_unstable();
+    goals.dedup();
+    assert!(goals.len() >= 5, "{goals:?}");
+}
+
+#[test]
+fn it_learns_faster_than_those_who_do_not_know() {
+    for seed in [1, 2] {
+        let world = GridSpec::generate(&GenerateSettings::default(), seed);
+        let error = |strategy| {
+            let life = Life {
+                world: &world,
+                strategy,
+                seed,
+                steps: 4000,
+                mapper: MapperSettings::default(),
+                agent: &AgentSettings::default(),
+                controller: CellDrive::settings(),
+            };
+            let trial = live(&life, |_| true).unwrap().unwrap();
+            trial.samples.iter().map(|sample| sample.log_error).filter(|error| error.is_finite()).sum::<f64>()
+        };
+        let oracle = error(TrialStrategy::Oracle);
+        for choice in [StrategyChoice::Recency, StrategyChoice::Curious] {
+            assert!(oracle < error(TrialStrategy::Agent(choice)), "{choice} {seed}");
+        }
+    }
+}

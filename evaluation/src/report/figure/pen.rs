@@ -1,0 +1,84 @@
+//! One way of drawing, for pixels and for vectors.
+
+use super::vector::Vector;
+use crate::drawing::{FONT, INK, px, register_fonts, why};
+use ab_glyph::FontRef;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::TextStyle;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// A part of a figure to draw on.
+pub(super) type Sheet<DB> = DrawingArea<DB, Shift>;
+
+/// Turns lengths in pixels of the finished picture into those to draw with.
+pub(super) struct Pen {
+    scale: i32,
+    /// The library puts the middle of a letter a quarter of its height too high, but only there.
+    is_bitmap: bool,
+}
+
+impl Pen {
+    pub(super) const BITMAP: Self = Self { scale: px(1), is_bitmap: true };
+    /// The library's lengths are whole numbers: a tenth of a pixel keeps curves smooth.
+    pub(super) const VECTOR: Self = Self { scale: 10, is_bitmap: false };
+
+    /// A length.
+    pub(super) fn px(&self, length: i32) -> i32 {
+        length * self.scale
+    }
+
+    /// A line of a width.
+    pub(super) fn line(&self, colour: impl Color, width: u32) -> ShapeStyle {
+        colour.stroke_width(width * self.scale as u32)
+    }
+
+    /// Text of a height.
+    pub(super) fn text(&self, height: i32) -> TextStyle<'static> {
+        (FONT, self.px(height)).into_font().color(&INK)
+    }
+
+    /// Writes a line; `at` is the middle of its left side, or of that which `anchor` tells.
+    pub(super) fn write<DB: DrawingBackend>(
+        &self,
+        sheet: &Sheet<DB>,
+        at: (i32, i32),
+        anchor: HPos,
+        height: i32,
+        text: &str,
+    ) -> Result<(), String> {
+        let style = self.text(height).pos(Pos::new(anchor, VPos::Center));
+        let lower = if self.is_bitmap { self.px(height) / 4 } else { 0 };
+        sheet.draw_text(text, &style, (self.px(at.0), self.px(at.1) + lower)).map_err(why)
+    }
+
+    /// Fills a rectangle.
+    pub(super) fn bar<DB: DrawingBackend>(
+        &self,
+        sheet: &Sheet<DB>,
+        [left, top]: [i32; 2],
+        [width, height]: [i32; 2],
+        colour: &impl Color,
+    ) -> Result<(), String> {
+        let corners = [(self.px(left), self.px(top)), (self.px(left + width), self.px(top + height))];
+        sheet.draw(&Rectangle::new(corners, colour.filled())).map_err(why)
+    }
+}
+
+/// The text of an SVG file of `size` with what `draw` puts on it.
+pub(super) fn svg(
+    size: [u32; 2],
+    draw: impl FnOnce(&Sheet<Vector>) -> Result<(), String>,
+) -> Result<String, String> {
+    register_fonts()?;
+    let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).map_err(why)?;
+    let drawn @ [width, height] = size.map(|length| length * Pen::VECTOR.scale as u32);
+    let mut elements = String::new();
+    draw(&Vector::new(drawn.into(), font, &mut elements).into_drawing_area())?;
+    // Drawn large, shown in its size. Sharp corners of thick lines would show as spikes.
+    Ok(format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" \
+         viewBox=\"0 0 {width} {height}\" stroke-linejoin=\"round\">\n{elements}</svg>\n",
+        size[0], size[1]
+    ))
+}

@@ -1,0 +1,79 @@
+use crate::Message;
+use mapper::{Features, Mapper};
+use nalgebra::{Isometry2, Point2};
+use serde::Serialize;
+
+/// What the robot knows when it decides.
+#[derive(Clone, Copy, Debug)]
+pub struct Belief<'a> {
+    /// The pose that the robot uses, in the frame of the map, m and rad.
+    pub pose: &'a Isometry2<f64>,
+    /// The features by which the agent chooses a strategy.
+    pub features: Features,
+    /// The map and the change statistics, with the last reading included.
+    pub mapper: &'a Mapper,
+}
+
+/// Decides the next command of the robot.
+pub trait Pilot {
+    /// The command that the world executes.
+    type Command;
+
+    /// The command until the next reading.
+    fn command(&mut self, belief: &Belief) -> Self::Command;
+
+    /// The planned path, m; empty without a path.
+    fn path(&self) -> &[Point2<f64>] {
+        &[]
+    }
+
+    /// The goal position, m.
+    fn goal(&self) -> Option<Point2<f64>> {
+        None
+    }
+
+    /// The strategies of the agent; empty without an agent.
+    fn strategies(&self, _features: Features) -> Vec<StrategyState> {
+        Vec::new()
+    }
+
+    /// The number of goals so far, by outcome.
+    fn goals(&self) -> GoalCount {
+        GoalCount::default()
+    }
+
+    /// The messages since the last call.
+    fn take_messages(&mut self) -> Vec<Message> {
+        Vec::new()
+    }
+
+    /// Whether the pilot has ended the run: after the last waypoint of a tour, or when a user quits.
+    fn is_done(&self) -> bool {
+        false
+    }
+}
+
+/// The number of goals by outcome.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct GoalCount {
+    /// Goals that were reached, or approached as near as the robot can get.
+    pub reached: u32,
+    /// The part of `reached` that was only approached.
+    pub nearest: u32,
+    /// Goals that were given up, because the robot made no progress.
+    pub given_up: u32,
+}
+
+/// One strategy of the agent at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrategyState {
+    /// The name on the command line.
+    pub name: String,
+    /// The learned value V(p, r) (paper, section 4): expected map updates per observation. `None` where
+    /// the agent does not learn.
+    pub value: Option<f64>,
+    /// The share of the goals so far that this strategy chose.
+    pub share: f64,
+    /// Whether this strategy chose the present goal.
+    pub is_current: bool,
+}

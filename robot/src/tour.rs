@@ -1,0 +1,34 @@
+use crate::{Belief, Destination, GoalSelector};
+use agent::{Stay, Travel};
+use nalgebra::Point2;
+
+/// A list of waypoints, visited one after the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tour {
+    waypoints: Vec<Point2<f64>>,
+    repeat: bool,
+    next: usize,
+}
+
+impl Tour {
+    /// A tour along `waypoints`, m. With `repeat`, the tour starts again after the last waypoint; otherwise
+    /// the run ends there.
+    pub fn new(waypoints: Vec<Point2<f64>>, repeat: bool) -> Self {
+        Self { waypoints, repeat, next: 0 }
+    }
+}
+
+impl GoalSelector for Tour {
+    fn next_goal(&mut self, _belief: &Belief, _travel: &mut impl Travel) -> Option<Destination> {
+        if self.repeat && self.next == self.waypoints.len() {
+            self.next = 0;
+        }
+        let position = *self.waypoints.get(self.next)?;
+        self.next += 1;
+        Some(Destination { position, stay: Stay::Watch(0.0) })
+    }
+
+    fn reason(&self) -> String {
+        format!("waypoint {} of {}", self.next, self.waypoints.len())
+    }
+}

@@ -1,0 +1,215 @@
+//! Physics worlds, from whatever file.
+
+use super::Content;
+use curious::pictures::{Plan, PlanRobot, PlanThing, SensorView};
+use interfaces::GridFrame;
+use nalgebra::{Isometry2, Point2};
+use sim::floor_plan::FloorPlan;
+use sim::physics::{
+    Behaviour, DriveKind, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec,
+};
+use std::path::Path;
+
+/// The side of the cells that a floor plan is given for its frame, m.
+const PLAN_CELL_M: f64 = 0.05;
+
+pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
+    let frame = *world.frame();
+    let cell_m = frame.resolution_m();
+    let [width_m, height_m] = [frame.width(), frame.height()].map(|cells| cells as f64 * cell_m);
+    let mut lines = vec![
+        (
+            "size",
+            format!(
+                "{} × {} m, {} × {} cells of {cell_m} m",
+                short(width_m),
+                short(height_m),
+                frame.width(),
+                frame.height()
+            ),
+        ),
+        ("time", format!("physics steps of {} s", world.step_s())),
+        ("walls", format!("{}", world.walls().len())),
+    ];
+    lines.extend(world.obstacles().iter().map(|obstacle| ("thing", thing_line(obstacle))));
+    lines.extend(robot_lines(world.robots()));
+    let robot = |robot: &RobotSpec| PlanRobot {
+        name: robot.name.clone(),
+        pose: robot.pose,
+        radius: robot.radius_m,
+        corners: robot.corners.clone(),
+        views: views(robot).collect(),
+        is_driven: robot.behaviour == Behaviour::Driven,
+    };
+    Content {
+        kind,
+        name: world.name().to_owned(),
+        description: world.description().to_owned(),
+        lines,
+        plan: Plan {
+            unit: "m",
+            frame,
+            walls: world.walls().iter().map(|wall| wall.corners().to_vec()).collect(),
+            things: world.obstacles().iter().map(thing).collect(),
+            robots: world.robots().iter().map(robot).collect(),
+        },
+    }
+}
+
+/// Where the lasers and the sonars of a robot look.
+fn views(robot: &RobotSpec) -> impl Iterator<Item = SensorView> {
+    let lasers = robot.lasers().map(|laser| (laser.mount, laser.fov_rad, laser.range_max_m));
+    let sonars = robot.sonars.iter().map(|sonar| (sonar.mount, sonar.cone_rad, sonar.range_max_m));
+    lasers.chain(sonars).map(|(mount, angle_rad, range)| SensorView { mount, angle_rad, range })
+}
+
+/// A floor plan alone; none if it has no area.
+pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
+    let size = plan.size_m();
+    let corners = [(0.0, 0.0), (size.x, 0.0), (size.x, size.y), (0.0, size.y)];
+    let corners = corners.map(|(x, y)| plan.origin * Point2::new(x, y));
+    let low = corners.iter().fold(corners[0], |low, corner| low.inf(corner));
+    let high = corners.iter().fold(corners[0], |high, corner| high.sup(corner));
+    let rectangles: Vec<Rectangle> = plan.rectangles().collect();
+    let bitmap = &plan.bitmap;
+    Some(Content {
+        kind: "floor plan",
+        name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        description: String::new(),
+        lines: vec![
+            ("size", format!("{} × {} m", short(size.x), short(size.y))),
+            (
+                "picture",
+                format!("{} × {} pixels of {} m", bitmap.width(), bitmap.height(), short(plan.pixel_m.x)),
+            ),
+            (
+                "walls",
+                format!(
+                    "{} rectangles, {} straight pieces of surface",
+                    rectangles.len(),
+                    plan.outline().count()
+                ),
+            ),
+        ],
+        plan: Plan {
+            unit: "m",
+            frame: GridFrame::covering(low, high.x - low.x, high.y - low.y, PLAN_CELL_M.max(plan.pixel_m.x))?,
+            walls: rectangles.iter().map(|wall| wall.corners().to_vec()).collect(),
+            things: Vec::new(),
+            robots: Vec::new(),
+        },
+    })
+}
+
+fn thing(obstacle: &ObstacleSpec) -> PlanThing {
+    let corners = |shape: Rectangle| shape.corners().to_vec();
+    let reach = match &obstacle.motion {
+        Motion::Fixed | Motion::Pushed(_) => Vec::new(),
+        Motion::Path(path) => {
+            path.keys.iter().map(|(_, middle)| corners(moved(&obstacle.shape, middle))).collect()
+        }
+        Motion::Door(door) => {
+            [0.0, 1.0].map(|openness| corners(door.shape(&obstacle.shape, openness))).to_vec()
+        }
+    };
+    let start = corners(obstacle.start());
+    let (outline, later) =
+        if obstacle.appears_s.is_none() { (start, Vec::new()) } else { (Vec::new(), vec![start]) };
+    PlanThing { name: obstacle.name.clone(), outline, reach: [later, reach].concat() }
+}
+
+fn moved(shape: &Rectangle, middle: &Point2<f64>) -> Rectangle {
+    Rectangle { pose: Isometry2::from_parts((*middle).into(), shape.pose.rotation), ..*shape }
+}
+
+fn thing_line(obstacle: &ObstacleSpec) -> String {
+    let size = obstacle.shape.half_m * 2.0;
+    let what = match &obstacle.motion {
+        Motion::Fixed => "a box that stands".to_owned(),
+        Motion::Pushed(pushed) => format!("a box of {} kg that can be pushed", short(pushed.mass_kg)),
+        Motion::Path(path) => {
+            let (last_s, _) = path.keys.last().copied().unwrap_or_default();
+            let again = if path.is_loop { "over and over" } else { "once" };
+            format!("a block on a path of {} places, {} s long, {again}", path.keys.len(), short(last_s))
+        }
+        Motion::Door(door) => {
+            let leaf = if matches!(door.leaf, Leaf::Hinged { .. }) { "hinged" } else { "sliding" };
+            let opening = match &door.opening {
+                Opening::Periodic { closed_s, open_s } => {
+                    format!("closed {} s, open {} s", short(*closed_s), short(*open_s))
+                }
+                Opening::Random { closed_s, open_s } => {
+                    format!("at random closed {} s, open {} s in the mean", short(*closed_s), short(*open_s))
+                }
+                Opening::Scripted { switches_s } => format!("moved {} times, as written", switches_s.len()),
+            };
+            format!("a {leaf} door, {opening}")
+        }
+    };
+    let when = [("from", obstacle.appears_s), ("until", obstacle.disappears_s)];
+    let when = when.into_iter().filter_map(|(word, at_s)| Some(format!(", {word} {} s", short(at_s?))));
+    format!(
+        "`{}`: {what}, {} × {} m{}",
+        obstacle.name,
+        short(size.x),
+        short(size.y),
+        when.collect::<String>()
+    )
+}
+
+/// A line for each robot; one for all in a row that differ in nothing but name and place.
+fn robot_lines(robots: &[RobotSpec]) -> impl Iterator<Item = (&'static str, String)> {
+    robots.chunk_by(|one, next| robot_line(one) == robot_line(next)).map(|alike| {
+        let (first, last) = (&alike[0], &alike[alike.len() - 1]);
+        let what = robot_line(first);
+        match alike.len() {
+            1 => ("robot", format!("`{}` {what}", first.name)),
+            number => ("robots", format!("{number}, `{}` to `{}`, each {what}", first.name, last.name)),
+        }
+    })
+}
+
+fn robot_line(robot: &RobotSpec) -> String {
+    let does = match &robot.behaviour {
+        Behaviour::Driven => "is driven",
+        Behaviour::Standing => "stands",
+        Behaviour::Circle(_) => "drives a circle",
+        Behaviour::Wander(_) => "wanders",
+        Behaviour::Waypoints(_) => "drives from point to point",
+        Behaviour::WallPatrol(_) => "follows a wall back and forth",
+    };
+    let body = match robot.corners.len() {
+        0 => format!("radius {} m", short(robot.radius_m)),
+        corners => format!("{corners} corners, at most {} m away", short(robot.radius_m)),
+    };
+    let drive = match robot.drive.kind {
+        DriveKind::Differential => "on two wheels",
+        DriveKind::Omni { .. } => "in every direction",
+        DriveKind::Car { .. } => "as a car",
+    };
+    let mut parts = vec![format!("{does}, {body}, {drive} up to {} m/s", short(robot.drive.max_linear_mps))];
+    parts.extend(robot.lasers().map(|laser| {
+        format!(
+            "laser of {} beams over {}°, {} m, {} Hz",
+            laser.beams,
+            short(laser.fov_rad.to_degrees()),
+            short(laser.range_max_m),
+            short(laser.rate_hz),
+        )
+    }));
+    let others = [
+        (robot.sonars.len(), "sonar"),
+        (usize::from(robot.bumper.is_some()), "bumper"),
+        (usize::from(robot.fiducial.is_some()), "fiducial finder"),
+    ];
+    parts.extend(
+        others.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{what} × {count}")),
+    );
+    parts.extend(robot.tag.map(|tag| format!("tag {tag}")));
+    parts.join("; ")
+}
+
+/// As short as it can be, to the thousandth: 2 and not 2.0.
+fn short(value: f64) -> String {
+    format!("{}", (value * 1000.0).round() / 1000.0)
+}

@@ -1,0 +1,48 @@
+use super::*;
+use curious::worlds::{SHIPPED, SHIPPED_GRID};
+
+/// A file of this workspace.
+fn file(path: &str) -> String {
+    format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn every_shipped_world_is_right_and_its_walls_lie_in_its_frame() {
+    let of_sim = ["house.toml", "office.toml", "warehouse.toml", "cave.toml", "yard.toml", "stage/lab.world"];
+    let of_sim = of_sim.map(|name| file(&format!("sim/worlds/{name}")));
+    let names = SHIPPED.iter().chain(&SHIPPED_GRID).map(|(name, _)| (*name).to_owned());
+    for name in names.chain(of_sim) {
+        let inspection = inspect(&name);
+        assert_eq!(inspection.errors, Vec::<String>::new());
+        let Content { plan, lines, .. } = inspection.content.unwrap();
+        assert!(!plan.walls.is_empty() && !plan.robots.is_empty() && lines.len() >= 3, "{name}");
+        let (low, cell_m) = (plan.frame.origin(), plan.frame.resolution_m());
+        let high =
+            low + nalgebra::Vector2::new(plan.frame.width() as f64, plan.frame.height() as f64) * cell_m;
+        for corner in plan.walls.iter().flatten() {
+            let is_inside = corner.x >= low.x - 1e-6 && corner.y >= low.y - 1e-6;
+            assert!(is_inside && corner.x <= high.x + 1e-6 && corner.y <= high.y + 1e-6, "{name}: {corner}");
+        }
+    }
+}
+
+#[test]
+fn what_is_in_the_paper_s_worlds() {
+    let grid = inspect("two_blocks").content.unwrap();
+    assert_eq!((grid.kind, grid.plan.things.len(), grid.plan.robots.len()), ("grid world", 2, 1));
+    let physics = inspect("four_rooms").content.unwrap();
+    assert_eq!((physics.kind, physics.plan.things.len(), physics.plan.robots.len()), ("physics world", 0, 2));
+    assert_eq!(physics.lines[0], ("size", "12 × 12 m, 240 × 240 cells of 0.05 m".to_owned()));
+}
+
+#[test]
+fn a_file_that_is_none_says_so() {
+    let inspection = inspect("no_such_world");
+    assert!(inspection.content.is_none());
+    assert!(
+        inspection.errors[0].starts_with("error: cannot read `no_such_world`"),
+        "{:?}",
+        inspection.errors
+    );
+    assert!(inspect(&file("sim/worlds/office.png")).errors[0].contains("no text"));
+}

@@ -1,0 +1,109 @@
+//! A person drives, with the keys of a terminal.
+
+use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use crossterm::terminal;
+use interfaces::Twist;
+use robot::{Belief, Pilot};
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+/// Why a person cannot drive here.
+#[derive(Debug, thiserror::Error)]
+pub enum KeyboardError {
+    /// Nobody can press a key.
+    #[error("--drive keyboard needs a terminal to read keys from; use --drive agent or --drive tour here")]
+    NoTerminal,
+    /// The terminal does not hand over its keys.
+    #[error("cannot read keys from this terminal: {0}")]
+    Terminal(#[from] std::io::Error),
+}
+
+/// Terminals tell that a key is pressed, not that it is let go: a key counts for this long, longer
+/// than the pause before a held key repeats.
+const HOLD: Duration = Duration::from_millis(600);
+
+/// Drives as the keys say: arrows or WASD, space to stop, Q or Esc to end the run.
+///
+/// Keeps the terminal in raw mode for as long as it lives.
+#[derive(Debug)]
+pub struct Keyboard {
+    max: Twist,
+    command: Twist,
+    pressed: Option<Instant>,
+    is_done: bool,
+}
+
+impl Keyboard {
+    /// Takes over the terminal's keys; `max` is how fast the robot can drive and turn.
+    ///
+    /// # Errors
+    ///
+    /// When there is no terminal.
+    pub fn new(max: Twist) -> Result<Self, KeyboardError> {
+        if !std::io::stdin().is_terminal() {
+            return Err(KeyboardError::NoTerminal);
+        }
+        terminal::enable_raw_mode()?;
+        Ok(Self { max, command: Twist::STOP, pressed: None, is_done: false })
+    }
+
+    fn press(&mut self, key: KeyEvent) {
+        if key.kind == KeyEventKind::Release {
+            return;
+        }
+        let is_interrupt = key.modifiers.contains(KeyModifiers::CONTROL) && key.code == KeyCode::Char('c');
+        let (linear, angular) = match key.code {
+            _ if is_interrupt => return self.is_done = true,
+            KeyCode::Char('q' | 'Q') | KeyCode::Esc => return self.is_done = true,
+            KeyCode::Up | KeyCode::Char('w' | 'W') => (1.0, 0.0),
+            KeyCode::Down | KeyCode::Char('s' | 'S') => (-0.5, 0.0),
+            KeyCode::Left | KeyCode::Char('a' | 'A') => (0.0, 0.5),
+            KeyCode::Right | KeyCode::Char('d' | 'D') => (0.0, -0.5),
+            KeyCode::Char(' ') => (0.0, 0.0),
+            _ => return,
+        };
+        // Turning while driving keeps driving: a curve.
+        let keeps_driving = angular != 0.0 && self.command.linear_mps > 0.0;
+        self.command = Twist {
+            linear_mps: if keeps_driving { self.command.linear_mps } else { linear * self.max.linear_mps },
+            angular_radps: angular * self.max.angular_radps,
+        };
+        self.pressed = Some(Instant::now());
+    }
+}
+
+impl Pilot for Keyboard {
+    type Command = Twist;
+
+    fn command(&mut self, _belief: &Belief) -> Twist {
+        // A terminal that fails here has gone: stop, and let the run end in order.
+        loop {
+            match event::poll(Duration::ZERO)
+                .and_then(|has| if has { event::read().map(Some) } else { Ok(None) })
+            {
+                Ok(Some(Event::Key(key))) => self.press(key),
+                Ok(Some(_)) => {}
+                Ok(None) => break,
+                Err(_) => {
+                    self.is_done = true;
+                    break;
+                }
+            }
+        }
+        if self.pressed.is_none_or(|pressed| pressed.elapsed() > HOLD) {
+            self.command = Twist::STOP;
+        }
+        self.command
+    }
+
+    fn is_done(&self) -> bool {
+        self.is_done
+    }
+}
+
+impl Drop for Keyboard {
+    fn drop(&mut self) {
+        // Nothing is left to do if the terminal has gone.
+        let _ = terminal::disable_raw_mode();
+    }
+}
