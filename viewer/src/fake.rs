@@ -1,12 +1,13 @@
 //! A made-up run for tests: four rooms, a robot that drives a tour, another that goes back and
 //! forth, and scans from a few lines of geometry. No physics, no agent.
 
-use crate::view::{ObstacleView, Outline, RobotView, Scene, Sight, StrategyView, View};
+use crate::scene::{Obstacle, Outline, Robot, Scene, TimeUnit};
+use crate::view::{Measured, RobotState, Sight, View};
 use evaluation::metrics::Scores;
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2, Vector2};
-use robot::{Level, Message};
+use robot::{Level, Message, StrategyState};
 use std::f64::consts::TAU;
 
 const TICK_S: f64 = 0.1;
@@ -39,6 +40,7 @@ impl Driver {
 /// The run so far.
 pub(crate) struct FakeRun {
     pub(crate) scene: Scene,
+    pub(crate) has_agent: bool,
     pub(crate) mapper: Mapper,
     pub(crate) step: u64,
     curious: Driver,
@@ -76,8 +78,28 @@ impl FakeRun {
             next: 1,
             speed_mps,
         };
+        let robot = |name: &str, (x_m, y_m), is_driven| Robot {
+            name: name.into(),
+            pose: pose(x_m, y_m, 0.0),
+            radius_m: RADIUS_M,
+            corners: Vec::new(),
+            sectors: Vec::new(),
+            is_driven,
+        };
         Self {
-            scene: Scene { title: "fake rooms".into(), place: "house", walls, ..Scene::default() },
+            scene: Scene {
+                title: "fake rooms".into(),
+                unit: TimeUnit::Second,
+                frame,
+                walls,
+                obstacles: vec![Obstacle {
+                    name: "toy".into(),
+                    outline: Vec::new(),
+                    reach: vec![rectangle(2.0, 10.0, 0.5, 0.5)],
+                }],
+                robots: vec![robot("curious", tour[0], true), robot("dummy", (7.0, 11.2), false)],
+            },
+            has_agent: true,
             mapper: Mapper::new(&MapperSettings::default(), frame).unwrap(),
             step: 0,
             curious: driver(&tour, 0.5),
@@ -113,9 +135,10 @@ impl FakeRun {
         self.step as f64 * TICK_S
     }
 
-    pub(crate) fn places(&self) -> [(&'static str, bool, Point2<f64>); 2] {
-        [("curious", true, &self.curious), ("dummy", false, &self.dummy)]
-            .map(|(name, is_curious, driver)| (name, is_curious, driver.pose.translation.vector.into()))
+    /// The names and the positions of the robots, m.
+    pub(crate) fn positions(&self) -> [(&'static str, Point2<f64>); 2] {
+        [("curious", &self.curious), ("dummy", &self.dummy)]
+            .map(|(name, driver)| (name, driver.pose.translation.vector.into()))
     }
 
     fn scan(&self) -> Scan {
@@ -152,25 +175,18 @@ impl FakeRun {
         }
     }
 
-    /// Hands the run as it is now to `look`.
+    /// Calls `look` with the run as it is now.
     pub(crate) fn with_view<T>(&mut self, look: impl FnOnce(&View) -> T) -> T {
         let features = self.mapper.features();
         let goal = self.curious.waypoints[self.curious.next % self.curious.waypoints.len()];
-        let robot = |name, driver: &Driver, is_curious: bool| RobotView {
-            name,
-            pose: driver.pose,
-            radius_m: RADIUS_M,
-            is_curious,
-            sight: is_curious.then_some(Sight::Laser(&self.reading)),
-        };
         let wave = |phase: f64| 1.0 + libm::sin(self.time_s() / 60.0 + phase);
-        let strategy = |name, phase: f64| StrategyView {
+        let strategy = |name, phase: f64| StrategyState {
             name,
-            value: 2.0 * wave(phase),
+            value: Some(2.0 * wave(phase)),
             share: 0.25 * wave(phase),
             is_current: phase == 0.0,
         };
-        let toy = rectangle(2.0, 10.0, 0.5, 0.5);
+        let toy = (self.time_s() > 20.0).then(|| self.scene.obstacles.first()?.reach.first().cloned());
         let seen =
             (0..self.mapper.frame().len()).step_by(7).filter(|&cell| self.mapper.was_ever_seen(cell)).count();
         let coverage = 7.0 * seen as f64 / self.mapper.frame().len() as f64;
@@ -179,14 +195,23 @@ impl FakeRun {
             step: self.step,
             features,
             mapper: &self.mapper,
-            robots: &[robot("curious", &self.curious, true), robot("dummy", &self.dummy, false)],
-            obstacles: &[ObstacleView { name: "toy", outline: &toy, is_present: self.time_s() > 20.0 }],
+            robots: vec![
+                RobotState { pose: self.curious.pose, sight: Some(Sight::Laser(&self.reading)) },
+                RobotState { pose: self.dummy.pose, sight: None },
+            ],
+            obstacles: vec![toy.flatten()],
             path: &[Point2::from(self.curious.pose.translation.vector), goal],
             goal: Some(goal),
-            scores: Some(Scores { coverage, map_quality: 0.98 * coverage }),
-            rate_errors: None,
-            strategies: &[strategy("recency", 0.0), strategy("poisson", 2.0), strategy("random", 4.0)],
-            messages: &self.messages,
+            strategies: if self.has_agent {
+                vec![strategy("recency", 0.0), strategy("poisson", 2.0), strategy("random", 4.0)]
+            } else {
+                Vec::new()
+            },
+            measured: Measured {
+                scores: Some(Scores { coverage, map_quality: 0.98 * coverage }),
+                rate_errors: None,
+                messages: &self.messages,
+            },
         })
     }
 }

@@ -1,15 +1,12 @@
-//! The maps as a person looks at them: every cell gets a class, and every class a colour and a
-//! meaning. The recording and the pictures share them, so that a colour means the same in both.
+//! The layers of a map as they are shown: every cell has a class, and every class has a color and a meaning.
+//! The recording and the pictures share them, so that a color means the same in both.
 
-use crate::view::TimeUnit;
-pub use evaluation::drawing::{CURIOUS, Rgb};
+use crate::scene::TimeUnit;
+use evaluation::palette::{self, Rgb};
 use interfaces::CellState;
 use mapper::Mapper;
 
-/// The colour of the other robots: green, as in Figure 4.
-pub const OTHERS: Rgb = [26, 158, 64];
-
-/// A map to look at.
+/// A layer of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
     /// Unknown, free or blocked.
@@ -22,47 +19,48 @@ pub enum Layer {
     Recency,
 }
 
-/// A cell that was never seen.
+/// A cell that was never seen. Class 0 stays unused: the viewer draws nothing for it.
 const UNKNOWN: u8 = 1;
-/// A free cell about which the layer has nothing to tell.
+/// A free cell without a value in the layer.
 const FREE: u8 = 2;
-/// A blocked cell about which the layer has nothing to tell.
+/// A blocked cell without a value in the layer.
 const BLOCKED: u8 = 3;
-/// The class of the lowest value on a layer's scale. Class 0 stays unused: the viewer draws it as
-/// nothing.
+/// The class of the lowest value on the scale of a layer.
 const FIRST: u8 = 4;
-/// The number of steps of a scale: finer than an eye can tell apart.
+/// The number of classes of a scale: neighbors look the same.
 const STEPS: u8 = 64;
 
-/// How a layer turns a value into a place on its colour bar, 0 to 1.
+/// The scale of a layer: from values to positions on the color bar, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     /// The value at the lower end.
     pub low: f64,
     /// The value at the upper end.
     pub high: f64,
-    /// Whether equal ratios, and not equal differences, are equally long.
+    /// Whether equal ratios, instead of equal differences, are equally long.
     pub is_log: bool,
+    /// The values that are marked.
+    pub ticks: &'static [f64],
 }
 
 impl Scale {
-    /// The place of `value` on the colour bar, cut to [0, 1].
-    pub fn place(&self, value: f64) -> f64 {
+    /// The position of `value` on the color bar, limited to [0, 1].
+    pub fn position(&self, value: f64) -> f64 {
         let at = |value: f64| if self.is_log { libm::log(value) } else { value };
         ((at(value) - at(self.low)) / (at(self.high) - at(self.low))).clamp(0.0, 1.0)
     }
 
-    /// The value at a place of the colour bar; the inverse of [`Scale::place`].
-    fn value(&self, place: f64) -> f64 {
+    /// The value at a position of the color bar; the inverse of [`Scale::position`].
+    fn value(&self, position: f64) -> f64 {
         if self.is_log {
-            self.low * libm::pow(self.high / self.low, place)
+            self.low * libm::pow(self.high / self.low, position)
         } else {
-            self.low + (self.high - self.low) * place
+            self.low + (self.high - self.low) * position
         }
     }
 
     fn class(&self, value: f64) -> u8 {
-        FIRST + ((self.place(value) * f64::from(STEPS)) as u8).min(STEPS - 1)
+        FIRST + ((self.position(value) * f64::from(STEPS)) as u8).min(STEPS - 1)
     }
 }
 
@@ -90,57 +88,34 @@ impl Layer {
         }
     }
 
-    /// The scale of the colour bar; `None` for the occupancy.
+    /// The scale of the color bar; `None` for the occupancy.
     pub fn scale(self, unit: TimeUnit) -> Option<Scale> {
-        match (self, unit) {
-            (Self::Occupancy, _) => None,
+        let (low, high, ticks): (_, _, &[f64]) = match (self, unit) {
+            (Self::Occupancy, _) => return None,
             // A door, a robot passing, a chair: two decades around half a minute.
-            (Self::Interval, TimeUnit::Second) => Some(Scale { low: 5.0, high: 500.0, is_log: true }),
-            // A cell's way of a block that moves in every step, or one that stands for hundreds.
-            (Self::Interval, TimeUnit::Step) => Some(Scale { low: 5.0, high: 2000.0, is_log: true }),
-            (Self::ChangeProbability, _) => Some(Scale { low: 0.0, high: 1.0, is_log: false }),
-            (Self::Recency, TimeUnit::Second) => Some(Scale { low: 1.0, high: 1000.0, is_log: true }),
-            (Self::Recency, TimeUnit::Step) => Some(Scale { low: 1.0, high: 5000.0, is_log: true }),
-        }
-    }
-
-    /// The marks of the colour bar: value and text.
-    pub fn ticks(self, unit: TimeUnit) -> &'static [(f64, &'static str)] {
-        match (self, unit) {
-            (Self::Occupancy, _) => &[],
-            (Self::Interval, TimeUnit::Second) => &[
-                (5.0, "5"),
-                (10.0, "10"),
-                (20.0, "20"),
-                (50.0, "50"),
-                (100.0, "100"),
-                (200.0, "200"),
-                (500.0, "500"),
-            ],
-            (Self::Interval, TimeUnit::Step) => {
-                &[(5.0, "5"), (20.0, "20"), (50.0, "50"), (200.0, "200"), (500.0, "500"), (2000.0, "2000")]
-            }
-            (Self::ChangeProbability, _) => {
-                &[(0.0, "0"), (0.25, "0.25"), (0.5, "0.5"), (0.75, "0.75"), (1.0, "1")]
-            }
-            (Self::Recency, _) => &[(1.0, "1"), (10.0, "10"), (100.0, "100"), (1000.0, "1000")],
-        }
-    }
-
-    /// The class of every cell of the mapper's frame in row-major order.
-    pub fn classes(self, mapper: &Mapper, unit: TimeUnit) -> Vec<u8> {
-        let states = mapper.states().cells();
-        let Some(scale) = self.scale(unit) else {
-            return states.iter().map(|&state| plain(state)).collect();
+            (Self::Interval, TimeUnit::Second) => (5.0, 500.0, &[5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]),
+            // From a block that moves in every step to a block that stands for hundreds of steps.
+            (Self::Interval, TimeUnit::Step) => (5.0, 2000.0, &[5.0, 20.0, 50.0, 200.0, 500.0, 2000.0]),
+            (Self::ChangeProbability, _) => (0.0, 1.0, &[0.0, 0.25, 0.5, 0.75, 1.0]),
+            (Self::Recency, TimeUnit::Second) => (1.0, 1000.0, &[1.0, 10.0, 100.0, 1000.0]),
+            (Self::Recency, TimeUnit::Step) => (1.0, 5000.0, &[1.0, 10.0, 100.0, 1000.0]),
         };
+        Some(Scale { low, high, is_log: self != Self::ChangeProbability, ticks })
+    }
+
+    /// The class of every cell of the mapper's frame, in row-major order.
+    pub fn classes(self, mapper: &Mapper, unit: TimeUnit) -> Vec<u8> {
+        let states = mapper.states().cells().iter();
+        let mut classes: Vec<u8> = states.map(|&state| plain(state)).collect();
+        let Some(scale) = self.scale(unit) else { return classes };
         if self == Self::Recency {
-            // Every cell that was seen has one.
-            let class = |index| {
-                if mapper.was_ever_seen(index) { scale.class(mapper.recency(index)) } else { UNKNOWN }
-            };
-            return (0..states.len()).map(class).collect();
+            // Every cell that was seen has a value.
+            for (index, class) in classes.iter_mut().enumerate() {
+                let was_seen = mapper.was_ever_seen(index);
+                *class = if was_seen { scale.class(mapper.recency(index)) } else { UNKNOWN };
+            }
+            return classes;
         }
-        let mut classes: Vec<u8> = states.iter().map(|&state| plain(state)).collect();
         for index in mapper.changed() {
             let interval = mapper.interval(index);
             if interval.is_finite() {
@@ -153,59 +128,46 @@ impl Layer {
         classes
     }
 
-    /// The colour of a class.
-    pub fn colour(self, class: u8) -> Rgb {
-        let place = (f64::from(class.saturating_sub(FIRST)) + 0.5) / f64::from(STEPS);
-        let gradient = |gradient: colorous::Gradient, place: f64| {
-            let colour = gradient.eval_continuous(place.min(1.0));
-            [colour.r, colour.g, colour.b]
+    /// The color of a class. The scales have a lightness that only rises or only falls, so that
+    /// color-blind readers and gray prints show the same order.
+    pub fn color(self, class: u8) -> Rgb {
+        let position = (f64::from(class.saturating_sub(FIRST)) + 0.5) / f64::from(STEPS);
+        let gradient = |gradient: colorous::Gradient, position: f64| {
+            let color = gradient.eval_continuous(position.clamp(0.0, 1.0));
+            [color.r, color.g, color.b]
         };
         match (self, class) {
-            (_, 0..=UNKNOWN) => [211, 219, 232],
-            (_, FREE) => [255, 255, 255],
-            (Self::Occupancy, BLOCKED) => [32, 36, 44],
-            (_, BLOCKED) => [158, 160, 165],
-            (Self::Interval, _) => gradient(colorous::TURBO, 0.95 - 0.9 * place), // short is red, as in Fig. 5
-            (Self::ChangeProbability, _) => gradient(colorous::YELLOW_ORANGE_RED, 0.1 + 0.9 * place),
-            (Self::Recency | Self::Occupancy, _) => gradient(colorous::VIRIDIS, 1.0 - place),
+            (_, 0..=UNKNOWN) => palette::UNKNOWN,
+            (_, FREE) => palette::FREE,
+            (Self::Occupancy, BLOCKED) => palette::BLOCKED,
+            (_, BLOCKED) => palette::BLOCKED_FAINT,
+            // Short intervals are dark, as much as white allows the long ones to be seen.
+            (Self::Interval, _) => gradient(colorous::INFERNO, 0.12 + 0.78 * position),
+            (Self::ChangeProbability, _) => gradient(colorous::CIVIDIS, 1.0 - position),
+            (Self::Recency | Self::Occupancy, _) => gradient(colorous::VIRIDIS, 1.0 - position),
         }
     }
 
-    /// The colour at a place of the colour bar, 0 to 1.
-    pub fn colour_at(self, place: f64) -> Rgb {
-        self.colour(FIRST + ((place * f64::from(STEPS)) as u8).min(STEPS - 1))
-    }
-
-    /// The classes along the colour bar, from its lower end on.
+    /// The classes along the color bar, from its lower end on.
     pub fn scale_classes(self) -> Vec<u8> {
         (FIRST..FIRST + STEPS).collect()
     }
 
-    /// A mark of the colour bar with its unit.
-    pub fn with_unit(self, mark: &str, unit: TimeUnit) -> String {
+    /// The classes beside the color bar, with their meanings.
+    pub fn plain_legend(self) -> Vec<(u8, &'static str)> {
         match self {
-            Self::Interval | Self::Recency => format!("{mark} {}", unit.symbol()),
-            Self::Occupancy | Self::ChangeProbability => mark.into(),
-        }
-    }
-
-    /// The classes beside the colour bar, with what they mean.
-    pub fn plain_legend(self) -> Vec<(u8, String)> {
-        let plain = |states: &[(u8, &str)]| {
-            states.iter().map(|&(class, meaning)| (class, meaning.to_owned())).collect()
-        };
-        match self {
-            Self::Occupancy => plain(&[(FREE, "free"), (BLOCKED, "blocked"), (UNKNOWN, "never seen")]),
-            Self::Recency => plain(&[(UNKNOWN, "never seen")]),
+            Self::Occupancy => vec![(FREE, "free"), (BLOCKED, "blocked"), (UNKNOWN, "never seen")],
+            Self::Recency => vec![(UNKNOWN, "never seen")],
             Self::Interval | Self::ChangeProbability => {
-                plain(&[(FREE, "free, no change"), (BLOCKED, "blocked, no change"), (UNKNOWN, "never seen")])
+                vec![(FREE, "free, no change"), (BLOCKED, "blocked, no change"), (UNKNOWN, "never seen")]
             }
         }
     }
 
-    /// Every class that a cell can have, with what it means.
+    /// Every class that a cell can have, with its meaning.
     pub fn legend(self, unit: TimeUnit) -> Vec<(u8, String)> {
-        let mut legend = self.plain_legend();
+        let plain = self.plain_legend().into_iter();
+        let mut legend: Vec<(u8, String)> = plain.map(|(class, text)| (class, text.into())).collect();
         if let Some(scale) = self.scale(unit) {
             let symbol = unit.symbol();
             legend.extend((0..STEPS).map(|step| {
@@ -247,23 +209,42 @@ mod tests {
         for (layer, unit) in all() {
             let Some(scale) = layer.scale(unit) else { continue };
             for step in 0..=20 {
-                let place = f64::from(step) / 20.0;
-                assert!((scale.place(scale.value(place)) - place).abs() < 1e-12);
+                let position = f64::from(step) / 20.0;
+                assert!((scale.position(scale.value(position)) - position).abs() < 1e-12);
             }
-            assert_eq!(scale.place(f64::INFINITY), 1.0);
+            assert_eq!(scale.position(f64::INFINITY), 1.0);
             assert_eq!(scale.class(f64::INFINITY), FIRST + STEPS - 1);
             assert_eq!(scale.class(-1.0), FIRST);
         }
     }
 
+    /// Lightness of a color, 0 to 100 (CIE L*).
+    fn lightness([red, green, blue]: Rgb) -> f64 {
+        let linear = |part: u8| {
+            let part = f64::from(part) / 255.0;
+            if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+        };
+        let luminance = 0.2126 * linear(red) + 0.7152 * linear(green) + 0.0722 * linear(blue);
+        if luminance > 0.008856 { 116.0 * luminance.cbrt() - 16.0 } else { 903.3 * luminance }
+    }
+
     #[test]
-    fn a_cycle_of_27_s_looks_unlike_half_and_double() {
+    fn a_cycle_of_27_s_looks_unlike_half_and_double_also_without_hues() {
         let interval = Layer::Interval;
         let scale = interval.scale(TimeUnit::Second).unwrap();
-        let colour = |seconds: f64| interval.colour(scale.class(seconds)).map(i32::from);
-        let apart = |a: [i32; 3], b: [i32; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).max().unwrap();
-        assert!(apart(colour(27.0), colour(13.5)) > 60, "{:?} {:?}", colour(27.0), colour(13.5));
-        assert!(apart(colour(27.0), colour(54.0)) > 60, "{:?} {:?}", colour(27.0), colour(54.0));
+        let shade = |seconds: f64| lightness(interval.color(scale.class(seconds)));
+        assert!(shade(27.0) - shade(13.5) > 9.0, "{} {}", shade(27.0), shade(13.5));
+        assert!(shade(54.0) - shade(27.0) > 9.0, "{} {}", shade(54.0), shade(27.0));
+    }
+
+    #[test]
+    fn lightness_gives_the_order_of_every_scale() {
+        for layer in &Layer::ALL[1..] {
+            let shades: Vec<f64> =
+                layer.scale_classes().iter().map(|&class| lightness(layer.color(class))).collect();
+            let rises = shades.windows(2).filter(|pair| pair[0] < pair[1]).count();
+            assert!(rises == 0 || rises == shades.len() - 1, "{layer:?}: {shades:?}");
+        }
     }
 
     #[test]
@@ -280,11 +261,8 @@ mod tests {
 
     #[test]
     fn ticks_lie_on_their_scale() {
-        for (layer, unit) in all() {
-            for (value, _) in layer.ticks(unit) {
-                let scale = layer.scale(unit).unwrap();
-                assert!((scale.low..=scale.high).contains(value));
-            }
+        for scale in all().filter_map(|(layer, unit)| layer.scale(unit)) {
+            assert!(scale.ticks.iter().all(|tick| (scale.low..=scale.high).contains(tick)));
         }
     }
 }

@@ -7,8 +7,10 @@
 #[cfg(test)]
 mod fake;
 pub mod layers;
+mod outline;
 pub mod pictures;
 pub mod recording;
 pub mod scene;
+pub mod show;
 pub mod trial;
 pub mod view;

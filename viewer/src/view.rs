@@ -1,7 +1,7 @@
 //! A run at one instant, as plain data: the input of the recording and of the moving picture.
 
 use crate::scene::{Outline, TimeUnit, Visible};
-use evaluation::{RateErrors, Scores};
+use evaluation::metrics::{RateErrors, Scores};
 use interfaces::{CellReading, LaserReading, Reading};
 use mapper::{Features, Mapper};
 use nalgebra::{Isometry2, Point2};

@@ -1,180 +1,119 @@
 //! A world from above, at its start.
 
-use super::panel::{self, Chart};
-use super::trajectory::WALL;
-use crate::layer::{CURIOUS, OTHERS, Rgb};
-use evaluation::drawing::{Area, INK, ink, px, text, why};
-use interfaces::GridFrame;
+use super::ground::{self, fill, robot_color};
+use super::panel::{Chart, Mark, Panel};
+use crate::scene::{Robot, Scene, Sector};
+use evaluation::drawing::{Area, INK, px, text, why};
+use evaluation::palette;
 use nalgebra::{Isometry2, Point2};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::f64::consts::TAU;
 
-const THING: Rgb = [214, 110, 20];
-const REACH: Rgb = [250, 226, 198];
-const VIEW: Rgb = [222, 235, 222];
-/// The sides of the polygon that a circle is drawn as.
+/// The corners of the polygon that a circle is drawn as.
 const CORNERS: usize = 48;
-/// More things than this are drawn without their names, and without what they look around with.
+/// In a scene with more obstacles and robots than this, names and sensors are not drawn.
 const MOST_NAMES: usize = 40;
-/// How far views are drawn, as a multiple of the robot's radius: whole ones would cover the house.
-const VIEW_RADII: f64 = 2.5;
+/// The drawn part of the range of a sensor, as a multiple of the robot's radius: all of it would cover the
+/// world.
+const SECTOR_RADII: f64 = 2.5;
 
-/// A world from above, at its start.
-#[derive(Clone, Debug)]
-pub struct Plan {
-    /// What lengths are counted in.
-    pub unit: &'static str,
-    /// The rectangle that is drawn.
-    pub frame: GridFrame,
-    /// Corners of what stands for good.
-    pub walls: Vec<Vec<Point2<f64>>>,
-    /// What can move, come or go.
-    pub things: Vec<PlanThing>,
-    /// Who lives there.
-    pub robots: Vec<PlanRobot>,
-}
-
-/// Something that is no wall and no robot.
-#[derive(Clone, Debug)]
-pub struct PlanThing {
-    /// What it is called.
-    pub name: String,
-    /// Where it is at the start; empty if it is not there yet.
-    pub outline: Vec<Point2<f64>>,
-    /// Where it can get to, as far as that is known beforehand.
-    pub reach: Vec<Vec<Point2<f64>>>,
-}
-
-/// A robot at its start.
-#[derive(Clone, Debug)]
-pub struct PlanRobot {
-    /// What it is called.
-    pub name: String,
-    /// Where it stands.
-    pub pose: Isometry2<f64>,
-    /// The radius of the circle about it.
-    pub radius: f64,
-    /// The corners of its body, in its own frame; none: it is that circle.
-    pub corners: Vec<Point2<f64>>,
-    /// What it looks around with.
-    pub views: Vec<SensorView>,
-    /// Whether it obeys commands.
-    pub is_driven: bool,
-}
-
-/// Where a laser or a sonar looks.
-#[derive(Clone, Copy, Debug)]
-pub struct SensorView {
-    /// Where it is mounted, in the frame of the robot.
-    pub mount: Isometry2<f64>,
-    /// The angle that it takes in, about its direction, rad.
-    pub angle_rad: f64,
-    /// How far it reaches.
-    pub range: f64,
-}
-
-/// Draws the walls, what moves with where it can get to, and the robots with where they look.
-pub(super) fn draw(area: &Area, name: &str, plan: &Plan) -> Result<(), String> {
-    let (chart, legend) = panel::axes_in(area, name, &plan.frame, plan.unit)?;
-    let fill = |corners: &[Point2<f64>], colour: Rgb| {
-        let corners: Vec<(f64, f64)> = corners.iter().map(|corner| (corner.x, corner.y)).collect();
-        chart.plotting_area().draw(&Polygon::new(corners, ink(colour).filled())).map_err(why)
-    };
-    for reach in plan.things.iter().flat_map(|thing| &thing.reach) {
-        fill(reach, REACH)?;
+/// Draws the scene, the robots with the directions of their sensors, and the names.
+pub(super) fn draw(panel: &Panel, area: &Area, scene: &Scene) -> Result<(), String> {
+    let (chart, legend) = panel.axes(area, &scene.title)?;
+    for robot in with_sensors(scene) {
+        let mut sectors = robot.sectors.iter();
+        sectors.try_for_each(|it| fill(&chart, &sector(robot, it), palette::SENSOR_AREA))?;
     }
-    let is_crowded = plan.things.len() + plan.robots.len() > MOST_NAMES;
-    let watchful = plan.robots.iter().filter(|robot| !is_crowded && !robot.views.is_empty());
-    for robot in watchful.clone() {
-        robot.views.iter().try_for_each(|view| fill(&sector(robot, view), VIEW))?;
-    }
-    for wall in &plan.walls {
-        fill(wall, WALL)?;
-    }
-    for thing in plan.things.iter().filter(|thing| !thing.outline.is_empty()) {
-        fill(&thing.outline, THING)?;
-    }
-    for robot in &plan.robots {
-        fill(&body(robot), colour(robot))?;
-        let front = robot.corners.iter().map(|corner| corner.x).reduce(f64::max).unwrap_or(robot.radius);
-        let ahead = robot.pose * Point2::new(front, 0.0);
-        let middle = robot.pose * Point2::origin();
-        let line = PathElement::new(
-            vec![(middle.x, middle.y), (ahead.x, ahead.y)],
-            WHITE.stroke_width(px(2) as u32),
-        );
+    ground::draw(&chart, scene)?;
+    for robot in &scene.robots {
+        fill(&chart, &body(robot, &robot.pose), robot_color(robot))?;
+        let front = robot.corners.iter().map(|corner| corner.x).reduce(f64::max).unwrap_or(robot.radius_m);
+        let [center, ahead] = [0.0, front].map(|x| robot.pose * Point2::new(x, 0.0));
+        let line = PathElement::new([(center.x, center.y), (ahead.x, ahead.y)], panel.line(WHITE, 4));
         chart.plotting_area().draw(&line).map_err(why)?;
     }
-    if !is_crowded {
-        names(&chart, &plan.things, &plan.robots)?;
+    if !is_crowded(scene) {
+        names(&chart, scene)?;
     }
-    panel::frame(&chart, &plan.frame)?;
+    panel.frame(&chart)?;
+    panel.legend(&legend, &entries(scene))
+}
 
-    let is = |is_driven: bool| plan.robots.iter().any(|robot| robot.is_driven == is_driven);
-    let lines = [
-        (true, WALL, "wall"),
-        (!plan.things.is_empty(), THING, "thing"),
-        (plan.things.iter().any(|thing| !thing.reach.is_empty()), REACH, "its way"),
-        (is(true), CURIOUS, "driven robot"),
-        (is(false), OTHERS, "other robot"),
-        (watchful.count() > 0, VIEW, "where it looks"),
+/// The entries of the legend.
+pub(super) fn entries(scene: &Scene) -> Vec<(Mark, String)> {
+    let has = |is_driven: bool| scene.robots.iter().any(|robot| robot.is_driven == is_driven);
+    let entries = [
+        (has(true), palette::CURIOUS, "driven robot"),
+        (has(false), palette::OTHER_ROBOT, "other robot"),
+        (with_sensors(scene).next().is_some(), palette::SENSOR_AREA, "field of view"),
     ];
-    let mut top = px(13);
-    for (_, colour, meaning) in lines.into_iter().filter(|(is_there, _, _)| *is_there) {
-        panel::swatch(&legend, top, colour, meaning)?;
-        top += px(26);
-    }
-    Ok(())
+    let robots = entries.into_iter().filter(|entry| entry.0);
+    let robots = robots.map(|(_, color, text)| (Mark::Area(color), text.to_owned()));
+    ground::entries(scene).chain(robots).collect()
 }
 
-fn colour(robot: &PlanRobot) -> Rgb {
-    if robot.is_driven { CURIOUS } else { OTHERS }
+fn is_crowded(scene: &Scene) -> bool {
+    scene.obstacles.len() + scene.robots.len() > MOST_NAMES
 }
 
-fn body(robot: &PlanRobot) -> Vec<Point2<f64>> {
+/// The robots whose sensors are drawn.
+fn with_sensors(scene: &Scene) -> impl Iterator<Item = &Robot> {
+    let is_shown = !is_crowded(scene);
+    scene.robots.iter().filter(move |robot| is_shown && !robot.sectors.is_empty())
+}
+
+/// The outline of a robot at a pose.
+pub(super) fn body(robot: &Robot, pose: &Isometry2<f64>) -> Vec<Point2<f64>> {
     if robot.corners.is_empty() {
-        return arc(&robot.pose, robot.radius, TAU);
+        return arc(pose, robot.radius_m, TAU);
     }
-    robot.corners.iter().map(|corner| robot.pose * corner).collect()
+    robot.corners.iter().map(|corner| pose * corner).collect()
 }
 
-/// What of a view is drawn.
-fn sector(robot: &PlanRobot, view: &SensorView) -> Vec<Point2<f64>> {
-    let mount = robot.pose * view.mount;
-    let mut corners = arc(&mount, view.range.min(VIEW_RADII * robot.radius), view.angle_rad);
-    if view.angle_rad < TAU {
+/// The drawn part of what a sensor covers.
+fn sector(robot: &Robot, sector: &Sector) -> Vec<Point2<f64>> {
+    let mount = robot.pose * sector.mount;
+    let mut corners = arc(&mount, sector.range_m.min(SECTOR_RADII * robot.radius_m), sector.angle_rad);
+    if sector.angle_rad < TAU {
         corners.push(mount * Point2::origin());
     }
     corners
 }
 
-/// Points on a circle about a middle, over an angle about its direction.
-fn arc(middle: &Isometry2<f64>, radius: f64, angle_rad: f64) -> Vec<Point2<f64>> {
-    let point = |number: usize| {
-        let angle = angle_rad * (number as f64 / CORNERS as f64 - 0.5);
-        middle * Point2::new(radius * angle.cos(), radius * angle.sin())
+/// Points on a circle around a pose, half of the angle on either side of its direction.
+fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<Point2<f64>> {
+    let point = |index: usize| {
+        let angle = angle_rad * (index as f64 / CORNERS as f64 - 0.5);
+        pose * Point2::new(radius_m * angle.cos(), radius_m * angle.sin())
     };
     (0..=CORNERS).map(point).collect()
 }
 
-/// Writes the names below what they belong to.
-fn names(chart: &Chart, things: &[PlanThing], robots: &[PlanRobot]) -> Result<(), String> {
-    let lowest = |corners: &[Point2<f64>]| {
-        let middle = corners.iter().map(|corner| corner.x).sum::<f64>() / corners.len() as f64;
-        let bottom = corners.iter().map(|corner| corner.y).fold(f64::INFINITY, f64::min);
-        (middle, bottom)
-    };
-    let of_things = things.iter().filter_map(|thing| {
-        let corners = if thing.outline.is_empty() { thing.reach.first()? } else { &thing.outline };
-        Some((thing.name.clone(), lowest(corners)))
+/// Writes the names: in the middle of what is large enough, otherwise below.
+fn names(chart: &Chart, scene: &Scene) -> Result<(), String> {
+    let obstacles = scene.obstacles.iter().filter_map(|obstacle| {
+        let outline =
+            if obstacle.outline.is_empty() { obstacle.reach.first()? } else { &obstacle.outline };
+        Some((obstacle.name.as_str(), outline.clone()))
     });
-    let of_robots = robots.iter().map(|robot| (robot.name.clone(), lowest(&body(robot))));
+    let robots = scene.robots.iter().map(|robot| (robot.name.as_str(), body(robot, &robot.pose)));
     let plot = chart.plotting_area();
-    for (name, at) in of_things.chain(of_robots) {
-        let style = text(12).pos(Pos::new(HPos::Center, VPos::Top)).color(&INK);
-        let name = EmptyElement::at(at) + Text::new(name, (0, px(2)), style);
-        plot.draw(&name).map_err(why)?;
+    for (name, outline) in obstacles.chain(robots) {
+        let pixels: Vec<(i32, i32)> =
+            outline.iter().map(|corner| plot.map_coordinate(&(corner.x, corner.y))).collect();
+        let span = |values: Vec<i32>| {
+            let (low, high) = (values.iter().min().copied(), values.iter().max().copied());
+            (low.unwrap_or(0), high.unwrap_or(0))
+        };
+        let (left, right) = span(pixels.iter().map(|pixel| pixel.0).collect());
+        let (top, bottom) = span(pixels.iter().map(|pixel| pixel.1).collect());
+        let style = text(20).color(&INK);
+        let (width, height) = plot.estimate_text_size(name, &style).map_err(why)?;
+        let fits = right - left > width as i32 && bottom - top > height as i32;
+        let y = if fits { (top + bottom) / 2 + px(5) } else { bottom + px(12) };
+        let style = style.pos(Pos::new(HPos::Center, VPos::Center));
+        plot.use_screen_coord().draw_text(name, &style, ((left + right) / 2, y)).map_err(why)?;
     }
     Ok(())
 }

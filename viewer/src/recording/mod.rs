@@ -1,32 +1,34 @@
-//! The recording of a run, and the live view of it. The only place that knows Rerun.
+//! The Rerun recording of a run, in a file and in a live viewer.
 //!
-//! [`Recorder::log`] is called at every tick and decides by itself what to log how often; the rows
-//! are handed on every second, so that a killed run loses no more than that.
+//! [`Recorder::log`] is called at every tick and decides what to log how often. The rows are sent every
+//! second, so that a killed run loses no more than one second.
+//!
+//! A new entity is a file in `tracks/` and a line in its list; for data that [`View`] does not have yet, also
+//! a field there and its source.
 
-mod blueprint;
-mod columns;
-mod entity;
 mod file;
+mod layout;
 mod live;
-mod outline;
 mod pace;
-mod scenery;
-mod sight;
+mod path;
+mod rows;
 mod sinks;
 mod tracks;
 
 pub use live::{Live, LiveError};
 
-use crate::view::{Scene, View};
+use crate::scene::Scene;
+use crate::view::View;
 use pace::Pace;
 use rerun::log::ChunkBatcherConfig;
-use rerun::{RecordingStream, RecordingStreamBuilder};
+use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamError};
+use rows::{Now, Target};
 use sinks::Sinks;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use tracks::Tracks;
+use tracks::Track;
 
-/// Where a recording goes: to a file, to viewers, or to all of them at once.
+/// The destinations of a recording: a file, viewers, or both.
 #[derive(Clone, Debug)]
 pub struct RecordingOptions {
     /// The `.rrd` file to write; an older one is replaced.
@@ -43,7 +45,7 @@ impl Default for RecordingOptions {
     }
 }
 
-/// Why a recording cannot be made, or go on.
+/// Why a recording cannot be made, or cannot continue.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file cannot be written.
@@ -51,31 +53,37 @@ pub enum RecordingError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// The message of the operating system.
         why: String,
     },
-    /// The viewer cannot be shown anything, and there is no file either.
+    /// No viewer can show the run, and there is no file.
     #[error(transparent)]
     Live(#[from] LiveError),
-    /// The SDK refused what it was given.
+    /// The SDK refused the data.
     #[error("cannot record the run: {0}")]
     Sdk(String),
 }
 
-/// The name under which a viewer keeps what belongs to this program.
+/// The name of this program in the viewer, which keeps its settings under that name.
 const APPLICATION: &str = "curious";
-/// How long rows may wait before they are handed on, in wall time.
+/// How long rows may wait before they are sent, in wall time.
 const FLUSH_FILE: Duration = Duration::from_secs(1);
 /// The same while a viewer watches.
 const FLUSH_LIVE: Duration = Duration::from_millis(50);
 
-/// A recording being made.
+impl From<RecordingStreamError> for RecordingError {
+    fn from(error: RecordingStreamError) -> Self {
+        Self::Sdk(error.to_string())
+    }
+}
+
+/// A recording in progress.
 pub struct Recorder {
     stream: RecordingStream,
     sinks: Sinks,
     scene: Scene,
-    /// Built at the first view, which tells who takes part.
-    tracks: Option<Tracks>,
+    /// Made at the first view, which shows what there is to log.
+    tracks: Option<Vec<Box<dyn Track>>>,
     flushed: Instant,
     /// In the unit of the scene.
     flushed_at: f64,
@@ -83,22 +91,21 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the file and the viewers. A viewer that cannot be reached does not stop a recording
-    /// that has a file: [`Recorder::live_problem`] tells about it.
+    /// Opens the file and the viewers. A viewer that cannot be reached does not stop a recording with a file:
+    /// see [`Recorder::live_problem`].
     ///
     /// # Errors
     ///
-    /// When the file cannot be written, or there is no file and a viewer cannot be reached. Both
-    /// are known within two seconds, unless a viewer has to be started.
+    /// When the file cannot be written, or when there is no file and a viewer cannot be reached. Both are
+    /// known within two seconds, unless a viewer has to be started.
     pub fn new(options: &RecordingOptions, scene: Scene) -> Result<Self, RecordingError> {
         let (sinks, live_problem) = Sinks::open(options)?;
         let (_, info, properties, ..) =
             RecordingStreamBuilder::new(APPLICATION).recording_name(scene.title.clone()).into_args();
-        // Rows come in columns: there is nothing to batch.
+        // Rows are sent in columns: there is nothing to batch.
         let batching = Some(ChunkBatcherConfig::NEVER);
         let stream =
-            RecordingStream::new(info, properties, batching, Default::default(), Box::new(sinks.clone()))
-                .map_err(|error| RecordingError::Sdk(error.to_string()))?;
+            RecordingStream::new(info, properties, batching, Default::default(), Box::new(sinks.clone()))?;
         let flushed = Instant::now();
         Ok(Self { stream, sinks, scene, tracks: None, flushed, flushed_at: 0.0, live_problem })
     }
@@ -107,9 +114,9 @@ impl Recorder {
     ///
     /// # Errors
     ///
-    /// When the file could not be written any more.
+    /// When the file cannot be written any more.
     pub fn log(&mut self, view: &View) -> Result<(), RecordingError> {
-        self.record(view, false).map_err(RecordingError::Sdk)?;
+        self.record(view, false)?;
         let wait = if self.sinks.is_live() { FLUSH_LIVE } else { FLUSH_FILE };
         let is_much = view.time - self.flushed_at >= Pace::of(self.scene.unit).flush;
         if is_much || self.flushed.elapsed() >= wait {
@@ -119,44 +126,46 @@ impl Recorder {
         Ok(())
     }
 
-    /// Records the end of the run, every map as it is now, and closes the recording.
+    /// Records the end of the run, with every map as it is now, and closes the recording.
     ///
     /// # Errors
     ///
-    /// When not all of the recording could be written to the file.
+    /// When a part of the recording could not be written to the file.
     pub fn finish(mut self, view: &View) -> Result<(), RecordingError> {
-        self.record(view, true).map_err(RecordingError::Sdk)?;
+        self.record(view, true)?;
         self.flush()?;
         self.stream.flush_blocking().map_err(|error| RecordingError::Sdk(error.to_string()))?;
         self.sinks.finish()
     }
 
-    /// Why a viewer is not shown the run, or not any more; the file is not affected.
+    /// Why a viewer does not show the run, or does not show it any more. The file is not affected.
     pub fn live_problem(&self) -> Option<String> {
         self.live_problem.clone().or_else(|| self.sinks.live_problem())
     }
 
-    fn record(&mut self, view: &View, is_last: bool) -> Result<(), String> {
+    fn record(&mut self, view: &View, is_last: bool) -> Result<(), RecordingError> {
         let tracks = match &mut self.tracks {
             Some(tracks) => tracks,
             none => {
-                let sdk = |error: rerun::RecordingStreamError| error.to_string();
-                scenery::send(&self.stream, &self.scene, view).map_err(sdk)?;
-                blueprint::send(&self.stream, APPLICATION, &self.scene, view).map_err(sdk)?;
-                self.stream.flush_async().map_err(|error| error.to_string())?;
-                none.insert(Tracks::new(view, self.scene.unit))
+                // A viewer's y axis points down.
+                let upright = rerun::Transform3D::from_scale([1.0, -1.0, 1.0]);
+                self.stream.log_static(path::WORLD, &upright)?;
+                let tracks = none.insert(tracks::start(&self.stream, &self.scene, view)?);
+                layout::send(&self.stream, APPLICATION, &self.scene, view)?;
+                self.stream.flush_async().map_err(|error| RecordingError::Sdk(error.to_string()))?;
+                tracks
             }
         };
-        tracks.push(view, is_last);
+        let now = Now { time: view.time, step: view.step };
+        tracks.iter_mut().for_each(|track| track.push(now, view, is_last));
         Ok(())
     }
 
-    /// Hands on what waits.
+    /// Sends what waits.
     fn flush(&mut self) -> Result<(), RecordingError> {
         self.flushed = Instant::now();
-        if let Some(tracks) = &mut self.tracks {
-            tracks.flush(&self.stream).map_err(RecordingError::Sdk)?;
-        }
+        let to = Target { stream: &self.stream, unit: self.scene.unit };
+        self.tracks.iter_mut().flatten().try_for_each(|track| track.flush(to))?;
         self.sinks.check()
     }
 }

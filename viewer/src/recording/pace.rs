@@ -1,10 +1,10 @@
 //! How often each part of a run is logged.
 
-use crate::view::TimeUnit;
+use crate::scene::TimeUnit;
 use interfaces::GridFrame;
 
-/// Where time is counted in steps, a picture with more cells than this comes the more seldom: a viewer
-/// holds 20,000 of them in 50 MB.
+/// Where time is counted in steps, images with more cells than this are logged less often: a viewer holds
+/// 20,000 images of this size in 50 MB.
 const STEP_CELLS: usize = 2500;
 
 /// Times between two rows, in the unit of the scene.
@@ -19,7 +19,7 @@ pub(super) struct Pace {
     pub(super) maps: f64,
     /// Of points of a curve.
     pub(super) curves: f64,
-    /// How much may wait before it is handed on: maps at hundreds of times real time fill the memory.
+    /// Of sending: maps at hundreds of times real time fill the memory.
     pub(super) flush: f64,
 }
 
@@ -29,14 +29,14 @@ impl Pace {
             TimeUnit::Second => {
                 Self { unit, sight: 0.2, occupancy: 1.0, maps: 10.0, curves: 1.0, flush: 60.0 }
             }
-            // A person looks at single steps, and a run has thousands of them.
+            // Single steps are of interest, and a run has thousands.
             TimeUnit::Step => {
                 Self { unit, sight: 1.0, occupancy: 1.0, maps: 20.0, curves: 10.0, flush: 2000.0 }
             }
         }
     }
 
-    /// The time between two pictures of so many cells.
+    /// The time between two images of the cells of `frame`.
     pub(super) fn picture(&self, period: f64, frame: &GridFrame) -> f64 {
         match self.unit {
             TimeUnit::Second => period,
@@ -45,7 +45,7 @@ impl Pace {
     }
 }
 
-/// Says when something that is logged at a lower rate is due.
+/// Decides when something that is logged at a lower rate is due.
 pub(super) struct Due {
     period: f64,
     next: f64,

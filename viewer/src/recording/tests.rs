@@ -1,7 +1,7 @@
 use super::*;
 use crate::fake::FakeRun;
-use crate::layer::Layer;
-use crate::view::TimeUnit;
+use crate::layers::Layer;
+use crate::scene::TimeUnit;
 use nalgebra::Point2;
 use rerun::components::{ImageBuffer, Position2D, Scalar, Text};
 use rerun::external::re_log_encoding::Decoder;
@@ -50,7 +50,7 @@ fn rows<C: Component + Clone>(
     let mut rows = Vec::new();
     for chunk in store.iter_physical_chunks() {
         if chunk.entity_path() == &entity && !chunk.is_static() {
-            let time = chunk.timelines().values().find(|time| time.name() == columns::SIM_TIME);
+            let time = chunk.timelines().values().find(|time| time.name() == rows::SIM_TIME);
             let times = time.unwrap().times_raw();
             let items = chunk.iter_component::<C>(component).map(|items| items.as_slice().to_vec());
             rows.extend(times.iter().copied().zip(items));
@@ -73,8 +73,8 @@ fn everything_that_a_newcomer_looks_for_is_there() {
         .filter(|path| !path.starts_with("/__"))
         .collect();
     let expected = [
-        "/curves/p",
-        "/curves/r",
+        "/curves/expected_changes/p",
+        "/curves/longest_unseen/r",
         "/curves/scores/coverage",
         "/curves/scores/map_quality",
         "/curves/strategy",
@@ -89,22 +89,25 @@ fn everything_that_a_newcomer_looks_for_is_there() {
         "/world/field_of_view/cells",
         "/world/field_of_view/outline",
         "/world/goal",
-        "/world/house/obstacles/toy",
-        "/world/house/walls",
+        "/world/legend/lines",
+        "/world/legend/rims",
+        "/world/legend/texts",
         "/world/maps/change_probability",
         "/world/maps/change_probability/cells",
-        "/world/maps/change_probability/colour_bar",
+        "/world/maps/change_probability/color_bar",
         "/world/maps/change_probability/marks",
         "/world/maps/interval",
         "/world/maps/interval/cells",
-        "/world/maps/interval/colour_bar",
+        "/world/maps/interval/color_bar",
         "/world/maps/interval/marks",
         "/world/maps/occupancy",
         "/world/maps/occupancy/cells",
         "/world/maps/recency",
         "/world/maps/recency/cells",
-        "/world/maps/recency/colour_bar",
+        "/world/maps/recency/color_bar",
         "/world/maps/recency/marks",
+        "/world/obstacles/toy",
+        "/world/obstacles/toy/name",
         "/world/path",
         "/world/robots/curious/body",
         "/world/robots/curious/heading",
@@ -112,6 +115,7 @@ fn everything_that_a_newcomer_looks_for_is_there() {
         "/world/robots/dummy/body",
         "/world/robots/dummy/heading",
         "/world/robots/dummy/trail",
+        "/world/walls",
     ];
     assert_eq!(entities, expected);
     assert_eq!(timelines(&store), ["sim_time", "step"]);
@@ -122,15 +126,15 @@ fn where_time_is_counted_in_steps_nothing_speaks_of_seconds() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
     let mut run = FakeRun::new();
-    run.scene = Scene { unit: TimeUnit::Step, place: "grid", ..run.scene };
+    run.scene = Scene { unit: TimeUnit::Step, ..run.scene };
     record_run(run, &file, 3);
     let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
     assert_eq!(timelines(&store), ["step"]);
     let titles = titles(&file);
     for title in [
-        "The grid, as the robot maps it",
+        "The map so far: fake rooms",
         "Change interval: steps per cycle",
-        "Longest time since a cell was seen, r (steps)",
+        "Longest time since a cell was seen (steps)",
         "Recency: steps since last seen",
     ] {
         assert!(titles.iter().any(|found| found == title), "{title} is not in {titles:?}");
@@ -146,30 +150,30 @@ fn what_is_read_back_is_what_happened() {
     let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
 
     let position = Points2D::descriptor_positions().component;
-    for (name, _, at) in run.places() {
-        let body = rows::<Position2D>(&store, &entity::robot(name, "body"), position);
+    for (name, at) in run.positions() {
+        let body = rows::<Position2D>(&store, &path::robot(name, "body"), position);
         assert!(body.len() > 250, "{name}: {}", body.len());
-        let (time, places) = body.last().unwrap();
+        let (time, positions) = body.last().unwrap();
         assert_eq!(*time, 30_500_000_000);
-        let last = Point2::new(f64::from(places[0].x()), f64::from(places[0].y()));
+        let last = Point2::new(f64::from(positions[0].x()), f64::from(positions[0].y()));
         assert!((last - at).norm() < 1e-5);
     }
     let buffer = SegmentationImage::descriptor_buffer().component;
     for layer in Layer::ALL {
-        let maps = rows::<ImageBuffer>(&store, &format!("{}/cells", entity::map(layer)), buffer);
+        let maps = rows::<ImageBuffer>(&store, &format!("{}/cells", path::map(layer)), buffer);
         let most = if layer == Layer::Occupancy { 32 } else { 5 };
         assert!((2..=most).contains(&maps.len()), "{layer:?}: {}", maps.len());
         let last = maps.last().unwrap().1[0].0.to_vec();
         assert_eq!(last, layer.classes(&run.mapper, TimeUnit::Second), "{layer:?} at the end");
     }
-    let coverage = rows::<Scalar>(&store, entity::COVERAGE, Scalars::descriptor_scalars().component);
+    let coverage = rows::<Scalar>(&store, "/curves/scores/coverage", Scalars::descriptor_scalars().component);
     assert_eq!(coverage.len(), 32); // once a second, and at the end
     assert!(coverage.windows(2).all(|pair| pair[0].1[0].0 <= pair[1].1[0].0));
-    let log = rows::<Text>(&store, entity::LOG, TextLog::descriptor_text().component);
+    let log = rows::<Text>(&store, path::LOG, TextLog::descriptor_text().component);
     assert!(log.iter().any(|(_, text)| text[0].0.as_str().starts_with("goal reached; poisson chooses")));
     let toy = rows::<rerun::LineStrip2D>(
         &store,
-        &entity::obstacle("toy"),
+        &path::obstacle("toy"),
         rerun::LineStrips2D::descriptor_strips().component,
     );
     assert_eq!(toy.len(), 1);
@@ -204,15 +208,15 @@ fn the_layout_shows_every_view() {
         titles(&file),
         [
             "Change interval: seconds per cycle",
-            "Expected changes out of view, p",
-            "Longest time since a cell was seen, r (s)",
+            "Changes expected out of view",
+            "Longest time since a cell was seen (s)",
             "Map: coverage and quality",
             "Probability of a change since last seen",
             "Recency: seconds since last seen",
             "Strategies: expected map updates per step",
             "Strategies: share of the goals",
             "Strategy that chose the goal",
-            "The house, as the robot maps it",
+            "The map so far: fake rooms",
             "What happened",
         ]
     );
@@ -243,7 +247,7 @@ fn a_killed_run_leaves_what_was_handed_on() {
     let killed = std::fs::read(&file).unwrap();
     let whole = store(&killed, StoreKind::Recording);
     let position = Points2D::descriptor_positions().component;
-    let body = rows::<Position2D>(&whole, &entity::robot("curious", "body"), position);
+    let body = rows::<Position2D>(&whole, &path::robot("curious", "body"), position);
     assert_eq!(body.last().unwrap().0, 10_000_000_000);
     let messages = |bytes: &[u8]| {
         Decoder::<rerun::log::LogMsg>::decode_eager(io::Cursor::new(bytes.to_vec()))
@@ -259,7 +263,7 @@ fn a_killed_run_leaves_what_was_handed_on() {
 
 #[test]
 fn a_file_that_cannot_be_made_is_one_clear_error() {
-    let error = |file: &str| Recorder::new(&to(Path::new(file)), Scene::default()).err().unwrap().to_string();
+    let error = |file: &str| Recorder::new(&to(Path::new(file)), FakeRun::new().scene).err().unwrap().to_string();
     let missing = error("no/such/folder/run.rrd");
     assert!(missing.starts_with("cannot write the recording no/such/folder/run.rrd: "), "{missing}");
     if Path::new("/dev/full").exists() {
@@ -324,7 +328,7 @@ fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
     let mut recorder =
-        Recorder::new(&RecordingOptions { live: live.clone(), ..to(&file) }, Scene::default()).unwrap();
+        Recorder::new(&RecordingOptions { live: live.clone(), ..to(&file) }, FakeRun::new().scene).unwrap();
     let problem = recorder.live_problem().unwrap();
     assert!(problem.starts_with("no viewer answers at "), "{problem}");
     let mut run = FakeRun::new();
@@ -334,7 +338,7 @@ fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
     store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
 
     let options = RecordingOptions { live, ..Default::default() };
-    assert_eq!(Recorder::new(&options, Scene::default()).err().unwrap().to_string(), problem);
+    assert_eq!(Recorder::new(&options, FakeRun::new().scene).err().unwrap().to_string(), problem);
 }
 
 #[test]

@@ -19,7 +19,7 @@ impl From<&GridSpec> for Scene {
         let start = spec.frame().center(spec.start());
         Self {
             title: spec.name().to_owned(),
-            unit: TimeUnit::Step,
+            unit: GridWorld::UNIT,
             frame: *spec.frame(),
             walls: rectangles(spec.walls()),
             obstacles: spec
@@ -44,6 +44,8 @@ impl From<&GridSpec> for Scene {
 }
 
 impl Visible for GridWorld {
+    const UNIT: TimeUnit = TimeUnit::Step;
+
     fn scene(&self) -> Scene {
         self.spec().into()
     }

@@ -111,6 +111,9 @@ pub struct Sector {
 
 /// A world that can be shown while a robot explores it.
 pub trait Visible: World {
+    /// The unit of time of the world.
+    const UNIT: TimeUnit;
+
     /// What stays the same for a whole run.
     fn scene(&self) -> Scene;
 

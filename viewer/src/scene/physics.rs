@@ -13,7 +13,7 @@ impl From<&FleetSpec> for Scene {
     fn from(spec: &FleetSpec) -> Self {
         Self {
             title: spec.name().to_owned(),
-            unit: TimeUnit::Second,
+            unit: PhysicsWorld::UNIT,
             frame: *spec.frame(),
             walls: spec.walls().iter().map(|wall| wall.corners().to_vec()).collect(),
             obstacles: spec.obstacles().iter().map(obstacle).collect(),
@@ -23,6 +23,8 @@ impl From<&FleetSpec> for Scene {
 }
 
 impl Visible for PhysicsWorld {
+    const UNIT: TimeUnit = TimeUnit::Second;
+
     fn scene(&self) -> Scene {
         self.spec().fleet().into()
     }
@@ -30,7 +32,7 @@ impl Visible for PhysicsWorld {
     fn robots<'a>(&'a self, _: &'a LaserReading) -> Vec<RobotState<'a>> {
         let state = |robot: sim::physics::RobotView<'a>| RobotState {
             pose: robot.pose,
-            sight: robot.sweep.map(|sweep| Sight::Laser(&sweep.reading)),
+            sight: robot.sweep.filter(|_| robot.is_driven).map(|sweep| Sight::Laser(&sweep.reading)),
         };
         PhysicsWorld::robots(self).map(state).collect()
     }

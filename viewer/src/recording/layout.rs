@@ -1,13 +1,15 @@
 //! The layout that a viewer opens a recording with.
 //!
 //! Logged component by component, since the SDK's layout types cannot set a view's bounds, the
-//! axis of a plot, or that a trail shows its whole past.
+//! axis of a plot, or how much of a trail is shown.
 
-use super::columns::timeline;
-use super::entity;
-use crate::layer::Layer;
-use crate::view::{Scene, TimeUnit, View};
-use nalgebra::Point2;
+use super::rows::timeline;
+use super::tracks::{BAR_SHARE, LEGEND_SHARE, has_choice, plots};
+use super::path;
+use crate::layers::Layer;
+use crate::scene::{Scene, TimeUnit};
+use crate::view::View;
+use nalgebra::{Point2, Vector2};
 use rerun::blueprint::components::{ContainerKind, Corner2D, PanelState, PlayState};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::datatypes::{self as blueprint_types, TextLogColumnKind};
@@ -15,7 +17,7 @@ use rerun::external::re_sdk_types::blueprint::{archetypes as blueprint, componen
 use rerun::external::re_sdk_types::datatypes;
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
-/// How much of the curious robot's way is shown, on the timeline.
+/// How much of the curious robot's trail is shown, on the timeline: all of it would hide the map.
 fn recent(unit: TimeUnit) -> i64 {
     match unit {
         TimeUnit::Second => 300 * 1_000_000_000,
@@ -23,7 +25,7 @@ fn recent(unit: TimeUnit) -> i64 {
     }
 }
 
-/// Sends the layout for a run that looks like `view`.
+/// Sends the layout for a run whose first view is `view`. Only panels that will have a content are shown.
 pub(super) fn send(
     stream: &RecordingStream,
     application: &'static str,
@@ -34,27 +36,23 @@ pub(super) fn send(
     layout.set_time_sequence("blueprint", 0);
     let layout = Layout { stream: layout, unit: scene.unit, count: 0.into() };
 
-    let house = layout.house(scene, view)?;
+    let scene_view = layout.scene(scene, view)?;
     let maps = [Layer::Interval, Layer::ChangeProbability, Layer::Recency];
     let maps = maps.map(|layer| layout.map(view, layer)).into_iter().collect::<Result<Vec<_>, _>>()?;
-    let mut plots = vec![layout.plot("Map: coverage and quality", entity::SCORES, Some([0.0, 1.05]))?];
-    if view.rate_errors.is_some() {
-        plots.push(layout.plot("Errors of the rates of change", entity::RATE_ERRORS, None)?);
+    let mut curves = Vec::new();
+    for plot in plots(scene, view) {
+        curves.push(layout.plot(&plot.title, plot.entity, plot.range)?);
     }
-    plots.push(layout.plot("Expected changes out of view, p", entity::P, None)?);
-    let oldest = format!("Longest time since a cell was seen, r ({})", scene.unit.symbol());
-    plots.push(layout.plot(&oldest, entity::R, None)?);
-    if !view.strategies.is_empty() {
-        plots.push(layout.plot("Strategies: expected map updates per step", entity::VALUES, None)?);
-        plots.push(layout.states("Strategy that chose the goal", entity::STRATEGY)?);
-        plots.push(layout.plot("Strategies: share of the goals", entity::SHARES, Some([0.0, 1.05]))?);
+    if has_choice(view) {
+        let title = "Strategy that chose the goal";
+        curves.push(layout.view("StateTimeline", title, &[format!("+ {}/**", path::STRATEGY)])?);
     }
     let log = layout.log()?;
 
     let maps = layout.container(ContainerKind::Vertical, &maps, &[])?;
-    let plots = layout.container(ContainerKind::Vertical, &plots, &[])?;
-    let left = layout.container(ContainerKind::Vertical, &[house, log], &[4.0, 1.0])?;
-    let root = layout.container(ContainerKind::Horizontal, &[left, maps, plots], &[2.4, 1.0, 1.3])?;
+    let curves = layout.container(ContainerKind::Vertical, &curves, &[])?;
+    let left = layout.container(ContainerKind::Vertical, &[scene_view, log], &[4.5, 1.0])?;
+    let root = layout.container(ContainerKind::Horizontal, &[left, maps, curves], &[2.4, 1.0, 1.3])?;
     layout.finish(root)?;
 
     let id = storage.store_id();
@@ -63,6 +61,9 @@ pub(super) fn send(
     }
     Ok(())
 }
+
+/// The ground around the maps. It is light, because labels are dark.
+const GROUND: rerun::Color = rerun::Color::from_rgb(236, 238, 241);
 
 struct Layout {
     stream: RecordingStream,
@@ -85,7 +86,7 @@ impl Layout {
     }
 
     fn log(&self) -> RecordingStreamResult<Part> {
-        let view = self.view("TextLog", "What happened", &[entity::LOG.into()])?;
+        let view = self.view("TextLog", "What happened", &[path::LOG.into()])?;
         let time =
             blueprint_types::TimelineColumn { visible: true.into(), timeline: timeline(self.unit).into() };
         let columns = [TextLogColumnKind::LogLevel, TextLogColumnKind::Body];
@@ -109,8 +110,7 @@ impl Layout {
         self.stream.log(format!("{}/{name}", view.path), value)
     }
 
-    /// A view of a part of the world. The viewer's y points down, the world's is flipped: bounds
-    /// are in the viewer's.
+    /// A view of a part of the world. The bounds are in the frame of the viewer, whose y axis points down.
     fn spatial(
         &self,
         name: &str,
@@ -122,24 +122,26 @@ impl Layout {
         let bounds = datatypes::Range2D { x_range: [from.x, to.x].into(), y_range: [-to.y, -from.y].into() };
         self.property(&view, "VisualBounds2D", &blueprint::VisualBounds2D::new(bounds))?;
         let background = blueprint::Background::new(rerun::blueprint::components::BackgroundKind::SolidColor);
-        self.property(&view, "Background", &background.with_color(rerun::Color::from_rgb(24, 27, 32)))?;
+        self.property(&view, "Background", &background.with_color(GROUND))?;
         Ok(view)
     }
 
-    fn house(&self, scene: &Scene, view: &View) -> RecordingStreamResult<Part> {
+    fn scene(&self, scene: &Scene, view: &View) -> RecordingStreamResult<Part> {
         let (from, to) = bounds(view);
-        let margin = nalgebra::Vector2::new(0.02, 0.02) * (to.x - from.x);
-        let contents = ["house/**", "robots/**", "maps/occupancy/**", "field_of_view/**", "goal", "path"];
-        let contents = contents.map(|entity| format!("+ {}/{entity}", entity::WORLD));
-        let name = format!("The {}, as the robot maps it", scene.place);
-        let part = self.spatial(&name, &contents, from - margin, to + margin)?;
-        for robot in view.robots {
-            // The curious robot goes everywhere: all of its way would hide the place.
-            let start = if robot.is_curious { back(recent(scene.unit)) } else { past().start };
+        let margin = Vector2::new(0.02, 0.02) * (to.x - from.x);
+        let legend = Vector2::new(0.0, LEGEND_SHARE * (to.y - from.y));
+        let contents =
+            ["walls", "obstacles/**", "robots/**", "maps/occupancy/**", "field_of_view/**", "goal", "path"];
+        let contents = contents.iter().chain(&["legend/**"]).map(|entity| format!("+ {}/{entity}", path::WORLD));
+        let name = format!("The map so far: {}", scene.title);
+        let contents: Vec<String> = contents.collect();
+        let part = self.spatial(&name, &contents, from - margin - legend, to + margin)?;
+        for robot in &scene.robots {
+            let start = if robot.is_driven { back(recent(scene.unit)) } else { past().start };
             let range = datatypes::TimeRange { start, ..past() };
             let timeline = timeline(scene.unit).into();
             let range = VisibleTimeRange(datatypes::VisibleTimeRange { timeline, range });
-            let trail = entity::robot(robot.name, "trail");
+            let trail = path::robot(&robot.name, "trail");
             let property = format!("ViewContents/overrides{trail}/visualizers");
             self.property(&part, &property, &blueprint::VisibleTimeRanges::new([range]))?;
         }
@@ -148,8 +150,8 @@ impl Layout {
 
     fn map(&self, view: &View, layer: Layer) -> RecordingStreamResult<Part> {
         let (from, to) = bounds(view);
-        let legend = nalgebra::Vector2::new(0.0, entity::LEGEND_SHARE * (to.y - from.y));
-        self.spatial(&layer.title(self.unit), &[format!("+ {}/**", entity::map(layer))], from - legend, to)
+        let bar = Vector2::new(0.0, BAR_SHARE * (to.y - from.y));
+        self.spatial(&layer.title(self.unit), &[format!("+ {}/**", path::map(layer))], from - bar, to)
     }
 
     fn plot(&self, name: &str, entity: &str, range: Option<[f64; 2]>) -> RecordingStreamResult<Part> {
@@ -161,10 +163,6 @@ impl Layout {
             self.property(&view, "ScalarAxis", &blueprint::ScalarAxis::new().with_range(range))?;
         }
         Ok(view)
-    }
-
-    fn states(&self, name: &str, entity: &str) -> RecordingStreamResult<Part> {
-        self.view("StateTimeline", name, &[format!("+ {entity}/**")])
     }
 
     fn whole_past(&self, view: &Part) -> RecordingStreamResult<()> {
@@ -207,7 +205,7 @@ fn past() -> datatypes::TimeRange {
     datatypes::TimeRange { start, end: datatypes::TimeRangeBoundary::AT_CURSOR }
 }
 
-/// So far before what is shown, on the timeline.
+/// A duration before what is shown, on the timeline.
 fn back(by: i64) -> datatypes::TimeRangeBoundary {
     datatypes::TimeRangeBoundary::CursorRelative(datatypes::TimeInt(-by))
 }

@@ -1,14 +1,14 @@
-//! What a laser sees, as a polygon of few corners.
+//! The field of view of a laser, as a polygon of few corners.
 
 use interfaces::{Cell, GridFrame, LaserReading};
 use nalgebra::Point2;
 
-/// How far the drawn outline may lie beside the measured one, m.
+/// The largest distance between the drawn and the measured outline, m.
 const TOLERANCE_M: f64 = 0.04;
 
-/// The field of view of a scan in the map's frame, m: through the end of every beam, by way of the
-/// laser itself unless the beams close a full turn. Closed: the last point is the first.
-pub(super) fn field_of_view(reading: &LaserReading) -> Vec<Point2<f64>> {
+/// The field of view of a scan in the frame of the map, m: through the end of every beam, and through the
+/// laser unless the beams cover a full turn. Closed: the last point is the first.
+pub(crate) fn field_of_view(reading: &LaserReading) -> Vec<Point2<f64>> {
     let scan = &reading.scan;
     let laser = reading.pose * reading.mount;
     let mut corners: Vec<Point2<f64>> = Vec::with_capacity(scan.ranges_m.len() + 2);
@@ -29,9 +29,8 @@ pub(super) fn field_of_view(reading: &LaserReading) -> Vec<Point2<f64>> {
     simplify(&corners, TOLERANCE_M)
 }
 
-/// Fills a closed outline: `class` for every cell of `frame` whose middle lies inside, 0 for the
-/// others.
-pub(super) fn fill(outline: &[Point2<f64>], frame: &GridFrame, class: u8) -> Vec<u8> {
+/// Fills a closed outline: `class` for every cell of `frame` whose center is inside, 0 for the others.
+pub(crate) fn fill(outline: &[Point2<f64>], frame: &GridFrame, class: u8) -> Vec<u8> {
     let mut cells = vec![0; frame.len()];
     let mut crossings = Vec::new();
     for (row, cells) in cells.chunks_mut(frame.width()).enumerate() {
@@ -53,8 +52,7 @@ pub(super) fn fill(outline: &[Point2<f64>], frame: &GridFrame, class: u8) -> Vec
     cells
 }
 
-/// The line with as few of its points as needed to stay within `tolerance_m` of all of them
-/// (Ramer, Douglas and Peucker).
+/// The fewest points of a line within `tolerance_m` of all its points (Ramer, Douglas and Peucker).
 fn simplify(line: &[Point2<f64>], tolerance_m: f64) -> Vec<Point2<f64>> {
     let Some(end) = line.len().checked_sub(1) else { return Vec::new() };
     let mut keep = vec![false; line.len()];

@@ -1,18 +1,19 @@
-//! Rows that wait for their chunk.
+//! Rows that wait to be sent.
 //!
-//! The SDK's way to log, one call per row, costs some tens of microseconds per row. Rows are
-//! therefore collected here and handed over as columns, many ticks at once.
+//! One call of the SDK per row costs some tens of microseconds. Rows are therefore collected here and sent as
+//! columns, many ticks at once.
 
-use crate::view::TimeUnit;
+use crate::scene::TimeUnit;
+use nalgebra::Point2;
 use rerun::components::ImageBuffer;
 use rerun::{
-    Arrows2D, LineStrips2D, Points2D, RecordingStream, Scalars, SegmentationImage, SerializationResult,
-    SerializedComponentColumn, StateChange, TextLog, TimeColumn, Transform3D,
+    Arrows2D, LineStrips2D, Points2D, RecordingStream, RecordingStreamResult, Scalars, SegmentationImage,
+    SerializationResult, SerializedComponentColumn, StateChange, TextLog, TimeColumn, Transform3D,
 };
 
 /// The timeline of the simulated time.
 pub(super) const SIM_TIME: &str = "sim_time";
-/// The timeline that counts readings, or steps.
+/// The timeline of readings, or of steps.
 pub(super) const STEP: &str = "step";
 
 /// The timeline that a viewer opens with.
@@ -30,13 +31,13 @@ pub(super) struct Now {
     pub(super) step: u64,
 }
 
-/// What a row can hold any number of.
+/// An element of a row; a row can have any number of them.
 pub(super) trait Item: Sized {
-    /// Turns the items of many rows into columns; `lengths` has the number of items of each row.
+    /// The columns of many rows; `lengths` has the number of items of each row.
     fn columns(items: Vec<Self>, lengths: Vec<usize>) -> SerializationResult<Vec<SerializedComponentColumn>>;
 }
 
-/// The rows of one entity that were not handed over yet.
+/// The rows of one entity that were not sent yet.
 pub(super) struct Rows<T> {
     entity: String,
     times_ns: Vec<i64>,
@@ -61,33 +62,44 @@ impl<T: Item> Rows<T> {
         self.lengths.push(self.items.len() - before);
     }
 
-    /// Hands the rows over as one chunk. Where time is counted in steps, there is no other time.
-    pub(super) fn flush(&mut self, stream: &RecordingStream, unit: TimeUnit) -> Result<(), String> {
+    /// Sends the rows as one chunk.
+    pub(super) fn flush(&mut self, to: Target) -> RecordingStreamResult<()> {
         if self.lengths.is_empty() {
             return Ok(());
         }
         let times_ns = std::mem::take(&mut self.times_ns);
         let mut times = vec![TimeColumn::new_sequence(STEP, std::mem::take(&mut self.steps))];
-        if unit == TimeUnit::Second {
+        if to.unit == TimeUnit::Second {
             times.push(TimeColumn::new_duration_nanos(SIM_TIME, times_ns));
         }
-        let columns = T::columns(std::mem::take(&mut self.items), std::mem::take(&mut self.lengths));
-        let columns = columns.map_err(|error| error.to_string())?;
-        stream.send_columns(self.entity.as_str(), times, columns).map_err(|error| error.to_string())
+        let columns = T::columns(std::mem::take(&mut self.items), std::mem::take(&mut self.lengths))?;
+        to.stream.send_columns(self.entity.as_str(), times, columns)
     }
 }
 
-/// A place, m.
-pub(super) type Place = [f32; 2];
+/// Where rows are sent. Where time is counted in steps, there is no other timeline.
+#[derive(Clone, Copy)]
+pub(super) struct Target<'a> {
+    pub(super) stream: &'a RecordingStream,
+    pub(super) unit: TimeUnit,
+}
 
-impl Item for Place {
+/// A position, m.
+pub(super) type Position = [f32; 2];
+
+/// A point as the SDK takes it.
+pub(super) fn position(point: &Point2<f64>) -> Position {
+    [point.x as f32, point.y as f32]
+}
+
+impl Item for Position {
     fn columns(items: Vec<Self>, lengths: Vec<usize>) -> SerializationResult<Vec<SerializedComponentColumn>> {
         Ok(Points2D::update_fields().with_positions(items).columns(lengths)?.collect())
     }
 }
 
-/// Where everything below the entity is, m.
-pub(super) struct Shift(pub(super) Place);
+/// The position of everything below the entity, m.
+pub(super) struct Shift(pub(super) Position);
 
 impl Item for Shift {
     fn columns(items: Vec<Self>, lengths: Vec<usize>) -> SerializationResult<Vec<SerializedComponentColumn>> {
@@ -96,10 +108,10 @@ impl Item for Shift {
     }
 }
 
-/// An arrow from a place, m.
+/// An arrow from a position, m.
 pub(super) struct Arrow {
-    pub(super) origin: Place,
-    pub(super) vector: Place,
+    pub(super) origin: Position,
+    pub(super) vector: Position,
 }
 
 impl Item for Arrow {
@@ -112,7 +124,7 @@ impl Item for Arrow {
 }
 
 /// Joined lines, m.
-pub(super) struct Strip(pub(super) Vec<Place>);
+pub(super) struct Strip(pub(super) Vec<Position>);
 
 impl Item for Strip {
     fn columns(items: Vec<Self>, lengths: Vec<usize>) -> SerializationResult<Vec<SerializedComponentColumn>> {
@@ -127,7 +139,7 @@ impl Item for f64 {
     }
 }
 
-/// A line of the log with its level in the viewer's terms.
+/// A line of the log with its level in the terms of the viewer.
 pub(super) struct Line {
     pub(super) text: String,
     pub(super) level: &'static str,
@@ -152,7 +164,7 @@ impl Item for State {
     }
 }
 
-/// The class of every cell; the size of the picture is logged once, beside it.
+/// The class of every cell; the size of the image is logged once.
 pub(super) struct Classes(pub(super) Vec<u8>);
 
 impl Item for Classes {
