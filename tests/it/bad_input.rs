@@ -49,7 +49,7 @@ fn worlds() {
     error: not a TOML file: extra `=`
      --> house.toml:9:10
       |
-    9 | cell_m = = 0.05           # side of a cell of the truth that maps are measured by
+    9 | cell_m = = 0.05           # cell size of the ground truth grid, against which maps are scored
       |          ^
       |
       = help: expected nothing
@@ -67,7 +67,7 @@ fn worlds() {
     error: `robot.radius_m` has the wrong type
       --> house.toml:70:12
        |
-    70 | radius_m = "big"         # robots are round
+    70 | radius_m = "big"         # a round robot; footprint_m gives a polygon instead
        |            ^^^^^ this is the text "big"
        |
        = help: it must be a number
@@ -79,7 +79,7 @@ fn worlds() {
     38 | [[wall]]
        | -------- in this one
     ...
-    71 | pose_m = [6.0, 2.0]     # where its middle starts
+    71 | pose_m = [6.0, 2.0]     # initial position of the robot's center
        |          ^^^^^^^^^^ stands here
        |
        = help: its middle must keep its radius of 0.2 m away

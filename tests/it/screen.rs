@@ -29,14 +29,14 @@ fn the_end_is_told_in_sentences_and_progress_in_plain_lines() {
 #[test]
 fn worlds_are_listed() {
     insta::assert_snapshot!(Run::new().goes_well("--list-worlds").stdout, @"
-    four_rooms         Four rooms joined by doors; a dummy robot goes back and forth along a wall of the upper right one.
-    toy_on_the_floor   The four rooms, where one box appears after five minutes and another goes after ten.
-    turned_house       The four rooms turned by 10 degrees, with 1 cm of range noise and a box that goes: a bench for false changes.
-    house              Six rooms around a hallway, with furniture and doors that people open and close. A vacuum cleaner wanders about, a cat walks from room to room.
-    office             Rooms along a corridor, with desks; its walls come from a picture. Two cleaning robots wander about.
-    warehouse          Long shelves with aisles of 2 m. Thirty-two carriers drive around the shelves, eight wander.
-    cave               A cave with pillars and dead ends, from a picture. Three robots wander about.
-    yard               Two blind tugs push boxes about, a shuttle goes back and forth through a gate, three carriers wander.
+    four_rooms         The paper's four rooms; a dummy robot drives back and forth along a wall of the upper right room.
+    toy_on_the_floor   The four rooms; one box appears after 5 minutes, another disappears after 10 minutes.
+    turned_house       The four rooms rotated by 10 degrees, with 1 cm of range noise; a box disappears after 5 minutes. A test for false changes.
+    house              Six rooms around a hallway, with furniture and six doors that open and close. A vacuum cleaner wanders, a cat walks from room to room.
+    office             Ten rooms with desks along a corridor; the walls come from a picture. Two cleaning robots wander.
+    warehouse          Long shelves with aisles of about 2 m. Thirty-two carriers drive around the shelves, eight wander.
+    cave               A cave with pillars and dead ends; the walls come from a picture. Three robots wander.
+    yard               Two tugs that drive in circles push boxes, a shuttle moves back and forth through a gate, three carriers wander.
     ");
 }
 

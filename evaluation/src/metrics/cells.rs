@@ -1,6 +1,7 @@
 //! How right a mind is about a grid world, whose truth is known cell by cell.
 
 use interfaces::CellState;
+use interfaces::GroundTruth;
 use mapper::Mapper;
 use sim::grid::GridTruth;
 
@@ -30,7 +31,7 @@ pub fn cell_rate_scores(mapper: &Mapper, truth: &GridTruth) -> CellRateScores {
         }
     }
     let mut things = Average::default();
-    for thing in truth.things() {
+    for thing in truth.moving_things().iter() {
         let mut cells = Average::default();
         for &index in thing {
             let true_rate = truth.cycle_rate(index);
@@ -231,7 +232,7 @@ mod tests {
         let cells =
             (0..truth.frame().len()).map(|index| (truth.frame().cell(index), truth.is_blocked(index)));
         let cells = cells.filter(|&(cell, _)| sees(cell)).collect();
-        mapper.update(&CellReading { time: truth.time(), pose: Isometry2::identity(), cells }).unwrap();
+        mapper.update(&CellReading { time: truth.elapsed(), pose: Isometry2::identity(), cells }).unwrap();
     }
 
     #[test]

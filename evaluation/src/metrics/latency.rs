@@ -1,10 +1,11 @@
 //! How soon the map follows a change that a beam has shown.
 
+use interfaces::TrueState;
 use interfaces::{Cell, CellState, Event, GridFrame, LaserReading};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use serde::Serialize;
-use sim::physics::{TrueState, Truth};
+use sim::physics::Truth;
 use std::collections::BTreeMap;
 
 /// The delays of one kind of change.
@@ -65,7 +66,7 @@ impl Latency {
                         (open.is_complete, open.is_ending) = (true, false);
                     }
                 }
-                (_, TrueState::Partly) => {
+                (_, TrueState::PartlyCovered) => {
                     if let Some(open) = self.open.get_mut(&index) {
                         open.is_ending = true;
                     }

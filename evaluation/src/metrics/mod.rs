@@ -17,9 +17,10 @@ pub use rates::{RateScores, rate_scores};
 pub use things::{ThingReport, Things};
 
 use interfaces::CellState;
+use interfaces::TrueState;
 use mapper::Mapper;
 use serde::Serialize;
-use sim::physics::{TrueState, Truth};
+use sim::physics::Truth;
 
 /// How right the map is, as the metrics define it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -46,7 +47,7 @@ fn is_right(mapped: CellState, truth: TrueState) -> Option<bool> {
     match truth {
         TrueState::Free => Some(mapped == CellState::Free),
         TrueState::Blocked => Some(mapped == CellState::Blocked),
-        TrueState::Partly => None,
+        TrueState::PartlyCovered => None,
     }
 }
 
@@ -151,7 +152,7 @@ mod tests {
         let state = |state: &TrueState| match state {
             TrueState::Free => CellState::Free,
             TrueState::Blocked => CellState::Blocked,
-            TrueState::Partly => otherwise,
+            TrueState::PartlyCovered => otherwise,
         };
         Grid::from_cells(*truth.frame(), truth.states().iter().map(state).collect()).unwrap()
     }

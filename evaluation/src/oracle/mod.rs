@@ -6,6 +6,7 @@ mod tests;
 
 use agent::{Stay, Travel};
 use expectation::Knowledge;
+use interfaces::GroundTruth;
 use mapper::Mapper;
 use nalgebra::Point2;
 use robot::{Belief, Destination, GoalSelector};
@@ -67,7 +68,7 @@ impl Oracle {
             self.rates[cell] = truth.cycle_rate(cell);
             self.weights[cell] = 0.0;
         }
-        for thing in truth.things() {
+        for thing in truth.moving_things().iter() {
             let share = 1.0 / thing.len() as f64;
             thing.iter().for_each(|&cell| self.weights[cell] += share);
         }

@@ -6,6 +6,7 @@ use crate::summary::map_hash;
 use agent::{Agent, AgentSettings};
 use controller::{CellDrive, Controller};
 use interfaces::CellReading;
+use interfaces::GroundTruth;
 use mapper::{Mapper, MapperSettings, ReadingError};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

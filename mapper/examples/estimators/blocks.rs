@@ -2,6 +2,7 @@
 
 use crate::robots::{Habit, Robot};
 use crate::score::{MASS, Mean, log_error};
+use interfaces::GroundTruth;
 use interfaces::{CellState, World};
 use mapper::{Estimator, Mapper};
 use rand_chacha::ChaCha8Rng;
@@ -89,14 +90,14 @@ impl Score {
     /// Judges one life at its end.
     fn add_life(&mut self, habit: usize, mapper: &Mapper, truth: &GridTruth) {
         let [mut things, mut bias] = [Mean::default(); 2];
-        for thing in truth.things() {
+        for thing in truth.moving_things().iter() {
             let mut cells = Mean::default();
             for &index in thing.iter().filter(|&&index| truth.block_events(index) > 0) {
                 let (rate, true_rate) = (mapper.rate(index), truth.cycle_rate(index));
                 let error = log_error(rate, true_rate);
                 cells.add(error);
                 bias.add(rate / true_rate - 1.0);
-                let is_sparse = mapper.statistics(index).observed() < SPARSE * truth.time();
+                let is_sparse = mapper.statistics(index).observed() < SPARSE * truth.elapsed();
                 if is_sparse {
                     self.sparse.add(error)
                 } else {

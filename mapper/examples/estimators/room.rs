@@ -2,12 +2,13 @@
 //! in visits.
 
 use crate::score::{MASS, Mean, log_error};
+use interfaces::TrueState;
 use interfaces::{Twist, World};
 use mapper::{Estimator, Mapper, MapperSettings};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sim::physics::{PhysicsWorld, TrueState, WorldSpec};
+use sim::physics::{PhysicsWorld, WorldSpec};
 
 const HOUSE: &str = include_str!("../../../worlds/four_rooms.toml");
 /// Where the curious robot starts in the file, and where it looks on from.

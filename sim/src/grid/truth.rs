@@ -1,5 +1,6 @@
 use super::spec::{GridSpec, parts};
-use interfaces::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame, GroundTruth, TrueChange, TrueState};
+use std::borrow::Cow;
 
 /// What really is in every cell, and what has happened there. For metrics and pictures only: no
 /// robot may look at it.
@@ -21,7 +22,7 @@ pub struct GridTruth {
     is_swept: Vec<bool>,
     things: Vec<Vec<usize>>,
     /// What changed in the last step.
-    changes: Vec<usize>,
+    changes: Vec<TrueChange>,
 }
 
 /// The story of a cell.
@@ -59,48 +60,16 @@ impl GridTruth {
         Self { frame, time: 0, cells, reachable, swept, is_swept, things, changes: Vec::new() }
     }
 
-    /// The cells.
-    pub fn frame(&self) -> &GridFrame {
-        &self.frame
-    }
-
-    /// The time since the start, steps.
-    pub fn time(&self) -> f64 {
-        self.time as f64
-    }
-
     /// Whether a wall or a block is in the cell.
     #[inline]
     pub fn is_blocked(&self, index: usize) -> bool {
         self.cells[index].is_blocked
     }
 
-    /// Whether the cell counts as one that can be seen now: it is free, or it is blocked and
-    /// shares a side with a cell that is not, where no wall parts them from the robot's start.
-    pub fn can_be_seen(&self, index: usize) -> bool {
-        if !self.is_blocked(index) {
-            return self.reachable[index];
-        }
-        let is_open = |side: usize| !self.is_blocked(side) && self.reachable[side];
-        let mut sides = self.frame.cell(index).neighbours4().into_iter();
-        sides.any(|side| self.frame.index(side).is_some_and(is_open))
-    }
-
-    /// How often the cell turned from free to blocked.
-    #[inline]
-    pub fn block_events(&self, index: usize) -> u32 {
-        self.cells[index].block_events
-    }
-
     /// How often the cell turned from blocked to free.
     #[inline]
     pub fn free_events(&self, index: usize) -> u32 {
         self.cells[index].free_events
-    }
-
-    /// The cell's true cycle rate so far: block events per step; 0 at the start.
-    pub fn cycle_rate(&self, index: usize) -> f64 {
-        if self.time > 0 { f64::from(self.block_events(index)) / self.time as f64 } else { 0.0 }
     }
 
     /// How long the cell was blocked so far, steps.
@@ -110,26 +79,9 @@ impl GridTruth {
         (cell.blocked_before + now) as f64
     }
 
-    /// The cells of every block's path, each once and in order. Blocks are in the order of the
-    /// file.
-    pub fn things(&self) -> &[Vec<usize>] {
-        &self.things
-    }
-
     /// The cells of all paths, each once and in order.
     pub fn swept(&self) -> &[usize] {
         &self.swept
-    }
-
-    /// Whether the cell lies on a path.
-    #[inline]
-    pub fn is_swept(&self, index: usize) -> bool {
-        self.is_swept[index]
-    }
-
-    /// The cells that changed in the last step, each once.
-    pub fn changes(&self) -> &[usize] {
-        &self.changes
     }
 
     /// A step has passed, in which the blocks `moved` from cell to cell; `is_blocked` says what
@@ -150,9 +102,57 @@ impl GridTruth {
                 truth.blocked_before += self.time - truth.since;
             }
             (truth.is_blocked, truth.since) = (is_blocked, self.time);
-            self.changes.push(index);
+            let (before, after) = (state(!is_blocked), state(is_blocked));
+            self.changes.push(TrueChange { time: self.time as f64, cell, before, after });
         }
     }
+}
+
+impl GroundTruth for GridTruth {
+    fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    fn elapsed(&self) -> f64 {
+        self.time as f64
+    }
+
+    #[inline]
+    fn state(&self, index: usize) -> TrueState {
+        state(self.is_blocked(index))
+    }
+
+    fn can_be_seen(&self, index: usize) -> bool {
+        if !self.is_blocked(index) {
+            return self.reachable[index];
+        }
+        let is_open = |side: usize| !self.is_blocked(side) && self.reachable[side];
+        let mut sides = self.frame.cell(index).neighbours4().into_iter();
+        sides.any(|side| self.frame.index(side).is_some_and(is_open))
+    }
+
+    #[inline]
+    fn block_events(&self, index: usize) -> u32 {
+        self.cells[index].block_events
+    }
+
+    #[inline]
+    fn is_swept(&self, index: usize) -> bool {
+        self.is_swept[index]
+    }
+
+    /// The cells of the path of every block, in the order of the world file.
+    fn moving_things(&self) -> Cow<'_, [Vec<usize>]> {
+        Cow::Borrowed(&self.things)
+    }
+
+    fn changes(&self) -> &[TrueChange] {
+        &self.changes
+    }
+}
+
+fn state(is_blocked: bool) -> TrueState {
+    if is_blocked { TrueState::Blocked } else { TrueState::Free }
 }
 
 fn sorted(mut places: Vec<usize>) -> Vec<usize> {

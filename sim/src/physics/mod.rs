@@ -47,5 +47,5 @@ pub use spec::{
     Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec,
     SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
 };
-pub use truth::{TrueChange, TrueState, Truth};
+pub use truth::Truth;
 pub use world::PhysicsWorld;

@@ -27,7 +27,7 @@ fn worlds() {
     error: unknown key `sensor_radios`
       --> grid.toml:10:1
        |
-    10 | sensor_radios = 4       # cells, from the middle of the robot's own to the middle of another
+    10 | sensor_radios = 4       # cells, from the center of the robot's cell to the center of another cell
        | ^^^^^^^^^^^^^ not known here
        |
        = help: did you mean `sensor_radius`? the keys here are: name, description, sensor_radius, map, transitions, block
@@ -36,7 +36,7 @@ fn worlds() {
     error: `sensor_radius` has the wrong type
       --> grid.toml:10:17
        |
-    10 | sensor_radius = 4.5       # cells, from the middle of the robot's own to the middle of another
+    10 | sensor_radius = 4.5       # cells, from the center of the robot's cell to the center of another cell
        |                 ^^^ this is the number `4.5`
        |
        = help: it must be a whole number

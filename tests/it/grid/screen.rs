@@ -23,11 +23,11 @@ fn the_table_names_every_strategy_and_fits_a_terminal() {
 #[test]
 fn worlds_are_listed() {
     insta::assert_snapshot!(Run::grid().goes_well("--list-worlds").stdout, @"
-    two_blocks           The paper's grid world: a slow block in the upper right, a fast one along the bottom wall.
-    open_hall            A hall with pillars; four blocks at four paces, far from each other.
-    corridor_with_doors  Rooms along a corridor; six sliding doors that open and shut at different paces.
-    many_slow_blocks     Twelve blocks in nine rooms, each of which moves once in 20 to 60 steps.
-    one_fast_block       A block that moves at every step in the lower right, among eight that stand for hundreds of steps.
+    two_blocks           The paper's grid world: a slow block in the upper right, a fast block along the bottom wall.
+    open_hall            A hall with pillars; four blocks, far from each other, that move at four different rates.
+    corridor_with_doors  Rooms along a corridor; six sliding doors that open and close at different rates.
+    many_slow_blocks     Twelve slow blocks in nine rooms; each moves once in 20 to 60 steps.
+    one_fast_block       One block that moves at every step, and eight that stay for hundreds of steps.
     ");
 }
 

@@ -8,7 +8,7 @@ mod schedule;
 mod truth;
 
 use super::*;
-use interfaces::{Cell, Step, World};
+use interfaces::{Cell, GroundTruth, Step, World};
 
 /// The shipped grid worlds.
 const SHIPPED: [(&str, &str); 5] = [

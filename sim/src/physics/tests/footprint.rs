@@ -3,6 +3,7 @@
 use super::fleet::{house, robot};
 use super::*;
 use interfaces::LaserReading;
+use interfaces::TrueState;
 use nalgebra::Point2;
 
 /// A robot of 0.6 × 0.3 m at [3, 3], whose middle is 0.1 m behind that of its outline.

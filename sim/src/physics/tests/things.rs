@@ -3,6 +3,7 @@
 use super::fleet::{house, robot};
 use super::*;
 use interfaces::LaserReading;
+use interfaces::TrueState;
 use nalgebra::Point2;
 
 /// A heavy robot at [1, 2] that drives straight on along x, and things.

@@ -8,33 +8,10 @@ mod tests;
 use super::form::Form;
 use super::report::Body;
 use super::shape::Rectangle;
-use interfaces::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame, GroundTruth, TrueChange, TrueState};
 use nalgebra::Point2;
-
-/// What really is in a cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum TrueState {
-    /// No solid overlaps it; touching is not overlapping.
-    #[default]
-    Free,
-    /// Solids cover part of it. Metrics leave such a cell out.
-    Partly,
-    /// Solids cover all of it.
-    Blocked,
-}
-
-/// A cell's state changed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TrueChange {
-    /// When, s.
-    pub time_s: f64,
-    /// Which cell.
-    pub cell: Cell,
-    /// What was in it.
-    pub before: TrueState,
-    /// What is in it.
-    pub after: TrueState,
-}
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 /// What really is in every cell, and what has happened there.
 ///
@@ -128,15 +105,7 @@ impl Truth {
     /// shares a side with a cell that is not, where no wall parts them from the driven robot's
     /// start. The grid as a whole is a sum over its cells; a single cell costs a few lookups.
     pub fn can_be_seen(&self, cell: Cell) -> bool {
-        let Some(index) = self.frame.index(cell) else { return false };
-        match self.states[index] {
-            TrueState::Free => self.reachable[index],
-            TrueState::Partly => false,
-            TrueState::Blocked => cell.neighbours4().into_iter().any(|side| {
-                let open = |index: usize| self.states[index] != TrueState::Blocked && self.reachable[index];
-                self.frame.index(side).is_some_and(open)
-            }),
-        }
+        self.frame.index(cell).is_some_and(|index| GroundTruth::can_be_seen(self, index))
     }
 
     /// A new stretch of time begins, whose changes are listed apart.
@@ -217,7 +186,7 @@ impl Truth {
             TrueState::Blocked => TrueState::Blocked,
             _ if self.covered[index] > 0 => TrueState::Blocked,
             TrueState::Free if self.overlapped[index] == 0 => TrueState::Free,
-            _ => TrueState::Partly,
+            _ => TrueState::PartlyCovered,
         };
         if before == after {
             return;
@@ -229,9 +198,59 @@ impl Truth {
                 self.armed[index] = false;
                 self.block_events[index] += 1;
             }
-            TrueState::Blocked | TrueState::Partly => {}
+            TrueState::Blocked | TrueState::PartlyCovered => {}
         }
-        self.changes.push(TrueChange { time_s: self.elapsed_s, cell, before, after });
+        self.changes.push(TrueChange { time: self.elapsed_s, cell, before, after });
+    }
+}
+
+impl GroundTruth for Truth {
+    fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    fn elapsed(&self) -> f64 {
+        self.elapsed_s
+    }
+
+    fn state(&self, index: usize) -> TrueState {
+        self.states[index]
+    }
+
+    fn can_be_seen(&self, index: usize) -> bool {
+        match self.states[index] {
+            TrueState::Free => self.reachable[index],
+            TrueState::PartlyCovered => false,
+            TrueState::Blocked => self.frame.cell(index).neighbours4().into_iter().any(|side| {
+                let is_open = |side: usize| self.states[side] != TrueState::Blocked && self.reachable[side];
+                self.frame.index(side).is_some_and(is_open)
+            }),
+        }
+    }
+
+    /// A cell that becomes blocked again without having been free in between was blocked once.
+    fn block_events(&self, index: usize) -> u32 {
+        self.block_events[index]
+    }
+
+    fn is_swept(&self, index: usize) -> bool {
+        self.movers[index].is_some()
+    }
+
+    /// Obstacles first, then robots, each in the order of the world file. The cost is that of a look at
+    /// every cell.
+    fn moving_things(&self) -> Cow<'_, [Vec<usize>]> {
+        let mut things: BTreeMap<Body, Vec<usize>> = BTreeMap::new();
+        for (index, mover) in self.movers.iter().enumerate() {
+            if let Some(body) = mover {
+                things.entry(*body).or_default().push(index);
+            }
+        }
+        things.into_values().collect()
+    }
+
+    fn changes(&self) -> &[TrueChange] {
+        &self.changes
     }
 }
 

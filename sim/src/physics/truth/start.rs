@@ -1,15 +1,14 @@
 //! What the walls alone make of the cells, once, at the start.
 
-use super::TrueState;
 use super::cover;
 use crate::physics::shape::Rectangle;
-use interfaces::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame, TrueState};
 
 /// The state of a cell of which a share is not covered.
 pub(super) fn state_of(open_share: f64) -> TrueState {
     match open_share {
         share if share <= 0.0 => TrueState::Blocked,
-        share if share < 1.0 - 1e-6 => TrueState::Partly,
+        share if share < 1.0 - 1e-6 => TrueState::PartlyCovered,
         _ => TrueState::Free,
     }
 }
@@ -61,7 +60,7 @@ pub(super) fn reachable(frame: &GridFrame, walls: &[TrueState], start: Cell) -> 
         }
     }
     let fringe = |index: usize| {
-        walls[index] == TrueState::Partly
+        walls[index] == TrueState::PartlyCovered
             && frame.cell(index).neighbours8().into_iter().any(|near| {
                 frame.index(near).is_some_and(|near| walls[near] == TrueState::Free && reached[near])
             })

@@ -19,7 +19,7 @@ fn small() -> Truth {
 fn drawn(truth: &Truth) -> Vec<String> {
     let letter = |state: &TrueState| match state {
         TrueState::Free => '.',
-        TrueState::Partly => '+',
+        TrueState::PartlyCovered => '+',
         TrueState::Blocked => '#',
     };
     truth.states().chunks(truth.frame().width()).rev().map(|row| row.iter().map(letter).collect()).collect()
@@ -116,7 +116,7 @@ fn truth_is_what_sampled_points_say() {
             match state {
                 TrueState::Free => assert_eq!(inside, 0, "cell {index}"),
                 TrueState::Blocked => assert_eq!(inside, count, "cell {index}"),
-                TrueState::Partly => {
+                TrueState::PartlyCovered => {
                     partly += 1;
                     // A sliver may fall between the samples.
                     blurred += usize::from(inside == 0 || inside == count);

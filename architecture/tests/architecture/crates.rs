@@ -1,0 +1,77 @@
+//! Which crate may use which.
+
+use crate::workspace::{needs, packages};
+
+/// Every crate, and the crates of the workspace that it may use.
+const ALLOWED: &[(&str, &[&str])] = &[
+    ("interfaces", &[]),
+    ("sim", &["interfaces"]),
+    ("worldfile", &["interfaces", "sim"]),
+    ("stage", &["interfaces", "sim", "worldfile"]),
+    ("mapper", &["interfaces"]),
+    ("agent", &["interfaces", "mapper"]),
+    ("controller", &["interfaces"]),
+    ("robot", &["interfaces", "mapper", "agent", "controller"]),
+    ("evaluation", &["interfaces", "sim", "mapper", "agent", "controller", "robot"]),
+    ("viewer", &["interfaces", "sim", "mapper", "agent", "controller", "robot", "evaluation"]),
+    (
+        "curious",
+        &[
+            "interfaces",
+            "sim",
+            "worldfile",
+            "stage",
+            "mapper",
+            "agent",
+            "controller",
+            "robot",
+            "evaluation",
+            "viewer",
+        ],
+    ),
+    ("architecture", &[]),
+];
+
+/// Packages that only these crates may name as a dependency.
+const RESERVED: &[(&str, &[&str])] = &[("rerun", &["viewer", "curious"]), ("rapier2d", &["sim"])];
+
+/// Crates that must build without Rerun.
+const WITHOUT_RERUN: &[&str] =
+    &["interfaces", "sim", "worldfile", "stage", "mapper", "agent", "controller", "robot", "evaluation"];
+
+#[test]
+fn every_crate_uses_only_what_it_may() {
+    let packages = packages();
+    let is_ours = |name: &String| packages.iter().any(|package| package.name == *name);
+    let mut errors = Vec::new();
+    for package in &packages {
+        let Some((_, allowed)) = ALLOWED.iter().find(|(name, _)| *name == package.name) else {
+            errors.push(format!("{} is not in the list of crates", package.name));
+            continue;
+        };
+        let ours = package.dependencies.iter().filter(|name| is_ours(name));
+        let forbidden = ours.filter(|name| !allowed.contains(&name.as_str()));
+        errors.extend(forbidden.map(|name| format!("{} must not use {name}", package.name)));
+        for (name, users) in RESERVED {
+            if package.dependencies.iter().any(|other| other == name)
+                && !users.contains(&package.name.as_str())
+            {
+                errors.push(format!("{} must not use {name}: only {} may", package.name, users.join(", ")));
+            }
+        }
+    }
+    assert!(errors.is_empty(), "{}", errors.join("\n"));
+}
+
+#[test]
+fn only_the_viewer_and_the_programs_need_rerun() {
+    let packages = packages();
+    for name in WITHOUT_RERUN.iter().filter(|name| packages.iter().any(|package| package.name == **name)) {
+        let needs = needs(name);
+        assert_eq!(needs[0], *name);
+        let rerun: Vec<&String> =
+            needs.iter().filter(|name| *name == "rerun" || name.starts_with("re_")).collect();
+        assert!(rerun.is_empty(), "{name} needs {rerun:?}");
+    }
+    assert!(needs("curious").iter().any(|name| name == "rerun"), "the test sees no rerun anywhere");
+}

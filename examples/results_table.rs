@@ -1,0 +1,94 @@
+//! Prints the README's results table (Markdown) from the `summary.json` files of `four_rooms` runs.
+//!
+//! Runs of the same world are one column; each entry is the mean over these runs and, in brackets, the
+//! worst run.
+//!
+//! ```sh
+//! for world in four_rooms toy_on_the_floor turned_house house office warehouse cave yard; do
+//!   for seed in 0 1 2; do
+//!     cargo run --bin four_rooms -- --no-rrd --quiet --world $world --seed $seed --out results/${world}_$seed
+//!   done
+//! done
+//! cargo run --example results_table -- results/{house,office,warehouse,cave,yard}_?/summary.json
+//! ```
+
+use anyhow::{Context, ensure};
+use serde_json::Value;
+
+/// Whether the worst run is the one with the smallest or with the largest value.
+enum Worst {
+    Smallest,
+    Largest,
+}
+use Worst::{Largest, Smallest};
+
+/// A row: its title, where the value is in `summary.json`, a factor, the number of decimals, the unit.
+type Row = (&'static str, &'static str, f64, usize, &'static str, Worst);
+
+const ROWS: [Row; 19] = [
+    ("cells seen, of those that can be seen", "/coverage", 100.0, 1, " %", Smallest),
+    ("map right at the end", "/map_quality", 100.0, 1, " %", Smallest),
+    ("changing cells in view, balanced accuracy", "/map_quality_changing", 100.0, 1, " %", Smallest),
+    ("changing cells out of view, balanced accuracy", OUT_OF_VIEW, 100.0, 1, " %", Smallest),
+    ("false change events on static cells", "/false_change_events", 1.0, 0, "", Largest),
+    ("rate error, cells in view for 3 cycles or more", "/rate_error", 1.0, 2, "", Largest),
+    ("rate error, all changing cells", "/rate_error_all", 1.0, 2, "", Largest),
+    ("log error of the rates", "/log_error", 1.0, 2, "", Largest),
+    ("rate AUC, changing against static cells", "/rate_auc", 1.0, 3, "", Smallest),
+    ("block event to map, median", "/block_latency/median_s", 1.0, 1, " s", Largest),
+    ("block events never noticed", "/block_latency/never_noticed", 100.0, 1, " %", Largest),
+    ("free event to map, median", "/free_latency/median_s", 1.0, 1, " s", Largest),
+    ("free events never noticed", "/free_latency/never_noticed", 100.0, 1, " %", Largest),
+    ("longest time since a cell was seen", "/age/max_s", 1.0, 0, " s", Largest),
+    ("collisions while the robot moved", "/collisions", 1.0, 0, "", Largest),
+    ("goals reached", "/goals/reached", 1.0, 0, "", Smallest),
+    ("goals approached (nearest reachable point)", "/goals/nearest", 1.0, 0, "", Largest),
+    ("goals given up", "/goals/given_up", 1.0, 0, "", Largest),
+    ("times real time, without recording", "/real_time_factor", 1.0, 0, "", Smallest),
+];
+const OUT_OF_VIEW: &str = "/map_quality_changing_out_of_view";
+
+fn main() -> anyhow::Result<()> {
+    let mut worlds: Vec<(String, Vec<Value>)> = Vec::new();
+    for path in std::env::args().skip(1) {
+        let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {path}"))?;
+        let run: Value = serde_json::from_str(&text).with_context(|| format!("{path} is not JSON"))?;
+        let world =
+            run["world"].as_str().with_context(|| format!("{path} is not a summary.json"))?.to_owned();
+        match worlds.iter_mut().find(|(name, _)| *name == world) {
+            Some((_, runs)) => runs.push(run),
+            None => worlds.push((world, vec![run])),
+        }
+    }
+    ensure!(!worlds.is_empty(), "give the summary.json files of one or more runs");
+
+    let names: Vec<&str> = worlds.iter().map(|(name, _)| name.as_str()).collect();
+    println!("| | {} |", names.join(" | "));
+    println!("|---|{}", "---|".repeat(names.len()));
+    for row in &ROWS {
+        let entries: Vec<String> = worlds.iter().map(|(_, runs)| entry(row, runs)).collect();
+        println!("| {} | {} |", row.0, entries.join(" | "));
+    }
+    Ok(())
+}
+
+/// The mean over the runs that have a value, and the worst of them in brackets.
+fn entry((_, key, factor, decimals, unit, worst): &Row, runs: &[Value]) -> String {
+    let value = |run: &Value| {
+        let number = run.pointer(key)?.as_f64()?;
+        // The report counts approached goals as reached.
+        let approached =
+            if *key == "/goals/reached" { run.pointer("/goals/nearest")?.as_f64()? } else { 0.0 };
+        Some((number - approached) * factor)
+    };
+    let values: Vec<f64> = runs.iter().filter_map(value).collect();
+    if values.is_empty() {
+        return "–".to_owned();
+    }
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let worst = match worst {
+        Smallest => values.iter().copied().fold(f64::INFINITY, f64::min),
+        Largest => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    };
+    format!("{mean:.decimals$}{unit} ({worst:.decimals$})")
+}
