@@ -1,26 +1,25 @@
 //! Arguments → trials → report.
 
 mod args;
-mod progress;
 
 use anyhow::{Context, bail};
 use args::Args;
 use clap::Parser;
 use controller::CellDrive;
-use curious::recording::{Recorder, RecordingError, RecordingOptions};
-use curious::show::{Recorded, record, scene};
+use curious::progress::TrialProgress;
 use curious::worlds;
 use evaluation::output::{make_folder, say, write_file};
 use evaluation::report::{Report, ReportSettings, Trial, WorldPicture};
 use evaluation::trials::{Experiment, SettingsError};
 use mapper::{Estimator, MapperSettings};
-use progress::Progress;
 use sim::grid::{GenerateSettings, GridSpec};
 use std::collections::BTreeSet;
 use std::io::{stderr, stdout};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use viewer::recording::{Recorder, RecordingError, RecordingOptions};
+use viewer::trial::{Recorded, record};
 
 fn main() -> ExitCode {
     let args = Args::parse();
@@ -121,13 +120,13 @@ fn trials(
     let threads = usize::from(args.threads.unwrap_or(0)); // 0: as many as there are cores
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot make threads")?;
     let mut jobs = experiment.jobs();
-    let progress = Progress::new(jobs.len(), args.quiet);
+    let progress = TrialProgress::new(jobs.len(), args.quiet);
     let first = match &args.rrd {
         None => None,
         Some(file) => {
-            let life = experiment.life(jobs.remove(0));
+            let life = experiment.trial(jobs.remove(0));
             let options = RecordingOptions { file: Some(file.clone()), ..RecordingOptions::default() };
-            Some((Recorder::new(&options, scene(life.world))?, life))
+            Some((Recorder::new(&options, life.world.into())?, life))
         }
     };
     let record = || -> Result<_, SettingsError> {
