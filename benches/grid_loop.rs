@@ -8,15 +8,13 @@
 //! Two things must hold: `whole` in the world of 25 × 25 cells makes 300,000 steps per second or more,
 //! and `known_way`, which is all but deciding, takes at most three times as long with 200 × 200 cells.
 
-use agent::{Agent, AgentSettings, StrategyChoice, Travel};
+use agent::{Agent, AgentSettings, Travel};
 use controller::{CellDrive, Controller};
 use curious::worlds;
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use interfaces::Step;
+use interfaces::{Purpose, RandomStream, Step};
 use mapper::{Mapper, MapperSettings, ReadingError};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use robot::{Autonomous, Belief, Destination, GoalSelector, Pilot, explore};
 use sim::grid::{GenerateSettings, GridSpec, GridWorld};
 use std::ops::ControlFlow;
@@ -25,13 +23,13 @@ const STEPS: usize = 20_000;
 const SEED: u64 = 1;
 
 /// The paper's world and random ones, all seen with radius 4, and how goals are chosen.
-const LIVES: [(&str, StrategyChoice); 6] = [
-    ("two_blocks", StrategyChoice::Recency),
-    ("two_blocks", StrategyChoice::Curious),
-    ("25 x 25", StrategyChoice::Recency),
-    ("25 x 25", StrategyChoice::Curious),
-    ("200 x 200", StrategyChoice::Recency),
-    ("200 x 200", StrategyChoice::Curious),
+const LIVES: [(&str, &str); 6] = [
+    ("two_blocks", "recency"),
+    ("two_blocks", "curious"),
+    ("25 x 25", "recency"),
+    ("25 x 25", "curious"),
+    ("200 x 200", "recency"),
+    ("200 x 200", "curious"),
 ];
 
 fn main() {
@@ -56,12 +54,6 @@ fn world(name: &str) -> GridSpec {
         ..GenerateSettings::default()
     };
     GridSpec::generate(&settings, SEED)
-}
-
-fn chance(stream: u64) -> ChaCha8Rng {
-    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
-    rng.set_stream(stream);
-    rng
 }
 
 /// A robot in its world.
@@ -90,13 +82,16 @@ impl<P: Pilot<Command = Step>> Life<P> {
     }
 }
 
-fn autonomous<G: GoalSelector>(guide: G) -> Autonomous<G, CellDrive> {
-    let controller = Controller::new(CellDrive::settings(), CellDrive, chance(1));
-    Autonomous::new(guide, controller.expect("the drive's own settings make sense"))
+fn autonomous<G: GoalSelector>(selector: G) -> Autonomous<G, CellDrive> {
+    let controller =
+        Controller::new(CellDrive::settings(), CellDrive, RandomStream::new(SEED, Purpose::GridController));
+    Autonomous::new(selector, controller.expect("the drive's own settings make sense"))
 }
 
-fn agent(choice: StrategyChoice) -> Agent {
-    Agent::new(&AgentSettings::default(), choice, chance(2)).expect("defaults make sense")
+fn agent(policy: &str) -> Agent {
+    let policy = policy.parse().expect("a built-in policy");
+    let rng = RandomStream::new(SEED, Purpose::GridAgent);
+    Agent::new(&AgentSettings::default(), &policy, rng).expect("defaults make sense")
 }
 
 /// An agent, and what it decided.
@@ -170,15 +165,15 @@ fn bench<P: Pilot<Command = Step>>(bencher: Bencher<'_, '_>, spec: &GridSpec, pi
 
 /// The whole loop.
 #[divan::bench(args = LIVES, sample_count = 20, sample_size = 1)]
-fn whole(bencher: Bencher<'_, '_>, (name, choice): (&str, StrategyChoice)) {
-    bench(bencher, &world(name), || autonomous(agent(choice)));
+fn whole(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
+    bench(bencher, &world(name), || autonomous(agent(policy)));
 }
 
 /// All but the choice of goals.
 #[divan::bench(args = LIVES, sample_count = 20, sample_size = 1)]
-fn known_goals(bencher: Bencher<'_, '_>, (name, choice): (&str, StrategyChoice)) {
+fn known_goals(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     let spec = world(name);
-    let remembering = Remembering { agent: agent(choice), visits: Vec::new() };
+    let remembering = Remembering { agent: agent(policy), visits: Vec::new() };
     let mut life = Life::new(&spec, autonomous(remembering)).live();
     let visits = std::mem::take(&mut life.pilot.selector_mut().visits);
     let robot = life.world.robot();
@@ -189,9 +184,9 @@ fn known_goals(bencher: Bencher<'_, '_>, (name, choice): (&str, StrategyChoice))
 
 /// All but the choice of goals, planning and following.
 #[divan::bench(args = LIVES, sample_count = 20, sample_size = 1)]
-fn known_way(bencher: Bencher<'_, '_>, (name, choice): (&str, StrategyChoice)) {
+fn known_way(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     let spec = world(name);
-    let followed = Followed { pilot: autonomous(agent(choice)), way: Vec::with_capacity(STEPS) };
+    let followed = Followed { pilot: autonomous(agent(policy)), way: Vec::with_capacity(STEPS) };
     let way = Life::new(&spec, followed).live().pilot.way;
     bench(bencher, &spec, || Way(way.clone().into_iter()));
 }

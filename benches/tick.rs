@@ -15,12 +15,12 @@ mod args;
 #[expect(dead_code, reason = "a bench is driven by the agent alone")]
 mod parts;
 
-use agent::Agent;
+use agent::{Agent, Features};
 use args::Args;
 use clap::Parser;
 use controller::DiffDrive;
+use evaluation::map_hash::map_hash;
 use evaluation::observer::Observer;
-use evaluation::summary::map_hash;
 use interfaces::World;
 use mapper::{Mapper, ReadingError};
 use parts::Parts;
@@ -50,7 +50,8 @@ impl Life {
     fn tick(&mut self) {
         let reading = self.world.sense();
         self.mapper.update(&reading).expect("the physics world gives readings that make sense");
-        let belief = Belief { pose: &reading.pose, features: self.mapper.features(), mapper: &self.mapper };
+        let belief =
+            Belief { pose: &reading.pose, features: Features::of(&mut self.mapper), mapper: &self.mapper };
         let command = self.pilot.command(&belief);
         self.pilot.take_messages();
         self.world.act(&command);

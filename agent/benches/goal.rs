@@ -1,12 +1,10 @@
 //! How long the next goal takes on a house of 12 × 12 m in cells of 0.05 m, all of it seen, with
 //! 2000 cells that ever changed: once per goal, so every few seconds of a robot's life.
 
-use agent::{Agent, AgentSettings, AsTheCrowFlies, StrategyChoice};
-use interfaces::{Cell, CellReading, GridFrame};
+use agent::{Agent, AgentSettings, AsTheCrowFlies, Features, Policy};
+use interfaces::{Cell, CellReading, GridFrame, Purpose, RandomStream};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 fn main() {
     divan::main();
@@ -35,9 +33,9 @@ fn house() -> Mapper {
 fn next_goal(bencher: divan::Bencher, strategy: &str) {
     let mut mapper = house();
     let settings = AgentSettings { patch_cells: 10, ..Default::default() };
-    let choice: StrategyChoice = strategy.parse().unwrap();
-    let mut agent = Agent::new(&settings, choice, ChaCha8Rng::seed_from_u64(0)).unwrap();
-    let (features, pose) = (mapper.features(), Isometry2::identity());
+    let policy: Policy = strategy.parse().unwrap();
+    let mut agent = Agent::new(&settings, &policy, RandomStream::new(0, Purpose::Agent)).unwrap();
+    let (features, pose) = (Features::of(&mut mapper), Isometry2::identity());
     // A trajectory of 5 s at 10 Hz, learned from in the same call.
     bencher.bench_local(|| {
         for _ in 0..50 {

@@ -1,12 +1,9 @@
 use crate::goal::{Goal, GoalSampler};
 use crate::knowledge::knowledge;
-use crate::{
-    AgentSettings, Chooser, Reward, SettingsError, Situation, Strategy, StrategyChoice, Trajectory, Travel,
-};
-use interfaces::Transition;
-use mapper::{Features, Mapper};
+use crate::{AgentSettings, Chooser, Features, Policy, Reward, Situation, Strategy, Trajectory, Travel};
+use interfaces::{RandomStream, SettingsError, Transition};
+use mapper::Mapper;
 use nalgebra::Isometry2;
-use rand_chacha::ChaCha8Rng;
 
 /// How much one strategy was used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,7 +26,7 @@ pub struct Agent {
     /// The time to each cell, for strategies that ask for it.
     travel: Vec<f64>,
     reward: Reward,
-    rng: ChaCha8Rng,
+    rng: RandomStream,
     /// The strategy that sampled the present goal.
     current: Option<usize>,
     /// The features of every reading since the present goal was sampled, T of section 4.
@@ -45,22 +42,23 @@ pub struct Agent {
 }
 
 impl Agent {
-    /// An agent that decides by `choice`. It owns `rng`, and every draw comes from there.
+    /// An agent that decides by `policy`. All random numbers come from `rng`.
     ///
     /// # Errors
     ///
     /// When a setting makes no sense.
     pub fn new(
         settings: &AgentSettings,
-        choice: StrategyChoice,
-        mut rng: ChaCha8Rng,
+        policy: &Policy,
+        mut rng: RandomStream,
     ) -> Result<Self, SettingsError> {
         settings.check()?;
-        let (strategies, chooser) = choice.parts(settings, &mut rng);
+        let (strategies, chooser) = policy.build(settings, &mut rng);
         Self::with(settings, strategies, chooser, rng)
     }
 
-    /// An agent of any strategies under any chooser; the chooser must choose among as many.
+    /// An agent of any strategies under any chooser. Where the chooser gives an index beyond the last
+    /// strategy, the agent uses the last.
     ///
     /// # Errors
     ///
@@ -69,11 +67,11 @@ impl Agent {
         settings: &AgentSettings,
         strategies: Vec<Box<dyn Strategy>>,
         chooser: Box<dyn Chooser>,
-        rng: ChaCha8Rng,
+        rng: RandomStream,
     ) -> Result<Self, SettingsError> {
         settings.check()?;
         if strategies.is_empty() {
-            return Err(SettingsError { key: "strategies", expected: "at least one", found: "none".into() });
+            return Err(crate::settings::error("strategies", "at least one", "none"));
         }
         Ok(Self {
             tallies: vec![Tally::default(); strategies.len()],
@@ -114,7 +112,7 @@ impl Agent {
             travel.times(mapper, pose, &mut self.travel);
         }
         let situation = Situation::new(mapper, pose, self.features).with_travel(&self.travel);
-        let strategy = self.chooser.choose(&situation, &mut self.rng);
+        let strategy = self.chooser.choose(&situation, &mut self.rng).min(self.strategies.len() - 1);
         self.current = Some(strategy);
         self.tallies[strategy].goals += 1;
         self.goals.sample(&mut *self.strategies[strategy], &situation, &mut self.rng)

@@ -1,11 +1,11 @@
+use interfaces::RandomStream;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 /// Draws a place in proportion to its weight; `None` if no weight is above zero. The weights are
 /// finite, not negative, and their sum is finite.
 pub(crate) fn proportional(
     weights: impl Iterator<Item = f64> + Clone,
-    rng: &mut ChaCha8Rng,
+    rng: &mut RandomStream,
 ) -> Option<usize> {
     let total: f64 = weights.clone().sum();
     if total <= 0.0 {
@@ -25,7 +25,7 @@ pub(crate) fn proportional(
 }
 
 /// A number from the gamma distribution of this shape, above 0, and scale 1 (Marsaglia and Tsang 2000).
-pub(crate) fn gamma(shape: f64, rng: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn gamma(shape: f64, rng: &mut RandomStream) -> f64 {
     if shape < 1.0 {
         let boost = libm::pow(1.0 - rng.random::<f64>(), 1.0 / shape);
         return gamma(shape + 1.0, rng) * boost;
@@ -43,7 +43,7 @@ pub(crate) fn gamma(shape: f64, rng: &mut ChaCha8Rng) -> f64 {
 }
 
 /// A number from the standard normal distribution (Box and Muller 1958).
-fn normal(rng: &mut ChaCha8Rng) -> f64 {
+fn normal(rng: &mut RandomStream) -> f64 {
     let (radius, angle) = (1.0 - rng.random::<f64>(), rng.random::<f64>());
     (-2.0 * libm::log(radius)).sqrt() * libm::cos(std::f64::consts::TAU * angle)
 }
@@ -51,14 +51,14 @@ fn normal(rng: &mut ChaCha8Rng) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::Purpose;
     use proptest::prelude::*;
-    use rand::SeedableRng;
 
     #[test]
     fn frequencies_follow_the_weights() {
         let weights = [1.0, 0.0, 2.0, 5.0];
         let mut counts = [0.0; 4];
-        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let mut rng = RandomStream::new(1, Purpose::Agent);
         let draws = 80_000.0;
         for _ in 0..draws as usize {
             counts[proportional(weights.iter().copied(), &mut rng).unwrap()] += 1.0;
@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn gamma_has_its_mean_and_its_variance() {
-        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        let mut rng = RandomStream::new(2, Purpose::Agent);
         for shape in [0.2, 1.0, 3.5, 400.0] {
             let draws = 100_000;
             let numbers: Vec<f64> = (0..draws).map(|_| gamma(shape, &mut rng)).collect();
@@ -98,7 +98,7 @@ mod tests {
             weights in prop::collection::vec(prop_oneof![Just(0.0), 0.0..1e-300, 0.0..1e200], 0..20),
             seed in any::<u64>(),
         ) {
-            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let mut rng = RandomStream::new(seed, Purpose::Agent);
             match proportional(weights.iter().copied(), &mut rng) {
                 Some(place) => prop_assert!(weights[place] > 0.0),
                 None => prop_assert!(weights.iter().all(|&weight| weight == 0.0)),

@@ -9,10 +9,9 @@
 
 use crate::draw::proportional;
 use crate::{Pick, Situation, Stay, Strategy};
-use interfaces::Cell;
+use interfaces::{Cell, RandomStream};
 use mapper::Mapper;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 /// Larger weights count as this much: far above any time in seconds, and so far below the largest
 /// number that no sum over a map overflows.
@@ -61,7 +60,7 @@ impl GoalSampler {
         &mut self,
         strategy: &mut dyn Strategy,
         situation: &Situation,
-        rng: &mut ChaCha8Rng,
+        rng: &mut RandomStream,
     ) -> Goal {
         let mapper = situation.mapper;
         self.weights.clear();
@@ -79,7 +78,7 @@ impl GoalSampler {
     }
 
     /// The candidate of the largest weight, any of several; `None` where none is above zero.
-    fn best(&self, mapper: &Mapper, rng: &mut ChaCha8Rng) -> Option<Cell> {
+    fn best(&self, mapper: &Mapper, rng: &mut RandomStream) -> Option<Cell> {
         let (mut best, mut largest, mut ties) = (None, 0.0, 0);
         for (index, &weight) in self.weights.iter().enumerate() {
             // A weight that is not a number is not larger than any.
@@ -94,7 +93,7 @@ impl GoalSampler {
     }
 
     /// A candidate by the weights of the patches; `None` where there is no candidate.
-    fn draw(&self, mapper: &Mapper, rng: &mut ChaCha8Rng) -> Option<Cell> {
+    fn draw(&self, mapper: &Mapper, rng: &mut RandomStream) -> Option<Cell> {
         let (patch, nth) = match proportional(self.patches.iter().map(Patch::mean), rng) {
             Some(patch) => (patch, rng.random_range(0..self.patches[patch].candidates)),
             None => {

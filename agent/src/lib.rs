@@ -4,29 +4,30 @@
 //! next, and the [`Agent`] holds them together: it watches every reading, and each time the
 //! controller hands back, it learns from the trajectory just driven and samples the next goal.
 //!
-//! To add a strategy or a chooser: one file under `strategies` or `choosers`, and a line in
-//! [`StrategyChoice`].
+//! A [`Policy`] names strategies and a chooser. To add one to this crate: one file under `strategies` or
+//! `choosers`, and a line in the list of [`Policy::built_in`]. To add one from another crate: [`Policy::new`].
 
 mod agent;
-mod choice;
 mod choosers;
 mod draw;
+mod features;
 mod goal;
 mod knowledge;
+mod policy;
 mod settings;
 mod situation;
 mod strategies;
 mod survey;
 mod tile_coder;
 mod travel;
-#[allow(dead_code)] // until a strategy that looks ahead is here
 mod view;
 
 pub use agent::{Agent, Tally};
-pub use choice::{StrategyChoice, UnknownStrategy};
 pub use choosers::{Always, Chooser, Coin, Curious, Progress, Trajectory};
+pub use features::Features;
 pub use goal::Goal;
-pub use settings::{AgentSettings, CuriousSettings, Reward, SettingsError};
+pub use policy::{Parts, Policy, UnknownPolicy};
+pub use settings::{AgentSettings, CuriousSettings, Reward};
 pub use situation::Situation;
 pub use strategies::{
     Frontier, InformationGain, OptimalRevisiting, Pick, Poisson, Random, Recency, Stay, Strategy,

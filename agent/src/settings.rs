@@ -1,4 +1,4 @@
-use interfaces::{CellState, Transition};
+use interfaces::{CellState, SettingsError, Transition};
 
 /// What counts as a map update when a trajectory is rewarded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
@@ -73,46 +73,25 @@ impl Default for CuriousSettings {
     }
 }
 
-/// A setting that makes no sense.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("agent setting `{key}` must be {expected}, not {found}")]
-pub struct SettingsError {
-    /// The key.
-    pub key: &'static str,
-    /// What would be right.
-    pub expected: &'static str,
-    /// What was found.
-    pub found: String,
+/// An error in the agent's settings.
+pub(crate) fn error(key: &'static str, expected: &'static str, found: impl ToString) -> SettingsError {
+    SettingsError { part: "agent", key, expected, found: found.to_string() }
 }
 
 impl AgentSettings {
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
         let Self { patch_cells, sensor_radius_m, reward: _, ref curious } = *self;
-        let error = |key, expected, found: String| Err(SettingsError { key, expected, found });
-        if !(1..=1000).contains(&patch_cells) {
-            return error("patch_cells", "from 1 to 1000", patch_cells.to_string());
-        }
-        if !(1e-3..=1e6).contains(&sensor_radius_m) {
-            return error("sensor_radius_m", "from 0.001 to 1000000", sensor_radius_m.to_string());
-        }
-        if !(1..=1000).contains(&curious.tilings) {
-            return error("curious.tilings", "from 1 to 1000", curious.tilings.to_string());
-        }
-        let sizes = [
-            ("curious.tile_p", curious.tile_p),
-            ("curious.tile_r", curious.tile_r),
-            ("curious.temperature", curious.temperature),
-        ];
-        for (key, size) in sizes {
-            if !(1e-9..=1e9).contains(&size) {
-                return error(key, "from 1e-9 to 1e9", size.to_string());
-            }
-        }
-        let learning_rate = curious.learning_rate;
-        if !(learning_rate > 0.0 && learning_rate <= 1.0) {
-            return error("curious.learning_rate", "above 0, and at most 1", learning_rate.to_string());
-        }
-        Ok(())
+        let check = |key, value: f64, [least, most]: [f64; 2], expected| {
+            if (least..=most).contains(&value) { Ok(()) } else { Err(error(key, expected, value)) }
+        };
+        check("patch_cells", patch_cells as f64, [1.0, 1e3], "from 1 to 1000")?;
+        check("sensor_radius_m", sensor_radius_m, [1e-3, 1e6], "from 0.001 to 1000000")?;
+        check("curious.tilings", curious.tilings as f64, [1.0, 1e3], "from 1 to 1000")?;
+        check("curious.tile_p", curious.tile_p, [1e-9, 1e9], "from 1e-9 to 1e9")?;
+        check("curious.tile_r", curious.tile_r, [1e-9, 1e9], "from 1e-9 to 1e9")?;
+        check("curious.temperature", curious.temperature, [1e-9, 1e9], "from 1e-9 to 1e9")?;
+        let above_zero = [f64::from_bits(1), 1.0];
+        check("curious.learning_rate", curious.learning_rate, above_zero, "above 0, and at most 1")
     }
 }
 

@@ -1,5 +1,6 @@
+use crate::Features;
 use interfaces::Cell;
-use mapper::{Features, Mapper};
+use mapper::Mapper;
 use nalgebra::Isometry2;
 
 /// Everything that strategies and choosers may judge by at the moment when a goal is due.

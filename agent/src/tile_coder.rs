@@ -1,7 +1,7 @@
 use crate::CuriousSettings;
-use mapper::Features;
+use crate::Features;
+use interfaces::RandomStream;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 
 /// A value function over the features (p, r): several grids of tiles, displaced against each
@@ -23,7 +23,7 @@ struct Tiling {
 
 impl TileCoder {
     /// A tile coder of value 0 with random displacements. Draws two numbers per tiling.
-    pub fn new(settings: &CuriousSettings, rng: &mut ChaCha8Rng) -> Self {
+    pub fn new(settings: &CuriousSettings, rng: &mut RandomStream) -> Self {
         let offsets: Vec<_> = (0..settings.tilings).map(|_| [rng.random(), rng.random()]).collect();
         Self::with_offsets([settings.tile_p, settings.tile_r], &offsets)
     }
@@ -75,8 +75,8 @@ fn tile(offset: [f64; 2], size: [f64; 2], features: Features) -> (i64, i64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::Purpose;
     use proptest::prelude::*;
-    use rand::SeedableRng;
 
     fn at(p: f64, r: f64) -> Features {
         Features { p, r }
@@ -131,7 +131,7 @@ mod tests {
             seed in any::<u64>(),
         ) {
             let settings = CuriousSettings::default();
-            let mut whole = TileCoder::new(&settings, &mut ChaCha8Rng::seed_from_u64(seed));
+            let mut whole = TileCoder::new(&settings, &mut RandomStream::new(seed, Purpose::Agent));
             let mut single = whole.clone();
             let trajectory: Vec<_> = pairs.iter().map(|&(p, r)| at(p, r)).collect();
             whole.learn(&trajectory, 7.0, 0.9);
@@ -148,7 +148,7 @@ mod tests {
             target in 0.0..1e6,
         ) {
             let settings = CuriousSettings::default();
-            let mut coder = TileCoder::new(&settings, &mut ChaCha8Rng::seed_from_u64(3));
+            let mut coder = TileCoder::new(&settings, &mut RandomStream::new(3, Purpose::Agent));
             coder.learn(&[at(p, r), at(p, r)], target, 0.9);
             let value = coder.value(at(p, r));
             prop_assert!((0.98 * target..=target * (1.0 + 1e-12)).contains(&value), "{}", value);
@@ -156,7 +156,7 @@ mod tests {
 
         #[test]
         fn far_apart_is_independent(dp in 0.5..1e5, dr in 0.0..1e5) {
-            let mut coder = TileCoder::new(&CuriousSettings::default(), &mut ChaCha8Rng::seed_from_u64(5));
+            let mut coder = TileCoder::new(&CuriousSettings::default(), &mut RandomStream::new(5, Purpose::Agent));
             coder.learn(&[at(1.0, 50.0)], 10.0, 0.9);
             prop_assert_eq!(coder.value(at(1.0 + dp + 1e-9, 50.0 + dr)), 0.0);
         }

@@ -5,10 +5,8 @@ use controller::{
     Planner, STRAIGHT, Settings, Situation, Wavefront,
 };
 use divan::{Bencher, black_box};
-use interfaces::{Cell, CellState, Grid, GridFrame, Transition, pose};
+use interfaces::{Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Transition, pose};
 use nalgebra::{Point2, Vector2};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::f64::consts::TAU;
@@ -141,7 +139,7 @@ fn drive_tick(bencher: Bencher) {
         (0..720).map(|beam| first_hit(&map, robot.translation.vector.into(), beam)).collect();
     let situation = |time| Situation { time, pose: &robot, map: &map, transitions: &[], points: &points };
     let drive = DiffDrive::new(DiffDriveSettings::default()).expect("defaults");
-    let rng = ChaCha8Rng::seed_from_u64(0);
+    let rng = RandomStream::new(0, Purpose::Controller);
     let mut controller = Controller::new(Settings::default(), drive, rng).expect("defaults");
     controller.go_to(Point2::new(5.0, 0.5));
     (0..10).for_each(|tick| {

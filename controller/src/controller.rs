@@ -1,8 +1,8 @@
 use crate::exploration::{Exploration, random_step};
 use crate::journey::{Journey, Progress, Surroundings};
-use crate::{Drive, Path, Planner, Reach, Restless, Settings, SettingsError, Situation};
+use crate::{Drive, Path, Planner, Reach, Restless, Settings, Situation};
+use interfaces::{RandomStream, SettingsError};
 use nalgebra::Point2;
-use rand_chacha::ChaCha8Rng;
 
 /// What the controller is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub enum Outcome {
 pub struct Controller<D: Drive> {
     settings: Settings,
     drive: D,
-    rng: ChaCha8Rng,
+    rng: RandomStream,
     surroundings: Option<Surroundings>,
     task: Task,
     path: Path,
@@ -92,7 +92,7 @@ impl<D: Drive> Controller<D> {
     /// # Errors
     ///
     /// When a setting is not a number that makes sense, or contradicts another; the error names it.
-    pub fn new(settings: Settings, drive: D, rng: ChaCha8Rng) -> Result<Self, SettingsError> {
+    pub fn new(settings: Settings, drive: D, rng: RandomStream) -> Result<Self, SettingsError> {
         settings.check()?;
         let path = Path::default();
         Ok(Self { settings, drive, rng, surroundings: None, task: Task::None, path, last_change: None })
@@ -112,19 +112,14 @@ impl<D: Drive> Controller<D> {
     /// As [`set_goal`](Self::set_goal), but to stand at the goal for `duration` (s; steps in a grid
     /// world) instead of exploring around it.
     pub fn watch_at(&mut self, goal: Point2<f64>, duration: f64) {
-        self.start(goal, Then::Watch(duration));
+        // What is not a number counts as no time, so that the watch ends.
+        self.start(goal, Then::Watch(duration.max(0.0)));
     }
 
     /// Takes the goal back; the robot rests.
     pub fn cancel(&mut self) {
         self.task = Task::None;
         self.path.clear();
-    }
-
-    /// Forgets the map: the next tick looks at all of it. Only needed where the map changed
-    /// otherwise than by the transitions of a [`Situation`].
-    pub fn forget_map(&mut self) {
-        self.surroundings = None;
     }
 
     /// Writes how long it takes to get from the robot to each cell, in row-major order, s (steps in

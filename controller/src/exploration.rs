@@ -1,8 +1,8 @@
 use crate::settings::ExplorationSettings;
 use crate::{Body, Costmap};
+use interfaces::RandomStream;
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
 /// Local exploration (paper, section 2): towards the middle of what changed last; a random step
@@ -47,7 +47,7 @@ pub(crate) fn random_step(
     body: &Body,
     costmap: &Costmap,
     here: &Point2<f64>,
-    rng: &mut ChaCha8Rng,
+    rng: &mut RandomStream,
 ) -> Point2<f64> {
     let cell = |point: &Point2<f64>| costmap.frame().cell_at(point);
     let step = |direction: u32| {
@@ -70,7 +70,7 @@ mod tests {
     use super::*;
     use crate::Moves;
     use crate::drawing::{costmap, find};
-    use rand_chacha::rand_core::SeedableRng;
+    use interfaces::Purpose;
 
     const HERE: Point2<f64> = Point2::new(1.0, 1.0);
     const CHANGE: Option<Point2<f64>> = Some(Point2::new(5.0, 5.0));
@@ -109,7 +109,7 @@ mod tests {
         };
         let robot = find(&rows, 'R');
         let here = map.frame().center(robot);
-        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let mut rng = RandomStream::new(1, Purpose::Controller);
         let mut steps: Vec<_> =
             (0..100).map(|_| map.frame().cell_at(&random_step(&body, &map, &here, &mut rng))).collect();
         steps.sort();

@@ -35,6 +35,6 @@ pub use inflation::{Inflation, InflationSettings};
 pub use path::Path;
 pub use planner::{Planner, Reach};
 pub use restless::Restless;
-pub use settings::{ExplorationSettings, PatienceSettings, Settings, SettingsError};
+pub use settings::{ExplorationSettings, PatienceSettings, Settings};
 pub use situation::Situation;
 pub use wavefront::Wavefront;

@@ -1,4 +1,5 @@
 use crate::{InflationSettings, MAX_PRICE};
+use interfaces::SettingsError;
 use serde::{Deserialize, Serialize};
 
 /// How the controller gets to goals, and when it gives up. Times are seconds, or steps in a grid
@@ -68,46 +69,40 @@ impl Default for ExplorationSettings {
     }
 }
 
-/// A setting that makes no sense.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{key} = {value}: must be {wanted}")]
-pub struct SettingsError {
-    /// The name of the setting.
-    pub key: &'static str,
-    /// What it is.
-    pub value: f64,
-    /// What would be right.
-    pub wanted: &'static str,
-}
-
 impl Settings {
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
         let Self { inflation, patience, exploration: _ } = self;
-        let positive = |key, value: f64| check(key, value, "a positive number", value > 0.0);
-        check("margin_m", inflation.margin_m, "0 or more", inflation.margin_m >= 0.0)?;
-        let wide = inflation.comfort_m >= inflation.margin_m;
-        check("comfort_m", inflation.comfort_m, "at least margin_m", wide)?;
+        let check = |key, value, expected, is_valid| check("controller", key, value, expected, is_valid);
+        let positive = |key, value| check(key, value, "a positive number", value > 0.0);
+        let not_negative = |key, value| check(key, value, "0 or more", value >= 0.0);
+        not_negative("inflation.margin_m", inflation.margin_m)?;
+        let is_wide = inflation.comfort_m >= inflation.margin_m;
+        check("inflation.comfort_m", inflation.comfort_m, "at least inflation.margin_m", is_wide)?;
         let price = inflation.comfort_price;
-        check("comfort_price", price.into(), "from 1 to 9", (1..=MAX_PRICE).contains(&price))?;
-        check("replan_closed_s", patience.replan_closed_s, "0 or more", patience.replan_closed_s >= 0.0)?;
-        check("replan_s", patience.replan_s, "0 or more", patience.replan_s >= 0.0)?;
-        positive("off_path_m", patience.off_path_m)?;
-        check("wait_s", patience.wait_s, "0 or more", patience.wait_s >= 0.0)?;
-        positive("patience_s", patience.patience_s)?;
-        positive("progress_m", patience.progress_m)?;
-        let later = patience.goal_limit_s > patience.patience_s;
-        check("goal_limit_s", patience.goal_limit_s, "more than patience_s", later)
+        check("inflation.comfort_price", price.into(), "from 1 to 9", (1..=MAX_PRICE).contains(&price))?;
+        not_negative("patience.replan_closed_s", patience.replan_closed_s)?;
+        not_negative("patience.replan_s", patience.replan_s)?;
+        positive("patience.off_path_m", patience.off_path_m)?;
+        not_negative("patience.wait_s", patience.wait_s)?;
+        positive("patience.patience_s", patience.patience_s)?;
+        positive("patience.progress_m", patience.progress_m)?;
+        let is_later = patience.goal_limit_s > patience.patience_s;
+        check("patience.goal_limit_s", patience.goal_limit_s, "more than patience.patience_s", is_later)
     }
 }
 
-/// Refuses a value that is not finite or not `right`.
+/// Refuses a value that is not finite, or not valid.
 pub(crate) fn check(
+    part: &'static str,
     key: &'static str,
     value: f64,
-    wanted: &'static str,
-    right: bool,
+    expected: &'static str,
+    is_valid: bool,
 ) -> Result<(), SettingsError> {
-    if right && value.is_finite() { Ok(()) } else { Err(SettingsError { key, value, wanted }) }
+    if is_valid && value.is_finite() {
+        return Ok(());
+    }
+    Err(SettingsError { part, key, expected, found: value.to_string() })
 }
 
 #[cfg(test)]
@@ -118,16 +113,31 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named() {
         let message = |text: &str| toml::from_str::<Settings>(text).unwrap().check().unwrap_err().to_string();
-        assert_eq!(message("inflation.comfort_m = 0.01"), "comfort_m = 0.01: must be at least margin_m");
-        assert_eq!(message("inflation.margin_m = nan"), "margin_m = NaN: must be 0 or more");
-        assert_eq!(message("inflation.comfort_price = 0"), "comfort_price = 0: must be from 1 to 9");
+        assert_eq!(
+            message("inflation.comfort_m = 0.01"),
+            "controller setting `inflation.comfort_m` must be at least inflation.margin_m, not 0.01"
+        );
+        assert_eq!(
+            message("inflation.margin_m = nan"),
+            "controller setting `inflation.margin_m` must be 0 or more, not NaN"
+        );
+        assert_eq!(
+            message("inflation.comfort_price = 0"),
+            "controller setting `inflation.comfort_price` must be from 1 to 9, not 0"
+        );
         assert_eq!(
             message("patience.goal_limit_s = inf\npatience.patience_s = 1"),
-            "goal_limit_s = inf: must be more than patience_s"
+            "controller setting `patience.goal_limit_s` must be more than patience.patience_s, not inf"
         );
         let drive = |text: &str| DiffDrive::new(toml::from_str(text).unwrap()).unwrap_err().to_string();
-        assert_eq!(drive("radius_m = -0.2"), "radius_m = -0.2: must be a positive number");
-        assert_eq!(drive("tolerance_m = 0.4"), "tolerance_m = 0.4: must be less than twice radius_m");
+        assert_eq!(
+            drive("radius_m = -0.2"),
+            "differential drive setting `radius_m` must be a positive number, not -0.2"
+        );
+        assert_eq!(
+            drive("tolerance_m = 0.4"),
+            "differential drive setting `tolerance_m` must be less than twice radius_m, not 0.4"
+        );
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Measures a run in the physics world against the ground truth, from outside the loop.
 
-use crate::metrics::{self, Changing, ChangingScores, Delays, Latency, Scores, ThingReport, Things};
+use crate::metrics::{
+    ChangingAccuracy, ChangingScores, Delays, Latency, MapScores, ThingReport, Things, map_scores,
+};
 use crate::summary::CurvePoint;
 use interfaces::{LaserReading, Twist};
 use mapper::Mapper;
@@ -18,7 +20,7 @@ const SAMPLE_EVERY: usize = 10;
 pub struct Observer {
     latency: Latency,
     things: Things,
-    changing: Changing,
+    changing: ChangingAccuracy,
     curve: Vec<CurvePoint>,
     goals: Vec<Point2<f64>>,
     contacts_reported: usize,
@@ -61,19 +63,19 @@ impl Observer {
     }
 
     /// The last coverage and map quality.
-    pub fn scores(&self) -> Option<Scores> {
-        self.curve.last().map(|&CurvePoint { coverage, map_quality, .. }| Scores { coverage, map_quality })
+    pub fn scores(&self) -> Option<MapScores> {
+        self.curve.last().map(|&CurvePoint { coverage, map_quality, .. }| MapScores { coverage, map_quality })
     }
 
     fn measure(&mut self, world: &PhysicsWorld, reading: &LaserReading, mapper: &Mapper) {
         let (truth, laser) = (world.truth(), world.true_pose() * reading.mount);
-        self.latency.watch(truth, mapper, reading, &laser);
-        self.things.watch(world.obstacle_events(), truth, mapper, reading, &laser);
+        self.latency.observe(truth, mapper, reading, &laser);
+        self.things.observe(world.obstacle_events(), truth.frame(), mapper, reading, &laser);
         if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
-            self.changing.count(mapper, truth);
+            self.changing.sample(mapper, truth);
         }
         if mapper.readings() % SCORE_EVERY == 1 {
-            let Scores { coverage, map_quality } = metrics::scores(mapper, truth);
+            let MapScores { coverage, map_quality } = map_scores(mapper, truth);
             self.curve.push(CurvePoint { time_s: reading.time_s, coverage, map_quality });
         }
     }
@@ -85,7 +87,7 @@ impl Observer {
             self.goals.extend(pilot.goal());
         }
         let mut log = |level, text| self.messages.push(Message { level, text });
-        self.things.take_news().into_iter().for_each(|text| log(Level::Event, text));
+        self.things.take_messages().into_iter().for_each(|text| log(Level::Event, text));
         for contact in &world.contacts()[self.contacts_reported..] {
             let how = if contact.moving { "drove into" } else { "was hit by" };
             log(Level::Trouble, format!("the curious robot {how} {}", name(world, contact.with)));

@@ -1,6 +1,6 @@
 //! What is changed, one thing at a time.
 
-use agent::{AgentSettings, Reward, StrategyChoice};
+use agent::{AgentSettings, Reward};
 use controller::CellDrive;
 use curious::worlds::{SHIPPED_GRID, load_grid};
 use evaluation::report::{Report, ReportSettings, WorldPicture};
@@ -13,13 +13,7 @@ use std::sync::atomic::AtomicBool;
 pub(crate) const BASE: &str = "the paper's";
 
 /// The strategies that the claim is about, and two baselines.
-const STRATEGIES: [StrategyChoice; 5] = [
-    StrategyChoice::Curious,
-    StrategyChoice::Recency,
-    StrategyChoice::Poisson,
-    StrategyChoice::Random,
-    StrategyChoice::Coin,
-];
+const STRATEGIES: [&str; 5] = ["curious", "recency", "poisson", "random", "coin"];
 
 /// Everything that can be changed.
 #[derive(Clone, Debug)]
@@ -98,7 +92,9 @@ impl Condition {
         Experiment {
             worlds: worlds.into_iter().map(set).collect(),
             estimators: vec![self.estimator],
-            strategies: STRATEGIES.map(TrialStrategy::Agent).to_vec(),
+            strategies: STRATEGIES
+                .map(|name| TrialStrategy::Agent(name.parse().expect("a built-in policy")))
+                .to_vec(),
             trials,
             seed: 0,
             steps: self.steps,

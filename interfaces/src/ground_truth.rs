@@ -57,6 +57,11 @@ pub trait GroundTruth {
     /// Whether any moving thing has touched a cell (physics world) or can enter it (grid world).
     fn is_swept(&self, index: usize) -> bool;
 
+    /// The swept cells, sorted by index.
+    fn swept(&self) -> Cow<'_, [usize]> {
+        (0..self.frame().len()).filter(|&index| self.is_swept(index)).collect()
+    }
+
     /// The swept cells of every moving thing, sorted by index. In a physics world a cell belongs to the
     /// first thing that touched it; in a grid world it belongs to every block whose path contains it.
     fn moving_things(&self) -> Cow<'_, [Vec<usize>]>;

@@ -32,7 +32,8 @@ fn update(bencher: Bencher, (occupancy, beams): (OccupancyModel, usize)) {
     let mut mapper = Mapper::new(&settings, house.frame).unwrap();
     let mut next = 0;
     bencher.bench_local(|| {
-        let updated = mapper.update(&readings[next]).map(|()| mapper.features());
+        let updated = mapper.update(&readings[next]);
+        divan::black_box((mapper.sum_change_probability(), mapper.max_recency()));
         readings[next].time_s += f64::from(SCANS) * PERIOD_S; // for the next round
         next = (next + 1) % readings.len();
         updated.unwrap()

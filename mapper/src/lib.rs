@@ -86,15 +86,6 @@ pub struct Mapper {
     points: Vec<Point2<f64>>,
 }
 
-/// What the agent judges its situation by (section 4).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Features {
-    /// Expected number of cells that changed since they were seen, p = Σ P(E > 0).
-    pub p: f64,
-    /// Longest time since a cell was seen, r = max (t_now − t_last), over the candidates.
-    pub r: f64,
-}
-
 impl Mapper {
     /// A mapper that knows nothing of the cells of `frame`.
     ///
@@ -247,9 +238,15 @@ impl Mapper {
         self.ledger.now() - self.ledger.last_seen(index)
     }
 
-    /// The agent's features now. Costs time in proportion to the cells that ever changed.
-    pub fn features(&mut self) -> Features {
-        Features { p: self.ledger.sum_change_probability(), r: self.ledger.max_recency() }
+    /// The sum of [`Mapper::change_probability`] over all cells: the expected number of cells that changed
+    /// since they were seen. Costs time in proportion to the cells that ever changed.
+    pub fn sum_change_probability(&mut self) -> f64 {
+        self.ledger.sum_change_probability()
+    }
+
+    /// The largest [`Mapper::recency`] of a candidate; 0 without a candidate.
+    pub fn max_recency(&mut self) -> f64 {
+        self.ledger.max_recency()
     }
 }
 

@@ -1,7 +1,7 @@
 use crate::{Belief, GoalCount, Level, Message, Pilot, StrategyState};
-use agent::{Agent, Goal, Stay, Travel};
+use agent::{Agent, Features, Goal, Stay, Travel};
 use controller::{Controller, Drive, Outcome, Situation, Status};
-use mapper::{Features, Mapper};
+use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 
 /// The next goal, and what to do there.

@@ -17,6 +17,7 @@ pub use messages::{Level, Message};
 pub use pilot::{Belief, GoalCount, Pilot, StrategyState};
 pub use tour::Tour;
 
+use agent::Features;
 use interfaces::{Reading, World};
 use mapper::{Evidence, Mapper, ReadingError};
 use std::ops::ControlFlow;
@@ -43,7 +44,7 @@ where
     loop {
         let reading = world.sense();
         mapper.update(&reading)?;
-        let belief = Belief { pose: reading.pose(), features: mapper.features(), mapper };
+        let belief = Belief { pose: reading.pose(), features: Features::of(mapper), mapper };
         let command = pilot.command(&belief);
         if observe(world, &reading, &belief, pilot)?.is_break() {
             return Ok(());

@@ -1,5 +1,6 @@
 use crate::Message;
-use mapper::{Features, Mapper};
+use agent::Features;
+use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! Every choice on the command line runs; equal choices give equal runs, others do not.
 
 use crate::run::Run;
-use agent::StrategyChoice;
+use agent::Policy;
 use mapper::Estimator;
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ fn every_strategy_explores_in_its_own_way() {
     let papers = ["poisson", "recency"];
     let all = ["frontier", "information-gain", "optimal-revisiting", "poisson", "recency"];
     let mut hashes = BTreeSet::new();
-    for strategy in StrategyChoice::ALL.map(StrategyChoice::name) {
+    for strategy in Policy::built_in().iter().map(Policy::name) {
         let summary = Run::quiet(&format!("--duration 3m --strategy {strategy}")).summary();
         assert_eq!(summary.text("/strategy"), strategy);
         let shares = summary.at("/strategy_share").as_object().unwrap();
@@ -31,7 +31,7 @@ fn every_strategy_explores_in_its_own_way() {
         assert_eq!(summary.number("/false_change_events"), 0.0, "{strategy}");
         hashes.insert(summary.hash().to_owned());
     }
-    assert_eq!(hashes.len(), StrategyChoice::ALL.len(), "two strategies did the same");
+    assert_eq!(hashes.len(), Policy::built_in().len(), "two strategies did the same");
 }
 
 #[test]

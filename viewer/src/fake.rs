@@ -3,7 +3,8 @@
 
 use crate::scene::{Obstacle, Outline, Robot, Scene, TimeUnit};
 use crate::view::{Measured, RobotState, Sight, View};
-use evaluation::metrics::Scores;
+use agent::Features;
+use evaluation::metrics::MapScores;
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -177,7 +178,7 @@ impl FakeRun {
 
     /// Calls `look` with the run as it is now.
     pub(crate) fn with_view<T>(&mut self, look: impl FnOnce(&View) -> T) -> T {
-        let features = self.mapper.features();
+        let features = Features::of(&mut self.mapper);
         let goal = self.curious.waypoints[self.curious.next % self.curious.waypoints.len()];
         let wave = |phase: f64| 1.0 + libm::sin(self.time_s() / 60.0 + phase);
         let strategy = |name, phase: f64| StrategyState {
@@ -208,7 +209,7 @@ impl FakeRun {
                 Vec::new()
             },
             measured: Measured {
-                scores: Some(Scores { coverage, map_quality: 0.98 * coverage }),
+                scores: Some(MapScores { coverage, map_quality: 0.98 * coverage }),
                 rate_errors: None,
                 messages: &self.messages,
             },

@@ -2,9 +2,9 @@
 
 use crate::recording::{Recorder, RecordingError};
 use crate::view::{Measured, View};
-use evaluation::metrics::{RateErrors, Scores, cell_map_scores, cell_rate_scores};
+use evaluation::metrics::{RateErrors, map_scores, rate_scores};
 use evaluation::report::Trial;
-use evaluation::trials::{Life, Look, SettingsError, live};
+use evaluation::trials::{SettingsError, TrialSettings, TrialStep, run_trial};
 use robot::{Level, Message};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -32,12 +32,16 @@ pub struct Recorded {
 /// # Errors
 ///
 /// When settings are invalid.
-pub fn record(life: &Life, recorder: Recorder, is_canceled: &AtomicBool) -> Result<Recorded, SettingsError> {
+pub fn record(
+    settings: &TrialSettings,
+    recorder: Recorder,
+    is_canceled: &AtomicBool,
+) -> Result<Recorded, SettingsError> {
     let mut recorder = Some(recorder);
     let mut problem = None;
-    let trial = live(life, |mut look| {
+    let trial = run_trial(settings, |mut step| {
         let goes_on = !is_canceled.load(Ordering::Relaxed);
-        if let Err(error) = log(&mut recorder, life, &mut look, !goes_on) {
+        if let Err(error) = log(&mut recorder, settings, &mut step, !goes_on) {
             problem = Some(error);
         }
         goes_on
@@ -49,27 +53,26 @@ pub fn record(life: &Life, recorder: Recorder, is_canceled: &AtomicBool) -> Resu
 /// recorder any more.
 fn log(
     recorder: &mut Option<Recorder>,
-    life: &Life,
-    look: &mut Look,
+    settings: &TrialSettings,
+    now: &mut TrialStep,
     is_canceled: bool,
 ) -> Result<(), RecordingError> {
     let Some(mut open) = recorder.take() else { return Ok(()) };
-    let step = look.reading.time as u64;
-    let is_last = is_canceled || step >= life.steps.min(RECORDED_STEPS);
-    let mut messages = look.pilot.take_messages();
-    if is_last && !is_canceled && step < life.steps {
-        let text = format!("the recording ends here; the trial goes on to step {}", life.steps);
+    let step = now.reading.time as u64;
+    let is_last = is_canceled || step >= settings.steps.min(RECORDED_STEPS);
+    let mut messages = now.pilot.take_messages();
+    if is_last && !is_canceled && step < settings.steps {
+        let text = format!("the recording ends here; the trial goes on to step {}", settings.steps);
         messages.push(Message { level: Level::Event, text });
     }
-    let score_every = SCORE_EVERY * life.world.frame().len().div_ceil(SCORE_CELLS) as u64;
+    let score_every = SCORE_EVERY * settings.world.frame().len().div_ceil(SCORE_CELLS) as u64;
     let mut measured = Measured { messages: &messages, ..Measured::default() };
     if is_last || step.is_multiple_of(score_every) {
-        let (mapper, truth) = (look.belief.mapper, look.world.truth());
-        let (map, rates) = (cell_map_scores(mapper, truth), cell_rate_scores(mapper, truth));
-        measured.scores = Some(Scores { coverage: map.coverage, map_quality: map.map_quality });
-        measured.rate_errors = Some(RateErrors { relative: rates.rate_error, log: rates.log_error });
+        let (mapper, truth) = (now.belief.mapper, now.world.truth());
+        measured.scores = Some(map_scores(mapper, truth));
+        measured.rate_errors = Some(RateErrors::from(&rate_scores(mapper, truth)));
     }
-    let view = View::new(look.world, look.reading, look.belief, &*look.pilot, measured);
+    let view = View::new(now.world, now.reading, now.belief, &*now.pilot, measured);
     if is_last {
         return open.finish(&view);
     }
@@ -82,7 +85,7 @@ fn log(
 mod tests {
     use super::*;
     use crate::recording::RecordingOptions;
-    use agent::{AgentSettings, StrategyChoice};
+    use agent::AgentSettings;
     use controller::CellDrive;
     use evaluation::trials::{Experiment, TrialStrategy};
     use mapper::{Estimator, MapperSettings};
@@ -94,7 +97,7 @@ mod tests {
         Experiment {
             worlds: vec![GridSpec::parse("two_blocks.toml", include_str!("../../worlds/two_blocks.toml")).unwrap()],
             estimators: vec![Estimator::Paper],
-            strategies: vec![TrialStrategy::Agent(StrategyChoice::Recency)],
+            strategies: vec![TrialStrategy::Agent("recency".parse().unwrap())],
             trials: 1,
             seed: 3,
             steps,

@@ -1,9 +1,10 @@
 //! A run at one instant, as plain data: the input of the recording and of the moving picture.
 
 use crate::scene::{Outline, TimeUnit, Visible};
-use evaluation::metrics::{RateErrors, Scores};
+use agent::Features;
+use evaluation::metrics::{MapScores, RateErrors};
 use interfaces::{CellReading, LaserReading, Reading};
-use mapper::{Features, Mapper};
+use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use robot::{Belief, Message, Pilot, StrategyState};
 
@@ -35,7 +36,7 @@ pub struct View<'a> {
 #[derive(Clone, Copy, Default)]
 pub struct Measured<'a> {
     /// Coverage and quality of the map; `None` where they were not measured.
-    pub scores: Option<Scores>,
+    pub scores: Option<MapScores>,
     /// Errors of the rates of change; `None` where they were not measured.
     pub rate_errors: Option<RateErrors>,
     /// Messages since the last view.

@@ -1,7 +1,7 @@
+use crate::Features;
 use crate::draw::proportional;
 use crate::{Chooser, CuriousSettings, Situation, TileCoder, Trajectory};
-use mapper::Features;
-use rand_chacha::ChaCha8Rng;
+use interfaces::RandomStream;
 
 /// The paper's learner (section 4): one value function over (p, r) per strategy, learned from
 /// rewards, and a choice with probability ∝ exp(V/τ). All values start at 0, so the first choice
@@ -16,7 +16,7 @@ pub struct Curious {
 
 impl Curious {
     /// A learner that knows nothing of its strategies. Draws the displacements of the tilings.
-    pub fn new(settings: &CuriousSettings, strategies: usize, rng: &mut ChaCha8Rng) -> Self {
+    pub fn new(settings: &CuriousSettings, strategies: usize, rng: &mut RandomStream) -> Self {
         Self {
             learning_rate: settings.learning_rate,
             temperature: settings.temperature,
@@ -32,7 +32,7 @@ impl Curious {
 }
 
 impl Chooser for Curious {
-    fn choose(&mut self, situation: &Situation, rng: &mut ChaCha8Rng) -> usize {
+    fn choose(&mut self, situation: &Situation, rng: &mut RandomStream) -> usize {
         let probabilities = self.probabilities(situation.features);
         proportional(probabilities.into_iter(), rng).unwrap_or(0)
     }
@@ -59,17 +59,16 @@ fn softmax(values: &[f64], temperature: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::GridFrame;
+    use interfaces::{GridFrame, Purpose};
     use mapper::{Mapper, MapperSettings};
     use nalgebra::{Isometry2, Point2};
-    use rand::SeedableRng;
 
     /// Plays `rounds` rounds of a bandit in which a strategy always earns `rewards[strategy]`;
     /// gives how often each was chosen.
     fn bandit(curious: &mut Curious, features: Features, rewards: &[f64], rounds: usize) -> Vec<f64> {
         let frame = GridFrame::new(Point2::origin(), 1.0, 1, 1).unwrap();
         let mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-        let (pose, mut rng) = (Isometry2::identity(), ChaCha8Rng::seed_from_u64(8));
+        let (pose, mut rng) = (Isometry2::identity(), RandomStream::new(8, Purpose::Agent));
         let situation = Situation::new(&mapper, &pose, features);
         let mut counts = vec![0.0; rewards.len()];
         for _ in 0..rounds {
@@ -86,7 +85,7 @@ mod tests {
     }
 
     fn curious(strategies: usize) -> Curious {
-        Curious::new(&CuriousSettings::default(), strategies, &mut ChaCha8Rng::seed_from_u64(4))
+        Curious::new(&CuriousSettings::default(), strategies, &mut RandomStream::new(4, Purpose::Agent))
     }
 
     #[test]

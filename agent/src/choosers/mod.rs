@@ -8,9 +8,9 @@ pub use coin::Coin;
 pub use curious::Curious;
 pub use progress::Progress;
 
+use crate::Features;
 use crate::Situation;
-use mapper::Features;
-use rand_chacha::ChaCha8Rng;
+use interfaces::RandomStream;
 
 /// What came of following a strategy to one goal.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ pub struct Trajectory<'a> {
 /// the agent's list.
 pub trait Chooser: std::fmt::Debug + Send {
     /// The place of the next strategy.
-    fn choose(&mut self, situation: &Situation, rng: &mut ChaCha8Rng) -> usize;
+    fn choose(&mut self, situation: &Situation, rng: &mut RandomStream) -> usize;
 
     /// Learns from what came of the last choice.
     fn learn(&mut self, _: &Trajectory) {}

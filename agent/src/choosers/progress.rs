@@ -1,7 +1,7 @@
+use crate::Features;
 use crate::draw::gamma;
 use crate::{Chooser, Situation, Trajectory};
-use mapper::Features;
-use rand_chacha::ChaCha8Rng;
+use interfaces::RandomStream;
 
 /// Readings after which what was learned of a strategy counts half.
 const MEMORY: f64 = 5000.0;
@@ -76,7 +76,7 @@ impl Progress {
 }
 
 impl Chooser for Progress {
-    fn choose(&mut self, _: &Situation, rng: &mut ChaCha8Rng) -> usize {
+    fn choose(&mut self, _: &Situation, rng: &mut RandomStream) -> usize {
         let (mut best, mut largest) = (0, f64::NEG_INFINITY);
         for (place, of) in self.strategies.iter().enumerate() {
             let draw = gamma((of.gained + CREDIT) / GRAIN, rng) * GRAIN / (of.readings + CREDIT);
@@ -111,11 +111,11 @@ impl Chooser for Progress {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::GridFrame;
+    use interfaces::{GridFrame, Purpose};
     use mapper::{Mapper, MapperSettings};
     use nalgebra::{Isometry2, Point2};
     use proptest::prelude::*;
-    use rand::{RngExt, SeedableRng};
+    use rand::RngExt;
 
     /// Plays so many rounds of ten readings; a strategy earns up to twice its mean of `progress`, at
     /// random. Gives how often each was chosen.
@@ -127,7 +127,7 @@ mod tests {
     ) -> Vec<usize> {
         let frame = GridFrame::new(Point2::origin(), 1.0, 1, 1).unwrap();
         let mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-        let (pose, mut rng) = (Isometry2::identity(), ChaCha8Rng::seed_from_u64(seed));
+        let (pose, mut rng) = (Isometry2::identity(), RandomStream::new(seed, Purpose::Agent));
         let situation = Situation::new(&mapper, &pose, Features::default());
         let mut counts = vec![0; chooser.strategies.len()];
         for round in 0..rounds {

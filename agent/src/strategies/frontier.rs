@@ -1,5 +1,5 @@
 use crate::survey::Survey;
-use crate::{Pick, Situation, Stay, Strategy};
+use crate::{AgentSettings, Pick, Situation, Stay, Strategy};
 use interfaces::{Cell, CellState};
 
 /// How long to look around at a goal, in the unit of the readings' times. It counts as part of the
@@ -21,9 +21,9 @@ pub struct Frontier {
 }
 
 impl Frontier {
-    /// For a robot that sees as far as `sensor_radius_m`, m.
-    pub fn new(sensor_radius_m: f64) -> Self {
-        Self { survey: Survey::new(sensor_radius_m) }
+    /// For a robot that sees as far as `settings.sensor_radius_m`.
+    pub fn new(settings: &AgentSettings) -> Self {
+        Self { survey: Survey::new(settings.sensor_radius_m) }
     }
 }
 

@@ -1,5 +1,5 @@
 use crate::survey::Survey;
-use crate::{Pick, Situation, Stay, Strategy};
+use crate::{AgentSettings, Pick, Situation, Stay, Strategy};
 use interfaces::{Cell, CellState};
 
 /// How long to stand at a goal, in the unit of the readings' times. Part of the price of a visit.
@@ -28,9 +28,9 @@ pub struct OptimalRevisiting {
 }
 
 impl OptimalRevisiting {
-    /// For a robot that sees as far as `sensor_radius_m`, m.
-    pub fn new(sensor_radius_m: f64) -> Self {
-        Self { survey: Survey::new(sensor_radius_m) }
+    /// For a robot that sees as far as `settings.sensor_radius_m`.
+    pub fn new(settings: &AgentSettings) -> Self {
+        Self { survey: Survey::new(settings.sensor_radius_m) }
     }
 }
 

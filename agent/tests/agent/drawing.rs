@@ -1,11 +1,9 @@
 //! Maps drawn by hand: `#` blocked, `.` free, a blank not seen; the top line has the highest y.
 
-use agent::{Agent, AgentSettings, Situation, Strategy, StrategyChoice};
-use interfaces::{Cell, CellReading, CellState, GridFrame};
+use agent::{Agent, AgentSettings, Policy, Situation, Strategy};
+use interfaces::{Cell, CellReading, CellState, GridFrame, Purpose, RandomStream};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 /// What a sensor sees at `time`.
 pub(crate) fn reading(time: f64, drawing: &[&str]) -> CellReading {
@@ -50,10 +48,21 @@ pub(crate) fn can_be_a_goal(mapper: &Mapper, cell: Cell) -> bool {
     mapper.frame().contains(cell) && (is_free(cell) || cell.neighbours4().into_iter().any(is_free))
 }
 
-pub(crate) fn rng(seed: u64) -> ChaCha8Rng {
-    ChaCha8Rng::seed_from_u64(seed)
+pub(crate) fn rng(seed: u64) -> RandomStream {
+    RandomStream::new(seed, Purpose::Agent)
 }
 
-pub(crate) fn agent(choice: StrategyChoice, seed: u64) -> Agent {
-    Agent::new(&AgentSettings::default(), choice, rng(seed)).unwrap()
+/// The names of the built-in policies.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    Policy::built_in().iter().map(Policy::name)
+}
+
+/// An agent of a built-in policy.
+pub(crate) fn agent(policy: &str, seed: u64) -> Agent {
+    Agent::new(&AgentSettings::default(), &policy.parse().unwrap(), rng(seed)).unwrap()
+}
+
+/// The settings of a robot that sees so far.
+pub(crate) fn seeing(sensor_radius_m: f64) -> AgentSettings {
+    AgentSettings { sensor_radius_m, ..Default::default() }
 }

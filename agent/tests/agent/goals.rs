@@ -1,9 +1,8 @@
 //! Which goals come out of which weights.
 
-use crate::drawing::{agent, can_be_a_goal, empty, map, reading, rng, weigh};
+use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng, weigh};
 use agent::{
-    Agent, AgentSettings, Always, AsTheCrowFlies, Poisson, Random, Recency, Situation, Strategy,
-    StrategyChoice,
+    Agent, AgentSettings, Always, AsTheCrowFlies, Features, Poisson, Random, Recency, Situation, Strategy,
 };
 use interfaces::{Cell, CellReading};
 use mapper::Mapper;
@@ -107,7 +106,7 @@ fn recency_and_poisson_are_sampled_by_their_weights() {
     let recency = flat(weigh(Recency, &mapper));
     let poisson = flat(weigh(Poisson, &mapper));
     assert!(poisson.iter().any(|&weight| weight > 0.0));
-    for (choice, weights) in [(StrategyChoice::Recency, recency), (StrategyChoice::Poisson, poisson)] {
+    for (choice, weights) in [("recency", recency), ("poisson", poisson)] {
         let expected = probabilities(&mapper, &weights, 5);
         assert_frequencies(&mut agent(choice, 2), &mapper, &expected);
     }
@@ -119,8 +118,8 @@ fn without_any_weight_every_candidate_is_as_likely() {
     let uniform = probabilities(&mapper, &vec![0.0; mapper.frame().len()], 5);
     // Nothing ever changed, and everything was seen just now: only information gain still hopes for something,
     // and progress sometimes asks it.
-    let hopes = |choice| matches!(choice, StrategyChoice::InformationGain | StrategyChoice::Progress);
-    for choice in StrategyChoice::ALL.into_iter().filter(|&choice| !hopes(choice)) {
+    let hopes = |choice| matches!(choice, "information-gain" | "progress");
+    for choice in names().filter(|&name| !hopes(name)) {
         assert_frequencies(&mut agent(choice, 3), &mapper, &uniform);
     }
 }
@@ -130,7 +129,7 @@ fn random_is_uniform_whatever_was_seen() {
     let mapper = map(&[(0.0, ROOM), (50.0, &["#....", "#....", "#...."])]);
     assert_eq!(weigh(Random, &mapper), vec![vec![0.0; 13]; 7]);
     let uniform = probabilities(&mapper, &vec![0.0; mapper.frame().len()], 5);
-    assert_frequencies(&mut agent(StrategyChoice::Random, 4), &mapper, &uniform);
+    assert_frequencies(&mut agent("random", 4), &mapper, &uniform);
 }
 
 #[test]
@@ -167,7 +166,7 @@ fn without_a_candidate_the_goal_is_where_the_robot_is() {
     let inside_a_wall = map(&[(0.0, &["###", "###"])]);
     for mapper in [empty(3, 2), inside_a_wall] {
         for (x, y, cell) in [(1.5, 0.5, Cell::new(1, 0)), (-7.5, 99.5, Cell::new(-8, 99))] {
-            for choice in StrategyChoice::ALL {
+            for choice in names() {
                 let pose = interfaces::pose(x, y, 0.0);
                 assert_eq!(agent(choice, 5).next_goal(&mapper, &pose, &mut AsTheCrowFlies).cell, cell);
             }
@@ -242,10 +241,10 @@ fn readings_at_one_instant_leave_only_numbers() {
     // Changes without any time between them: rates of any size, and none of them seen for long.
     let mut mapper = map(&[(0.0, &["..."]), (0.0, &[".#."]), (0.0, &["..."]), (0.0, &[".#."])]);
     mapper.update(&reading(1e300, &[".  "])).unwrap();
-    for choice in StrategyChoice::ALL {
+    for choice in names() {
         let mut agent = agent(choice, 8);
         for _ in 0..20 {
-            let features = mapper.features();
+            let features = Features::of(&mut mapper);
             agent.watch(features, mapper.transitions());
             assert!(can_be_a_goal(
                 &mapper,

@@ -1,6 +1,6 @@
 //! The strategy that goes where a look teaches most, on maps drawn by hand.
 
-use crate::drawing::{map, reading};
+use crate::drawing::{map, reading, seeing};
 use agent::{InformationGain, Situation, Stay, Strategy};
 use interfaces::{Cell, CellReading, GridFrame};
 use mapper::{Mapper, MapperSettings};
@@ -45,7 +45,7 @@ fn best(weights: &[f64], columns: std::ops::Range<usize>) -> f64 {
 #[test]
 fn what_changes_and_is_little_known_is_preferred_to_what_is_well_known() {
     for (left, right, is_left) in [(4, 80, true), (80, 4, false)] {
-        let weights = weigh(&mut InformationGain::new(2.0), &rooms(left, right), &[10.0; 21]);
+        let weights = weigh(&mut InformationGain::new(&seeing(2.0)), &rooms(left, right), &[10.0; 21]);
         let (in_left, in_right) = (best(&weights, 0..3), best(&weights, 4..7));
         assert_eq!(in_left > 1.2 * in_right, is_left, "{in_left} and {in_right}");
         assert_eq!(in_right > 1.2 * in_left, !is_left, "{in_left} and {in_right}");
@@ -56,7 +56,7 @@ fn what_changes_and_is_little_known_is_preferred_to_what_is_well_known() {
 fn what_was_watched_for_long_and_never_changed_is_worth_next_to_nothing() {
     let best_after = |time: f64| {
         let mapper = map(&[(0.0, &["....", "....", "...."]), (time, &["....", "....", "...."])]);
-        weigh(&mut InformationGain::new(3.0), &mapper, &[1.0; 12]).into_iter().fold(0.0, f64::max)
+        weigh(&mut InformationGain::new(&seeing(3.0)), &mapper, &[1.0; 12]).into_iter().fold(0.0, f64::max)
     };
     let worth: Vec<f64> = [1.0, 30.0, 300.0, 3000.0].map(best_after).into();
     assert!(worth.is_sorted_by(|one, next| one > next), "{worth:?}");
@@ -66,7 +66,8 @@ fn what_was_watched_for_long_and_never_changed_is_worth_next_to_nothing() {
 #[test]
 fn the_same_view_is_worth_less_the_farther_it_is_and_nothing_where_no_way_leads() {
     let mapper = map(&[(0.0, &["....."])]);
-    let weights = weigh(&mut InformationGain::new(9.0), &mapper, &[0.0, 5.0, 20.0, f64::INFINITY, 80.0]);
+    let weights =
+        weigh(&mut InformationGain::new(&seeing(9.0)), &mapper, &[0.0, 5.0, 20.0, f64::INFINITY, 80.0]);
     assert!(weights[0] > weights[1] && weights[1] > weights[2] && weights[2] > weights[4]);
     assert!(weights[4] > 0.0);
     assert_eq!(weights[3], 0.0);
@@ -75,7 +76,7 @@ fn the_same_view_is_worth_less_the_farther_it_is_and_nothing_where_no_way_leads(
 #[test]
 fn the_robot_does_not_stand_where_things_pass() {
     let mapper = map(&[(0.0, &["....."]), (1.0, &["..#.."]), (2.0, &["....."])]);
-    let weights = weigh(&mut InformationGain::new(9.0), &mapper, &[1.0; 5]);
+    let weights = weigh(&mut InformationGain::new(&seeing(9.0)), &mapper, &[1.0; 5]);
     assert_eq!(weights[2], 0.0);
     assert!(weights[0] > weights[1], "beside the way it might be in it");
 }
@@ -84,10 +85,10 @@ fn the_robot_does_not_stand_where_things_pass() {
 fn a_door_that_was_closed_when_last_seen_is_tried_again() {
     let mapper = map(&[(0.0, &["....."]), (1.0, &["..#.."]), (2.0, &["..   "])]);
     let travel = [0.0, 1.0, f64::INFINITY, f64::INFINITY, f64::INFINITY];
-    let weights = weigh(&mut InformationGain::new(1.0), &mapper, &travel);
+    let weights = weigh(&mut InformationGain::new(&seeing(1.0)), &mapper, &travel);
     assert!(weights[3] > 0.0 && weights[4] > 0.0, "{weights:?}");
     let in_view = map(&[(0.0, &["....."]), (1.0, &["..#.."])]);
-    let weights = weigh(&mut InformationGain::new(1.0), &in_view, &travel);
+    let weights = weigh(&mut InformationGain::new(&seeing(1.0)), &in_view, &travel);
     assert_eq!(weights[3..], [0.0, 0.0]);
 }
 
@@ -95,7 +96,7 @@ fn a_door_that_was_closed_when_last_seen_is_tried_again() {
 fn what_a_visit_did_not_show_is_worth_less_from_there() {
     // The last cell is never seen, whatever the map says.
     let mut mapper = map(&[(0.0, &["..... "])]);
-    let mut strategy = InformationGain::new(9.0);
+    let mut strategy = InformationGain::new(&seeing(9.0));
     let travel = [0.0, 3.0, 3.0, 3.0, 3.0, 3.0];
     let first = weigh(&mut strategy, &mapper, &travel)[0];
     for visit in 0..100 {
@@ -124,7 +125,7 @@ fn a_fine_grid_is_weighed_too() {
         mapper.update(&CellReading { time, pose, cells: cells.collect() }).unwrap();
     }
     let travel = vec![1.0; frame.len()];
-    let weights = weigh(&mut InformationGain::new(3.0), &mapper, &travel);
+    let weights = weigh(&mut InformationGain::new(&seeing(3.0)), &mapper, &travel);
     let best = (0..weights.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap();
     assert!((frame.cell(best).x - 45).abs() <= 60, "the box is in view from {:?}", frame.cell(best));
     assert!(weights.iter().all(|weight| weight.is_finite() && *weight >= 0.0));
@@ -138,7 +139,7 @@ proptest! {
         travel in prop::collection::vec(prop_oneof![3 => 0.0..50.0, 1 => Just(f64::INFINITY)], 24),
     ) {
         let mut mapper = crate::drawing::empty(6, 4);
-        let mut strategy = InformationGain::new(3.0);
+        let mut strategy = InformationGain::new(&seeing(3.0));
         let mut time = 0.0;
         for (look, step) in looks.iter().zip(steps) {
             time += step;

@@ -1,6 +1,6 @@
 //! Strategies that go where much comes into view, on maps drawn by hand.
 
-use crate::drawing::{map, reading};
+use crate::drawing::{map, reading, seeing};
 use agent::{Frontier, OptimalRevisiting, Situation, Stay, Strategy};
 use interfaces::{Cell, CellReading};
 use mapper::Mapper;
@@ -41,7 +41,7 @@ fn due(leave: f64, back: f64, t: f64) -> f64 {
 #[test]
 fn a_frontier_is_worth_the_unknown_cells_in_view_per_time() {
     let mapper = map(&[(0.0, &["...    "])]);
-    let weights = weigh(&mut Frontier::new(2.0), &mapper, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    let weights = weigh(&mut Frontier::new(&seeing(2.0)), &mapper, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
     // From x, cells up to x + 2 are in view; 3 to 6 are unknown, of which only 3 touches a known one.
     assert_near(&weights, &[0.0, 1.0 / 2.0, 2.0 / 3.0, 3.0 / 4.0, 0.0, 0.0, 0.0]);
 }
@@ -50,7 +50,7 @@ fn a_frontier_is_worth_the_unknown_cells_in_view_per_time() {
 fn walls_hide_what_is_behind_from_the_frontier() {
     let mapper = map(&[(0.0, &["..#  ", "....."])]);
     let travel = [0.0, 1.0, 2.0, 3.0, 4.0, 1.0, 2.0, f64::INFINITY, 4.0, 5.0];
-    let weights = weigh(&mut Frontier::new(9.0), &mapper, &travel);
+    let weights = weigh(&mut Frontier::new(&seeing(9.0)), &mapper, &travel);
     let [.., here, beside, wall, behind, corner] = weights[..] else { panic!("ten cells") };
     assert_eq!((here, beside, wall), (0.0, 0.0, 0.0));
     assert_near(&[behind, corner], &[2.0 / 5.0, 2.0 / 6.0]);
@@ -59,21 +59,21 @@ fn walls_hide_what_is_behind_from_the_frontier() {
 #[test]
 fn where_all_is_known_a_frontier_is_what_was_seen_longest_ago() {
     let mapper = map(&[(2.0, &["...."]), (10.0, &["..  "])]);
-    let weights = weigh(&mut Frontier::new(9.0), &mapper, &[0.0, 1.0, 2.0, 3.0]);
+    let weights = weigh(&mut Frontier::new(&seeing(9.0)), &mapper, &[0.0, 1.0, 2.0, 3.0]);
     assert_near(&weights, &[0.0, 0.0, 8.0 / 3.0, 8.0 / 4.0]);
 }
 
 #[test]
 fn what_no_way_leads_to_is_no_frontier() {
     let mapper = map(&[(0.0, &["..# "]), (6.0, &["... "]), (7.0, &[".   "])]);
-    let weights = weigh(&mut Frontier::new(1.0), &mapper, &[0.0, 1.0, f64::INFINITY, f64::INFINITY]);
+    let weights = weigh(&mut Frontier::new(&seeing(1.0)), &mapper, &[0.0, 1.0, f64::INFINITY, f64::INFINITY]);
     assert_near(&weights, &[0.0, 1.0 / 2.0, 0.0, 0.0]);
 }
 
 #[test]
 fn what_three_visits_did_not_show_is_given_up() {
     let mapper = map(&[(0.0, &["...  "]), (4.0, &[".... "]), (9.0, &[".    "])]);
-    let mut frontier = Frontier::new(1.0);
+    let mut frontier = Frontier::new(&seeing(1.0));
     let travel = [0.0, 1.0, 2.0, 3.0, 4.0];
     let unknown = [0.0, 0.0, 0.0, 1.0 / 4.0, 1.0 / 5.0];
     for visit in 0..3 {
@@ -99,11 +99,11 @@ fn revisiting_is_worth_how_far_a_look_is_due_per_time() {
     let never = 0.5 / (8.0 + 1.0);
     let worth = [0.0, due(block, free, 3.0), share * due(never, never, 3.0)];
     // Who sees only the own cell.
-    let weights = weigh(&mut OptimalRevisiting::new(0.5), &mapper, &[0.0, 1.0, 2.0]);
+    let weights = weigh(&mut OptimalRevisiting::new(&seeing(0.5)), &mapper, &[0.0, 1.0, 2.0]);
     assert_near(&weights, &[0.0, worth[1] / 9.0, worth[2] / 10.0]);
     // Who sees all, the middle cell being no wall.
     let all = worth[1] + worth[2];
-    let weights = weigh(&mut OptimalRevisiting::new(9.0), &mapper, &[0.0, 1.0, f64::INFINITY]);
+    let weights = weigh(&mut OptimalRevisiting::new(&seeing(9.0)), &mapper, &[0.0, 1.0, f64::INFINITY]);
     assert_near(&weights, &[all / 8.0, all / 9.0, 0.0]);
 }
 
@@ -114,14 +114,14 @@ fn a_blocked_cell_is_left_at_its_own_rate() {
     mapper.update(&reading(17.0, &["  ."])).unwrap();
     let (block, free) = mapper.transition_rates(1).unwrap();
     assert_ne!(block, free);
-    let weights = weigh(&mut OptimalRevisiting::new(0.5), &mapper, &[0.0, 1.0, 2.0]);
+    let weights = weigh(&mut OptimalRevisiting::new(&seeing(0.5)), &mapper, &[0.0, 1.0, 2.0]);
     assert_near(&weights[1..2], &[due(free, block, 5.0) / 9.0]);
 }
 
 #[test]
 fn the_unknown_is_wrong_for_certain() {
     let mapper = map(&[(0.0, &["..  "]), (7.0, &[".   "])]);
-    let weights = weigh(&mut OptimalRevisiting::new(0.5), &mapper, &[0.0, 1.0, 2.0, 3.0]);
+    let weights = weigh(&mut OptimalRevisiting::new(&seeing(0.5)), &mapper, &[0.0, 1.0, 2.0, 3.0]);
     // Never seen for 7 s; the last cell touches nothing that is known to be free.
     assert_near(&weights[2..], &[7.0 / 10.0, 0.0]);
 }
@@ -129,7 +129,7 @@ fn the_unknown_is_wrong_for_certain() {
 #[test]
 fn a_look_in_vain_is_a_look() {
     let mut mapper = middle_changes();
-    let (mut revisiting, travel) = (OptimalRevisiting::new(9.0), [0.0, 1.0, 2.0]);
+    let (mut revisiting, travel) = (OptimalRevisiting::new(&seeing(9.0)), [0.0, 1.0, 2.0]);
     assert!(weigh(&mut revisiting, &mapper, &travel)[0] > 0.0);
     assert_eq!(revisiting.stay(Cell::new(0, 0)), Stay::Watch(8.0));
     // Something hid the others all the time.
@@ -143,7 +143,7 @@ fn a_look_in_vain_is_a_look() {
 #[test]
 fn a_goal_outside_of_the_map_is_no_look() {
     let mapper = middle_changes();
-    let mut revisiting = OptimalRevisiting::new(9.0);
+    let mut revisiting = OptimalRevisiting::new(&seeing(9.0));
     let before = weigh(&mut revisiting, &mapper, &[0.0; 3]);
     for goal in [Cell::new(-1, 0), Cell::new(0, 7), Cell::new(i32::MAX, i32::MIN)] {
         revisiting.stay(goal);
@@ -166,7 +166,7 @@ proptest! {
     ) {
         let mut mapper = crate::drawing::empty(6, 4);
         let mut strategies: [Box<dyn Strategy>; 2] =
-            [Box::new(Frontier::new(radius)), Box::new(OptimalRevisiting::new(radius))];
+            [Box::new(Frontier::new(&seeing(radius))), Box::new(OptimalRevisiting::new(&seeing(radius)))];
         let (count, mut time) = (sightings.len(), 0.0);
         for (number, (cells, passed)) in sightings.into_iter().enumerate() {
             time += if number + 1 == count { last + passed } else { passed };

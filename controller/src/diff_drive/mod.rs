@@ -3,9 +3,9 @@
 mod guard;
 mod settings;
 
-use crate::{Body, Costmap, Drive, Moves, Path, Scene, SettingsError};
+use crate::{Body, Costmap, Drive, Moves, Path, Scene};
 use guard::{Braking, Guard};
-use interfaces::Twist;
+use interfaces::{SettingsError, Twist};
 use nalgebra::Point2;
 pub use settings::DiffDriveSettings;
 use std::f64::consts::PI;

@@ -1,3 +1,5 @@
+use crate::settings::check;
+use interfaces::SettingsError;
 use serde::{Deserialize, Serialize};
 
 /// The body of a diff-drive robot and how it follows paths.
@@ -55,9 +57,11 @@ impl Default for DiffDriveSettings {
 }
 
 impl DiffDriveSettings {
-    pub(super) fn check(&self) -> Result<(), crate::SettingsError> {
-        let positive = |key, value: f64| crate::settings::check(key, value, "a positive number", value > 0.0);
-        let at_least_zero = |key, value: f64| crate::settings::check(key, value, "0 or more", value >= 0.0);
+    pub(super) fn check(&self) -> Result<(), SettingsError> {
+        let check =
+            |key, value, expected, is_valid| check("differential drive", key, value, expected, is_valid);
+        let positive = |key, value| check(key, value, "a positive number", value > 0.0);
+        let at_least_zero = |key, value| check(key, value, "0 or more", value >= 0.0);
         positive("radius_m", self.radius_m)?;
         positive("max_linear_mps", self.max_linear_mps)?;
         positive("max_angular_radps", self.max_angular_radps)?;
@@ -72,7 +76,7 @@ impl DiffDriveSettings {
         at_least_zero("others_mps", self.others_mps)?;
         positive("reverse_mps", self.reverse_mps)?;
         // A step of local exploration, a diameter long, must not have arrived where it begins.
-        let short = self.tolerance_m < 2.0 * self.radius_m;
-        crate::settings::check("tolerance_m", self.tolerance_m, "less than twice radius_m", short)
+        let is_short = self.tolerance_m < 2.0 * self.radius_m;
+        check("tolerance_m", self.tolerance_m, "less than twice radius_m", is_short)
     }
 }

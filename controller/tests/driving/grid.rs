@@ -1,10 +1,8 @@
 //! The same controller in a world of cells, where a command is one move to a neighbour.
 
 use controller::{CellDrive, Controller, Outcome, Situation, Status};
-use interfaces::{Cell, CellState, Grid, GridFrame, Step, Transition, pose};
+use interfaces::{Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Step, Transition, pose};
 use nalgebra::{Isometry2, Point2};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 
 struct World {
     map: Grid<CellState>,
@@ -58,7 +56,7 @@ impl World {
 }
 
 fn controller() -> Controller<CellDrive> {
-    Controller::new(CellDrive::settings(), CellDrive, ChaCha8Rng::seed_from_u64(3)).unwrap()
+    Controller::new(CellDrive::settings(), CellDrive, RandomStream::new(3, Purpose::Controller)).unwrap()
 }
 
 #[test]

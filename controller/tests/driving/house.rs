@@ -2,10 +2,10 @@
 //! accelerations, a laser with exact rays, and a map that lags behind as a real one does.
 
 use controller::{Controller, DiffDrive, DiffDriveSettings, Settings, Situation, Status};
-use interfaces::{Cell, CellState, Grid, GridFrame, Transition, Twist, heading_rad, pose};
+use interfaces::{
+    Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Transition, Twist, heading_rad, pose,
+};
 use nalgebra::{Isometry2, Point2, Vector2};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use std::f64::consts::TAU;
 
 /// The side of what one character stands for, m: five cells.
@@ -276,5 +276,5 @@ impl House {
 
 pub(crate) fn controller(settings: Settings) -> Controller<DiffDrive> {
     let drive = DiffDrive::new(DiffDriveSettings::default()).unwrap();
-    Controller::new(settings, drive, ChaCha8Rng::seed_from_u64(7)).unwrap()
+    Controller::new(settings, drive, RandomStream::new(7, Purpose::Controller)).unwrap()
 }

@@ -5,10 +5,9 @@ mod house;
 
 use controller::{Outcome, Settings, Status};
 use house::{House, Mover, controller};
+use interfaces::{Purpose, RandomStream};
 use nalgebra::Point2;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 
 /// Four rooms of 3 m, joined by doors 1 m wide.
 const ROOMS: [&str; 26] = [
@@ -65,7 +64,7 @@ fn assert_untouched(house: &House) {
 #[test]
 fn it_gets_everywhere_and_touches_nothing() {
     let (mut house, mut controller) = (House::new(&ROOMS), controller(Settings::default()));
-    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut rng = RandomStream::new(1, Purpose::Controller);
     for _ in 0..60 {
         let goal = Point2::new(rng.random_range(0.3..6.2), rng.random_range(0.3..6.2));
         controller.go_to(goal);
@@ -233,7 +232,7 @@ fn it_lives_with_another_robot() {
             Mover { yields_m: 0.3, ..Mover::new([House::at(15, 23), House::at(23, 23)], 0.2, 0.3) },
             Mover { yields_m: 0.3, ..Mover::new([House::at(19, 3), House::at(19, 22)], 0.2, 0.3) },
         ];
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut rng = RandomStream::new(seed, Purpose::Controller);
         while house.time_s < 600.0 {
             match controller.status() {
                 Status::Travelling | Status::Exploring => {}

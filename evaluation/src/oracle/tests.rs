@@ -1,9 +1,9 @@
 use super::*;
-use crate::trials::{Life, TrialStrategy, live};
-use agent::{AgentSettings, StrategyChoice};
+use crate::trials::{TrialSettings, TrialStrategy, run_trial};
+use agent::{AgentSettings, Features};
 use controller::CellDrive;
 use interfaces::{Cell, Step, World};
-use mapper::{Features, MapperSettings};
+use mapper::MapperSettings;
 use nalgebra::Isometry2;
 use sim::grid::{GenerateSettings, GridWorld};
 
@@ -109,7 +109,7 @@ fn it_learns_faster_than_those_who_do_not_know() {
     for seed in [1, 2] {
         let world = GridSpec::generate(&GenerateSettings::default(), seed);
         let error = |strategy| {
-            let life = Life {
+            let life = TrialSettings {
                 world: &world,
                 strategy,
                 seed,
@@ -118,12 +118,13 @@ fn it_learns_faster_than_those_who_do_not_know() {
                 agent: &AgentSettings::default(),
                 controller: CellDrive::settings(),
             };
-            let trial = live(&life, |_| true).unwrap().unwrap();
+            let trial = run_trial(&life, |_| true).unwrap().unwrap();
             trial.samples.iter().map(|sample| sample.log_error).filter(|error| error.is_finite()).sum::<f64>()
         };
         let oracle = error(TrialStrategy::Oracle);
-        for choice in [StrategyChoice::Recency, StrategyChoice::Curious] {
-            assert!(oracle < error(TrialStrategy::Agent(choice)), "{choice} {seed}");
+        for policy in ["recency", "curious"] {
+            let policy = TrialStrategy::Agent(policy.parse().unwrap());
+            assert!(oracle < error(policy.clone()), "{policy:?} {seed}");
         }
     }
 }

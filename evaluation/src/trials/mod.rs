@@ -5,10 +5,10 @@
 //! does. Each trial depends on nothing but its own seed, so any number of threads gives the same
 //! results.
 
-mod life;
+mod run;
 mod strategy;
 
-pub use life::{Life, Look, live};
+pub use run::{TrialSettings, TrialStep, run_trial};
 pub use strategy::TrialStrategy;
 
 use crate::report::Trial;
@@ -100,15 +100,15 @@ impl Experiment {
     /// One trial; `None` if it was cancelled.
     fn trial(&self, job: Job, is_cancelled: &AtomicBool) -> Result<Option<Trial>, SettingsError> {
         let life = self.life(job);
-        live(&life, |_| !is_cancelled.load(Ordering::Relaxed))
+        run_trial(&life, |_| !is_cancelled.load(Ordering::Relaxed))
     }
 
     /// What one trial is made of.
-    pub fn life(&self, job: Job) -> Life<'_> {
+    pub fn life(&self, job: Job) -> TrialSettings<'_> {
         let mapper = MapperSettings { estimator: self.estimators[job.estimator], ..self.mapper.clone() };
-        Life {
+        TrialSettings {
             world: &self.worlds[job.world],
-            strategy: self.strategies[job.strategy],
+            strategy: self.strategies[job.strategy].clone(),
             seed: job.seed,
             steps: self.steps,
             mapper,
@@ -124,10 +124,7 @@ pub enum SettingsError {
     /// One of the mapper's.
     #[error(transparent)]
     Mapper(#[from] mapper::SettingsError),
-    /// One of the agent's.
+    /// One of the agent's or the controller's.
     #[error(transparent)]
-    Agent(#[from] agent::SettingsError),
-    /// One of the controller's.
-    #[error(transparent)]
-    Controller(#[from] controller::SettingsError),
+    Other(#[from] interfaces::SettingsError),
 }

@@ -1,7 +1,7 @@
 //! Everything that can be read of a mapper, to compare.
 
 use interfaces::{Cell, CellState, Transition};
-use mapper::{CellStatistics, Features, Mapper};
+use mapper::{CellStatistics, Mapper};
 use nalgebra::Point2;
 
 /// One cell as its readers see it.
@@ -51,7 +51,8 @@ impl Observed {
             ]
             .map(f64::to_bits),
         };
-        let Features { p, r } = mapper.clone().features();
+        let mut again = mapper.clone();
+        let (p, r) = (again.sum_change_probability(), again.max_recency());
         Self {
             cells: (0..mapper.frame().len()).map(cell).collect(),
             transitions: mapper.transitions().to_vec(),
@@ -98,7 +99,8 @@ pub(crate) fn assert_sound(mapper: &Mapper) {
         let recency = mapper.recency(index);
         assert!(recency.is_finite() && recency >= 0.0, "recency {recency} of {seen:?}");
     }
-    let Features { p, r } = mapper.clone().features();
+    let mut again = mapper.clone();
+    let (p, r) = (again.sum_change_probability(), again.max_recency());
     assert!((0.0..=mapper.frame().len() as f64).contains(&p), "p = {p}");
     assert!(r.is_finite() && r >= 0.0, "r = {r}");
 }

@@ -1,7 +1,7 @@
 //! The command line.
 
-use agent::StrategyChoice;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use agent::Policy;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use mapper::{Estimator, OccupancyModel};
 use std::path::PathBuf;
@@ -51,10 +51,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", help_heading = "Who drives")]
     pub(crate) tour: Option<PathBuf>,
 
-    /// How the agent chooses its goals: by the paper's learner over recency and poisson (curious),
-    /// by one strategy alone, or by a coin
-    #[arg(long, default_value_t = StrategyChoice::Curious, value_parser = strategies(), help_heading = "Who drives")]
-    pub(crate) strategy: StrategyChoice,
+    /// Where the agent goes
+    #[arg(long, default_value_t = Policy::default(), value_parser = strategies(), help_heading = "Who drives")]
+    pub(crate) strategy: Policy,
 
     /// Times real time; 1 is real time, max as fast as it goes [default: max, under keyboard 1]
     #[arg(long, value_name = "FACTOR|max", value_parser = speed, help_heading = "Who drives")]
@@ -119,8 +118,9 @@ fn one_of<T: Copy + Send + Sync + 'static>(
     })
 }
 
-fn strategies() -> impl TypedValueParser<Value = StrategyChoice> {
-    one_of(&StrategyChoice::ALL, StrategyChoice::name)
+fn strategies() -> impl TypedValueParser<Value = Policy> {
+    let named = |policy: &Policy| PossibleValue::new(policy.name()).help(policy.description());
+    PossibleValuesParser::new(Policy::built_in().iter().map(named)).try_map(|name| name.parse::<Policy>())
 }
 
 fn estimators() -> impl TypedValueParser<Value = Estimator> {

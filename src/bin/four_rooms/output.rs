@@ -5,10 +5,11 @@ use crate::args::{Args, DriveChoice};
 use crate::parts::Settings;
 use curious::ros_map;
 use evaluation::cell_statistics;
+use evaluation::map_hash::map_hash;
 use evaluation::metrics;
 use evaluation::observer::Observer;
 use evaluation::output::write_file;
-use evaluation::summary::{Liveliest, Summary, map_hash};
+use evaluation::summary::{Liveliest, Summary};
 use interfaces::Twist;
 use mapper::Mapper;
 use robot::Pilot;
@@ -44,7 +45,7 @@ pub(crate) fn summary(
     ended: Ended,
     wall_s: f64,
 ) -> Summary {
-    let scores = metrics::scores(mapper, world.truth());
+    let scores = metrics::map_scores(mapper, world.truth());
     let findings = observer.findings();
     let moving = world.contacts().iter().filter(|contact| contact.moving).count();
     let is_agent = args.drive == DriveChoice::Agent;

@@ -9,10 +9,8 @@ use curious::ros_map::RosMap;
 use curious::tour_file::TourSpec;
 use curious::worlds::{self, Loaded};
 use evaluation::output::say;
-use interfaces::Twist;
+use interfaces::{Purpose, RandomStream, Twist};
 use mapper::{Mapper, MapperSettings};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use robot::{Autonomous, Tour};
 use serde::Serialize;
 use sim::physics::{PhysicsWorld, WorldSpec};
@@ -35,19 +33,6 @@ impl From<anyhow::Error> for Failure {
 
 fn input(error: impl Into<anyhow::Error>) -> Failure {
     Failure::Input(error.into())
-}
-
-/// Streams of chance, apart from those of the world.
-#[derive(Clone, Copy)]
-enum Purpose {
-    Agent = 1,
-    Controller = 2,
-}
-
-fn chance(seed: u64, purpose: Purpose) -> ChaCha8Rng {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream((purpose as u64) << 48);
-    rng
 }
 
 /// The side of the patches in which goals are weighed, m.
@@ -114,12 +99,12 @@ impl Settings {
 
     fn controller(&self, seed: u64) -> Result<Controller<DiffDrive>, Failure> {
         let drive = DiffDrive::new(self.drive).map_err(input)?;
-        Controller::new(self.controller, drive, chance(seed, Purpose::Controller)).map_err(input)
+        Controller::new(self.controller, drive, RandomStream::new(seed, Purpose::Controller)).map_err(input)
     }
 
     pub(crate) fn agent(&self, args: &Args) -> Result<Autonomous<Agent, DiffDrive>, Failure> {
-        let agent =
-            Agent::new(&self.agent, args.strategy, chance(args.seed, Purpose::Agent)).map_err(input)?;
+        let agent = Agent::new(&self.agent, &args.strategy, RandomStream::new(args.seed, Purpose::Agent))
+            .map_err(input)?;
         Ok(Autonomous::new(agent, self.controller(args.seed)?))
     }
 

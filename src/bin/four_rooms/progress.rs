@@ -1,6 +1,6 @@
 //! How far a run is: a bar in a terminal, plain lines elsewhere.
 
-use evaluation::metrics::Scores;
+use evaluation::metrics::MapScores;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -49,7 +49,7 @@ impl Progress {
     }
 
     /// Shows that the run has come to `time_s`.
-    pub(crate) fn show(&mut self, time_s: f64, scores: Option<Scores>) {
+    pub(crate) fn show(&mut self, time_s: f64, scores: Option<MapScores>) {
         if matches!(self.kind, Kind::Silent) || Instant::now() < self.next {
             return;
         }

@@ -1,7 +1,7 @@
 //! The command line.
 
 use agent::Reward;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use evaluation::trials::TrialStrategy;
 use mapper::Estimator;
@@ -53,7 +53,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "CHANCE", num_args = 0..=1, default_missing_value = "0.8", value_parser = chance, help_heading = "Where")]
     pub(crate) stochastic: Option<f64>,
 
-    /// How goals are chosen. Can be repeated; `oracle` knows the true rates and is the reference
+    /// Where the robot goes. Can be repeated
     #[arg(long, default_values = ["curious", "recency", "poisson", "random", "coin"], value_parser = strategies(), help_heading = "What to compare")]
     pub(crate) strategy: Vec<TrialStrategy>,
 
@@ -133,7 +133,11 @@ fn one_of<T: Copy + Send + Sync + 'static>(
 }
 
 fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
-    one_of(TrialStrategy::all().collect(), TrialStrategy::name)
+    let named = |strategy: &TrialStrategy| PossibleValue::new(strategy.name()).help(strategy.description());
+    let all: Vec<_> = TrialStrategy::all().collect();
+    PossibleValuesParser::new(all.iter().map(named)).try_map(move |name| {
+        all.iter().find(|strategy| strategy.name() == name).cloned().ok_or("not one of the possible values")
+    })
 }
 
 fn estimators() -> impl TypedValueParser<Value = Estimator> {

@@ -89,9 +89,9 @@ fn rows(run: &Run) -> Vec<Row> {
     table.deserialize().map(|row| row.unwrap()).collect()
 }
 
-/// The possible values of an option, as the program's `--help` names them.
+/// The possible values of an option, as the program's `-h` lists them.
 fn values(run: &Run, option: &str) -> Vec<String> {
-    let help = run.goes_well("--help").stdout;
+    let help = run.goes_well("-h").stdout;
     let (_, about) = help.split_once(&format!("\n      {option} <")).unwrap();
     let (_, list) = about.split_once("[possible values: ").unwrap();
     let (list, _) = list.split_once(']').unwrap();

@@ -8,7 +8,7 @@ mod things;
 mod ways;
 
 use crate::view::{Outlook, Places};
-use crate::{Pick, Situation, Stay, Strategy};
+use crate::{AgentSettings, Pick, Situation, Stay, Strategy};
 use change::Change;
 use interfaces::{Cell, CellState};
 use mapper::Mapper;
@@ -86,10 +86,10 @@ fn add(sums: &mut [f32; WATCHES.len()], gains: &Gains) {
 }
 
 impl InformationGain {
-    /// For a robot that sees as far as `sensor_radius_m`, m.
-    pub fn new(sensor_radius_m: f64) -> Self {
+    /// For a robot that sees as far as `settings.sensor_radius_m`.
+    pub fn new(settings: &AgentSettings) -> Self {
         Self {
-            outlook: Outlook::new(sensor_radius_m),
+            outlook: Outlook::new(settings.sensor_radius_m),
             rates: Rates::new(),
             change: Change::new(),
             runs: Runs::default(),

@@ -1,0 +1,220 @@
+use crate::choosers::{Always, Chooser, Coin, Curious, Progress};
+use crate::settings::AgentSettings;
+use crate::strategies::{Frontier, InformationGain, OptimalRevisiting, Poisson, Random, Recency, Strategy};
+use interfaces::RandomStream;
+use std::fmt;
+use std::num::NonZeroUsize;
+use std::str::FromStr;
+use std::sync::{Arc, LazyLock};
+
+/// The strategies of an agent, and the chooser among them.
+pub type Parts = (Vec<Box<dyn Strategy>>, Box<dyn Chooser>);
+
+/// How an agent decides where to go: a name, and a way to make its strategies and its chooser.
+///
+/// [`Policy::built_in`] lists the policies of this crate. A policy of any other crate is made with
+/// [`Policy::new`] or [`Policy::single`], and runs wherever a built-in one does:
+///
+/// ```
+/// use agent::{Policy, Situation, Strategy};
+///
+/// /// Go to what lies in the east.
+/// #[derive(Debug)]
+/// struct East;
+///
+/// impl Strategy for East {
+///     fn name(&self) -> &'static str {
+///         "east"
+///     }
+///
+///     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {
+///         for (index, weight) in weights.iter_mut().enumerate() {
+///             *weight = f64::from(situation.mapper.frame().cell(index).x);
+///         }
+///     }
+/// }
+///
+/// let east = Policy::single("east", "what lies in the east", |_| East);
+/// ```
+///
+/// Two policies are equal if they have the same name; serde, `Display` and `FromStr` use the name, and
+/// only a built-in policy can be found by it.
+#[derive(Clone)]
+pub struct Policy {
+    name: &'static str,
+    description: &'static str,
+    build: Arc<dyn Fn(&AgentSettings, &mut RandomStream) -> Parts + Send + Sync>,
+}
+
+/// The built-in policies, the default first: the name, where the robot goes, and the constructor.
+static BUILT_IN: LazyLock<Vec<Policy>> = LazyLock::new(|| {
+    vec![
+        Policy::new(
+            "curious",
+            "recency or poisson, as learned from map updates (the paper's agent)",
+            curious,
+        ),
+        Policy::single("recency", "what was not seen for longest (paper)", |_| Recency),
+        Policy::single("poisson", "what probably changed since it was seen (paper)", |_| Poisson),
+        Policy::single("random", "anywhere: the baseline of strategies", |_| Random),
+        Policy::new("coin", "recency or poisson by a fair coin: the baseline of choosers", coin),
+        Policy::single("frontier", "most unknown cells in view per time, then the oldest", Frontier::new),
+        Policy::single("optimal-revisiting", "least time with a wrong map, per time", OptimalRevisiting::new),
+        Policy::single(
+            "information-gain",
+            "least error of the rates of change, per time",
+            InformationGain::new,
+        ),
+        Policy::new("progress", "one of five strategies, as learned from progress in learning", progress),
+    ]
+});
+
+fn papers() -> Vec<Box<dyn Strategy>> {
+    vec![Box::new(Recency), Box::new(Poisson)]
+}
+
+fn curious(settings: &AgentSettings, rng: &mut RandomStream) -> Parts {
+    let strategies = papers();
+    let chooser = Curious::new(&settings.curious, strategies.len(), rng);
+    (strategies, Box::new(chooser))
+}
+
+fn coin(_: &AgentSettings, _: &mut RandomStream) -> Parts {
+    (papers(), Box::new(Coin(const { NonZeroUsize::new(2).unwrap() })))
+}
+
+fn progress(settings: &AgentSettings, _: &mut RandomStream) -> Parts {
+    let mut strategies = papers();
+    strategies.push(Box::new(Frontier::new(settings)));
+    strategies.push(Box::new(OptimalRevisiting::new(settings)));
+    strategies.push(Box::new(InformationGain::new(settings)));
+    let chooser = Progress::new(strategies.len());
+    (strategies, Box::new(chooser))
+}
+
+impl Policy {
+    /// A policy of any strategies and any chooser. `build` is called once for every run; a part that draws
+    /// random numbers when it is made draws from the agent's stream. `name` is the name on the command line
+    /// and in files, `description` completes "goes to ...".
+    pub fn new(
+        name: &'static str,
+        description: &'static str,
+        build: impl Fn(&AgentSettings, &mut RandomStream) -> Parts + Send + Sync + 'static,
+    ) -> Self {
+        Self { name, description, build: Arc::new(build) }
+    }
+
+    /// A policy of one strategy, which should have the same name.
+    pub fn single<S: Strategy + 'static>(
+        name: &'static str,
+        description: &'static str,
+        strategy: impl Fn(&AgentSettings) -> S + Send + Sync + 'static,
+    ) -> Self {
+        Self::new(name, description, move |settings, _| {
+            (vec![Box::new(strategy(settings))], Box::new(Always(0)))
+        })
+    }
+
+    /// The policies of this crate, the default first.
+    pub fn built_in() -> &'static [Self] {
+        &BUILT_IN
+    }
+
+    /// The name on the command line and in files.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Where the robot goes, in one line for a list.
+    pub fn description(&self) -> &'static str {
+        self.description
+    }
+
+    /// Makes the strategies and the chooser of one run.
+    pub fn build(&self, settings: &AgentSettings, rng: &mut RandomStream) -> Parts {
+        (self.build)(settings, rng)
+    }
+}
+
+impl Default for Policy {
+    fn default() -> Self {
+        BUILT_IN[0].clone()
+    }
+}
+
+impl PartialEq for Policy {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Policy {}
+
+impl fmt::Debug for Policy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Policy").field(&self.name).finish()
+    }
+}
+
+impl fmt::Display for Policy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name)
+    }
+}
+
+impl FromStr for Policy {
+    type Err = UnknownPolicy;
+
+    fn from_str(name: &str) -> Result<Self, UnknownPolicy> {
+        let found = BUILT_IN.iter().find(|policy| policy.name == name);
+        found.cloned().ok_or_else(|| UnknownPolicy { name: name.into() })
+    }
+}
+
+impl<'de> serde::Deserialize<'de> for Policy {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+impl serde::Serialize for Policy {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name)
+    }
+}
+
+/// A name that no built-in policy has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no strategy is called `{name}`; there are {}", Policy::built_in().iter().map(Policy::name).collect::<Vec<_>>().join(", "))]
+pub struct UnknownPolicy {
+    /// The name that was asked for.
+    pub name: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_back() {
+        #[derive(serde::Deserialize)]
+        struct File {
+            strategy: Policy,
+        }
+        for policy in Policy::built_in() {
+            assert_eq!(policy.name().parse::<Policy>().unwrap(), *policy);
+            let file: File = toml::from_str(&format!("strategy = '{policy}'")).unwrap();
+            assert_eq!(file.strategy, *policy);
+        }
+        assert_eq!(Policy::default().name(), "curious");
+    }
+
+    #[test]
+    fn an_unknown_name_is_answered_with_the_known_ones() {
+        assert_eq!(
+            "Curius".parse::<Policy>().unwrap_err().to_string(),
+            "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, frontier, \
+             optimal-revisiting, information-gain, progress"
+        );
+    }
+}

@@ -1,0 +1,58 @@
+use super::mean::Mean;
+use interfaces::{CellState, GroundTruth, TrueState};
+use mapper::Mapper;
+use serde::Serialize;
+
+/// Whether the map gives the true state; `None` where the cell is partly covered.
+pub(super) fn is_correct(mapped: CellState, truth: TrueState) -> Option<bool> {
+    match truth {
+        TrueState::Free => Some(mapped == CellState::Free),
+        TrueState::Blocked => Some(mapped == CellState::Blocked),
+        TrueState::PartlyCovered => None,
+    }
+}
+
+/// How good the map is. Both shares are 0 in a world without cells that can be seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MapScores {
+    /// The share of the cells that can be seen that were seen.
+    pub coverage: f64,
+    /// The share of the cells that can be seen whose mapped state is the true state now; unknown is
+    /// incorrect.
+    pub map_quality: f64,
+}
+
+fn visible_cells(truth: &impl GroundTruth) -> impl Iterator<Item = usize> {
+    (0..truth.frame().len()).filter(|&index| truth.can_be_seen(index))
+}
+
+/// Compares the map with the ground truth now.
+pub fn map_scores(mapper: &Mapper, truth: &impl GroundTruth) -> MapScores {
+    let (mut cells, mut seen, mut correct) = (0_usize, 0_usize, 0_usize);
+    for index in visible_cells(truth) {
+        cells += 1;
+        seen += usize::from(mapper.was_ever_seen(index));
+        correct += usize::from(is_correct(mapper.states().cells()[index], truth.state(index)) == Some(true));
+    }
+    let share = |count: usize| count as f64 / cells.max(1) as f64;
+    MapScores { coverage: share(seen), map_quality: share(correct) }
+}
+
+/// The time since the cells that can be seen were seen.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Age {
+    /// The mean, s (steps in a grid world).
+    pub mean_s: f64,
+    /// The maximum.
+    pub max_s: f64,
+}
+
+/// How old the map is now.
+pub fn age(mapper: &Mapper, truth: &impl GroundTruth) -> Age {
+    let (mut ages, mut max_s) = (Mean::default(), 0.0_f64);
+    for index in visible_cells(truth) {
+        ages.add(mapper.recency(index));
+        max_s = max_s.max(mapper.recency(index));
+    }
+    Age { mean_s: ages.get().unwrap_or(0.0), max_s }
+}

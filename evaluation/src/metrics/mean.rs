@@ -1,0 +1,27 @@
+/// A running mean.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Mean {
+    sum: f64,
+    pub(super) count: usize,
+}
+
+impl Mean {
+    pub(super) fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1;
+    }
+
+    pub(super) fn add_bool(&mut self, is_true: bool) {
+        self.add(f64::from(u8::from(is_true)));
+    }
+
+    /// Adds the mean of another as one value; nothing if the other is empty.
+    pub(super) fn add_mean(&mut self, other: &Self) {
+        other.get().into_iter().for_each(|mean| self.add(mean));
+    }
+
+    /// `None` without values.
+    pub(super) fn get(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
+}

@@ -1,0 +1,165 @@
+use super::*;
+use interfaces::{Cell, CellReading, CellState, Grid, GroundTruth, Step, TrueState, World};
+use mapper::{Estimator, Mapper, MapperSettings};
+use nalgebra::Isometry2;
+use sim::grid::{GridSpec, GridWorld};
+use sim::physics::{PhysicsWorld, Truth};
+
+fn physics_world() -> PhysicsWorld {
+    let text = include_str!("../../../worlds/four_rooms.toml");
+    PhysicsWorld::new(&sim::physics::WorldSpec::parse("four_rooms.toml", text).unwrap(), 0)
+}
+
+/// The true map, with `otherwise` in partly covered cells.
+fn true_map(truth: &Truth, otherwise: CellState) -> Grid<CellState> {
+    let state = |state: &TrueState| match state {
+        TrueState::Free => CellState::Free,
+        TrueState::Blocked => CellState::Blocked,
+        TrueState::PartlyCovered => otherwise,
+    };
+    Grid::from_cells(*truth.frame(), truth.states().iter().map(state).collect()).unwrap()
+}
+
+#[test]
+fn the_true_map_is_correct_and_the_empty_map_is_not() {
+    let world = physics_world();
+    for otherwise in [CellState::Free, CellState::Blocked, CellState::Unknown] {
+        let map = true_map(world.truth(), otherwise);
+        let known = Mapper::with_prior(&MapperSettings::default(), map).unwrap();
+        assert_eq!(map_scores(&known, world.truth()), MapScores { coverage: 0.0, map_quality: 1.0 });
+    }
+    let unknown = Mapper::new(&MapperSettings::default(), *world.truth().frame()).unwrap();
+    assert_eq!(map_scores(&unknown, world.truth()), MapScores::default());
+}
+
+#[test]
+fn coverage_and_age_count_the_cells_that_can_be_seen() {
+    let world = physics_world();
+    let truth = world.truth();
+    let visible: Vec<_> =
+        (0..truth.frame().len()).filter(|&index| GroundTruth::can_be_seen(truth, index)).collect();
+    let mut mapper = Mapper::new(&MapperSettings::default(), *truth.frame()).unwrap();
+    let half = visible.len() / 2;
+    for (time, seen) in [(10.0, &visible[..half]), (30.0, &visible[..0])] {
+        let cells = seen
+            .iter()
+            .map(|&index| (truth.frame().cell(index), truth.states()[index] == TrueState::Blocked));
+        let reading = CellReading { time, pose: *world.true_pose(), cells: cells.collect() };
+        mapper.update(&reading).unwrap();
+    }
+    let share = half as f64 / visible.len() as f64;
+    assert_eq!(map_scores(&mapper, truth), MapScores { coverage: share, map_quality: share });
+    let Age { mean_s, max_s } = age(&mapper, truth);
+    assert_eq!(max_s, 30.0);
+    assert!((mean_s - (20.0 * share + 30.0 * (1.0 - share))).abs() < 1e-9, "{mean_s}");
+}
+
+/// A block that moves every step over three cells, and another that moves every 50 over two.
+const WORLD: &str = r##"
+    name = "shelf"
+    sensor_radius = 1
+    map = """
+    #######
+    #.....#
+    #..R..#
+    #######
+    """
+    [[block]]
+    name = "fast"
+    dwell = 1
+    course = "back-and-forth"
+    path = [[1, 2], [3, 2]]
+    [[block]]
+    name = "slow"
+    dwell = 50
+    course = "back-and-forth"
+    path = [[4, 2], [5, 2]]
+"##;
+
+fn grid_world() -> GridWorld {
+    let unindented: String = WORLD.lines().map(|line| line.trim_start().to_owned() + "\n").collect();
+    GridWorld::new(&GridSpec::parse("shelf.toml", &unindented).unwrap(), 0)
+}
+
+fn mapper(world: &GridWorld) -> Mapper {
+    let settings = MapperSettings { estimator: Estimator::Paper, ..Default::default() };
+    Mapper::new(&settings, *world.truth().frame()).unwrap()
+}
+
+/// Shows `mapper` the true state of the cells that `sees` picks.
+fn show(world: &GridWorld, mapper: &mut Mapper, sees: impl Fn(Cell) -> bool) {
+    let truth = world.truth();
+    let cells = (0..truth.frame().len()).map(|index| (truth.frame().cell(index), truth.is_blocked(index)));
+    let cells = cells.filter(|&(cell, _)| sees(cell)).collect();
+    mapper.update(&CellReading { time: truth.elapsed(), pose: Isometry2::identity(), cells }).unwrap();
+}
+
+#[test]
+fn a_robot_that_sees_everything_is_correct() {
+    let mut world = grid_world();
+    let mut mapper = mapper(&world);
+    assert!(rate_scores(&mapper, world.truth()).log_error.is_none(), "nothing changed yet");
+    for _ in 0..40 {
+        show(&world, &mut mapper, |_| true);
+        world.act(&Step::Stay);
+    }
+    show(&world, &mut mapper, |_| true);
+    let scores = rate_scores(&mapper, world.truth());
+    assert_eq!((scores.rate_error_all, scores.log_error, scores.false_rate_hz), (Some(0.0), Some(0.0), 0.0));
+    assert_eq!(scores.false_change_events, 0);
+    assert_eq!(map_scores(&mapper, world.truth()), MapScores { coverage: 1.0, map_quality: 1.0 });
+    let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
+    accuracy.sample(&mapper, world.truth());
+    prediction.sample(&mapper, world.truth());
+    assert_eq!(accuracy.scores().all, Some(1.0));
+    assert!(prediction.scores().model.is_none(), "nothing is out of view");
+}
+
+#[test]
+fn a_robot_that_sees_nothing_is_incorrect_by_definition() {
+    let mut world = grid_world();
+    let mapper = mapper(&world);
+    (0..60).for_each(|_| world.act(&Step::Stay));
+    let scores = rate_scores(&mapper, world.truth());
+    assert_eq!(scores.rate_error_all, Some(1.0));
+    assert!((scores.log_error.unwrap() - 10.0_f64.ln()).abs() < 1e-12);
+    assert_eq!(map_scores(&mapper, world.truth()), MapScores { coverage: 0.0, map_quality: 0.0 });
+    let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
+    accuracy.sample(&mapper, world.truth());
+    prediction.sample(&mapper, world.truth());
+    let scores = prediction.scores();
+    assert_eq!(accuracy.scores().all, Some(0.0));
+    assert_eq!((scores.model, scores.last_seen), (Some(0.25), Some(0.25)));
+}
+
+#[test]
+fn things_count_alike_however_many_cells_they_have() {
+    let mut world = grid_world();
+    let mut mapper = mapper(&world);
+    for _ in 0..120 {
+        show(&world, &mut mapper, |cell| cell.x < 4);
+        world.act(&Step::Stay);
+    }
+    // All is known of the fast block's three cells, nothing of the slow one's two.
+    let scores = rate_scores(&mapper, world.truth());
+    assert!((scores.log_error.unwrap() - 10.0_f64.ln() / 2.0).abs() < 0.02, "{scores:?}");
+    assert!((scores.rate_error_all.unwrap() - 2.0 / 5.0).abs() < 0.02, "{scores:?}");
+}
+
+#[test]
+fn an_old_map_is_incorrect_where_things_have_moved() {
+    let mut world = grid_world();
+    let mut mapper = mapper(&world);
+    show(&world, &mut mapper, |_| true);
+    world.act(&Step::Stay);
+    show(&world, &mut mapper, |cell| cell.y == 0);
+    let visible = (0..28).filter(|&index| world.truth().can_be_seen(index)).count() as f64;
+    let scores = map_scores(&mapper, world.truth());
+    assert!((scores.map_quality - (visible - 2.0) / visible).abs() < 1e-12, "{scores:?}");
+    let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
+    accuracy.sample(&mapper, world.truth());
+    prediction.sample(&mapper, world.truth());
+    // Of three free changing cells two are right, of two blocked ones one.
+    assert_eq!(accuracy.scores().all, Some((2.0 / 3.0 + 0.5) / 2.0));
+    assert_eq!(prediction.scores().last_seen, Some(2.0 / 5.0));
+}
