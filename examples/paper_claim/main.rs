@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo run --example paper_claim                     everything, a quarter of an hour on two cores
-//! cargo run --example paper_claim -- /tmp/quick 5     into another folder, with fewer seeds
+//! cargo run --example paper_claim -- quick 5          into another folder, with fewer seeds
 //! ```
 //!
 //! One thing is changed at a time. Each condition runs in the shipped worlds, with so many seeds in

@@ -6,12 +6,12 @@ use std::fmt::Write;
 
 pub(crate) fn markdown(findings: &[Finding], seeds: u64) -> String {
     let mut text = format!(
-        "# Does the paper hold? All results\n\n\
+        "# Does the paper's Figure 3 hold? All results\n\n\
          Made by `cargo run --example paper_claim`, {seeds} seeds in each shipped world and {seeds} generated worlds, \
-         each with a seed of its own. What they mean is told in [figure3.md](../figure3.md).\n\n\
-         Differences are curious minus the other, over the run (area under the curve) for errors and at the \
-         end for map quality, each with its 95 % interval, the ratio of the means, Cohen's d of the pairs \
-         and the p-value of the paired t test. Errors: less is better.\n"
+         each with a seed of its own. [figure3.md](../figure3.md) explains the results.\n\n\
+         Differences are curious minus the other strategy, over the run (area under the curve) for errors and \
+         at the end for map quality, each with its 95 % interval, the ratio of the means, Cohen's d of the pairs \
+         and the p-value of the paired t test. For errors, lower is better.\n"
     );
     text.push_str(&overview(findings));
     for finding in findings {
@@ -24,7 +24,7 @@ pub(crate) fn markdown(findings: &[Finding], seeds: u64) -> String {
     text
 }
 
-/// A row per condition: the verdict in each world, and how curious does over all generated ones.
+/// One row per condition: the verdict in each world, and the ratios of curious over all generated worlds.
 fn overview(findings: &[Finding]) -> String {
     let first = findings.first().map_or_else(Vec::new, Finding::claims);
     let worlds = first.iter().map(|claim| claim.world.as_str()).collect::<Vec<_>>().join(" | ");
@@ -47,7 +47,7 @@ fn overview(findings: &[Finding]) -> String {
     text
 }
 
-/// The share of time with changing cells in view, and what the map is worth: the lock-down.
+/// The share of time with changing cells in view, and the quality of the map: the lock-on.
 fn shares(finding: &Finding) -> String {
     let mut text = String::from(
         "| world | strategy | log error, area | log error, end | time at changes | map quality | changing cells | coverage |\n\

@@ -1,7 +1,7 @@
 use crate::Cell;
 
 /// The velocity of a diff-drive robot in its own frame, as ROS `geometry_msgs/Twist`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Twist {
     /// Forwards, m/s.
     pub linear_mps: f64,

@@ -14,6 +14,7 @@ mod ground_truth;
 mod random;
 mod reading;
 mod scan;
+pub mod serde_pose;
 mod settings_error;
 mod state;
 mod world;

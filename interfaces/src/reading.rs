@@ -11,15 +11,17 @@ pub trait Reading {
 }
 
 /// A laser scan with the pose of the same instant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct LaserReading {
     /// The time of scan and pose, s.
     pub time_s: f64,
     /// The robot's pose in the map's frame, by odometry.
+    #[serde(with = "crate::serde_pose")]
     pub pose: Isometry2<f64>,
     /// The robot's velocity, by odometry.
     pub twist: Twist,
     /// The laser's pose in the robot's frame.
+    #[serde(with = "crate::serde_pose")]
     pub mount: Isometry2<f64>,
     /// The scan, in the laser's frame.
     pub scan: Scan,

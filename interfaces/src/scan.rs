@@ -1,5 +1,5 @@
 /// One sweep of a planar laser, as ROS `sensor_msgs/LaserScan`, with the meaning of REP-117.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Scan {
     /// The direction of the first beam in the laser's frame, rad.
     pub angle_min_rad: f64,

@@ -2,7 +2,7 @@
 
 use crate::recording::{Recorder, RecordingError};
 use crate::view::{Measured, View};
-use evaluation::metrics::{map_scores, rate_scores};
+use evaluation::metrics::{RateErrors, map_scores, rate_scores};
 use evaluation::report::Trial;
 use evaluation::trials::{SettingsError, TrialSettings, TrialStep, run_trial};
 use robot::{Level, Message};
@@ -33,15 +33,15 @@ pub struct Recorded {
 ///
 /// When settings are invalid.
 pub fn record(
-    trial: &TrialSettings,
+    settings: &TrialSettings,
     recorder: Recorder,
     is_canceled: &AtomicBool,
 ) -> Result<Recorded, SettingsError> {
     let mut recorder = Some(recorder);
     let mut problem = None;
-    let trial = run_trial(trial, |mut now| {
+    let trial = run_trial(settings, |mut step| {
         let goes_on = !is_canceled.load(Ordering::Relaxed);
-        if let Err(error) = log(&mut recorder, trial, &mut now, !goes_on) {
+        if let Err(error) = log(&mut recorder, settings, &mut step, !goes_on) {
             problem = Some(error);
         }
         goes_on
@@ -53,24 +53,24 @@ pub fn record(
 /// recorder any more.
 fn log(
     recorder: &mut Option<Recorder>,
-    trial: &TrialSettings,
+    settings: &TrialSettings,
     now: &mut TrialStep,
     is_canceled: bool,
 ) -> Result<(), RecordingError> {
     let Some(mut open) = recorder.take() else { return Ok(()) };
     let step = now.reading.time as u64;
-    let is_last = is_canceled || step >= trial.steps.min(RECORDED_STEPS);
+    let is_last = is_canceled || step >= settings.steps.min(RECORDED_STEPS);
     let mut messages = now.pilot.take_messages();
-    if is_last && !is_canceled && step < trial.steps {
-        let text = format!("the recording ends here; the trial goes on to step {}", trial.steps);
+    if is_last && !is_canceled && step < settings.steps {
+        let text = format!("the recording ends here; the trial goes on to step {}", settings.steps);
         messages.push(Message { level: Level::Event, text });
     }
-    let score_every = SCORE_EVERY * trial.world.frame().len().div_ceil(SCORE_CELLS) as u64;
+    let score_every = SCORE_EVERY * settings.world.frame().len().div_ceil(SCORE_CELLS) as u64;
     let mut measured = Measured { messages: &messages, ..Measured::default() };
     if is_last || step.is_multiple_of(score_every) {
         let (mapper, truth) = (now.belief.mapper, now.world.truth());
         measured.scores = Some(map_scores(mapper, truth));
-        measured.rate_errors = Some((&rate_scores(mapper, truth)).into());
+        measured.rate_errors = Some(RateErrors::from(&rate_scores(mapper, truth)));
     }
     let view = View::new(now.world, now.reading, now.belief, &*now.pilot, measured);
     if is_last {
@@ -95,9 +95,7 @@ mod tests {
     /// The first trial of the shipped world, of so many steps.
     fn experiment(steps: u64) -> Experiment {
         Experiment {
-            worlds: vec![
-                GridSpec::parse("two_blocks.toml", include_str!("../../worlds/two_blocks.toml")).unwrap(),
-            ],
+            worlds: vec![GridSpec::parse("two_blocks.toml", include_str!("../../worlds/two_blocks.toml")).unwrap()],
             estimators: vec![Estimator::Paper],
             strategies: vec![TrialStrategy::Agent("recency".parse().unwrap())],
             trials: 1,
@@ -111,10 +109,10 @@ mod tests {
 
     fn recorded(steps: u64, file: &Path, is_cancelled: bool) -> Recorded {
         let experiment = experiment(steps);
-        let trial = experiment.trial(experiment.jobs()[0]);
+        let life = experiment.trial(experiment.jobs()[0]);
         let options = RecordingOptions { file: Some(file.to_owned()), ..Default::default() };
-        let recorder = Recorder::new(&options, trial.world.into()).unwrap();
-        record(&trial, recorder, &is_cancelled.into()).unwrap()
+        let recorder = Recorder::new(&options, life.world.into()).unwrap();
+        record(&life, recorder, &is_cancelled.into()).unwrap()
     }
 
     #[test]

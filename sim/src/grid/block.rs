@@ -1,24 +1,25 @@
-use super::luck::{Luck, Whose};
 use super::spec::{BlockSpec, Course};
-use interfaces::Cell;
+use interfaces::{Cell, Purpose, RandomStream};
 
-/// A block on its way.
+/// A block and its state.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     path: Vec<Cell>,
     course: Course,
     dwell: u32,
-    /// The place of its cell in `path`.
+    /// The index of its cell in `path`.
     at: usize,
-    /// Whether it goes on by counting down. Never on a loop.
+    /// Whether the index counts down. Never on a loop.
     is_returning: bool,
     /// Steps on this cell, up to `dwell`.
     stood: u32,
-    luck: Luck,
+    /// The probability that a due move happens in a step.
+    probability: f64,
+    random: RandomStream,
 }
 
 impl Block {
-    pub(super) fn new(spec: &BlockSpec, index: usize, chance: f64, seed: u64) -> Self {
+    pub(super) fn new(spec: &BlockSpec, index: usize, probability: f64, seed: u64) -> Self {
         Self {
             path: spec.path.clone(),
             course: spec.course,
@@ -26,21 +27,22 @@ impl Block {
             at: 0,
             is_returning: false,
             stood: spec.stood,
-            luck: Luck::new(seed, Whose::Block(index), chance),
+            probability,
+            random: RandomStream::new(seed, Purpose::BlockTransition(index)),
         }
     }
 
-    /// Where it is now.
+    /// The cell of the block now.
     pub(super) fn cell(&self) -> Cell {
         self.path[self.at]
     }
 
-    /// A step passes. Moves on if it is due and lucky and the way is free; returns whence and
-    /// where to.
+    /// Does one step. The block moves on if the move is due, happens and leads to a free cell. Returns the cells
+    /// before and after a move.
     #[inline]
     pub(super) fn step(&mut self, is_free: impl FnOnce(Cell) -> bool) -> Option<(Cell, Cell)> {
         self.stood = (self.stood + 1).min(self.dwell);
-        if self.stood < self.dwell || !self.luck.happens() {
+        if self.stood < self.dwell || !self.random.bernoulli(self.probability) {
             return None;
         }
         let (next, is_returning) = self.next();
@@ -51,7 +53,7 @@ impl Block {
         })
     }
 
-    /// The place of the next cell, and whether it counts down from then on.
+    /// The index of the next cell, and whether the index counts down from then on.
     fn next(&self) -> (usize, bool) {
         let last = self.path.len() - 1;
         match self.course {

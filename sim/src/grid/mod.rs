@@ -1,7 +1,7 @@
-//! The grid world: cells, blocks that move, a robot that sees exactly (paper, section 5, figure 3).
+//! The grid world: cells, blocks that move, a robot with an exact sensor (paper, section 5, figure 3).
 //!
 //! [`GridSpec`] reads a world file or makes a random world, [`GridWorld`] lets time pass in it, a
-//! step at a time. [`GridTruth`] is for metrics.
+//! step at a time. [`GridGroundTruth`] is for metrics.
 //!
 //! In every step the robot acts first: it stays, or moves to one of the four cells that share a
 //! side with its own, unless that is blocked. Then the blocks move, in the order of the file. A
@@ -30,15 +30,14 @@
 
 mod block;
 mod generate;
-mod luck;
-mod sight;
+mod ground_truth;
 mod spec;
 #[cfg(test)]
 mod tests;
-mod truth;
+mod visibility;
 mod world;
 
 pub use generate::{GenerateSettings, PathKind};
+pub use ground_truth::{GridGroundTruth, GridGroundTruth as GridTruth};
 pub use spec::{BlockSpec, Course, GridSpec};
-pub use truth::GridTruth;
 pub use world::GridWorld;

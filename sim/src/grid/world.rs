@@ -1,12 +1,11 @@
 use super::block::Block;
-use super::luck::{Luck, Whose};
-use super::sight::{BlockedCells, Sight};
+use super::ground_truth::GridGroundTruth;
 use super::spec::GridSpec;
-use super::truth::GridTruth;
-use interfaces::{Cell, CellReading, Step, World};
+use super::visibility::{BlockedCells, LineOfSight};
+use interfaces::{Cell, CellReading, Purpose, RandomStream, Step, World};
 use nalgebra::Isometry2;
 
-/// A grid in which a robot steps and looks around.
+/// A grid world with one robot.
 ///
 /// The same spec, seed and commands give the same bits, on every machine.
 #[derive(Clone, Debug)]
@@ -15,19 +14,19 @@ pub struct GridWorld {
     /// Steps since the start.
     step: u64,
     robot: Cell,
-    robot_luck: Luck,
+    /// The stream that decides whether an action of the robot happens.
+    random: RandomStream,
     blocks: Vec<Block>,
     /// Walls and blocks as they are now, also in the middle of a step.
     blocked: BlockedCells,
-    sight: Sight,
-    truth: GridTruth,
+    line_of_sight: LineOfSight,
+    truth: GridGroundTruth,
     /// The moves of the last step.
     moved: Vec<(Cell, Cell)>,
 }
 
 impl GridWorld {
-    /// The world of `spec` at its start. `seed` starts all chance, in a stream for every block
-    /// and one for the robot.
+    /// The world of `spec` at its start. `seed` seeds a random stream for every block and one for the robot.
     pub fn new(spec: &GridSpec, seed: u64) -> Self {
         let block = |(index, block)| Block::new(block, index, spec.block_chance(), seed);
         let blocks: Vec<Block> = spec.blocks().iter().enumerate().map(block).collect();
@@ -38,12 +37,12 @@ impl GridWorld {
         Self {
             step: 0,
             robot: spec.start(),
-            robot_luck: Luck::new(seed, Whose::Robot, spec.robot_chance()),
+            random: RandomStream::new(seed, Purpose::RobotTransition),
             moved: Vec::with_capacity(blocks.len()),
             blocks,
             blocked,
-            sight: Sight::new(spec.sensor_radius()),
-            truth: GridTruth::new(spec),
+            line_of_sight: LineOfSight::new(spec.sensor_radius()),
+            truth: GridGroundTruth::new(spec),
             spec: spec.clone(),
         }
     }
@@ -53,23 +52,23 @@ impl GridWorld {
         self.step as f64
     }
 
-    /// What the world was made from.
+    /// The spec of the world.
     pub fn spec(&self) -> &GridSpec {
         &self.spec
     }
 
-    /// Where the robot is.
+    /// The cell of the robot.
     pub fn robot(&self) -> Cell {
         self.robot
     }
 
-    /// The name and the cell of every block, in the order of the file.
+    /// The name and the cell of every block, in the order of the spec.
     pub fn blocks(&self) -> impl ExactSizeIterator<Item = (&str, Cell)> {
         self.spec.blocks().iter().zip(&self.blocks).map(|(spec, block)| (spec.name.as_str(), block.cell()))
     }
 
-    /// The truth about every cell, for metrics only.
-    pub fn truth(&self) -> &GridTruth {
+    /// The ground truth of every cell, for metrics only.
+    pub fn truth(&self) -> &GridGroundTruth {
         &self.truth
     }
 }
@@ -78,21 +77,21 @@ impl World for GridWorld {
     type Reading = CellReading;
     type Command = Step;
 
-    /// Every cell of the map within the sensor's radius and in line of sight: the robot's own, then
-    /// the others by direction counter-clockwise from the right and from near to far. The robot's
-    /// heading is always 0. No reading depends on chance.
+    /// Every cell of the map within the radius of the sensor and in line of sight: the cell of the robot, then the
+    /// others by direction counter-clockwise from the right and from near to far. The heading is always 0. No
+    /// reading is random.
     fn sense(&mut self) -> CellReading {
-        let middle = self.spec.frame().center(self.robot);
+        let center = self.spec.frame().center(self.robot);
         CellReading {
             time: self.step as f64,
-            pose: Isometry2::translation(middle.x, middle.y),
-            cells: self.sight.look(&self.blocked, self.robot),
+            pose: Isometry2::translation(center.x, center.y),
+            cells: self.line_of_sight.look(&self.blocked, self.robot),
         }
     }
 
     fn act(&mut self, command: &Step) {
         let target = command.target(self.robot);
-        let is_obeyed = self.robot_luck.happens();
+        let is_obeyed = self.random.bernoulli(self.spec.robot_chance());
         if is_obeyed && self.spec.frame().contains(target) && !self.blocked.get(target) {
             self.robot = target;
         }
@@ -106,6 +105,6 @@ impl World for GridWorld {
             }
         }
         self.step += 1;
-        self.truth.settle(&self.moved, |cell| self.blocked.get(cell));
+        self.truth.update(&self.moved, |cell| self.blocked.get(cell));
     }
 }

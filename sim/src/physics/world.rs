@@ -1,28 +1,29 @@
 use super::fleet::Fleet;
-use super::report::{Body, Contact, Move, ObstacleEvent, ObstacleView, RobotView};
+use super::ground_truth::PhysicsGroundTruth;
+use super::report::{Body, Contact, ObstacleEvent, ObstacleView};
+use super::robot::RobotView;
 use super::spec::WorldSpec;
-use super::truth::Truth;
 use interfaces::{LaserReading, Twist, World};
 use nalgebra::{Isometry2, Point2};
 
-/// A house in which one robot is driven, with the truth about every cell.
+/// A world in which one robot is driven, with the ground truth of every cell.
 ///
 /// The same spec, seed and commands give the same bits, on every machine.
 pub struct PhysicsWorld {
     spec: WorldSpec,
     fleet: Fleet,
-    truth: Truth,
+    truth: PhysicsGroundTruth,
     contacts: Vec<Contact>,
     obstacle_events: Vec<ObstacleEvent>,
 }
 
 impl PhysicsWorld {
-    /// The world of `spec` at its start. `seed` starts all chance: the noise of lasers, that of
-    /// odometry, and what robots do by themselves, each in a stream of its own.
+    /// The world of `spec` at its start. `seed` seeds all random streams: sensor noise, odometry noise, and the
+    /// decisions of robots and doors, each in a stream of its own.
     pub fn new(spec: &WorldSpec, seed: u64) -> Self {
         let fleet = Fleet::new(&spec.fleet, seed);
         let start = fleet.robot(spec.driven).at();
-        let mut truth = Truth::new(spec.fleet.frame, &spec.fleet.walls, &start);
+        let mut truth = PhysicsGroundTruth::new(spec.fleet.frame, &spec.fleet.walls, &start);
         let boxes = fleet.standing_boxes();
         for (index, obstacle) in spec.obstacles().iter().enumerate().filter(|(i, _)| fleet.is_standing(*i)) {
             let mover = obstacle.is_mover().then_some(Body::Obstacle(index));
@@ -41,32 +42,32 @@ impl PhysicsWorld {
         self.fleet.time_s()
     }
 
-    /// What the world was made from.
+    /// The spec of the world.
     pub fn spec(&self) -> &WorldSpec {
         &self.spec
     }
 
-    /// The truth about every cell, for metrics only.
-    pub fn truth(&self) -> &Truth {
+    /// The ground truth of every cell, for metrics only.
+    pub fn truth(&self) -> &PhysicsGroundTruth {
         &self.truth
     }
 
-    /// Where the driven robot truly is, for metrics only.
+    /// The true pose of the driven robot, for metrics only.
     pub fn true_pose(&self) -> &Isometry2<f64> {
         &self.fleet.robot(self.spec.driven).pose
     }
 
-    /// Every contact of the driven robot that has begun since the start, in order.
+    /// All contacts of the driven robot since the start, by the time of their beginning.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
     }
 
-    /// Every coming and going of an obstacle since the start, in order.
+    /// All arrivals and removals of obstacles since the start, in order.
     pub fn obstacle_events(&self) -> &[ObstacleEvent] {
         &self.obstacle_events
     }
 
-    /// All robots, in the order of the file.
+    /// All robots, in the order of the spec.
     pub fn robots(&self) -> impl ExactSizeIterator<Item = RobotView<'_>> {
         self.fleet.robots()
     }
@@ -76,12 +77,12 @@ impl PhysicsWorld {
         self.fleet.walls()
     }
 
-    /// The obstacles that are there now, where they are now.
+    /// The obstacles that are present now, at their present poses.
     pub fn obstacles(&self) -> impl Iterator<Item = ObstacleView<'_>> {
         self.fleet.obstacles()
     }
 
-    /// Lets one physics step pass.
+    /// Does one physics step.
     fn advance(&mut self) {
         self.fleet.think(|robot| !robot.is_driven());
         self.fleet.advance();
@@ -89,8 +90,8 @@ impl PhysicsWorld {
         self.truth.set_time(time_s);
         for index in others(&self.spec) {
             let robot = self.fleet.robot(index);
-            let was = robot.spec.form(&robot.was);
-            self.truth.move_robot(Body::Robot(index), Some(&was), &robot.form());
+            let before = robot.spec.form(&robot.previous_pose);
+            self.truth.move_robot(Body::Robot(index), Some(&before), &robot.form());
         }
         if self.fleet.moved().len() > 0 {
             let boxes = self.fleet.standing_boxes();
@@ -102,10 +103,10 @@ impl PhysicsWorld {
         }
         let contacts = self.fleet.take_contacts().into_iter();
         self.contacts.extend(contacts.filter(|contact| contact.robot == self.spec.driven));
-        self.fleet.move_obstacles(|obstacle, what, standing| {
+        self.fleet.update_obstacles(|obstacle, appeared, standing| {
             let spec = &self.spec.fleet.obstacles[obstacle];
             let cells = self.truth.change_box(&spec.shape, standing, Some(Body::Obstacle(obstacle)));
-            let (name, appeared) = (spec.name.clone(), what == Move::Appeared);
+            let name = spec.name.clone();
             self.obstacle_events.push(ObstacleEvent { time_s, obstacle, name, appeared, cells });
         });
     }
@@ -121,10 +122,11 @@ impl World for PhysicsWorld {
     type Reading = LaserReading;
     type Command = Twist;
 
-    /// The scan of the driven robot's main laser, with its pose by odometry at the same instant; its
-    /// other senses look no oftener than that. Looking twice at the same time gives the same reading.
+    /// The scan of the main laser of the driven robot, with the pose by odometry at the same instant. The other
+    /// sensors of the robot measure at most as often. Two calls at the same time give the same reading.
     fn sense(&mut self) -> LaserReading {
-        self.fleet.look(self.spec.driven).clone()
+        let robot = self.fleet.look(self.spec.driven);
+        robot.reading().expect("the main laser scanner has just measured").clone()
     }
 
     fn act(&mut self, command: &Twist) {

@@ -32,7 +32,7 @@ impl Visible for PhysicsWorld {
     fn robots<'a>(&'a self, _: &'a LaserReading) -> Vec<RobotState<'a>> {
         let state = |robot: sim::physics::RobotView<'a>| RobotState {
             pose: robot.pose,
-            sight: robot.sweep.filter(|_| robot.is_driven).map(|sweep| Sight::Laser(&sweep.reading)),
+            sight: robot.reading.filter(|_| robot.is_driven).map(Sight::Laser),
         };
         PhysicsWorld::robots(self).map(state).collect()
     }

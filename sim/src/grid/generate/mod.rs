@@ -6,19 +6,16 @@ mod rooms;
 mod tests;
 
 use super::spec::{BlockSpec, GridSpec, MAX_DWELL, MAX_SENSOR_RADIUS, parts};
-use interfaces::{Cell, Grid, GridFrame};
+use interfaces::{Cell, Grid, GridFrame, Purpose, RandomStream};
 use nalgebra::Point2;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use std::ops::RangeInclusive;
 
-/// A map that had no room for all blocks is drawn anew, at most so often.
+/// The largest number of maps that are drawn until one has room for all blocks.
 const MAX_MAPS: usize = 20;
 
-/// What random worlds are like. Pairs are the least and the most, both included; each world draws
-/// its own figure between them. Pairs the wrong way round are turned, and what makes no sense is
-/// cut to what does.
+/// The settings of random worlds. A pair gives the smallest and the largest value, both included; each world draws
+/// its own value between them. A pair in the wrong order is swapped, and values out of range are cut to the range.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GenerateSettings {
@@ -26,23 +23,22 @@ pub struct GenerateSettings {
     pub width: [u32; 2],
     /// Rows, outer walls included; 9 to 1000.
     pub height: [u32; 2],
-    /// Inner walls from wall to wall, each with one or two openings; 0 to 1000. Where no room is
-    /// large enough to be divided, there are fewer.
+    /// Inner walls from wall to wall, each with one or two openings; 0 to 1000. There are fewer where no room is
+    /// large enough to be divided.
     pub walls: [u32; 2],
     /// The width of an opening, cells; 1 to 100.
     pub opening: [u32; 2],
-    /// Short walls that stand free; 0 to 1000.
+    /// Short walls that touch no other wall; 0 to 1000.
     pub pillars: [u32; 2],
-    /// Moving blocks; 0 to 1000. Where there is no room, there are fewer.
+    /// Moving blocks; 0 to 1000. There are fewer where there is no room.
     pub blocks: [u32; 2],
-    /// The cells of a block's path; 2 to 1000.
+    /// The number of cells of the path of a block; 2 to 1000.
     pub path_cells: [u32; 2],
-    /// The kinds of paths to draw from; none stands for all.
+    /// The kinds of paths to draw from; an empty list stands for all.
     pub paths: Vec<PathKind>,
-    /// The steps that a block stands on a cell, 1 to 1 000 000; each order of magnitude is as likely
-    /// as the others.
+    /// The steps that a block stays on a cell, 1 to 1 000 000. All orders of magnitude are equally likely.
     pub dwell: [u32; 2],
-    /// How far the robot sees, cells; 1 to 100.
+    /// The range of the sensor of the robot, cells; 1 to 100.
     pub sensor_radius: u32,
 }
 
@@ -86,7 +82,7 @@ impl GridSpec {
     /// free-standing walls, blocks whose paths keep apart, the robot in the centre. All free cells
     /// are connected. The same settings and seed give the same world, on every machine.
     pub fn generate(settings: &GenerateSettings, seed: u64) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut rng = RandomStream::new(seed, Purpose::WorldGenerator);
         let wanted = between(&mut rng, settings.blocks, 0..=1000) as usize;
         let mut best = draw(settings, wanted, seed, &mut rng);
         for _ in 1..MAX_MAPS {
@@ -103,7 +99,7 @@ impl GridSpec {
 }
 
 /// A world with as many of the `wanted` blocks as there is room for.
-fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut ChaCha8Rng) -> GridSpec {
+fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomStream) -> GridSpec {
     let (width, height) = (between(rng, settings.width, 9..=1000), between(rng, settings.height, 9..=1000));
     let frame = GridFrame::new(Point2::origin(), 1.0, width as usize, height as usize);
     let frame = frame.expect("at most a million cells of 1 m make a frame");
@@ -125,7 +121,7 @@ fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut ChaCha8
     }
 }
 
-fn block(settings: &GenerateSettings, number: usize, path: paths::Path, rng: &mut ChaCha8Rng) -> BlockSpec {
+fn block(settings: &GenerateSettings, number: usize, path: paths::Path, rng: &mut RandomStream) -> BlockSpec {
     let (low, high) = cut(settings.dwell, 1..=MAX_DWELL);
     let (log_low, log_high) = (libm::log(f64::from(low)), libm::log(f64::from(high) + 1.0));
     let log_dwell = log_low + rng.random::<f64>() * (log_high - log_low);
@@ -134,15 +130,15 @@ fn block(settings: &GenerateSettings, number: usize, path: paths::Path, rng: &mu
     BlockSpec { name, dwell, stood: rng.random_range(0..dwell), course: path.course, path: path.cells }
 }
 
-/// A number between the two of a setting.
-fn between(rng: &mut ChaCha8Rng, pair: [u32; 2], sense: RangeInclusive<u32>) -> i32 {
-    let (low, high) = cut(pair, sense);
+/// A random number between the two of a setting.
+fn between(rng: &mut RandomStream, pair: [u32; 2], valid: RangeInclusive<u32>) -> i32 {
+    let (low, high) = cut(pair, valid);
     rng.random_range(low..=high) as i32
 }
 
-/// A setting, in order and cut to what makes sense.
-fn cut([a, b]: [u32; 2], sense: RangeInclusive<u32>) -> (u32, u32) {
-    let cut = |value: u32| value.clamp(*sense.start(), *sense.end());
+/// A setting, in order and cut to its range.
+fn cut([a, b]: [u32; 2], valid: RangeInclusive<u32>) -> (u32, u32) {
+    let cut = |value: u32| value.clamp(*valid.start(), *valid.end());
     (cut(a.min(b)), cut(a.max(b)))
 }
 

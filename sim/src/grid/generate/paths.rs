@@ -1,15 +1,14 @@
-//! The paths of the blocks of a random world. They keep apart from each other and from the
-//! robot's start, by a cell at least.
+//! The paths of the blocks of a random world. Between two paths, and between a path and the start of the robot,
+//! there is at least one cell.
 
 use super::super::spec::Course;
 use super::{GenerateSettings, PathKind, cut};
-use interfaces::{Cell, Grid};
+use interfaces::{Cell, Grid, RandomStream};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
-/// A path that finds no place is drawn anew, at most so often.
+/// The largest number of draws until a path has room.
 const MAX_TRIES: usize = 400;
-/// The chance that a winding path goes straight on.
+/// The probability that a winding path goes straight on.
 const STRAIGHT_ON: f64 = 0.7;
 
 pub(super) struct Path {
@@ -17,13 +16,13 @@ pub(super) struct Path {
     pub(super) course: Course,
 }
 
-/// Paths for so many blocks, or for as many as find a place.
+/// Paths for the `wanted` number of blocks, or for as many as there is room for.
 pub(super) fn paths(
     settings: &GenerateSettings,
     walls: &Grid<bool>,
     start: Cell,
     wanted: usize,
-    rng: &mut ChaCha8Rng,
+    rng: &mut RandomStream,
 ) -> Vec<Path> {
     let mut open = walls.map(|wall| !wall);
     close_around(&mut open, start);
@@ -36,8 +35,8 @@ pub(super) fn paths(
     paths
 }
 
-/// A path over open cells, if there is one where it was drawn.
-fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut ChaCha8Rng) -> Option<Path> {
+/// A random path, if all of its cells are open.
+fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut RandomStream) -> Option<Path> {
     let kinds = if settings.paths.is_empty() { &PathKind::ALL[..] } else { &settings.paths };
     let kind = kinds[rng.random_range(0..kinds.len())];
     let (low, high) = cut(settings.path_cells, 2..=1000);
@@ -51,15 +50,14 @@ fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut ChaCha8Rng) ->
     cells.iter().all(|cell| open.get(*cell) == Some(&true)).then_some(Path { cells, course })
 }
 
-fn line(first: Cell, length: u32, rng: &mut ChaCha8Rng) -> Vec<Cell> {
+fn line(first: Cell, length: u32, rng: &mut RandomStream) -> Vec<Cell> {
     let toward = first.neighbours4()[rng.random_range(0..4)];
     let (dx, dy) = (toward.x - first.x, toward.y - first.y);
     (0..length as i32).map(|step| Cell::new(first.x + step * dx, first.y + step * dy)).collect()
 }
 
-/// The border of a rectangle of `low` to `high` cells, either way round; `None` where no rectangle
-/// has such a border.
-fn ring(first: Cell, low: u32, high: u32, rng: &mut ChaCha8Rng) -> Option<Vec<Cell>> {
+/// The border of a rectangle, in either direction; `None` where no rectangle has a border of `low` to `high` cells.
+fn ring(first: Cell, low: u32, high: u32, rng: &mut RandomStream) -> Option<Vec<Cell>> {
     // A border of c cells belongs to sides of c / 2 + 2 cells together, each of two or more.
     let (low, high) = (low.max(4).div_ceil(2), high / 2);
     if low > high {
@@ -77,7 +75,7 @@ fn ring(first: Cell, low: u32, high: u32, rng: &mut ChaCha8Rng) -> Option<Vec<Ce
             cells.push(at);
         }
     }
-    // The last one is the first again.
+    // The last cell is the first again.
     cells.pop();
     if rng.random() {
         cells.reverse();
@@ -85,7 +83,7 @@ fn ring(first: Cell, low: u32, high: u32, rng: &mut ChaCha8Rng) -> Option<Vec<Ce
     Some(cells)
 }
 
-fn winding(first: Cell, length: u32, open: &Grid<bool>, rng: &mut ChaCha8Rng) -> Option<Vec<Cell>> {
+fn winding(first: Cell, length: u32, open: &Grid<bool>, rng: &mut RandomStream) -> Option<Vec<Cell>> {
     let mut cells = vec![first];
     let mut side = rng.random_range(0..4);
     while cells.len() < length as usize {
@@ -101,7 +99,7 @@ fn winding(first: Cell, length: u32, open: &Grid<bool>, rng: &mut ChaCha8Rng) ->
     Some(cells)
 }
 
-/// Takes a cell and the eight around it.
+/// Closes a cell and the eight cells around it.
 fn close_around(open: &mut Grid<bool>, cell: Cell) {
     for near in cell.neighbours8().into_iter().chain([cell]) {
         if let Some(open) = open.get_mut(near) {

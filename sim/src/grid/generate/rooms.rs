@@ -1,26 +1,25 @@
-//! The walls of a random world: a house divided again and again, every dividing wall with an
-//! opening, so that all rooms stay connected.
+//! The walls of a random world: rooms are divided repeatedly by walls with openings, so that all rooms stay
+//! connected.
 
 use super::{GenerateSettings, between, stands_free};
-use interfaces::{Cell, Grid, GridFrame};
+use interfaces::{Cell, Grid, GridFrame, RandomStream};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
-/// No room is narrower, cells.
+/// The smallest width of a room, cells.
 const MIN_ROOM: i32 = 4;
-/// A wall or pillar that finds no place is tried at most so often.
+/// The largest number of draws until a wall or a pillar has room.
 const MAX_TRIES: usize = 50;
-/// The length of free-standing walls, cells.
+/// The length of pillars, cells.
 const PILLAR: [u32; 2] = [1, 4];
 
-/// A room: its lowest, leftmost and its highest, rightmost cell.
+/// A room: its lower left and its upper right cell.
 type Room = (Cell, Cell);
 
 pub(super) fn walls(
     settings: &GenerateSettings,
     frame: GridFrame,
     start: Cell,
-    rng: &mut ChaCha8Rng,
+    rng: &mut RandomStream,
 ) -> Grid<bool> {
     let mut walls = Grid::filled(frame, true);
     let (right, top) = (frame.width() as i32 - 2, frame.height() as i32 - 2);
@@ -45,14 +44,14 @@ pub(super) fn walls(
     walls
 }
 
-/// Divides a room by a wall with one or two openings, if the room drawn and the place drawn allow
-/// it. The wall must end on walls, so that it closes no opening of another.
+/// Divides a random room at a random position by a wall with one or two openings, if there is room. The wall must
+/// end on walls, so that it closes no opening of another wall.
 fn divide(
     settings: &GenerateSettings,
     walls: &mut Grid<bool>,
     rooms: &mut Vec<Room>,
     start: Cell,
-    rng: &mut ChaCha8Rng,
+    rng: &mut RandomStream,
 ) -> bool {
     let index = rng.random_range(0..rooms.len());
     let (low, high) = rooms[index];
@@ -74,7 +73,7 @@ fn divide(
         let width = between(rng, settings.opening, 1..=100) as usize;
         let width = width.min(wall.len());
         let first = rng.random_range(0..=wall.len() - width);
-        // The second opening may overlap the first, or the gap that it left.
+        // The second opening may overlap the first one.
         wall.drain(first..first + width);
         if wall.is_empty() {
             break;
@@ -93,8 +92,8 @@ fn divide(
     true
 }
 
-/// Puts up a short straight wall that nothing touches, if the place drawn allows it.
-fn pillar(walls: &mut Grid<bool>, start: Cell, rng: &mut ChaCha8Rng) -> bool {
+/// Adds a short straight wall that touches nothing, if there is room at a random position.
+fn pillar(walls: &mut Grid<bool>, start: Cell, rng: &mut RandomStream) -> bool {
     let length = between(rng, PILLAR, 1..=100);
     let frame = *walls.frame();
     let first = frame.cell(rng.random_range(0..frame.len()));

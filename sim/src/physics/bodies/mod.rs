@@ -1,9 +1,9 @@
-//! Rigid bodies and contacts: the only folder that knows rapier.
+//! Rigid bodies and contacts. This folder is the only one that knows rapier.
 
-mod mend;
 mod movers;
+mod penetration;
 #[cfg(test)]
-mod oracle;
+mod probe;
 mod touch;
 
 pub(super) use movers::Mover;
@@ -12,55 +12,45 @@ pub(super) use touch::Touch;
 use super::command::Velocity;
 use super::report::Body;
 use super::shape::Rectangle;
-use super::snapshot::{Played, Tape, Torn};
+use super::snapshot::{Values, value};
 use super::spec::{FleetSpec, Motion, RobotSpec};
 use interfaces::{heading_rad, rotation};
 use nalgebra::{Isometry2, Translation2, Vector2};
 use rapier2d::prelude as rapier;
+use serde::{Deserialize, Serialize};
 
-/// The most that an obstacle's surface moves by itself in a step, m, with some room.
-const MOVER_M: f64 = 0.125;
-/// How far corners turn in a step is foreseen up to this way, m: farther on, they do not go straight.
-const MOST_TURN_M: f64 = 0.25;
+/// The largest motion of the surface of an obstacle in a step, m, with a margin.
+const MAX_MOVER_M: f64 = 0.125;
+/// The largest motion of a corner in a step that contacts are predicted for, m: a longer motion is not straight.
+const MAX_TURN_M: f64 = 0.25;
 
-/// All bodies: walls and obstacles that stand, robots that drive.
+/// All bodies: walls, obstacles and robots.
 pub(super) struct Bodies {
     world: rapier::PhysicsWorld,
     robots: Vec<Robot>,
-    /// Robots and what is pushed, with their poses before the last step.
+    /// Robots and pushed obstacles, with their poses before the last step.
     free: Vec<(rapier::RigidBodyHandle, rapier::Pose)>,
-    /// What boxes rub on.
+    /// The body that pushed boxes have friction with.
     floor: Option<rapier::RigidBodyHandle>,
-    /// Whether contacts are foreseen alike for all bodies, and not by each one's own velocity.
-    foresees_all: bool,
+    /// Whether contacts are predicted over the same distance for all bodies, and not by the velocity of each.
+    predicts_for_all: bool,
 }
 
 #[derive(Clone)]
 struct Robot {
     body: rapier::RigidBodyHandle,
     collider: rapier::ColliderHandle,
-    /// The heading of the wheels half way through the last step.
+    /// The direction of the wheels in the middle of the last step.
     forward: Vector2<f64>,
 }
 
-/// An obstacle's body, to take it away again.
-#[derive(Clone, Copy, Debug, Default)]
+/// The body of an obstacle that can be removed.
+#[derive(Clone, Copy, Deserialize, Serialize)]
 pub(super) struct Handle(rapier::ColliderHandle);
-
-impl Handle {
-    /// Writes or reads it.
-    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
-        let (mut index, mut generation) = self.0.into_raw_parts();
-        tape.u32(&mut index)?;
-        tape.u32(&mut generation)?;
-        self.0 = rapier::ColliderHandle::from_raw_parts(index, generation);
-        Ok(())
-    }
-}
 
 impl Clone for Bodies {
     fn clone(&self) -> Self {
-        // Of what rapier has no copy, there is only workspace, and what is not used here.
+        // The parts that rapier does not copy are workspace, or not used here.
         let world = rapier::PhysicsWorld {
             gravity: self.world.gravity,
             integration_parameters: self.world.integration_parameters,
@@ -77,42 +67,38 @@ impl Clone for Bodies {
             robots: self.robots.clone(),
             free: self.free.clone(),
             floor: self.floor,
-            foresees_all: self.foresees_all,
+            predicts_for_all: self.predicts_for_all,
         }
     }
 }
 
 impl Bodies {
-    /// No bodies yet, but all of `spec` are to come.
+    /// No bodies yet, with settings for all bodies of `spec`.
     pub(super) fn new(spec: &FleetSpec) -> Self {
         let mut world = rapier::PhysicsWorld { gravity: rapier::Vector::ZERO, ..Default::default() };
         world.integration_parameters.dt = spec.step_s() as f32;
-        let foreseen_m = foreseen_m(spec);
-        if let Some(foreseen_m) = foreseen_m {
+        let prediction_m = prediction_m(spec);
+        if let Some(prediction_m) = prediction_m {
             let parameters = &mut world.integration_parameters;
             parameters.normalized_prediction_distance =
-                parameters.normalized_prediction_distance.max(foreseen_m);
+                parameters.normalized_prediction_distance.max(prediction_m);
         }
-        // Distances of contacts are read at every step, so they must not be stale.
+        // Distances of contacts are read at every step, so they must be up to date.
         world.integration_parameters.contact_recycling = false;
-        Self { world, robots: Vec::new(), free: Vec::new(), floor: None, foresees_all: foreseen_m.is_some() }
+        Self {
+            world,
+            robots: Vec::new(),
+            free: Vec::new(),
+            floor: None,
+            predicts_for_all: prediction_m.is_some(),
+        }
     }
 
-    /// Writes or reads all that moves and touches. The same bodies must have been added before.
-    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
-        let mut bytes = match tape {
-            Tape::Writing(_) => postcard::to_stdvec(&self.world).map_err(|_| Torn)?,
-            Tape::Reading(_) => Vec::new(),
-        };
-        tape.bytes(&mut bytes)?;
-        if let Tape::Reading(_) = tape {
-            self.world = postcard::from_bytes(&bytes).map_err(|_| Torn)?;
-        }
-        for robot in &mut self.robots {
-            tape.f64(&mut robot.forward.x)?;
-            tape.f64(&mut robot.forward.y)?;
-        }
-        Ok(())
+    /// The values that a snapshot holds. The same bodies must have been added before.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        let mut values = vec![value(&mut self.world)];
+        values.extend(self.robots.iter_mut().flat_map(|robot| &mut robot.forward).map(value));
+        values
     }
 
     /// Adds a body that stands still.
@@ -121,7 +107,7 @@ impl Bodies {
         Handle(self.world.insert_collider(collider, None))
     }
 
-    /// Takes such a body away.
+    /// Removes such a body.
     pub(super) fn remove_box(&mut self, handle: Handle) {
         self.world.remove_collider(handle.0);
     }
@@ -137,26 +123,26 @@ impl Bodies {
             .friction(0.0)
             .user_data(pack(Body::Robot(self.robots.len())));
         let collider = match spec.mass_kg {
-            // The wheels turn it about its middle, wherever the middle of its outline is.
+            // The wheels turn the robot about its centre, wherever the centroid of its outline is.
             _ if !is_round => collider.density(0.0),
             Some(mass_kg) => collider.mass(mass_kg as f32),
             None => collider,
         };
-        // Contacts are foreseen over a step's way, so that a fast robot does not enter a wall. (rapier
-        // would leave those out that a body does not drive into by itself.)
-        let own_way_m = if self.foresees_all { 0.0 } else { 2.0 * spec.drive.fastest_mps() * step_s };
+        // Contacts are predicted over the motion of a step, so that a fast robot does not enter a wall. (rapier
+        // would leave out those that a body does not drive into by itself.)
+        let own_motion_m = if self.predicts_for_all { 0.0 } else { 2.0 * spec.drive.fastest_mps() * step_s };
         let body = rapier::RigidBodyBuilder::dynamic()
             .pose(to_rapier(&spec.pose))
             .can_sleep(false)
-            .soft_ccd_prediction(own_way_m as f32);
+            .soft_ccd_prediction(own_motion_m as f32);
         let body = if is_round { body } else { body.additional_mass_properties(disc_mass(spec)) };
         let (body, collider) = self.world.insert(body, collider);
         self.free.push((body, to_rapier(&spec.pose)));
         self.robots.push(Robot { body, collider, forward: Vector2::x() });
     }
 
-    /// Sets a robot's velocity for the next step: along the heading half way through it, so that
-    /// steps make up an arc.
+    /// Sets the velocity of a robot for the next step: along the heading in the middle of the step, so that
+    /// steps form an arc.
     pub(super) fn set_velocity(&mut self, robot: usize, own_velocity: &Velocity, step_s: f64) {
         let own = &mut self.robots[robot];
         let body = &mut self.world.bodies[own.body];
@@ -173,15 +159,15 @@ impl Bodies {
             *was = *self.world.bodies[*body].position();
         }
         self.world.step();
-        self.mend();
+        self.resolve_penetration();
     }
 
-    /// Where a robot is.
+    /// The pose of a robot.
     pub(super) fn pose(&self, robot: usize) -> Isometry2<f64> {
         from_rapier(self.world.bodies[self.robots[robot].body].position())
     }
 
-    /// The velocity that the contacts left a robot in the last step.
+    /// The velocity of a robot after the contacts of the last step.
     pub(super) fn velocity(&self, robot: usize) -> Velocity {
         let own = &self.robots[robot];
         let body = &self.world.bodies[own.body];
@@ -193,7 +179,7 @@ impl Bodies {
         }
     }
 
-    /// Sets a robot down somewhere else, at rest.
+    /// Puts a robot at a pose, at rest.
     pub(super) fn put(&mut self, robot: usize, pose: &Isometry2<f64>) {
         let body = &mut self.world.bodies[self.robots[robot].body];
         body.set_position(to_rapier(pose), true);
@@ -202,25 +188,25 @@ impl Bodies {
     }
 }
 
-/// Over which way contacts are foreseen for all bodies, m, if there are any that each one's own
-/// velocity does not foretell: what is pushed moves as others drive, and corners move as they turn.
-/// Where all robots are round and nothing else moves, that is rare enough to do without.
-fn foreseen_m(spec: &FleetSpec) -> Option<f32> {
+/// The distance over which contacts are predicted for all bodies, m. `None`: the velocity of each body is
+/// enough. It is not enough where obstacles move (a pushed box moves as robots drive) or robots have corners
+/// (which move as the robot turns).
+fn prediction_m(spec: &FleetSpec) -> Option<f32> {
     let has_movers = spec.obstacles().iter().any(|obstacle| !matches!(obstacle.motion, Motion::Fixed));
     if !has_movers && spec.robots().iter().all(|robot| robot.corners.is_empty()) {
         return None;
     }
-    let ways_m = spec.robots().iter().map(|robot| {
+    let motions_m = spec.robots().iter().map(|robot| {
         let turn_radps = if robot.corners.is_empty() { 0.0 } else { robot.drive.max_angular_radps };
-        let turn_m = (turn_radps * robot.radius_m * spec.step_s()).min(MOST_TURN_M);
+        let turn_m = (turn_radps * robot.radius_m * spec.step_s()).min(MAX_TURN_M);
         robot.drive.fastest_mps() * spec.step_s() + turn_m
     });
-    let farthest_m = ways_m.fold(if has_movers { MOVER_M } else { 0.0 }, f64::max);
-    // Twice: another one may come towards it.
+    let farthest_m = motions_m.fold(if has_movers { MAX_MOVER_M } else { 0.0 }, f64::max);
+    // Twice: two bodies may move towards each other.
     Some((2.0 * farthest_m) as f32)
 }
 
-/// The mass of a disc about a robot's middle.
+/// The mass of a disc about the centre of a robot.
 fn disc_mass(spec: &RobotSpec) -> rapier::MassProperties {
     let square_m2 = spec.radius_m * spec.radius_m;
     let mass_kg = spec.mass_kg.unwrap_or(std::f64::consts::PI * square_m2);
@@ -232,7 +218,7 @@ fn left(forward: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-forward.y, forward.x)
 }
 
-/// A rectangle's collider, without a place. All sides are smooth.
+/// The collider of a rectangle, without a pose. All sides are smooth.
 fn cuboid(body: Body, shape: &Rectangle) -> rapier::ColliderBuilder {
     rapier::ColliderBuilder::cuboid(shape.half_m.x as f32, shape.half_m.y as f32)
         .friction(0.0)
@@ -249,7 +235,7 @@ fn to_rapier(pose: &Isometry2<f64>) -> rapier::Pose {
     rapier::Pose::new(rapier::Vector::new(at.x as f32, at.y as f32), heading_rad(pose) as f32)
 }
 
-/// A body's name in the 128 bits that rapier keeps for us.
+/// A body as the 128 bits of user data that rapier keeps.
 fn pack(body: Body) -> u128 {
     let (kind, index) = match body {
         Body::Wall(index) => (0, index),

@@ -1,15 +1,16 @@
 use crate::physics::command::Command;
-use crate::physics::report::RobotView;
+use crate::physics::robot::RobotView;
 use interfaces::LaserReading;
 
-/// What tells driven robots where to go: any type, or a closure from a robot and the reading of its
-/// main laser to a velocity ([`interfaces::Twist`]) or any other [`Command`].
+/// A controller of driven robots: any type, or a closure from a robot and the reading of its main laser to a
+/// velocity ([`interfaces::Twist`]) or any other [`Command`].
 ///
-/// It is asked at every scan of the robot's main laser. `&mut ()` has nothing to say: robots go on
-/// with what [`Fleet::command`](super::Fleet::command) told them.
+/// The fleet calls it at every scan of the main laser of a robot. `&mut ()` gives no commands: robots keep the
+/// command of [`Fleet::command`](super::Fleet::command).
 pub trait Controller {
-    /// What the robot is to do from now on; `None`: what it does already. All else that it senses is in
-    /// its view. Not a number stops it; what is beyond its bounds is cut to them.
+    /// The command from now on; `None`: the robot keeps its command. The readings of all other sensors are in
+    /// the view of the robot. A command that is not a number stops the robot; one beyond the bounds of the robot
+    /// is cut to them.
     fn drive(&mut self, robot: &RobotView<'_>, reading: &LaserReading) -> Option<Command>;
 }
 

@@ -1,7 +1,7 @@
-//! Any number of robots in one place.
+//! Any number of robots in one world.
 
 mod controller;
-mod state;
+mod snapshots;
 mod teleport;
 mod time;
 
@@ -10,71 +10,69 @@ pub use teleport::TeleportError;
 
 use super::bodies::Bodies;
 use super::command::Command;
-use super::finder::Tagged;
 use super::form::Form;
-use super::laser::beams;
 use super::obstacles::Obstacle;
-use super::rays::{Beams, Disc, Scene, Scratch};
-use super::report::{Body, Contact, ObstacleView, RobotView};
-use super::robot::{Now, Robot};
+use super::rays::{Disc, Scene, Scratch};
+use super::report::{Body, Contact, ObstacleView};
+use super::robot::{Robot, RobotView};
+use super::sensors::{SharedBeams, Surroundings, Tagged};
 use super::shape::Rectangle;
-use super::spec::{FleetSpec, LaserSpec, RobotSpec};
-use interfaces::{GridFrame, LaserReading};
+use super::spec::{FleetSpec, RobotSpec};
+use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
-use std::sync::Arc;
 
-/// A place with any number of robots.
+/// A world with any number of robots.
 ///
 /// The same spec, seed and commands give the same bits, on every machine and any number of threads.
-/// A clone is a fork: it lives on by itself, and alike under the same commands.
+/// A clone is a fork: it continues on its own, and in the same way under the same commands.
 #[derive(Clone)]
 pub struct Fleet {
     spec: FleetSpec,
     seed: u64,
-    /// Steps since the start; time is a multiple, so that it never drifts.
+    /// Steps since the start. Time is a multiple of the step, so that it never drifts.
     step: u64,
     bodies: Bodies,
     robots: Vec<Robot>,
     obstacles: Vec<Obstacle>,
     /// The robots that have corners.
     cornered: Vec<usize>,
-    /// Whether any robot looks for tags.
-    has_finders: bool,
+    /// Whether any robot has a fiducial finder.
+    has_fiducial_finders: bool,
     scene: Scene,
     contacts: Vec<Contact>,
-    /// The obstacles that moved in the last step, with where they were.
+    /// The obstacles that moved in the last step, with the shape before the step.
     moved: Vec<(usize, Rectangle)>,
     parallel_lasers: bool,
     scratch: Scratch,
 }
 
 impl Fleet {
-    /// The place of `spec` at its start. `seed` starts all chance: the noise of lasers, that of
-    /// odometry, and what robots do by themselves, each in a stream of its own.
+    /// The world of `spec` at its start. `seed` seeds all random streams: sensor noise, odometry noise, and the
+    /// decisions of robots and doors, each in a stream of its own.
     pub fn new(spec: &FleetSpec, seed: u64) -> Self {
         let mut bodies = Bodies::new(spec);
         for (index, wall) in spec.walls.iter().enumerate() {
             bodies.add_box(Body::Wall(index), wall);
         }
-        let mut lasers = Lasers::default();
+        let mut beams = SharedBeams::default();
         let mut robots = Vec::with_capacity(spec.robots.len());
         for (index, robot) in spec.robots.iter().enumerate() {
             bodies.add_robot(robot, spec.step_s);
-            let beams = robot.lasers().map(|laser| lasers.beams(laser)).collect();
+            let beams = robot.lasers().map(|laser| beams.of(laser)).collect();
             robots.push(Robot::new(robot, index, bodies.pose(index), spec.step_s, seed, beams));
         }
         let obstacles =
             spec.obstacles.iter().enumerate().map(|(i, o)| Obstacle::new(o, i, seed, &mut bodies));
         let obstacles = obstacles.collect();
-        // A robot with corners is no disc to be seen, but a hull after those of the obstacles.
+        // A robot with corners is a disc of radius 0, and a polygon after those of the obstacles.
         let radius_m = |robot: &Robot| if robot.spec.corners.is_empty() { robot.spec.radius_m } else { 0.0 };
         let discs = robots.iter().map(|robot| Disc { center: robot.at(), radius_m: radius_m(robot) });
         let cornered = spec.robots.iter().enumerate().filter(|(_, robot)| !robot.corners.is_empty());
         let cornered: Vec<usize> = cornered.map(|(index, _)| index).collect();
         let ranges_m = spec.robots.iter().flat_map(RobotSpec::lasers).map(|laser| laser.range_max_m);
         let range_m = ranges_m.fold(0.0, f64::max);
-        let hulls = spec.obstacles.len() + cornered.len();
-        let scene = Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), hulls, range_m);
+        let polygons = spec.obstacles.len() + cornered.len();
+        let scene = Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), polygons, range_m);
         let mut fleet = Self {
             spec: spec.clone(),
             seed,
@@ -83,7 +81,7 @@ impl Fleet {
             robots,
             obstacles,
             cornered,
-            has_finders: spec.robots.iter().any(|robot| robot.fiducial.is_some()),
+            has_fiducial_finders: spec.robots.iter().any(|robot| robot.fiducial.is_some()),
             scene,
             contacts: Vec::new(),
             moved: Vec::new(),
@@ -100,12 +98,12 @@ impl Fleet {
         self.step as f64 * self.spec.step_s
     }
 
-    /// What the place was made from.
+    /// The spec of the world.
     pub fn spec(&self) -> &FleetSpec {
         &self.spec
     }
 
-    /// All robots, in the order of the file.
+    /// All robots, in the order of the spec.
     pub fn robots(&self) -> impl ExactSizeIterator<Item = RobotView<'_>> {
         self.robots.iter().map(Robot::view)
     }
@@ -115,26 +113,26 @@ impl Fleet {
         self.spec.walls.iter().map(Rectangle::corners)
     }
 
-    /// The obstacles that are there now, where they are now.
+    /// The obstacles that are present now, at their present poses.
     pub fn obstacles(&self) -> impl Iterator<Item = ObstacleView<'_>> {
         let standing = self.obstacles.iter().enumerate().filter(|(_, obstacle)| obstacle.is_standing());
         standing.map(|(index, o)| ObstacleView { index, name: &o.spec.name, corners: o.shape.corners() })
     }
 
-    /// The contacts that began in the last [`Fleet::step`] or since the last [`Fleet::run_until`] began, step by
-    /// step and robot by robot. No snapshot has them.
+    /// The contacts that began in the last [`Fleet::step`] or [`Fleet::run_until`], by step and robot. Snapshots do
+    /// not contain them.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
     }
 
-    /// Whether lasers look around on all threads of rayon's pool, or on this one alone, as at
-    /// first. The result is the same; a step must take some 0.1 ms for it to be worth it.
+    /// Whether lasers measure on all threads of the pool of rayon, or only on this thread (the default). The
+    /// result is the same. It pays where a step takes at least about 0.1 ms.
     pub fn set_parallel_lasers(&mut self, parallel: bool) {
         self.parallel_lasers = parallel;
     }
 
-    /// Tells a robot (by its place in the world file) what to do, until it is told otherwise: at any step,
-    /// and not only when it has a new scan. Returns whether it obeys; one that is not driven does not.
+    /// Sets the command of a robot (by index), at any step and not only at a new scan. Returns whether the robot
+    /// obeys: a robot that is not driven does not.
     pub fn command(&mut self, robot: usize, wanted: impl Into<Command>) -> bool {
         let driven = self.robots.get_mut(robot).filter(|robot| robot.is_driven());
         driven.map(|robot| robot.command(&wanted.into())).is_some()
@@ -150,17 +148,18 @@ impl Fleet {
         &self.robots[robot]
     }
 
-    /// What a robot sees now.
-    pub(super) fn look(&mut self, robot: usize) -> &LaserReading {
+    /// Lets a robot measure now: with its main laser scanner, and with all other sensors that are due.
+    pub(super) fn look(&mut self, robot: usize) -> &Robot {
         self.scene.sort();
         let (step, time_s, tagged) = (self.step, self.time_s(), self.tagged());
-        let now = Now { step, time_s, scene: &self.scene, tagged: &tagged };
-        self.robots[robot].look(&now, &mut self.scratch)
+        let surroundings = Surroundings { step, time_s, scene: &self.scene, tagged: &tagged };
+        self.robots[robot].look(&surroundings, &mut self.scratch);
+        &self.robots[robot]
     }
 
-    /// Everything with a tag that is there, robots first; nothing if no robot looks for it.
+    /// All present bodies with a tag, robots first; none if no robot has a fiducial finder.
     pub(in crate::physics) fn tagged(&self) -> Vec<Tagged> {
-        if !self.has_finders {
+        if !self.has_fiducial_finders {
             return Vec::new();
         }
         let robots = self.robots.iter().enumerate().filter_map(|(index, robot)| {
@@ -177,73 +176,56 @@ impl Fleet {
         robots.chain(obstacles).collect()
     }
 
-    /// Walls, and the obstacles that stand now.
+    /// The walls, and the obstacles that are present now.
     pub(super) fn standing_boxes(&self) -> Vec<Rectangle> {
         let standing = self.obstacles.iter().filter(|obstacle| obstacle.is_standing());
         self.spec.walls.iter().copied().chain(standing.map(|obstacle| obstacle.shape)).collect()
     }
 
-    /// Whether an obstacle stands now.
+    /// Whether an obstacle is present now.
     pub(super) fn is_standing(&self, obstacle: usize) -> bool {
         self.obstacles[obstacle].is_standing()
     }
 
-    /// The obstacles that moved in the last step, each with where it was and is.
+    /// The obstacles that moved in the last step, each with the shapes before and after the step.
     pub(super) fn moved(&self) -> impl ExactSizeIterator<Item = (usize, Rectangle, Rectangle)> {
         self.moved.iter().map(|(index, before)| (*index, *before, self.obstacles[*index].shape))
     }
 
-    /// What lasers see, and the bodies.
+    /// The scene that lasers see, and the bodies.
     #[cfg(test)]
     pub(super) fn into_parts(self) -> (Scene, Bodies) {
         (self.scene, self.bodies)
     }
 
-    /// The energy of motion of everything that is pushed or drives, J.
+    /// The kinetic energy of all dynamic bodies, J.
     #[cfg(test)]
     pub(super) fn kinetic_j(&self) -> f64 {
         self.bodies.kinetic_j()
     }
 
-    /// Shows the lasers what stands now.
+    /// Updates all obstacles in the scene that lasers see.
     fn show_obstacles(&mut self) {
         (0..self.obstacles.len()).for_each(|index| self.show_obstacle(index));
     }
 
-    /// Shows the lasers where a robot is.
+    /// Updates a robot in the scene that lasers see.
     fn show_robot(&mut self, index: usize) {
         let robot = &self.robots[index];
         self.scene.move_disc(index, robot.at());
         if !robot.spec.corners.is_empty()
             && let Form::Convex(corners) = robot.form()
-            && let Ok(place) = self.cornered.binary_search(&index)
+            && let Ok(polygon) = self.cornered.binary_search(&index)
         {
-            self.scene.set_hull(self.obstacles.len() + place, Some(index), &corners);
+            self.scene.set_polygon(self.obstacles.len() + polygon, Some(index), &corners);
         }
     }
 
-    /// Shows the lasers what has become of an obstacle.
+    /// Updates an obstacle in the scene that lasers see.
     fn show_obstacle(&mut self, index: usize) {
         let obstacle = &self.obstacles[index];
         let corners = obstacle.shape.corners();
-        self.scene.set_hull(index, None, if obstacle.is_standing() { &corners } else { &[] });
-    }
-}
-
-/// The beams of all lasers, each kind once.
-#[derive(Default)]
-struct Lasers {
-    known: Vec<(LaserSpec, Arc<Beams>)>,
-}
-
-impl Lasers {
-    fn beams(&mut self, spec: &LaserSpec) -> Arc<Beams> {
-        if let Some((_, beams)) = self.known.iter().find(|(known, _)| known == spec) {
-            return Arc::clone(beams);
-        }
-        let beams = Arc::new(beams(spec));
-        self.known.push((*spec, Arc::clone(&beams)));
-        beams
+        self.scene.set_polygon(index, None, if obstacle.is_standing() { &corners } else { &[] });
     }
 }
 

@@ -1,4 +1,4 @@
-//! Setting robots down somewhere else.
+//! Putting robots at other poses.
 
 use super::{Fleet, corners};
 use crate::physics::robot::Robot;
@@ -6,42 +6,42 @@ use crate::physics::shape::{Rectangle, TOUCH_M};
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Point2};
 
-/// Why a robot stayed where it was.
+/// Why a robot was not moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TeleportError {
-    /// There are fewer robots.
+    /// The index is too large.
     #[error("there is no robot {robot}: there are {robots}, counted from 0")]
     NoSuchRobot {
-        /// The one asked for.
+        /// The requested index.
         robot: usize,
-        /// How many there are.
+        /// The number of robots.
         robots: usize,
     },
-    /// It would reach out of the map, or a number is not finite.
+    /// The robot would reach out of the map, or a number is not finite.
     #[error("[{x_m}, {y_m}] is not within the map")]
     Outside {
-        /// The place asked for, m.
+        /// The requested position, m.
         x_m: f64,
-        /// The place asked for, m.
+        /// The requested position, m.
         y_m: f64,
     },
-    /// A wall, an obstacle or another robot is there.
+    /// A wall, an obstacle or another robot is at the requested pose.
     #[error("at [{x_m:.3}, {y_m:.3}] there is something else")]
     Occupied {
-        /// The place asked for, m.
+        /// The requested position, m.
         x_m: f64,
-        /// The place asked for, m.
+        /// The requested position, m.
         y_m: f64,
     },
 }
 
 impl Fleet {
-    /// Sets a robot (by its place in the world file) down at `pose`, at rest. It knows where it is
-    /// then, as at the start, and looks around when its next scan is due.
+    /// Puts a robot (by index) at `pose`, at rest. Its odometry is exact then, as at the start, and its sensors
+    /// measure when they are due.
     ///
     /// # Errors
     ///
-    /// When there is no such robot, or it would not fit there; everything stays as it was.
+    /// When there is no such robot, or when the robot does not fit at the pose. The state is then unchanged.
     pub fn teleport(&mut self, robot: usize, pose: &Isometry2<f64>) -> Result<(), TeleportError> {
         let Some(spec) = self.spec.robots.get(robot) else {
             return Err(TeleportError::NoSuchRobot { robot, robots: self.robots.len() });

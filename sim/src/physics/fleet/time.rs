@@ -1,19 +1,19 @@
-//! How time passes.
+//! The steps of a fleet.
 
 use super::{Controller, Fleet};
 use crate::physics::bodies::Touch;
-use crate::physics::bumper;
 use crate::physics::form::Form;
-use crate::physics::obstacles::{InTheWay, Obstacle};
+use crate::physics::obstacles::{Blockers, Obstacle};
 use crate::physics::rays::Scratch;
-use crate::physics::report::{Contact, Move};
-use crate::physics::robot::{Now, Robot};
+use crate::physics::report::Contact;
+use crate::physics::robot::Robot;
+use crate::physics::sensors::{Surroundings, bumper};
 use crate::physics::shape::Rectangle;
 use rayon::prelude::*;
 
 impl Fleet {
-    /// Lets one physics step pass. Robots whose scan is due look around first, and decide; those
-    /// that are driven ask `controller`.
+    /// Does one physics step. Robots with a scan due measure first, and decide; `controller` decides for driven
+    /// robots.
     pub fn step(&mut self, controller: &mut impl Controller) {
         self.contacts.clear();
         self.take_step(controller);
@@ -23,18 +23,18 @@ impl Fleet {
         self.think(|_| true);
         for robot in &mut self.robots {
             if robot.is_driven()
-                && robot.is_due(self.step)
-                && let Some(sweep) = robot.sweep()
-                && let Some(wanted) = controller.drive(&robot.view(), &sweep.reading)
+                && robot.decides(self.step)
+                && let Some(reading) = robot.reading()
+                && let Some(command) = controller.drive(&robot.view(), reading)
             {
-                robot.command(&wanted);
+                robot.command(&command);
             }
         }
         self.advance();
-        self.move_obstacles(|_, _, _| ());
+        self.update_obstacles(|_, _, _| ());
     }
 
-    /// Steps until `time_s` has come, s.
+    /// Steps until the time is `time_s`.
     pub fn run_until(&mut self, time_s: f64, controller: &mut impl Controller) {
         self.contacts.clear();
         // Half a microsecond of slack: times are multiples of the step.
@@ -43,86 +43,86 @@ impl Fleet {
         }
     }
 
-    /// Lets the robots that `is_meant` look and decide, where their next scan is due.
+    /// Lets the robots for which `is_meant` holds measure with the sensors that are due, and decide.
     pub(in crate::physics) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
         let (step, time_s) = (self.step, self.time_s());
-        let is_due = |robot: &&mut Robot| robot.looks(step) && is_meant(robot);
+        let is_due = |robot: &&mut Robot| robot.senses(step) && is_meant(robot);
         if !self.robots.iter_mut().any(|robot| is_due(&robot)) {
             return;
         }
         self.scene.sort();
         let tagged = self.tagged();
-        let now = &Now { step, time_s, scene: &self.scene, tagged: &tagged };
+        let surroundings = &Surroundings { step, time_s, scene: &self.scene, tagged: &tagged };
         if self.parallel_lasers {
             let due = self.robots.par_iter_mut().filter(is_due);
-            due.for_each_init(Scratch::default, |scratch, robot| robot.think(now, scratch));
+            due.for_each_init(Scratch::default, |scratch, robot| robot.think(surroundings, scratch));
         } else {
             let due = self.robots.iter_mut().filter(is_due);
-            due.for_each(|robot| robot.think(now, &mut self.scratch));
+            due.for_each(|robot| robot.think(surroundings, &mut self.scratch));
         }
     }
 
-    /// Lets everything that drives do so for one physics step.
+    /// Moves robots and obstacles by one physics step.
     pub(in crate::physics) fn advance(&mut self) {
         for robot in &mut self.robots {
-            robot.push(&mut self.bodies, self.spec.step_s);
+            robot.start_step(&mut self.bodies, self.spec.step_s);
         }
         let before: Vec<Rectangle> = self.obstacles.iter().map(|obstacle| obstacle.shape).collect();
         self.step += 1;
-        self.set_obstacles_out();
+        self.start_obstacles();
         self.bodies.step();
         for index in 0..self.robots.len() {
-            self.robots[index].follow(&self.bodies);
+            self.robots[index].end_step(&self.bodies);
             self.show_robot(index);
         }
         self.moved.clear();
         for (index, before) in before.into_iter().enumerate() {
-            self.obstacles[index].follow(&mut self.bodies);
+            self.obstacles[index].end_step(&mut self.bodies);
             if self.obstacles[index].shape != before {
                 self.moved.push((index, before));
                 self.show_obstacle(index);
             }
         }
-        self.note_contacts();
+        self.update_contacts();
     }
 
-    /// Sends doors and blocks on their way for the step that has begun.
-    fn set_obstacles_out(&mut self) {
+    /// Starts the motion of doors and blocks for the step that has begun.
+    fn start_obstacles(&mut self) {
         if !self.obstacles.iter().any(Obstacle::moves_itself) {
             return;
         }
-        let (time_s, in_the_way) = (self.time_s(), self.in_the_way());
+        let (time_s, blockers) = (self.time_s(), self.blockers());
         for obstacle in &mut self.obstacles {
-            obstacle.set_out(time_s, self.spec.step_s, &mut self.bodies, &in_the_way);
+            obstacle.start_step(time_s, self.spec.step_s, &mut self.bodies, &blockers);
         }
     }
 
-    /// Everything that an obstacle has to wait for.
-    fn in_the_way(&self) -> InTheWay {
-        let mut in_the_way = InTheWay::default();
+    /// All bodies that an obstacle must not run into.
+    fn blockers(&self) -> Blockers {
+        let mut blockers = Blockers::default();
         for robot in &self.robots {
-            in_the_way.add(robot.at(), robot.spec.radius_m, robot.form());
+            blockers.add(robot.at(), robot.spec.radius_m, robot.form());
         }
         for Obstacle { shape, .. } in self.obstacles.iter().filter(|obstacle| obstacle.is_pushed()) {
             let (center, radius_m) = (shape.pose.translation.vector.into(), shape.half_m.norm());
-            in_the_way.add(center, radius_m, Form::Convex(shape.corners().to_vec()));
+            blockers.add(center, radius_m, Form::Convex(shape.corners().to_vec()));
         }
-        in_the_way
+        blockers
     }
 
-    /// Notes what robots touch, and have begun to touch.
-    fn note_contacts(&mut self) {
+    /// Updates what robots touch, and lists new contacts.
+    fn update_contacts(&mut self) {
         let time_s = self.time_s();
         for (index, robot) in self.robots.iter_mut().enumerate() {
             let mut touching = Vec::new();
-            robot.pressed = 0;
+            robot.pressed_bumpers = 0;
             for Touch { with, at, ends, impulse_ns } in self.bodies.touches(index) {
                 let touched_before = robot.touching.contains(&with);
                 if impulse_ns <= 0.0 && !touched_before {
                     continue;
                 }
                 if let Some(spec) = &robot.spec.bumper {
-                    robot.pressed |= bumper::pressed(spec, &robot.pose, &ends);
+                    robot.pressed_bumpers |= bumper::pressed(spec, &robot.pose, &ends);
                 }
                 if !touched_before {
                     let moving = robot.drove;
@@ -134,19 +134,19 @@ impl Fleet {
         }
     }
 
-    /// Lets obstacles come and go; `tell` hears of each at once: which it is, what it did, and
-    /// the walls and obstacles that stand now.
-    pub(in crate::physics) fn move_obstacles(&mut self, mut tell: impl FnMut(usize, Move, &[Rectangle])) {
+    /// Lets obstacles appear and disappear. Each time, `report` gets the index of the obstacle, whether it
+    /// appeared, and the walls and obstacles that are present now.
+    pub(in crate::physics) fn update_obstacles(&mut self, mut report: impl FnMut(usize, bool, &[Rectangle])) {
         let time_s = self.time_s();
         for index in 0..self.obstacles.len() {
             if !self.obstacles[index].is_due(time_s) {
                 continue;
             }
-            let in_the_way = self.in_the_way();
-            let what = self.obstacles[index].come_or_go(index, time_s, &mut self.bodies, &in_the_way);
-            if let Some(what) = what {
+            let blockers = self.blockers();
+            let appeared = self.obstacles[index].update_presence(index, time_s, &mut self.bodies, &blockers);
+            if let Some(appeared) = appeared {
                 self.show_obstacle(index);
-                tell(index, what, &self.standing_boxes());
+                report(index, appeared, &self.standing_boxes());
             }
         }
     }

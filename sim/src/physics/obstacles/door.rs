@@ -1,58 +1,50 @@
-use crate::physics::chance::{Purpose, Uniform};
-use crate::physics::snapshot::{Played, Tape};
 use crate::physics::spec::{DoorSpec, Opening};
+use interfaces::{Purpose, RandomStream};
+use serde::{Deserialize, Serialize};
 
-/// Times are sums of steps: this much too early is in time, s.
+/// Times are sums of steps: a time within this of an event counts as the time of the event, s.
 const SLACK_S: f64 = 5e-7;
 
-/// What has become of a door.
-#[derive(Clone)]
+/// The state of a door.
+#[derive(Clone, Deserialize, Serialize)]
 pub(super) struct Door {
-    /// How far it is open: 0 closed, 1 open.
+    /// How far the door is open: 0 closed, 1 open.
     pub(super) openness: f64,
-    /// Of a door that opens at random: whether it is told to be open, and when it is told again, s.
-    is_told_open: bool,
+    /// Of a door that opens at random: whether the door is to be open, and the time of the next change, s.
+    is_to_open: bool,
     next_s: f64,
-    chance: Uniform,
+    random: RandomStream,
 }
 
 impl Door {
-    /// The door in place `index` of the obstacles, at the start.
+    /// The obstacle with an index, a door, at the start.
     pub(super) fn new(spec: &DoorSpec, index: usize, seed: u64) -> Self {
         let mut door = Self {
             openness: f64::from(u8::from(spec.starts_open)),
-            is_told_open: spec.starts_open,
+            is_to_open: spec.starts_open,
             next_s: 0.0,
-            chance: Uniform::new(seed, Purpose::Door, index),
+            random: RandomStream::new(seed, Purpose::Door(index)),
         };
         door.next_s = door.stay_s(spec);
         door
     }
 
-    /// Writes or reads what has become of it.
-    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
-        tape.f64(&mut self.openness)?;
-        tape.bool(&mut self.is_told_open)?;
-        tape.f64(&mut self.next_s)?;
-        self.chance.play(tape)
-    }
-
-    /// How far it would be open after a step that ends at `time_s`. It turns round at the very time at
-    /// which it is told to, also within the step.
+    /// How far the door would be open after a step that ends at `time_s`. The direction changes at the exact
+    /// time of a change, also within the step.
     pub(super) fn next(&mut self, spec: &DoorSpec, time_s: f64, step_s: f64) -> f64 {
         let (mut openness, mut left_s) = (self.openness, step_s);
         while left_s > SLACK_S {
-            let (is_told_open, until_s) = self.told(spec, time_s - left_s);
+            let (is_to_open, until_s) = self.target(spec, time_s - left_s);
             let for_s = left_s.min(until_s - (time_s - left_s));
             let by = for_s / spec.move_s;
-            openness = (openness + if is_told_open { by } else { -by }).clamp(0.0, 1.0);
+            openness = (openness + if is_to_open { by } else { -by }).clamp(0.0, 1.0);
             left_s -= for_s;
         }
         openness
     }
 
-    /// Whether it is told to be open from a time on, and until when, s. Time never goes back.
-    fn told(&mut self, spec: &DoorSpec, time_s: f64) -> (bool, f64) {
+    /// Whether the door is to be open from a time on, and the time of the next change, s. Time never goes back.
+    fn target(&mut self, spec: &DoorSpec, time_s: f64) -> (bool, f64) {
         let time_s = time_s + SLACK_S;
         match &spec.opening {
             Opening::Periodic { closed_s, open_s } => {
@@ -69,21 +61,21 @@ impl Door {
             }
             Opening::Random { .. } => {
                 while time_s >= self.next_s {
-                    self.is_told_open = !self.is_told_open;
+                    self.is_to_open = !self.is_to_open;
                     self.next_s += self.stay_s(spec);
                 }
-                (self.is_told_open, self.next_s)
+                (self.is_to_open, self.next_s)
             }
         }
     }
 
-    /// How long it is told to be as it is now, s.
+    /// The time until the next change of a door that opens at random, s.
     fn stay_s(&mut self, spec: &DoorSpec) -> f64 {
         match spec.opening {
             // The exponential distribution by inversion.
             Opening::Random { closed_s, open_s } => {
-                let mean_s = if self.is_told_open { open_s } else { closed_s };
-                -mean_s * libm::log(1.0 - self.chance.between(0.0..1.0))
+                let mean_s = if self.is_to_open { open_s } else { closed_s };
+                -mean_s * libm::log(1.0 - self.random.uniform(0.0..1.0))
             }
             Opening::Periodic { .. } | Opening::Scripted { .. } => f64::INFINITY,
         }
@@ -114,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn doors_move_from_the_time_at_which_they_are_told_to() {
+    fn doors_move_from_the_times_of_changes() {
         let scripted = |switches_s: &[f64]| Opening::Scripted { switches_s: switches_s.to_vec() };
         let times_s = [1.0, 1.05, 2.0, 3.0, 5.0, 5.05, 6.0, 9.0];
         let expected = [0.0, 0.025, 0.5, 1.0, 1.0, 0.975, 0.5, 0.0];

@@ -1,38 +1,40 @@
-//! What has become of the obstacles.
+//! Obstacles that stand, appear, disappear, are pushed, or move on their own.
 
+mod blockers;
 mod door;
-mod way;
 
 use super::bodies::{Bodies, Handle, Mover};
-use super::report::{Body, Move};
+use super::report::Body;
 use super::shape::Rectangle;
-use super::snapshot::{Played, Tape, Torn};
+use super::snapshot::{Values, pose, value};
 use super::spec::{Motion, ObstacleSpec};
+pub(super) use blockers::Blockers;
 use door::Door;
-pub(super) use way::InTheWay;
+use serde::{Deserialize, Serialize};
 
-/// An obstacle and what has become of it.
+/// An obstacle and its state.
 #[derive(Clone)]
 pub(super) struct Obstacle {
     pub(super) spec: ObstacleSpec,
-    /// Where it is, or would be.
+    /// The present shape; before the obstacle appears, the shape that it will have.
     pub(super) shape: Rectangle,
     state: State,
 }
 
-#[derive(Clone)]
+#[derive(Clone, Deserialize, Serialize)]
 enum State {
+    /// The obstacle has not appeared yet.
     Due,
     Standing(Handle),
     Gone,
     Pushed(Mover),
-    /// A block, and how many steps of its path it has done.
+    /// A block, and the number of steps of its path that it has done.
     Path(Mover, u64),
     Door(Mover, Box<Door>),
 }
 
 impl Obstacle {
-    /// An obstacle at the start: it is there, or its time is still to come.
+    /// The obstacle with an index, at the start.
     pub(super) fn new(spec: &ObstacleSpec, index: usize, seed: u64, bodies: &mut Bodies) -> Self {
         let (shape, body) = (spec.start(), Body::Obstacle(index));
         let state = match &spec.motion {
@@ -47,53 +49,30 @@ impl Obstacle {
         Self { spec: spec.clone(), shape, state }
     }
 
-    /// Writes or reads what has become of it.
-    pub(super) fn play(&mut self, tape: &mut Tape<'_>) -> Played {
-        match &mut self.state {
-            State::Pushed(_) => {}
-            State::Path(_, steps) => tape.u64(steps)?,
-            State::Door(_, door) => door.play(tape)?,
-            State::Due | State::Standing(_) | State::Gone => return self.play_standing(tape),
-        }
-        tape.pose(&mut self.shape.pose)
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        vec![pose(&mut self.shape.pose), value(&mut self.state)]
     }
 
-    fn play_standing(&mut self, tape: &mut Tape<'_>) -> Played {
-        let (mut state, mut handle) = match self.state {
-            State::Standing(handle) => (1, handle),
-            State::Gone => (2, Handle::default()),
-            _ => (0, Handle::default()),
-        };
-        tape.u32(&mut state)?;
-        handle.play(tape)?;
-        self.state = match state {
-            0 => State::Due,
-            1 => State::Standing(handle),
-            2 => State::Gone,
-            _ => return Err(Torn),
-        };
-        Ok(())
-    }
-
-    /// Whether it is there.
+    /// Whether the obstacle is present.
     pub(super) fn is_standing(&self) -> bool {
         !matches!(self.state, State::Due | State::Gone)
     }
 
-    /// Whether whatever drives against it pushes it.
+    /// Whether robots can push the obstacle.
     pub(super) fn is_pushed(&self) -> bool {
         matches!(self.state, State::Pushed(_))
     }
 
-    /// Whether it is a door or a block.
+    /// Whether the obstacle is a door or a moving block.
     pub(super) fn moves_itself(&self) -> bool {
         matches!(self.state, State::Path(..) | State::Door(..))
     }
 
-    /// Sets out on the next physics step, which ends at `time_s`, if nothing is in the way.
-    pub(super) fn set_out(&mut self, time_s: f64, step_s: f64, bodies: &mut Bodies, in_the_way: &InTheWay) {
+    /// Starts the motion of the next physics step, which ends at `time_s`, if nothing is in the way.
+    pub(super) fn start_step(&mut self, time_s: f64, step_s: f64, bodies: &mut Bodies, blockers: &Blockers) {
         let mut go = |shape: &mut Rectangle, mover: &Mover, next: Rectangle| {
-            let is_free = next == *shape || in_the_way.is_free(shape, &next);
+            let is_free = next == *shape || blockers.is_free(shape, &next);
             if is_free && next != *shape {
                 *shape = next;
                 bodies.drive(mover, &next.pose);
@@ -117,14 +96,14 @@ impl Obstacle {
         }
     }
 
-    /// Takes over where the step brought what is pushed.
-    pub(super) fn follow(&mut self, bodies: &mut Bodies) {
+    /// Takes over the pose of the body of a pushed obstacle after the step.
+    pub(super) fn end_step(&mut self, bodies: &mut Bodies) {
         if let State::Pushed(mover) = &self.state {
             self.shape.pose = bodies.pushed_pose(mover);
         }
     }
 
-    /// Whether it is time to come or to go.
+    /// Whether it is time to appear or to disappear.
     pub(super) fn is_due(&self, time_s: f64) -> bool {
         match self.state {
             State::Due => is_past(time_s, self.spec.appears_s),
@@ -133,15 +112,15 @@ impl Obstacle {
         }
     }
 
-    /// Comes or goes, if its time has come. Something in its place makes it wait; one that would
-    /// have to go before its place is free never comes.
-    pub(super) fn come_or_go(
+    /// Appears or disappears, if it is time: `Some(true)` or `Some(false)`. A body in the same place delays the
+    /// appearance. An obstacle whose place is not free before it would have to disappear never appears.
+    pub(super) fn update_presence(
         &mut self,
         index: usize,
         time_s: f64,
         bodies: &mut Bodies,
-        in_the_way: &InTheWay,
-    ) -> Option<Move> {
+        blockers: &Blockers,
+    ) -> Option<bool> {
         let is_past = |due_s| is_past(time_s, due_s);
         match self.state {
             State::Due if is_past(self.spec.disappears_s) => {
@@ -149,23 +128,23 @@ impl Obstacle {
                 None
             }
             State::Due if is_past(self.spec.appears_s) => {
-                if !in_the_way.has_room(&self.shape) {
+                if !blockers.has_room(&self.shape) {
                     return None;
                 }
                 self.state = State::Standing(bodies.add_box(Body::Obstacle(index), &self.shape));
-                Some(Move::Appeared)
+                Some(true)
             }
             State::Standing(handle) if is_past(self.spec.disappears_s) => {
                 bodies.remove_box(handle);
                 self.state = State::Gone;
-                Some(Move::Disappeared)
+                Some(false)
             }
             _ => None,
         }
     }
 }
 
-/// Whether a time has come, s, with half a microsecond of slack: times are sums of steps.
+/// Whether `time_s` is not before `due_s`, with half a microsecond of slack: times are sums of steps.
 fn is_past(time_s: f64, due_s: Option<f64>) -> bool {
     due_s.is_some_and(|due_s| time_s >= due_s - 5e-7)
 }

@@ -1,18 +1,19 @@
-//! Rays: what a laser sees, exact to the geometry.
+//! Ray casting: the ranges of all beams of a sensor, exact to the geometry.
 //!
-//! The usual caster asks, for every beam, what it hits. Here everything asks which beams can hit
-//! it, and only these are looked at ([`fan`]): the cost is the number of things plus the beams that
-//! they fill, not their product. Walls are [`outline`]s, from which what no ray can meet is left
-//! out, and [`sight`] knows, for every place, the few of them that can be seen from there. What moves
-//! is kept by the place it is in ([`hulls`], and round robots in [`scene`]).
+//! The usual method asks for every beam what the beam hits. Here every body asks which beams can hit the
+//! body, and only these are computed ([`beams`]): the cost is the number of bodies plus the number of beams
+//! that they cover, not the product. Walls are reduced to the [`edges`] that a ray can hit, and a potentially
+//! visible set ([`visibility`]) lists for every position the few of them that can be seen from there. What
+//! moves is sorted by position ([`polygons`], and round robots in [`scene`]).
 
-mod discs;
-mod fan;
-mod hulls;
-mod lists;
-mod outline;
+mod beams;
+mod circles;
+mod edges;
+mod index_lists;
+mod polygons;
 mod scene;
-mod sight;
+mod visibility;
 
-pub(super) use fan::Beams;
-pub(super) use scene::{Disc, Scene, Scratch};
+pub(super) use beams::Beams;
+pub(super) use circles::Disc;
+pub(super) use scene::{Scene, Scratch};

@@ -1,105 +1,96 @@
-use super::discs::Discs;
-use super::fan::{Beams, Hits};
-use super::hulls::{Hulls, Seen};
-use super::outline::{Edge, outline};
-use super::sight::{Reach, Sight};
+use super::beams::{Beams, Hits};
+use super::circles::{Disc, Discs};
+use super::edges::{Edge, visible_edges};
+use super::polygons::{Polygons, Tested};
+use super::visibility::{PotentiallyVisibleSet, Reach};
 use crate::physics::shape::Rectangle;
 use nalgebra::{Isometry2, Point2};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A round body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::physics) struct Disc {
-    /// Its middle, m.
-    pub(in crate::physics) center: Point2<f64>,
-    /// Its radius, m.
-    pub(in crate::physics) radius_m: f64,
-}
-
-/// Memory to look with, kept from look to look.
+/// Memory for casting rays, kept from cast to cast.
 #[derive(Clone, Debug, Default)]
 pub(in crate::physics) struct Scratch {
-    /// What was seen: one over the range for each beam, 1/m; 0 where there is no hit.
+    /// The result: one over the range for each beam, 1/m; 0 where there is no hit.
     pub(in crate::physics) inverse: Vec<f64>,
     discs: Discs,
-    seen: Seen,
+    tested: Tested,
 }
 
 /// Everything that a laser can see.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Scene {
     walls: Arc<Walls>,
-    /// Whatever else comes, goes or moves.
-    hulls: Hulls,
-    /// The robots, in their order.
+    /// The convex bodies that appear, disappear or move.
+    polygons: Polygons,
+    /// The robots, by index.
     discs: Vec<Disc>,
-    /// The robots by the cell in which their middles are; last those beyond the borders.
+    /// The robots by the cell of their centre; at the end those beyond the borders.
     sorted: Vec<(u32, Disc)>,
-    /// Where each cell's robots start in `sorted`.
+    /// The start of each cell in `sorted`.
     starts: Vec<u32>,
     is_sorted: bool,
 }
 
-/// What never moves.
+/// The bodies that never move.
 #[derive(Debug)]
 struct Walls {
     solids: Vec<[Edge; 4]>,
     edges: Vec<Edge>,
-    sight: Sight,
+    visible: PotentiallyVisibleSet,
 }
 
 impl Scene {
-    /// The walls between two corners (m), for lasers that see `range_m` far, with round robots, and
-    /// room for `hulls` convex bodies that are not there yet.
+    /// The walls between two corners (m), for lasers with a range of `range_m`, with round robots, and room for
+    /// a number of convex bodies that are absent at first.
     pub(in crate::physics) fn new(
         (low, high): (Point2<f64>, Point2<f64>),
         walls: &[Rectangle],
         discs: Vec<Disc>,
-        hulls: usize,
+        polygons: usize,
         range_m: f64,
     ) -> Self {
-        let edges = outline(walls);
+        let edges = visible_edges(walls);
         let radius_m = discs.iter().fold(0.0, |most: f64, disc| most.max(disc.radius_m));
-        let sight = Sight::new(low, high, walls, &edges, &Reach { range_m, radius_m });
-        let solids = walls.iter().map(Edge::of_box).collect();
+        let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, &Reach { range_m, radius_m });
+        let solids = walls.iter().map(Edge::of_rectangle).collect();
         Self {
-            starts: vec![0; sight.len() + 2],
-            walls: Arc::new(Walls { solids, edges, sight }),
-            hulls: Hulls::new(hulls),
+            starts: vec![0; visible.len() + 2],
+            walls: Arc::new(Walls { solids, edges, visible }),
+            polygons: Polygons::new(polygons),
             discs,
             sorted: Vec::new(),
             is_sorted: false,
         }
     }
 
-    /// Puts a convex body with these corners (counter-clockwise, m) into a place of its own; no
-    /// corners take it away. Lasers of `robot`, whose body it is, never see it.
-    pub(in crate::physics) fn set_hull(
+    /// Sets the corners of the convex body with an index (counter-clockwise, m). No corners: the body is absent.
+    /// The lasers of `robot`, whose body it is, never see the body.
+    pub(in crate::physics) fn set_polygon(
         &mut self,
-        place: usize,
+        index: usize,
         robot: Option<usize>,
         corners: &[Point2<f64>],
     ) {
-        self.hulls.set(place, robot, corners);
+        self.polygons.set(index, robot, corners);
     }
 
-    /// A robot is somewhere else (m).
+    /// Sets the centre of a robot, m.
     pub(in crate::physics) fn move_disc(&mut self, robot: usize, center: Point2<f64>) {
         self.discs[robot].center = center;
         self.is_sorted = false;
     }
 
-    /// Sorts what moves into cells, if any has moved; to be called before [`Scene::look`].
+    /// Sorts the moving bodies into cells, if any has moved. Must be called before [`Scene::cast`].
     pub(in crate::physics) fn sort(&mut self) {
-        self.hulls.sort(&self.walls.sight);
+        self.polygons.sort(&self.walls.visible);
         if self.is_sorted {
             return;
         }
-        let outside = self.walls.sight.len();
-        let cell = |disc: &Disc| self.walls.sight.cell_at(&disc.center).unwrap_or(outside);
-        // Counting sort: the number of robots per cell, summed up to where each cell ends; filled
-        // from the back, ends become starts.
+        let outside = self.walls.visible.len();
+        let cell = |disc: &Disc| self.walls.visible.cell_at(&disc.center).unwrap_or(outside);
+        // Counting sort: the number of robots per cell, summed up to the end of each cell. Filled from the back,
+        // ends become starts.
         self.starts.fill(0);
         self.discs.iter().for_each(|disc| self.starts[cell(disc)] += 1);
         let mut end = 0;
@@ -117,8 +108,8 @@ impl Scene {
         self.is_sorted = true;
     }
 
-    /// What `beams` at `laser` hit, on the robot in place `own`, which they never see.
-    pub(in crate::physics) fn look(
+    /// Computes what `beams` of a laser at the pose `laser` hit. The laser never sees the robot `own`.
+    pub(in crate::physics) fn cast(
         &self,
         beams: &Beams,
         laser: &Isometry2<f64>,
@@ -126,45 +117,45 @@ impl Scene {
         scratch: &mut Scratch,
     ) {
         debug_assert!(self.is_sorted);
-        let Walls { solids, edges, sight } = &*self.walls;
-        let Scratch { inverse, discs, seen } = scratch;
+        let Walls { solids, edges, visible } = &*self.walls;
+        let Scratch { inverse, discs, tested } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);
         discs.clear(self.sorted.len());
         let at = Point2::from(laser.translation.vector);
         let contains = |sides: &[Edge; 4]| sides.iter().all(|side| side.gap_m(&at) <= 0.0);
-        let own_cell = sight.cell_at(&at);
-        let has_hulls = !self.hulls.is_empty();
-        let mut is_inside = has_hulls && self.hulls.contains(own_cell, own, &at);
-        self.hulls.begin(seen);
+        let own_cell = visible.cell_at(&at);
+        let has_polygons = !self.polygons.is_empty();
+        let mut is_inside = has_polygons && self.polygons.contains(own_cell, own, &at);
+        self.polygons.begin(tested);
         match own_cell {
             Some(cell) => {
-                is_inside |= sight.boxes(cell).iter().any(|&i| contains(&solids[i as usize]));
-                sight.edges(cell).iter().for_each(|&i| hits.add_edge(&edges[i as usize]));
-                let cells = sight.cells(cell).iter().map(|&cell| cell as usize);
-                for cell in cells.chain([sight.len()]) {
-                    self.note_robots(discs, &mut hits, self.starts[cell]..self.starts[cell + 1], own);
-                    if has_hulls {
-                        self.hulls.add_cell(cell, own, seen, &mut hits);
+                is_inside |= visible.boxes(cell).iter().any(|&i| contains(&solids[i as usize]));
+                visible.edges(cell).iter().for_each(|&i| hits.add_edge(&edges[i as usize]));
+                let cells = visible.cells(cell).iter().map(|&cell| cell as usize);
+                for cell in cells.chain([visible.len()]) {
+                    self.add_robots(discs, &mut hits, self.starts[cell]..self.starts[cell + 1], own);
+                    if has_polygons {
+                        self.polygons.add_cell(cell, own, tested, &mut hits);
                     }
                 }
             }
             None => {
                 is_inside |= solids.iter().any(contains);
                 edges.iter().for_each(|edge| hits.add_edge(edge));
-                self.note_robots(discs, &mut hits, 0..self.sorted.len() as u32, own);
-                self.hulls.add_all(own, &mut hits);
+                self.add_robots(discs, &mut hits, 0..self.sorted.len() as u32, own);
+                self.polygons.add_all(own, &mut hits);
             }
         }
-        // Last, since most are hidden by what has been added before.
+        // Last, since other bodies hide most of them.
         discs.add_to(&mut hits);
         if is_inside {
             hits.add_inside();
         }
     }
 
-    // For every cell in sight, most of which are empty: as a call it costs 5 % of a simulated second.
+    // Runs for every visible cell, most of which are empty: a call would cost 5 % of a simulated second.
     #[inline(always)]
-    fn note_robots(&self, discs: &mut Discs, hits: &mut Hits<'_>, sorted: Range<u32>, own: usize) {
+    fn add_robots(&self, discs: &mut Discs, hits: &mut Hits<'_>, sorted: Range<u32>, own: usize) {
         for (robot, disc) in &self.sorted[sorted.start as usize..sorted.end as usize] {
             if *robot as usize != own {
                 discs.push(disc, hits);

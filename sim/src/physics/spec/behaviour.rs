@@ -95,6 +95,11 @@ pub struct PatrolSpec {
     pub clearance_m: f64,
 }
 
+impl PatrolSpec {
+    /// Bodies that protrude from the wall by more than this are in the way, m.
+    pub const WALL_RELIEF_M: f64 = 0.05;
+}
+
 impl Behaviour {
     /// The same after the world has turned about `middle` (m).
     pub(super) fn turn(&mut self, turn: &UnitComplex<f64>, middle: &Point2<f64>) {

@@ -5,7 +5,6 @@ use super::check::Solid;
 use super::file::{BehaviourFile, Pair, RobotFile};
 use super::{Behaviour, PatrolSpec};
 use crate::error::{Source, WorldError};
-use crate::physics::minds::WALL_RELIEF_M;
 use crate::physics::shape::{TOUCH_M, point_segment_m};
 use crate::together::Together;
 use nalgebra::{Point2, Vector2};
@@ -129,10 +128,11 @@ impl Way<'_> {
             i += 1.0;
         }
         let (name, radius_m) = (self.robot.name.get_ref(), self.radius_m);
-        if first_m < radius_m + WALL_RELIEF_M - TOUCH_M {
+        let relief_m = PatrolSpec::WALL_RELIEF_M;
+        if first_m < radius_m + relief_m - TOUCH_M {
             let what = format!("the patrol of `{name}` is too near to its wall");
             let help = format!(
-                "the wall is {first_m:.3} m away; a robot of radius {radius_m} m needs {WALL_RELIEF_M} m more"
+                "the wall is {first_m:.3} m away; a robot of radius {radius_m} m needs {relief_m} m more"
             );
             return Err(self.error(&what, &[], &help));
         }

@@ -1,10 +1,9 @@
 //! Our rays against rapier's.
 
-use super::oracle::{Place, Tally, dropout, noise, uniform};
+use super::oracle::{self, Place, Tally, uniform};
 use super::*;
 use crate::physics::fleet::corners;
-use crate::physics::laser::{Laser, beams};
-use crate::physics::rays::{Scene, Scratch};
+use crate::physics::rays::Scene;
 use interfaces::{pose, rotation};
 use nalgebra::Point2;
 use rand_chacha::ChaCha8Rng;
@@ -154,7 +153,7 @@ fn a_robot_sees_the_other_but_not_itself() {
     assert!((scan.ranges_m[540] - 0.8).abs() < 1e-6, "{}", scan.ranges_m[540]);
     assert!(scan.ranges_m.iter().all(|range| *range > 0.5));
     world.act(&Twist::STOP);
-    let dummy = world.robots().nth(1).and_then(|robot| robot.sweep).map(|sweep| &sweep.reading.scan);
+    let dummy = world.robots().nth(1).and_then(|robot| robot.reading).map(|reading| &reading.scan);
     let down = dummy.map(|scan| scan.ranges_m[45]).unwrap();
     assert!((down - 0.8).abs() < 1e-6, "{down}");
 }
@@ -163,10 +162,8 @@ fn a_robot_sees_the_other_but_not_itself() {
 fn a_laser_inside_of_a_solid_sees_nothing_else() {
     let mut spec = four_rooms();
     spec.fleet.robots[0].pose = pose(6.0, 1.0, 0.3);
-    let mut laser = Laser::new(&spec.driven().laser, beams(&spec.driven().laser).into(), noise(), dropout());
     let mut scene = Scene::new(corners(spec.frame()), spec.walls(), Vec::new(), 0, 10.0);
     scene.sort();
-    let mut scan = spec.driven().laser.empty_scan();
-    laser.scan(&spec.driven().pose, &scene, 0, &mut Scratch::default(), &mut scan);
+    let scan = oracle::scan(&spec.driven().laser, &spec.driven().pose, &scene, 0);
     assert!(scan.ranges_m.iter().all(|range| *range == 0.0));
 }

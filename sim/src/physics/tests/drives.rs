@@ -162,8 +162,8 @@ fn lasers_look_each_at_its_rate_and_from_its_place() {
     let mut times: Vec<Vec<f64>> = vec![Vec::new(); 3];
     for _ in 0..40 {
         fleet.step(&mut Say(Command::STOP));
-        for (times, sweep) in times.iter_mut().zip(fleet.robots().next().unwrap().sweeps()) {
-            let time_s = sweep.unwrap().reading.time_s;
+        for (times, reading) in times.iter_mut().zip(fleet.robots().next().unwrap().lasers()) {
+            let time_s = reading.unwrap().time_s;
             if times.last() != Some(&time_s) {
                 times.push(time_s);
             }
@@ -171,18 +171,18 @@ fn lasers_look_each_at_its_rate_and_from_its_place() {
     }
     assert_eq!(times.iter().map(Vec::len).collect::<Vec<_>>(), [20, 40, 4]);
     let robot = fleet.robots().next().unwrap();
-    let sweeps: Vec<&Sweep> = robot.sweeps().flatten().collect();
+    let readings: Vec<&LaserReading> = robot.lasers().flatten().collect();
     // Of four beams over a full turn the third looks straight ahead: to the left of the robot.
-    let ranges_m = &sweeps[1].reading.scan.ranges_m;
-    assert!((sweeps[1].laser_pose.translation.x - 3.1).abs() < 1e-6);
-    let main = &sweeps[0].reading.scan.ranges_m;
+    let ranges_m = &readings[1].scan.ranges_m;
+    assert!(((readings[1].pose * readings[1].mount).translation.x - 3.1).abs() < 1e-6);
+    let main = &readings[0].scan.ranges_m;
     assert!((main[45 + 22] - ranges_m[2]).abs() < 0.2, "{main:?} {ranges_m:?}");
-    let missing = sweeps[2].reading.scan.ranges_m.iter().filter(|range_m| range_m.is_nan()).count();
+    let missing = readings[2].scan.ranges_m.iter().filter(|range_m| range_m.is_nan()).count();
     assert!((5..30).contains(&missing), "{missing}");
     // The other lasers change nothing that the first one sees.
     let mut alone = Fleet::new(&with(laser), 7);
     alone.run_until(2.0, &mut Say(Command::STOP));
-    assert_eq!(alone.robots().next().unwrap().sweep, robot.sweep);
+    assert_eq!(alone.robots().next().unwrap().reading, robot.reading);
     // And a snapshot knows them all.
     let snapshot = fleet.snapshot();
     let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();

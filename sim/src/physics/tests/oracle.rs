@@ -1,11 +1,11 @@
 //! Two oracles for our rays: a slab or a root per thing and beam, and rapier's rays.
 
 use super::*;
+use crate::physics::bodies::Bodies;
 use crate::physics::fleet::corners;
-use crate::physics::laser::{Laser, beams};
 use crate::physics::rays::{Disc, Scene, Scratch};
-use crate::physics::{bodies::Bodies, chance};
-use interfaces::rotation;
+use crate::physics::sensors::{LaserScanner, Platform, Sensor, SensorReading, SharedBeams, Surroundings};
+use interfaces::{Scan, rotation};
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -48,12 +48,17 @@ pub(super) struct Place {
     cornered: Vec<(usize, Vec<Point2<f64>>)>,
 }
 
-pub(super) fn noise() -> chance::Gaussian {
-    chance::Gaussian::new(0, chance::Purpose::Laser, 0)
-}
-
-pub(super) fn dropout() -> chance::Uniform {
-    chance::Uniform::new(0, chance::Purpose::Dropout, 0)
+/// The scan of a laser at `at` on robot `own`.
+pub(super) fn scan(spec: &LaserSpec, at: &Isometry2<f64>, scene: &Scene, own: usize) -> Scan {
+    let spec = LaserSpec { mount: Isometry2::identity(), ..*spec };
+    let mut laser = LaserScanner::new(&spec, SharedBeams::default().of(&spec), 0, 0);
+    let platform = Platform { robot: own, pose: *at, odometry_pose: *at, odometry_twist: Twist::STOP };
+    let surroundings = Surroundings { step: 0, time_s: 0.0, scene, tagged: &[] };
+    laser.measure(&platform, &surroundings, &mut Scratch::default());
+    match laser.reading() {
+        SensorReading::Laser(Some(reading)) => reading.scan.clone(),
+        reading => panic!("{reading:?}"),
+    }
 }
 
 /// What became of the beams that were compared.
@@ -82,7 +87,7 @@ impl Place {
         let hulls = spec.obstacles().len();
         let mut scene = Scene::new(corners(spec.frame()), spec.walls(), round.collect(), hulls, 10.0);
         for (place, obstacle) in spec.obstacles().iter().enumerate() {
-            scene.set_hull(place, None, &obstacle.shape.corners());
+            scene.set_polygon(place, None, &obstacle.shape.corners());
         }
         scene.sort();
         let boxes = spec.walls().iter().chain(spec.obstacles().iter().map(|o| &o.shape)).copied().collect();
@@ -119,9 +124,7 @@ impl Place {
 
     /// Holds a scan from `at` on robot `own` against both oracles.
     pub(super) fn compare(&self, spec: &LaserSpec, at: &Isometry2<f64>, own: usize, tally: &mut Tally) {
-        let mut laser = Laser::new(spec, beams(spec).into(), noise(), dropout());
-        let mut scan = spec.empty_scan();
-        laser.scan(at, &self.scene, own, &mut Scratch::default(), &mut scan);
+        let scan = scan(spec, at, &self.scene, own);
         let from = Point2::from(at.translation.vector);
         let others: Vec<_> =
             self.discs.iter().enumerate().filter(|(i, _)| *i != own).map(|(_, disc)| *disc).collect();

@@ -31,16 +31,17 @@ fn a_sonar_hears_the_nearest_thing_in_its_cone() {
     let mut fleet = Fleet::new(&place(&others, ""), 0);
     fleet.step(&mut stop);
     let robot = fleet.robots().next().unwrap();
-    let pings: Vec<Ping> = robot.pings().flatten().collect();
+    let readings: Vec<SonarReading> = robot.sonars().flatten().collect();
     // The beam nearest to its middle may pass that by a quarter of a degree.
     let expected_m = libm::hypot(2.0, 0.5) - 0.2;
-    assert!((f64::from(pings[0].range_m) - expected_m).abs() < 1e-3, "{pings:?}");
-    assert_eq!(pings[0].time_s, 0.0);
+    assert!((f64::from(readings[0].range_m) - expected_m).abs() < 1e-3, "{readings:?}");
+    assert_eq!(readings[0].time_s, 0.0);
     // To the left the border of its cone meets the outer wall, 0.9 m beside it.
     let exact_m = (0.9 / libm::sin(15.0_f64.to_radians())) as f32;
-    assert!((pings[1].range_m - exact_m).abs() < 0.1 && pings[1].range_m != exact_m, "{pings:?}");
+    assert!((readings[1].range_m - exact_m).abs() < 0.1 && readings[1].range_m != exact_m, "{readings:?}");
     fleet.run_until(0.15, &mut stop);
-    let times: Vec<f64> = fleet.robots().next().unwrap().pings().flatten().map(|ping| ping.time_s).collect();
+    let times: Vec<f64> =
+        fleet.robots().next().unwrap().sonars().flatten().map(|reading| reading.time_s).collect();
     assert!((times[0] - 0.1).abs() < 1e-9 && times[1] == 0.0, "{times:?}");
 }
 
@@ -120,7 +121,7 @@ fn tags_are_found_where_nothing_is_in_front() {
         [[obstacle]]\nname = \"behind\"\ncenter_m = [0.4, 3.0]\nsize_m = [0.3, 0.3]\ntag = 21\n";
     let mut fleet = Fleet::new(&place(&others, crate_), 0);
     fleet.step(&mut stop);
-    let found = fleet.robots().next().unwrap().fiducials.to_vec();
+    let found = fleet.robots().next().unwrap().fiducials().copied().collect::<Vec<_>>();
     let tags: Vec<u32> = found.iter().map(|found| found.tag).collect();
     assert_eq!(tags, [11, 13, 20]);
     assert_eq!(found[0].body, Body::Robot(1));
@@ -138,7 +139,11 @@ fn a_snapshot_knows_what_was_sensed() {
     let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();
     let sensed = |fleet: &Fleet| {
         let robot = fleet.robots().next().unwrap();
-        (robot.pings().collect::<Vec<_>>(), robot.bumpers().collect::<Vec<_>>(), robot.fiducials.to_vec())
+        (
+            robot.sonars().collect::<Vec<_>>(),
+            robot.bumpers().collect::<Vec<_>>(),
+            robot.fiducials().copied().collect::<Vec<_>>(),
+        )
     };
     assert_eq!(sensed(&again), sensed(&fleet));
     assert_eq!(sensed(&fleet).2.len(), 1);

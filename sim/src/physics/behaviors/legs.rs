@@ -1,0 +1,90 @@
+use super::pace::Pace;
+use crate::physics::rays::Beams;
+use crate::physics::snapshot::{Values, value};
+use crate::physics::spec::RobotSpec;
+use interfaces::{LaserReading, Twist};
+use nalgebra::{UnitComplex, Vector2};
+
+/// The robot turns in place beyond the first angle off its leg, and drives again within the second, rad.
+const TURN_BEYOND_RAD: f64 = 0.5;
+const TURNED_RAD: f64 = 0.03;
+/// Something is in the way if less than this is left beside it at the end of the leg, m.
+const END_MARGIN_M: f64 = 0.03;
+/// After a stop this much more space must be free to continue, m: it avoids stop and go at the limit.
+const HYSTERESIS_M: f64 = 0.05;
+
+/// Driving along straight legs by odometry: the robot turns in place where the next leg has another
+/// direction, and stops while the laser shows something ahead.
+#[derive(Clone, Debug)]
+pub(super) struct Legs {
+    pub(super) radius_m: f64,
+    clearance_m: f64,
+    /// The unit vectors of the beams of the laser in the frame of the robot.
+    beams: Vec<Vector2<f64>>,
+    pub(super) pace: Pace,
+    turning: bool,
+    blocked: bool,
+}
+
+impl Legs {
+    pub(super) fn new(
+        robot: &RobotSpec,
+        speed_mps: f64,
+        clearance_m: f64,
+        step_s: f64,
+        beams: &Beams,
+    ) -> Self {
+        Self {
+            radius_m: robot.radius_m,
+            clearance_m,
+            beams: super::in_robot_frame(robot, beams),
+            pace: Pace::new(robot, speed_mps, step_s),
+            turning: false,
+            blocked: false,
+        }
+    }
+
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        vec![value(&mut self.turning), value(&mut self.blocked)]
+    }
+
+    /// The rotation from the frame of the robot to the frame of the leg along the unit vector `along`.
+    pub(super) fn lean(reading: &LaserReading, along: &Vector2<f64>) -> UnitComplex<f64> {
+        UnitComplex::from_cos_sin_unchecked(along.x, along.y).inverse() * reading.pose.rotation
+    }
+
+    /// The turn in place towards the leg, if the heading is too far off the leg.
+    pub(super) fn turn_in_place(&mut self, lean_rad: f64) -> Option<Twist> {
+        self.turning = lean_rad.abs() > if self.turning { TURNED_RAD } else { TURN_BEYOND_RAD };
+        let angular_radps = self.pace.turn_radps(-lean_rad);
+        self.turning.then_some(Twist { linear_mps: 0.0, angular_radps })
+    }
+
+    /// The points that the laser sees, in the frame of the leg, m.
+    pub(super) fn points(
+        &self,
+        reading: &LaserReading,
+        lean: &UnitComplex<f64>,
+    ) -> impl Iterator<Item = Vector2<f64>> {
+        let mount = reading.mount.translation.vector;
+        let ranges_m = reading.scan.ranges_m.iter().zip(&self.beams);
+        let points = ranges_m.filter(|(range_m, _)| range_m.is_finite());
+        points.map(move |(range_m, beam)| lean * (mount + beam * f64::from(*range_m)))
+    }
+
+    /// How far the round body can drive before it touches a point ahead, m.
+    pub(super) fn gap_m(&self, point: &Vector2<f64>) -> f64 {
+        let nose_m = (self.radius_m * self.radius_m - point.y * point.y).max(0.0).sqrt();
+        point.x - nose_m
+    }
+
+    /// Whether the robot has to stop: only `gap_m` of the `remaining_m` of the leg are free.
+    pub(super) fn is_blocked(&mut self, gap_m: f64, remaining_m: f64) -> bool {
+        let hysteresis_m = if self.blocked { HYSTERESIS_M } else { 0.0 };
+        let needed_m = self.clearance_m + self.pace.stopping_m + hysteresis_m;
+        // A body behind the end of the leg is not in the way.
+        self.blocked = gap_m < needed_m.min(remaining_m + END_MARGIN_M);
+        self.blocked
+    }
+}

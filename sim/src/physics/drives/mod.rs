@@ -1,0 +1,107 @@
+//! The drives of robots: the velocity of the next physics step under a command.
+
+mod go_to;
+
+use super::command::{Command, Velocity};
+use super::snapshot::{Values, value};
+use super::spec::{DriveKind, DriveLimits};
+use nalgebra::Isometry2;
+
+/// A solved velocity that differs from the wanted one by more than this shows a contact, m/s or rad/s. The
+/// value is well above the rounding of the physics.
+const HELD_BACK: f64 = 1e-4;
+
+/// The motors of a robot: they follow a command as fast as the limits allow.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Drive {
+    limits: DriveLimits,
+    /// The present velocity.
+    velocity: Velocity,
+    /// Whether contacts changed the velocity in the last step.
+    is_stalled: bool,
+}
+
+impl Drive {
+    /// Standing still.
+    pub(super) fn new(limits: DriveLimits) -> Self {
+        Self { limits, velocity: Velocity::STOP, is_stalled: false }
+    }
+
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        vec![value(&mut self.velocity), value(&mut self.is_stalled)]
+    }
+
+    /// The velocity of the next physics step under a command. `at` is the pose by odometry. A command that is
+    /// not a number stops the robot.
+    pub(super) fn step(&mut self, command: &Command, at: &Isometry2<f64>, step_s: f64) -> Velocity {
+        let (limits, now) = (&self.limits, self.velocity);
+        let aim = match command {
+            Command::Velocity(velocity) => *velocity,
+            Command::Acceleration(gain) => Velocity {
+                forward_mps: now.forward_mps + gain.forward_mps2 * step_s,
+                left_mps: now.left_mps + gain.left_mps2 * step_s,
+                turn_radps: now.turn_radps + gain.turn_radps2 * step_s,
+            },
+            Command::GoTo(goal) => go_to::velocity(limits, at, goal),
+        };
+        let is_nan = aim.forward_mps.is_nan() || aim.left_mps.is_nan() || aim.turn_radps.is_nan();
+        let aim = if is_nan { Velocity::STOP } else { aim };
+        let follow = |now: f64, aim: f64, fastest: f64, gain: f64| {
+            let most = gain * step_s;
+            now + (aim.clamp(-fastest, fastest) - now).clamp(-most, most)
+        };
+        let forward_mps = follow(
+            now.forward_mps,
+            aim.forward_mps,
+            limits.max_linear_mps,
+            limits.max_linear_acceleration_mps2,
+        );
+        let turn_radps = follow(
+            now.turn_radps,
+            aim.turn_radps,
+            limits.max_angular_radps,
+            limits.max_angular_acceleration_radps2,
+        );
+        self.velocity = match limits.kind {
+            DriveKind::Differential => Velocity { forward_mps, left_mps: 0.0, turn_radps },
+            DriveKind::Omni { max_left_mps, max_left_acceleration_mps2 } => {
+                let left_mps = follow(now.left_mps, aim.left_mps, max_left_mps, max_left_acceleration_mps2);
+                Velocity { forward_mps, left_mps, turn_radps }
+            }
+            DriveKind::Car { .. } => {
+                let most_radps = limits.max_curvature_radpm() * forward_mps.abs();
+                let turn_radps = turn_radps.clamp(-most_radps, most_radps);
+                Velocity { forward_mps, left_mps: 0.0, turn_radps }
+            }
+        };
+        self.velocity
+    }
+
+    /// Takes over the velocity after contacts, so that a robot that a wall held has to accelerate again when
+    /// the wall no longer holds it.
+    pub(super) fn settle(&mut self, solved: &Velocity) -> Velocity {
+        let settle = |own: &mut f64, solved: f64, fastest: f64| {
+            let is_off = (*own - solved).abs() > HELD_BACK;
+            if is_off {
+                *own = solved.clamp(-fastest, fastest);
+            }
+            is_off
+        };
+        let (limits, own) = (&self.limits, &mut self.velocity);
+        let is_held = settle(&mut own.forward_mps, solved.forward_mps, limits.max_linear_mps);
+        let is_turned = settle(&mut own.turn_radps, solved.turn_radps, limits.max_angular_radps);
+        let is_shifted = match limits.kind {
+            DriveKind::Omni { max_left_mps, .. } => settle(&mut own.left_mps, solved.left_mps, max_left_mps),
+            // A sideways velocity ends with the step: the wheels do not roll sideways.
+            DriveKind::Differential | DriveKind::Car { .. } => false,
+        };
+        self.is_stalled = is_held || is_turned || is_shifted;
+        self.velocity
+    }
+
+    /// Whether contacts changed the velocity in the last step.
+    pub(super) fn is_stalled(&self) -> bool {
+        self.is_stalled
+    }
+}

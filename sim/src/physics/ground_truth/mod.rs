@@ -1,0 +1,263 @@
+//! The ground truth of every cell.
+
+mod cover;
+mod start;
+#[cfg(test)]
+mod tests;
+
+use super::form::Form;
+use super::report::Body;
+use super::shape::Rectangle;
+use interfaces::{Cell, GridFrame, GroundTruth, TrueChange, TrueState};
+use nalgebra::Point2;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// The ground truth of a physics world.
+///
+/// The body of the driven robot covers no cell: the robot never sees itself, so no map could represent its
+/// body. Walls and obstacles may cover a cell together. A robot covers a cell only alone, since solids do not
+/// overlap and so leave a gap beside a round body.
+///
+/// Every physics step updates the ground truth, at a cost in proportion to the number of cells under the bodies
+/// that moved.
+#[derive(Clone, Debug)]
+pub struct PhysicsGroundTruth {
+    frame: GridFrame,
+    elapsed_s: f64,
+    states: Vec<TrueState>,
+    /// The states that walls and present obstacles give the cells.
+    fixed: Vec<TrueState>,
+    /// The number of robots that overlap a cell, and the number of robots that cover all of the cell.
+    overlapped: Vec<u16>,
+    covered: Vec<u16>,
+    /// Whether the cell has been free since it was last blocked, so that the next time is a new event.
+    armed: Vec<bool>,
+    block_events: Vec<u32>,
+    movers: Vec<Option<Body>>,
+    /// Cells that are connected with the start of the driven robot, past obstacles but not walls.
+    reachable: Vec<bool>,
+    changes: Vec<TrueChange>,
+}
+
+impl PhysicsGroundTruth {
+    /// The ground truth at the start: walls, and the region around `start` (m).
+    pub(super) fn new(frame: GridFrame, walls: &[Rectangle], start: &Point2<f64>) -> Self {
+        let fixed = start::walls_cover(&frame, walls);
+        Self {
+            frame,
+            elapsed_s: 0.0,
+            states: fixed.clone(),
+            overlapped: vec![0; frame.len()],
+            covered: vec![0; frame.len()],
+            armed: fixed.iter().map(|state| *state != TrueState::Blocked).collect(),
+            block_events: vec![0; frame.len()],
+            movers: vec![None; frame.len()],
+            reachable: start::reachable(&frame, &fixed, frame.cell_at(start)),
+            changes: Vec::new(),
+            fixed,
+        }
+    }
+
+    /// The cells.
+    pub fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    /// The time since the start, s.
+    pub fn elapsed_s(&self) -> f64 {
+        self.elapsed_s
+    }
+
+    /// The states of all cells now, row-major, row 0 at the lowest y.
+    pub fn states(&self) -> &[TrueState] {
+        &self.states
+    }
+
+    /// How often each cell was blocked, row-major. A cell that is blocked again without having
+    /// been free in between was blocked once.
+    pub fn block_events(&self) -> &[u32] {
+        &self.block_events
+    }
+
+    /// The first moving thing that touched each cell, by index: another robot, or an obstacle that moves, appears
+    /// or disappears. `None` for static cells.
+    pub fn movers(&self) -> &[Option<Body>] {
+        &self.movers
+    }
+
+    /// What changed during the last `act`, in order.
+    pub fn changes(&self) -> &[TrueChange] {
+        &self.changes
+    }
+
+    /// What really is in a cell; `None` outside of the grid.
+    pub fn state(&self, cell: Cell) -> Option<TrueState> {
+        Some(self.states[self.frame.index(cell)?])
+    }
+
+    /// A cell's true cycle rate so far: block events per second, Hz; 0 outside of the grid.
+    pub fn cycle_rate_hz(&self, cell: Cell) -> f64 {
+        let events = self.frame.index(cell).map_or(0, |index| self.block_events[index]);
+        if self.elapsed_s > 0.0 { f64::from(events) / self.elapsed_s } else { 0.0 }
+    }
+
+    /// Whether the cell counts as one that can be seen now: it is free, or it is blocked and
+    /// shares a side with a cell that is not, where no wall parts them from the driven robot's
+    /// start. The grid as a whole is a sum over its cells; a single cell costs a few lookups.
+    pub fn can_be_seen(&self, cell: Cell) -> bool {
+        self.frame.index(cell).is_some_and(|index| GroundTruth::can_be_seen(self, index))
+    }
+
+    /// Starts a new list of changes.
+    pub(super) fn forget_changes(&mut self) {
+        self.changes.clear();
+    }
+
+    /// Sets the time.
+    pub(super) fn set_time(&mut self, time_s: f64) {
+        self.elapsed_s = time_s;
+    }
+
+    /// Puts a robot at its start, or moves the robot.
+    pub(super) fn move_robot(&mut self, body: Body, from: Option<&Form>, to: &Form) {
+        if from == Some(to) {
+            return;
+        }
+        let frame = self.frame;
+        cover::form_cells(&frame, to, |cell, whole| {
+            if let Some(index) = frame.index(cell) {
+                self.overlapped[index] += 1;
+                self.covered[index] += u16::from(whole);
+                self.movers[index].get_or_insert(body);
+            }
+        });
+        if let Some(from) = from {
+            cover::form_cells(&frame, from, |cell, whole| {
+                if let Some(index) = frame.index(cell) {
+                    self.overlapped[index] -= 1;
+                    self.covered[index] -= u16::from(whole);
+                    self.settle(cell, index);
+                }
+            });
+        }
+        cover::form_cells(&frame, to, |cell, _| {
+            if let Some(index) = frame.index(cell) {
+                self.settle(cell, index);
+            }
+        });
+    }
+
+    /// Updates the cells of an obstacle that has appeared or disappeared. `boxes` are the walls and obstacles that
+    /// are present now; `mover` is the obstacle if it is a moving thing. Returns the cells that the obstacle
+    /// covers, completely or partly.
+    pub(super) fn change_box(
+        &mut self,
+        shape: &Rectangle,
+        boxes: &[Rectangle],
+        mover: Option<Body>,
+    ) -> Vec<Cell> {
+        let near: Vec<Rectangle> = boxes.iter().filter(|other| may_meet(shape, other)).copied().collect();
+        let mut cells = Vec::new();
+        cover::box_cells(&self.frame, shape, |cell, _| cells.push(cell));
+        for &cell in &cells {
+            if let Some(index) = self.frame.index(cell) {
+                self.fixed[index] = start::state_of(cover::open_share(&self.frame, cell, near.iter()));
+                if let Some(body) = mover {
+                    self.movers[index].get_or_insert(body);
+                }
+                self.settle(cell, index);
+            }
+        }
+        cells
+    }
+
+    /// Ends the setup: the states at the start are not events.
+    pub(super) fn begin(&mut self) {
+        self.changes.clear();
+        self.block_events.fill(0);
+        for (armed, state) in self.armed.iter_mut().zip(&self.states) {
+            *armed = *state != TrueState::Blocked;
+        }
+    }
+
+    /// Updates the state of a cell, and counts the event if the state has changed.
+    fn settle(&mut self, cell: Cell, index: usize) {
+        let before = self.states[index];
+        let after = match self.fixed[index] {
+            TrueState::Blocked => TrueState::Blocked,
+            _ if self.covered[index] > 0 => TrueState::Blocked,
+            TrueState::Free if self.overlapped[index] == 0 => TrueState::Free,
+            _ => TrueState::PartlyCovered,
+        };
+        if before == after {
+            return;
+        }
+        self.states[index] = after;
+        match after {
+            TrueState::Free => self.armed[index] = true,
+            TrueState::Blocked if self.armed[index] => {
+                self.armed[index] = false;
+                self.block_events[index] += 1;
+            }
+            TrueState::Blocked | TrueState::PartlyCovered => {}
+        }
+        self.changes.push(TrueChange { time: self.elapsed_s, cell, before, after });
+    }
+}
+
+impl GroundTruth for PhysicsGroundTruth {
+    fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    fn elapsed(&self) -> f64 {
+        self.elapsed_s
+    }
+
+    fn state(&self, index: usize) -> TrueState {
+        self.states[index]
+    }
+
+    fn can_be_seen(&self, index: usize) -> bool {
+        match self.states[index] {
+            TrueState::Free => self.reachable[index],
+            TrueState::PartlyCovered => false,
+            TrueState::Blocked => self.frame.cell(index).neighbours4().into_iter().any(|side| {
+                let is_open = |side: usize| self.states[side] != TrueState::Blocked && self.reachable[side];
+                self.frame.index(side).is_some_and(is_open)
+            }),
+        }
+    }
+
+    /// A cell that becomes blocked again without having been free in between was blocked once.
+    fn block_events(&self, index: usize) -> u32 {
+        self.block_events[index]
+    }
+
+    fn is_swept(&self, index: usize) -> bool {
+        self.movers[index].is_some()
+    }
+
+    /// Obstacles first, then robots, each in the order of the world file. The cost is that of a look at
+    /// every cell.
+    fn moving_things(&self) -> Cow<'_, [Vec<usize>]> {
+        let mut things: BTreeMap<Body, Vec<usize>> = BTreeMap::new();
+        for (index, mover) in self.movers.iter().enumerate() {
+            if let Some(body) = mover {
+                things.entry(*body).or_default().push(index);
+            }
+        }
+        things.into_values().collect()
+    }
+
+    fn changes(&self) -> &[TrueChange] {
+        &self.changes
+    }
+}
+
+/// Whether the upright boxes around two rectangles overlap.
+fn may_meet(a: &Rectangle, b: &Rectangle) -> bool {
+    let ((a_low, a_high), (b_low, b_high)) = (a.bounds(), b.bounds());
+    (a_high - b_low).min() > 0.0 && (b_high - a_low).min() > 0.0
+}

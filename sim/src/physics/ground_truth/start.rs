@@ -1,0 +1,73 @@
+//! The states that the walls alone give the cells, once, at the start.
+
+use super::cover;
+use crate::physics::shape::Rectangle;
+use interfaces::{Cell, GridFrame, TrueState};
+
+/// The state of a cell of which a share is not covered.
+pub(super) fn state_of(open_share: f64) -> TrueState {
+    match open_share {
+        share if share <= 0.0 => TrueState::Blocked,
+        share if share < 1.0 - 1e-6 => TrueState::PartlyCovered,
+        _ => TrueState::Free,
+    }
+}
+
+/// The state that the walls alone give every cell.
+pub(super) fn walls_cover(frame: &GridFrame, walls: &[Rectangle]) -> Vec<TrueState> {
+    let mut states = vec![TrueState::Free; frame.len()];
+    // Cells that no wall covers alone, with the walls that may together cover the cell.
+    let mut shared = Vec::new();
+    for (wall, shape) in walls.iter().enumerate() {
+        cover::box_cells(frame, shape, |cell, whole| {
+            if let Some(index) = frame.index(cell) {
+                match whole {
+                    true => states[index] = TrueState::Blocked,
+                    false if states[index] != TrueState::Blocked => shared.push((index, wall)),
+                    false => {}
+                }
+            }
+        });
+    }
+    shared.sort_unstable();
+    for group in shared.chunk_by(|a, b| a.0 == b.0) {
+        let index = group[0].0;
+        if states[index] != TrueState::Blocked {
+            let boxes = group.iter().map(|(_, wall)| &walls[*wall]);
+            states[index] = state_of(cover::open_share(frame, frame.cell(index), boxes));
+        }
+    }
+    states
+}
+
+/// The free cells that are connected with `start` by their sides, and the partly covered cells that touch them:
+/// along an oblique wall these lead to the cells inside of the wall.
+pub(super) fn reachable(frame: &GridFrame, walls: &[TrueState], start: Cell) -> Vec<bool> {
+    let mut reached = vec![false; frame.len()];
+    let mut frontier: Vec<Cell> = Vec::new();
+    let mut reach = |cell: Cell, frontier: &mut Vec<Cell>| {
+        if let Some(index) = frame.index(cell)
+            && walls[index] == TrueState::Free
+            && !std::mem::replace(&mut reached[index], true)
+        {
+            frontier.push(cell);
+        }
+    };
+    reach(start, &mut frontier);
+    while let Some(cell) = frontier.pop() {
+        for side in cell.neighbours4() {
+            reach(side, &mut frontier);
+        }
+    }
+    let fringe = |index: usize| {
+        walls[index] == TrueState::PartlyCovered
+            && frame.cell(index).neighbours8().into_iter().any(|near| {
+                frame.index(near).is_some_and(|near| walls[near] == TrueState::Free && reached[near])
+            })
+    };
+    let fringe: Vec<usize> = (0..frame.len()).filter(|&index| fringe(index)).collect();
+    for index in fringe {
+        reached[index] = true;
+    }
+    reached
+}

@@ -1,0 +1,277 @@
+//! All beams of a scan at once.
+//!
+//! The frame is that of the laser, in which the directions of the beams never change. Ranges are inverse, so
+//! that a straight edge is a dot product: the ray `t·d` hits the line `n·x = c` at `1/t = (n/c)·d`, and the
+//! nearest hit is the largest value.
+
+use super::edges::Edge;
+use nalgebra::{Isometry2, Point2, Vector2};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::Range;
+
+/// An edge whose line passes the laser closer than this is seen edge-on, m.
+const EDGE_ON_M: f64 = 1e-9;
+
+/// The largest error of [`approximate_atan2`], rad.
+pub(super) const APPROXIMATE_RAD: f64 = 1.2e-5;
+
+/// The directions of the beams of a laser.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::physics) struct Beams {
+    count: usize,
+    angle_min_rad: f64,
+    per_rad: f64,
+    range_max_m: f64,
+    /// The unit vectors in the frame of the laser. Those of a full turn end with a copy of the first.
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl Beams {
+    /// `count` beams, the first along `angle_min_rad`, `angle_increment_rad` apart, symmetrical to straight
+    /// ahead. Bodies beyond `range_max_m` may be ignored.
+    pub(in crate::physics) fn new(
+        angle_min_rad: f64,
+        angle_increment_rad: f64,
+        count: usize,
+        range_max_m: f64,
+    ) -> Self {
+        let angle = |i: usize| angle_min_rad + i as f64 * angle_increment_rad;
+        let (mut y, mut x): (Vec<f64>, Vec<f64>) = (0..count).map(|i| libm::sincos(angle(i))).unzip();
+        if angle_min_rad <= -PI {
+            x.push(x[0]);
+            y.push(y[0]);
+        }
+        Self { count, angle_min_rad, per_rad: 1.0 / angle_increment_rad, range_max_m, x, y }
+    }
+
+    /// The unit vectors of the beams in the frame of the laser.
+    pub(in crate::physics) fn directions(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.x.iter().copied().zip(self.y.iter().copied()).take(self.count)
+    }
+
+    /// The index of the first beam that lies counter-clockwise of `v`, whose direction is about `angle_rad`. A
+    /// beam along `v` itself counts if `inclusive`. Beam 0 of a full turn counts once more at the end.
+    ///
+    /// Cross products decide the side, alike for every edge that ends in `v`: no beam passes between two edges.
+    fn first_after(&self, v: &Vector2<f64>, angle_rad: f64, inclusive: bool) -> usize {
+        let is_after = |i: usize| {
+            let cross = v.x * self.y[i] - v.y * self.x[i];
+            if inclusive { cross >= 0.0 } else { cross > 0.0 }
+        };
+        let index = (angle_rad - self.angle_min_rad) * self.per_rad;
+        let mut i = if index < 0.0 { 0 } else { (index as usize + 1).min(self.x.len()) };
+        // The approximate angle may be wrong about beams as near as this, and about no other.
+        let near = APPROXIMATE_RAD * self.per_rad;
+        while i > 0 && index - ((i - 1) as f64) < near && is_after(i - 1) {
+            i -= 1;
+        }
+        while i < self.x.len() && i as f64 - index < near && !is_after(i) {
+            i += 1;
+        }
+        i
+    }
+
+    /// The beams from `from` to `to`, counter-clockwise, less than half a turn apart, both included: one range,
+    /// or two where the beams pass the back.
+    fn between(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> [Range<usize>; 2] {
+        let (from_rad, to_rad) = (approximate_atan2(from.y, from.x), approximate_atan2(to.y, to.x));
+        let mut first = self.first_after(from, from_rad, true);
+        let mut end = self.first_after(to, to_rad, false);
+        if to_rad - from_rad < -PI {
+            end += self.count;
+        } else if to_rad - from_rad > PI {
+            // Both are at the back, on one line of sight except for rounding.
+            first += self.count;
+        }
+        self.runs(first, end)
+    }
+
+    /// The beams that are less than `half_rad` away from `angle_rad`, and perhaps a few more: the index of the
+    /// first, and the index after the last. Indices continue after the last beam of all.
+    fn around(&self, angle_rad: f64, half_rad: f64) -> (usize, usize) {
+        // By way of 32 bits, since that takes three instructions and not ten.
+        let index =
+            |angle_rad: f64| (((angle_rad - self.angle_min_rad) * self.per_rad) as i32).max(0) as usize;
+        let (low, high) = (angle_rad - half_rad, angle_rad + half_rad);
+        if low < -PI {
+            // The back, seen from the right: the end of the beams.
+            (index(low + 2.0 * PI), index(high) + 1 + self.count)
+        } else if high > PI {
+            (index(low), index(high - 2.0 * PI) + 1 + self.count)
+        } else {
+            (index(low), index(high) + 1)
+        }
+    }
+
+    /// The beams of `first..end`, where indices continue after the last beam.
+    fn runs(&self, first: usize, end: usize) -> [Range<usize>; 2] {
+        let count = self.count;
+        let (low, high) = (first.min(count), end.min(count));
+        // In a narrow view, indices behind the view may continue past the end a second time.
+        let again = first.saturating_sub(count).min(count);
+        let last = end.saturating_sub(count).min(count);
+        [low..high.max(low), again..last.max(again)]
+    }
+}
+
+/// The nearest hit on each beam of a laser.
+pub(super) struct Hits<'a> {
+    beams: &'a Beams,
+    /// One over the range, 1/m; 0 where there is no hit.
+    inverse: &'a mut [f64],
+    laser: Isometry2<f64>,
+}
+
+impl<'a> Hits<'a> {
+    /// No hits yet.
+    pub(super) fn new(beams: &'a Beams, laser: &Isometry2<f64>, inverse: &'a mut Vec<f64>) -> Self {
+        inverse.clear();
+        inverse.resize(beams.count, 0.0);
+        Self { beams, inverse, laser: *laser }
+    }
+
+    /// The laser is inside of a body: all ranges are 0.
+    pub(super) fn add_inside(&mut self) {
+        self.inverse.fill(f64::INFINITY);
+    }
+
+    /// Adds an edge of a solid, if the edge faces the laser and is within range.
+    pub(super) fn add_edge(&mut self, edge: &Edge) {
+        let gap_m = edge.gap_m(&self.laser.translation.vector.into());
+        if gap_m < EDGE_ON_M || gap_m > self.beams.range_max_m {
+            return;
+        }
+        let seen = |point: &Point2<f64>| self.laser.inverse_transform_point(point).coords;
+        let normal = self.laser.rotation.inverse() * edge.normal;
+        let (m, n) = (-normal.x / gap_m, -normal.y / gap_m);
+        // Seen from outside, the sides of a counter-clockwise polygon run clockwise.
+        for run in self.beams.between(&seen(&edge.to), &seen(&edge.from)) {
+            let directions = self.beams.x[run.clone()].iter().zip(&self.beams.y[run.clone()]);
+            for (inverse, (x, y)) in self.inverse[run].iter_mut().zip(directions) {
+                let hit = m * x + n * y;
+                *inverse = if hit > *inverse { hit } else { *inverse };
+            }
+        }
+    }
+
+    /// The pose of the laser.
+    pub(super) fn laser(&self) -> &Isometry2<f64> {
+        &self.laser
+    }
+
+    /// Bodies beyond this range may be ignored, m.
+    pub(super) fn range_max_m(&self) -> f64 {
+        self.beams.range_max_m
+    }
+
+    /// Adds a round body with the centre `center` (m, in the frame of the laser). Its directions are less than
+    /// `half_rad` away from `angle_rad`, and its inverse ranges are at most `nearest`.
+    pub(super) fn add_disc(
+        &mut self,
+        center: &Vector2<f64>,
+        power: f64,
+        angle_rad: f64,
+        half_rad: f64,
+        nearest: f64,
+    ) {
+        let (first, end) = self.beams.around(angle_rad, half_rad);
+        if end <= self.beams.count {
+            self.add_disc_to(first..end, center, power, nearest);
+        } else {
+            let runs = self.beams.runs(first, end);
+            runs.into_iter().for_each(|run| self.add_disc_to(run, center, power, nearest));
+        }
+    }
+
+    #[inline]
+    fn add_disc_to(&mut self, run: Range<usize>, center: &Vector2<f64>, power: f64, nearest: f64) {
+        let inverse = &mut self.inverse[run.clone()];
+        if inverse.iter().all(|&inverse| inverse >= nearest) {
+            return;
+        }
+        let per_power = 1.0 / power;
+        let directions = self.beams.x[run.clone()].iter().zip(&self.beams.y[run]);
+        for (inverse, (x, y)) in inverse.iter_mut().zip(directions) {
+            // The nearer root of t² − 2bt + power = 0 is power / (b + √(b² − power)).
+            let b = center.x * x + center.y * y;
+            let root2 = b * b - power;
+            let hit = if root2 >= 0.0 { (b + root2.max(0.0).sqrt()) * per_power } else { 0.0 };
+            *inverse = if hit > *inverse { hit } else { *inverse };
+        }
+    }
+}
+
+/// The direction of a vector to within [`APPROXIMATE_RAD`], in [−π, π]: the start of a search.
+/// Abramowitz & Stegun (1964), 4.4.49.
+fn approximate_atan2(y: f64, x: f64) -> f64 {
+    let (along, across) = (x.abs(), y.abs());
+    let (low, high) = if across > along { (along, across) } else { (across, along) };
+    // 0/0 at the position of the laser gives 0 by the comparisons below.
+    let t = low / high.max(f64::MIN_POSITIVE);
+    let t2 = t * t;
+    let series =
+        0.999_866_0 + t2 * (-0.330_299_5 + t2 * (0.180_141_0 + t2 * (-0.085_133_0 + t2 * 0.020_835_1)));
+    let mut angle = t * series;
+    if across > along {
+        angle = FRAC_PI_2 - angle;
+    }
+    if x < 0.0 {
+        angle = PI - angle;
+    }
+    if y < 0.0 { -angle } else { angle }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn approximate_angles_are_near_the_exact_ones() {
+        for step in -3141..=3141 {
+            let (y, x) = libm::sincos(f64::from(step) * 1e-3);
+            assert!(
+                (approximate_atan2(y * 7.0, x * 7.0) - libm::atan2(y, x)).abs() < APPROXIMATE_RAD,
+                "{step}"
+            );
+        }
+        assert_eq!(approximate_atan2(0.0, 0.0), 0.0);
+    }
+
+    /// Every beam lies on one side of a direction, exactly, wherever the direction is.
+    #[test]
+    fn the_beams_between_two_directions_are_those_that_lie_there() {
+        for (fov_rad, count, full) in
+            [(2.0 * PI, 360, true), (2.0 * PI, 7, true), (1.0, 11, false), (6.2, 50, false)]
+        {
+            let gaps = if full { count } else { count - 1 };
+            let step_rad = fov_rad / gaps as f64;
+            let beams = Beams::new(-fov_rad / 2.0, step_rad, count, 10.0);
+            for start in -700..700 {
+                for width in [0.0, 1e-9, 1e-5, 0.02, 0.5, 3.1] {
+                    // Every seventh starts exactly on a beam, or on the back.
+                    let from_rad = if start % 7 == 0 {
+                        f64::from(start / 7) * step_rad
+                    } else {
+                        f64::from(start) * 0.009
+                    };
+                    let vector = |angle_rad: f64| {
+                        let (y, x) = libm::sincos(angle_rad);
+                        Vector2::new(x, y) * 3.0
+                    };
+                    let (from, to) = (vector(from_rad), vector(from_rad + width));
+                    let mut chosen = vec![false; count];
+                    beams.between(&from, &to).into_iter().flatten().for_each(|beam| chosen[beam] = true);
+                    let expected: Vec<bool> = beams
+                        .directions()
+                        .map(|(x, y)| {
+                            let d = Vector2::new(x, y);
+                            from.perp(&d) >= 0.0 && d.perp(&to) >= 0.0 && d.dot(&(from + to)) > 0.0
+                        })
+                        .collect();
+                    assert_eq!(chosen, expected, "{count} beams, {from_rad} rad, {width} rad wide");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! The edges of a set of rectangles that a ray can hit.
+
+use crate::physics::shape::Rectangle;
+use nalgebra::{Point2, Vector2};
+
+/// Edges and corners closer than this count as the same, m: far above rounding, far below anything that a
+/// range could show.
+const ON_M: f64 = 1e-9;
+/// The distance outside of an edge at which the edge is tested for being covered, m.
+const BESIDE_M: f64 = 1e-7;
+
+/// A side of a solid. The solid lies on the left of the edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Edge {
+    pub(super) from: Point2<f64>,
+    pub(super) to: Point2<f64>,
+    /// The unit vector that points out of the solid.
+    pub(super) normal: Vector2<f64>,
+}
+
+impl Edge {
+    pub(super) fn new(from: Point2<f64>, to: Point2<f64>) -> Self {
+        let along = to - from;
+        Self { from, to, normal: Vector2::new(along.y, -along.x) / along.norm() }
+    }
+
+    /// How far outside of the edge's line a point lies, m; negative on the side of the solid.
+    pub(super) fn gap_m(&self, point: &Point2<f64>) -> f64 {
+        self.normal.dot(&(point - self.from))
+    }
+
+    /// The sides of a rectangle.
+    pub(super) fn of_rectangle(shape: &Rectangle) -> [Self; 4] {
+        let corners = shape.corners();
+        [0, 1, 2, 3].map(|i| Self::new(corners[i], corners[(i + 1) % 4]))
+    }
+}
+
+/// The sides of all rectangles that a ray from outside can hit first: without sides that another rectangle
+/// covers; sides that continue each other are merged.
+pub(super) fn visible_edges(boxes: &[Rectangle]) -> Vec<Edge> {
+    let sides: Vec<[Edge; 4]> = boxes.iter().map(Edge::of_rectangle).collect();
+    let bins = Bins::new(boxes);
+    let open = sides.iter().enumerate().flat_map(|(own, edges)| {
+        let is_covered = {
+            let (sides, bins) = (&sides, &bins);
+            move |edge: &&Edge| {
+                let near = bins.at(&nalgebra::center(&edge.from, &edge.to));
+                near.iter().any(|&other| other as usize != own && covers(&sides[other as usize], edge))
+            }
+        };
+        edges.iter().filter(move |edge| !is_covered(edge))
+    });
+    merged(open.copied().collect())
+}
+
+/// The rectangles by position, on a coarse grid.
+struct Bins {
+    low: Point2<f64>,
+    bin_m: Vector2<f64>,
+    bins: Vec<Vec<u32>>,
+}
+
+impl Bins {
+    /// Bins along each side.
+    const SIDE: usize = 64;
+
+    fn new(boxes: &[Rectangle]) -> Self {
+        let bounds: Vec<_> = boxes.iter().map(Rectangle::bounds).collect();
+        let low = bounds.iter().fold(Point2::new(f64::MAX, f64::MAX), |low, (at, _)| low.inf(at));
+        let high = bounds.iter().fold(Point2::new(f64::MIN, f64::MIN), |high, (_, at)| high.sup(at));
+        let bin_m = ((high - low) / Self::SIDE as f64).sup(&Vector2::repeat(ON_M));
+        let mut bins = Self { low, bin_m, bins: vec![Vec::new(); Self::SIDE * Self::SIDE] };
+        for (i, (from, to)) in bounds.iter().enumerate() {
+            let margin = Vector2::repeat(BESIDE_M);
+            let ((left, bottom), (right, top)) = (bins.bin(&(from - margin)), bins.bin(&(to + margin)));
+            for (row, column) in
+                (bottom..=top).flat_map(|row| (left..=right).map(move |column| (row, column)))
+            {
+                bins.bins[row * Self::SIDE + column].push(i as u32);
+            }
+        }
+        bins
+    }
+
+    /// The column and the row of the bin that a point lies in, or of the nearest bin.
+    fn bin(&self, point: &Point2<f64>) -> (usize, usize) {
+        let at = (point - self.low).component_div(&self.bin_m);
+        ((at.x as usize).min(Self::SIDE - 1), (at.y as usize).min(Self::SIDE - 1))
+    }
+
+    /// The rectangles near a point: all that contain the point, and more.
+    fn at(&self, point: &Point2<f64>) -> &[u32] {
+        let (column, row) = self.bin(point);
+        &self.bins[row * Self::SIDE + column]
+    }
+}
+
+/// Whether an edge and the space directly outside of the edge lie in the rectangle with the given sides: a ray
+/// then hits the rectangle first.
+fn covers(sides: &[Edge; 4], edge: &Edge) -> bool {
+    let contains = |point: Point2<f64>| sides.iter().all(|side| side.gap_m(&point) <= ON_M);
+    let beside = edge.normal * BESIDE_M;
+    contains(edge.from) && contains(edge.to) && contains(edge.from + beside) && contains(edge.to + beside)
+}
+
+/// Merges edges that lie on one line, face the same side, and touch or overlap.
+fn merged(edges: Vec<Edge>) -> Vec<Edge> {
+    // Edges on one line get one key. Rounding may separate some edges, which then stay as they are.
+    let key = |edge: &Edge| {
+        let offset_m = edge.normal.dot(&edge.from.coords);
+        [edge.normal.x, edge.normal.y, offset_m].map(|value| (value / (8.0 * ON_M)).round() as i64)
+    };
+    let start_m = |edge: &Edge, line: &Edge| along(line).dot(&edge.from.coords);
+    let end_m = |edge: &Edge, line: &Edge| along(line).dot(&edge.to.coords);
+    let mut keyed: Vec<([i64; 3], Edge)> = edges.iter().map(|edge| (key(edge), *edge)).collect();
+    keyed.sort_by(|(a_key, a), (b_key, b)| {
+        a_key.cmp(b_key).then_with(|| start_m(a, a).total_cmp(&start_m(b, a)))
+    });
+    let mut merged: Vec<([i64; 3], Edge)> = Vec::new();
+    for (key, edge) in keyed {
+        match merged.last_mut() {
+            Some((last_key, last))
+                if *last_key == key && start_m(&edge, last) <= end_m(last, last) + ON_M =>
+            {
+                if end_m(&edge, last) > end_m(last, last) {
+                    *last = Edge::new(last.from, edge.to);
+                }
+            }
+            _ => merged.push((key, edge)),
+        }
+    }
+    merged.into_iter().map(|(_, edge)| edge).collect()
+}
+
+/// The direction of an edge, with the solid on the left.
+fn along(edge: &Edge) -> Vector2<f64> {
+    Vector2::new(-edge.normal.y, edge.normal.x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn between(min: [f64; 2], max: [f64; 2]) -> Rectangle {
+        Rectangle::between(min.into(), max.into())
+    }
+
+    #[test]
+    fn what_is_inside_of_walls_is_left_out_and_what_goes_on_is_one() {
+        // Two walls end to end, a third that ends at their side: an upside-down T.
+        let boxes = [
+            between([0.0, 0.0], [2.0, 0.1]),
+            between([2.0, 0.0], [5.0, 0.1]),
+            between([1.0, 0.1], [1.1, 3.0]),
+        ];
+        let edges = visible_edges(&boxes);
+        // Bottom and top (each one edge of 5 m), two ends, and three sides of the standing wall.
+        assert_eq!(edges.len(), 7, "{edges:#?}");
+        let long = edges.iter().filter(|edge| ((edge.to - edge.from).norm() - 5.0).abs() < 1e-12);
+        assert_eq!(long.count(), 2);
+    }
+
+    #[test]
+    fn flush_sides_are_seen() {
+        // The small box stands in the large one, on its border.
+        let boxes = [between([0.0, 0.0], [3.0, 3.0]), between([1.0, 0.0], [2.0, 1.0])];
+        assert_eq!(visible_edges(&boxes), visible_edges(&boxes[..1]));
+    }
+
+    #[test]
+    fn apart_and_turned_boxes_keep_their_sides() {
+        let turned = Rectangle::around(Point2::new(1.0, 1.0), Vector2::new(1.0, 0.3), 0.4);
+        assert_eq!(visible_edges(&[turned, between([4.0, 0.0], [5.0, 1.0])]).len(), 8);
+        // The same box twice: each would hide the other if covers were not about what lies outside.
+        assert_eq!(visible_edges(&[turned, turned]).len(), 4);
+    }
+}

@@ -1,0 +1,197 @@
+//! A robot at work: its sensors, behavior, drive and odometry. Its body belongs to `bodies`.
+
+mod odometry;
+mod view;
+
+pub use view::RobotView;
+
+use super::behaviors::{self, Behavior};
+use super::bodies::Bodies;
+use super::command::{Command, Velocity};
+use super::drives::Drive;
+use super::form::Form;
+use super::rays::{Beams, Scratch};
+use super::report::Body;
+use super::sensors::{self, Platform, Sensor, SensorReading, Surroundings};
+use super::snapshot::{Values, pose, value};
+use super::spec::RobotSpec;
+use interfaces::{LaserReading, Purpose, RandomStream};
+use nalgebra::{Isometry2, Point2};
+use odometry::Odometry;
+use std::sync::Arc;
+
+#[derive(Clone)]
+pub(super) struct Robot {
+    pub(super) spec: RobotSpec,
+    /// The index among the robots.
+    index: usize,
+    /// The true pose.
+    pub(super) pose: Isometry2<f64>,
+    /// The true pose before the last step.
+    pub(super) previous_pose: Isometry2<f64>,
+    pub(super) velocity: Velocity,
+    /// Whether the drive moved the robot in the last step.
+    pub(super) drove: bool,
+    /// The bodies that the robot touches now.
+    pub(super) touching: Vec<Body>,
+    /// The bumpers that touch something, as bits.
+    pub(super) pressed_bumpers: u64,
+    command: Command,
+    drive: Drive,
+    odometry: Odometry,
+    /// `None`: the robot obeys commands.
+    behavior: Option<Box<dyn Behavior>>,
+    /// All sensors, the main laser scanner first.
+    sensors: Vec<Box<dyn Sensor>>,
+}
+
+impl Robot {
+    /// The robot with an index, at `pose`. `beams` are those of its lasers.
+    pub(super) fn new(
+        spec: &RobotSpec,
+        index: usize,
+        pose: Isometry2<f64>,
+        step_s: f64,
+        seed: u64,
+        beams: Vec<Arc<Beams>>,
+    ) -> Self {
+        let random = |purpose| RandomStream::new(seed, purpose);
+        Self {
+            index,
+            pose,
+            previous_pose: pose,
+            velocity: Velocity::STOP,
+            drove: false,
+            touching: Vec::new(),
+            pressed_bumpers: 0,
+            command: Command::STOP,
+            drive: Drive::new(spec.drive),
+            odometry: Odometry::new(spec, random(Purpose::OdometryNoise(index)), pose),
+            behavior: behaviors::of(spec, step_s, &beams[0], random(Purpose::Behavior(index))),
+            sensors: sensors::all(spec, beams, seed, index),
+            spec: spec.clone(),
+        }
+    }
+
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        let mut values = vec![
+            pose(&mut self.pose),
+            pose(&mut self.previous_pose),
+            value(&mut self.velocity),
+            value(&mut self.drove),
+            value(&mut self.touching),
+            value(&mut self.pressed_bumpers),
+            value(&mut self.command),
+        ];
+        values.extend(self.drive.values());
+        values.extend(self.odometry.values());
+        values.extend(self.behavior.iter_mut().flat_map(|behavior| behavior.values()));
+        values.extend(self.sensors.iter_mut().flat_map(|sensor| sensor.values()));
+        values
+    }
+
+    /// The centre, m.
+    pub(super) fn at(&self) -> Point2<f64> {
+        self.pose.translation.vector.into()
+    }
+
+    /// The outline at the present pose.
+    pub(super) fn form(&self) -> Form {
+        self.spec.form(&self.pose)
+    }
+
+    /// Whether the robot obeys commands.
+    pub(super) fn is_driven(&self) -> bool {
+        self.behavior.is_none()
+    }
+
+    /// Whether the main laser scanner measures at a step. The robot then decides.
+    pub(super) fn decides(&self, step: u64) -> bool {
+        is_due(&self.sensors[0], step)
+    }
+
+    /// Whether any sensor measures at a step.
+    pub(super) fn senses(&self, step: u64) -> bool {
+        self.sensors.iter().any(|sensor| is_due(sensor, step))
+    }
+
+    /// The latest reading of the main laser scanner.
+    pub(super) fn reading(&self) -> Option<&LaserReading> {
+        match self.sensors[0].reading() {
+            SensorReading::Laser(reading) => reading,
+            SensorReading::Sonar(_) | SensorReading::Fiducials(_) => None,
+        }
+    }
+
+    /// Sets the command.
+    pub(super) fn command(&mut self, command: &Command) {
+        self.command = *command;
+    }
+
+    /// Puts the robot at `pose`, at rest. Its odometry starts anew there.
+    pub(super) fn put(&mut self, pose: Isometry2<f64>) {
+        self.pose = pose;
+        self.previous_pose = pose;
+        self.velocity = Velocity::STOP;
+        self.command = Command::STOP;
+        self.drive = Drive::new(self.spec.drive);
+        self.odometry.restart(pose);
+        self.touching.clear();
+        self.pressed_bumpers = 0;
+        self.sensors.iter_mut().for_each(|sensor| sensor.clear());
+    }
+
+    /// Measures with the main laser scanner, and with all other sensors that are due.
+    pub(super) fn look(&mut self, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
+        self.sense(surroundings, scratch);
+        let platform = self.platform();
+        self.sensors[0].measure(&platform, surroundings, scratch);
+    }
+
+    /// Measures with all sensors that are due. A robot with a behavior decides what to do.
+    pub(super) fn think(&mut self, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
+        self.sense(surroundings, scratch);
+        if self.decides(surroundings.step)
+            && let SensorReading::Laser(Some(reading)) = self.sensors[0].reading()
+            && let Some(behavior) = &mut self.behavior
+        {
+            self.command = behavior.decide(reading).into();
+        }
+    }
+
+    fn sense(&mut self, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
+        let platform = self.platform();
+        for sensor in self.sensors.iter_mut().filter(|sensor| is_due(sensor, surroundings.step)) {
+            sensor.measure(&platform, surroundings, scratch);
+        }
+    }
+
+    fn platform(&self) -> Platform {
+        Platform {
+            robot: self.index,
+            pose: self.pose,
+            odometry_pose: *self.odometry.pose(),
+            odometry_twist: self.odometry.twist(&self.velocity.twist()),
+        }
+    }
+
+    /// Gives the body the velocity of the next step.
+    pub(super) fn start_step(&mut self, bodies: &mut Bodies, step_s: f64) {
+        self.velocity = self.drive.step(&self.command, self.odometry.pose(), step_s);
+        self.drove = self.velocity != Velocity::STOP;
+        bodies.set_velocity(self.index, &self.velocity, step_s);
+    }
+
+    /// Takes over the pose and the velocity of the body after the step.
+    pub(super) fn end_step(&mut self, bodies: &Bodies) {
+        self.previous_pose = std::mem::replace(&mut self.pose, bodies.pose(self.index));
+        self.velocity = self.drive.settle(&bodies.velocity(self.index));
+        self.odometry.update(&self.previous_pose, &self.pose);
+    }
+}
+
+#[expect(clippy::borrowed_box, reason = "the items of a list")]
+fn is_due(sensor: &Box<dyn Sensor>, step: u64) -> bool {
+    step.is_multiple_of(sensor.period_steps())
+}

@@ -1,0 +1,102 @@
+use super::Robot;
+use crate::physics::report::Body;
+use crate::physics::sensors::{Fiducial, SensorReading, SonarReading};
+use interfaces::{LaserReading, Twist};
+use nalgebra::{Isometry2, Point2};
+use std::fmt;
+
+/// What there is to show of a robot.
+#[derive(Clone, Copy)]
+pub struct RobotView<'a> {
+    /// The index of the robot.
+    pub index: usize,
+    /// The name of the robot.
+    pub name: &'a str,
+    /// The true pose.
+    pub pose: Isometry2<f64>,
+    /// The radius of the body, m. For a body with corners: the radius of the circle about its centre that
+    /// contains the body.
+    pub radius_m: f64,
+    /// The corners of the body in its own frame, counter-clockwise, m. None: the body is round.
+    pub corners: &'a [Point2<f64>],
+    /// Whether the robot obeys commands.
+    pub is_driven: bool,
+    /// The true velocity.
+    pub twist: Twist,
+    /// The true velocity to the left, m/s: 0 except for an omni drive.
+    pub left_mps: f64,
+    /// Whether a contact slowed the robot down in the last step.
+    pub is_stalled: bool,
+    /// The bodies that the robot touches now.
+    pub touching: &'a [Body],
+    /// The latest reading of the main laser scanner; `None`: the scanner has not measured yet.
+    pub reading: Option<&'a LaserReading>,
+    robot: &'a Robot,
+}
+
+impl<'a> RobotView<'a> {
+    /// The latest readings of all sensors, the main laser scanner first.
+    pub fn readings(&self) -> impl Iterator<Item = SensorReading<'a>> + use<'a> {
+        self.robot.sensors.iter().map(|sensor| sensor.reading())
+    }
+
+    /// The latest reading of each laser scanner, in the order of the spec.
+    pub fn lasers(&self) -> impl Iterator<Item = Option<&'a LaserReading>> + use<'a> {
+        self.readings().filter_map(|reading| match reading {
+            SensorReading::Laser(reading) => Some(reading),
+            _ => None,
+        })
+    }
+
+    /// The latest reading of each sonar, in the order of the spec.
+    pub fn sonars(&self) -> impl Iterator<Item = Option<SonarReading>> + use<'a> {
+        self.readings().filter_map(|reading| match reading {
+            SensorReading::Sonar(reading) => Some(reading),
+            _ => None,
+        })
+    }
+
+    /// The latest detections of the fiducial finder, robots first, each in the order of the spec.
+    pub fn fiducials(&self) -> impl Iterator<Item = &'a Fiducial> + use<'a> {
+        self.readings().flat_map(|reading| match reading {
+            SensorReading::Fiducials(found) => found,
+            _ => &[],
+        })
+    }
+
+    /// Whether each bumper touches something now, from right to left.
+    pub fn bumpers(&self) -> impl ExactSizeIterator<Item = bool> + use<> {
+        let pressed = self.robot.pressed_bumpers;
+        let sectors = self.robot.spec.bumper.map_or(0, |bumper| bumper.sectors);
+        (0..sectors).map(move |sector| pressed >> sector & 1 == 1)
+    }
+}
+
+impl fmt::Debug for RobotView<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("RobotView")
+            .field("name", &self.name)
+            .field("pose", &self.pose)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Robot {
+    /// What there is to show of the robot.
+    pub(in crate::physics) fn view(&self) -> RobotView<'_> {
+        RobotView {
+            index: self.index,
+            name: &self.spec.name,
+            pose: self.pose,
+            radius_m: self.spec.radius_m,
+            corners: &self.spec.corners,
+            is_driven: self.is_driven(),
+            twist: self.velocity.twist(),
+            left_mps: self.velocity.left_mps,
+            is_stalled: self.drive.is_stalled(),
+            touching: &self.touching,
+            reading: self.reading(),
+            robot: self,
+        }
+    }
+}

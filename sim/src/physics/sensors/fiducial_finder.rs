@@ -1,0 +1,92 @@
+use super::{Platform, Sensor, SensorReading, Surroundings};
+use crate::physics::form::Form;
+use crate::physics::rays::{Beams, Scratch};
+use crate::physics::report::Body;
+use crate::physics::snapshot::{Values, value};
+use crate::physics::spec::FiducialSpec;
+use interfaces::rotation;
+use nalgebra::{Isometry2, Point2};
+use serde::{Deserialize, Serialize};
+
+/// A ray counts as hitting a body if the ray ends within this distance of its surface, m.
+const ON_SURFACE_M: f64 = 1e-6;
+
+/// A detected body with a tag.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Fiducial {
+    /// The tag.
+    pub tag: u32,
+    /// The body.
+    pub body: Body,
+    /// The direction of the centre of the body in the frame of the finder, counter-clockwise, rad.
+    pub bearing_rad: f64,
+    /// The distance of the centre of the body, m.
+    pub range_m: f64,
+}
+
+/// A body with a tag.
+pub(in crate::physics) struct Tagged {
+    pub(in crate::physics) tag: u32,
+    pub(in crate::physics) body: Body,
+    /// The centre, m.
+    pub(in crate::physics) center: Point2<f64>,
+    pub(in crate::physics) form: Form,
+}
+
+/// A sensor that detects bodies with a tag.
+#[derive(Clone)]
+pub(super) struct FiducialFinder {
+    spec: FiducialSpec,
+    /// A single beam straight ahead.
+    beam: Beams,
+    found: Vec<Fiducial>,
+}
+
+impl FiducialFinder {
+    pub(super) fn new(spec: &FiducialSpec) -> Self {
+        Self { spec: *spec, beam: Beams::new(0.0, 1.0, 1, spec.range_max_m), found: Vec::new() }
+    }
+}
+
+impl Sensor for FiducialFinder {
+    fn period_steps(&self) -> u64 {
+        self.spec.period_steps
+    }
+
+    fn measure(&mut self, platform: &Platform, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
+        let pose = platform.pose * self.spec.mount;
+        self.found.clear();
+        let own = Body::Robot(platform.robot);
+        for &Tagged { tag, body, center, ref form } in surroundings.tagged.iter().filter(|it| it.body != own)
+        {
+            let to = pose.inverse_transform_point(&center).coords;
+            let (range_m, bearing_rad) = (to.norm(), libm::atan2(to.y, to.x));
+            if range_m > self.spec.range_max_m || bearing_rad.abs() > self.spec.fov_rad / 2.0 + 1e-12 {
+                continue;
+            }
+            // The first body that the ray to the centre hits must be the body itself.
+            let ray = pose * Isometry2::from_parts(nalgebra::Translation2::identity(), rotation(bearing_rad));
+            surroundings.scene.cast(&self.beam, &ray, platform.robot, scratch);
+            let first_m = 1.0 / scratch.inverse[0];
+            if first_m > range_m || form.gap_m_to(&(ray * Point2::new(first_m, 0.0))) < ON_SURFACE_M {
+                self.found.push(Fiducial { tag, body, bearing_rad, range_m });
+            }
+        }
+    }
+
+    fn reading(&self) -> SensorReading<'_> {
+        SensorReading::Fiducials(&self.found)
+    }
+
+    fn clear(&mut self) {
+        self.found.clear();
+    }
+
+    fn values(&mut self) -> Values<'_> {
+        vec![value(&mut self.found)]
+    }
+
+    fn boxed(&self) -> Box<dyn Sensor> {
+        Box::new(self.clone())
+    }
+}

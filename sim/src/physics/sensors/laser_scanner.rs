@@ -1,0 +1,112 @@
+use super::{Platform, Sensor, SensorReading, Surroundings, reported};
+use crate::physics::rays::{Beams, Scratch};
+use crate::physics::snapshot::{Values, value};
+use crate::physics::spec::LaserSpec;
+use interfaces::{LaserReading, Purpose, RandomStream, Twist};
+use nalgebra::Isometry2;
+use std::sync::Arc;
+
+/// A planar laser scanner.
+#[derive(Clone)]
+pub(in crate::physics) struct LaserScanner {
+    spec: LaserSpec,
+    beams: Arc<Beams>,
+    noise: RandomStream,
+    dropout: RandomStream,
+    reading: Option<LaserReading>,
+}
+
+impl LaserScanner {
+    /// A scanner with the `beams` of its spec (see [`SharedBeams`]), and random streams with the index `stream`.
+    pub(in crate::physics) fn new(spec: &LaserSpec, beams: Arc<Beams>, seed: u64, stream: usize) -> Self {
+        Self {
+            spec: *spec,
+            beams,
+            noise: RandomStream::new(seed, Purpose::LaserNoise(stream)),
+            dropout: RandomStream::new(seed, Purpose::LaserDropout(stream)),
+            reading: None,
+        }
+    }
+}
+
+impl Sensor for LaserScanner {
+    fn period_steps(&self) -> u64 {
+        self.spec.period_steps
+    }
+
+    fn measure(&mut self, platform: &Platform, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
+        let LaserSpec { range_min_m, range_max_m, noise_std_m, dropout, mount, .. } = self.spec;
+        let reading = self.reading.get_or_insert_with(|| LaserReading {
+            // Before any time, so that the first measurement is a new one.
+            time_s: f64::NEG_INFINITY,
+            pose: Isometry2::identity(),
+            twist: Twist::STOP,
+            mount,
+            scan: self.spec.empty_scan(),
+        });
+        if reading.time_s == surroundings.time_s {
+            return;
+        }
+        reading.time_s = surroundings.time_s;
+        reading.pose = platform.odometry_pose;
+        reading.twist = platform.odometry_twist;
+        surroundings.scene.cast(&self.beams, &(platform.pose * mount), platform.robot, scratch);
+        let reported = |measured_m: f64| reported(measured_m, range_min_m, range_max_m);
+        let ranges_m = &mut reading.scan.ranges_m;
+        ranges_m.resize(scratch.inverse.len(), 0.0);
+        let beams = ranges_m.iter_mut().zip(&scratch.inverse);
+        if noise_std_m > 0.0 {
+            for (range_m, inverse) in beams {
+                // One draw per beam, hit or not: what one beam meets never changes the noise of another.
+                *range_m = reported(1.0 / inverse + noise_std_m * self.noise.normal());
+            }
+        } else {
+            // A loop of its own, without a state: the compiler handles several beams at once.
+            for (range_m, inverse) in beams {
+                *range_m = reported(1.0 / inverse);
+            }
+        }
+        if dropout > 0.0 {
+            for range_m in ranges_m {
+                // REP-117: a missing measurement is not a number. One draw per beam, as above.
+                if self.dropout.bernoulli(dropout) {
+                    *range_m = f32::NAN;
+                }
+            }
+        }
+    }
+
+    fn reading(&self) -> SensorReading<'_> {
+        SensorReading::Laser(self.reading.as_ref())
+    }
+
+    fn clear(&mut self) {
+        self.reading = None;
+    }
+
+    fn values(&mut self) -> Values<'_> {
+        vec![value(&mut self.noise), value(&mut self.dropout), value(&mut self.reading)]
+    }
+
+    fn boxed(&self) -> Box<dyn Sensor> {
+        Box::new(self.clone())
+    }
+}
+
+/// The beams of all lasers. Lasers with the same spec share them.
+#[derive(Default)]
+pub(in crate::physics) struct SharedBeams {
+    known: Vec<(LaserSpec, Arc<Beams>)>,
+}
+
+impl SharedBeams {
+    pub(in crate::physics) fn of(&mut self, spec: &LaserSpec) -> Arc<Beams> {
+        if let Some((_, beams)) = self.known.iter().find(|(known, _)| known == spec) {
+            return Arc::clone(beams);
+        }
+        let (first_rad, spacing_rad) = (spec.angle_min_rad(), spec.angle_increment_rad());
+        let beams = Arc::new(Beams::new(first_rad, spacing_rad, spec.beams, spec.range_max_m));
+        self.known.push((*spec, Arc::clone(&beams)));
+        beams
+    }
+}
