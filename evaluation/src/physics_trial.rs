@@ -42,8 +42,8 @@ pub struct PhysicsSettings {
 /// A driven robot that no controller can drive.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the driven robot `{robot}` has the drive `{drive}`, which the controller does not support: give the robot \
-     `drive = \"differential\"`, or another behaviour than \"driven\""
+    "the driven robot `{robot}` has a drive of `kind = \"{drive}\"`, but the controller supports only \
+     `kind = \"diff\"`: change `[robot.drive]`, or let another robot be the driven one"
 )]
 pub struct UnsupportedDrive {
     /// The name of the robot.

@@ -9,7 +9,7 @@ mod strategy;
 pub use run::{TrialSettings, TrialStep, run_trial};
 pub use strategy::TrialStrategy;
 
-use crate::report::Trial;
+use crate::report::{Report, ReportSettings, Trial};
 use agent::AgentSettings;
 use mapper::{Estimator, MapperSettings};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -94,6 +94,29 @@ impl Experiment {
         };
         let trials: Result<Vec<Option<Trial>>, SettingsError> = jobs.into_par_iter().map(run).collect();
         Ok(trials?.into_iter().flatten().collect())
+    }
+
+    /// The report of all trials, with the default rayon pool.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn report(&self) -> Result<Report, SettingsError> {
+        let trials = self.run(self.jobs(), &AtomicBool::new(false), |_| ())?;
+        Ok(Report::new(self.report_settings(), trials))
+    }
+
+    /// The settings of the report, without version and arguments.
+    pub fn report_settings(&self) -> ReportSettings {
+        ReportSettings {
+            steps: self.steps,
+            trials: self.trials,
+            sensor_radius: self.worlds.first().map_or(0, GridSpec::sensor_radius),
+            worlds: self.worlds.iter().map(|world| world.name().to_owned()).collect(),
+            estimators: self.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
+            strategies: self.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
+            ..ReportSettings::default()
+        }
     }
 
     /// The settings of one trial.
