@@ -11,7 +11,8 @@ pub use strategy::TrialStrategy;
 
 use crate::report::{Report, ReportSettings, Trial};
 use agent::AgentSettings;
-use mapper::{Estimator, MapperSettings};
+use interfaces::SettingsError;
+use mapper::{EstimatorChoice, MapperSettings};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use sim::grid::GridSpec;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,7 +23,7 @@ pub struct Experiment {
     /// The worlds.
     pub worlds: Vec<GridSpec>,
     /// The estimators of rates.
-    pub estimators: Vec<Estimator>,
+    pub estimators: Vec<EstimatorChoice>,
     /// The strategies.
     pub strategies: Vec<TrialStrategy>,
     /// The number of trials of each combination.
@@ -121,7 +122,8 @@ impl Experiment {
 
     /// The settings of one trial.
     pub fn trial(&self, job: Job) -> TrialSettings<'_> {
-        let mapper = MapperSettings { estimator: self.estimators[job.estimator], ..self.mapper.clone() };
+        let estimator = self.estimators[job.estimator].clone();
+        let mapper = MapperSettings { estimator, ..self.mapper.clone() };
         TrialSettings {
             world: &self.worlds[job.world],
             strategy: self.strategies[job.strategy].clone(),
@@ -132,15 +134,4 @@ impl Experiment {
             controller: self.controller,
         }
     }
-}
-
-/// A setting that is out of range.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SettingsError {
-    /// One of the mapper's.
-    #[error(transparent)]
-    Mapper(#[from] mapper::SettingsError),
-    /// One of the agent's or the controller's.
-    #[error(transparent)]
-    Other(#[from] interfaces::SettingsError),
 }

@@ -3,7 +3,7 @@
 use agent::Policy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use mapper::{Estimator, OccupancyModel};
+use mapper::{Choice, Estimator, EstimatorChoice, OccupancyChoice, OccupancyKind};
 use std::path::PathBuf;
 use viewer::recording::Live;
 
@@ -60,12 +60,12 @@ pub(crate) struct Args {
     pub(crate) speed: Option<f64>,
 
     /// The estimator of the rates of change
-    #[arg(long, default_value = "two-state-gaps", value_parser = estimators(), help_heading = "Mapper")]
-    pub(crate) estimator: Estimator,
+    #[arg(long, default_value = "two-state-gaps", value_parser = mapper_part::<dyn Estimator>(), help_heading = "Mapper")]
+    pub(crate) estimator: EstimatorChoice,
 
     /// The occupancy model: steady (static walls never change) or naive (every beam counts, as in the paper)
-    #[arg(long, default_value = "steady", value_parser = occupancies(), help_heading = "Mapper")]
-    pub(crate) occupancy: OccupancyModel,
+    #[arg(long, default_value = "steady", value_parser = mapper_part::<OccupancyKind>(), help_heading = "Mapper")]
+    pub(crate) occupancy: OccupancyChoice,
 
     /// The folder for all results
     #[arg(long, value_name = "DIR", default_value = "four_rooms_out", help_heading = "Output")]
@@ -122,12 +122,10 @@ fn strategies() -> impl TypedValueParser<Value = Policy> {
     PossibleValuesParser::new(Policy::built_in().iter().map(named)).try_map(|name| name.parse::<Policy>())
 }
 
-fn estimators() -> impl TypedValueParser<Value = Estimator> {
-    one_of(&Estimator::ALL, Estimator::name)
-}
-
-fn occupancies() -> impl TypedValueParser<Value = OccupancyModel> {
-    one_of(&OccupancyModel::ALL, OccupancyModel::name)
+/// A parser of the name of a built-in part of the mapper.
+fn mapper_part<T: mapper::Named + ?Sized>() -> impl TypedValueParser<Value = Choice<T>> {
+    let names: Vec<_> = Choice::<T>::all().iter().map(Choice::name).collect();
+    PossibleValuesParser::new(names).try_map(Choice::try_from)
 }
 
 /// The longest run, s: 1000 hours.

@@ -4,7 +4,7 @@ use agent::Reward;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use evaluation::trials::TrialStrategy;
-use mapper::Estimator;
+use mapper::{Choice, Estimator, EstimatorChoice};
 use std::path::PathBuf;
 
 /// Compares exploration strategies in grid worlds with moving blocks: the paper's Figure 3, with statistics.
@@ -58,8 +58,8 @@ pub(crate) struct Args {
 
     /// How rates of change are estimated. Can be repeated [default: the paper's, and this program's
     /// choice]
-    #[arg(long, value_parser = estimators(), help_heading = "Comparison")]
-    pub(crate) estimator: Vec<Estimator>,
+    #[arg(long, value_parser = mapper_part::<dyn Estimator>(), help_heading = "Comparison")]
+    pub(crate) estimator: Vec<EstimatorChoice>,
 
     /// Trials of each combination, with seeds that count up from --seed
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000), help_heading = "Comparison")]
@@ -139,8 +139,10 @@ fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
     })
 }
 
-fn estimators() -> impl TypedValueParser<Value = Estimator> {
-    one_of(Estimator::ALL.to_vec(), Estimator::name)
+/// A parser of the name of a built-in part of the mapper.
+fn mapper_part<T: mapper::Named + ?Sized>() -> impl TypedValueParser<Value = Choice<T>> {
+    let names: Vec<_> = Choice::<T>::all().iter().map(Choice::name).collect();
+    PossibleValuesParser::new(names).try_map(Choice::try_from)
 }
 
 fn probability(text: &str) -> Result<f64, String> {

@@ -10,8 +10,9 @@ use curious::progress::TrialProgress;
 use curious::worlds;
 use evaluation::output::{make_folder, say, write_file};
 use evaluation::report::{Report, ReportSettings, Trial, WorldPicture};
-use evaluation::trials::{Experiment, SettingsError};
-use mapper::{Estimator, MapperSettings};
+use evaluation::trials::Experiment;
+use interfaces::SettingsError;
+use mapper::{EstimatorChoice, MapperSettings, Paper};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::collections::BTreeSet;
 use std::io::{stderr, stdout};
@@ -52,7 +53,7 @@ fn main() -> ExitCode {
 fn experiment(args: &Args) -> anyhow::Result<Experiment> {
     let mut estimators = args.estimator.clone();
     if estimators.is_empty() {
-        estimators = vec![Estimator::Paper, Estimator::default()];
+        estimators = vec![Paper.into(), EstimatorChoice::default()];
     }
     let mut controller = CellDrive::settings();
     controller.exploration.max_steps = args.max_steps;
