@@ -119,7 +119,6 @@ impl PhysicsSettings {
 }
 
 /// A run in a physics world: the world, the robot, and the measurements.
-#[derive(Debug)]
 pub struct PhysicsTrial<P> {
     /// The world.
     pub world: PhysicsWorld,

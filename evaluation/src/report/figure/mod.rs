@@ -4,7 +4,6 @@
 mod curves;
 mod pen;
 mod plan;
-mod vector;
 
 use super::metric::Metric;
 use super::run::Run;
