@@ -1,4 +1,4 @@
-//! One way of drawing, for pixels and for vectors.
+//! Lengths, lines and text for PNG and SVG figures.
 
 use crate::drawing::{FONT, INK, px, register_fonts, why};
 use plotters::coord::Shift;
@@ -9,7 +9,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// A part of a figure to draw on.
 pub(super) type Sheet<DB> = DrawingArea<DB, Shift>;
 
-/// Turns lengths in pixels of the finished picture into those to draw with.
+/// Converts lengths in pixels of the finished picture to the units of a backend.
 pub(super) struct Pen {
     scale: i32,
     /// The library puts the middle of a letter a quarter of its height too high, but only there.
@@ -36,7 +36,7 @@ impl Pen {
         (FONT, self.px(height)).into_font().color(&INK)
     }
 
-    /// Writes a line; `at` is the middle of its left side, or of that which `anchor` tells.
+    /// Writes a line of text; `at` is the middle of the side that `anchor` gives.
     pub(super) fn write<DB: DrawingBackend>(
         &self,
         sheet: &Sheet<DB>,

@@ -60,7 +60,7 @@ fn every_strategy_the_world_and_the_words_are_drawn() {
         "two_blocks: 5 trials of 20,000 steps, estimator two-state, sensor radius 4",
         "top block",
         "range of its sensor: 4",
-        "Map quality: share of cells that are right",
+        "Map quality: share of cells that are correct",
         "15,000",
     ] {
         assert!(text.contains(&format!(">\n{words}\n</text>")), "{words}");
