@@ -83,13 +83,13 @@ pub(super) fn draw<DB: DrawingBackend>(
     for strategy in strategies.iter().rev() {
         band(&chart, &positions, &curve(strategy), &shown, ink(palette::strategy(&strategy.name)))?;
     }
-    // What is dashed lies on top: a coin may go exactly as curious does.
-    for is_dashed in [false, true] {
-        let those = strategies.iter().rev().filter(|strategy| is_dashed(&strategy.name) == is_dashed);
+    // Dashed curves lie on top: the curve of a coin can be equal to that of curious.
+    for dashed in [false, true] {
+        let those = strategies.iter().rev().filter(|strategy| is_dashed(&strategy.name) == dashed);
         for strategy in those {
             let style = pen.line(ink(palette::strategy(&strategy.name)), 2);
             for line in lines(&positions, &curve(strategy), &shown) {
-                draw_line(chart.plotting_area(), pen, line, style, is_dashed)?;
+                draw_line(chart.plotting_area(), pen, line, style, dashed)?;
             }
         }
     }
