@@ -5,7 +5,6 @@ mod output;
 mod parts;
 mod progress;
 
-use agent::Features;
 use anyhow::Context;
 use args::{Args, DriveChoice};
 use clap::Parser;

@@ -83,13 +83,13 @@ pub(super) fn draw<DB: DrawingBackend>(
         band(&chart, &places, &curve(strategy), &shown, ink(palette::strategy(&strategy.name)))?;
     }
     // What is dashed lies on top: a coin may go exactly as curious does.
-    for is_dashed in [false, true] {
+    for dashed in [false, true] {
         let those =
-            strategies.iter().rev().filter(|strategy| is_dashed(&strategy.name) == is_dashed);
+            strategies.iter().rev().filter(|strategy| is_dashed(&strategy.name) == dashed);
         for strategy in those {
             let style = pen.line(ink(palette::strategy(&strategy.name)), 2);
             for line in lines(&places, &curve(strategy), &shown) {
-                draw_line(chart.plotting_area(), pen, line, style, is_dashed)?;
+                draw_line(chart.plotting_area(), pen, line, style, dashed)?;
             }
         }
     }
