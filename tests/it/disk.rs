@@ -1,62 +1,107 @@
-//! What cannot be written is one clear error; the exit code is 1, and nothing half-written stays.
+//! Output that cannot be written is one clear error, in both programs: the exit code is 1, and no
+//! half-written file stays.
 
-use crate::run::{Run, names};
-use std::path::Path;
+use crate::run::{Ended, Run, names};
 
-/// One line on standard error, after the lines of progress.
+/// A program, the arguments of a short run, and a file that the run writes.
+struct Program {
+    run: fn() -> Run,
+    arguments: &'static str,
+    file: &'static str,
+}
+
+const PROGRAMS: [Program; 2] = [
+    Program { run: Run::new, arguments: "--duration 30", file: "summary.json" },
+    Program { run: Run::grid, arguments: "--steps 200 --trials 1", file: "report.json" },
+];
+
+/// The only line on standard error, after lines of progress.
 #[track_caller]
-fn fails(run: &Run, arguments: &str) -> String {
-    let ended = run.ends(&format!("--duration 30 {arguments}"));
-    assert_eq!(ended.code, Some(1), "{ended:?}");
-    assert_eq!(ended.stdout, "");
-    let errors: Vec<&str> = ended.stderr.lines().filter(|line| line.starts_with("error: ")).collect();
-    assert_eq!(errors.len(), 1, "{}", ended.stderr);
-    errors[0].to_owned()
+fn error(run: &Run, arguments: &str) -> String {
+    let ended = run.ends(arguments);
+    assert_eq!((ended.code, ended.stdout.as_str()), (Some(1), ""), "{ended:?}");
+    let lines: Vec<&str> = ended.stderr.lines().filter(|line| !line.contains(" of 30 s, ")).collect();
+    assert_eq!(lines.len(), 1, "{}", ended.stderr);
+    lines[0].to_owned()
 }
 
 #[test]
 fn an_output_folder_that_is_a_file() {
-    let run = Run::new();
-    run.write("file", "precious");
-    insta::assert_snapshot!(fails(&run, "--out file"), @"error: cannot write file: File exists (os error 17)");
-    insta::assert_snapshot!(fails(&run, "--out file/below"), @"error: cannot write file/below: Not a directory (os error 20)");
-    assert_eq!(std::fs::read_to_string(run.path("file")).unwrap(), "precious");
-    assert_eq!(run.names(), ["file"]);
-}
-
-#[test]
-fn a_recording_in_a_folder_that_is_not_there() {
-    let run = Run::new();
-    insta::assert_snapshot!(fails(&run, "--rrd no/such/run.rrd"), @"error: cannot write the recording no/such/run.rrd: No such file or directory (os error 2)");
-    assert_eq!(names(&run.path("out")), [""; 0]);
-}
-
-#[test]
-fn a_disk_that_is_full() {
-    if !Path::new("/dev/full").exists() {
-        return;
+    for program in PROGRAMS {
+        let run = (program.run)();
+        run.write("file", "precious");
+        for (out, reason) in
+            [("file", "File exists (os error 17)"), ("file/below", "Not a directory (os error 20)")]
+        {
+            let error = error(&run, &format!("{} --out {out}", program.arguments));
+            assert_eq!(error, format!("error: cannot write {out}: {reason}"));
+        }
+        assert_eq!(std::fs::read_to_string(run.path("file")).unwrap(), "precious");
+        assert_eq!(run.names(), ["file"]);
     }
-    let run = Run::new();
-    insta::assert_snapshot!(fails(&run, "--rrd /dev/full"), @"error: cannot write the recording /dev/full: No space left on device (os error 28)");
-    assert_eq!(names(&run.path("out")), [""; 0]);
 }
 
 #[test]
 fn a_file_that_cannot_be_replaced() {
-    let run = Run::new();
-    std::fs::create_dir_all(run.out("summary.json/taken")).unwrap();
-    let error = fails(&run, "--no-rrd");
-    assert!(error.starts_with("error: cannot write out/summary.json: "), "{error}");
-    let left = names(&run.path("out"));
-    assert!(left.iter().all(|name| !name.ends_with(".part")), "{left:?}");
+    for program in PROGRAMS {
+        let run = (program.run)();
+        let file = program.file;
+        std::fs::create_dir_all(run.out(file).join("taken")).unwrap();
+        let error = error(&run, program.arguments);
+        assert!(error.starts_with(&format!("error: cannot write out/{file}: ")), "{error}");
+        let left = names(&run.path("out"));
+        assert!(left.iter().all(|name| !name.ends_with(".part")), "{left:?}");
+    }
 }
 
 #[test]
-fn a_recording_elsewhere() {
+fn a_recording_in_a_folder_that_does_not_exist() {
+    let reason = "No such file or directory (os error 2)";
+    cannot_record("no/such/run.rrd", reason);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_recording_on_a_full_disk() {
+    cannot_record("/dev/full", "No space left on device (os error 28)");
+}
+
+#[track_caller]
+fn cannot_record(file: &str, reason: &str) {
+    for program in PROGRAMS {
+        let run = (program.run)();
+        let error = error(&run, &format!("{} --rrd {file}", program.arguments));
+        assert_eq!(error, format!("error: cannot write the recording {file}: {reason}"));
+        assert_eq!(names(&run.path("out")), [""; 0]);
+    }
+}
+
+#[test]
+fn a_recording_outside_the_output_folder() {
     let run = Run::new();
     run.goes_well("--duration 30 --quiet --rrd elsewhere.rrd");
     assert_eq!(run.names(), ["elsewhere.rrd", "out"]);
     assert!(!run.out("four_rooms.rrd").exists());
     let recording = crate::recording::Recording::read(&run.path("elsewhere.rrd"));
     assert!((recording.end_s() - 30.0).abs() < 1e-6);
+}
+
+/// As when a disk fills up during the run: here a named pipe whose reader closes the pipe after a while.
+#[test]
+#[cfg(unix)]
+fn a_recording_that_cannot_go_on_costs_no_trial() {
+    use std::io::Read;
+    let run = Run::grid();
+    let pipe = run.path("pipe");
+    nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).unwrap();
+    let arguments = "--steps 3000 --trials 2 --strategy recency --estimator paper";
+    let child = run.starts(&format!("{arguments} --rrd pipe"));
+    std::fs::File::open(&pipe).unwrap().read_exact(&mut [0; 1000]).unwrap();
+    let ended = Ended::from(child.wait_with_output().unwrap());
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert_eq!(ended.stderr, "error: cannot write the recording pipe: Broken pipe (os error 32)\n");
+    let without = Run::grid();
+    without.goes_well(arguments);
+    let trials = |run: &Run| std::fs::read(run.out("trials.csv")).unwrap();
+    assert!(trials(&run) == trials(&without), "the trials are others");
 }

@@ -54,11 +54,6 @@ impl Run {
         self.folder.path().join(name)
     }
 
-    /// Where the program is.
-    pub(crate) fn program(&self) -> &'static str {
-        self.program
-    }
-
     /// A file in the output folder.
     pub(crate) fn out(&self, name: &str) -> PathBuf {
         self.path("out").join(name)

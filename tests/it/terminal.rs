@@ -1,39 +1,44 @@
-//! Runs the program in a terminal that `script` of util-linux makes up.
+//! Runs a program in a pseudo-terminal.
 #![cfg(target_os = "linux")]
 
 use crate::run::{Ended, Run};
-use std::io::Write;
-use std::process::{ChildStdin, Command, Stdio};
+use nix::pty::{Winsize, openpty};
+use std::fs::File;
+use std::io::{Read, Write};
+use std::process::Stdio;
 use std::time::Duration;
 
-/// Runs the program while `person` presses keys; standard error comes on standard output. `None`
-/// without `script`.
-pub(crate) fn run(run: &Run, arguments: &str, person: impl FnOnce(&mut Keys)) -> Option<Ended> {
-    let line = format!("'{}' --out out {arguments}", run.program());
-    let mut script = Command::new("script");
-    script.args(["-qec", &line, "/dev/null"]).current_dir(run.path(""));
-    script.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = match script.spawn() {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            eprintln!("skipped: there is no `script` here");
-            return None;
-        }
-        child => child.unwrap(),
-    };
-    let mut keys = Keys(child.stdin.take().unwrap());
+const SIZE: Winsize = Winsize { ws_row: 24, ws_col: 80, ws_xpixel: 0, ws_ypixel: 0 };
+
+/// Runs the program while `person` presses keys; standard error comes on standard output.
+pub(crate) fn run(run: &Run, arguments: &str, person: impl FnOnce(&mut Keys)) -> Ended {
+    let terminal = openpty(&SIZE, None).unwrap();
+    let mut command = run.command(arguments);
+    let screen = || Stdio::from(terminal.slave.try_clone().unwrap());
+    command.stdin(screen()).stdout(screen()).stderr(screen());
+    let mut child = command.spawn().unwrap();
+    // Only the program holds the terminal now: when the program ends, reading ends.
+    drop((command, terminal.slave));
+    let mut keys = Keys(File::from(terminal.master));
+    let mut screen = keys.0.try_clone().unwrap();
+    let reader = std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        // Linux ends the output of a closed terminal with an error.
+        _ = screen.read_to_end(&mut bytes);
+        bytes
+    });
     person(&mut keys);
-    let ended = child.wait_with_output().unwrap().into();
-    drop(keys); // not before: a terminal that hangs up ends the program
-    Some(ended)
+    let status = child.wait().unwrap();
+    let stdout = String::from_utf8(reader.join().unwrap()).unwrap();
+    Ended { code: status.code(), stdout, stderr: String::new() }
 }
 
 /// The keys of the terminal.
-pub(crate) struct Keys(ChildStdin);
+pub(crate) struct Keys(File);
 
 impl Keys {
     pub(crate) fn press(&mut self, key: &str) {
         self.0.write_all(key.as_bytes()).unwrap();
-        self.0.flush().unwrap();
         wait(50);
     }
 }

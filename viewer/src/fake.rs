@@ -181,8 +181,8 @@ impl FakeRun {
         let features = Features::of(&mut self.mapper);
         let goal = self.curious.waypoints[self.curious.next % self.curious.waypoints.len()];
         let wave = |phase: f64| 1.0 + libm::sin(self.time_s() / 60.0 + phase);
-        let strategy = |name, phase: f64| StrategyState {
-            name,
+        let strategy = |name: &str, phase: f64| StrategyState {
+            name: name.into(),
             value: Some(2.0 * wave(phase)),
             share: 0.25 * wave(phase),
             is_current: phase == 0.0,

@@ -110,12 +110,12 @@ mod tests {
         }
     }
 
-    fn recorded(steps: u64, file: &Path, is_cancelled: bool) -> Recorded {
+    fn recorded(steps: u64, file: &Path, is_canceled: bool) -> Recorded {
         let experiment = experiment(steps);
         let life = experiment.trial(experiment.jobs()[0]);
         let options = RecordingOptions { file: Some(file.to_owned()), ..Default::default() };
         let recorder = Recorder::new(&options, life.world.into()).unwrap();
-        record(&life, recorder, &is_cancelled.into()).unwrap()
+        record(&life, recorder, &is_canceled.into()).unwrap()
     }
 
     #[test]

@@ -99,7 +99,7 @@ pub enum Sight<'a> {
     },
 }
 
-/// The positions of a robot since the start. Positions nearer than a few centimetres to the last one are
+/// The positions of a robot since the start. Positions nearer than a few centimeters to the last one are
 /// dropped, so that a robot which stands still costs nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Trail {

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Circles that are not yet removed; the list only shrinks. A line holds the module that contains the
 /// circle, then the modules of the circle.
-const KNOWN: &str = include_str!("known_circles.txt");
+const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/architecture/known_circles.txt");
 
 /// Sibling modules each of which uses each other one.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -92,7 +92,8 @@ fn no_circles_between_sibling_modules() {
     let targets = packages().into_iter().flat_map(|package| package.targets);
     let circles: Vec<Circle> =
         targets.flat_map(|(name, root)| circles(&Modules::read(&name, &root))).collect();
-    let known: Vec<&str> = KNOWN.lines().filter(|line| !line.starts_with('#')).collect();
+    let known = std::fs::read_to_string(KNOWN).unwrap();
+    let known: Vec<&str> = known.lines().filter(|line| !line.starts_with('#')).collect();
     let mut errors = String::new();
     for circle in circles.iter().filter(|circle| !known.iter().any(|known| circle.is_within(known))) {
         errors += &format!("a circle between modules: {}", circle.explained());

@@ -40,7 +40,7 @@ pub(crate) fn needs(package: &str) -> Vec<String> {
 
 fn cargo(arguments: &[&str]) -> String {
     let mut command = Command::new(env!("CARGO"));
-    command.args(arguments).args(["--locked", "--offline"]).current_dir(root());
+    command.args(arguments).args(["--locked"]).current_dir(root());
     let output = command.output().unwrap();
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "cargo {}: {errors}", arguments.join(" "));

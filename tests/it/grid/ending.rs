@@ -2,12 +2,12 @@
 #![cfg(unix)]
 
 use super::{report, rows};
-use crate::ending::signal;
+use crate::ending::{send, wait_for_recording};
 use crate::recording::Recording;
 use crate::run::{Ended, Run, names};
+use nix::sys::signal::Signal;
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
-use std::time::{Duration, Instant};
 
 #[test]
 fn ctrl_c_keeps_the_finished_trials() {
@@ -19,7 +19,7 @@ fn ctrl_c_keeps_the_finished_trials() {
     let mut line = String::new();
     stderr.read_line(&mut line).unwrap();
     assert!(line.contains(" of 200000 trials, ") && line.ends_with(" s left\n"), "{line:?}");
-    signal(&child, "-INT");
+    send(Signal::SIGINT, &child);
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{ended:?}");
 
@@ -43,12 +43,8 @@ fn ctrl_c_keeps_the_finished_trials() {
 fn ctrl_c_closes_the_recording_even_before_the_first_trial_is_finished() {
     let run = Run::grid();
     let child = run.starts("--trials 1 --steps 100000000 --rrd trial.rrd --estimator paper");
-    let start = Instant::now();
-    while std::fs::metadata(run.path("trial.rrd")).map_or(0, |file| file.len()) < 50_000 {
-        assert!(start.elapsed() < Duration::from_secs(60), "no recording");
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    signal(&child, "-INT");
+    wait_for_recording(&run.path("trial.rrd"));
+    send(Signal::SIGINT, &child);
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{ended:?}");
     insta::assert_snapshot!(ended.stderr, @"interrupted before the first trial was finished: no report");

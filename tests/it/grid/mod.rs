@@ -2,7 +2,6 @@
 
 mod bad_input;
 mod choices;
-mod disk;
 mod ending;
 mod files;
 mod golden;

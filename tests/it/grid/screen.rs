@@ -53,7 +53,6 @@ fn help_names_every_choice() {
 fn a_terminal_shows_a_bar_that_goes_away() {
     let run = Run::grid();
     let ended = crate::terminal::run(&run, "--steps 20000 --trials 2 --estimator paper", |_| ());
-    let Some(ended) = ended else { return };
     assert_eq!(ended.code, Some(0), "{ended:?}");
     let (before, after) = ended.stdout.split_once("two blocks\r\n").unwrap();
     assert!(before.contains(" of 10 trials"), "{before:?}");

@@ -112,7 +112,8 @@ fn names(chart: &Chart, scene: &Scene) -> Result<(), String> {
         let fits = right - left > width as i32 && bottom - top > height as i32;
         let y = if fits { (top + bottom) / 2 + px(5) } else { bottom + px(12) };
         let style = style.pos(Pos::new(HPos::Center, VPos::Center));
-        plot.use_screen_coord().draw_text(name, &style, ((left + right) / 2, y)).map_err(why)?;
+        let text = Text::new(name.to_owned(), ((left + right) / 2, y), style);
+        plot.use_screen_coord().draw(&text).map_err(why)?;
     }
     Ok(())
 }

@@ -3,7 +3,6 @@
 use super::panel::{Chart, Mark, Panel};
 use super::{Pictures, ground};
 use crate::scene::Scene;
-use crate::view::Trail;
 use evaluation::drawing::{Area, ink, why};
 use evaluation::palette::{self, Rgb};
 use nalgebra::Point2;

@@ -1,4 +1,4 @@
-//! The file that a recording goes to.
+//! The file of a recording.
 
 use rerun::external::re_log_encoding::rrd::{EncodeError, Encoder, EncodingOptions};
 use rerun::log::LogMsg;
@@ -7,13 +7,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// An `.rrd` file under its final name from the start, so that a viewer can follow it and a killed
-/// run leaves a readable one.
+/// An `.rrd` file under its final name from the start, so that a viewer can follow it and a killed run leaves
+/// a readable file.
 ///
-/// The SDK's own file sink reports a failed write to its logger only, and drops everything that
-/// comes after it without a word. This one keeps the first error for [`RrdFile::finish`]. Every
-/// message is written at once, without a buffer in between: what was sent is in the hands of the
-/// operating system.
+/// The file sink of the SDK reports a failed write to its logger only, and drops everything after it. This
+/// sink keeps the first error for [`RrdFile::finish`]. Every message is passed to the operating system at
+/// once, without a buffer.
 pub(super) struct RrdFile {
     path: PathBuf,
     state: Mutex<State>,
@@ -34,7 +33,7 @@ impl RrdFile {
         Self::with_output(path, Box::new(file))
     }
 
-    /// As [`RrdFile::create`], into `output`; `path` is only what errors name.
+    /// As [`RrdFile::create`], into `output`; `path` is only for errors.
     pub(super) fn with_output(path: &Path, output: Output) -> Result<Self, String> {
         let version = rerun::build_info().version;
         let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, output);
@@ -78,7 +77,7 @@ impl RrdFile {
     }
 }
 
-/// What the operating system says, without what it was doing.
+/// The message of the operating system, without the context of the SDK.
 fn why(error: EncodeError) -> String {
     match error {
         EncodeError::Write(error) => error.to_string(),

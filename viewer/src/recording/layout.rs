@@ -63,7 +63,7 @@ pub(super) fn send(
 }
 
 /// The ground around the maps. It is light, because labels are dark.
-const GROUND: rerun::Color = rerun::Color::from_rgb(236, 238, 241);
+const GROUND: [u8; 3] = [236, 238, 241];
 
 struct Layout {
     stream: RecordingStream,
@@ -122,7 +122,7 @@ impl Layout {
         let bounds = datatypes::Range2D { x_range: [from.x, to.x].into(), y_range: [-to.y, -from.y].into() };
         self.property(&view, "VisualBounds2D", &blueprint::VisualBounds2D::new(bounds))?;
         let background = blueprint::Background::new(rerun::blueprint::components::BackgroundKind::SolidColor);
-        self.property(&view, "Background", &background.with_color(GROUND))?;
+        self.property(&view, "Background", &background.with_color(rerun::Color::from(GROUND)))?;
         Ok(view)
     }
 

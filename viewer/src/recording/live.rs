@@ -1,4 +1,4 @@
-//! A viewer that watches while a run goes on: started here, or running already.
+//! A live viewer of a run: started here, or already running.
 
 use rerun::external::re_grpc_client::write::ClientConnectionState;
 use rerun::external::re_uri::ProxyUri;
@@ -12,7 +12,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// A viewer to show the run in while it goes on.
+/// A viewer that shows the run while it goes on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Live {
     /// The viewer on this machine; it is started unless it runs already.
@@ -26,13 +26,13 @@ impl Live {
     ///
     /// # Errors
     ///
-    /// When the address makes no sense. Nobody has to be there yet.
+    /// When the address is invalid. No viewer has to run there yet.
     pub fn at(address: &str) -> Result<Self, LiveError> {
         parse(address).map(|_| Self::Connect(address.into()))
     }
 }
 
-/// Why a viewer cannot be shown anything.
+/// Why a viewer cannot show the run.
 #[derive(Debug, thiserror::Error)]
 pub enum LiveError {
     /// There is no viewer to start.
@@ -51,31 +51,31 @@ pub enum LiveError {
     Start {
         /// The program that was started.
         program: String,
-        /// Why not.
+        /// The reason.
         why: io::Error,
     },
-    /// The viewer came and went.
+    /// The viewer ended at once.
     #[error("the viewer `{program}` ended at once ({status}); run it by itself to see why")]
     Ended {
         /// The program that was started.
         program: String,
-        /// How it ended.
+        /// Its exit status.
         status: std::process::ExitStatus,
     },
-    /// The address makes no sense.
+    /// The address is invalid.
     #[error(
-        "`{address}` is not the address of a viewer: {why}; right is e.g. rerun+http://127.0.0.1:9876/proxy"
+        "`{address}` is not the address of a viewer: {why}; a valid address is rerun+http://127.0.0.1:9876/proxy"
     )]
     Address {
-        /// As given.
+        /// The given text.
         address: String,
-        /// What is wrong.
+        /// What is invalid.
         why: String,
     },
-    /// Nobody is there.
+    /// No viewer runs at the address.
     #[error("no viewer answers at {address}: {why}; start one there with `rerun`")]
     Unreachable {
-        /// Where one was looked for.
+        /// The address.
         address: String,
         /// What happened instead.
         why: String,
@@ -86,15 +86,15 @@ pub enum LiveError {
 const ANSWER_TIMEOUT: Duration = Duration::from_millis(1500);
 /// How long a viewer may take to start: the first start on a slow disk takes several seconds.
 const START_TIMEOUT: Duration = Duration::from_secs(20);
-/// How long a viewer may take nothing before it counts as lost.
+/// How long a viewer may accept nothing before it counts as lost.
 const STALL_TIMEOUT: Duration = Duration::from_secs(5);
-/// Messages on their way to a viewer; more wait for it.
+/// The number of messages that may wait for a viewer.
 const QUEUE: usize = 256;
-/// The viewer's program, unless the settings name another.
+/// The program of the viewer, unless the options name another.
 pub(super) const PROGRAM: &str = "rerun";
 
-/// The way to one viewer. A viewer that goes away, or takes nothing, is lost and forgotten: it
-/// never holds a run up for longer than [`STALL_TIMEOUT`].
+/// The connection to one viewer. A viewer that goes away, or accepts nothing, is lost: it never delays a run
+/// by more than [`STALL_TIMEOUT`].
 pub(super) struct LiveFeed {
     address: String,
     state: Mutex<State>,
@@ -168,7 +168,7 @@ impl LiveFeed {
     }
 }
 
-/// Sends on what comes until nothing comes any more. Returns whether all of it went out.
+/// Sends all messages until the queue is closed. Returns whether all of them were sent.
 fn deliver(sink: GrpcSink, messages: Receiver<LogMsg>) -> bool {
     for message in messages {
         sink.send(message);
@@ -177,7 +177,7 @@ fn deliver(sink: GrpcSink, messages: Receiver<LogMsg>) -> bool {
         }
     }
     sink.flush_blocking(STALL_TIMEOUT).is_ok()
-    // Dropping the sink waits for the viewer's last word.
+    // Dropping the sink waits for the viewer.
 }
 
 fn parse(address: &str) -> Result<ProxyUri, LiveError> {
@@ -185,11 +185,11 @@ fn parse(address: &str) -> Result<ProxyUri, LiveError> {
     long.parse().map_err(|error| LiveError::Address { address: address.into(), why: format!("{error}") })
 }
 
-/// Whether anything listens at `uri`. The SDK would try for ever.
+/// Checks that a server listens at `uri`. The SDK would try for ever.
 fn reach(uri: &ProxyUri) -> io::Result<()> {
     let (host, port) = (uri.origin.host.to_string(), uri.origin.port);
     let (report, outcome) = channel();
-    // In a thread, because the search for a name has no timeout of its own.
+    // In a thread, because the lookup of a name has no timeout of its own.
     thread::spawn(move || {
         let host = host.trim_matches(['[', ']']);
         let reached = (host, port).to_socket_addrs().and_then(|addresses| {
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn an_address_that_makes_no_sense_is_refused() {
+    fn an_invalid_address_is_refused() {
         for address in ["", "rerun+http://", "ftp://127.0.0.1:1/proxy", "127.0.0.1:99999", "a viewer"] {
             let message = fails(address);
             assert!(message.contains("is not the address of a viewer"), "{address}: {message}");
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_there_is_one_sentence() {
+    fn a_missing_viewer_is_one_sentence() {
         let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         let message = fails(&format!("127.0.0.1:{free}"));
         assert!(message.starts_with("no viewer answers at rerun+http://127.0.0.1:"), "{message}");

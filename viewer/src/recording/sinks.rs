@@ -1,4 +1,4 @@
-//! All the places that one recording goes to.
+//! The destinations of one recording.
 
 use super::file::RrdFile;
 use super::live::LiveFeed;
@@ -16,8 +16,7 @@ pub(super) struct Sinks {
 }
 
 impl Sinks {
-    /// Opens everything that `options` ask for. Returns also why a viewer is missing, if one is
-    /// and there is a file to go on with.
+    /// Opens every destination. Returns also why a viewer is missing, if one is missing and there is a file.
     pub(super) fn open(options: &RecordingOptions) -> Result<(Self, Option<String>), RecordingError> {
         let create = |path: &std::path::PathBuf| match RrdFile::create(path) {
             Ok(file) => Ok(Arc::new(file)),
@@ -40,7 +39,7 @@ impl Sinks {
         Self { file: Some(Arc::new(file)), live: Vec::new() }
     }
 
-    /// Whether a viewer watches.
+    /// Whether a viewer shows the run.
     pub(super) fn is_live(&self) -> bool {
         self.live.iter().any(|feed| !feed.is_lost())
     }
@@ -51,7 +50,7 @@ impl Sinks {
         Some(format!("the viewer at {} went away", lost.address()))
     }
 
-    /// Whether the file took everything so far.
+    /// Whether everything so far was written to the file.
     pub(super) fn check(&self) -> Result<(), RecordingError> {
         self.file_result(RrdFile::check)
     }

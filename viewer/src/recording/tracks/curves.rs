@@ -66,12 +66,12 @@ pub(in crate::recording) fn plots(scene: &Scene, view: &View) -> Vec<Plot> {
     if has_choice(view) {
         let each = |value: fn(&View, usize) -> Option<f64>| {
             let curve = |(index, strategy): (usize, &robot::StrategyState)| Curve {
-                path: path::escape(strategy.name),
-                name: strategy.name.to_owned(),
-                color: palette::strategy(strategy.name),
+                path: path::escape(&strategy.name),
+                name: strategy.name.clone(),
+                color: palette::strategy(&strategy.name),
                 value: Box::new(move |view| value(view, index)),
             };
-            view.strategies.iter().enumerate().map(curve).collect()
+            view.strategies.iter().enumerate().map(curve).collect::<Vec<_>>()
         };
         // A strategy about which nothing was learned has the value 0.
         let values = each(|view, index| Some(view.strategies.get(index)?.value.unwrap_or(0.0)));
@@ -110,7 +110,7 @@ impl Curves {
             }
             tracks.push((plot, rows, Due::every(start.pace.curves)));
         }
-        let names = || start.view.strategies.iter().map(|strategy| strategy.name);
+        let names = || start.view.strategies.iter().map(|strategy| strategy.name.as_str());
         if has_choice(start.view) {
             let look = StateConfiguration::new()
                 .with_values(names())
@@ -134,8 +134,8 @@ impl Track for Curves {
         }
         let current = view.strategies.iter().find(|strategy| strategy.is_current);
         if let Some(current) = current.filter(|current| has_choice(view) && current.name != self.strategy.1) {
-            self.strategy.1 = current.name.into();
-            self.strategy.0.push(now, [State(current.name.into())]);
+            self.strategy.1.clone_from(&current.name);
+            self.strategy.0.push(now, [State(current.name.clone())]);
         }
     }
 
