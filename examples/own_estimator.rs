@@ -1,45 +1,49 @@
-//! An estimator of your own, compared with built-in ones in trials of a grid world.
+//! An estimator of your own, in the physics world of four_rooms and in grid trials.
 //!
 //! ```text
 //! cargo run --example own_estimator
 //! ```
 
-use agent::AgentSettings;
+use agent::{AgentSettings, Policy};
 use controller::CellDrive;
-use curious::worlds::load_grid;
+use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::trials::{Experiment, TrialStrategy};
-use mapper::{CellStatistics, Estimator, MapperSettings, Paper, TwoStateGaps};
-use std::sync::atomic::AtomicBool;
+use mapper::{CellStatistics, Estimator, EstimatorChoice, MapperSettings};
 
-/// All changes over all the time since the first observation, in view or not. Two changes are a cycle.
+/// Half of all events per time in view: a cycle has one block event and one free event.
 #[derive(Debug)]
-struct AllTime;
+struct HalfOfEvents;
 
-impl Estimator for AllTime {
+impl Estimator for HalfOfEvents {
     fn name(&self) -> &'static str {
-        "all-time"
+        "half-of-events"
     }
 
     fn interval(&self, seen: &CellStatistics) -> f64 {
-        2.0 * (seen.last_seen - seen.first_seen) / f64::from(seen.events())
+        2.0 * seen.observed() / f64::from(seen.block_events + seen.free_events)
     }
 }
 
 fn main() -> anyhow::Result<()> {
+    let world = curious::worlds::load("four_rooms")?.spec;
+    let mut settings = PhysicsSettings::of(&world)?;
+    settings.mapper.estimator = HalfOfEvents.into();
+    let pilot = settings.pilot(settings.agent(&Policy::default(), 0)?, 0)?;
+    let mut trial = PhysicsTrial::new(&world, 0, &settings.mapper, None, pilot)?;
+    trial.run(300.0)?;
+    println!("four rooms, 5 minutes\n{}\n", trial.results());
+
     let experiment = Experiment {
-        worlds: vec![load_grid("two_blocks")?],
-        estimators: vec![AllTime.into(), Paper.into(), TwoStateGaps.into()],
-        strategies: vec![TrialStrategy::Agent("recency".parse()?)],
+        worlds: vec![curious::worlds::load_grid("two_blocks")?],
+        estimators: vec![HalfOfEvents.into(), EstimatorChoice::default()],
+        strategies: vec![TrialStrategy::Agent(Policy::default())],
         trials: 3,
         seed: 0,
-        steps: 5000,
+        steps: 5_000,
         mapper: MapperSettings::default(),
         agent: AgentSettings::default(),
         controller: CellDrive::settings(),
     };
-    for trial in experiment.run(experiment.jobs(), &AtomicBool::new(false), |_| ())? {
-        let end = trial.samples.last().expect("a trial has a sample at its end");
-        println!("{:15} seed {}: log error {:.2}", trial.estimator, trial.seed, end.log_error);
-    }
+    println!("{}", experiment.report()?.table());
     Ok(())
 }

@@ -107,16 +107,8 @@ impl Condition {
 
 fn report(experiment: &Experiment, jobs: Vec<Job>) -> anyhow::Result<Report> {
     let trials = experiment.run(jobs, &AtomicBool::new(false), |_| ())?;
-    let settings = ReportSettings {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        steps: experiment.steps,
-        trials: experiment.trials,
-        sensor_radius: experiment.worlds[0].sensor_radius,
-        worlds: experiment.worlds.iter().map(|world| world.name.clone()).collect(),
-        estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
-        strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
-        ..Default::default()
-    };
+    let version = env!("CARGO_PKG_VERSION").to_owned();
+    let settings = ReportSettings { version, ..experiment.report_settings() };
     Ok(Report::new(settings, trials))
 }
 
