@@ -95,7 +95,9 @@ mod tests {
     /// The first trial of the shipped world, of so many steps.
     fn experiment(steps: u64) -> Experiment {
         Experiment {
-            worlds: vec![GridSpec::parse("two_blocks.toml", include_str!("../../worlds/two_blocks.toml")).unwrap()],
+            worlds: vec![
+                GridSpec::parse("two_blocks.toml", include_str!("../../worlds/two_blocks.toml")).unwrap(),
+            ],
             estimators: vec![Estimator::Paper],
             strategies: vec![TrialStrategy::Agent("recency".parse().unwrap())],
             trials: 1,

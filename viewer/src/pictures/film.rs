@@ -206,11 +206,15 @@ impl Colors {
             palette::SENSOR,
             palette::SENSOR_AREA,
         ];
-        all.extend(Layer::Interval.scale_classes().iter().step_by(2).map(|&class| Layer::Interval.color(class)));
-        all.extend((1..32).map(|gray| [gray * 8; 3]));
-        let steps = |count: u8| (0..count).map(move |step| (u16::from(step) * 255 / u16::from(count - 1)) as u8);
         all.extend(
-            steps(6).flat_map(|red| steps(6).flat_map(move |green| steps(5).map(move |blue| [red, green, blue]))),
+            Layer::Interval.scale_classes().iter().step_by(2).map(|&class| Layer::Interval.color(class)),
+        );
+        all.extend((1..32).map(|gray| [gray * 8; 3]));
+        let steps =
+            |count: u8| (0..count).map(move |step| (u16::from(step) * 255 / u16::from(count - 1)) as u8);
+        all.extend(
+            steps(6)
+                .flat_map(|red| steps(6).flat_map(move |green| steps(5).map(move |blue| [red, green, blue]))),
         );
         all.truncate(usize::from(SAME));
         Self { all, known: BTreeMap::new() }

@@ -93,8 +93,7 @@ fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<Point2<f64>>
 /// Writes the names: in the middle of what is large enough, otherwise below.
 fn names(chart: &Chart, scene: &Scene) -> Result<(), String> {
     let obstacles = scene.obstacles.iter().filter_map(|obstacle| {
-        let outline =
-            if obstacle.outline.is_empty() { obstacle.reach.first()? } else { &obstacle.outline };
+        let outline = if obstacle.outline.is_empty() { obstacle.reach.first()? } else { &obstacle.outline };
         Some((obstacle.name.as_str(), outline.clone()))
     });
     let robots = scene.robots.iter().map(|robot| (robot.name.as_str(), body(robot, &robot.pose)));

@@ -15,7 +15,9 @@ pub(super) fn draw(panel: &Panel, area: &Area, pictures: &Pictures) -> Result<()
     ground::draw(&chart, scene)?;
     // The other robots' trails on top: the curious robot goes everywhere.
     for is_driven in [true, false] {
-        for (robot, trail) in scene.robots.iter().zip(trails).filter(|(robot, _)| robot.is_driven == is_driven) {
+        for (robot, trail) in
+            scene.robots.iter().zip(trails).filter(|(robot, _)| robot.is_driven == is_driven)
+        {
             line(panel, &chart, trail.points(), ground::robot_color(robot))?;
         }
     }
@@ -36,7 +38,8 @@ pub(super) fn draw(panel: &Panel, area: &Area, pictures: &Pictures) -> Result<()
 
 /// The entries of the legend.
 pub(super) fn entries(scene: &Scene, goals: &[Point2<f64>]) -> Vec<(Mark, String)> {
-    let robots = scene.robots.iter().map(|robot| (Mark::Line(ground::robot_color(robot)), robot.name.clone()));
+    let robots =
+        scene.robots.iter().map(|robot| (Mark::Line(ground::robot_color(robot)), robot.name.clone()));
     let mut entries: Vec<(Mark, String)> = robots.collect();
     entries.push((Mark::Dot(palette::CURIOUS), "start".into()));
     if !goals.is_empty() {

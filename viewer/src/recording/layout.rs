@@ -3,9 +3,9 @@
 //! Logged component by component, since the SDK's layout types cannot set a view's bounds, the
 //! axis of a plot, or how much of a trail is shown.
 
+use super::path;
 use super::rows::timeline;
 use super::tracks::{BAR_SHARE, LEGEND_SHARE, has_choice, plots};
-use super::path;
 use crate::layers::Layer;
 use crate::scene::{Scene, TimeUnit};
 use crate::view::View;
@@ -132,7 +132,8 @@ impl Layout {
         let legend = Vector2::new(0.0, LEGEND_SHARE * (to.y - from.y));
         let contents =
             ["walls", "obstacles/**", "robots/**", "maps/occupancy/**", "field_of_view/**", "goal", "path"];
-        let contents = contents.iter().chain(&["legend/**"]).map(|entity| format!("+ {}/{entity}", path::WORLD));
+        let contents =
+            contents.iter().chain(&["legend/**"]).map(|entity| format!("+ {}/{entity}", path::WORLD));
         let name = format!("The map so far: {}", scene.title);
         let contents: Vec<String> = contents.collect();
         let part = self.spatial(&name, &contents, from - margin - legend, to + margin)?;

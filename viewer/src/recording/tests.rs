@@ -263,7 +263,8 @@ fn a_killed_run_leaves_what_was_handed_on() {
 
 #[test]
 fn a_file_that_cannot_be_made_is_one_clear_error() {
-    let error = |file: &str| Recorder::new(&to(Path::new(file)), FakeRun::new().scene).err().unwrap().to_string();
+    let error =
+        |file: &str| Recorder::new(&to(Path::new(file)), FakeRun::new().scene).err().unwrap().to_string();
     let missing = error("no/such/folder/run.rrd");
     assert!(missing.starts_with("cannot write the recording no/such/folder/run.rrd: "), "{missing}");
     if Path::new("/dev/full").exists() {

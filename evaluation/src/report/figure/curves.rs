@@ -84,8 +84,7 @@ pub(super) fn draw<DB: DrawingBackend>(
     }
     // What is dashed lies on top: a coin may go exactly as curious does.
     for dashed in [false, true] {
-        let those =
-            strategies.iter().rev().filter(|strategy| is_dashed(&strategy.name) == dashed);
+        let those = strategies.iter().rev().filter(|strategy| is_dashed(&strategy.name) == dashed);
         for strategy in those {
             let style = pen.line(ink(palette::strategy(&strategy.name)), 2);
             for line in lines(&places, &curve(strategy), &shown) {

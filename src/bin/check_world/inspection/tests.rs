@@ -31,7 +31,10 @@ fn what_is_in_the_paper_s_worlds() {
     let grid = inspect("two_blocks").content.unwrap();
     assert_eq!((grid.kind, grid.scene.obstacles.len(), grid.scene.robots.len()), ("grid world", 2, 1));
     let physics = inspect("four_rooms").content.unwrap();
-    assert_eq!((physics.kind, physics.scene.obstacles.len(), physics.scene.robots.len()), ("physics world", 0, 2));
+    assert_eq!(
+        (physics.kind, physics.scene.obstacles.len(), physics.scene.robots.len()),
+        ("physics world", 0, 2)
+    );
     assert_eq!(physics.lines[0], ("size", "12 × 12 m, 240 × 240 cells of 0.05 m".to_owned()));
 }
 

@@ -32,8 +32,11 @@ pub(super) fn log(start: Start) -> RecordingStreamResult<()> {
         (true, palette::BLOCKED, AREA, "blocked"),
         (true, palette::UNKNOWN, AREA, "never seen"),
     ];
-    let entries: Vec<(Rgb, f32, &str)> =
-        entries.into_iter().filter(|entry| entry.0).map(|(_, own, radius, text)| (own, radius, text)).collect();
+    let entries: Vec<(Rgb, f32, &str)> = entries
+        .into_iter()
+        .filter(|entry| entry.0)
+        .map(|(_, own, radius, text)| (own, radius, text))
+        .collect();
 
     let frame = view.mapper.frame();
     let [width_m, height_m] =
