@@ -4,7 +4,7 @@ use crate::metrics::{
     ChangingAccuracy, ChangingScores, Delays, Latency, MapScores, ThingReport, Things, map_scores,
 };
 use crate::summary::CurvePoint;
-use interfaces::{LaserReading, Twist};
+use interfaces::{GroundTruth, LaserReading, Twist};
 use mapper::Mapper;
 use nalgebra::Point2;
 use robot::{Belief, Level, Message, Pilot};

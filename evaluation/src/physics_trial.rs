@@ -69,7 +69,7 @@ impl PhysicsSettings {
         let mut mapper = MapperSettings { max_gap: HIDING_S, ..MapperSettings::default() };
         let noise_m = &mut mapper.steady.range_noise_std_m;
         *noise_m = noise_m.max(robot.laser.noise_std_m).min(MAX_NOISE_M);
-        let cell_m = spec.frame().resolution_m();
+        let cell_m = spec.frame.resolution_m();
         let mut agent = AgentSettings {
             patch_cells: (PATCH_M / cell_m).round().max(1.0) as _,
             sensor_radius_m: robot.laser.range_max_m,
@@ -87,7 +87,7 @@ impl PhysicsSettings {
             acceleration_mps2: robot.drive.max_linear_acceleration_mps2,
             angular_acceleration_radps2: robot.drive.max_angular_acceleration_radps2,
             tolerance_m: defaults.tolerance_m.min(robot.radius_m / 2.0),
-            reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s(),
+            reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s,
             ..defaults
         };
         Ok(Self { mapper, agent, controller, drive })
@@ -144,7 +144,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         pilot: P,
     ) -> Result<Self, SettingsError> {
         let mapper = match prior {
-            None => Mapper::new(mapper, *spec.frame())?,
+            None => Mapper::new(mapper, spec.frame)?,
             Some(map) => Mapper::with_prior(mapper, map)?,
         };
         Ok(Self { world: PhysicsWorld::new(spec, seed), mapper, pilot, observer: Observer::default() })

@@ -112,8 +112,8 @@ impl Experiment {
         ReportSettings {
             steps: self.steps,
             trials: self.trials,
-            sensor_radius: self.worlds.first().map_or(0, GridSpec::sensor_radius),
-            worlds: self.worlds.iter().map(|world| world.name().to_owned()).collect(),
+            sensor_radius: self.worlds.first().map_or(0, |world| world.sensor_radius),
+            worlds: self.worlds.iter().map(|world| world.name.clone()).collect(),
             estimators: self.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
             strategies: self.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
             ..ReportSettings::default()
