@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use interfaces::World;
     use mapper::MapperSettings;
-    use sim::physics::{PhysicsWorld, WorldSpec};
+    use sim::physics::PhysicsWorld;
 
     /// The map of a robot that stands still in the shipped house for a minute.
     fn mapper() -> Mapper {

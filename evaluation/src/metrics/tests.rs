@@ -2,7 +2,7 @@ use super::*;
 use interfaces::{Cell, CellReading, CellState, Grid, GroundTruth, Step, TrueState, World};
 use mapper::{Estimator, Mapper, MapperSettings};
 use nalgebra::Isometry2;
-use sim::grid::{GridSpec, GridWorld};
+use sim::grid::GridWorld;
 use sim::physics::{PhysicsGroundTruth, PhysicsWorld};
 
 fn physics_world() -> PhysicsWorld {

@@ -8,7 +8,7 @@ use mapper::{Estimator, Mapper, MapperSettings};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sim::physics::{PhysicsWorld, WorldSpec};
+use sim::physics::PhysicsWorld;
 
 const HOUSE: &str = include_str!("../../../worlds/four_rooms.toml");
 /// Where the curious robot starts in the file, and where it looks on from.

@@ -76,12 +76,6 @@ pub(super) fn busy() -> FleetSpec {
     house(&robots, &things)
 }
 
-/// Robots that look at nothing and drive in wild curves.
-pub(super) fn reckless(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
-    let phase = reading.time_s * (0.3 + 0.1 * robot.index as f64);
-    Twist { linear_mps: 0.5 * libm::cos(phase * 0.7), angular_radps: 1.5 * libm::sin(phase) }
-}
-
 #[test]
 fn a_light_box_is_pushed_and_a_heavy_one_is_not() {
     // The driver can push with 20 kg · 1 m/s²; the boxes rub with 0.5 · 9.81 m/s² · their mass. What
