@@ -17,9 +17,9 @@ pub(super) type Chart<'a, 'b> =
     ChartContext<'a, BitMapBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 // All lengths in points. A panel of 280 points is legible as a third of a page of 840 pixels.
-const MARGIN: u32 = 7;
+const MARGIN: u32 = 12;
 const TITLE: u32 = 28;
-const Y_AXIS: u32 = 33;
+const Y_AXIS: u32 = 36;
 const X_AXIS: u32 = 38;
 const BAR: u32 = 40;
 const ROW: u32 = 19;
