@@ -90,14 +90,14 @@ mod tests {
     use controller::CellDrive;
     use evaluation::trials::{Experiment, TrialStrategy};
     use mapper::{MapperSettings, Paper};
-    use sim::grid::GridSpec;
     use std::path::Path;
 
     /// The first trial of the shipped world, of so many steps.
     fn experiment(steps: u64) -> Experiment {
         Experiment {
             worlds: vec![
-                GridSpec::parse("two_blocks.toml", include_str!("../../worlds/two_blocks.toml")).unwrap(),
+                worldfile::grid::parse("two_blocks.toml", include_str!("../../worlds/two_blocks.toml"))
+                    .unwrap(),
             ],
             estimators: vec![Paper.into()],
             strategies: vec![TrialStrategy::Agent("recency".parse().unwrap())],

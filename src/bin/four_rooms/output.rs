@@ -43,7 +43,7 @@ pub(crate) fn summary(
         version: env!("CARGO_PKG_VERSION"),
         arguments: std::env::args().skip(1).collect(),
         settings: serde_json::to_value(settings).unwrap_or_default(),
-        world: trial.world.spec().name().to_owned(),
+        world: trial.world.spec().name.clone(),
         seed: args.seed,
         drive: match args.drive {
             DriveChoice::Agent => "agent",

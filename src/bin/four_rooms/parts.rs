@@ -55,7 +55,7 @@ impl Parts {
         let mut settings = settings.map_err(input)?;
         settings.mapper.estimator = args.estimator.clone();
         settings.mapper.occupancy = args.occupancy.clone();
-        let read = |path| RosMap::read(path).map(|map| map.onto(spec.frame()));
+        let read = |path| RosMap::read(path).map(|map| map.onto(&spec.frame));
         let prior = args.map.as_deref().map(read).transpose().map_err(input)?;
         Ok(Self { spec, settings, prior })
     }

@@ -16,14 +16,14 @@ const INSET_M: f64 = 0.12;
 impl From<&GridSpec> for Scene {
     fn from(spec: &GridSpec) -> Self {
         let square = |cell: &Cell| rectangle(*cell, *cell, 0.0);
-        let start = spec.frame().center(spec.start());
+        let start = spec.frame().center(spec.start);
         Self {
-            title: spec.name().to_owned(),
+            title: spec.name.clone(),
             unit: GridWorld::UNIT,
             frame: *spec.frame(),
-            walls: rectangles(spec.walls()),
+            walls: rectangles(&spec.walls),
             obstacles: spec
-                .blocks()
+                .blocks
                 .iter()
                 .map(|block| Obstacle {
                     name: block.name.clone(),
@@ -51,7 +51,7 @@ impl Visible for GridWorld {
     }
 
     fn robots<'a>(&'a self, reading: &'a CellReading) -> Vec<RobotState<'a>> {
-        let sight = Sight::Cells { reading, radius: self.spec().sensor_radius() };
+        let sight = Sight::Cells { reading, radius: self.spec().sensor_radius };
         vec![RobotState { pose: reading.pose, sight: Some(sight) }]
     }
 
@@ -98,7 +98,7 @@ mod tests {
     /// The walls of a drawn world, as rectangles.
     fn walls(rows: &[&str]) -> (Grid<bool>, Vec<Outline>) {
         let text = format!("name = 'x'\nsensor_radius = 1\nmap = '''\n{}\n'''", rows.join("\n"));
-        let walls = GridSpec::parse("x.toml", &text).unwrap().walls().clone();
+        let walls = worldfile::grid::parse("x.toml", &text).unwrap().walls;
         let rectangles = rectangles(&walls);
         (walls, rectangles)
     }

@@ -4,7 +4,7 @@ use super::{Obstacle, Outline, Robot, Scene, Sector, TimeUnit, Visible};
 use crate::view::{RobotState, Sight};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
-use sim::physics::{Behaviour, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, RobotSpec};
+use sim::physics::{BehaviorSpec, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, RobotSpec};
 
 /// The number of outlines that show the swing of a door.
 const SWING: u32 = 24;
@@ -12,12 +12,12 @@ const SWING: u32 = 24;
 impl From<&FleetSpec> for Scene {
     fn from(spec: &FleetSpec) -> Self {
         Self {
-            title: spec.name().to_owned(),
+            title: spec.name.clone(),
             unit: PhysicsWorld::UNIT,
-            frame: *spec.frame(),
-            walls: spec.walls().iter().map(|wall| wall.corners().to_vec()).collect(),
-            obstacles: spec.obstacles().iter().map(obstacle).collect(),
-            robots: spec.robots().iter().map(robot).collect(),
+            frame: spec.frame,
+            walls: spec.walls.iter().map(|wall| wall.corners().to_vec()).collect(),
+            obstacles: spec.obstacles.iter().map(obstacle).collect(),
+            robots: spec.robots.iter().map(robot).collect(),
         }
     }
 }
@@ -38,7 +38,7 @@ impl Visible for PhysicsWorld {
     }
 
     fn obstacles(&self) -> Vec<Option<Outline>> {
-        let mut outlines = vec![None; self.spec().obstacles().len()];
+        let mut outlines = vec![None; self.spec().obstacles.len()];
         for obstacle in PhysicsWorld::obstacles(self) {
             outlines[obstacle.index] = Some(obstacle.corners.to_vec());
         }
@@ -81,6 +81,6 @@ fn robot(spec: &RobotSpec) -> Robot {
         radius_m: spec.radius_m,
         corners: spec.corners.clone(),
         sectors: lasers.chain(sonars).map(sector).collect(),
-        is_driven: spec.behaviour == Behaviour::Driven,
+        is_driven: spec.behavior == BehaviorSpec::Driven,
     }
 }

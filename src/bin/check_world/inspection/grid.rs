@@ -5,7 +5,7 @@ use sim::grid::{BlockSpec, Course, GridSpec};
 
 pub(super) fn content(world: &GridSpec) -> Content {
     let frame = *world.frame();
-    let free = world.walls().cells().iter().filter(|is_wall| !**is_wall).count();
+    let free = world.walls.cells().iter().filter(|is_wall| !**is_wall).count();
     let moves = |what: &str, probability: f64| format!("{what} moves with probability {probability}");
     let mut lines = vec![
         ("size", format!("{} × {} cells, {free} of them free", frame.width(), frame.height())),
@@ -13,17 +13,15 @@ pub(super) fn content(world: &GridSpec) -> Content {
             "robot",
             format!(
                 "starts at [{}, {}], sensor range {} cells",
-                world.start().x,
-                world.start().y,
-                world.sensor_radius()
+                world.start.x, world.start.y, world.sensor_radius
             ),
         ),
     ];
-    if world.block_chance() < 1.0 || world.robot_chance() < 1.0 {
-        let both = [moves("a block", world.block_chance()), moves("the robot", world.robot_chance())];
+    if world.block_probability < 1.0 || world.robot_probability < 1.0 {
+        let both = [moves("a block", world.block_probability), moves("the robot", world.robot_probability)];
         lines.push(("chance", both.join(", ")));
     }
-    lines.extend(world.blocks().iter().map(|block| ("block", describe(block))));
+    lines.extend(world.blocks.iter().map(|block| ("block", describe(block))));
     Content {
         kind: "grid world",
         name: world.name.to_owned(),

@@ -3,12 +3,12 @@
 use super::Content;
 use interfaces::GridFrame;
 use nalgebra::Point2;
-use sim::floor_plan::FloorPlan;
 use sim::physics::{
     BehaviorSpec, DriveKind, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec,
 };
 use std::path::Path;
 use viewer::scene::{Scene, TimeUnit};
+use worldfile::floor_plan::FloorPlan;
 
 /// The side of the cells that a floor plan is given for its frame, m.
 const PLAN_CELL_M: f64 = 0.05;
@@ -31,8 +31,8 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
         ("time", format!("physics steps of {} s", world.step_s)),
         ("walls", format!("{}", world.walls.len())),
     ];
-    lines.extend(world.obstacles().iter().map(|obstacle| ("thing", thing_line(obstacle))));
-    lines.extend(robot_lines(world.robots()));
+    lines.extend(world.obstacles.iter().map(|obstacle| ("thing", thing_line(obstacle))));
+    lines.extend(robot_lines(&world.robots));
     Content {
         kind,
         name: world.name.to_owned(),

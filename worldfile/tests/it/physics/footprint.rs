@@ -2,6 +2,7 @@
 
 use super::fleet::{house, robot};
 use super::*;
+use interfaces::GroundTruth;
 use interfaces::LaserReading;
 use nalgebra::Point2;
 

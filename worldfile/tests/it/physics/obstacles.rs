@@ -1,5 +1,6 @@
 use super::*;
 use interfaces::Cell;
+use interfaces::GroundTruth;
 
 const BOX: &str = "[[obstacle]]\nname = \"box\"\nmin_m = [3.0, 1.8]\nmax_m = [3.4, 2.2]\n";
 

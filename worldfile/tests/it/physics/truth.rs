@@ -1,7 +1,7 @@
 //! The ground truth of whole worlds.
 
 use super::*;
-use interfaces::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame, GroundTruth, TrueState};
 use nalgebra::{Point2, Vector2};
 
 /// The states of all cells, by index.
