@@ -1,13 +1,6 @@
 //! What the programs share: the shipped worlds, what is shown of a run, and the keyboard pilot.
 
-#[cfg(test)]
-mod fake;
 pub mod keyboard;
-pub mod layer;
-pub mod pictures;
-pub mod recording;
 pub mod ros_map;
-pub mod show;
 pub mod tour_file;
-pub mod view;
 pub mod worlds;

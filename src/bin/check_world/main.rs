@@ -4,13 +4,13 @@ mod inspection;
 
 use anyhow::bail;
 use clap::Parser;
-use curious::pictures::draw_plan;
 use evaluation::output::{make_folder, say, write_file};
 use inspection::{Content, Inspection, as_world_file, inspect};
 use std::collections::BTreeSet;
 use std::io::{stderr, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use viewer::pictures::draw_plan;
 
 /// Checks world files: says what is in them, draws them, and tells everything that is wrong at once, but for what
 /// hangs on something that is wrong.
@@ -104,7 +104,7 @@ fn leave(content: &Content, file: &str, args: &Args, written: &mut BTreeSet<Path
     };
     if args.png {
         let picture = place(".png")?;
-        draw_plan(&picture, &content.name, &content.plan)?;
+        draw_plan(&picture, &content.scene)?;
         say(stdout(), format_args!("  picture   {}", picture.display()));
     }
     if args.toml {
@@ -115,7 +115,7 @@ fn leave(content: &Content, file: &str, args: &Args, written: &mut BTreeSet<Path
         let world_file = place(".toml")?;
         write_file(&world_file, |to| to.write_all(text.as_bytes()))?;
         say(stdout(), format_args!("  world     {}", world_file.display()));
-        if content.plan.robots.iter().filter(|robot| robot.is_driven).count() != 1 {
+        if content.scene.robots.iter().filter(|robot| robot.is_driven).count() != 1 {
             say(stdout(), "            for four_rooms give exactly one robot `kind = \"driven\"` there");
         }
     }

@@ -3,9 +3,9 @@
 use agent::Policy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use curious::recording::Live;
 use mapper::{Estimator, OccupancyModel};
 use std::path::PathBuf;
+use viewer::recording::Live;
 
 /// A curious robot maps a house that changes, and learns where it changes and how often.
 ///
@@ -79,6 +79,10 @@ pub(crate) struct Args {
     /// Make no recording: about twice as fast
     #[arg(long, help_heading = "What comes out")]
     pub(crate) no_rrd: bool,
+
+    /// Make a moving picture of the run, a GIF file
+    #[arg(long, value_name = "FILE", help_heading = "What comes out")]
+    pub(crate) gif: Option<PathBuf>,
 
     /// Watch live: start the Rerun viewer (pip install rerun-sdk==0.36.3)
     #[arg(long, help_heading = "What comes out")]

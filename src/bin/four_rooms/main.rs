@@ -5,12 +5,9 @@ mod output;
 mod parts;
 mod progress;
 
-use agent::Features;
 use anyhow::Context;
 use args::{Args, DriveChoice};
 use clap::Parser;
-use curious::recording::{Live, Recorder, RecordingOptions};
-use curious::show::PhysicsShow;
 use curious::worlds;
 use evaluation::observer::Observer;
 use evaluation::output::{make_folder, say};
@@ -18,7 +15,7 @@ use interfaces::{Reading, Twist};
 use mapper::Mapper;
 use parts::{Failure, Parts};
 use progress::Progress;
-use robot::{Belief, Pilot, explore};
+use robot::{Pilot, explore};
 use sim::physics::PhysicsWorld;
 use std::io::{stderr, stdout};
 use std::ops::ControlFlow;
@@ -26,6 +23,11 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use viewer::pictures::Film;
+use viewer::recording::{Live, Recorder, RecordingOptions};
+use viewer::scene::{Scene, Visible};
+use viewer::show::Show;
+use viewer::view::{Measured, View};
 
 fn main() -> ExitCode {
     let args = Args::parse();
@@ -87,9 +89,10 @@ fn live(
     settings: &parts::Settings,
 ) -> Result<Ended, Failure> {
     make_folder(&args.out).map_err(anyhow::Error::from)?;
-    let recorder = recorder(args, &world)?;
-    let (mut observer, mut show) = (Observer::default(), PhysicsShow::new(&world, recorder));
-    let told = show.live_problem();
+    let recorder = recorder(args, world.scene())?;
+    let film = args.gif.is_some().then(|| Film::new(world.scene(), args.duration));
+    let (mut observer, mut show) = (Observer::default(), Show::new(world.scene(), recorder, film));
+    let told = show.live_problem().map(str::to_owned);
     told.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
     let is_interrupted = Arc::new(AtomicBool::new(false));
     let flag = is_interrupted.clone();
@@ -105,38 +108,42 @@ fn live(
     let start = Instant::now();
     explore(&mut world, &mut mapper, &mut pilot, |world, reading, belief, pilot| -> anyhow::Result<_> {
         observer.observe(world, reading, belief, pilot);
-        show.show(world, belief, pilot, &observer)?;
         progress.show(reading.time(), observer.scores());
+        let end = match () {
+            () if is_interrupted.load(Ordering::Relaxed) => Some(Ended::Interrupted),
+            () if pilot.is_done() => Some(Ended::Pilot),
+            () if reading.time() >= args.duration => Some(Ended::Duration),
+            () => None,
+        };
+        let measured =
+            Measured { scores: observer.scores(), rate_errors: None, messages: observer.messages() };
+        show.add(&View::new(world, reading, belief, pilot, measured), end.is_some())?;
+        if let Some(end) = end {
+            ended = end;
+            return Ok(ControlFlow::Break(()));
+        }
         if speed.is_finite() {
             let due = Duration::from_secs_f64(reading.time() / speed);
             std::thread::sleep(due.saturating_sub(start.elapsed()));
         }
-        ended = match () {
-            () if is_interrupted.load(Ordering::Relaxed) => Ended::Interrupted,
-            () if pilot.is_done() => Ended::Pilot,
-            () if reading.time() >= args.duration => Ended::Duration,
-            () => return Ok(ControlFlow::Continue(())),
-        };
-        Ok(ControlFlow::Break(()))
+        Ok(ControlFlow::Continue(()))
     })?;
     let wall_s = start.elapsed().as_secs_f64();
     progress.finish();
-    if let Some(problem) = show.live_problem().filter(|problem| Some(problem) != told.as_ref()) {
+    if let Some(problem) = show.live_problem().filter(|problem| Some(*problem) != told.as_deref()) {
         say(stderr(), format_args!("note: {problem}"));
     }
 
-    let belief = Belief { pose: world.true_pose(), features: Features::of(&mut mapper), mapper: &mapper };
-    show.finish(&world, &belief, &pilot, &observer).map_err(anyhow::Error::from)?;
     let summary = output::summary(args, settings, &world, &mapper, &pilot, &observer, ended, wall_s);
     drop(pilot); // gives the terminal back before anything is printed
-    output::write(&args.out, &world, &mapper, &show, &observer, &summary)?;
+    output::write(&args.out, args.gif.as_deref(), &mapper, show, &observer, &summary)?;
     if !args.quiet {
         say(stdout(), format_args!("{summary}\n  files     {}", args.out.display()));
     }
     Ok(ended)
 }
 
-fn recorder(args: &Args, world: &PhysicsWorld) -> Result<Option<Recorder>, Failure> {
+fn recorder(args: &Args, scene: Scene) -> Result<Option<Recorder>, Failure> {
     let mut live = Vec::from_iter(args.connect.clone());
     live.extend(args.view.then_some(Live::Spawn));
     let file = (!args.no_rrd).then(|| args.rrd.clone().unwrap_or_else(|| args.out.join("four_rooms.rrd")));
@@ -144,6 +151,6 @@ fn recorder(args: &Args, world: &PhysicsWorld) -> Result<Option<Recorder>, Failu
         return Ok(None);
     }
     let options = RecordingOptions { file, live, ..RecordingOptions::default() };
-    let recorder = Recorder::new(&options, PhysicsShow::scene(world)).map_err(anyhow::Error::from)?;
+    let recorder = Recorder::new(&options, scene).map_err(anyhow::Error::from)?;
     Ok(Some(recorder))
 }

@@ -3,9 +3,7 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use crate::parts::Settings;
-use curious::pictures::{self, Pictures};
 use curious::ros_map;
-use curious::show::PhysicsShow;
 use evaluation::cell_statistics;
 use evaluation::map_hash::map_hash;
 use evaluation::metrics;
@@ -17,19 +15,18 @@ use mapper::Mapper;
 use robot::Pilot;
 use sim::physics::PhysicsWorld;
 use std::path::Path;
+use viewer::show::Show;
 
 /// Writes everything but the recording, which is written while the run goes on.
 pub(crate) fn write(
     folder: &Path,
-    world: &PhysicsWorld,
+    film: Option<&Path>,
     mapper: &Mapper,
-    show: &PhysicsShow,
+    show: Show,
     observer: &Observer,
     summary: &Summary,
 ) -> anyhow::Result<()> {
-    let (trails, goals) = (show.trails(), observer.goals());
-    let scene = &PhysicsShow::scene(world);
-    pictures::write_all(folder, &Pictures { scene, mapper, trails, goals })?;
+    show.write(folder, film, mapper, observer.goals())?;
     ros_map::write(folder, mapper.states())?;
     cell_statistics::write(&folder.join("cell_statistics.csv"), mapper)?;
     let text = serde_json::to_string_pretty(summary)?;

@@ -7,8 +7,6 @@ use anyhow::{Context, bail};
 use args::Args;
 use clap::Parser;
 use controller::CellDrive;
-use curious::recording::{Recorder, RecordingError, RecordingOptions};
-use curious::show::{Recorded, record, scene};
 use curious::worlds;
 use evaluation::output::{make_folder, say, write_file};
 use evaluation::report::{Report, ReportSettings, Trial, WorldPicture};
@@ -21,6 +19,8 @@ use std::io::{stderr, stdout};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use viewer::recording::{Recorder, RecordingError, RecordingOptions};
+use viewer::trial::{Recorded, record};
 
 fn main() -> ExitCode {
     let args = Args::parse();
@@ -127,7 +127,7 @@ fn trials(
         Some(file) => {
             let life = experiment.life(jobs.remove(0));
             let options = RecordingOptions { file: Some(file.clone()), ..RecordingOptions::default() };
-            Some((Recorder::new(&options, scene(life.world))?, life))
+            Some((Recorder::new(&options, life.world.into())?, life))
         }
     };
     let record = || -> Result<_, SettingsError> {

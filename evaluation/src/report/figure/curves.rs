@@ -1,8 +1,9 @@
 //! How a metric went on, for every strategy.
 
-use super::colours;
 use super::pen::{Pen, Sheet};
-use crate::drawing::{INK, why};
+use crate::drawing::{INK, ink, why};
+use crate::palette;
+use crate::report::REFERENCE;
 use crate::report::metric::Metric;
 use crate::report::run::StrategyResult;
 use crate::report::statistics::Estimate;
@@ -79,20 +80,24 @@ pub(super) fn draw<DB: DrawingBackend>(
         .draw()
         .map_err(why)?;
     for strategy in strategies.iter().rev() {
-        band(&chart, &places, &curve(strategy), &shown, colours::of_strategy(&strategy.name))?;
+        band(&chart, &places, &curve(strategy), &shown, ink(palette::strategy(&strategy.name)))?;
     }
     // What is dashed lies on top: a coin may go exactly as curious does.
-    for is_dashed in [false, true] {
-        let those =
-            strategies.iter().rev().filter(|strategy| colours::is_dashed(&strategy.name) == is_dashed);
+    for dashed in [false, true] {
+        let those = strategies.iter().rev().filter(|strategy| is_dashed(&strategy.name) == dashed);
         for strategy in those {
-            let style = pen.line(colours::of_strategy(&strategy.name), 2);
+            let style = pen.line(ink(palette::strategy(&strategy.name)), 2);
             for line in lines(&places, &curve(strategy), &shown) {
-                draw_line(chart.plotting_area(), pen, line, style, is_dashed)?;
+                draw_line(chart.plotting_area(), pen, line, style, dashed)?;
             }
         }
     }
     Ok(())
+}
+
+/// Whether a strategy's curve is dashed: the strategies to compare with.
+pub(super) fn is_dashed(name: &str) -> bool {
+    ["random", "coin", REFERENCE].contains(&name)
 }
 
 /// Draws a line, dashed or not.

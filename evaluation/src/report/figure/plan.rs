@@ -1,8 +1,8 @@
 //! The plan of a world, or of several.
 
-use super::colours;
 use super::pen::{Pen, Sheet};
-use crate::drawing::{CURIOUS, INK, ink, why};
+use crate::drawing::{INK, ink, why};
+use crate::palette::{self, CURIOUS};
 use crate::report::WorldPicture;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -43,7 +43,7 @@ pub(super) fn one<DB: DrawingBackend>(
     };
     row(&square(INK), "wall")?;
     for (index, (name, _)) in world.things.iter().take(THINGS).enumerate() {
-        row(&square(colours::of_thing(index)), name)?;
+        row(&square(ink(palette::thing(index))), name)?;
     }
     if world.things.len() > THINGS {
         row(&|_| Ok(()), &format!("and {} more that move", world.things.len() - THINGS))?;
@@ -98,7 +98,7 @@ fn cells<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &WorldPicture)
         sheet.draw(&Rectangle::new(corners, colour.filled())).map_err(why)
     };
     for (index, (_, path)) in world.things.iter().enumerate() {
-        let colour = colours::of_thing(index);
+        let colour = ink(palette::thing(index));
         path.iter().try_for_each(|&(column, row)| fill(column..column + 1, row..row + 1, colour))?;
     }
     let (right, bottom) = (x(columns as f64), y(0.0));

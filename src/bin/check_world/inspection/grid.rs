@@ -1,10 +1,6 @@
 //! Grid worlds.
 
 use super::Content;
-use curious::pictures::{Plan, PlanRobot, PlanThing};
-use curious::show::{rectangle, scene};
-use interfaces::Cell;
-use nalgebra::Isometry2;
 use sim::grid::{BlockSpec, Course, GridSpec};
 
 pub(super) fn content(world: &GridSpec) -> Content {
@@ -26,32 +22,12 @@ pub(super) fn content(world: &GridSpec) -> Content {
         lines.push(("chance", both.join(", ")));
     }
     lines.extend(world.blocks.iter().map(|block| ("block", describe(block))));
-    let square = |cell: Cell| rectangle(cell, cell, 0.0);
-    let start = frame.center(world.start);
-    let thing = |block: &BlockSpec| PlanThing {
-        name: block.name.clone(),
-        outline: block.path.first().map_or(Vec::new(), |&cell| square(cell)),
-        reach: block.path.iter().map(|&cell| square(cell)).collect(),
-    };
     Content {
         kind: "grid world",
         name: world.name.to_owned(),
         description: world.description.to_owned(),
         lines,
-        plan: Plan {
-            unit: "cells",
-            frame,
-            walls: scene(world).walls,
-            things: world.blocks.iter().map(thing).collect(),
-            robots: vec![PlanRobot {
-                name: "robot".to_owned(),
-                pose: Isometry2::translation(start.x, start.y),
-                radius: 0.4,
-                corners: Vec::new(),
-                views: Vec::new(),
-                is_driven: true,
-            }],
-        },
+        scene: world.into(),
     }
 }
 

@@ -5,10 +5,13 @@ mod physics;
 #[cfg(test)]
 mod tests;
 
-use curious::pictures::Plan;
+use curious::worlds;
+use sim::floor_plan::{FloorPlan, ros};
+use sim::grid::GridSpec;
+use sim::physics::FleetSpec;
+use sim::{Disk, Files, Findings, Severity, stage};
 use std::path::Path;
-use worldfile::floor_plan::{FloorPlan, ros};
-use worldfile::{Disk, Files, Findings, Severity, shipped};
+use viewer::scene::Scene;
 
 /// What was found in one file.
 #[derive(Clone, Debug, Default)]
@@ -36,8 +39,8 @@ pub(crate) struct Content {
     pub(crate) description: String,
     /// Lines of a name and what there is of it.
     pub(crate) lines: Vec<(&'static str, String)>,
-    /// What it looks like.
-    pub(crate) plan: Plan,
+    /// The world from above.
+    pub(crate) scene: Scene,
 }
 
 /// Reads a file as what it is: a shipped world by its name, a world file (physics or grid), a `.world` file of
