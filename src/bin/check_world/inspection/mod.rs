@@ -5,13 +5,10 @@ mod physics;
 #[cfg(test)]
 mod tests;
 
-use curious::worlds;
-use sim::floor_plan::{FloorPlan, ros};
-use sim::grid::GridSpec;
-use sim::physics::FleetSpec;
-use sim::{Disk, Files, Findings, Severity, stage};
 use std::path::Path;
 use viewer::scene::Scene;
+use worldfile::floor_plan::{FloorPlan, ros};
+use worldfile::{Disk, Files, Findings, Severity, shipped};
 
 /// What was found in one file.
 #[derive(Clone, Debug, Default)]
