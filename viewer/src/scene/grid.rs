@@ -18,7 +18,7 @@ impl From<&GridSpec> for Scene {
         let square = |cell: &Cell| rectangle(*cell, *cell, 0.0);
         let start = spec.frame().center(spec.start);
         Self {
-            title: spec.name.clone(),
+            title: spec.name.to_owned(),
             unit: GridWorld::UNIT,
             frame: *spec.frame(),
             walls: rectangles(&spec.walls),

@@ -12,7 +12,7 @@ const SWING: u32 = 24;
 impl From<&FleetSpec> for Scene {
     fn from(spec: &FleetSpec) -> Self {
         Self {
-            title: spec.name.clone(),
+            title: spec.name.to_owned(),
             unit: PhysicsWorld::UNIT,
             frame: spec.frame,
             walls: spec.walls.iter().map(|wall| wall.corners().to_vec()).collect(),
@@ -48,7 +48,7 @@ impl Visible for PhysicsWorld {
 
 fn obstacle(spec: &ObstacleSpec) -> Obstacle {
     let corners = |shape: Rectangle| shape.corners().to_vec();
-    let start = corners(spec.start());
+    let start = corners(spec.start);
     let mut reach: Vec<Outline> = match &spec.motion {
         Motion::Fixed => Vec::new(),
         Motion::Pushed(_) => vec![start.clone()],
@@ -81,6 +81,6 @@ fn robot(spec: &RobotSpec) -> Robot {
         radius_m: spec.radius_m,
         corners: spec.corners.clone(),
         sectors: lasers.chain(sonars).map(sector).collect(),
-        is_driven: spec.behavior == BehaviorSpec::Driven,
+        is_driven: spec.behaviour == BehaviorSpec::Driven,
     }
 }
