@@ -1,76 +1,76 @@
-use crate::Scene;
+use crate::drives::Scene;
 use interfaces::CellState;
 use nalgebra::{Point2, Vector2};
 
 /// Points nearer to each other than this are one obstacle, m.
 const MERGE_M: f64 = 0.02;
-/// The distance between two places where a predicted trajectory is checked, at most, m.
+/// The largest distance between two checked points of a predicted trajectory, m.
 const CHECK_M: f64 = 0.04;
-/// How many speeds are tried between the wish and standing still.
+/// The number of speeds tried between the wish and 0.
 const LEVELS: u32 = 8;
 
-/// How a robot stops, and how far it keeps from what it senses.
+/// How a robot stops, and the distance that it keeps from obstacles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Braking {
     pub(super) radius_m: f64,
     pub(super) margin_m: f64,
-    /// For each m/s of speed this much margin more, s.
+    /// The additional margin per m/s of speed, s.
     pub(super) margin_s: f64,
     pub(super) reaction_s: f64,
     pub(super) deceleration_mps2: f64,
-    /// What may move does so at most this fast, m/s.
-    pub(super) others_mps: f64,
+    /// The maximum speed of dynamic obstacles, m/s.
+    pub(super) obstacle_mps: f64,
 }
 
 impl Braking {
-    /// The time from the decision to stop at a speed until the robot stands, s.
+    /// The time from the decision to stop until the robot stands, s.
     fn stop_s(&self, speed_mps: f64) -> f64 {
         self.reaction_s + speed_mps / self.deceleration_mps2
     }
 
-    /// The way that it takes, m.
+    /// The stopping distance, m.
     fn stop_m(&self, speed_mps: f64) -> f64 {
         speed_mps * self.reaction_s + 0.5 * speed_mps * speed_mps / self.deceleration_mps2
     }
 
-    /// When the robot that stops from a speed passes a place that far on, s.
-    fn passes_at_s(&self, speed_mps: f64, way_m: f64) -> f64 {
+    /// The time at which the stopping robot passes the point at a distance, s.
+    fn passes_at_s(&self, speed_mps: f64, distance_m: f64) -> f64 {
         let rolling_m = speed_mps * self.reaction_s;
-        if way_m <= rolling_m {
-            return way_m / speed_mps;
+        if distance_m <= rolling_m {
+            return distance_m / speed_mps;
         }
-        let braking_m = way_m - rolling_m;
+        let braking_m = distance_m - rolling_m;
         let left = (speed_mps * speed_mps - 2.0 * self.deceleration_mps2 * braking_m).max(0.0);
         self.reaction_s + (speed_mps - left.sqrt()) / self.deceleration_mps2
     }
 }
 
-/// Something that the robot must not touch, in its own frame, m.
+/// An obstacle in the frame of the robot, m.
 #[derive(Clone, Copy, Debug)]
 struct Obstacle {
     at: Vector2<f64>,
-    away_m: f64,
-    restless: bool,
+    distance_m: f64,
+    is_dynamic: bool,
 }
 
-/// Predicts whether the robot could still stop in time. A speed is safe if the robot, holding it
-/// until it can react and then braking along the same arc, keeps its distance from all that it
-/// senses and from all blocked cells, even if what may move comes straight at it. What is already
-/// too near may only be moved away from.
+/// Predicts whether the robot can still stop in time. A speed is safe if the robot, which holds it until it
+/// can react and then brakes along the same arc, keeps its distance from all sensed points and all blocked
+/// cells, even if dynamic obstacles move straight towards it. From an obstacle that is already too near the
+/// robot may only move away.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Guard {
-    near: Vec<Obstacle>,
+pub(super) struct CollisionMonitor {
+    obstacles: Vec<Obstacle>,
 }
 
-impl Guard {
+impl CollisionMonitor {
     /// Gathers the obstacles that matter up to `speed_mps`.
-    pub(super) fn look(&mut self, braking: &Braking, scene: &Scene, speed_mps: f64) {
+    pub(super) fn update(&mut self, braking: &Braking, scene: &Scene, speed_mps: f64) {
         let reach_m = braking.radius_m
             + braking.margin_m
             + braking.margin_s * speed_mps
             + braking.stop_m(speed_mps)
-            + braking.others_mps * braking.stop_s(speed_mps);
-        self.near.clear();
+            + braking.obstacle_mps * braking.stop_s(speed_mps);
+        self.obstacles.clear();
         let robot = scene.situation.position();
         for point in scene.situation.points {
             if (point - robot).norm_squared() < reach_m * reach_m {
@@ -95,17 +95,17 @@ impl Guard {
 
     fn add(&mut self, scene: &Scene, point: &Point2<f64>) {
         let at = scene.situation.pose.inverse_transform_point(point).coords;
-        if self.near.last().is_some_and(|last| (last.at - at).norm_squared() < MERGE_M * MERGE_M) {
+        if self.obstacles.last().is_some_and(|last| (last.at - at).norm_squared() < MERGE_M * MERGE_M) {
             return;
         }
-        let restless = scene.restless.is_restless(scene.situation, point);
-        self.near.push(Obstacle { at, away_m: at.norm(), restless });
+        let is_dynamic = scene.dynamic.is_dynamic(scene.situation, point);
+        self.obstacles.push(Obstacle { at, distance_m: at.norm(), is_dynamic });
     }
 
     /// The highest safe speed up to `wish_mps` (negative backwards) on the arc of a curvature.
     pub(super) fn safe_speed_mps(&self, braking: &Braking, wish_mps: f64, curvature_radpm: f64) -> f64 {
-        let levels = (1..=LEVELS).rev().map(|level| wish_mps * f64::from(level) / f64::from(LEVELS));
-        levels.into_iter().find(|speed| self.is_safe(braking, *speed, curvature_radpm)).unwrap_or(0.0)
+        let mut levels = (1..=LEVELS).rev().map(|level| wish_mps * f64::from(level) / f64::from(LEVELS));
+        levels.find(|speed| self.is_safe(braking, *speed, curvature_radpm)).unwrap_or(0.0)
     }
 
     fn is_safe(&self, braking: &Braking, velocity_mps: f64, curvature_radpm: f64) -> bool {
@@ -114,23 +114,23 @@ impl Guard {
         let stop_m = braking.stop_m(speed_mps);
         let checks = (stop_m / CHECK_M).ceil().max(1.0);
         (1..=checks as u32).all(|check| {
-            let way_m = stop_m * f64::from(check) / checks;
-            let at = along_arc(way_m.copysign(velocity_mps), curvature_radpm);
-            let moves_m = braking.others_mps * braking.passes_at_s(speed_mps, way_m);
-            self.near.iter().all(|obstacle| {
-                let keep_m = if obstacle.restless { keep_m + moves_m } else { keep_m };
-                let away_square = (obstacle.at - at).norm_squared();
-                away_square >= keep_m * keep_m || away_square >= obstacle.away_m * obstacle.away_m
+            let distance_m = stop_m * f64::from(check) / checks;
+            let at = along_arc(distance_m.copysign(velocity_mps), curvature_radpm);
+            let moves_m = braking.obstacle_mps * braking.passes_at_s(speed_mps, distance_m);
+            self.obstacles.iter().all(|obstacle| {
+                let keep_m = if obstacle.is_dynamic { keep_m + moves_m } else { keep_m };
+                let square = (obstacle.at - at).norm_squared();
+                square >= keep_m * keep_m || square >= obstacle.distance_m * obstacle.distance_m
             })
         })
     }
 }
 
-/// Where an arc that starts forwards at the origin has led after `way_m`.
-fn along_arc(way_m: f64, curvature_radpm: f64) -> Vector2<f64> {
-    let turn_rad = way_m * curvature_radpm;
+/// The point at `distance_m` along an arc that starts forwards at the origin.
+fn along_arc(distance_m: f64, curvature_radpm: f64) -> Vector2<f64> {
+    let turn_rad = distance_m * curvature_radpm;
     if turn_rad.abs() < 1e-6 {
-        return Vector2::new(way_m, 0.5 * way_m * turn_rad);
+        return Vector2::new(distance_m, 0.5 * distance_m * turn_rad);
     }
     let (sin, cos) = libm::sincos(turn_rad);
     Vector2::new(sin / curvature_radpm, (1.0 - cos) / curvature_radpm)
@@ -146,19 +146,19 @@ mod tests {
         margin_s: 0.0,
         reaction_s: 0.2,
         deceleration_mps2: 1.0,
-        others_mps: 0.3,
+        obstacle_mps: 0.3,
     };
 
-    fn guard(x: f64, y: f64, restless: bool) -> Guard {
+    fn monitor(x: f64, y: f64, is_dynamic: bool) -> CollisionMonitor {
         let at = Vector2::new(x, y);
-        Guard { near: vec![Obstacle { at, away_m: at.norm(), restless }] }
+        CollisionMonitor { obstacles: vec![Obstacle { at, distance_m: at.norm(), is_dynamic }] }
     }
 
     #[test]
     fn a_safe_speed_leaves_room_to_stop() {
         for distance_cm in 22..80 {
             let ahead_m = f64::from(distance_cm) / 100.0;
-            let speed = guard(ahead_m, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0);
+            let speed = monitor(ahead_m, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0);
             assert!(BRAKING.stop_m(speed) <= (ahead_m - 0.22).max(0.0) + 1e-12);
             assert!(speed == 0.5 || BRAKING.stop_m(speed + 0.5 / 8.0) > ahead_m - 0.22 - 1e-9);
         }
@@ -167,18 +167,18 @@ mod tests {
     #[test]
     fn what_comes_closer_needs_more_room() {
         let ahead_m = 0.22 + BRAKING.stop_m(0.5) + 0.01;
-        assert_eq!(guard(ahead_m, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
-        assert!(guard(ahead_m, 0.0, true).safe_speed_mps(&BRAKING, 0.5, 0.0) < 0.5);
+        assert_eq!(monitor(ahead_m, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
+        assert!(monitor(ahead_m, 0.0, true).safe_speed_mps(&BRAKING, 0.5, 0.0) < 0.5);
         let ahead_m = ahead_m + 0.3 * BRAKING.stop_s(0.5);
-        assert_eq!(guard(ahead_m, 0.0, true).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
+        assert_eq!(monitor(ahead_m, 0.0, true).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
     }
 
     #[test]
     fn beside_and_behind_do_not_stop_but_a_turn_towards_does() {
-        assert_eq!(guard(0.1, 0.23, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
-        assert_eq!(guard(-0.21, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
-        assert_eq!(guard(-0.21, 0.0, false).safe_speed_mps(&BRAKING, -0.5, 0.0), 0.0);
-        assert!(guard(0.1, 0.23, false).safe_speed_mps(&BRAKING, 0.5, 3.0) < 0.3);
+        assert_eq!(monitor(0.1, 0.23, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
+        assert_eq!(monitor(-0.21, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
+        assert_eq!(monitor(-0.21, 0.0, false).safe_speed_mps(&BRAKING, -0.5, 0.0), 0.0);
+        assert!(monitor(0.1, 0.23, false).safe_speed_mps(&BRAKING, 0.5, 3.0) < 0.3);
     }
 
     #[test]

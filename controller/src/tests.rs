@@ -1,6 +1,6 @@
 //! Maps drawn in ASCII, for tests: the first line is the highest row.
 
-use crate::{CLOSED, Costmap, OPEN};
+use crate::{Costmap, FREE, LETHAL};
 use interfaces::{Cell, CellState, Grid, GridFrame};
 use nalgebra::Point2;
 
@@ -15,12 +15,12 @@ fn characters<'a>(rows: &'a [&str]) -> impl Iterator<Item = (Cell, char)> + 'a {
         .flat_map(|(y, row)| row.chars().enumerate().map(move |(x, c)| (Cell::new(x as i32, y as i32), c)))
 }
 
-/// `#` is closed, a digit is a price, everything else is open. Cells of 1 m.
+/// `#` is lethal, a digit is a cost, everything else is free. Cells of 1 m.
 pub(crate) fn costmap(rows: &[&str]) -> Costmap {
-    let mut map = Costmap::closed(frame(rows, 1.0));
+    let mut map = Costmap::lethal(frame(rows, 1.0));
     for (cell, c) in characters(rows) {
-        let price = if c == '#' { CLOSED } else { c.to_digit(10).map_or(OPEN, |digit| digit as u8) };
-        map.set_price(cell, price);
+        let cost = if c == '#' { LETHAL } else { c.to_digit(10).map_or(FREE, |digit| digit as u8) };
+        map.set_cost(cell, cost);
     }
     map
 }

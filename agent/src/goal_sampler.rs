@@ -1,20 +1,20 @@
-//! From a strategy's weights to a goal.
+//! From the weights of a strategy to a goal.
 //!
-//! The map is cut into square patches of `patch_cells` × `patch_cells` cells, from its lower left
-//! corner on; those at the right and upper border can be smaller. A patch's weight is the mean over
-//! its candidates, not over all its cells, so that a patch is not worth less for being mostly wall
-//! (and a single cell in it is drawn more often). A patch is drawn in proportion to that mean, and the goal is uniform over
-//! its candidates. Where no candidate has any weight, the goal is uniform over all candidates;
-//! where there is no candidate, it is the robot's own cell.
+//! The map is cut into square patches of `patch_cells` × `patch_cells` cells, from its lower left corner on;
+//! those at the right and upper border can be smaller. The weight of a patch is the mean over its candidates,
+//! not over all its cells: a patch is not worth less for being mostly wall. A patch is drawn in proportion to
+//! its weight, and the goal is uniform over the candidates of the patch. Where no candidate has a weight, the
+//! goal is uniform over all candidates; where there is no candidate, the goal is the cell of the robot.
 
-use crate::draw::proportional;
-use crate::{Pick, Situation, Stay, Strategy};
+use crate::sampling::proportional;
+use crate::situation::Situation;
+use crate::strategies::{Pick, Stay, Strategy};
 use interfaces::{Cell, RandomStream};
 use mapper::Mapper;
 use rand::RngExt;
 
-/// Larger weights count as this much: far above any time in seconds, and so far below the largest
-/// number that no sum over a map overflows.
+/// Larger weights count as this: far above any time in seconds, and so far below the largest number that no
+/// sum over a map overflows.
 const MAX_WEIGHT: f64 = 1e200;
 
 /// Where to go next, and what to do there.
@@ -26,11 +26,11 @@ pub struct Goal {
     pub stay: Stay,
 }
 
-/// Samples goals; keeps its scratch space from goal to goal.
+/// Samples goals; keeps its buffers from goal to goal.
 #[derive(Clone, Debug)]
 pub(crate) struct GoalSampler {
     patch_cells: usize,
-    /// One per cell, as the strategy wrote them.
+    /// One per cell, as written by the strategy.
     weights: Vec<f64>,
     /// Row-major, like the cells.
     patches: Vec<Patch>,
@@ -77,7 +77,7 @@ impl GoalSampler {
         Goal { cell, stay: strategy.stay(cell) }
     }
 
-    /// The candidate of the largest weight, any of several; `None` where none is above zero.
+    /// The candidate of the largest weight, uniform over several; `None` where no weight is above zero.
     fn best(&self, mapper: &Mapper, rng: &mut RandomStream) -> Option<Cell> {
         let (mut best, mut largest, mut ties) = (None, 0.0, 0);
         for (index, &weight) in self.weights.iter().enumerate() {
@@ -104,7 +104,7 @@ impl GoalSampler {
         self.candidate(mapper, patch, nth)
     }
 
-    /// Sums weights and candidates up over the patches.
+    /// Sums weights and candidates over the patches.
     fn gather(&mut self, mapper: &Mapper) {
         let (width, height, side) = (mapper.frame().width(), mapper.frame().height(), self.patch_cells);
         let columns = width.div_ceil(side);
@@ -127,11 +127,11 @@ impl GoalSampler {
         }
     }
 
-    /// The patch that holds the `nth` candidate of the map, patch by patch, and its number there.
+    /// The patch of the `nth` candidate of the map, counted patch by patch, and its number in the patch.
     fn patch_of(&self, mut nth: usize) -> Option<(usize, usize)> {
-        for (place, patch) in self.patches.iter().enumerate() {
+        for (index, patch) in self.patches.iter().enumerate() {
             if nth < patch.candidates {
-                return Some((place, nth));
+                return Some((index, nth));
             }
             nth -= patch.candidates;
         }

@@ -1,28 +1,27 @@
+use crate::Situation;
 use interfaces::{Cell, CellState, Grid};
 use nalgebra::Point2;
 
-use crate::Situation;
-
-/// How long a cell counts as restless after a change in or beside it, s.
+/// The time for which a cell counts as dynamic after a change in or beside it, s.
 const MEMORY_S: f64 = 10.0;
 
-/// Tells things that may move from walls: a sensed point is restless where the map changed lately,
-/// or where it knows nothing that the point could belong to.
+/// Separates dynamic obstacles from walls: a sensed point is dynamic where the map changed lately, or where
+/// the map has nothing that the point could belong to.
 ///
-/// An update costs in proportion to the changes, a question is a look at the cells around a point.
+/// The time of an update is proportional to the number of changes; a query reads the cells around a point.
 #[derive(Clone, Debug)]
-pub struct Restless {
-    /// When each cell, or one that touches it, last changed.
+pub struct DynamicObstacleFilter {
+    /// When each cell, or a cell that touches it, last changed.
     changed_at: Grid<f64>,
 }
 
-impl Restless {
-    /// Nothing has changed yet.
+impl DynamicObstacleFilter {
+    /// A filter before any change.
     pub fn new<T>(map: &Grid<T>) -> Self {
         Self { changed_at: map.map(|_| f64::NEG_INFINITY) }
     }
 
-    /// Takes note of this update's changes.
+    /// Applies the changes of this update.
     pub fn update(&mut self, situation: &Situation) {
         for changed in situation.transitions.iter().filter(|transition| transition.event().is_some()) {
             for cell in around(changed.cell) {
@@ -33,8 +32,8 @@ impl Restless {
         }
     }
 
-    /// Whether what was sensed at `point` may move.
-    pub fn is_restless(&self, situation: &Situation, point: &Point2<f64>) -> bool {
+    /// Whether the obstacle sensed at `point` may move.
+    pub fn is_dynamic(&self, situation: &Situation, point: &Point2<f64>) -> bool {
         let cell = situation.map.frame().cell_at(point);
         let changed_at = self.changed_at.get(cell).copied().unwrap_or(f64::NEG_INFINITY);
         let blocked = |cell| situation.map.get(cell) == Some(&CellState::Blocked);
@@ -50,7 +49,7 @@ fn around(cell: Cell) -> impl Iterator<Item = Cell> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::{find, states};
+    use crate::tests::{find, states};
     use interfaces::Transition;
 
     #[test]
@@ -63,17 +62,17 @@ mod tests {
             Transition { cell: find(&rows, 'C'), before: CellState::Free, after: CellState::Blocked };
         *map.get_mut(transition.cell).unwrap() = transition.after;
         let pose = interfaces::pose(0.0, 0.0, 0.0);
-        let mut restless = Restless::new(&map);
+        let mut dynamic = DynamicObstacleFilter::new(&map);
         let situation =
             |time, transitions| Situation { time, pose: &pose, map: &map, transitions, points: &[] };
         let transitions = [transition];
         let now = situation(1.0, &transitions);
-        restless.update(&now);
-        assert!(!restless.is_restless(&now, &wall));
-        assert!(restless.is_restless(&now, &changed));
-        assert!(restless.is_restless(&now, &new));
+        dynamic.update(&now);
+        assert!(!dynamic.is_dynamic(&now, &wall));
+        assert!(dynamic.is_dynamic(&now, &changed));
+        assert!(dynamic.is_dynamic(&now, &new));
         let later = situation(1.0 + MEMORY_S, &[]);
-        assert!(!restless.is_restless(&later, &changed));
-        assert!(restless.is_restless(&later, &new));
+        assert!(!dynamic.is_dynamic(&later, &changed));
+        assert!(dynamic.is_dynamic(&later, &new));
     }
 }

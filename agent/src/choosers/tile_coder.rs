@@ -1,12 +1,12 @@
-use crate::CuriousSettings;
-use crate::Features;
+use crate::features::Features;
+use crate::settings::CuriousSettings;
 use interfaces::RandomStream;
 use rand::RngExt;
 use std::collections::BTreeMap;
 
-/// A value function over the features (p, r): several grids of tiles, displaced against each
-/// other, with one weight per tile (section 4). Tiles are exact, kept by their column and row:
-/// two of them never share a weight. A tile never learned holds 0.
+/// A value function over the features (p, r): several grids of tiles (tilings) with random offsets, and one
+/// weight per tile (section 4). Tiles are kept by column and row: two tiles never share a weight. The weight of
+/// a tile is 0 before it is learned.
 #[derive(Clone, Debug)]
 pub struct TileCoder {
     /// The size of a tile in p and r.
@@ -16,20 +16,19 @@ pub struct TileCoder {
 
 #[derive(Clone, Debug)]
 struct Tiling {
-    /// By how much of a tile the tiling is displaced in p and r, in [0, 1).
+    /// The offset of the tiling in p and r, in tiles, in [0, 1).
     offset: [f64; 2],
     weights: BTreeMap<(i64, i64), f64>,
 }
 
 impl TileCoder {
-    /// A tile coder of value 0 with random displacements. Draws two numbers per tiling.
+    /// A tile coder of value 0 with random offsets. Draws two numbers per tiling.
     pub fn new(settings: &CuriousSettings, rng: &mut RandomStream) -> Self {
         let offsets: Vec<_> = (0..settings.tilings).map(|_| [rng.random(), rng.random()]).collect();
         Self::with_offsets([settings.tile_p, settings.tile_r], &offsets)
     }
 
-    /// A tile coder of value 0 with tiles of size `tile` in p and r, and one tiling for each of the
-    /// displacements, given in tiles.
+    /// A tile coder of value 0 with tiles of size `tile` in p and r, and one tiling per offset, in tiles.
     pub fn with_offsets(tile: [f64; 2], offsets: &[[f64; 2]]) -> Self {
         let tiling = |&offset| Tiling { offset, weights: BTreeMap::new() };
         Self { tile, tilings: offsets.iter().map(tiling).collect() }
@@ -37,7 +36,7 @@ impl TileCoder {
 
     /// V(p, r): the mean of the weights of the tiles that hold the features, one per tiling.
     pub fn value(&self, features: Features) -> f64 {
-        let weight = |tiling: &Tiling| tiling.weights.get(&tiling.tile(self.tile, features)).copied();
+        let weight = |tiling: &Tiling| tiling.weights.get(&tile(tiling.offset, self.tile, features)).copied();
         let sum: f64 = self.tilings.iter().filter_map(weight).sum();
         sum / self.tilings.len().max(1) as f64
     }
@@ -59,14 +58,7 @@ impl TileCoder {
     }
 }
 
-impl Tiling {
-    fn tile(&self, size: [f64; 2], features: Features) -> (i64, i64) {
-        tile(self.offset, size, features)
-    }
-}
-
-/// The tile that holds the features. The casts saturate, and NaN falls into tile 0: whatever the
-/// features, there is a tile for them.
+/// The tile of the features. The casts saturate, and NaN falls into tile 0: all features have a tile.
 fn tile(offset: [f64; 2], size: [f64; 2], features: Features) -> (i64, i64) {
     let axis = |offset: f64, size: f64, feature: f64| (feature / size + offset).floor() as i64;
     (axis(offset[0], size[0], features.p), axis(offset[1], size[1], features.r))

@@ -1,21 +1,22 @@
+use crate::drives::Body;
+use crate::planner::Costmap;
 use crate::settings::ExplorationSettings;
-use crate::{Body, Costmap};
 use interfaces::RandomStream;
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 use std::f64::consts::TAU;
 
-/// Local exploration (paper, section 2): towards the middle of what changed last; a random step
-/// where nothing did. Counts the steps.
+/// Local exploration (paper, section 2): a step towards the centroid of the last change, or a random step
+/// where nothing changed. Counts the steps.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Exploration {
+pub(crate) struct LocalExploration {
     steps: u32,
     random_steps_in_a_row: u32,
 }
 
-impl Exploration {
-    /// Where the next step leads to; `None` when enough steps have been made. `change` is the middle
-    /// of what changed, `random` a place to go to where nothing did.
+impl LocalExploration {
+    /// The target of the next step; `None` after enough steps. `change` is the centroid of the last change,
+    /// `random` the target of a random step.
     pub(crate) fn next(
         &mut self,
         settings: &ExplorationSettings,
@@ -41,8 +42,8 @@ impl Exploration {
     }
 }
 
-/// A place one stride away in a random direction that is open; here, where none is. Draws one number
-/// whatever is open.
+/// The point one step away in a random traversable direction; `here` where there is none. Always draws one
+/// number.
 pub(crate) fn random_step(
     body: &Body,
     costmap: &Costmap,
@@ -51,25 +52,22 @@ pub(crate) fn random_step(
 ) -> Point2<f64> {
     let cell = |point: &Point2<f64>| costmap.frame().cell_at(point);
     let step = |direction: u32| {
-        let angle_rad = TAU * f64::from(direction) / f64::from(body.directions);
-        let (sin, cos) = libm::sincos(angle_rad);
-        here + Vector2::new(cos, sin) * body.stride_m
+        let (sin, cos) = libm::sincos(TAU * f64::from(direction) / f64::from(body.directions));
+        here + Vector2::new(cos, sin) * body.step_m
     };
-    let open: Vec<_> = (0..body.directions)
-        .map(step)
-        .filter(|place| costmap.line_cost(cell(here), cell(place)).is_some())
-        .collect();
+    let is_traversable = |target: &Point2<f64>| costmap.line_cost(cell(here), cell(target)).is_some();
+    let targets: Vec<_> = (0..body.directions).map(step).filter(is_traversable).collect();
     let draw: u32 = rng.random_range(0..body.directions.max(1));
-    // The first open direction from a random one on would favour those after a gap.
-    let pick = u64::from(draw) * open.len() as u64 / u64::from(body.directions.max(1));
-    open.get(pick as usize).copied().unwrap_or(*here)
+    // The first traversable direction from a random one on would favour those after a gap.
+    let index = u64::from(draw) * targets.len() as u64 / u64::from(body.directions.max(1));
+    targets.get(index as usize).copied().unwrap_or(*here)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Moves;
-    use crate::drawing::{costmap, find};
+    use crate::tests::{costmap, find};
     use interfaces::Purpose;
 
     const HERE: Point2<f64> = Point2::new(1.0, 1.0);
@@ -77,7 +75,7 @@ mod tests {
 
     #[test]
     fn it_follows_changes_up_to_the_bound() {
-        let (settings, mut exploration) = (ExplorationSettings::default(), Exploration::default());
+        let (settings, mut exploration) = (ExplorationSettings::default(), LocalExploration::default());
         for _ in 0..settings.max_steps {
             assert_eq!(exploration.next(&settings, CHANGE, || HERE), CHANGE);
         }
@@ -86,7 +84,7 @@ mod tests {
 
     #[test]
     fn it_makes_fewer_than_two_random_steps_in_a_row() {
-        let (settings, mut exploration) = (ExplorationSettings::default(), Exploration::default());
+        let (settings, mut exploration) = (ExplorationSettings::default(), LocalExploration::default());
         assert_eq!(exploration.next(&settings, None, || HERE), Some(HERE));
         assert_eq!(exploration.next(&settings, CHANGE, || HERE), CHANGE);
         assert_eq!(exploration.next(&settings, None, || HERE), Some(HERE));
@@ -102,7 +100,7 @@ mod tests {
             moves: Moves::Four,
             speed_mps: 1.0,
             tolerance_m: 0.1,
-            stride_m: 1.0,
+            step_m: 1.0,
             directions: 4,
             step_s: 1.0,
             step_limit_s: 1.0,

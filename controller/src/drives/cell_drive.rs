@@ -1,17 +1,19 @@
-use crate::{Body, Drive, InflationSettings, Moves, Path, PatienceSettings, Scene, Settings};
+use super::{Body, Drive, Scene};
+use crate::planner::{InflationSettings, Moves, Path};
+use crate::settings::{NavigationSettings, Settings};
 use interfaces::Step;
 
-/// The robot of a grid world: as large as its cell, and each step it stays or moves to one of the
-/// four cells that share a side. The cells are 1 m wide, and a step of time lasts 1 s.
+/// The robot of a grid world: as large as its cell, and each step it stays or moves to one of the four cells
+/// that share a side. Cells are 1 m wide, and a step of time lasts 1 s.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellDrive;
 
 impl CellDrive {
-    /// The settings for a controller of this drive: no inflation, and no goal given up for being far.
+    /// The settings of a controller for this drive: no inflation, and a time limit that no path needs.
     pub fn settings() -> Settings {
         Settings {
-            inflation: InflationSettings { margin_m: 0.0, comfort_m: 0.0, comfort_price: 1 },
-            patience: PatienceSettings { goal_limit_s: 1e5, ..PatienceSettings::default() },
+            inflation: InflationSettings { footprint_padding_m: 0.0, inflation_m: 0.0, inflation_cost: 1 },
+            navigation: NavigationSettings { goal_timeout_s: 1e5, ..NavigationSettings::default() },
             ..Settings::default()
         }
     }
@@ -26,7 +28,7 @@ impl Drive for CellDrive {
             moves: Moves::Four,
             speed_mps: 1.0,
             tolerance_m: 0.4,
-            stride_m: 1.0,
+            step_m: 1.0,
             directions: 4,
             step_s: 1.0,
             step_limit_s: 1.0,
@@ -37,9 +39,9 @@ impl Drive for CellDrive {
         let frame = scene.costmap.frame();
         let here = frame.cell_at(&scene.situation.position());
         let next = path.ahead().first().map(|next| frame.cell_at(next));
-        // A cell that has just closed is waited for, until there is another path.
-        let open = next.filter(|next| scene.costmap.is_open(*next));
-        open.and_then(|next| Step::between(here, next)).unwrap_or(Step::Stay)
+        // The robot waits for a cell that became blocked, until there is another path.
+        let free = next.filter(|next| scene.costmap.is_traversable(*next));
+        free.and_then(|next| Step::between(here, next)).unwrap_or(Step::Stay)
     }
 
     fn rest(&mut self, _: &Scene) -> Step {

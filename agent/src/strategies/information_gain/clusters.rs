@@ -1,49 +1,50 @@
-//! Cells that changed hang together in things, and what lies beside them is likelier to change too.
+//! Clusters of cells that changed, mostly the path of one moving thing. The cells beside a cluster are more
+//! likely to change, too.
 
 use interfaces::{Cell, GridFrame};
 use mapper::Mapper;
 
-/// The pseudocounts of a thing's pace: half a cycle in fifty units of time.
+/// The pseudocounts of the rate of a cluster: half a cycle in fifty units of time.
 const PRIOR_CYCLES: f64 = 0.5;
 const PRIOR_TIME: f64 = 50.0;
 
-/// No thing.
+/// No cluster.
 const NONE: u32 = u32::MAX;
 
-/// Where a cell lies to what changed.
+/// The position of a cell relative to the cells that changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Position {
-    /// No cell beside it ever changed.
+    /// No cell beside the cell ever changed.
     Far,
-    /// One did that lies amid others which did: a way that goes on past this cell.
+    /// A cell beside it changed that lies between others: a path that goes on past this cell.
     Middle,
-    /// One did that has at most one other beside it: the end of the way, as far as it is known.
+    /// A cell beside it changed that has at most one other beside it: the end of a path, as far as known.
     End,
 }
 
-/// The cells that ever changed, joined where they share a side.
+/// The cells that ever changed, in clusters of cells that share sides.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Things {
-    /// Per cell the thing it belongs to.
+pub(super) struct Clusters {
+    /// The cluster of each cell.
     of: Vec<u32>,
-    /// Per changed cell, the changed cells beside it.
+    /// The number of changed cells beside each changed cell.
     degrees: Vec<u8>,
-    /// Per thing the mean cycles of its cells per unit of time in view.
-    paces: Vec<f64>,
+    /// The mean cycles per unit of time in view of each cluster.
+    rates: Vec<f64>,
 }
 
-/// The cells that share a side with one, by their numbers.
+/// The indices of the cells that share a side with a cell.
 pub(super) fn beside(frame: &GridFrame, cell: usize) -> impl Iterator<Item = usize> {
     let frame = *frame;
     Cell::neighbours4(frame.cell(cell)).into_iter().filter_map(move |cell| frame.index(cell))
 }
 
-impl Things {
-    /// Joins what ever changed. A pass over the changed cells, with a vector as large as the map.
+impl Clusters {
+    /// The clusters of a map. A pass over the changed cells, with vectors as large as the map.
     pub(super) fn new(mapper: &Mapper) -> Self {
         let frame = mapper.frame();
-        let mut things =
-            Self { of: vec![NONE; frame.len()], degrees: vec![0; frame.len()], paces: Vec::new() };
+        let mut clusters =
+            Self { of: vec![NONE; frame.len()], degrees: vec![0; frame.len()], rates: Vec::new() };
         let is_changed = {
             let mut is_changed = vec![false; frame.len()];
             mapper.changed().for_each(|cell| is_changed[cell] = true);
@@ -51,11 +52,11 @@ impl Things {
         };
         let mut open = Vec::new();
         for start in mapper.changed() {
-            if things.of[start] != NONE {
+            if clusters.of[start] != NONE {
                 continue;
             }
-            let thing = things.paces.len() as u32;
-            things.of[start] = thing;
+            let cluster = clusters.rates.len() as u32;
+            clusters.of[start] = cluster;
             open.push(start);
             let (mut cycles, mut time) = (PRIOR_CYCLES, PRIOR_TIME);
             while let Some(cell) = open.pop() {
@@ -63,16 +64,16 @@ impl Things {
                 cycles += 0.5 * f64::from(seen.block_events + seen.free_events);
                 time += seen.watched_free + seen.watched_blocked;
                 for near in beside(frame, cell).filter(|&near| is_changed[near]) {
-                    things.degrees[cell] += 1;
-                    if things.of[near] == NONE {
-                        things.of[near] = thing;
+                    clusters.degrees[cell] += 1;
+                    if clusters.of[near] == NONE {
+                        clusters.of[near] = cluster;
                         open.push(near);
                     }
                 }
             }
-            things.paces.push(cycles / time);
+            clusters.rates.push(cycles / time);
         }
-        things
+        clusters
     }
 
     /// Whether the cell ever changed.
@@ -81,26 +82,26 @@ impl Things {
         self.of[cell] != NONE
     }
 
-    /// How many of the cells beside one that changed did so too.
+    /// The number of changed cells beside a changed cell.
     #[inline]
     pub(super) fn degree(&self, cell: usize) -> u8 {
         self.degrees[cell]
     }
 
-    /// The pace of the thing that a changed cell belongs to; `None` for other cells.
-    pub(super) fn pace(&self, cell: usize) -> Option<f64> {
-        self.paces.get(self.of[cell] as usize).copied()
+    /// The rate of the cluster of a changed cell; `None` for other cells.
+    pub(super) fn rate(&self, cell: usize) -> Option<f64> {
+        self.rates.get(self.of[cell] as usize).copied()
     }
 
-    /// Where a cell lies to the things, itself left out, and the pace of the slowest beside it (∞ far
-    /// from all).
+    /// The position of a cell relative to the other changed cells, and the lowest rate of the clusters beside it
+    /// (∞ far from all).
     pub(super) fn position(&self, frame: &GridFrame, cell: usize) -> (Position, f64) {
-        let (mut position, mut pace) = (Position::Far, f64::INFINITY);
+        let (mut position, mut rate) = (Position::Far, f64::INFINITY);
         for near in beside(frame, cell).filter(|&near| self.has(near)) {
             let others = self.degrees[near] - u8::from(self.has(cell));
             position = position.max(if others <= 1 { Position::End } else { Position::Middle });
-            pace = pace.min(self.paces[self.of[near] as usize]);
+            rate = rate.min(self.rates[self.of[near] as usize]);
         }
-        (position, pace)
+        (position, rate)
     }
 }

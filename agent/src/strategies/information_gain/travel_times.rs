@@ -1,18 +1,18 @@
-//! The time to each cell, also past what may have moved out of the way.
+//! The time to each cell, also past obstacles that may have moved away.
 
-use super::things::beside;
+use super::clusters::beside;
 use crate::Situation;
 use interfaces::CellState;
 use std::collections::VecDeque;
 
-/// What it costs to pass a cell that was blocked when it was last seen, and may still be.
+/// The additional time to pass a cell that was blocked when it was last seen, and may still be.
 const MAY_BE_CLOSED: f64 = 10.0;
 
-/// The time from the robot to each cell; ∞ where no way is known.
+/// The time from the robot to each cell; ∞ where no path is known.
 ///
-/// The planner knows no way past a thing that stood in a door when it was last seen. Whoever never goes
-/// there never sees it gone: from a cell that changed, is mapped blocked and is out of view, ways go on, a
-/// cell after the other, at a metre per unit of time.
+/// The planner knows no path past an obstacle that stood in a door when it was last seen, and a robot that
+/// never goes there never sees the door free. From a cell that changed, is mapped as blocked and is out of
+/// view, paths therefore continue from cell to cell, at a metre per unit of time.
 pub(super) fn times(situation: &Situation) -> Vec<f64> {
     let (mapper, frame) = (situation.mapper, situation.mapper.frame());
     let states = mapper.states().cells();

@@ -1,8 +1,8 @@
 use interfaces::RandomStream;
 use rand::RngExt;
 
-/// Draws a place in proportion to its weight; `None` if no weight is above zero. The weights are
-/// finite, not negative, and their sum is finite.
+/// Draws an index with probability in proportion to its weight; `None` if no weight is above zero. The
+/// weights are finite and not negative, and their sum is finite.
 pub(crate) fn proportional(
     weights: impl Iterator<Item = f64> + Clone,
     rng: &mut RandomStream,
@@ -13,9 +13,9 @@ pub(crate) fn proportional(
     }
     let mut left = rng.random::<f64>() * total;
     let mut drawn = None;
-    for (place, weight) in weights.enumerate().filter(|&(_, weight)| weight > 0.0) {
-        // Where rounding leaves a remainder beyond the last weight, the last one is drawn.
-        drawn = Some(place);
+    for (index, weight) in weights.enumerate().filter(|&(_, weight)| weight > 0.0) {
+        // Where rounding leaves a remainder after the last weight, the last index is drawn.
+        drawn = Some(index);
         if left < weight {
             break;
         }
@@ -24,7 +24,7 @@ pub(crate) fn proportional(
     drawn
 }
 
-/// A number from the gamma distribution of this shape, above 0, and scale 1 (Marsaglia and Tsang 2000).
+/// A number from the gamma distribution of `shape` (above 0) and scale 1 (Marsaglia and Tsang 2000).
 pub(crate) fn gamma(shape: f64, rng: &mut RandomStream) -> f64 {
     if shape < 1.0 {
         let boost = libm::pow(1.0 - rng.random::<f64>(), 1.0 / shape);
@@ -65,9 +65,9 @@ mod tests {
         }
         assert_eq!(counts[1], 0.0);
         let chi_square: f64 = [0, 2, 3]
-            .map(|place| {
-                let expected: f64 = draws * weights[place] / 8.0;
-                (counts[place] - expected).powi(2) / expected
+            .map(|index| {
+                let expected: f64 = draws * weights[index] / 8.0;
+                (counts[index] - expected).powi(2) / expected
             })
             .iter()
             .sum();
@@ -100,7 +100,7 @@ mod tests {
         ) {
             let mut rng = RandomStream::new(seed, Purpose::Agent);
             match proportional(weights.iter().copied(), &mut rng) {
-                Some(place) => prop_assert!(weights[place] > 0.0),
+                Some(index) => prop_assert!(weights[index] > 0.0),
                 None => prop_assert!(weights.iter().all(|&weight| weight == 0.0)),
             }
         }
