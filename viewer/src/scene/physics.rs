@@ -1,7 +1,6 @@
 //! The scene of a physics world.
 
-use super::{Obstacle, Outline, Robot, Scene, Sector, TimeUnit, Visible};
-use crate::view::{RobotState, Sight};
+use super::{Obstacle, Outline, Robot, RobotState, Scene, Sector, Sight, TimeUnit, Visible};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
 use sim::physics::{Behaviour, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, RobotSpec};
