@@ -40,7 +40,7 @@ impl Strategy for Frontier {
         let is_unknown = |cell: usize| mapper.states().cells()[cell] == CellState::Unknown;
         let mut hidden = vec![0.0; regions.count()];
         for cell in 0..weights.len() {
-            if is_unknown(cell) && self.history.looks(cell) < MAX_VISITS {
+            if is_unknown(cell) && self.history.visits(cell) < MAX_VISITS {
                 hidden[regions.of(cell)] += 1.0;
             }
         }

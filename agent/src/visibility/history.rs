@@ -12,14 +12,14 @@ use mapper::Mapper;
 pub(crate) struct ViewHistory {
     visibility: Visibility,
     frame: Option<GridFrame>,
-    looks: Vec<Look>,
+    visits: Vec<Visits>,
     /// The index of the last goal's cell, until the visit is over.
     goal: Option<usize>,
 }
 
 /// The visits from which a cell should have been in view, whether it was seen or not.
 #[derive(Clone, Copy, Debug, Default)]
-struct Look {
+struct Visits {
     count: u8,
     /// When the last visit was over.
     time: f64,
@@ -28,7 +28,7 @@ struct Look {
 impl ViewHistory {
     /// For a robot that sees as far as `radius_m`.
     pub(crate) fn new(radius_m: f64) -> Self {
-        Self { visibility: Visibility::new(radius_m), frame: None, looks: Vec::new(), goal: None }
+        Self { visibility: Visibility::new(radius_m), frame: None, visits: Vec::new(), goal: None }
     }
 
     /// Applies the present map and the visit of the last goal, which is over; returns the regions of the map.
@@ -36,14 +36,14 @@ impl ViewHistory {
         let (regions, frame) = (self.visibility.update(mapper), *mapper.frame());
         if self.frame != Some(frame) {
             self.frame = Some(frame);
-            self.looks = vec![Look::default(); frame.len()];
+            self.visits = vec![Visits::default(); frame.len()];
             self.goal = None;
         }
         if let Some(goal) = self.goal.take() {
             for &region in self.visibility.seen_from(regions.of(goal)) {
                 for cell in regions.cells(region as usize) {
-                    let count = self.looks[cell].count.saturating_add(1);
-                    self.looks[cell] = Look { count, time: mapper.time() };
+                    let count = self.visits[cell].count.saturating_add(1);
+                    self.visits[cell] = Visits { count, time: mapper.time() };
                 }
             }
         }
@@ -57,14 +57,14 @@ impl ViewHistory {
 
     /// The number of visits from which the cell should have been in view, up to 255.
     #[inline]
-    pub(crate) fn looks(&self, cell: usize) -> u8 {
-        self.looks[cell].count
+    pub(crate) fn visits(&self, cell: usize) -> u8 {
+        self.visits[cell].count
     }
 
     /// The time since the cell was last seen, or should have been.
     #[inline]
     pub(crate) fn elapsed(&self, mapper: &Mapper, cell: usize) -> f64 {
-        mapper.recency(cell).min(mapper.time() - self.looks[cell].time)
+        mapper.recency(cell).min(mapper.time() - self.visits[cell].time)
     }
 
     /// Weighs each candidate by the worth of the regions in view from there, per time to get there and to stop

@@ -281,7 +281,15 @@ fn a_policy_of_one_strategy_has_its_name() {
     for policy in Policy::built_in() {
         let agent = agent(policy.name(), 0);
         assert!(agent.strategies().len() > 1 || agent.strategies().all(|name| name == policy.name()));
-        assert!(!policy.description().is_empty());
+    }
+}
+
+#[test]
+fn the_readme_lists_every_policy() {
+    let readme = include_str!("../../../README.md");
+    for policy in Policy::built_in() {
+        let row = format!("| `{policy}` | {} |", policy.description());
+        assert!(readme.contains(&row), "README.md needs the row {row}");
     }
 }
 
