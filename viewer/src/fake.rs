@@ -1,8 +1,8 @@
 //! A made-up run for tests: four rooms, a robot that drives a tour, another that goes back and
 //! forth, and scans from a few lines of geometry. No physics, no agent.
 
-use crate::scene::{Obstacle, Outline, Robot, Scene, TimeUnit};
-use crate::view::{Measured, RobotState, Sight, View};
+use crate::scene::{Obstacle, Outline, Robot, RobotState, Scene, Sight, TimeUnit};
+use crate::view::{Measured, View};
 use agent::Features;
 use evaluation::metrics::MapScores;
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};

@@ -1,11 +1,11 @@
 //! A run at one instant, as plain data: the input of the recording and of the moving picture.
 
-use crate::scene::{Outline, TimeUnit, Visible};
+use crate::scene::{Outline, RobotState, Sight, TimeUnit, Visible};
 use agent::Features;
 use evaluation::metrics::{MapScores, RateErrors};
-use interfaces::{CellReading, LaserReading, Reading};
+use interfaces::Reading;
 use mapper::Mapper;
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Point2;
 use robot::{Belief, Message, Pilot, StrategyState};
 
 /// A run at one instant.
@@ -74,29 +74,6 @@ impl<'a> View<'a> {
     pub fn sight(&self) -> Option<Sight<'a>> {
         self.robots.iter().find_map(|robot| robot.sight)
     }
-}
-
-/// A robot at one instant.
-#[derive(Clone, Copy, Debug)]
-pub struct RobotState<'a> {
-    /// The pose in the frame of the world, m and rad. A robot in a grid world has no heading.
-    pub pose: Isometry2<f64>,
-    /// What the curious robot sees; `None` for every other robot.
-    pub sight: Option<Sight<'a>>,
-}
-
-/// What a robot sees.
-#[derive(Clone, Copy, Debug)]
-pub enum Sight<'a> {
-    /// The last scan of a laser.
-    Laser(&'a LaserReading),
-    /// Cells.
-    Cells {
-        /// The cells that are seen now.
-        reading: &'a CellReading,
-        /// The range of the sensor, cells.
-        radius: u32,
-    },
 }
 
 /// The positions of a robot since the start. Positions nearer than a few centimeters to the last one are

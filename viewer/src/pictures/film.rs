@@ -1,12 +1,13 @@
 //! A moving picture of a run: the map with the robots, and beside it how often its cells change.
 
-use super::panel::{Chart, Mark, Panel};
-use super::trajectory::{line, pair};
+use super::panel::{Chart, Mark, Panel, pair};
+use super::trajectory::line;
 use super::{ground, plan};
 use crate::layers::Layer;
 use crate::outline::field_of_view;
+use crate::scene::Sight;
 use crate::scene::{Scene, TimeUnit};
-use crate::view::{Sight, Trail, View};
+use crate::view::{Trail, View};
 use evaluation::drawing::{Area, Canvas, PictureError, ink, px, why};
 use evaluation::output::write_file;
 use evaluation::palette::{self, Rgb};

@@ -1,7 +1,6 @@
 //! The parts of a scene that every picture shows: walls, furniture, and what moves with the area it sweeps.
 
-use super::panel::{Chart, Mark};
-use super::trajectory::pair;
+use super::panel::{Chart, Mark, pair};
 use crate::scene::{Robot, Scene};
 use evaluation::drawing::{ink, why};
 use evaluation::palette::{self, Rgb};

@@ -12,6 +12,11 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+/// A point as plotters has points.
+pub(super) fn pair(point: &Point2<f64>) -> (f64, f64) {
+    (point.x, point.y)
+}
+
 /// A chart in meters.
 pub(super) type Chart<'a, 'b> =
     ChartContext<'a, BitMapBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;

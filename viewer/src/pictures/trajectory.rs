@@ -1,6 +1,6 @@
 //! The trajectories of the robots, as the paper's Figure 4.
 
-use super::panel::{Chart, Mark, Panel};
+use super::panel::{Chart, Mark, Panel, pair};
 use super::{Pictures, ground};
 use crate::scene::Scene;
 use evaluation::drawing::{Area, ink, why};
@@ -56,8 +56,4 @@ pub(super) fn line(panel: &Panel, chart: &Chart, points: &[Point2<f64>], color: 
         let step = PathElement::new(step.iter().map(pair).collect::<Vec<_>>(), style);
         chart.plotting_area().draw(&step).map_err(why)
     })
-}
-
-pub(super) fn pair(point: &Point2<f64>) -> (f64, f64) {
-    (point.x, point.y)
 }

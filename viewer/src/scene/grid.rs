@@ -1,7 +1,6 @@
 //! The scene of a grid world. Cells are 1 m wide, with `[0, 0]` at the origin.
 
-use super::{Obstacle, Outline, Robot, Scene, TimeUnit, Visible};
-use crate::view::{RobotState, Sight};
+use super::{Obstacle, Outline, Robot, RobotState, Scene, Sight, TimeUnit, Visible};
 use interfaces::{Cell, CellReading, Grid};
 use nalgebra::{Isometry2, Point2};
 use sim::grid::{GridSpec, GridWorld};

@@ -3,8 +3,10 @@
 
 mod grid;
 mod physics;
+mod state;
 
-use crate::view::RobotState;
+pub use state::{RobotState, Sight};
+
 use interfaces::{GridFrame, World};
 use nalgebra::{Isometry2, Point2};
 

@@ -1,7 +1,6 @@
 //! The scene of a physics world.
 
-use super::{Obstacle, Outline, Robot, Scene, Sector, TimeUnit, Visible};
-use crate::view::{RobotState, Sight};
+use super::{Obstacle, Outline, Robot, RobotState, Scene, Sector, Sight, TimeUnit, Visible};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
 use sim::physics::{BehaviorSpec, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, RobotSpec};
@@ -48,7 +47,7 @@ impl Visible for PhysicsWorld {
 
 fn obstacle(spec: &ObstacleSpec) -> Obstacle {
     let corners = |shape: Rectangle| shape.corners().to_vec();
-    let start = corners(spec.start);
+    let start = corners(spec.start());
     let mut reach: Vec<Outline> = match &spec.motion {
         Motion::Fixed => Vec::new(),
         Motion::Pushed(_) => vec![start.clone()],
@@ -81,6 +80,6 @@ fn robot(spec: &RobotSpec) -> Robot {
         radius_m: spec.radius_m,
         corners: spec.corners.clone(),
         sectors: lasers.chain(sonars).map(sector).collect(),
-        is_driven: spec.behaviour == BehaviorSpec::Driven,
+        is_driven: spec.behavior == BehaviorSpec::Driven,
     }
 }

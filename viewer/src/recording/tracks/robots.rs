@@ -3,8 +3,9 @@
 use super::{LABEL, Start, Track, color, order};
 use crate::recording::path;
 use crate::recording::rows::{Arrow, Now, Position, Rows, Strip, Target, position};
+use crate::scene::RobotState;
 use crate::scene::{Robot, TimeUnit};
-use crate::view::{RobotState, Trail, View};
+use crate::view::{Trail, View};
 use evaluation::palette;
 use interfaces::rotation;
 use nalgebra::{Isometry2, Point2, Vector2};
