@@ -109,7 +109,7 @@ fn false_changes(
 }
 
 fn row(bench: Bench, occupancy: OccupancyChoice) -> anyhow::Result<String> {
-    let settings = bench.settings(occupancy);
+    let settings = bench.settings(occupancy.clone());
     let (house, readings) = bench.tour(1);
     let (changes, repeated) = false_changes(&house, &readings, &settings)?;
     let mut row = format!("| {} | {} | {changes} | {repeated} |", bench.name, occupancy.name());
