@@ -8,31 +8,30 @@ use super::trial::Trial;
 /// The strategies with one estimator in one world, or over all worlds.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// The world's name; `all worlds (N)` for the entry over all.
+    /// The name of the world; `all worlds (N)` for the run over all worlds.
     pub world: String,
-    /// The number of worlds: 1 but for the entry over all worlds.
+    /// The number of worlds: 1, except in the run over all worlds.
     pub worlds: usize,
     /// The estimator's name.
     pub estimator: String,
-    /// The strategies, in the order in which they were asked for.
+    /// The strategies, in the order of the experiment.
     pub strategies: Vec<StrategyResult>,
     /// Every pair of strategies in every measure of [`Measure::COMPARED`].
     pub comparisons: Vec<Comparison>,
 }
 
-/// How one strategy did.
+/// The results of one strategy.
 #[derive(Clone, Debug)]
 pub struct StrategyResult {
     /// The strategy's name.
     pub name: String,
-    /// The trials behind it.
+    /// The number of its trials.
     pub trials: usize,
-    /// The seeds of the trials and the hashes of what was learned in them; empty in the entry over
-    /// all worlds.
+    /// The seeds of the trials and the hashes of the maps; empty in the run over all worlds.
     pub map_hashes: Vec<(u64, String)>,
-    /// Mean share of each way in which its goals were chosen.
+    /// The mean share of the goals that each strategy of the agent chose.
     pub strategy_share: Vec<(String, f64)>,
-    /// Change events on cells that nothing ever touched, in all trials.
+    /// The number of change events on static cells, in all trials.
     pub false_change_events: u64,
     /// One per metric and sample, in the order of [`Metric::ALL`].
     curves: Vec<Vec<Estimate>>,
@@ -76,16 +75,16 @@ impl Run {
         world: String,
         worlds: usize,
         estimator: &str,
-        strategies: Vec<Lives>,
+        strategies: Vec<TrialGroup>,
         quantiles: &Quantiles,
     ) -> Self {
         let comparisons = compare_all(&strategies, quantiles);
-        let strategies = strategies.into_iter().map(|lives| lives.summary(quantiles)).collect();
+        let strategies = strategies.into_iter().map(|group| group.summary(quantiles)).collect();
         Self { world, worlds, estimator: estimator.into(), strategies, comparisons }
     }
 }
 
-/// What is averaged and paired: a trial, or a world averaged over its trials.
+/// The unit of averages and pairs: a trial, or a world averaged over its trials.
 #[derive(Clone)]
 pub(super) struct Unit {
     /// The seed, or the number of the world.
@@ -126,8 +125,8 @@ impl Unit {
     }
 }
 
-/// All that one strategy lived through.
-pub(super) struct Lives {
+/// All trials of one strategy.
+pub(super) struct TrialGroup {
     pub(super) name: String,
     /// In the order of their keys.
     pub(super) units: Vec<Unit>,
@@ -137,8 +136,8 @@ pub(super) struct Lives {
     false_change_events: u64,
 }
 
-impl Lives {
-    /// In one world; `trials` in the order of their seeds.
+impl TrialGroup {
+    /// The trials in one world, in the order of their seeds.
     pub(super) fn in_world(trials: &[Trial], steps: &[u64]) -> Self {
         Self {
             name: trials.first().map_or_else(String::new, |trial| trial.strategy.clone()),
@@ -150,7 +149,7 @@ impl Lives {
         }
     }
 
-    /// The same as one world of many: its number, and the mean of its trials.
+    /// The group as one unit of the run over all worlds: the number of the world, and the mean of its trials.
     pub(super) fn as_one_world(&self, number: u64, samples: usize) -> Self {
         Self {
             name: self.name.clone(),
@@ -161,15 +160,15 @@ impl Lives {
         }
     }
 
-    /// Over all worlds, from one world each.
+    /// The run over all worlds, from one group per world.
     pub(super) fn in_all(worlds: &[Self]) -> Self {
         Self {
-            name: worlds.first().map_or_else(String::new, |lives| lives.name.clone()),
-            units: worlds.iter().flat_map(|lives| lives.units.iter().cloned()).collect(),
-            trials: worlds.iter().map(|lives| lives.trials).sum(),
+            name: worlds.first().map_or_else(String::new, |group| group.name.clone()),
+            units: worlds.iter().flat_map(|group| group.units.iter().cloned()).collect(),
+            trials: worlds.iter().map(|group| group.trials).sum(),
             map_hashes: Vec::new(),
-            strategy_share: mean_shares(worlds.iter().map(|lives| lives.strategy_share.as_slice())),
-            false_change_events: worlds.iter().map(|lives| lives.false_change_events).sum(),
+            strategy_share: mean_shares(worlds.iter().map(|group| group.strategy_share.as_slice())),
+            false_change_events: worlds.iter().map(|group| group.false_change_events).sum(),
         }
     }
 
