@@ -81,7 +81,7 @@ fn worlds(args: &Args) -> anyhow::Result<Vec<GridSpec>> {
     let generated = 0..args.generate.unwrap_or(0);
     worlds.extend(generated.map(|number| GridSpec::generate(&settings, args.seed.wrapping_add(number))));
     let mut names = BTreeSet::new();
-    if let Some(twin) = worlds.iter().map(GridSpec::name).find(|name| !names.insert(*name)) {
+    if let Some(twin) = worlds.iter().map(|world| &world.name).find(|name| !names.insert(*name)) {
         bail!(
             "two worlds have the name `{twin}`: results are listed by name, so give each world its own name"
         );
