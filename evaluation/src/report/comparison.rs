@@ -1,7 +1,7 @@
 //! The comparison of two strategies, paired by trial or by world.
 
+use super::group::TrialGroup;
 use super::metric::{Measure, Part};
-use super::run::TrialGroup;
 use super::statistics::{Quantiles, holm, mean};
 use super::wording::{p_value, value};
 use serde::Serialize;

@@ -8,6 +8,7 @@
 mod claim;
 mod comparison;
 mod figure;
+mod group;
 mod json;
 mod metric;
 mod run;
@@ -28,7 +29,7 @@ pub use world_picture::WorldPicture;
 
 use crate::drawing::PictureError;
 use crate::output::{make_folder, write_file};
-use run::TrialGroup;
+use group::TrialGroup;
 use statistics::Quantiles;
 use std::path::{Path, PathBuf};
 

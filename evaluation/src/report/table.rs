@@ -3,8 +3,8 @@
 use super::claim::Claim;
 use super::comparison::Comparison;
 use super::metric::{Measure, Metric, Part};
-use super::run::{Run, StrategyResult};
-use super::wording::{conditions, difference, p_value, value};
+use super::run::{Run, StrategyResult, conditions};
+use super::wording::{difference, p_value, value};
 use super::{ONE_BY_ONE, REFERENCE, Report};
 
 const HOW_TO_READ: &str = "\
