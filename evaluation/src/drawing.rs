@@ -1,4 +1,4 @@
-//! What reports and pictures share to draw: colours, a font, a canvas, and its way into a PNG file.
+//! Drawing shared by reports and pictures: a font, a canvas, and PNG files.
 
 use crate::output::{OutputError, write_file};
 use crate::palette::{self, Rgb};

@@ -4,7 +4,8 @@ use crate::recording::{Recorder, RecordingError};
 use crate::view::{Measured, View};
 use evaluation::metrics::{RateErrors, map_scores, rate_scores};
 use evaluation::report::Trial;
-use evaluation::trials::{SettingsError, TrialSettings, TrialStep, run_trial};
+use evaluation::trials::{TrialSettings, TrialStep, run_trial};
+use interfaces::SettingsError;
 use robot::{Level, Message};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -88,7 +89,7 @@ mod tests {
     use agent::AgentSettings;
     use controller::CellDrive;
     use evaluation::trials::{Experiment, TrialStrategy};
-    use mapper::{Estimator, MapperSettings};
+    use mapper::{MapperSettings, Paper};
     use sim::grid::GridSpec;
     use std::path::Path;
 
@@ -99,7 +100,7 @@ mod tests {
                 worldfile::grid::parse("two_blocks.toml", include_str!("../../worlds/two_blocks.toml"))
                     .unwrap(),
             ],
-            estimators: vec![Estimator::Paper],
+            estimators: vec![Paper.into()],
             strategies: vec![TrialStrategy::Agent("recency".parse().unwrap())],
             trials: 1,
             seed: 3,
@@ -112,7 +113,7 @@ mod tests {
 
     fn recorded(steps: u64, file: &Path, is_canceled: bool) -> Recorded {
         let experiment = experiment(steps);
-        let life = experiment.life(experiment.jobs()[0]);
+        let life = experiment.trial(experiment.jobs()[0]);
         let options = RecordingOptions { file: Some(file.to_owned()), ..Default::default() };
         let recorder = Recorder::new(&options, life.world.into()).unwrap();
         record(&life, recorder, &is_canceled.into()).unwrap()

@@ -1,6 +1,6 @@
 use super::*;
 use interfaces::{Cell, CellReading, CellState, Grid, GroundTruth, Step, TrueState, World};
-use mapper::{Estimator, Mapper, MapperSettings};
+use mapper::{Mapper, MapperSettings, Paper};
 use nalgebra::Isometry2;
 use sim::grid::GridWorld;
 use sim::physics::{PhysicsGroundTruth, PhysicsWorld};
@@ -81,7 +81,7 @@ fn grid_world() -> GridWorld {
 }
 
 fn mapper(world: &GridWorld) -> Mapper {
-    let settings = MapperSettings { estimator: Estimator::Paper, ..Default::default() };
+    let settings = MapperSettings { estimator: Paper.into(), ..Default::default() };
     Mapper::new(&settings, *world.truth().frame()).unwrap()
 }
 

@@ -1,11 +1,11 @@
-use super::{SettingsError, TrialStrategy};
+use super::TrialStrategy;
 use crate::map_hash::map_hash;
 use crate::metrics::{ChangingAccuracy, Prediction, map_scores, rate_scores};
 use crate::oracle::Oracle;
 use crate::report::{Sample, Trial};
 use agent::{Agent, AgentSettings, Features};
 use controller::{CellDrive, Controller};
-use interfaces::{CellReading, GroundTruth, Purpose, RandomStream, Step};
+use interfaces::{CellReading, GroundTruth, Purpose, RandomStream, SettingsError, Step};
 use mapper::{Mapper, MapperSettings, ReadingError};
 use robot::{Autonomous, Belief, GoalSelector, Pilot, explore};
 use sim::grid::{GridGroundTruth, GridSpec, GridWorld};

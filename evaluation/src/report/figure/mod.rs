@@ -1,14 +1,12 @@
-//! Figure 3 of the paper: the world, and beside it how the errors of the rates and the quality of
-//! the map went on, for every strategy, with bands of 95 % confidence.
+//! Figure 3 of the paper: the plan of the world, and the curves of the errors of the rates and of the map
+//! quality, one per strategy, with bands of 95 % confidence.
 
 mod curves;
 mod pen;
 mod plan;
-mod vector;
 
 use super::metric::Metric;
-use super::run::Run;
-use super::wording::conditions;
+use super::run::{Run, conditions};
 use super::{ONE_BY_ONE, Report, WorldPicture};
 use crate::drawing::{Canvas, PictureError, ink, why};
 use crate::output::write_file;

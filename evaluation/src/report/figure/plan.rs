@@ -12,7 +12,7 @@ use std::ops::Range;
 /// The width of the legend beside a plan, in pixels of the finished picture.
 const LEGEND: i32 = 190;
 const ROW: i32 = 24;
-/// So many things are named, and so many worlds drawn.
+/// The maximum number of named things, and of drawn worlds.
 const THINGS: usize = 8;
 const WORLDS: usize = 12;
 const GRID: RGBColor = RGBColor(232, 234, 238);
@@ -76,9 +76,9 @@ pub(super) fn many<DB: DrawingBackend>(
         3..=6 => 3,
         _ => 4,
     };
-    let places = below.split_evenly((shown.div_ceil(columns), columns));
-    for (place, world) in places.iter().zip(worlds) {
-        cells(&place.margin(0, pen.px(16), pen.px(6), pen.px(6)), pen, world)?;
+    let areas = below.split_evenly((shown.div_ceil(columns), columns));
+    for (area, world) in areas.iter().zip(worlds) {
+        cells(&area.margin(0, pen.px(16), pen.px(6), pen.px(6)), pen, world)?;
     }
     Ok(())
 }

@@ -47,5 +47,5 @@ fn a_file_that_is_none_says_so() {
         "{:?}",
         inspection.errors
     );
-    assert!(inspect(&file("worlds/office.png")).errors[0].contains("no text"));
+    assert!(inspect(&file("worlds/office.png")).errors[0].contains("not a text file"));
 }
