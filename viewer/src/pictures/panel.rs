@@ -111,10 +111,11 @@ impl Panel {
         let [from, to] = corners(&self.frame);
         let mut chart = ChartBuilder::on(area)
             .margin_top(self.px(TITLE))
+            .margin_left(self.px(4)) // the library writes the name of the y axis a little too far left
             .margin_right(width as i32 - self.px(Y_AXIS + self.width))
             .margin_bottom(height as i32 - below)
             .x_label_area_size(self.px(X_AXIS))
-            .y_label_area_size(self.px(Y_AXIS))
+            .y_label_area_size(self.px(Y_AXIS - 4))
             .build_cartesian_2d(from.x..to.x, from.y..to.y)
             .map_err(why)?;
         chart

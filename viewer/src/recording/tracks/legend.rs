@@ -44,7 +44,7 @@ pub(super) fn log(start: Start) -> RecordingStreamResult<()> {
     let column_m = width_m / COLUMNS as f64;
     let at = |index: usize| {
         let x = frame.origin().x + (0.5 + (index % COLUMNS) as f64) * column_m;
-        let y = frame.origin().y - (0.25 + (index / COLUMNS) as f64 * 0.45) * SHARE * height_m;
+        let y = frame.origin().y - (0.2 + (index / COLUMNS) as f64 * 0.45) * SHARE * height_m;
         [x as f32, y as f32]
     };
     let half = 0.2 * column_m as f32;
@@ -61,7 +61,8 @@ pub(super) fn log(start: Start) -> RecordingStreamResult<()> {
             .with_draw_order(1.0 - rim);
         stream.log_static(format!("{}/{part}", path::LEGEND), &lines)?;
     }
-    let texts = Points2D::new((0..entries.len()).map(at))
+    let below = |index: usize| [at(index)[0], at(index)[1] - (0.08 * SHARE * height_m) as f32];
+    let texts = Points2D::new((0..entries.len()).map(below))
         .with_labels(entries.iter().map(|entry| entry.2))
         .with_show_labels(true)
         .with_radii([Radius::new_ui_points(0.0)])

@@ -95,7 +95,7 @@ fn log(start: Start, robot: &Robot) -> RecordingStreamResult<()> {
         .with_colors([color(LABEL, 255)])
         .with_radii([Radius::new_ui_points(1.5)])
         .with_labels([robot.name.as_str()])
-        .with_show_labels(true)
+        .with_show_labels(start.scene.robots.len() > 1)
         .with_draw_order(order::HEADING);
     start.stream.log_static(part("heading"), &heading)?;
     let trail = LineStrips2D::update_fields()
