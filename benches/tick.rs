@@ -78,7 +78,7 @@ fn tick(bencher: divan::Bencher) {
 fn explore_60_s(bencher: divan::Bencher, with_metrics: bool) {
     let prepared = || {
         let run = Run::new();
-        let observer = with_metrics.then(|| Observer::default());
+        let observer = with_metrics.then(Observer::default);
         (run, observer)
     };
     bencher.with_inputs(prepared).bench_local_values(|(mut run, observer)| run.explore(60.0, observer));

@@ -43,8 +43,11 @@ pub type Parts = (Vec<Box<dyn Strategy>>, Box<dyn Chooser>);
 pub struct Policy {
     name: &'static str,
     description: &'static str,
-    build: Arc<dyn Fn(&AgentSettings, &mut RandomStream) -> Parts + Send + Sync>,
+    build: Arc<Build>,
 }
+
+/// Makes the strategies and the chooser.
+type Build = dyn Fn(&AgentSettings, &mut RandomStream) -> Parts + Send + Sync;
 
 /// The built-in policies, the default first: the name, where the robot goes, and the constructor.
 static BUILT_IN: LazyLock<Vec<Policy>> = LazyLock::new(|| {

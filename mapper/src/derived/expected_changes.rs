@@ -40,13 +40,7 @@ pub(crate) struct ExpectedChanges {
 impl ExpectedChanges {
     /// Notes the cells that a reading brought into view, or found changed for the first time.
     pub(crate) fn note(&mut self, cells: &CellMap) {
-        for &slot in &cells.returned {
-            let slot = slot as usize;
-            if !std::mem::replace(&mut self.is_in_view[slot], true) {
-                (self.survival[slot], self.factor[slot]) = (1.0, 1.0);
-                self.in_view.push(slot);
-            }
-        }
+        // Cells that changed for the first time come first: one of them may also have returned into view.
         let (before, after) = (self.survival.len(), cells.changed.len());
         self.survival.resize(after, 1.0);
         self.factor.resize(after, 1.0);
@@ -54,6 +48,13 @@ impl ExpectedChanges {
         self.last_seen.resize(after, 0.0);
         self.is_in_view.resize(after, true);
         self.in_view.extend(before..after);
+        for &slot in &cells.returned {
+            let slot = slot as usize;
+            if !std::mem::replace(&mut self.is_in_view[slot], true) {
+                (self.survival[slot], self.factor[slot]) = (1.0, 1.0);
+                self.in_view.push(slot);
+            }
+        }
     }
 
     /// The expected number of cells that changed since they were last observed.

@@ -61,7 +61,8 @@ pub(super) fn pose(pose: &mut Isometry2<f64>) -> Box<dyn Value + '_> {
 
     impl Value for Pose<'_> {
         fn write(&self, bytes: &mut Vec<u8>) -> postcard::Result<()> {
-            (&mut Saved(*self.0)).write(bytes)
+            let saved = &mut Saved(*self.0);
+            saved.write(bytes)
         }
 
         fn read(&mut self, bytes: &mut &[u8]) -> postcard::Result<()> {

@@ -107,16 +107,6 @@ pub(crate) enum DriveChoice {
     Tour,
 }
 
-/// A parser of one of `all`, by its name.
-fn one_of<T: Copy + Send + Sync + 'static>(
-    all: &'static [T],
-    name: impl Fn(T) -> &'static str + Copy + Send + Sync + 'static,
-) -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(all.iter().map(|&value| name(value))).try_map(move |text| {
-        all.iter().copied().find(|&value| name(value) == text).ok_or("not one of the possible values")
-    })
-}
-
 fn strategies() -> impl TypedValueParser<Value = Policy> {
     let named = |policy: &Policy| PossibleValue::new(policy.name()).help(policy.description());
     PossibleValuesParser::new(Policy::built_in().iter().map(named)).try_map(|name| name.parse::<Policy>())

@@ -120,17 +120,6 @@ impl From<RewardChoice> for Reward {
     }
 }
 
-/// A parser of one of `all`, by its name.
-fn one_of<T: Copy + Send + Sync + 'static>(
-    all: Vec<T>,
-    name: impl Fn(T) -> &'static str + Copy + Send + Sync + 'static,
-) -> impl TypedValueParser<Value = T> {
-    let names: Vec<_> = all.iter().map(|&value| name(value)).collect();
-    PossibleValuesParser::new(names).try_map(move |text| {
-        all.iter().copied().find(|&value| name(value) == text).ok_or("not one of the possible values")
-    })
-}
-
 fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
     let named = |strategy: &TrialStrategy| PossibleValue::new(strategy.name()).help(strategy.description());
     let all: Vec<_> = TrialStrategy::all().collect();

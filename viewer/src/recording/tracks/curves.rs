@@ -25,8 +25,11 @@ struct Curve {
     path: String,
     name: String,
     color: Rgb,
-    value: Box<dyn Fn(&View) -> Option<f64> + Send>,
+    value: Box<Value>,
 }
+
+/// The value of a curve at one instant; `None` where it has none.
+type Value = dyn Fn(&View) -> Option<f64> + Send;
 
 /// A share of something: the axis ends a little above 1, so that a curve at 1 is visible.
 const SHARE: Option<[f64; 2]> = Some([0.0, 1.05]);
