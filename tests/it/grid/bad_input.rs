@@ -45,7 +45,7 @@ fn worlds() {
         let message = refused_world("sensor_radius = 4", &format!("sensor_radius = {wrong}"));
         assert!(message.contains("sensor_radius") && message.contains("grid.toml:10:17"), "{message}");
     }
-    insta::assert_snapshot!(refused_world("name = \"two blocks\"", "name = \"two blocks\""), @"error: two worlds are called `two blocks`: give each a name of its own, by which results are told");
+    insta::assert_snapshot!(refused_world("name = \"two blocks\"", "name = \"two blocks\""), @"error: two worlds have the name `two blocks`: results are listed by name, so give each world its own name");
     let folder = Run::grid();
     std::fs::create_dir(folder.path("grid")).unwrap();
     insta::assert_snapshot!(refuses(&folder, "--world grid", &["grid"]), @"error: cannot read the world file `grid`: Is a directory (os error 21)");
