@@ -3,7 +3,7 @@
 use super::sources::{Place, Sources};
 use std::collections::BTreeSet;
 
-/// After so many comparisons, further ones are left out.
+/// The maximum number of comparisons; further ones are left out.
 const MAX_COMPARISONS: usize = 10_000_000;
 
 /// Something that takes up room.

@@ -10,7 +10,7 @@ const MOST_CORNERS: usize = 32;
 const LEAST_CORNER_M2: f64 = 4e-6;
 /// The point that a robot turns about lies so far within its outline or farther, m.
 const LEAST_INNER_M: f64 = 0.02;
-/// So many lines measure the area of a body of several parts.
+/// The number of lines that measure the area of a body of several parts.
 const LINES: usize = 256;
 
 /// The smallest convex outline around a body, as far as an outline can have that many corners.

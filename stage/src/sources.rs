@@ -10,7 +10,7 @@ use worldfile::{Findings, Severity, SourceText};
 
 /// All texts together may not be longer; an include in an include in an include would be.
 const MAX_BYTES: u64 = 8 << 20;
-/// After so many errors, no more includes are looked for.
+/// The number of errors after which no more includes are read.
 const MAX_ERRORS: usize = 100;
 /// Includes may not lie deeper in each other.
 const MAX_DEPTH: usize = 32;

@@ -9,7 +9,7 @@ use worldfile::physics::MOST_OUT_M;
 
 /// The side of a cell of the truth grid, m, where the map is not too large for it.
 const CELL_M: f64 = 0.05;
-/// So many cells are aimed at on a large map; 4 million are the most.
+/// The target number of cells of a large map; 4 million are the most.
 const MOST_CELLS: f64 = 3.5e6;
 /// The greatest acceleration that a world file can name: all at once, as in Stage.
 const AT_ONCE_MPS2: f64 = 100.0;

@@ -13,7 +13,7 @@ use std::rc::Rc;
 
 /// Brackets may not lie deeper in each other, nor definitions.
 const MAX_DEPTH: usize = 64;
-/// A definition of definitions of definitions can be long: so many keys and parts are the most.
+/// A definition of definitions of definitions can be long: the maximum number of keys and parts.
 const MAX_ITEMS: usize = 1 << 19;
 
 /// A thing with keys and parts, before definitions are written out.

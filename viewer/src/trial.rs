@@ -92,7 +92,7 @@ mod tests {
     use mapper::{MapperSettings, Paper};
     use std::path::Path;
 
-    /// The first trial of the shipped world, of so many steps.
+    /// The first trial of the shipped world, of `steps` steps.
     fn experiment(steps: u64) -> Experiment {
         Experiment {
             worlds: vec![

@@ -69,7 +69,7 @@ impl Panel {
         Self { frame: *frame, unit: unit.length(), width, scale: 2, columns: 2, rows: 2, has_bar: true }
     }
 
-    /// A panel for a picture of its own, with a legend of so many entries.
+    /// A panel for a picture of its own, with a legend of `entries` entries.
     pub(super) fn of_scene(frame: &GridFrame, unit: TimeUnit, entries: usize) -> Self {
         let rows = entries.div_ceil(3) as u32;
         Self { frame: *frame, unit: unit.length(), width: 430, scale: 2, columns: 3, rows, has_bar: false }

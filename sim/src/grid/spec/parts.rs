@@ -2,7 +2,7 @@
 
 use interfaces::{Cell, Grid};
 
-/// At most so many parts are named one by one.
+/// The maximum number of parts that are named one by one.
 const MAX_NAMED: usize = 5;
 
 /// Whether each cell is connected with `start` over the sides of cells that are not walls.
