@@ -6,8 +6,6 @@ pub mod keyboard;
 pub mod layer;
 pub mod pictures;
 pub mod recording;
-pub mod ros_map;
 pub mod show;
-pub mod tour_file;
 pub mod view;
 pub mod worlds;

@@ -4,7 +4,6 @@ use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use crate::parts::Settings;
 use curious::pictures::{self, Pictures};
-use curious::ros_map;
 use curious::show::PhysicsShow;
 use evaluation::cell_statistics;
 use evaluation::map_hash::map_hash;
@@ -17,6 +16,7 @@ use mapper::Mapper;
 use robot::Pilot;
 use sim::physics::PhysicsWorld;
 use std::path::Path;
+use worldfile::ros_map;
 
 /// Writes everything but the recording, which is written while the run goes on.
 pub(crate) fn write(
@@ -30,7 +30,9 @@ pub(crate) fn write(
     let (trails, goals) = (show.trails(), observer.goals());
     let scene = &PhysicsShow::scene(world);
     pictures::write_all(folder, &Pictures { scene, mapper, trails, goals })?;
-    ros_map::write(folder, mapper.states())?;
+    let map = mapper.states();
+    write_file(&folder.join("map.pgm"), |file| file.write_all(&ros_map::pgm(map)))?;
+    write_file(&folder.join("map.yaml"), |file| write!(file, "{}", ros_map::yaml(map.frame(), "map.pgm")))?;
     cell_statistics::write(&folder.join("cell_statistics.csv"), mapper)?;
     let text = serde_json::to_string_pretty(summary)?;
     write_file(&folder.join("summary.json"), |file| writeln!(file, "{text}"))?;

@@ -5,8 +5,6 @@ use agent::{Agent, AgentSettings};
 use anyhow::{Context, anyhow};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
 use curious::keyboard::Keyboard;
-use curious::ros_map::RosMap;
-use curious::tour_file::TourSpec;
 use curious::worlds::{self, Loaded};
 use evaluation::output::say;
 use interfaces::{Purpose, RandomStream, Twist};
@@ -16,6 +14,7 @@ use serde::Serialize;
 use sim::physics::{PhysicsWorld, WorldSpec};
 use std::io::stderr;
 use std::path::Path;
+use worldfile::{Disk, Findings, Severity, TourSpec, ros_map};
 
 /// Why there is no result.
 pub(crate) enum Failure {
@@ -112,7 +111,7 @@ impl Settings {
         let (name, text) = worlds::TOUR;
         let tour = match &args.tour {
             Some(path) => TourSpec::load(path),
-            None => TourSpec::parse(Path::new(name), text),
+            None => TourSpec::parse(name, text),
         };
         let TourSpec { waypoints, repeat } = tour.map_err(input)?;
         Ok(Autonomous::new(Tour::new(waypoints, repeat), self.controller(args.seed)?))
@@ -145,7 +144,12 @@ impl Parts {
         let mapper = match &args.map {
             None => Mapper::new(&settings.mapper, spec.frame),
             Some(path) => {
-                let map = RosMap::read(path).map_err(input)?;
+                let mut findings = Findings::default();
+                let map = ros_map::read(path, &Disk, &mut findings);
+                for warning in findings.messages(Severity::Warning) {
+                    say(stderr(), format_args!("{warning}\n"));
+                }
+                let map = map.ok_or_else(|| input(anyhow!(findings.error_text())))?;
                 Mapper::with_prior(&settings.mapper, map.onto(&spec.frame))
             }
         };
