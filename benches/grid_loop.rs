@@ -23,7 +23,7 @@ const STEPS: usize = 20_000;
 const SEED: u64 = 1;
 
 /// The paper's world and random ones, all seen with radius 4, and how goals are chosen.
-const LIVES: [(&str, &str); 6] = [
+const RUNS: [(&str, &str); 6] = [
     ("two_blocks", "recency"),
     ("two_blocks", "curious"),
     ("25 x 25", "recency"),
@@ -57,19 +57,19 @@ fn world(name: &str) -> GridSpec {
 }
 
 /// A robot in its world.
-struct Life<P> {
+struct Run<P> {
     world: GridWorld,
     mapper: Mapper,
     pilot: P,
 }
 
-impl<P: Pilot<Command = Step>> Life<P> {
+impl<P: Pilot<Command = Step>> Run<P> {
     fn new(spec: &GridSpec, pilot: P) -> Self {
         let mapper = Mapper::new(&MapperSettings::default(), *spec.frame()).expect("defaults make sense");
         Self { world: GridWorld::new(spec, SEED), mapper, pilot }
     }
 
-    fn live(self) -> Self {
+    fn run(self) -> Self {
         let Self { mut world, mut mapper, mut pilot } = self;
         let mut step = 0;
         explore(&mut world, &mut mapper, &mut pilot, |_, _, _, pilot| -> Result<_, ReadingError> {
@@ -159,34 +159,34 @@ impl Pilot for Way {
 fn bench<P: Pilot<Command = Step>>(bencher: Bencher<'_, '_>, spec: &GridSpec, pilot: impl Fn() -> P) {
     bencher
         .counter(ItemsCount::new(STEPS))
-        .with_inputs(|| Life::new(spec, pilot()))
-        .bench_local_values(Life::live);
+        .with_inputs(|| Run::new(spec, pilot()))
+        .bench_local_values(Run::run);
 }
 
 /// The whole loop.
-#[divan::bench(args = LIVES, sample_count = 20, sample_size = 1)]
+#[divan::bench(args = RUNS, sample_count = 20, sample_size = 1)]
 fn whole(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     bench(bencher, &world(name), || autonomous(agent(policy)));
 }
 
 /// All but the choice of goals.
-#[divan::bench(args = LIVES, sample_count = 20, sample_size = 1)]
+#[divan::bench(args = RUNS, sample_count = 20, sample_size = 1)]
 fn known_goals(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     let spec = world(name);
     let remembering = Remembering { agent: agent(policy), visits: Vec::new() };
-    let mut life = Life::new(&spec, autonomous(remembering)).live();
-    let visits = std::mem::take(&mut life.pilot.selector_mut().visits);
-    let robot = life.world.robot();
+    let mut run = Run::new(&spec, autonomous(remembering)).run();
+    let visits = std::mem::take(&mut run.pilot.selector_mut().visits);
+    let robot = run.world.robot();
     let again = || autonomous(Repeating(visits.clone().into_iter()));
-    assert_eq!(Life::new(&spec, again()).live().world.robot(), robot, "the same goals, the same way");
+    assert_eq!(Run::new(&spec, again()).run().world.robot(), robot, "the same goals, the same way");
     bench(bencher, &spec, again);
 }
 
 /// All but the choice of goals, planning and following.
-#[divan::bench(args = LIVES, sample_count = 20, sample_size = 1)]
+#[divan::bench(args = RUNS, sample_count = 20, sample_size = 1)]
 fn known_way(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     let spec = world(name);
     let followed = Followed { pilot: autonomous(agent(policy)), way: Vec::with_capacity(STEPS) };
-    let way = Life::new(&spec, followed).live().pilot.way;
+    let way = Run::new(&spec, followed).run().pilot.way;
     bench(bencher, &spec, || Way(way.clone().into_iter()));
 }

@@ -7,23 +7,13 @@
 //! `cargo bench --bench tick` measures the release build. `cargo bench --profile dev --bench tick`
 //! is built sooner: there, too, our crates and the physics are optimised.
 
-// The program's own way from arguments to parts: the bench must not measure another robot.
-#[path = "../src/bin/four_rooms/args.rs"]
-#[expect(unused_imports, reason = "its tests run with the program")]
-mod args;
-#[path = "../src/bin/four_rooms/parts.rs"]
-#[expect(dead_code, reason = "a bench is driven by the agent alone")]
-mod parts;
-
-use agent::{Agent, Features};
-use args::Args;
-use clap::Parser;
+use agent::{Agent, Features, Policy};
 use controller::DiffDrive;
 use evaluation::map_hash::map_hash;
 use evaluation::observer::Observer;
+use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use interfaces::World;
 use mapper::{Mapper, ReadingError};
-use parts::Parts;
 use robot::{Autonomous, Belief, Pilot, explore};
 use sim::physics::PhysicsWorld;
 use std::ops::ControlFlow;
@@ -33,23 +23,26 @@ fn main() {
 }
 
 /// A robot in the shipped world.
-struct Life {
+struct Run {
     world: PhysicsWorld,
     mapper: Mapper,
     pilot: Autonomous<Agent, DiffDrive>,
 }
 
-impl Life {
+impl Run {
     fn new() -> Self {
-        let args = Args::parse_from(["four_rooms"]);
-        let make = || Parts::new(&args).and_then(|parts| Ok((parts.settings.agent(&args)?, parts)));
-        let Ok((pilot, Parts { world, mapper, .. })) = make() else { panic!("the shipped world is wrong") };
+        let spec = curious::worlds::load("four_rooms").expect("the shipped world is valid").spec;
+        let settings = PhysicsSettings::of(&spec).expect("the robot has a differential drive");
+        let agent = settings.agent(&Policy::default(), 0).expect("the default settings are valid");
+        let pilot = settings.pilot(agent, 0).expect("the default settings are valid");
+        let trial = PhysicsTrial::new(&spec, 0, &settings.mapper, None, pilot);
+        let PhysicsTrial { world, mapper, pilot, .. } = trial.expect("the default settings are valid");
         Self { world, mapper, pilot }
     }
 
     fn tick(&mut self) {
         let reading = self.world.sense();
-        self.mapper.update(&reading).expect("the physics world gives readings that make sense");
+        self.mapper.update(&reading).expect("the physics world gives readings that are valid");
         let belief =
             Belief { pose: &reading.pose, features: Features::of(&mut self.mapper), mapper: &self.mapper };
         let command = self.pilot.command(&belief);
@@ -57,7 +50,7 @@ impl Life {
         self.world.act(&command);
     }
 
-    /// Lives until `end_s`, watched or not.
+    /// Runs until `end_s`, with the metrics or without.
     fn explore(&mut self, end_s: f64, mut observer: Option<Observer>) {
         let Self { world, mapper, pilot } = self;
         explore(world, mapper, pilot, |world, reading, belief, pilot| -> Result<_, ReadingError> {
@@ -68,33 +61,33 @@ impl Life {
             let is_over = reading.time_s >= end_s;
             Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         })
-        .expect("the physics world gives readings that make sense");
+        .expect("the physics world gives readings that are valid");
     }
 }
 
 /// One tick, on average over 500 simulated seconds, of a robot that has explored for 300.
 #[divan::bench(sample_count = 10, sample_size = 500)]
 fn tick(bencher: divan::Bencher) {
-    let mut life = Life::new();
-    life.explore(300.0, None);
-    bencher.bench_local(|| life.tick());
+    let mut run = Run::new();
+    run.explore(300.0, None);
+    bencher.bench_local(|| run.tick());
 }
 
 /// The first 60 simulated seconds; with the metrics, or without.
 #[divan::bench(args = [false, true], sample_count = 10, sample_size = 1)]
 fn explore_60_s(bencher: divan::Bencher, with_metrics: bool) {
     let prepared = || {
-        let life = Life::new();
+        let run = Run::new();
         let observer = with_metrics.then(|| Observer::default());
-        (life, observer)
+        (run, observer)
     };
-    bencher.with_inputs(prepared).bench_local_values(|(mut life, observer)| life.explore(60.0, observer));
+    bencher.with_inputs(prepared).bench_local_values(|(mut run, observer)| run.explore(60.0, observer));
 }
 
 /// The hash over every map and statistic, as at the end of every run.
 #[divan::bench(sample_count = 20)]
 fn hash_of_the_map(bencher: divan::Bencher) {
-    let mut life = Life::new();
-    life.explore(60.0, None);
-    bencher.bench_local(|| map_hash(&life.mapper));
+    let mut run = Run::new();
+    run.explore(60.0, None);
+    bencher.bench_local(|| map_hash(&run.mapper));
 }

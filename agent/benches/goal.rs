@@ -1,7 +1,7 @@
 //! How long the next goal takes on a house of 12 × 12 m in cells of 0.05 m, all of it seen, with
 //! 2000 cells that ever changed: once per goal, so every few seconds of a robot's life.
 
-use agent::{Agent, AgentSettings, AsTheCrowFlies, Features, Policy};
+use agent::{Agent, AgentSettings, Features, Policy, StraightLineTravel};
 use interfaces::{Cell, CellReading, GridFrame, Purpose, RandomStream};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
@@ -41,6 +41,6 @@ fn next_goal(bencher: divan::Bencher, strategy: &str) {
         for _ in 0..50 {
             agent.watch(features, &[]);
         }
-        agent.next_goal(&mapper, &pose, &mut AsTheCrowFlies)
+        agent.next_goal(&mapper, &pose, &mut StraightLineTravel)
     });
 }

@@ -1,23 +1,19 @@
-use crate::goal::{Goal, GoalSampler};
-use crate::knowledge::knowledge;
-use crate::{AgentSettings, Chooser, Features, Policy, Reward, Situation, Strategy, Trajectory, Travel};
+use crate::choosers::{Chooser, Trajectory};
+use crate::features::Features;
+use crate::goal_sampler::{Goal, GoalSampler};
+use crate::policy::Policy;
+use crate::settings::{AgentSettings, Reward, error};
+use crate::situation::{Situation, Travel};
+use crate::strategies::Strategy;
 use interfaces::{RandomStream, SettingsError, Transition};
 use mapper::Mapper;
 use nalgebra::Isometry2;
-
-/// How much one strategy was used.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
-    /// Goals that it sampled.
-    pub goals: usize,
-    /// Readings while it was followed.
-    pub readings: usize,
-}
+use std::f64::consts::LN_10;
 
 /// Decides where to look next (section 4).
 ///
-/// [`Agent::watch`] every reading; ask for the [`Agent::next_goal`] when the controller hands back.
-/// The same seed, readings and calls give the same goals, bit for bit.
+/// [`Agent::watch`] takes every reading; [`Agent::next_goal`] is called when the controller is done with the
+/// last goal. The same seed, readings and calls give the same goals, bit for bit.
 #[derive(Debug)]
 pub struct Agent {
     strategies: Vec<Box<dyn Strategy>>,
@@ -27,18 +23,18 @@ pub struct Agent {
     travel: Vec<f64>,
     reward: Reward,
     rng: RandomStream,
-    /// The strategy that sampled the present goal.
+    /// The index of the strategy that sampled the present goal.
     current: Option<usize>,
     /// The features of every reading since the present goal was sampled, T of section 4.
     trajectory: Vec<Features>,
     /// The map updates in these readings.
     updates: usize,
-    /// What was known when the present goal was sampled.
-    known: f64,
+    /// The rate information when the present goal was sampled.
+    information: f64,
     features: Features,
-    tallies: Vec<Tally>,
+    /// The number of goals that each strategy sampled.
+    goal_counts: Vec<usize>,
     last_reward: f64,
-    last_length: usize,
 }
 
 impl Agent {
@@ -46,7 +42,7 @@ impl Agent {
     ///
     /// # Errors
     ///
-    /// When a setting makes no sense.
+    /// When a setting is out of range.
     pub fn new(
         settings: &AgentSettings,
         policy: &Policy,
@@ -62,7 +58,7 @@ impl Agent {
     ///
     /// # Errors
     ///
-    /// When a setting makes no sense, or there is no strategy.
+    /// When a setting is out of range, or there is no strategy.
     pub fn with(
         settings: &AgentSettings,
         strategies: Vec<Box<dyn Strategy>>,
@@ -71,10 +67,10 @@ impl Agent {
     ) -> Result<Self, SettingsError> {
         settings.check()?;
         if strategies.is_empty() {
-            return Err(crate::settings::error("strategies", "at least one", "none"));
+            return Err(error("strategies", "at least one", "none"));
         }
         Ok(Self {
-            tallies: vec![Tally::default(); strategies.len()],
+            goal_counts: vec![0; strategies.len()],
             strategies,
             chooser,
             goals: GoalSampler::new(settings.patch_cells),
@@ -84,27 +80,24 @@ impl Agent {
             current: None,
             trajectory: Vec::new(),
             updates: 0,
-            known: 0.0,
+            information: 0.0,
             features: Features::default(),
             last_reward: 0.0,
-            last_length: 0,
         })
     }
 
-    /// Takes note of one reading: the features after it, and the cells that took another state in
-    /// it. Readings before the first goal belong to no strategy.
+    /// Takes one reading: the features after it, and the cells that changed their state in it. Readings before
+    /// the first goal belong to no strategy.
     pub fn watch(&mut self, features: Features, transitions: &[Transition]) {
         self.features = features;
-        if let Some(strategy) = self.current {
+        if self.current.is_some() {
             self.trajectory.push(features);
             self.updates += self.reward.count(transitions);
-            self.tallies[strategy].readings += 1;
         }
     }
 
-    /// Ends the trajectory to the last goal, learns from it, chooses a strategy and samples the
-    /// next goal: a cell of the grid that [can be a goal](Mapper::is_candidate), or, if there is
-    /// none yet, the robot's own cell.
+    /// Ends the trajectory to the last goal, learns from it, chooses a strategy and samples the next goal: a
+    /// cell that [can be a goal](Mapper::is_candidate), or, if there is no such cell, the cell of the robot.
     pub fn next_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, travel: &mut impl Travel) -> Goal {
         self.learn(mapper);
         self.travel.clear();
@@ -114,59 +107,95 @@ impl Agent {
         let situation = Situation::new(mapper, pose, self.features).with_travel(&self.travel);
         let strategy = self.chooser.choose(&situation, &mut self.rng).min(self.strategies.len() - 1);
         self.current = Some(strategy);
-        self.tallies[strategy].goals += 1;
+        self.goal_counts[strategy] += 1;
         self.goals.sample(&mut *self.strategies[strategy], &situation, &mut self.rng)
     }
 
     fn learn(&mut self, mapper: &Mapper) {
-        let before = std::mem::replace(&mut self.known, knowledge(mapper));
-        // A goal given up before the next reading came teaches nothing.
+        let before = std::mem::replace(&mut self.information, rate_information(mapper));
+        // A trajectory without a reading teaches nothing.
         let Some(strategy) = self.current.filter(|_| !self.trajectory.is_empty()) else { return };
-        self.last_length = self.trajectory.len();
-        self.last_reward = self.updates as f64 / self.last_length as f64;
-        // A first sighting that turned out wrong takes back what it brought.
-        let progress = (self.known - before).max(0.0) / self.last_length as f64;
+        let length = self.trajectory.len() as f64;
+        self.last_reward = self.updates as f64 / length;
+        // A first sighting that proved wrong reduces the information.
+        let progress = (self.information - before).max(0.0) / length;
         let (features, reward) = (&self.trajectory[..], self.last_reward);
         self.chooser.learn(&Trajectory { strategy, features, reward, progress });
         self.trajectory.clear();
         self.updates = 0;
     }
 
-    /// The names of the strategies, by their places.
+    /// The names of the strategies, by index.
     pub fn strategies(&self) -> impl ExactSizeIterator<Item = &'static str> {
         self.strategies.iter().map(|strategy| strategy.name())
     }
 
-    /// The place of the strategy that sampled the present goal; `None` before the first.
+    /// The index of the strategy that sampled the present goal; `None` before the first.
     pub fn current(&self) -> Option<usize> {
         self.current
     }
 
-    /// What a strategy is believed to bring at `features`, in what the chooser is rewarded
-    /// for per reading; `None` from a chooser that does not value strategies, and for a place without a strategy.
+    /// The expected reward per reading of a strategy at `features`, in the unit of the chooser; `None` from a
+    /// chooser without values, and for an index without a strategy.
     pub fn value(&self, strategy: usize, features: Features) -> Option<f64> {
         self.chooser.value(strategy, features)
     }
 
-    /// How much each strategy was used, by their places.
-    pub fn tallies(&self) -> &[Tally] {
-        &self.tallies
-    }
-
-    /// The share of the goals so far that each strategy sampled, by their places; all 0 before the
-    /// first goal.
+    /// The share of the goals that each strategy sampled, by index; all 0 before the first goal.
     pub fn shares(&self) -> impl ExactSizeIterator<Item = f64> {
-        let goals: usize = self.tallies.iter().map(|tally| tally.goals).sum();
-        self.tallies.iter().map(move |tally| tally.goals as f64 / goals.max(1) as f64)
+        let goals: usize = self.goal_counts.iter().sum();
+        self.goal_counts.iter().map(move |&count| count as f64 / goals.max(1) as f64)
     }
 
     /// The reward of the last finished trajectory, in map updates per reading; 0 before the first.
     pub fn last_reward(&self) -> f64 {
         self.last_reward
     }
+}
 
-    /// The length of the last finished trajectory, in readings; 0 before the first.
-    pub fn last_length(&self) -> usize {
-        self.last_length
+/// How well the rates of change are known: Σ over the cells that changed in view of ln 10 − 1/√n, where n is
+/// the number of changes of the cell in view.
+///
+/// After n events of a Poisson process the logarithm of its rate is known to about 1/√n; without an event the
+/// error counts as ln 10, as in the metric of the rates. The first event of a cell is therefore worth most,
+/// and each further event less.
+fn rate_information(mapper: &Mapper) -> f64 {
+    let of_cell = |cell| {
+        let seen = mapper.statistics(cell);
+        let events = f64::from(seen.block_events) + f64::from(seen.free_events);
+        if events > 0.0 { LN_10 - 1.0 / events.sqrt() } else { 0.0 }
+    };
+    mapper.changed().map(of_cell).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::{Cell, CellReading, GridFrame};
+    use mapper::MapperSettings;
+    use nalgebra::{Isometry2, Point2};
+
+    #[test]
+    fn the_first_event_is_worth_most() {
+        let frame = GridFrame::new(Point2::origin(), 1.0, 2, 1).unwrap();
+        let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+        let mut known = Vec::new();
+        for step in 0..5 {
+            let cells = vec![(Cell::new(0, 0), step % 2 == 1), (Cell::new(1, 0), false)];
+            let (time, pose) = (f64::from(step), Isometry2::identity());
+            mapper.update(&CellReading { time, pose, cells }).unwrap();
+            known.push(rate_information(&mapper));
+        }
+        let ln_10 = std::f64::consts::LN_10;
+        let expected = [0.0, ln_10 - 1.0, ln_10 - 0.5f64.sqrt(), ln_10 - 3f64.sqrt() / 3.0, ln_10 - 0.5];
+        assert!(known.iter().zip(expected).all(|(known, expected)| (known - expected).abs() < 1e-12));
+        // A change found after a gap tells no rate.
+        let away =
+            CellReading { time: 5.0, pose: Isometry2::identity(), cells: vec![(Cell::new(0, 0), false)] };
+        mapper.update(&away).unwrap();
+        let found =
+            CellReading { time: 9.0, pose: Isometry2::identity(), cells: vec![(Cell::new(1, 0), true)] };
+        mapper.update(&found).unwrap();
+        assert!((rate_information(&mapper) - expected[4]).abs() < 1e-12);
     }
 }

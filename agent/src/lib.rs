@@ -1,36 +1,32 @@
 //! Features → choice of a strategy → a goal → reward (paper, section 4).
 //!
-//! A [`Strategy`] says how much each cell is worth a visit, a [`Chooser`] which strategy to follow
-//! next, and the [`Agent`] holds them together: it watches every reading, and each time the
-//! controller hands back, it learns from the trajectory just driven and samples the next goal.
+//! A [`Strategy`] weighs how much a visit of each cell is worth, a [`Chooser`] selects the strategy to follow
+//! next, and the [`Agent`] combines them: it takes every reading, and when the controller is done with a goal,
+//! the agent learns from the trajectory and samples the next goal. This crate knows the map; it must not know
+//! a simulator, a controller or the true rates of change.
 //!
-//! A [`Policy`] names strategies and a chooser. To add one to this crate: one file under `strategies` or
-//! `choosers`, and a line in the list of [`Policy::built_in`]. To add one from another crate: [`Policy::new`].
+//! A [`Policy`] names strategies and a chooser. A new policy in this crate is one file under `strategies` or
+//! `choosers`, and one line in the list of [`Policy::built_in`]. A policy of another crate is made with
+//! [`Policy::new`].
 
 mod agent;
 mod choosers;
-mod draw;
 mod features;
-mod goal;
-mod knowledge;
+mod goal_sampler;
 mod policy;
+mod sampling;
 mod settings;
 mod situation;
 mod strategies;
-mod survey;
-mod tile_coder;
-mod travel;
-mod view;
+mod visibility;
 
-pub use agent::{Agent, Tally};
-pub use choosers::{Always, Chooser, Coin, Curious, Progress, Trajectory};
+pub use agent::Agent;
+pub use choosers::{Always, Chooser, Coin, Curious, Progress, TileCoder, Trajectory};
 pub use features::Features;
-pub use goal::Goal;
+pub use goal_sampler::Goal;
 pub use policy::{Parts, Policy, UnknownPolicy};
 pub use settings::{AgentSettings, CuriousSettings, Reward};
-pub use situation::Situation;
+pub use situation::{Situation, StraightLineTravel, Travel};
 pub use strategies::{
     Frontier, InformationGain, OptimalRevisiting, Pick, Poisson, Random, Recency, Stay, Strategy,
 };
-pub use tile_coder::TileCoder;
-pub use travel::{AsTheCrowFlies, Travel};

@@ -49,23 +49,15 @@ pub struct Policy {
 /// The built-in policies, the default first: the name, where the robot goes, and the constructor.
 static BUILT_IN: LazyLock<Vec<Policy>> = LazyLock::new(|| {
     vec![
-        Policy::new(
-            "curious",
-            "recency or poisson, as learned from map updates (the paper's agent)",
-            curious,
-        ),
-        Policy::single("recency", "what was not seen for longest (paper)", |_| Recency),
-        Policy::single("poisson", "what probably changed since it was seen (paper)", |_| Poisson),
-        Policy::single("random", "anywhere: the baseline of strategies", |_| Random),
-        Policy::new("coin", "recency or poisson by a fair coin: the baseline of choosers", coin),
+        Policy::new("curious", "recency or poisson, chosen by the paper's learner", curious),
+        Policy::single("recency", "cells not seen for long (paper)", |_| Recency),
+        Policy::single("poisson", "cells that probably changed (paper)", |_| Poisson),
+        Policy::single("random", "any cell: a baseline", |_| Random),
+        Policy::new("coin", "recency or poisson by a fair coin: the baseline of learners", coin),
         Policy::single("frontier", "most unknown cells in view per time, then the oldest", Frontier::new),
         Policy::single("optimal-revisiting", "least time with a wrong map, per time", OptimalRevisiting::new),
-        Policy::single(
-            "information-gain",
-            "least error of the rates of change, per time",
-            InformationGain::new,
-        ),
-        Policy::new("progress", "one of five strategies, as learned from progress in learning", progress),
+        Policy::single("information-gain", "least error of the rates, per time", InformationGain::new),
+        Policy::new("progress", "one of five strategies, chosen by progress in learning", progress),
     ]
 });
 

@@ -7,8 +7,7 @@ pub enum Reward {
     /// Changes of a known cell: free to blocked, blocked to free.
     #[default]
     Changes,
-    /// First sightings too. With a laser these come by the thousand at once, and drown the
-    /// temperature.
+    /// First sightings too. With a laser there are thousands at once, far above the temperature.
     ChangesAndDiscoveries,
 }
 
@@ -31,11 +30,11 @@ impl Reward {
 pub struct AgentSettings {
     /// The side of the square patches that goal weights are averaged over, in cells.
     pub patch_cells: usize,
-    /// How far the robot sees, m, for the strategies that ask what comes into view from where.
+    /// The range of the sensor, m, for the strategies that use visibility.
     pub sensor_radius_m: f64,
     /// What counts as a map update.
     pub reward: Reward,
-    /// Settings of the learner over strategies.
+    /// Settings of the paper's chooser.
     pub curious: CuriousSettings,
 }
 

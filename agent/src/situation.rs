@@ -1,21 +1,20 @@
-use crate::Features;
+use crate::features::Features;
 use interfaces::Cell;
 use mapper::Mapper;
 use nalgebra::Isometry2;
 
-/// Everything that strategies and choosers may judge by at the moment when a goal is due.
+/// The inputs of strategies and choosers when a goal is due.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Situation<'a> {
-    /// The map and what is known of its changes.
+    /// The map and the statistics of its changes.
     pub mapper: &'a Mapper,
-    /// Where the robot believes it is, in the map's frame, m and rad.
+    /// The estimated pose of the robot in the frame of the map, m and rad.
     pub pose: &'a Isometry2<f64>,
     /// The features (p, r) of the last reading.
     pub features: Features,
-    /// The time from the robot to each cell, in row-major order, in the unit of the readings'
-    /// times, ∞ where no way is known. Empty unless a strategy [asks for
-    /// it](crate::Strategy::needs_travel).
+    /// The time from the robot to each cell, in row-major order, in the unit of the readings' times; ∞ where
+    /// no path is known. Empty unless a strategy [asks for it](crate::Strategy::needs_travel).
     pub travel: &'a [f64],
 }
 
@@ -30,13 +29,34 @@ impl<'a> Situation<'a> {
         Self { travel, ..self }
     }
 
-    /// The time from the robot to the cell of a number; ∞ where no way is known, or none was asked for.
-    pub(crate) fn travel_to(&self, cell: usize) -> f64 {
-        self.travel.get(cell).copied().unwrap_or(f64::INFINITY)
+    /// The time from the robot to the cell of an index; ∞ where no path is known, or no times were asked for.
+    pub fn travel_to(&self, index: usize) -> f64 {
+        self.travel.get(index).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// The cell that the robot is in; outside of the grid if the robot is.
+    /// The cell of the robot; outside of the grid if the robot is.
     pub fn cell(&self) -> Cell {
         self.mapper.frame().cell_at(&self.pose.translation.vector.into())
+    }
+}
+
+/// The time that the robot takes to each cell. Computed once per goal, for strategies that ask for it.
+pub trait Travel {
+    /// Writes the time from the robot to each cell, in row-major order and in the unit of the readings'
+    /// times; ∞ where no path is known.
+    fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>);
+}
+
+/// Straight lines through everything, one metre per unit of time: for users without a planner.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StraightLineTravel;
+
+impl Travel for StraightLineTravel {
+    fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
+        let frame = mapper.frame();
+        let from = pose.translation.vector.into();
+        let time = |index| nalgebra::distance(&frame.center(frame.cell(index)), &from);
+        times.clear();
+        times.extend((0..frame.len()).map(time));
     }
 }

@@ -55,7 +55,7 @@ fn wavefront_full_field(bencher: Bencher) {
     bencher.bench_local(|| {
         wave.clear();
         wave.spread(inflation.costmap(), black_box(Cell::new(40, 40)), None);
-        wave.cost(Cell::new(200, 200))
+        wave.path_cost(Cell::new(200, 200))
     });
 }
 
@@ -77,10 +77,11 @@ fn dijkstra(map: &Costmap, source: Cell) -> Vec<u32> {
         }
         for next in cell.neighbours8() {
             let straight = next.x == cell.x || next.y == cell.y;
-            let open = map.is_open(next)
+            let open = map.is_traversable(next)
                 && (straight
-                    || map.is_open(Cell::new(next.x, cell.y)) && map.is_open(Cell::new(cell.x, next.y)));
-            let next_cost = cost + u32::from(map.price(cell)) * if straight { STRAIGHT } else { DIAGONAL };
+                    || map.is_traversable(Cell::new(next.x, cell.y))
+                        && map.is_traversable(Cell::new(cell.x, next.y)));
+            let next_cost = cost + u32::from(map.cost(cell)) * if straight { STRAIGHT } else { DIAGONAL };
             if let Some(index) = frame.index(next).filter(|index| open && next_cost < costs[*index]) {
                 costs[index] = next_cost;
                 heap.push(Reverse((next_cost, next)));
@@ -126,7 +127,7 @@ fn inflation_of_a_new_map(bencher: Bencher) {
     bencher.bench_local(|| {
         Inflation::new(&InflationSettings::default(), RADIUS_M, black_box(&map))
             .costmap()
-            .price(Cell::new(0, 0))
+            .cost(Cell::new(0, 0))
     });
 }
 

@@ -1,89 +1,90 @@
-use crate::exploration::{Exploration, random_step};
-use crate::journey::{Journey, Progress, Surroundings};
-use crate::{Drive, Path, Planner, Reach, Restless, Settings, Situation};
+use crate::drives::Drive;
+use crate::dynamic_obstacles::DynamicObstacleFilter;
+use crate::navigation::{LocalExploration, NavigationTask, Progress, Surroundings, Tick, random_step};
+use crate::planner::{Path, Planner};
+use crate::settings::Settings;
+use crate::situation::Situation;
 use interfaces::{RandomStream, SettingsError};
 use nalgebra::Point2;
 
-/// What the controller is doing.
+/// The state of a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// It has never had a goal, or the goal was taken back.
+    /// There was no goal yet, or the goal was cancelled.
     Idle,
-    /// It drives to its goal.
+    /// The robot drives to its goal.
     Travelling,
-    /// It explores around its goal, or watches there.
+    /// The robot explores around its goal, or watches there.
     Exploring,
-    /// It is done with its goal, rests and waits for another.
+    /// The goal is done; the robot rests until the next one.
     Finished(Outcome),
 }
 
 /// How a goal ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The robot came to the goal.
+    /// The robot reached the goal.
     Reached,
-    /// The goal is blocked or hidden; the robot came as near to it as can be reached.
+    /// The goal is blocked or hidden; the robot reached the nearest point that can be reached.
     Nearest,
-    /// The robot got nowhere for too long.
+    /// The robot was stuck for too long.
     GivenUp,
 }
 
 /// Takes a goal, drives the robot there and explores around it (paper, section 2).
 ///
-/// One verb, [`drive`](Self::drive), once per tick; it never fails. What a command is, is the
-/// [`Drive`]'s affair. All chance comes from the generator given at construction.
+/// [`drive`](Self::drive) is called once per tick and never fails. The [`Drive`] defines what a command is.
+/// All random numbers come from the stream given at construction.
 #[derive(Clone, Debug)]
 pub struct Controller<D: Drive> {
     settings: Settings,
     drive: D,
     rng: RandomStream,
     surroundings: Option<Surroundings>,
-    task: Task,
+    state: State,
     path: Path,
-    /// The middle of the last change, and when it was.
+    /// The centroid of the last change, and its time.
     last_change: Option<(Point2<f64>, f64)>,
 }
 
-/// What there is to do, with what is needed to do it.
+/// The present activity, with its data.
 #[derive(Clone, Debug)]
-enum Task {
-    None,
-    /// A goal that came since the last tick.
-    Start {
+enum State {
+    Idle,
+    /// A goal that was set since the last tick.
+    New {
         goal: Point2<f64>,
-        then: Then,
+        at_goal: AtGoal,
     },
-    Travel {
-        journey: Journey,
-        then: Then,
+    Travelling {
+        task: NavigationTask,
+        at_goal: AtGoal,
     },
-    Explore(Exploring),
-    Watch {
-        goal: Point2<f64>,
-        outcome: Outcome,
+    Exploring {
+        done: Done,
+        exploration: LocalExploration,
+        step: NavigationTask,
+    },
+    Watching {
+        done: Done,
         until: f64,
     },
-    Done {
-        goal: Point2<f64>,
-        outcome: Outcome,
-    },
+    Finished(Done),
 }
 
 /// What to do at the goal.
 #[derive(Clone, Copy, Debug)]
-enum Then {
+enum AtGoal {
     Explore,
-    /// Stand there for so long.
+    /// Stand still for this time.
     Watch(f64),
 }
 
-/// Local exploration around a goal that was reached, or as nearly as could be.
-#[derive(Clone, Debug)]
-struct Exploring {
+/// A goal, and how the navigation to it ended.
+#[derive(Clone, Copy, Debug)]
+struct Done {
     goal: Point2<f64>,
     outcome: Outcome,
-    exploration: Exploration,
-    step: Journey,
 }
 
 impl<D: Drive> Controller<D> {
@@ -91,17 +92,17 @@ impl<D: Drive> Controller<D> {
     ///
     /// # Errors
     ///
-    /// When a setting is not a number that makes sense, or contradicts another; the error names it.
+    /// When a setting is out of range or contradicts another; the error names it.
     pub fn new(settings: Settings, drive: D, rng: RandomStream) -> Result<Self, SettingsError> {
         settings.check()?;
-        let path = Path::default();
-        Ok(Self { settings, drive, rng, surroundings: None, task: Task::None, path, last_change: None })
+        let (state, path) = (State::Idle, Path::default());
+        Ok(Self { settings, drive, rng, surroundings: None, state, path, last_change: None })
     }
 
-    /// Gives a goal in the map's frame, m: to drive there, then explore around it. Replaces any
-    /// other. A goal outside of the map counts as the nearest point in it.
+    /// Sets a goal in the frame of the map, m: to drive there, then to explore around it. Replaces any other
+    /// goal. A goal outside of the map counts as the nearest point in the map.
     pub fn set_goal(&mut self, goal: Point2<f64>) {
-        self.start(goal, Then::Explore);
+        self.start(goal, AtGoal::Explore);
     }
 
     /// As [`set_goal`](Self::set_goal), without local exploration: for a tour.
@@ -109,23 +110,26 @@ impl<D: Drive> Controller<D> {
         self.watch_at(goal, 0.0);
     }
 
-    /// As [`set_goal`](Self::set_goal), but to stand at the goal for `duration` (s; steps in a grid
-    /// world) instead of exploring around it.
+    /// As [`set_goal`](Self::set_goal), but with a stop of `duration` at the goal (s; steps in a grid world)
+    /// instead of local exploration. A duration that is not a number counts as 0.
     pub fn watch_at(&mut self, goal: Point2<f64>, duration: f64) {
-        // What is not a number counts as no time, so that the watch ends.
-        self.start(goal, Then::Watch(duration.max(0.0)));
+        self.start(goal, AtGoal::Watch(duration.max(0.0)));
     }
 
-    /// Takes the goal back; the robot rests.
-    pub fn cancel(&mut self) {
-        self.task = Task::None;
+    fn start(&mut self, goal: Point2<f64>, at_goal: AtGoal) {
+        self.state = State::New { goal, at_goal };
         self.path.clear();
     }
 
-    /// Writes how long it takes to get from the robot to each cell, in row-major order, s (steps in
-    /// a grid world), at full speed along the ways that the planner prefers; ∞ where none is known.
-    /// To be asked after the tick's [`drive`](Self::drive), which takes the map's changes in. Costs a
-    /// wave over the whole map.
+    /// Cancels the goal; the robot rests.
+    pub fn cancel(&mut self) {
+        self.state = State::Idle;
+        self.path.clear();
+    }
+
+    /// Writes the time from the robot to each cell at full speed, in row-major order, s (steps in a grid
+    /// world); ∞ where no path is known. Call it after [`drive`](Self::drive), which applies the changes of
+    /// the map. The time is that of a wave over the whole map.
     pub fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>) {
         let body = self.drive.body();
         times.clear();
@@ -136,196 +140,143 @@ impl<D: Drive> Controller<D> {
         }
     }
 
-    fn start(&mut self, goal: Point2<f64>, then: Then) {
-        self.task = Task::Start { goal, then };
-        self.path.clear();
-    }
-
-    /// What the controller is doing since the last tick.
+    /// The state since the last tick.
     pub fn status(&self) -> Status {
-        match self.task {
-            Task::None => Status::Idle,
-            Task::Start { .. } | Task::Travel { .. } => Status::Travelling,
-            Task::Explore(_) | Task::Watch { .. } => Status::Exploring,
-            Task::Done { outcome, .. } => Status::Finished(outcome),
+        match self.state {
+            State::Idle => Status::Idle,
+            State::New { .. } | State::Travelling { .. } => Status::Travelling,
+            State::Exploring { .. } | State::Watching { .. } => Status::Exploring,
+            State::Finished(done) => Status::Finished(done.outcome),
         }
     }
 
-    /// The goal it was last given; `None` when it was taken back.
+    /// The last goal; `None` before the first, and after it was cancelled.
     pub fn goal(&self) -> Option<&Point2<f64>> {
-        match &self.task {
-            Task::None => None,
-            Task::Start { goal, .. }
-            | Task::Explore(Exploring { goal, .. })
-            | Task::Watch { goal, .. }
-            | Task::Done { goal, .. } => Some(goal),
-            Task::Travel { journey, .. } => Some(journey.target()),
+        match &self.state {
+            State::Idle => None,
+            State::New { goal, .. } => Some(goal),
+            State::Travelling { task, .. } => Some(task.goal()),
+            State::Exploring { done, .. } | State::Watching { done, .. } | State::Finished(done) => {
+                Some(&done.goal)
+            }
         }
     }
 
-    /// The path it follows, from where it was planned to its end, m; empty without one.
+    /// The present path, from where it was planned to its end, m; empty without a path.
     pub fn path(&self) -> &[Point2<f64>] {
         self.path.points()
     }
 
-    /// One tick: what to do now. May be called again with the same situation, but without its
-    /// transitions, when it has finished and there is another goal: no tick is lost then.
+    /// One tick: the next command. May be called again with the same situation, but without its
+    /// transitions, after a new goal was set: no tick is lost then.
     pub fn drive(&mut self, situation: &Situation) -> D::Command {
         if let Some(change) = situation.change() {
             self.last_change = Some((change, situation.time));
         }
-        let mut surroundings = self.look(situation);
-        let command = match std::mem::replace(&mut self.task, Task::None) {
-            Task::None => self.rest(situation, &surroundings),
-            Task::Start { goal, then } => {
-                let limit_s = self.settings.patience.goal_limit_s;
-                let journey = Journey::new(situation, goal, f64::INFINITY, limit_s);
-                self.travel(situation, &mut surroundings, journey, then)
+        let mut surroundings = self.update_surroundings(situation);
+        let settings = self.settings.navigation;
+        let tick = &mut Tick { settings: &settings, situation, surroundings: &mut surroundings };
+        let command = match std::mem::replace(&mut self.state, State::Idle) {
+            State::Idle => self.drive.rest(&tick.scene()),
+            State::New { goal, at_goal } => {
+                let task = NavigationTask::new(situation, goal, f64::INFINITY, settings.goal_timeout_s);
+                self.travel(tick, task, at_goal)
             }
-            Task::Travel { journey, then } => self.travel(situation, &mut surroundings, journey, then),
-            Task::Explore(exploring) => self.explore(situation, &mut surroundings, exploring),
-            Task::Watch { goal, outcome, until } => {
-                self.watch(situation, &surroundings, goal, outcome, until)
-            }
-            done @ Task::Done { .. } => {
-                self.task = done;
-                self.rest(situation, &surroundings)
-            }
+            State::Travelling { task, at_goal } => self.travel(tick, task, at_goal),
+            State::Exploring { done, exploration, step } => self.explore(tick, done, exploration, step),
+            State::Watching { done, until } => self.watch(tick, done, until),
+            State::Finished(done) => self.finish(tick, done),
         };
         self.surroundings = Some(surroundings);
         command
     }
 
-    /// Follows the map; looks at all of it the first time, or if it has got another frame.
-    fn look(&mut self, situation: &Situation) -> Surroundings {
-        let known = self.surroundings.take();
-        match known.filter(|known| known.planner.costmap().frame() == situation.map.frame()) {
+    /// Applies the changes of the map; reads the whole map at the first tick, and where its frame differs.
+    fn update_surroundings(&mut self, situation: &Situation) -> Surroundings {
+        let map = situation.map;
+        let known = self.surroundings.take().filter(|known| known.planner.costmap().frame() == map.frame());
+        let mut surroundings = match known {
             Some(mut known) => {
                 known.planner.update(situation.transitions);
-                known.restless.update(situation);
                 known
             }
             None => {
                 let body = self.drive.body();
-                let (inflation, map) = (&self.settings.inflation, situation.map);
-                let planner = Planner::new(inflation, body.radius_m, body.moves, map);
-                let mut restless = Restless::new(map);
-                restless.update(situation);
-                Surroundings { planner, restless }
+                let planner = Planner::new(&self.settings.inflation, body.radius_m, body.moves, map);
+                Surroundings { planner, dynamic: DynamicObstacleFilter::new(map) }
             }
-        }
+        };
+        surroundings.dynamic.update(situation);
+        surroundings
     }
 
-    fn travel(
-        &mut self,
-        situation: &Situation,
-        surroundings: &mut Surroundings,
-        mut journey: Journey,
-        then: Then,
-    ) -> D::Command {
-        let patience = &self.settings.patience;
-        let outcome = match journey.drive(patience, situation, surroundings, &mut self.path, &mut self.drive)
-        {
+    fn travel(&mut self, tick: &mut Tick, mut task: NavigationTask, at_goal: AtGoal) -> D::Command {
+        let outcome = match task.drive(tick, &mut self.path, &mut self.drive) {
             Progress::Underway(command) => {
-                self.task = Task::Travel { journey, then };
+                self.state = State::Travelling { task, at_goal };
                 return command;
             }
-            Progress::Arrived(Reach { is_goal: true, .. }) => Outcome::Reached,
+            Progress::Arrived(end) if end.is_goal => Outcome::Reached,
             Progress::Arrived(_) => Outcome::Nearest,
             Progress::GivenUp => Outcome::GivenUp,
         };
-        let goal = *journey.target();
-        match then {
-            _ if outcome == Outcome::GivenUp => self.finish(situation, surroundings, goal, outcome),
-            Then::Explore => self.step(situation, surroundings, goal, outcome, Exploration::default()),
-            Then::Watch(duration) => {
-                self.watch(situation, surroundings, goal, outcome, situation.time + duration)
-            }
+        let done = Done { goal: *task.goal(), outcome };
+        match at_goal {
+            _ if outcome == Outcome::GivenUp => self.finish(tick, done),
+            AtGoal::Explore => self.step(tick, done, LocalExploration::default()),
+            AtGoal::Watch(duration) => self.watch(tick, done, tick.situation.time + duration),
         }
     }
 
-    fn watch(
-        &mut self,
-        situation: &Situation,
-        surroundings: &Surroundings,
-        goal: Point2<f64>,
-        outcome: Outcome,
-        until: f64,
-    ) -> D::Command {
-        if situation.time >= until {
-            return self.finish(situation, surroundings, goal, outcome);
+    fn watch(&mut self, tick: &Tick, done: Done, until: f64) -> D::Command {
+        if tick.situation.time >= until {
+            return self.finish(tick, done);
         }
-        self.task = Task::Watch { goal, outcome, until };
+        self.state = State::Watching { done, until };
         self.path.clear();
-        self.rest(situation, surroundings)
+        self.drive.rest(&tick.scene())
     }
 
     fn explore(
         &mut self,
-        situation: &Situation,
-        surroundings: &mut Surroundings,
-        mut exploring: Exploring,
+        tick: &mut Tick,
+        done: Done,
+        exploration: LocalExploration,
+        mut step: NavigationTask,
     ) -> D::Command {
-        let patience = &self.settings.patience;
-        let progress =
-            exploring.step.drive(patience, situation, surroundings, &mut self.path, &mut self.drive);
-        let lasted = exploring.step.elapsed_s(situation) >= self.drive.body().step_s;
-        match progress {
-            Progress::Underway(command) => {
-                self.task = Task::Explore(exploring);
-                command
-            }
-            Progress::Arrived(_) if !lasted => {
-                self.task = Task::Explore(exploring);
-                self.rest(situation, surroundings)
-            }
-            _ => {
-                let Exploring { goal, outcome, exploration, .. } = exploring;
-                self.step(situation, surroundings, goal, outcome, exploration)
-            }
-        }
-    }
-
-    /// Begins the next step of local exploration, or finishes it.
-    fn step(
-        &mut self,
-        situation: &Situation,
-        surroundings: &mut Surroundings,
-        goal: Point2<f64>,
-        outcome: Outcome,
-        mut exploration: Exploration,
-    ) -> D::Command {
-        let body = self.drive.body();
-        let fresh = |(_, time): &(_, f64)| situation.time - time < body.step_s;
-        let change = self.last_change.filter(fresh).map(|(change, _)| change);
-        let position = situation.position();
-        let random = || random_step(&body, surroundings.planner.costmap(), &position, &mut self.rng);
-        let Some(target) = exploration.next(&self.settings.exploration, change, random) else {
-            return self.finish(situation, surroundings, goal, outcome);
-        };
-        let mut step = Journey::new(situation, target, body.stride_m, body.step_limit_s);
-        let patience = &self.settings.patience;
-        let progress = step.drive(patience, situation, surroundings, &mut self.path, &mut self.drive);
-        self.task = Task::Explore(Exploring { goal, outcome, exploration, step });
-        match progress {
+        let progress = step.drive(tick, &mut self.path, &mut self.drive);
+        let has_lasted = step.elapsed_s(tick.situation) >= self.drive.body().step_s;
+        let command = match progress {
             Progress::Underway(command) => command,
-            _ => self.rest(situation, surroundings),
-        }
+            Progress::Arrived(_) if !has_lasted => self.drive.rest(&tick.scene()),
+            _ => return self.step(tick, done, exploration),
+        };
+        self.state = State::Exploring { done, exploration, step };
+        command
     }
 
-    fn finish(
-        &mut self,
-        situation: &Situation,
-        surroundings: &Surroundings,
-        goal: Point2<f64>,
-        outcome: Outcome,
-    ) -> D::Command {
-        self.task = Task::Done { goal, outcome };
+    /// Begins the next step of local exploration, or finishes the goal.
+    fn step(&mut self, tick: &mut Tick, done: Done, mut exploration: LocalExploration) -> D::Command {
+        let (body, situation) = (self.drive.body(), tick.situation);
+        let is_new = |(_, time): &(_, f64)| situation.time - time < body.step_s;
+        let change = self.last_change.filter(is_new).map(|(change, _)| change);
+        let costmap = tick.surroundings.planner.costmap();
+        let random = || random_step(&body, costmap, &situation.position(), &mut self.rng);
+        let Some(target) = exploration.next(&self.settings.exploration, change, random) else {
+            return self.finish(tick, done);
+        };
+        let mut step = NavigationTask::new(situation, target, body.step_m, body.step_limit_s);
+        let command = match step.drive(tick, &mut self.path, &mut self.drive) {
+            Progress::Underway(command) => command,
+            _ => self.drive.rest(&tick.scene()),
+        };
+        self.state = State::Exploring { done, exploration, step };
+        command
+    }
+
+    fn finish(&mut self, tick: &Tick, done: Done) -> D::Command {
+        self.state = State::Finished(done);
         self.path.clear();
-        self.rest(situation, surroundings)
-    }
-
-    fn rest(&mut self, situation: &Situation, surroundings: &Surroundings) -> D::Command {
-        self.drive.rest(&surroundings.scene(situation))
+        self.drive.rest(&tick.scene())
     }
 }

@@ -1,54 +1,53 @@
-use crate::{InflationSettings, MAX_PRICE};
+use crate::planner::{InflationSettings, MAX_COST};
 use interfaces::SettingsError;
 use serde::{Deserialize, Serialize};
 
-/// How the controller gets to goals, and when it gives up. Times are seconds, or steps in a grid
-/// world.
+/// How the controller reaches goals, and when it gives up. Times are seconds, or steps in a grid world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// How far paths keep from what is blocked.
+    /// The distance of paths from obstacles.
     pub inflation: InflationSettings,
-    /// When to plan again, to wait and to give up.
-    pub patience: PatienceSettings,
-    /// What to do at the goal.
+    /// When to replan, to wait and to give up.
+    pub navigation: NavigationSettings,
+    /// Local exploration at the goal.
     pub exploration: ExplorationSettings,
 }
 
-/// When to plan again, to wait and to give up.
+/// When to replan, to wait and to give up.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct PatienceSettings {
-    /// A path that a change has closed is planned anew, but not sooner after the last plan, s.
-    pub replan_closed_s: f64,
-    /// For all other reasons it is planned anew not sooner than this after the last plan, s.
+pub struct NavigationSettings {
+    /// The shortest time from a plan to the next one where a change blocks the path, s.
+    pub replan_blocked_s: f64,
+    /// The shortest time from a plan to the next one for any other reason, s.
     pub replan_s: f64,
-    /// A robot farther from its path than this plans anew, m.
+    /// A robot farther from its path than this replans, m.
     pub off_path_m: f64,
-    /// How long to wait where the robot is when the way to the goal closes, s. Longer than a slow
-    /// robot takes to cross a door.
+    /// The time to wait when the path to the goal is blocked, s. Longer than a slow robot takes to pass a
+    /// door.
     pub wait_s: f64,
-    /// A robot that has got nowhere for this long is stuck, s.
-    pub patience_s: f64,
-    /// A robot that stays within this distance gets nowhere, m.
-    pub progress_m: f64,
-    /// How often to try to get free within a metre before the goal is given up.
+    /// A robot that has not moved on for this time is stuck, s.
+    pub movement_time_allowance_s: f64,
+    /// A robot that stays within this distance has not moved on, m.
+    pub required_movement_radius_m: f64,
+    /// The number of recoveries within a metre before the goal is given up.
     pub max_recoveries: u32,
-    /// A goal is given up after this time, whatever happens, s.
-    pub goal_limit_s: f64,
+    /// A goal is given up after this time in any case, s.
+    pub goal_timeout_s: f64,
 }
 
-impl Default for PatienceSettings {
+impl Default for NavigationSettings {
     fn default() -> Self {
         Self {
-            replan_closed_s: 0.2,
+            replan_blocked_s: 0.2,
             replan_s: 0.5,
             off_path_m: 0.3,
             wait_s: 10.0,
-            patience_s: 5.0,
-            progress_m: 0.15,
+            movement_time_allowance_s: 5.0,
+            required_movement_radius_m: 0.15,
             max_recoveries: 3,
-            goal_limit_s: 180.0,
+            goal_timeout_s: 180.0,
         }
     }
 }
@@ -57,9 +56,9 @@ impl Default for PatienceSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ExplorationSettings {
-    /// At most this many steps, random ones included.
+    /// The maximum number of steps, random ones included.
     pub max_steps: u32,
-    /// At most this many random steps in a row. The paper's controller makes fewer than 2.
+    /// The maximum number of random steps in a row. The controller of the paper makes fewer than 2.
     pub max_random_steps: u32,
 }
 
@@ -71,38 +70,52 @@ impl Default for ExplorationSettings {
 
 impl Settings {
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
-        let Self { inflation, patience, exploration: _ } = self;
-        let check = |key, value, expected, is_valid| check("controller", key, value, expected, is_valid);
-        let positive = |key, value| check(key, value, "a positive number", value > 0.0);
-        let not_negative = |key, value| check(key, value, "0 or more", value >= 0.0);
-        not_negative("inflation.margin_m", inflation.margin_m)?;
-        let is_wide = inflation.comfort_m >= inflation.margin_m;
-        check("inflation.comfort_m", inflation.comfort_m, "at least inflation.margin_m", is_wide)?;
-        let price = inflation.comfort_price;
-        check("inflation.comfort_price", price.into(), "from 1 to 9", (1..=MAX_PRICE).contains(&price))?;
-        not_negative("patience.replan_closed_s", patience.replan_closed_s)?;
-        not_negative("patience.replan_s", patience.replan_s)?;
-        positive("patience.off_path_m", patience.off_path_m)?;
-        not_negative("patience.wait_s", patience.wait_s)?;
-        positive("patience.patience_s", patience.patience_s)?;
-        positive("patience.progress_m", patience.progress_m)?;
-        let is_later = patience.goal_limit_s > patience.patience_s;
-        check("patience.goal_limit_s", patience.goal_limit_s, "more than patience.patience_s", is_later)
+        let Self { inflation, navigation, exploration: _ } = self;
+        let check = Check("controller");
+        check.not_negative("inflation.footprint_padding_m", inflation.footprint_padding_m)?;
+        let (is_wide, expected) =
+            (inflation.inflation_m >= inflation.footprint_padding_m, "at least footprint_padding_m");
+        check.valid("inflation.inflation_m", inflation.inflation_m, expected, is_wide)?;
+        let cost = inflation.inflation_cost;
+        let is_cost = (1..=MAX_COST).contains(&cost);
+        check.valid("inflation.inflation_cost", cost.into(), "from 1 to 9", is_cost)?;
+        check.not_negative("navigation.replan_blocked_s", navigation.replan_blocked_s)?;
+        check.not_negative("navigation.replan_s", navigation.replan_s)?;
+        check.positive("navigation.off_path_m", navigation.off_path_m)?;
+        check.not_negative("navigation.wait_s", navigation.wait_s)?;
+        let allowance_s = navigation.movement_time_allowance_s;
+        check.positive("navigation.movement_time_allowance_s", allowance_s)?;
+        check.positive("navigation.required_movement_radius_m", navigation.required_movement_radius_m)?;
+        let (timeout_s, expected) = (navigation.goal_timeout_s, "more than movement_time_allowance_s");
+        check.valid("navigation.goal_timeout_s", timeout_s, expected, timeout_s > allowance_s)
     }
 }
 
-/// Refuses a value that is not finite, or not valid.
-pub(crate) fn check(
-    part: &'static str,
-    key: &'static str,
-    value: f64,
-    expected: &'static str,
-    is_valid: bool,
-) -> Result<(), SettingsError> {
-    if is_valid && value.is_finite() {
-        return Ok(());
+/// Checks the settings of one part.
+pub(crate) struct Check(pub(crate) &'static str);
+
+impl Check {
+    pub(crate) fn positive(&self, key: &'static str, value: f64) -> Result<(), SettingsError> {
+        self.valid(key, value, "a positive number", value > 0.0)
     }
-    Err(SettingsError { part, key, expected, found: value.to_string() })
+
+    pub(crate) fn not_negative(&self, key: &'static str, value: f64) -> Result<(), SettingsError> {
+        self.valid(key, value, "0 or more", value >= 0.0)
+    }
+
+    /// Refuses a value that is not finite, or not valid.
+    pub(crate) fn valid(
+        &self,
+        key: &'static str,
+        value: f64,
+        expected: &'static str,
+        is_valid: bool,
+    ) -> Result<(), SettingsError> {
+        if is_valid && value.is_finite() {
+            return Ok(());
+        }
+        Err(SettingsError { part: self.0, key, expected, found: value.to_string() })
+    }
 }
 
 #[cfg(test)]
@@ -114,20 +127,20 @@ mod tests {
     fn what_is_wrong_is_named() {
         let message = |text: &str| toml::from_str::<Settings>(text).unwrap().check().unwrap_err().to_string();
         assert_eq!(
-            message("inflation.comfort_m = 0.01"),
-            "controller setting `inflation.comfort_m` must be at least inflation.margin_m, not 0.01"
+            message("inflation.inflation_m = 0.01"),
+            "controller setting `inflation.inflation_m` must be at least footprint_padding_m, not 0.01"
         );
         assert_eq!(
-            message("inflation.margin_m = nan"),
-            "controller setting `inflation.margin_m` must be 0 or more, not NaN"
+            message("inflation.footprint_padding_m = nan"),
+            "controller setting `inflation.footprint_padding_m` must be 0 or more, not NaN"
         );
         assert_eq!(
-            message("inflation.comfort_price = 0"),
-            "controller setting `inflation.comfort_price` must be from 1 to 9, not 0"
+            message("inflation.inflation_cost = 0"),
+            "controller setting `inflation.inflation_cost` must be from 1 to 9, not 0"
         );
         assert_eq!(
-            message("patience.goal_limit_s = inf\npatience.patience_s = 1"),
-            "controller setting `patience.goal_limit_s` must be more than patience.patience_s, not inf"
+            message("navigation.goal_timeout_s = inf\nnavigation.movement_time_allowance_s = 1"),
+            "controller setting `navigation.goal_timeout_s` must be more than movement_time_allowance_s, not inf"
         );
         let drive = |text: &str| DiffDrive::new(toml::from_str(text).unwrap()).unwrap_err().to_string();
         assert_eq!(

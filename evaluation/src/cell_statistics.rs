@@ -1,10 +1,13 @@
-//! What was learned of every cell, as a table.
+//! `cell_statistics.csv`: what was learned of every cell.
 
 use crate::output::{OutputError, write_file};
 use interfaces::CellState;
 use mapper::Mapper;
 use std::io;
 use std::path::Path;
+
+/// The probability that the credible interval of a rate holds.
+const CREDIBLE_MASS: f64 = 0.9;
 
 /// One row: a cell that was ever seen. Times are in seconds.
 #[derive(serde::Serialize)]
@@ -26,6 +29,9 @@ struct Row {
     /// `inf` for a cell that never changed.
     interval_s: f64,
     rate_hz: f64,
+    /// The ends of the 90 % credible interval of the rate; the upper one is `inf` before the second reading.
+    rate_low_hz: f64,
+    rate_high_hz: f64,
     change_probability: f64,
     recency_s: f64,
 }
@@ -48,6 +54,7 @@ pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
 fn row(mapper: &Mapper, index: usize) -> Row {
     let (frame, seen) = (mapper.frame(), mapper.statistics(index));
     let cell = frame.cell(index);
+    let (rate_low_hz, rate_high_hz) = mapper.credible_interval(index, CREDIBLE_MASS);
     let center = frame.center(cell);
     Row {
         x_m: micro(center.x),
@@ -70,12 +77,14 @@ fn row(mapper: &Mapper, index: usize) -> Row {
         free_events_after_gap: seen.free_events_after_gap,
         interval_s: micro(mapper.interval(index)),
         rate_hz: mapper.rate(index),
+        rate_low_hz,
+        rate_high_hz,
         change_probability: mapper.change_probability(index),
         recency_s: micro(mapper.recency(index)),
     }
 }
 
-/// To whole millionths: a sum of tenths of a second reads 31.4 and not 31.400000000000002.
+/// Rounds to millionths: a sum of tenths of a second is 31.4, not 31.400000000000002.
 fn micro(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
@@ -85,7 +94,7 @@ mod tests {
     use super::*;
     use interfaces::World;
     use mapper::MapperSettings;
-    use sim::physics::{PhysicsWorld, WorldSpec};
+    use sim::physics::PhysicsWorld;
 
     /// The map of a robot that stands still in the shipped house for a minute.
     fn mapper() -> Mapper {
@@ -121,6 +130,8 @@ mod tests {
             let index = mapper.frame().index(cell).unwrap();
             assert!((number("recency_s") - mapper.recency(index)).abs() < 1e-6);
             assert_eq!(number("rate_hz"), mapper.rate(index));
+            assert_eq!((number("rate_low_hz"), number("rate_high_hz")), mapper.credible_interval(index, 0.9));
+            assert!(number("rate_low_hz") <= number("rate_high_hz"));
             assert_eq!(number("block_events"), f64::from(mapper.statistics(index).block_events));
             assert_eq!(number("interval_s").is_infinite(), mapper.interval(index).is_infinite());
             rows += 1;

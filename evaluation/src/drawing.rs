@@ -1,18 +1,13 @@
-//! What reports and pictures share to draw: colours, a font, a canvas, and its way into a PNG file.
+//! Drawing shared by reports and pictures: a font, a canvas, and PNG files.
 
 use crate::output::{OutputError, write_file};
+use crate::palette::{self, Rgb};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{TextStyle, register_font};
 use std::path::Path;
-
-/// A colour: red, green, blue.
-pub type Rgb = [u8; 3];
-
-/// The colour of the curious robot in every figure and picture.
-pub const CURIOUS: Rgb = [31, 97, 209];
 
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -48,12 +43,12 @@ pub fn text(height: u32) -> TextStyle<'static> {
 }
 
 /// The colour of text and axes.
-pub const INK: RGBColor = RGBColor(40, 44, 52);
+pub const INK: RGBColor = ink(palette::INK);
 /// The name of the font.
 pub const FONT: &str = "sans-serif";
 
 /// The plotting library's colour.
-pub fn ink([red, green, blue]: Rgb) -> RGBColor {
+pub const fn ink([red, green, blue]: Rgb) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
@@ -93,6 +88,11 @@ impl Canvas {
         area.present().map_err(why)?;
         drop(area);
         Ok(Self { size, pixels: shrink(&pixels, width as usize) })
+    }
+
+    /// The rows from the top; red, green and blue of every pixel.
+    pub fn pixels(&self) -> &[u8] {
+        &self.pixels
     }
 
     /// Writes a PNG file.

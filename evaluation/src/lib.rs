@@ -9,6 +9,8 @@ pub mod metrics;
 pub mod observer;
 pub mod oracle;
 pub mod output;
+pub mod palette;
+pub mod physics_trial;
 pub mod report;
 pub mod summary;
 pub mod trials;

@@ -4,7 +4,7 @@ use crate::metrics::{
     ChangingAccuracy, ChangingScores, Delays, Latency, MapScores, ThingReport, Things, map_scores,
 };
 use crate::summary::CurvePoint;
-use interfaces::{LaserReading, Twist};
+use interfaces::{GroundTruth, LaserReading, Twist};
 use mapper::Mapper;
 use nalgebra::Point2;
 use robot::{Belief, Level, Message, Pilot};
@@ -40,16 +40,24 @@ impl Observer {
         self.collect_messages(world, pilot);
     }
 
-    /// The results so far.
-    pub fn findings(&self) -> Findings {
-        let [block_latency, free_latency] = self.latency.delays();
-        Findings {
-            map_quality_changing: self.changing.scores(),
-            block_latency,
-            free_latency,
-            things: self.things.reports().cloned().collect(),
-            curve: self.curve.clone(),
-        }
+    /// The balanced accuracies on swept cells so far.
+    pub fn changing_scores(&self) -> ChangingScores {
+        self.changing.scores()
+    }
+
+    /// The delays of block events and of free events so far.
+    pub fn delays(&self) -> [Delays; 2] {
+        self.latency.delays()
+    }
+
+    /// The things that appeared or disappeared so far.
+    pub fn things(&self) -> impl Iterator<Item = &ThingReport> {
+        self.things.reports()
+    }
+
+    /// Coverage and map quality over time.
+    pub fn curve(&self) -> &[CurvePoint] {
+        &self.curve
     }
 
     /// The goals of the curious robot so far, m.
@@ -94,21 +102,6 @@ impl Observer {
         }
         self.contacts_reported = world.contacts().len();
     }
-}
-
-/// What was measured while the run went on.
-#[derive(Clone, Debug)]
-pub struct Findings {
-    /// Balanced accuracy on the cells that truly change.
-    pub map_quality_changing: ChangingScores,
-    /// How soon the map followed block events.
-    pub block_latency: Delays,
-    /// How soon the map followed free events.
-    pub free_latency: Delays,
-    /// Things that appeared or went.
-    pub things: Vec<ThingReport>,
-    /// Coverage and quality over time.
-    pub curve: Vec<CurvePoint>,
 }
 
 fn name(world: &PhysicsWorld, body: Body) -> String {

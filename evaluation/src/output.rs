@@ -1,11 +1,11 @@
-//! What a program leaves behind: words for whoever listens, and files that are whole, or not there at all.
+//! Output: lines for the user, and files that are complete or absent.
 
 use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Says `what` to whoever listens. When nobody does any more, as behind `| head`, the run goes on.
+/// Prints a line. A closed pipe, as behind `| head`, is ignored: the run goes on.
 pub fn say(mut to: impl Write, what: impl Display) {
     let _ = writeln!(to, "{what}");
 }
@@ -16,19 +16,19 @@ pub fn say(mut to: impl Write, what: impl Display) {
 pub struct OutputError {
     /// The file or folder.
     pub path: PathBuf,
-    /// Why not.
+    /// The error of the operating system.
     pub why: io::Error,
 }
 
 impl OutputError {
-    /// What went wrong with `path`.
+    /// The error `why` on `path`.
     pub fn new(path: &Path, why: impl Into<io::Error>) -> Self {
         Self { path: path.to_owned(), why: why.into() }
     }
 }
 
-/// Writes a file under a temporary name beside it and renames it when it is complete, so that
-/// nothing half-written ever carries its name, and an older file stays until then.
+/// Writes a file under a temporary name in the same folder, and renames the complete file. An older file stays
+/// until then, and no incomplete file ever has the name.
 ///
 /// # Errors
 ///
@@ -46,7 +46,7 @@ pub fn write_file(
         fs::rename(&partial, path)
     });
     outcome.map_err(|why| {
-        fs::remove_file(&partial).ok(); // the first error is the one to tell
+        fs::remove_file(&partial).ok(); // the first error is reported
         OutputError::new(path, why)
     })
 }

@@ -1,4 +1,4 @@
-//! What a run showed, in numbers: `summary.json`, and a few sentences for a person.
+//! The results of a run in a physics world: `summary.json`, and a few lines for the terminal.
 
 use crate::metrics::{Age, Delays, RateScores, ThingReport};
 use mapper::Mapper;
@@ -10,94 +10,101 @@ use std::fmt;
 /// Coverage and map quality at one time.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CurvePoint {
-    /// Simulated time, s.
+    /// The simulated time, s.
     pub time_s: f64,
-    /// Share of the cells that can be seen that were seen.
+    /// The share of the cells that can be seen that were seen.
     pub coverage: f64,
-    /// Share of the cells that can be seen whose mapped state is true.
+    /// The share of the cells that can be seen whose mapped state is the true state.
     pub map_quality: f64,
 }
 
 /// `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// Of the program.
+    /// The version of the program.
     pub version: &'static str,
-    /// The command line, without the program's name.
+    /// The command line, without the name of the program.
     pub arguments: Vec<String>,
     /// Every setting of the mapper, the agent and the controller.
     pub settings: serde_json::Value,
-    /// The world's name.
+    /// The name of the world.
     pub world: String,
-    /// The seed of all chance.
+    /// The seed of all random streams.
     pub seed: u64,
-    /// Who drove.
+    /// The pilot: `agent`, `tour` or `keyboard`.
     pub drive: &'static str,
-    /// How the agent chose its goals; `null` where it did not drive.
+    /// The strategy of the agent; `null` for other pilots.
     pub strategy: Option<&'static str>,
-    /// How rates were estimated.
+    /// The estimator of rates.
     pub estimator: &'static str,
-    /// How evidence became a map.
+    /// The occupancy model.
     pub occupancy: &'static str,
     /// Why the run ended: `duration`, `tour`, `person` or `interrupted`.
     pub ended_by: &'static str,
-    /// Simulated time, s.
+    /// The simulated time, s.
     pub simulated_s: f64,
-    /// Time on the wall, s.
+    /// The wall time, s.
     pub wall_s: f64,
-    /// Simulated over wall time.
+    /// Simulated time over wall time.
     pub real_time_factor: f64,
-    /// Share of the cells that can be seen that were seen.
+    /// The results.
+    #[serde(flatten)]
+    pub results: RunResults,
+}
+
+/// The results of a run in a physics world.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunResults {
+    /// The share of the cells that can be seen that were seen.
     pub coverage: f64,
-    /// Share of the cells that can be seen whose mapped state is true now.
+    /// The share of the cells that can be seen whose mapped state is the true state at the end.
     pub map_quality: f64,
-    /// Balanced accuracy on the cells that truly change and are in view, over the run; `null` where
-    /// there was nothing to count.
+    /// The balanced accuracy on swept cells in view, over the run; `null` where there was nothing to count.
     pub map_quality_changing: Option<f64>,
-    /// The same for those out of view.
+    /// The same out of view.
     pub map_quality_changing_out_of_view: Option<f64>,
-    /// The rates of change against those that really happened.
+    /// The estimated rates compared with the true rates.
     #[serde(flatten)]
     pub rates: RateScores,
-    /// Time since cells were seen, at the end.
+    /// The time since the cells were seen, at the end.
     pub age: Age,
     /// How soon the map followed block events that a beam had shown.
     pub block_latency: Delays,
     /// The same for free events.
     pub free_latency: Delays,
-    /// Contacts of the curious robot that began while it moved.
+    /// The contacts of the curious robot that began while it moved.
     pub collisions: usize,
-    /// Contacts that began while it stood: it was run into.
+    /// The contacts that began while the curious robot stood still.
     pub contacts_while_standing: usize,
-    /// How goals ended.
+    /// The goals by outcome.
     pub goals: GoalCount,
-    /// Share of the goals that each strategy chose.
+    /// The share of the goals that each strategy chose.
     pub strategy_share: BTreeMap<String, f64>,
-    /// Things that appeared or went.
+    /// The things that appeared or disappeared.
     pub things: Vec<ThingReport>,
-    /// Coverage and quality over time.
+    /// Coverage and map quality over time.
     pub curve: Vec<CurvePoint>,
-    /// A hash over every map and statistic: equal hashes mean equal minds.
+    /// The hash over all that was learned, see [`crate::map_hash`].
     pub map_hash: String,
-    /// The middle of where the map changes most often, m, and how long a cycle takes there, s.
+    /// The area in which the map changes most often.
     pub liveliest: Option<Liveliest>,
 }
 
-/// Where the map changes, by its own account.
+/// The area in which the map changes most often.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Liveliest {
-    /// The corners of the smallest box around the cells with more than one event, m.
+    /// The lower left corner of the smallest box around the cells with more than one event, m.
     pub low_m: [f64; 2],
-    /// See `low_m`.
+    /// The upper right corner, m.
     pub high_m: [f64; 2],
-    /// How many cells.
+    /// The number of these cells.
     pub cells: usize,
-    /// The median time of a cycle over these cells, s.
+    /// The median interval of these cells, s.
     pub median_interval_s: f64,
 }
 
 impl Liveliest {
-    /// The cells of the map that changed there and back.
+    /// The area of the cells that changed more than once; `None` without such cells.
     pub fn of(mapper: &Mapper) -> Option<Self> {
         let returning = |&index: &usize| mapper.statistics(index).events() > 1 && mapper.rate(index) > 0.0;
         let cells: Vec<usize> = mapper.changed().filter(returning).collect();
@@ -121,50 +128,63 @@ fn percent(share: f64) -> String {
 }
 
 fn seconds(time_s: Option<f64>) -> String {
-    time_s.map_or("never".into(), |time_s| format!("{time_s:.1} s"))
+    time_s.map_or("never".into(), |time_s| format!("at {time_s:.1} s"))
 }
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { rates, goals, .. } = self;
         let minutes = self.simulated_s / 60.0;
         writeln!(
             f,
             "{} in {}: {minutes:.1} simulated minutes in {:.1} s ({:.0} x real time)",
             self.drive, self.world, self.wall_s, self.real_time_factor
         )?;
+        self.results.fmt(f)
+    }
+}
+
+impl fmt::Display for RunResults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { rates, goals, .. } = self;
+        let or_none = |value: Option<f64>, text: fn(f64) -> String| value.map_or("-".into(), text);
+        let number = |value: f64| format!("{value:.3}");
         writeln!(
             f,
-            "  seen      {} of the cells that can be seen; the oldest look is {:.0} s old",
+            "  seen      {} of the cells that can be seen; the oldest observation is {:.0} s old",
             percent(self.coverage),
             self.age.max_s
         )?;
         writeln!(
             f,
-            "  map       {} right now; {} false changes on {} static cells",
+            "  map       {} correct now; {} false changes on {} static cells",
             percent(self.map_quality),
             rates.false_change_events,
             rates.static_cells
         )?;
         match &self.liveliest {
             None => writeln!(f, "  changes   none seen")?,
-            Some(Liveliest { low_m, high_m, cells, median_interval_s }) => {
-                write!(
-                    f,
-                    "  changes   {cells} cells between ({:.1}, {:.1}) and ({:.1}, {:.1}) m, there and back in {median_interval_s:.0} s",
-                    low_m[0], low_m[1], high_m[0], high_m[1]
-                )?;
-                match rates.rate_error {
-                    Some(error) => writeln!(f, " (mean error of the rates {})", percent(error))?,
-                    None => writeln!(f)?,
-                }
-            }
+            Some(Liveliest { low_m, high_m, cells, median_interval_s }) => writeln!(
+                f,
+                "  changes   {cells} cells between ({:.1}, {:.1}) and ({:.1}, {:.1}) m, median cycle \
+                 {median_interval_s:.0} s",
+                low_m[0], low_m[1], high_m[0], high_m[1]
+            )?,
         }
-        for thing in &self.things {
-            let verb = if thing.appeared { "appeared" } else { "went" };
+        if rates.rate_error_all.is_some() {
             writeln!(
                 f,
-                "  thing     {} {verb} at {:.0} s: in view {}, noticed {}, the map right {}",
+                "  rates     mean error {} of well-seen cells, {} of all changing cells; log error {}, AUC {}",
+                or_none(rates.rate_error, percent),
+                or_none(rates.rate_error_all, percent),
+                or_none(rates.log_error, number),
+                or_none(rates.rate_auc, number)
+            )?;
+        }
+        for thing in &self.things {
+            let verb = if thing.appeared { "appeared" } else { "disappeared" };
+            writeln!(
+                f,
+                "  thing     {} {verb} at {:.0} s: in view {}, first cell correct {}, 90 % correct {}",
                 thing.name,
                 thing.happened_s,
                 seconds(thing.in_view_s),
@@ -174,19 +194,21 @@ impl fmt::Display for Summary {
         }
         let all = goals.reached + goals.given_up;
         if all > 0 {
-            writeln!(f, "  goals     {} of {all} reached, {} given up", goals.reached, goals.given_up)?;
+            let (reached, approached) = (goals.reached - goals.nearest, goals.nearest);
+            let given_up = goals.given_up;
+            writeln!(
+                f,
+                "  goals     {all}: {reached} reached, {approached} approached, {given_up} given up"
+            )?;
         }
         if !self.strategy_share.is_empty() {
-            let shares: Vec<String> = self
-                .strategy_share
-                .iter()
-                .map(|(name, share)| format!("{name} {}", percent(*share)))
-                .collect();
-            writeln!(f, "  chose     {}", shares.join(", "))?;
+            let share = |(name, share): (&String, &f64)| format!("{name} {}", percent(*share));
+            let shares: Vec<String> = self.strategy_share.iter().map(share).collect();
+            writeln!(f, "  chosen    {}", shares.join(", "))?;
         }
         write!(
             f,
-            "  contacts  {} while it moved, {} while it stood",
+            "  contacts  {} while the robot moved, {} while it stood still",
             self.collisions, self.contacts_while_standing
         )
     }

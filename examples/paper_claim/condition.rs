@@ -5,7 +5,7 @@ use controller::CellDrive;
 use curious::worlds::{SHIPPED_GRID, load_grid};
 use evaluation::report::{Report, ReportSettings, WorldPicture};
 use evaluation::trials::{Experiment, Job, TrialStrategy};
-use mapper::{Estimator, MapperSettings};
+use mapper::{EstimatorChoice, MapperSettings, Paper, PaperAll};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::sync::atomic::AtomicBool;
 
@@ -21,7 +21,7 @@ pub(crate) struct Condition {
     pub(crate) name: String,
     sensor_radius: u32,
     steps: u64,
-    estimator: Estimator,
+    estimator: EstimatorChoice,
     reward: Reward,
     /// The probability of a move.
     chance: f64,
@@ -35,7 +35,7 @@ pub(crate) fn conditions() -> Vec<Condition> {
         name: BASE.to_owned(),
         sensor_radius: 4,
         steps: 20_000,
-        estimator: Estimator::Paper,
+        estimator: Paper.into(),
         reward: Reward::Changes,
         chance: 1.0,
         max_steps: 42,
@@ -52,9 +52,9 @@ pub(crate) fn conditions() -> Vec<Condition> {
     for (steps, name) in [(2_000, "2,000 steps"), (5_000, "5,000 steps"), (50_000, "50,000 steps")] {
         conditions.push(change(name.to_owned(), &|other| other.steps = steps));
     }
-    conditions.push(change("estimator paper-all".to_owned(), &|other| other.estimator = Estimator::PaperAll));
-    let best = Estimator::default();
-    conditions.push(change(format!("estimator {}", best.name()), &|other| other.estimator = best));
+    conditions.push(change("estimator paper-all".to_owned(), &|other| other.estimator = PaperAll.into()));
+    let best = EstimatorChoice::default();
+    conditions.push(change(format!("estimator {}", best.name()), &|other| other.estimator = best.clone()));
     conditions.push(change("reward with discoveries".to_owned(), &|other| {
         other.reward = Reward::ChangesAndDiscoveries;
     }));
@@ -91,7 +91,7 @@ impl Condition {
         controller.exploration.max_steps = self.max_steps;
         Experiment {
             worlds: worlds.into_iter().map(set).collect(),
-            estimators: vec![self.estimator],
+            estimators: vec![self.estimator.clone()],
             strategies: STRATEGIES
                 .map(|name| TrialStrategy::Agent(name.parse().expect("a built-in policy")))
                 .to_vec(),
@@ -107,16 +107,8 @@ impl Condition {
 
 fn report(experiment: &Experiment, jobs: Vec<Job>) -> anyhow::Result<Report> {
     let trials = experiment.run(jobs, &AtomicBool::new(false), |_| ())?;
-    let settings = ReportSettings {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        steps: experiment.steps,
-        trials: experiment.trials,
-        sensor_radius: experiment.worlds[0].sensor_radius,
-        worlds: experiment.worlds.iter().map(|world| world.name.clone()).collect(),
-        estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
-        strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
-        ..Default::default()
-    };
+    let version = env!("CARGO_PKG_VERSION").to_owned();
+    let settings = ReportSettings { version, ..experiment.report_settings() };
     Ok(Report::new(settings, trials))
 }
 

@@ -19,13 +19,13 @@ mod settings_error;
 mod state;
 mod world;
 
-pub use angle::{heading_rad, pose, rotation, wrap_rad};
+pub use angle::{APPROXIMATE_ATAN2_ERROR_RAD, approximate_atan2, heading_rad, pose, rotation, wrap_rad};
 pub use cell::Cell;
 pub use command::{Step, Twist};
 pub use grid::{Grid, GridFrame};
 pub use ground_truth::{GroundTruth, TrueChange, TrueState};
 pub use random::{Purpose, RandomStream};
-pub use reading::{CellReading, LaserReading, Reading};
+pub use reading::{CellReading, LaserReading, Observation, Reading};
 pub use scan::{Scan, ScanError};
 pub use settings_error::SettingsError;
 pub use state::{CellState, Event, Transition};

@@ -82,11 +82,13 @@ impl RandomStream {
     }
 
     /// A uniformly distributed number in `range`.
+    #[inline]
     pub fn uniform(&mut self, range: Range<f64>) -> f64 {
         range.start + (range.end - range.start) * self.unit()
     }
 
     /// A number of the standard normal distribution, by Marsaglia's polar method (1964).
+    #[inline]
     pub fn normal(&mut self) -> f64 {
         if let Some(spare) = self.spare_normal.take() {
             return spare;
@@ -103,16 +105,19 @@ impl RandomStream {
     }
 
     /// A Bernoulli draw: true with `probability`. Draws nothing where `probability` is 1 or more.
+    #[inline]
     pub fn bernoulli(&mut self, probability: f64) -> bool {
         probability >= 1.0 || self.unit() < probability
     }
 
     /// Uniform in [0, 1), in steps of 2⁻⁵³.
+    #[inline]
     fn unit(&mut self) -> f64 {
         (self.rng.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
     }
 
     /// Uniform in [−1, 1), in steps of 2⁻⁵².
+    #[inline]
     fn symmetric_unit(&mut self) -> f64 {
         (self.rng.next_u64() >> 11) as f64 * 2.0_f64.powi(-52) - 1.0
     }

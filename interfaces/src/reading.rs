@@ -1,13 +1,25 @@
 use crate::{Cell, Scan, Twist};
 use nalgebra::Isometry2;
 
-/// What every reading tells, whatever the world.
+/// The content that every reading has, in every world.
 pub trait Reading {
     /// The time of the reading: seconds, or steps in a grid world.
     fn time(&self) -> f64;
 
-    /// Where the robot believes it is, in the map's frame, m and rad.
+    /// The estimated pose of the robot in the frame of the map, m and rad.
     fn pose(&self) -> &Isometry2<f64>;
+
+    /// What a map can learn from the reading.
+    fn observation(&self) -> Observation<'_>;
+}
+
+/// What a map can learn from a reading.
+#[derive(Clone, Copy, Debug)]
+pub enum Observation<'a> {
+    /// The ranges of a laser: evidence from which the states of cells are inferred.
+    Scan(&'a LaserReading),
+    /// The states of cells, without error.
+    Cells(&'a CellReading),
 }
 
 /// A laser scan with the pose of the same instant.
@@ -35,6 +47,10 @@ impl Reading for LaserReading {
     fn pose(&self) -> &Isometry2<f64> {
         &self.pose
     }
+
+    fn observation(&self) -> Observation<'_> {
+        Observation::Scan(self)
+    }
 }
 
 /// The cells that a sensor without error sees.
@@ -55,5 +71,9 @@ impl Reading for CellReading {
 
     fn pose(&self) -> &Isometry2<f64> {
         &self.pose
+    }
+
+    fn observation(&self) -> Observation<'_> {
+        Observation::Cells(self)
     }
 }

@@ -1,97 +1,111 @@
-//! Laser → point cloud → occupancy grid → per-cell change statistics → maps of rate, interval,
+//! Laser → projected scan → occupancy grid → change statistics per cell → maps of rate, interval,
 //! change probability and recency (paper, section 3).
 //!
-//! [`Mapper::update`] takes one reading; everything else reads what was learned. Work per reading
-//! is in proportion to the cells that the reading touches and the cells that ever changed, not to
-//! the map.
+//! [`Mapper::update`] takes one reading; all other methods read the result. The work per reading
+//! is in proportion to the cells that the reading observes and the cells that ever changed, not to
+//! the size of the map.
+//!
+//! This crate knows readings and grids. It must not know worlds, simulators, goals, strategies, robots that drive,
+//! recordings or files.
+//!
+//! - `occupancy`: from scans to the states of cells. A new model implements [`OccupancyModel`].
+//! - `change`: the change statistics of cells, and the estimators of rates. A new one implements [`Estimator`].
+//! - `derived`: the maps that follow from both.
 
-mod chain;
-mod credible;
-mod estimator;
-mod exact;
-mod footprint;
-mod gamma;
-mod gaps;
-mod ledger;
-mod naive;
-mod outline;
-mod projection;
-mod settings;
-mod statistics;
-mod steady;
+mod change;
+mod choice;
+mod derived;
+mod occupancy;
 
-pub use estimator::Estimator;
-pub use settings::{MapperSettings, OccupancyModel, SettingsError, SteadySettings};
-pub use statistics::{CellStatistics, GapWorth};
+pub use change::{
+    CellMap, CellStatistics, ChoGarciaMolina, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
+    GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, ReadingIndex, Step, TransitionRates,
+    TwoState, TwoStateGaps,
+};
+pub use choice::{Choice, Named};
+pub use occupancy::{
+    BeamReturn, CloneModel, OccupancyChoice, OccupancyKind, OccupancyModel, ProjectedScan,
+    SurfaceGridSettings,
+};
 
-use interfaces::{CellState, Grid, GridFrame, LaserReading, Reading, ScanError, Transition};
-use ledger::Ledger;
-use naive::Naive;
+use derived::ExpectedChanges;
+use interfaces::{CellState, Grid, GridFrame, Observation, Reading, ScanError, SettingsError, Transition};
 use nalgebra::{Isometry2, Point2};
-use projection::{FARTHEST_M, PointCloud};
-use steady::Steady;
+use occupancy::FARTHEST_M;
+
+/// Settings of a [`Mapper`].
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MapperSettings {
+    /// The estimator of rates.
+    pub estimator: EstimatorChoice,
+    /// The occupancy model.
+    pub occupancy: OccupancyChoice,
+    /// A time without an observation up to this does not interrupt the view of a cell, s (steps in a
+    /// grid world). A thing that moves hides the cells that it is about to enter: where a sensor has to look
+    /// past things, a gap as long as the passage of a thing is part of the view. By default a cell is
+    /// in view only between consecutive readings, as in the paper.
+    pub max_gap: f64,
+    /// Settings of the occupancy model `steady`.
+    pub steady: SurfaceGridSettings,
+}
+
+impl MapperSettings {
+    fn check(&self) -> Result<(), SettingsError> {
+        if !(self.max_gap >= 0.0 && self.max_gap.is_finite()) {
+            let (part, key, expected) = ("mapper", "max_gap", "0 or more");
+            return Err(SettingsError { part, key, expected, found: self.max_gap.to_string() });
+        }
+        self.steady.check()
+    }
+}
 
 /// Why a reading was refused. The maps stay as they were.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReadingError {
-    /// The scan's figures make no sense.
+    /// The parameters of the scan are invalid.
     #[error(transparent)]
     Scan(#[from] ScanError),
     /// The time is not a number, or lies before that of the last reading.
     #[error("a reading at {time} follows one at {last}: time must not go backwards")]
     Time {
-        /// The refused reading's time.
+        /// The time of the refused reading.
         time: f64,
-        /// The time of the last reading that was taken.
+        /// The time of the last accepted reading.
         last: f64,
     },
     /// A pose is not a number, or farther away than a million metres.
     #[error("the pose of the reading at {time} is not a place on the map's plane")]
     Pose {
-        /// The refused reading's time.
+        /// The time of the refused reading.
         time: f64,
     },
 }
 
-/// Refuses what cannot be a pose: a figure that is not finite, a rotation that is none, a place beyond
-/// every map.
+/// Refuses an invalid pose: a number that is not finite, a rotation that is none, a position beyond every map.
 fn check_pose(pose: &Isometry2<f64>, time: f64) -> Result<(), ReadingError> {
     let is_near = [pose.translation.x, pose.translation.y].iter().all(|at| at.abs() <= FARTHEST_M);
     let is_rotation = (pose.rotation.norm_sqr() - 1.0).abs() < 1e-3;
     if is_near && is_rotation { Ok(()) } else { Err(ReadingError::Pose { time }) }
 }
 
-/// A reading that a mapper can learn from.
-pub trait Evidence: Reading {
-    /// Checks the reading and hands it to the mapper's fitting step.
-    ///
-    /// # Errors
-    ///
-    /// When the reading makes no sense; the mapper is then unchanged.
-    fn enter(&self, mapper: &mut Mapper) -> Result<(), ReadingError>;
-}
-
-#[derive(Clone, Debug)]
-enum Occupancy {
-    Steady(Box<Steady>),
-    Naive(Naive),
-}
-
-/// A map of a changing place and what is known of its changes.
+/// A map of a changing environment, with the change statistics of every cell. Cells are addressed by their index in
+/// row-major order.
 #[derive(Clone, Debug)]
 pub struct Mapper {
-    ledger: Ledger,
-    occupancy: Occupancy,
-    cloud: PointCloud,
+    cells: CellMap,
+    occupancy: Box<dyn OccupancyModel>,
+    expected_changes: ExpectedChanges,
+    scan: ProjectedScan,
     points: Vec<Point2<f64>>,
 }
 
 impl Mapper {
-    /// A mapper that knows nothing of the cells of `frame`.
+    /// A mapper of unknown cells.
     ///
     /// # Errors
     ///
-    /// When a setting contradicts itself or another.
+    /// When a setting is out of range or contradicts another.
     pub fn new(settings: &MapperSettings, frame: GridFrame) -> Result<Self, SettingsError> {
         Self::with_prior(settings, Grid::filled(frame, CellState::Unknown))
     }
@@ -100,169 +114,107 @@ impl Mapper {
     ///
     /// # Errors
     ///
-    /// When a setting contradicts itself or another.
+    /// When a setting is out of range or contradicts another.
     pub fn with_prior(settings: &MapperSettings, prior: Grid<CellState>) -> Result<Self, SettingsError> {
         settings.check()?;
-        let mut ledger = Ledger::new(prior, settings.estimator, settings.max_gap);
-        let occupancy = match settings.occupancy {
-            OccupancyModel::Steady => {
-                Occupancy::Steady(Box::new(Steady::new(settings.steady.clone(), &mut ledger)))
-            }
-            OccupancyModel::Naive => Occupancy::Naive(Naive::new(&ledger)),
-        };
-        Ok(Self { ledger, occupancy, cloud: PointCloud::default(), points: Vec::new() })
+        let mut cells = CellMap::new(prior, settings.estimator.clone(), settings.max_gap);
+        let occupancy = settings.occupancy.build(settings, &mut cells);
+        let expected_changes = ExpectedChanges::default();
+        Ok(Self { cells, occupancy, expected_changes, scan: ProjectedScan::default(), points: Vec::new() })
     }
 
     /// Learns from one reading.
     ///
     /// # Errors
     ///
-    /// When the reading makes no sense; the maps then stay as they were.
-    pub fn update(&mut self, reading: &impl Evidence) -> Result<(), ReadingError> {
-        let (time, last) = (reading.time(), self.ledger.now());
+    /// When the reading is invalid; the maps then stay as they were.
+    pub fn update(&mut self, reading: &impl Reading) -> Result<(), ReadingError> {
+        let (time, last) = (reading.time(), self.cells.time());
         if !time.is_finite() || time < last {
             return Err(ReadingError::Time { time, last });
         }
         check_pose(reading.pose(), time)?;
-        reading.enter(self)
+        match reading.observation() {
+            Observation::Scan(laser) => {
+                check_pose(&laser.mount, time)?;
+                laser.scan.check()?;
+                self.scan.project(laser);
+                self.points.clear();
+                self.points.extend((0..self.scan.len()).filter_map(|beam| self.scan.hit(beam)));
+                self.cells.open(time);
+                self.occupancy.update(&self.scan, &mut self.cells);
+            }
+            Observation::Cells(exact) => {
+                self.points.clear();
+                self.cells.open(time);
+                self.occupancy.update_cells(&exact.cells, &mut self.cells);
+            }
+        }
+        self.expected_changes.note(&self.cells);
+        Ok(())
     }
 
-    /// Where the map lies.
+    /// The position and the size of the map.
     pub fn frame(&self) -> &GridFrame {
-        self.ledger.frame()
+        self.cells.frame()
     }
 
     /// The map.
     pub fn states(&self) -> &Grid<CellState> {
-        self.ledger.states()
+        self.cells.states()
     }
 
-    /// The cells that took another state in the last update, in the order in which they did.
+    /// The cells that changed their state in the last update, in the order of the changes.
     pub fn transitions(&self) -> &[Transition] {
-        self.ledger.transitions()
+        &self.cells.transitions
     }
 
-    /// The end points of the last laser scan's hits in the map's frame, m.
+    /// The end points of the hits of the last laser scan in the frame of the map, m.
     pub fn points(&self) -> &[Point2<f64>] {
         &self.points
     }
 
     /// The time of the last reading.
     pub fn time(&self) -> f64 {
-        self.ledger.now()
+        self.cells.time()
     }
 
     /// The number of readings so far.
     pub fn readings(&self) -> usize {
-        self.ledger.readings()
+        self.cells.readings()
     }
 
     /// The estimator in use.
-    pub fn estimator(&self) -> Estimator {
-        self.ledger.estimator()
+    pub fn estimator(&self) -> &EstimatorChoice {
+        &self.cells.estimator
     }
 
-    /// The change statistics of the cell at a place in row-major order.
+    /// The change statistics of a cell.
     #[inline]
     pub fn statistics(&self, index: usize) -> CellStatistics {
-        self.ledger.statistics(index)
+        self.cells.statistics(index)
     }
 
-    /// Whether a reading ever saw the cell.
+    /// Whether a reading ever observed the cell.
     pub fn was_ever_seen(&self, index: usize) -> bool {
-        self.ledger.ever_seen(index)
+        self.cells.was_ever_seen(index)
     }
 
-    /// Whether the last reading saw the cell.
+    /// Whether the last reading observed the cell.
     #[inline]
     pub fn is_in_view(&self, index: usize) -> bool {
-        self.ledger.was_seen_now(index)
+        self.cells.is_seen_now(index)
     }
 
-    /// Whether the cell can be a goal: it is free, or touches a free cell by a side. The inside of
-    /// a wall never is.
+    /// Whether the cell can be a goal: the cell is free, or shares a side with a free cell. The inside of
+    /// a wall never is a candidate.
     #[inline]
     pub fn is_candidate(&self, index: usize) -> bool {
-        self.ledger.is_candidate(index)
+        self.cells.candidates[index]
     }
 
-    /// The places of the cells that ever changed, in the order of their first change.
+    /// The indices of the cells that ever changed, in the order of their first change.
     pub fn changed(&self) -> impl Iterator<Item = usize> {
-        self.ledger.changed()
-    }
-
-    /// Mean time of a cycle of the cell, T of equation 1; ∞ for a cell that never changed.
-    #[inline]
-    pub fn interval(&self, index: usize) -> f64 {
-        self.estimator().interval(&self.statistics(index))
-    }
-
-    /// Cycles of the cell per unit of time, 1/T; 0 for a cell that never changed.
-    #[inline]
-    pub fn rate(&self, index: usize) -> f64 {
-        self.estimator().rate(&self.statistics(index))
-    }
-
-    /// The probability that the cell changed since it was last seen (equation 2).
-    #[inline]
-    pub fn change_probability(&self, index: usize) -> f64 {
-        estimator::change_probability(self.recency(index), self.rate(index))
-    }
-
-    /// The interval that holds the cell's cycle rate with probability `mass`, as much of the rest above it as
-    /// below, per unit of time: the posterior of the two-state chain, with the gaps if the estimator in
-    /// use weighs them. A cell without an event has rate 0; here the prior shows, and what was seen since: the
-    /// longer nothing happened, the lower the upper bound. From 0 to ∞ before the second reading.
-    pub fn credible_interval(&self, index: usize, mass: f64) -> (f64, f64) {
-        self.ledger.credible_interval(index, mass)
-    }
-
-    /// The rates at which the cell leaves its states, per unit of time: free → blocked (α) and
-    /// blocked → free (β). A reading apart, they are probabilities of a step. None for a cell that
-    /// never changed, or whose changes tell no rate by the estimator in use.
-    pub fn transition_rates(&self, index: usize) -> Option<(f64, f64)> {
-        self.ledger.chain(index).map(|chain| (chain.block, chain.free))
-    }
-
-    /// The probability that the cell is blocked now. A cell in view is as seen; out of view a cell that
-    /// changes relaxes from its last state to its mean by the two-state chain,
-    /// π + (x₀ − π) λ^t. One that never changed stays as it was last seen, and an unknown one is
-    /// blocked as likely as not.
-    pub fn blocked_probability(&self, index: usize) -> f64 {
-        self.ledger.blocked_probability(index)
-    }
-
-    /// The time since the cell was last seen. A cell never seen counts as last seen at 0.
-    #[inline]
-    pub fn recency(&self, index: usize) -> f64 {
-        self.ledger.now() - self.ledger.last_seen(index)
-    }
-
-    /// The sum of [`Mapper::change_probability`] over all cells: the expected number of cells that changed
-    /// since they were seen. Costs time in proportion to the cells that ever changed.
-    pub fn sum_change_probability(&mut self) -> f64 {
-        self.ledger.sum_change_probability()
-    }
-
-    /// The largest [`Mapper::recency`] of a candidate; 0 without a candidate.
-    pub fn max_recency(&mut self) -> f64 {
-        self.ledger.max_recency()
-    }
-}
-
-impl Evidence for LaserReading {
-    fn enter(&self, mapper: &mut Mapper) -> Result<(), ReadingError> {
-        check_pose(&self.mount, self.time_s)?;
-        self.scan.check()?;
-        let Mapper { ledger, occupancy, cloud, points } = mapper;
-        ledger.open(self.time_s);
-        cloud.project(self);
-        points.clear();
-        points.extend((0..cloud.len()).filter_map(|beam| cloud.hit(beam)));
-        match occupancy {
-            Occupancy::Steady(steady) => steady.update(cloud, ledger),
-            Occupancy::Naive(naive) => naive.update(cloud, ledger),
-        }
-        Ok(())
+        self.cells.changed.iter().map(|&index| index as usize)
     }
 }

@@ -19,7 +19,7 @@ pub use tour::Tour;
 
 use agent::Features;
 use interfaces::{Reading, World};
-use mapper::{Evidence, Mapper, ReadingError};
+use mapper::{Mapper, ReadingError};
 use std::ops::ControlFlow;
 
 /// Runs the robot in `world` until `observe` breaks the loop.
@@ -37,7 +37,7 @@ pub fn explore<W, P, E>(
     mut observe: impl FnMut(&W, &W::Reading, &Belief, &mut P) -> Result<ControlFlow<()>, E>,
 ) -> Result<(), E>
 where
-    W: World<Reading: Evidence>,
+    W: World<Reading: Reading>,
     P: Pilot<Command = W::Command>,
     E: From<ReadingError>,
 {

@@ -147,6 +147,17 @@ fn maps() {
 }
 
 #[test]
+fn drives_without_a_controller() {
+    let drive = |kind: &str| {
+        refused_world("[robot.drive]           #", &format!("[robot.drive]\nkind = \"{kind}\"\n#"))
+    };
+    insta::assert_snapshot!(drive("omni"), @r#"error: cannot run `house.toml`: the driven robot `curious` has a drive of `kind = "omni"`, but the controller supports only `kind = "diff"`: change `[robot.drive]`, or let another robot be the driven one"#);
+    let car =
+        refused_world("[robot.drive]           #", "[robot.drive]\nkind = \"car\"\nwheelbase_m = 0.2\n#");
+    assert!(car.contains("has a drive of `kind = \"car\"`, but"), "{car}");
+}
+
+#[test]
 fn tours() {
     insta::assert_snapshot!(refused("--drive tour --tour no.toml"), @"error: cannot read the tour `no.toml`: No such file or directory (os error 2)");
     insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [\n  [1, 2],\n  [3]\n]", "--drive tour --tour t.toml"), @"
@@ -167,7 +178,7 @@ fn tours() {
       |
       = help: did you mean `waypoints_m`? the keys here are: repeat, waypoints_m
     ");
-    insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [[1, 2]]", "--tour t.toml"), @"error: --tour is for --drive tour");
+    insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [[1, 2]]", "--tour t.toml"), @"error: --tour needs --drive tour");
 }
 
 #[test]

@@ -18,7 +18,7 @@ fn worlds_are_described_and_drawn() {
     let ended = check(folder.path(), &["--png", "--out", "plans", "two_blocks", "four_rooms", lab]);
     assert_eq!(ended.status.code(), Some(0), "{ended:?}");
     let said = text(&ended.stdout);
-    assert!(said.contains("two_blocks: right, a grid world called `two blocks`"), "{said}");
+    assert!(said.contains("two_blocks: valid, a grid world named `two blocks`"), "{said}");
     assert!(said.contains("`dummy` follows a wall back and forth"), "{said}");
     assert!(text(&ended.stderr).contains("`gui_grid` (21)"));
     for (name, is_wide) in [("two_blocks", false), ("four_rooms", false), ("lab.world", true)] {
@@ -44,7 +44,7 @@ fn what_is_wrong_is_told_of_every_file() {
     let said = text(&ended.stderr);
     assert!(said.contains("error: the rows of the map are not equally long\n --> ragged.toml:5:1"), "{said}");
     assert!(said.contains("error: cannot read `gone.toml`"), "{said}");
-    assert!(text(&ended.stdout).contains("gone.toml: wrong, 1 error"));
+    assert!(text(&ended.stdout).contains("gone.toml: invalid, 1 error"));
     let mut names: Vec<_> =
         std::fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().file_name()).collect();
     names.sort();

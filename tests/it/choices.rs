@@ -2,7 +2,7 @@
 
 use crate::run::Run;
 use agent::Policy;
-use mapper::Estimator;
+use mapper::EstimatorChoice;
 use std::collections::BTreeSet;
 
 fn hash(arguments: &str) -> String {
@@ -37,7 +37,7 @@ fn every_strategy_explores_in_its_own_way() {
 #[test]
 fn every_estimator_estimates_in_its_own_way() {
     let mut errors = BTreeSet::new();
-    for estimator in Estimator::ALL.map(Estimator::name) {
+    for estimator in EstimatorChoice::all().iter().map(EstimatorChoice::name) {
         // A tour does not depend on rates, so that all of them see the same.
         let arguments = format!("--duration 8m --drive tour --strategy curious --estimator {estimator}");
         let summary = Run::quiet(&arguments).summary();
@@ -46,7 +46,7 @@ fn every_estimator_estimates_in_its_own_way() {
         assert!(summary.number("/rate_auc") > 0.9, "{estimator}: {}", summary.number("/rate_auc"));
         errors.insert(summary.at("/log_error").to_string());
     }
-    assert_eq!(errors.len(), Estimator::ALL.len(), "{errors:?}");
+    assert_eq!(errors.len(), EstimatorChoice::all().len(), "{errors:?}");
 }
 
 #[test]

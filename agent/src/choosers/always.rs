@@ -1,7 +1,8 @@
-use crate::{Chooser, Situation};
+use super::Chooser;
+use crate::situation::Situation;
 use interfaces::RandomStream;
 
-/// Always the same strategy, by its place.
+/// Always the strategy of one index.
 #[derive(Clone, Copy, Debug)]
 pub struct Always(pub usize);
 

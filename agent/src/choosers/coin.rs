@@ -1,8 +1,9 @@
-use crate::{Chooser, Situation};
+use super::Chooser;
+use crate::situation::Situation;
 use interfaces::RandomStream;
 use rand::RngExt;
 
-/// A fair coin, or die, over so many strategies: what a learner must beat.
+/// A fair coin, or die, over this number of strategies: the baseline of the learners.
 #[derive(Clone, Copy, Debug)]
 pub struct Coin(pub std::num::NonZeroUsize);
 

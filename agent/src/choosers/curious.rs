@@ -1,6 +1,9 @@
-use crate::Features;
-use crate::draw::proportional;
-use crate::{Chooser, CuriousSettings, Situation, TileCoder, Trajectory};
+use super::tile_coder::TileCoder;
+use super::{Chooser, Trajectory};
+use crate::features::Features;
+use crate::sampling::proportional;
+use crate::settings::CuriousSettings;
+use crate::situation::Situation;
 use interfaces::RandomStream;
 
 /// The paper's learner (section 4): one value function over (p, r) per strategy, learned from
@@ -15,7 +18,7 @@ pub struct Curious {
 }
 
 impl Curious {
-    /// A learner that knows nothing of its strategies. Draws the displacements of the tilings.
+    /// A learner before any trajectory. Draws the offsets of the tilings.
     pub fn new(settings: &CuriousSettings, strategies: usize, rng: &mut RandomStream) -> Self {
         Self {
             learning_rate: settings.learning_rate,

@@ -1,45 +1,45 @@
-use crate::Features;
-use crate::draw::gamma;
-use crate::{Chooser, Situation, Trajectory};
+use super::{Chooser, Trajectory};
+use crate::features::Features;
+use crate::sampling::gamma;
+use crate::situation::Situation;
 use interfaces::RandomStream;
 
-/// Readings after which what was learned of a strategy counts half.
+/// The number of readings after which an observation of a strategy counts half.
 const MEMORY: f64 = 5000.0;
 
-/// Readings after which the going pace counts half.
-const PACE_MEMORY: f64 = 500.0;
+/// The number of readings after which an observation of the mean progress counts half.
+const MEAN_MEMORY: f64 = 500.0;
 
-/// Readings at the going pace that every strategy is credited with before it is tried.
-const CREDIT: f64 = 100.0;
+/// The pseudocount of every strategy: readings at the mean progress.
+const PRIOR_READINGS: f64 = 100.0;
 
-/// Readings that tell as much of a strategy as one event of a Poisson process does of its rate.
-/// Progress comes in bursts: what one trajectory brought is mostly luck.
-const GRAIN: f64 = 5.0;
+/// The number of readings with as much information on a strategy as one event of a Poisson process has on its
+/// rate. Progress comes in bursts: the result of one trajectory is mostly random.
+const READINGS_PER_EVENT: f64 = 5.0;
 
-/// Learns which strategy makes most progress in learning, and uses the strategies accordingly.
+/// Learns which strategy makes most progress in learning, by Thompson sampling.
 ///
-/// Progress is [`Trajectory::progress`], how much more is known of the rates of change. All strategies
-/// make less of it the more is known, so that a strategy that was good early looks better than one that
-/// is good now. Therefore each trajectory is held against the *going pace*, the progress per reading of
-/// late of all strategies together; what is learned of a strategy is its efficiency, a multiple of that
-/// pace. Efficiencies last, which leaves time to tell them apart from luck. The choice is by Thompson
-/// sampling: an efficiency is drawn for each strategy from what is believed of it (a gamma distribution,
-/// as of the rate of a Poisson process), and the largest draw wins.
+/// The reward is [`Trajectory::progress`]. All strategies make less progress the more is known, so that a
+/// strategy that was good early would look better than one that is good now. Each trajectory is therefore
+/// divided by the *mean progress*, the recent progress per reading of all strategies; the quotient is the
+/// efficiency of the strategy. Efficiencies change slowly, so that they can be estimated. An efficiency is
+/// drawn for each strategy from its posterior (a gamma distribution, as for the rate of a Poisson process),
+/// and the strategy of the largest draw is chosen.
 ///
-/// What else was tried, on generated worlds. With the paper's two strategies alone nothing did better
-/// than a fair coin and than recency alone: no fixed mixture, no recency for as long as something is
-/// unseen or old, no discounted Thompson sampling on learning progress (even with the true error's
-/// fall as reward), not this. The two differ too little, and the gain is in more strategies. Among more
-/// strategies, discounted progress without the going pace found the better ones less often, and map
-/// updates as reward chose those that follow a block longest, which learn no more.
+/// Alternatives that were tried on generated worlds: with the two strategies of the paper alone, nothing did
+/// better than a fair coin and than recency alone: no fixed mixture, no recency while some cells are unseen
+/// or old, no discounted Thompson sampling of the progress (even with the fall of the true error as reward),
+/// nor this chooser. The two strategies differ too little; the gain is in more strategies. Among more
+/// strategies, discounted progress without the division found the better ones less often, and map updates as
+/// reward selected the strategies that follow a block longest, which learn no more.
 #[derive(Clone, Debug)]
 pub struct Progress {
-    pace: Account,
-    /// One per strategy; what was gained is in multiples of the pace.
+    mean: Account,
+    /// One per strategy; the gain is in multiples of the mean.
     strategies: Vec<Account>,
 }
 
-/// What was gained in how many readings, the old counting less.
+/// The gain and its number of readings, discounted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Account {
     gained: f64,
@@ -64,24 +64,25 @@ impl Account {
 }
 
 impl Progress {
-    /// A learner that knows nothing of its strategies.
+    /// A learner before any trajectory.
     pub fn new(strategies: usize) -> Self {
-        Self { pace: Account::default(), strategies: vec![Account::default(); strategies] }
+        Self { mean: Account::default(), strategies: vec![Account::default(); strategies] }
     }
 
-    /// What each strategy is believed to bring, in multiples of the going pace.
+    /// The expected progress of each strategy, in multiples of the mean.
     pub fn efficiencies(&self) -> impl ExactSizeIterator<Item = f64> {
-        self.strategies.iter().map(|of| (of.gained + CREDIT) / (of.readings + CREDIT))
+        self.strategies.iter().map(|of| (of.gained + PRIOR_READINGS) / (of.readings + PRIOR_READINGS))
     }
 }
 
 impl Chooser for Progress {
     fn choose(&mut self, _: &Situation, rng: &mut RandomStream) -> usize {
         let (mut best, mut largest) = (0, f64::NEG_INFINITY);
-        for (place, of) in self.strategies.iter().enumerate() {
-            let draw = gamma((of.gained + CREDIT) / GRAIN, rng) * GRAIN / (of.readings + CREDIT);
+        for (index, of) in self.strategies.iter().enumerate() {
+            let draw = gamma((of.gained + PRIOR_READINGS) / READINGS_PER_EVENT, rng) * READINGS_PER_EVENT
+                / (of.readings + PRIOR_READINGS);
             if draw > largest {
-                (best, largest) = (place, draw);
+                (best, largest) = (index, draw);
             }
         }
         best
@@ -90,21 +91,21 @@ impl Chooser for Progress {
     fn learn(&mut self, trajectory: &Trajectory) {
         let readings = trajectory.features.len() as f64;
         let gained = trajectory.progress * readings;
-        self.pace.fade(readings, PACE_MEMORY);
-        self.pace.add(gained, readings);
-        let pace = self.pace.per_reading();
-        // Where nobody makes progress, nobody is better than the others.
-        if pace < f64::MIN_POSITIVE {
+        self.mean.fade(readings, MEAN_MEMORY);
+        self.mean.add(gained, readings);
+        let mean = self.mean.per_reading();
+        // Without progress no strategy is better than the others.
+        if mean < f64::MIN_POSITIVE {
             return;
         }
         for strategy in &mut self.strategies {
             strategy.fade(readings, MEMORY);
         }
-        self.strategies[trajectory.strategy].add(gained / pace, readings);
+        self.strategies[trajectory.strategy].add(gained / mean, readings);
     }
 
     fn value(&self, strategy: usize, _: Features) -> Option<f64> {
-        Some(self.efficiencies().nth(strategy)? * self.pace.per_reading())
+        Some(self.efficiencies().nth(strategy)? * self.mean.per_reading())
     }
 }
 
@@ -117,8 +118,8 @@ mod tests {
     use proptest::prelude::*;
     use rand::RngExt;
 
-    /// Plays so many rounds of ten readings; a strategy earns up to twice its mean of `progress`, at
-    /// random. Gives how often each was chosen.
+    /// Plays `rounds` of ten readings; a strategy earns up to twice its mean of `progress`, at random. Returns
+    /// how often each was chosen.
     fn bandit(
         chooser: &mut Progress,
         progress: impl Fn(usize) -> Vec<f64>,
@@ -179,13 +180,13 @@ mod tests {
         let mut counts = [0; 2];
         for seed in 0..20 {
             let one = bandit(&mut Progress::new(2), |_| vec![0.2, 0.2], 300, seed);
-            (0..2).for_each(|place| counts[place] += one[place]);
+            (0..2).for_each(|index| counts[index] += one[index]);
         }
         assert!(counts.iter().all(|&count| count > 1500), "{counts:?}");
     }
 
     #[test]
-    fn without_progress_nobody_is_better() {
+    fn without_progress_no_strategy_is_better() {
         let mut chooser = Progress::new(3);
         bandit(&mut chooser, |_| vec![0.0; 3], 500, 1);
         assert!(chooser.efficiencies().all(|efficiency| efficiency == 1.0));
@@ -202,8 +203,8 @@ mod tests {
             for (strategy, readings, progress) in lessons {
                 let features = vec![Features::default(); readings];
                 chooser.learn(&Trajectory { strategy, features: &features, reward: 0.0, progress });
-                for place in 0..3 {
-                    let value = chooser.value(place, Features::default()).unwrap();
+                for index in 0..3 {
+                    let value = chooser.value(index, Features::default()).unwrap();
                     prop_assert!(value.is_finite() && value >= 0.0);
                 }
             }

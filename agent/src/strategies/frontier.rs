@@ -1,29 +1,31 @@
-use crate::survey::Survey;
-use crate::{AgentSettings, Pick, Situation, Stay, Strategy};
+use super::{Pick, Stay, Strategy};
+use crate::settings::AgentSettings;
+use crate::situation::Situation;
+use crate::visibility::ViewHistory;
 use interfaces::{Cell, CellState};
 
-/// How long to look around at a goal, in the unit of the readings' times. It counts as part of the
-/// way: without it, the next cell would always be worth more than the next room.
+/// The stop at a goal, in the unit of the readings' times. It is part of the time of a visit: without it, the
+/// next cell would always be worth more than the next room.
 const WATCH: f64 = 1.0;
 
-/// A cell that stayed unknown in so many visits of places that should show it cannot be seen. More
-/// than one: a map may believe only several sightings, and something may have stood in the way.
-const MAX_LOOKS: u8 = 3;
+/// A cell that stayed unknown after this number of visits from which it should have been in view cannot be
+/// seen. More than one: a map may need several sightings, and an obstacle may have been in the way.
+const MAX_VISITS: u8 = 3;
 
-/// Go where most of what is unknown comes into view per time to get there (frontiers after Yamauchi
-/// 1997, their worth after González-Baños and Latombe 2002).
+/// Goes where most unknown cells come into view per time to get there (frontiers after Yamauchi 1997, their
+/// worth after González-Baños and Latombe 2002).
 ///
-/// When nothing is left to find, go where nobody looked for longest, per time to get there: so it
-/// stays of use in a place that changes.
+/// When no cell is left to find, the robot goes to the cell that was not seen for longest, per time to get
+/// there; the strategy therefore stays useful in an environment that changes.
 #[derive(Clone, Debug)]
 pub struct Frontier {
-    survey: Survey,
+    history: ViewHistory,
 }
 
 impl Frontier {
     /// For a robot that sees as far as `settings.sensor_radius_m`.
     pub fn new(settings: &AgentSettings) -> Self {
-        Self { survey: Survey::new(settings.sensor_radius_m) }
+        Self { history: ViewHistory::new(settings.sensor_radius_m) }
     }
 }
 
@@ -34,16 +36,16 @@ impl Strategy for Frontier {
 
     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {
         let mapper = situation.mapper;
-        let places = self.survey.follow(mapper);
+        let regions = self.history.update(mapper);
         let is_unknown = |cell: usize| mapper.states().cells()[cell] == CellState::Unknown;
-        let mut hidden = vec![0.0; places.count()];
+        let mut hidden = vec![0.0; regions.count()];
         for cell in 0..weights.len() {
-            if is_unknown(cell) && self.survey.looks(cell) < MAX_LOOKS {
-                hidden[places.of(cell)] += 1.0;
+            if is_unknown(cell) && self.history.visits(cell) < MAX_VISITS {
+                hidden[regions.of(cell)] += 1.0;
             }
         }
-        self.survey.weigh(situation, &places, &hidden, WATCH, weights);
-        // What is left to find may lie where no way leads.
+        self.history.weigh(situation, &regions, &hidden, WATCH, weights);
+        // The cells left to find may be unreachable.
         if weights.iter().all(|&weight| weight == 0.0) {
             for (cell, weight) in weights.iter_mut().enumerate().filter(|(cell, _)| !is_unknown(*cell)) {
                 *weight = mapper.recency(cell) / (situation.travel_to(cell) + WATCH);
@@ -60,7 +62,7 @@ impl Strategy for Frontier {
     }
 
     fn stay(&mut self, goal: Cell) -> Stay {
-        self.survey.go_to(goal);
+        self.history.go_to(goal);
         Stay::Watch(WATCH)
     }
 }

@@ -1,50 +1,47 @@
-use crate::survey::Survey;
-use crate::{AgentSettings, Pick, Situation, Stay, Strategy};
+use super::{Pick, Stay, Strategy};
+use crate::settings::AgentSettings;
+use crate::situation::Situation;
+use crate::visibility::ViewHistory;
 use interfaces::{Cell, CellState};
 
-/// How long to stand at a goal, in the unit of the readings' times. Part of the price of a visit.
+/// The stop at a goal, in the unit of the readings' times. It is part of the time of a visit.
 const WATCH: f64 = 8.0;
 
-/// Events that a cell which never changed is believed to have had: half a one, as in the Jeffreys
-/// posterior of a Poisson rate.
+/// The number of events assumed for a cell that never changed: a half, as in the Jeffreys posterior of a
+/// Poisson rate.
 const UNSEEN_EVENTS: f64 = 0.5;
 
-/// Go where the next look is due. Every cell has its own best interval between looks, by how fast it
-/// changes; a visit is worth how far the cells in view are beyond it, per time to get there.
+/// Goes where the next visit is due. Every cell has its own best interval between visits, by its rates of
+/// change; a visit is worth how far the cells in view are beyond that interval, per time to get there.
 ///
-/// A cell that leaves its state at rate α and comes back at rate β, and was last seen a time t ago, is
-/// worth U = π [(1 − e^(−st)) / s − t e^(−st)] with s = α + β and π = α / s, the share of time that it
-/// spends in the other state. That is the marginal value by which optimal schedules revisit changing web
-/// pages (Cho and Garcia-Molina 2003; Azar et al. 2018), here for a page that changes back: what a
-/// little more time between looks adds to the share of time in which the map is wrong.
+/// A cell that leaves its state at rate α and returns at rate β, and was last seen a time t ago, is worth
+/// U = π [(1 − e^(−st)) / s − t e^(−st)] with s = α + β and π = α / s, the share of time in the other state.
+/// That is the marginal value by which optimal schedules revisit changing web pages (Cho and Garcia-Molina
+/// 2003; Azar et al. 2018), here for a page that changes back: the share of time in which the map is wrong
+/// grows by U with a little more time between visits.
 ///
-/// Of a cell that never changed, no rate is known. It is worth as much as one that changes half as
-/// often as once in the time for which it was watched, times the share of cells that ever changed.
-/// Without this the robot would stay with the first thing that moves. What is unknown is wrong for
-/// certain, and worth t.
+/// The rate of a cell that never changed is not known. Such a cell is worth as much as a cell with half an
+/// event in the time for which it was observed, times the share of cells that ever changed. Without this the
+/// robot would stay with the first moving thing. An unknown cell is certainly wrong, and worth t.
 #[derive(Clone, Debug)]
 pub struct OptimalRevisiting {
-    survey: Survey,
+    history: ViewHistory,
 }
 
 impl OptimalRevisiting {
     /// For a robot that sees as far as `settings.sensor_radius_m`.
     pub fn new(settings: &AgentSettings) -> Self {
-        Self { survey: Survey::new(settings.sensor_radius_m) }
+        Self { history: ViewHistory::new(settings.sensor_radius_m) }
     }
 }
 
-/// U of a cell with the rates at which it leaves the state it was seen in and comes back, `elapsed` after
-/// it was seen.
+/// U of a cell with the rates at which it leaves and returns to the state in which it was last seen, `elapsed`
+/// ago.
 fn worth(leave: f64, back: f64, elapsed: f64) -> f64 {
     let sum = leave + back;
-    let lost = sum * elapsed;
-    // 1 − e^(−x) − x e^(−x); its first terms where these would cancel.
-    let curve = if lost < 1e-4 {
-        lost * lost * (0.5 - lost / 3.0)
-    } else {
-        -libm::expm1(-lost) - lost * libm::exp(-lost)
-    };
+    let x = sum * elapsed;
+    // 1 − e^(−x) − x e^(−x); the first terms of its series where these would cancel.
+    let curve = if x < 1e-4 { x * x * (0.5 - x / 3.0) } else { -libm::expm1(-x) - x * libm::exp(-x) };
     leave / sum * (curve / sum)
 }
 
@@ -55,27 +52,27 @@ impl Strategy for OptimalRevisiting {
 
     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {
         let mapper = situation.mapper;
-        let places = self.survey.follow(mapper);
+        let regions = self.history.update(mapper);
         let candidates = || (0..weights.len()).filter(|&cell| mapper.is_candidate(cell));
         let states = mapper.states().cells();
         let known = candidates().filter(|&cell| states[cell] != CellState::Unknown).count();
         let share = (mapper.changed().count() as f64 + UNSEEN_EVENTS) / (known as f64 + 1.0);
-        let mut due = vec![0.0; places.count()];
+        let mut due = vec![0.0; regions.count()];
         for cell in candidates() {
-            let elapsed = self.survey.elapsed(mapper, cell);
-            due[places.of(cell)] += match (states[cell], mapper.transition_rates(cell)) {
+            let elapsed = self.history.elapsed(mapper, cell);
+            due[regions.of(cell)] += match (states[cell], mapper.transition_rates(cell)) {
                 (CellState::Unknown, _) => elapsed,
                 (CellState::Free, Some((block, free))) => worth(block, free, elapsed),
                 (CellState::Blocked, Some((block, free))) => worth(free, block, elapsed),
                 (_, None) => {
                     let seen = mapper.statistics(cell);
                     let rate = UNSEEN_EVENTS / (seen.watched_free + seen.watched_blocked + 1.0);
-                    let chance = if seen.events() > 0 { 1.0 } else { share.min(1.0) };
-                    chance * worth(rate, rate, elapsed)
+                    let probability = if seen.events() > 0 { 1.0 } else { share.min(1.0) };
+                    probability * worth(rate, rate, elapsed)
                 }
             };
         }
-        self.survey.weigh(situation, &places, &due, WATCH, weights);
+        self.history.weigh(situation, &regions, &due, WATCH, weights);
     }
 
     fn pick(&self) -> Pick {
@@ -87,7 +84,7 @@ impl Strategy for OptimalRevisiting {
     }
 
     fn stay(&mut self, goal: Cell) -> Stay {
-        self.survey.go_to(goal);
+        self.history.go_to(goal);
         Stay::Watch(WATCH)
     }
 }

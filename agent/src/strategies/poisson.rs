@@ -1,7 +1,8 @@
-use crate::{Situation, Strategy};
+use super::Strategy;
+use crate::situation::Situation;
 
-/// Go where something probably changed unseen: P(E > 0) (equation 2). Random until the first
-/// change is found, then loyal to the areas known to change.
+/// Goes to the cells that probably changed since they were last seen: P(E > 0) (equation 2). Random until the
+/// first change is found, then always in the areas of known changes.
 #[derive(Clone, Copy, Debug)]
 pub struct Poisson;
 

@@ -1,6 +1,7 @@
-use crate::{Situation, Strategy};
+use super::Strategy;
+use crate::situation::Situation;
 
-/// Go anywhere: the baseline that the paper lacks.
+/// Goes anywhere: the baseline that the paper lacks.
 #[derive(Clone, Copy, Debug)]
 pub struct Random;
 

@@ -1,7 +1,8 @@
-use crate::{Situation, Strategy};
+use super::Strategy;
+use crate::situation::Situation;
 
-/// Go where nobody looked for long: t_now − t_last (section 3, after Thrun). Zig-zags through the
-/// whole place, which keeps the map complete.
+/// Goes to the cells that were not seen for longest: t_now − t_last (section 3, after Thrun). The robot
+/// zig-zags through the whole environment, which keeps the map complete.
 #[derive(Clone, Copy, Debug)]
 pub struct Recency;
 

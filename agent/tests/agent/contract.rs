@@ -2,7 +2,7 @@
 
 use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng};
 use agent::{
-    Agent, AgentSettings, AsTheCrowFlies, Chooser, Features, Policy, Random, Recency, Reward, Situation,
+    Agent, AgentSettings, Chooser, Features, Policy, Random, Recency, Reward, Situation, StraightLineTravel,
     Trajectory,
 };
 use interfaces::{Cell, CellReading, CellState, RandomStream, Transition};
@@ -47,7 +47,7 @@ fn live(agent: &mut Agent, mut check: impl FnMut(&Agent, &Mapper, Cell)) -> Vec<
         let features = Features::of(&mut mapper);
         agent.watch(features, mapper.transitions());
         let target = *goal.get_or_insert_with(|| {
-            let goal = agent.next_goal(&mapper, &seen.pose, &mut AsTheCrowFlies).cell;
+            let goal = agent.next_goal(&mapper, &seen.pose, &mut StraightLineTravel).cell;
             check(agent, &mapper, goal);
             goals.push(goal);
             left = 5;
@@ -83,22 +83,18 @@ fn the_same_seed_gives_the_same_life_and_another_seed_another() {
 }
 
 #[test]
-fn the_books_are_right() {
+fn shares_are_those_of_the_goals() {
     for choice in names() {
         let mut agent = agent(choice, 3);
         assert_eq!(agent.current(), None);
         assert!(agent.shares().all(|share| share == 0.0));
-        let mut goals = 0;
+        let mut counts = vec![0.0; agent.strategies().len()];
         live(&mut agent, |agent, _, _| {
-            goals += 1;
-            assert!(agent.current().is_some_and(|current| current < agent.strategies().len()));
-            assert_eq!(agent.tallies().iter().map(|tally| tally.goals).sum::<usize>(), goals);
-            assert!((agent.shares().sum::<f64>() - 1.0).abs() < 1e-12);
+            counts[agent.current().expect("a goal has a strategy")] += 1.0;
+            let goals: f64 = counts.iter().sum();
+            assert!(agent.shares().zip(&counts).all(|(share, count)| share == count / goals));
             assert!((0.0..=49.0).contains(&agent.last_reward()), "at most all cells in view change");
-            assert_eq!(agent.last_length() >= 5, goals > 1);
         });
-        // The first reading came before the first goal.
-        assert_eq!(agent.tallies().iter().map(|tally| tally.readings).sum::<usize>(), 1499);
     }
 }
 
@@ -145,7 +141,7 @@ fn the_first_choice_and_the_coin_are_fair() {
     for choice in ["curious", "coin"] {
         let firsts = (0..1000).filter(|&seed| {
             let mut agent = agent(choice, seed);
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
             agent.current() == Some(0)
         });
         // Four standard deviations.
@@ -153,7 +149,7 @@ fn the_first_choice_and_the_coin_are_fair() {
     }
     let mut agent = agent("coin", 1);
     for _ in 0..1000 {
-        agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
+        agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
     }
     assert!(agent.shares().all(|share| (0.436..=0.564).contains(&share)));
 }
@@ -194,7 +190,7 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
         let strategies: Vec<Box<dyn agent::Strategy>> = vec![Box::new(Recency), Box::new(Random)];
         let mut agent = Agent::with(&settings, strategies, Box::new(pupil), rng(0)).unwrap();
         let goal = |agent: &mut Agent| {
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
         };
         agent.watch(at(9.0), &[found; 50]); // before the first goal: nobody's merit
         goal(&mut agent);
@@ -203,11 +199,11 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
         agent.watch(at(3.0), &[free, found]);
         agent.watch(at(4.0), &[]);
         goal(&mut agent);
-        assert_eq!((agent.last_reward(), agent.last_length()), (first, 4));
+        assert_eq!(agent.last_reward(), first);
         goal(&mut agent); // no reading since: nothing to learn
         agent.watch(at(5.0), &[block, free]);
         goal(&mut agent);
-        assert_eq!((agent.last_reward(), agent.last_length()), (second, 1));
+        assert_eq!(agent.last_reward(), second);
         assert_eq!(
             *lessons.lock().unwrap(),
             [(0, vec![at(1.0), at(2.0), at(3.0), at(4.0)], first), (0, vec![at(5.0)], second)]
@@ -243,7 +239,7 @@ fn progress_is_what_the_events_of_a_trajectory_tell_per_reading() {
         // The first goal comes after one event, the next two readings and two events later, the last
         // when two readings showed nothing.
         if [1, 3, 5].contains(&step) {
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies);
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
         }
     }
     let heard = heard.lock().unwrap();
@@ -258,6 +254,43 @@ fn an_agent_without_sense_is_refused() {
     assert_eq!(refused.to_string(), "agent setting `patch_cells` must be from 1 to 1000, not 0");
     let nothing = Agent::with(&AgentSettings::default(), vec![], Box::new(Pupil::default()), rng(0));
     assert_eq!(nothing.unwrap_err().to_string(), "agent setting `strategies` must be at least one, not none");
+}
+
+/// Chooses a strategy that does not exist.
+#[derive(Debug)]
+struct Beyond;
+
+impl Chooser for Beyond {
+    fn choose(&mut self, _: &Situation, _: &mut RandomStream) -> usize {
+        7
+    }
+}
+
+#[test]
+fn an_index_beyond_the_strategies_is_the_last_strategy() {
+    let policy = Policy::new("beyond", "the last strategy", |_, _| {
+        (vec![Box::new(Recency), Box::new(Random)], Box::new(Beyond))
+    });
+    let mut agent = Agent::new(&AgentSettings::default(), &policy, rng(0)).unwrap();
+    agent.next_goal(&map(&[(0.0, &["..."])]), &Isometry2::identity(), &mut StraightLineTravel);
+    assert_eq!(agent.current(), Some(1));
+}
+
+#[test]
+fn a_policy_of_one_strategy_has_its_name() {
+    for policy in Policy::built_in() {
+        let agent = agent(policy.name(), 0);
+        assert!(agent.strategies().len() > 1 || agent.strategies().all(|name| name == policy.name()));
+    }
+}
+
+#[test]
+fn the_readme_lists_every_policy() {
+    let readme = include_str!("../../../README.md");
+    for policy in Policy::built_in() {
+        let row = format!("| `{policy}` | {} |", policy.description());
+        assert!(readme.contains(&row), "README.md needs the row {row}");
+    }
 }
 
 /// Trials run on several threads.

@@ -2,7 +2,7 @@
 
 use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng, weigh};
 use agent::{
-    Agent, AgentSettings, Always, AsTheCrowFlies, Features, Poisson, Random, Recency, Situation, Strategy,
+    Agent, AgentSettings, Always, Features, Poisson, Random, Recency, Situation, StraightLineTravel, Strategy,
 };
 use interfaces::{Cell, CellReading};
 use mapper::Mapper;
@@ -57,7 +57,7 @@ fn assert_frequencies(agent: &mut Agent, mapper: &Mapper, probabilities: &[f64])
     let draws = 40_000;
     let mut counts = vec![0.0; probabilities.len()];
     for _ in 0..draws {
-        let goal = agent.next_goal(mapper, &Isometry2::identity(), &mut AsTheCrowFlies).cell;
+        let goal = agent.next_goal(mapper, &Isometry2::identity(), &mut StraightLineTravel).cell;
         counts[mapper.frame().index(goal).expect("a goal in the grid")] += 1.0;
     }
     let (mut chi_square, mut freedom) = (0.0, -1.0);
@@ -168,7 +168,7 @@ fn without_a_candidate_the_goal_is_where_the_robot_is() {
         for (x, y, cell) in [(1.5, 0.5, Cell::new(1, 0)), (-7.5, 99.5, Cell::new(-8, 99))] {
             for choice in names() {
                 let pose = interfaces::pose(x, y, 0.0);
-                assert_eq!(agent(choice, 5).next_goal(&mapper, &pose, &mut AsTheCrowFlies).cell, cell);
+                assert_eq!(agent(choice, 5).next_goal(&mapper, &pose, &mut StraightLineTravel).cell, cell);
             }
         }
     }
@@ -181,7 +181,7 @@ fn weights_that_are_no_numbers_count_as_zero() {
     let mut agent = agent_of(Given(weights), 1, 6);
     for _ in 0..100 {
         assert_eq!(
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies).cell,
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel).cell,
             Cell::new(4, 0)
         );
     }
@@ -225,7 +225,7 @@ proptest! {
 
         let mut agent = agent_of(Given(weights.clone()), patch_cells, seed);
         for _ in 0..10 {
-            let goal = agent.next_goal(&mapper, &pose, &mut AsTheCrowFlies).cell;
+            let goal = agent.next_goal(&mapper, &pose, &mut StraightLineTravel).cell;
             if goals.is_empty() {
                 prop_assert_eq!(goal, Cell::new(-5, 0));
             } else {
@@ -248,7 +248,7 @@ fn readings_at_one_instant_leave_only_numbers() {
             agent.watch(features, mapper.transitions());
             assert!(can_be_a_goal(
                 &mapper,
-                agent.next_goal(&mapper, &Isometry2::identity(), &mut AsTheCrowFlies).cell
+                agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel).cell
             ));
             assert!(agent.last_reward().is_finite());
             for strategy in 0..agent.strategies().len() {

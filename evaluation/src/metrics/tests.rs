@@ -1,9 +1,9 @@
 use super::*;
 use interfaces::{Cell, CellReading, CellState, Grid, GroundTruth, Step, TrueState, World};
-use mapper::{Estimator, Mapper, MapperSettings};
+use mapper::{Mapper, MapperSettings, Paper};
 use nalgebra::Isometry2;
-use sim::grid::{GridSpec, GridWorld};
-use sim::physics::{PhysicsWorld, Truth};
+use sim::grid::GridWorld;
+use sim::physics::{PhysicsGroundTruth, PhysicsWorld};
 
 fn physics_world() -> PhysicsWorld {
     let text = include_str!("../../../worlds/four_rooms.toml");
@@ -11,13 +11,13 @@ fn physics_world() -> PhysicsWorld {
 }
 
 /// The true map, with `otherwise` in partly covered cells.
-fn true_map(truth: &Truth, otherwise: CellState) -> Grid<CellState> {
-    let state = |state: &TrueState| match state {
+fn true_map(truth: &PhysicsGroundTruth, otherwise: CellState) -> Grid<CellState> {
+    let state = |index: usize| match truth.state(index) {
         TrueState::Free => CellState::Free,
         TrueState::Blocked => CellState::Blocked,
         TrueState::PartlyCovered => otherwise,
     };
-    Grid::from_cells(*truth.frame(), truth.states().iter().map(state).collect()).unwrap()
+    Grid::from_cells(*truth.frame(), (0..truth.frame().len()).map(state).collect()).unwrap()
 }
 
 #[test]
@@ -41,9 +41,8 @@ fn coverage_and_age_count_the_cells_that_can_be_seen() {
     let mut mapper = Mapper::new(&MapperSettings::default(), *truth.frame()).unwrap();
     let half = visible.len() / 2;
     for (time, seen) in [(10.0, &visible[..half]), (30.0, &visible[..0])] {
-        let cells = seen
-            .iter()
-            .map(|&index| (truth.frame().cell(index), truth.states()[index] == TrueState::Blocked));
+        let cells =
+            seen.iter().map(|&index| (truth.frame().cell(index), truth.state(index) == TrueState::Blocked));
         let reading = CellReading { time, pose: *world.true_pose(), cells: cells.collect() };
         mapper.update(&reading).unwrap();
     }
@@ -82,7 +81,7 @@ fn grid_world() -> GridWorld {
 }
 
 fn mapper(world: &GridWorld) -> Mapper {
-    let settings = MapperSettings { estimator: Estimator::Paper, ..Default::default() };
+    let settings = MapperSettings { estimator: Paper.into(), ..Default::default() };
     Mapper::new(&settings, *world.truth().frame()).unwrap()
 }
 

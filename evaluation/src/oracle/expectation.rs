@@ -1,4 +1,4 @@
-//! What a look is expected to do to an error.
+//! The expected effect of an observation on the log error of a cell.
 
 use crate::metrics::log_error;
 
@@ -25,7 +25,7 @@ impl Knowledge {
     }
 
     /// By how much the log error is expected to fall when the cell is in view for `duration` more. Below
-    /// 0 where the estimate is right by luck.
+    /// 0 where the estimate happens to be correct.
     ///
     /// A cell of rate λ shows a Poisson number of events of mean 2 λ · duration, and the estimate after
     /// them is half of all events per time in view. The time in view so far is the one for which this
@@ -38,15 +38,15 @@ impl Knowledge {
             (0.0, self.watched)
         };
         let mean = 2.0 * self.truth * duration;
-        let mut chance = libm::exp(-mean);
+        let mut probability = libm::exp(-mean);
         let (mut left, mut count, mut expected) = (1.0, 0.0, 0.0);
-        // The chances of large means begin below every number: up to the mean none may end the sum.
+        // The first probabilities of a large mean underflow: the sum must not end before the mean.
         while (left > TAIL || count < mean) && count < 2.0 * mean + 100.0 {
             let estimate = (events + count) / (2.0 * (watched + duration));
-            expected += chance * log_error(estimate, self.truth);
-            left -= chance;
+            expected += probability * log_error(estimate, self.truth);
+            left -= probability;
             count += 1.0;
-            chance *= mean / count;
+            probability *= mean / count;
         }
         self.error() - expected
     }

@@ -1,4 +1,4 @@
-//! A guide that knows what no robot can: the reference that strategies are measured against.
+//! The oracle: a goal selector that knows the true rates, the reference for strategies.
 
 mod expectation;
 #[cfg(test)]
@@ -10,36 +10,36 @@ use interfaces::GroundTruth;
 use mapper::Mapper;
 use nalgebra::Point2;
 use robot::{Belief, Destination, GoalSelector};
-use sim::grid::{GridSpec, GridTruth};
+use sim::grid::{GridGroundTruth, GridSpec};
 
-/// How long it considers to stay, steps.
+/// The durations of a stay that the oracle considers, steps.
 const STAYS: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 
-/// The least trust in a place, so that it is tried again when all others are worse.
+/// The minimum trust in a cell, so that a cell is tried again when all others are worse.
 const LEAST_TRUST: f64 = 0.01;
 
-/// Goes where the log error of the rates is expected to fall most per step, on the way included, and
-/// stays there for as long as that is best. It knows the walls and the true rates so far, but not where
-/// the blocks will be: it is greedy, not the best that can be.
+/// Goes to the cell from which the log error of the rates is expected to fall most per step, travel included,
+/// and stays for the best duration. The oracle knows the walls and the true rates so far, but not the future
+/// positions of the blocks: it is greedy, not optimal.
 ///
-/// Every moving thing weighs the same, and every cell of its path, as in the error itself. What it
-/// expects is by the walls alone. A block can hide cells for as long as the robot looks from there, of
-/// all things the one that it is about to enter: so the oracle learns how much of what it expects of a
-/// place comes true there. Without this it would park in the first such place.
+/// Every moving thing weighs the same, and every cell of its path, as in the log error. The expectation
+/// considers the walls alone, but a block can hide cells, also the cell that it is about to enter. Therefore the
+/// oracle learns the share of its expectation that comes true at each cell. Without this trust it would stay
+/// forever at the first such cell.
 #[derive(Clone, Debug)]
 pub struct Oracle {
-    /// What is in view from every cell.
+    /// The cells in view from every cell.
     sights: Vec<Vec<usize>>,
     /// The true cycle rate of every cell.
     rates: Vec<f64>,
-    /// What every cell counts for in the error.
+    /// The weight of every cell in the log error.
     weights: Vec<f64>,
-    /// The share of what was expected from looking there that came true.
+    /// The share of the expectation that came true, per cell.
     trust: Vec<f64>,
     last: Option<Expected>,
 }
 
-/// What was expected of the last goal.
+/// The expectation of the last goal.
 #[derive(Clone, Debug)]
 struct Expected {
     place: usize,
@@ -62,9 +62,9 @@ impl Oracle {
         }
     }
 
-    /// Takes in how often every cell has truly changed so far. To be told at every step.
-    pub fn learn(&mut self, truth: &GridTruth) {
-        for &cell in truth.swept() {
+    /// Takes the true rates so far; called at every step.
+    pub fn learn(&mut self, truth: &GridGroundTruth) {
+        for &cell in truth.swept().iter() {
             self.rates[cell] = truth.cycle_rate(cell);
             self.weights[cell] = 0.0;
         }
@@ -74,14 +74,14 @@ impl Oracle {
         }
     }
 
-    /// The error of what is in view from a place, as it counts.
+    /// The weighted error of the cells in view from a cell.
     fn error(&self, mapper: &Mapper, place: usize) -> f64 {
         let cells = self.sights[place].iter().filter(|&&cell| self.rates[cell] > 0.0);
         cells.map(|&cell| self.weights[cell] * knowledge(mapper, cell, self.rates[cell]).error()).sum()
     }
 
-    /// Compares what came of the last goal with what was expected of it.
-    fn look_back(&mut self, mapper: &Mapper) {
+    /// Compares the result of the last goal with its expectation.
+    fn update_trust(&mut self, mapper: &Mapper) {
         let Some(last) = self.last.take() else { return };
         if last.fall > 0.0 {
             let share = (last.error - self.error(mapper, last.place)) / last.fall;
@@ -90,7 +90,7 @@ impl Oracle {
         }
     }
 
-    /// The best place and stay by the times to every cell; `None` where nothing is expected anywhere.
+    /// The best cell and duration by the travel times; `None` if nothing is expected anywhere.
     fn best(&self, mapper: &Mapper, times: &[f64]) -> Option<Expected> {
         // What each cell is expected to bring, for each stay.
         let falls: Vec<Option<[f64; STAYS.len()]>> = (0..self.rates.len())
@@ -133,7 +133,7 @@ fn knowledge(mapper: &Mapper, cell: usize, truth: f64) -> Knowledge {
 
 impl GoalSelector for Oracle {
     fn next_goal(&mut self, belief: &Belief, travel: &mut impl Travel) -> Option<Destination> {
-        self.look_back(belief.mapper);
+        self.update_trust(belief.mapper);
         let mut times = Vec::new();
         travel.times(belief.mapper, belief.pose, &mut times);
         self.last = self.best(belief.mapper, &times);

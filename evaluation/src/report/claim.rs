@@ -1,5 +1,5 @@
-//! The paper's claim (section 5, Figure 3): the curious robot learns rates faster than with either
-//! strategy alone, and its map is as good as that of recency.
+//! The paper's claim (section 5, Figure 3): the curious robot learns rates faster than a robot with either
+//! strategy alone, and its map is as good as the map of recency.
 
 use super::comparison::Comparison;
 use super::metric::Measure;

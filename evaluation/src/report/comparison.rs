@@ -1,7 +1,7 @@
-//! Two strategies compared: by the pairs of their trials, or of the worlds they lived in.
+//! The comparison of two strategies, paired by trial or by world.
 
+use super::group::TrialGroup;
 use super::metric::{Measure, Part};
-use super::run::Lives;
 use super::statistics::{Quantiles, holm, mean};
 use super::wording::{p_value, value};
 use serde::Serialize;
@@ -10,14 +10,14 @@ use serde::Serialize;
 /// in the entry over all worlds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
-    /// A strategy.
+    /// The first strategy.
     pub a: String,
-    /// The other.
+    /// The second strategy.
     pub b: String,
-    /// What is compared.
+    /// The measure that is compared.
     #[serde(rename = "metric")]
     pub measure: Measure,
-    /// How many pairs there are.
+    /// The number of pairs.
     pub pairs: usize,
     /// The mean of a − b, in the unit of the metric.
     pub mean_difference: f64,
@@ -47,7 +47,7 @@ impl Comparison {
         format!("×{}, {}", value(self.ratio, 2), p_value(self.p_value))
     }
 
-    /// The same with a and b exchanged.
+    /// The same comparison with a and b exchanged.
     pub fn flipped(&self) -> Self {
         Self {
             a: self.b.clone(),
@@ -64,7 +64,7 @@ impl Comparison {
 
 /// Compares every pair of strategies in every measure of [`Measure::COMPARED`]; without those that
 /// have no pair.
-pub(super) fn compare_all(strategies: &[Lives], quantiles: &Quantiles) -> Vec<Comparison> {
+pub(super) fn compare_all(strategies: &[TrialGroup], quantiles: &Quantiles) -> Vec<Comparison> {
     let mut all = Vec::new();
     for measure in Measure::COMPARED {
         let family = all.len();
@@ -79,10 +79,10 @@ pub(super) fn compare_all(strategies: &[Lives], quantiles: &Quantiles) -> Vec<Co
     all
 }
 
-fn compare(a: &Lives, b: &Lives, measure: Measure, quantiles: &Quantiles) -> Option<Comparison> {
-    let value = |lives: &Lives, index: usize| match measure.part {
-        Part::Final => lives.units[index].last(measure.metric),
-        Part::Area => lives.units[index].area(measure.metric),
+fn compare(a: &TrialGroup, b: &TrialGroup, measure: Measure, quantiles: &Quantiles) -> Option<Comparison> {
+    let value = |group: &TrialGroup, index: usize| match measure.part {
+        Part::Final => group.units[index].last(measure.metric),
+        Part::Area => group.units[index].area(measure.metric),
     };
     let pairs: Vec<[f64; 2]> = (0..a.units.len())
         .filter_map(|index| {

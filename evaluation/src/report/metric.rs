@@ -1,8 +1,8 @@
-//! What is compared: the values of a sample, at the end of a run or over all of it.
+//! The measures that are compared: a metric of the samples, at the end of a trial or over the whole trial.
 
 use super::trial::Sample;
 
-/// A value of every sample.
+/// A metric of the samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Metric {
     /// [`Sample::rate_error`].
@@ -75,7 +75,7 @@ impl Metric {
     }
 }
 
-/// What of a run's curve is taken.
+/// The part of a curve that a measure takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Part {
     /// The value of the last sample.
@@ -85,12 +85,12 @@ pub enum Part {
     Area,
 }
 
-/// One number per run.
+/// One number per trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Measure {
-    /// Which curve.
+    /// The metric.
     pub metric: Metric,
-    /// What of it.
+    /// The part of its curve.
     pub part: Part,
 }
 
@@ -111,7 +111,7 @@ impl Measure {
     /// Brier score at the end.
     pub const FINAL_BRIER: Self = Self { metric: Metric::Brier, part: Part::Final };
 
-    /// Those in which strategies are compared pair by pair.
+    /// The measures in which strategies are compared pair by pair.
     pub const COMPARED: [Self; 7] = [
         Self::LOG_ERROR_AREA,
         Self::FINAL_LOG_ERROR,

@@ -8,6 +8,7 @@
 mod claim;
 mod comparison;
 mod figure;
+mod group;
 mod json;
 mod metric;
 mod run;
@@ -28,40 +29,40 @@ pub use world_picture::WorldPicture;
 
 use crate::drawing::PictureError;
 use crate::output::{make_folder, write_file};
-use run::Lives;
+use group::TrialGroup;
 use statistics::Quantiles;
 use std::path::{Path, PathBuf};
 
-/// Up to so many worlds are told one by one, in the table and in figures.
+/// The table and the figures show single worlds up to this number of worlds.
 const ONE_BY_ONE: usize = 8;
-/// A strategy that knows the truth: shown beside the others, but it cannot win.
+/// A strategy that knows the ground truth: it is shown beside the others, but it cannot win.
 const REFERENCE: &str = "oracle";
 
-/// What an experiment was asked for.
+/// The settings of an experiment.
 #[derive(Clone, Debug, Default)]
 pub struct ReportSettings {
-    /// Of the program.
+    /// The version of the program.
     pub version: String,
-    /// The command line, without the program's name.
+    /// The command line, without the name of the program.
     pub arguments: Vec<String>,
-    /// Steps of a trial.
+    /// The length of a trial, in steps.
     pub steps: u64,
-    /// Trials of every strategy with every estimator in every world.
+    /// The number of trials of every strategy with every estimator in every world.
     pub trials: u64,
-    /// How far the sensor reaches, in cells.
+    /// The range of the sensor, in cells.
     pub sensor_radius: u32,
-    /// Whether it was ended before all trials were finished.
+    /// Whether the experiment was interrupted before all trials were finished.
     pub interrupted: bool,
-    /// The worlds' names in the order in which they are to be told; those missing here come last,
-    /// by name. The same for estimators and strategies.
+    /// The names of the worlds in the order of the report; other worlds come last, by name. The same holds
+    /// for estimators and strategies.
     pub worlds: Vec<String>,
-    /// The estimators' names in their order.
+    /// The names of the estimators in their order.
     pub estimators: Vec<String>,
-    /// The strategies' names in their order.
+    /// The names of the strategies in their order.
     pub strategies: Vec<String>,
 }
 
-/// What came out of an experiment.
+/// The results of an experiment.
 #[derive(Clone, Debug)]
 pub struct Report {
     settings: ReportSettings,
@@ -71,21 +72,21 @@ pub struct Report {
 }
 
 impl Report {
-    /// The statistics of `trials`, in whatever order they come.
+    /// The statistics of `trials`, which can be in any order.
     ///
-    /// There is a run per world and estimator, and where there are several worlds one over all of
-    /// them per estimator, at the end. In that one a world is what counts: it is the mean of its
-    /// trials, bands span over worlds, and worlds are paired.
+    /// There is one run per world and estimator. With several worlds, there is also one run over all worlds per
+    /// estimator, at the end. In that run a world is the unit: its value is the mean of its trials, bands span
+    /// the worlds, and worlds are paired.
     ///
     /// # Panics
     ///
-    /// When the trials were not looked at in the same steps.
+    /// When the trials were not sampled at the same steps.
     pub fn new(settings: ReportSettings, mut trials: Vec<Trial>) -> Self {
         let key = |trial: &Trial| {
             (
-                place(&settings.estimators, &trial.estimator),
-                place(&settings.worlds, &trial.world),
-                place(&settings.strategies, &trial.strategy),
+                position(&settings.estimators, &trial.estimator),
+                position(&settings.worlds, &trial.world),
+                position(&settings.strategies, &trial.strategy),
                 trial.seed,
             )
         };
@@ -100,16 +101,16 @@ impl Report {
             runs.extend(runs_of_estimator(trials, &settings.strategies, &steps, &quantiles));
         }
         // World by world, each with all estimators; the entries over all worlds stay at the end.
-        runs.sort_by_cached_key(|run| (run.worlds > 1, place(&settings.worlds, &run.world)));
+        runs.sort_by_cached_key(|run| (run.worlds > 1, position(&settings.worlds, &run.world)));
         Self { settings, steps, trials, runs }
     }
 
-    /// What was asked for.
+    /// The settings of the experiment.
     pub fn settings(&self) -> &ReportSettings {
         &self.settings
     }
 
-    /// The steps at which the trials were looked at.
+    /// The steps at which the trials were sampled.
     pub fn steps(&self) -> &[u64] {
         &self.steps
     }
@@ -119,7 +120,7 @@ impl Report {
         &self.trials
     }
 
-    /// One run per world and estimator, then those over all worlds.
+    /// One run per world and estimator, then the runs over all worlds.
     pub fn runs(&self) -> &[Run] {
         &self.runs
     }
@@ -135,7 +136,7 @@ impl Report {
         Claim::of(self.run(world, estimator)?)
     }
 
-    /// The table for a person, at most 100 columns wide.
+    /// The table for a terminal, at most 100 columns wide.
     pub fn table(&self) -> String {
         table::table(self)
     }
@@ -143,10 +144,9 @@ impl Report {
     /// Writes `report.json`, `trials.csv` and the figures into `folder`, which is made unless it
     /// exists. Returns the files.
     ///
-    /// `figure3` is the first run; the others are `figure3-<world>-<estimator>`, without the
-    /// estimator where there is only one. Of more than eight worlds only the first is drawn, and
-    /// all of them together. `pictures` are the worlds, in any order; one that is missing is left
-    /// out of its figure.
+    /// `figure3` shows the first run; the other figures are `figure3-<world>-<estimator>`, without the estimator
+    /// if there is only one. With more than eight worlds, only the first world and all worlds together are drawn.
+    /// `pictures` are the plans of the worlds, in any order; a world without a plan is left out of its figure.
     ///
     /// # Errors
     ///
@@ -166,8 +166,8 @@ impl Report {
     }
 }
 
-/// Where a name belongs in a list: its position, or at the end by name.
-fn place(names: &[String], name: &str) -> (usize, String) {
+/// The sort key of a name: its position in the list; other names come last, by name.
+fn position(names: &[String], name: &str) -> (usize, String) {
     (names.iter().position(|known| known == name).unwrap_or(names.len()), name.to_owned())
 }
 
@@ -180,22 +180,22 @@ fn runs_of_estimator(
 ) -> Vec<Run> {
     let estimator = &trials[0].estimator;
     let mut runs = Vec::new();
-    // For the run over all worlds: what remains of a world is one unit per strategy.
-    let mut in_worlds: Vec<Lives> = Vec::new();
+    // For the run over all worlds: a world is one unit per strategy.
+    let mut in_worlds: Vec<TrialGroup> = Vec::new();
     for (number, trials) in (0..).zip(trials.chunk_by(|a, b| a.world == b.world)) {
-        let lives: Vec<Lives> = trials
+        let group: Vec<TrialGroup> = trials
             .chunk_by(|a, b| a.strategy == b.strategy)
-            .map(|trials| Lives::in_world(trials, steps))
+            .map(|trials| TrialGroup::in_world(trials, steps))
             .collect();
-        in_worlds.extend(lives.iter().map(|lives| lives.as_one_world(number, steps.len())));
-        runs.push(Run::new(trials[0].world.clone(), 1, estimator, lives, quantiles));
+        in_worlds.extend(group.iter().map(|group| group.as_one_world(number, steps.len())));
+        runs.push(Run::new(trials[0].world.clone(), 1, estimator, group, quantiles));
     }
     let worlds = runs.len();
     if worlds > 1 {
         // Stable: within a strategy the worlds keep their order.
-        in_worlds.sort_by_cached_key(|lives| place(strategies, &lives.name));
-        let lives = in_worlds.chunk_by(|a, b| a.name == b.name).map(Lives::in_all).collect();
-        runs.push(Run::new(format!("all worlds ({worlds})"), worlds, estimator, lives, quantiles));
+        in_worlds.sort_by_cached_key(|group| position(strategies, &group.name));
+        let group = in_worlds.chunk_by(|a, b| a.name == b.name).map(TrialGroup::in_all).collect();
+        runs.push(Run::new(format!("all worlds ({worlds})"), worlds, estimator, group, quantiles));
     }
     runs
 }

@@ -5,7 +5,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// A mean and its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// How many values.
+    /// The number of values.
     pub count: usize,
     /// Their mean; not a number if there are none.
     pub mean: f64,
@@ -25,8 +25,7 @@ pub(super) struct PairedTest {
     pub(super) effect_size: f64,
 }
 
-/// The 97.5 % points of Student's t, one per number of values: they are asked for often and cost
-/// an iteration each.
+/// The 97.5 % points of Student's t, one per number of values, cached because each costs an iteration.
 pub(super) struct Quantiles(Vec<f64>);
 
 impl Quantiles {

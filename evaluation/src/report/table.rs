@@ -1,18 +1,18 @@
-//! The table for a person at a terminal.
+//! The table for a terminal.
 
 use super::claim::Claim;
 use super::comparison::Comparison;
 use super::metric::{Measure, Metric, Part};
-use super::run::{Run, StrategyResult};
-use super::wording::{conditions, difference, p_value, value};
+use super::run::{Run, StrategyResult, conditions};
+use super::wording::{difference, p_value, value};
 use super::{ONE_BY_ONE, REFERENCE, Report};
 
 const HOW_TO_READ: &str = "\
-How to read it: errors are 0 and map quality is 1 when all is right; final is the value at the end,
-area the mean over the run, * the best; time at changes is spent with a changing cell in view.
+How to read it: errors are 0 and map quality is 1 at best; final is the value at the end, area the
+mean over the run, * the best; time at changes is the share of steps with a changing cell in view.
 ";
 
-/// Which way a column is good.
+/// The meaning of a column.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Error,
@@ -27,7 +27,7 @@ struct Column {
     width: usize,
 }
 
-/// What share of its time a robot had changing cells in view.
+/// The share of the steps with a swept cell in view.
 const CHANGING_SHARE: Measure = Measure { metric: Metric::ChangingShare, part: Part::Final };
 
 /// Above pairs of columns.
@@ -53,7 +53,7 @@ impl Column {
         }
     }
 
-    /// A number per strategy; the best with a star, and what looks like it.
+    /// One cell per strategy; a star marks the best number, and numbers that are printed the same.
     fn cells(&self, strategies: &[StrategyResult]) -> Vec<String> {
         let rivals = strategies.iter().filter(|strategy| strategy.name != REFERENCE);
         let numbers = rivals.map(|strategy| strategy.value(self.measure));
@@ -72,10 +72,10 @@ impl Column {
     }
 }
 
-/// The tables of all runs; where there are many worlds, only those over all of them.
+/// The tables of all runs; with many worlds, only the runs over all worlds.
 pub(super) fn table(report: &Report) -> String {
     if report.runs.is_empty() {
-        return "No trial was finished: there is nothing to report.\n".into();
+        return "No trial was finished.\n".into();
     }
     let worlds = report.runs.iter().map(|run| run.worlds).max().unwrap_or(1);
     let is_short = worlds > ONE_BY_ONE;
@@ -177,7 +177,7 @@ fn difference_cell(comparison: &Comparison, decimals: usize) -> String {
     format!("{mean} ±{half_width} {}", p_value(comparison.p_value))
 }
 
-/// There should be none: told only where there are.
+/// A line on false changes, if there are any.
 fn false_events(run: &Run) -> Option<String> {
     let those = run.strategies.iter().filter(|strategy| strategy.false_change_events > 0);
     let counts: Vec<String> =
@@ -186,7 +186,7 @@ fn false_events(run: &Run) -> Option<String> {
         .then(|| format!("False change events on cells that never change: {}.", counts.join(", ")))
 }
 
-/// Who learned the rates fastest, and whether that may be chance.
+/// The strategy that learned the rates fastest, and whether the difference is significant.
 fn winner(run: &Run) -> Option<String> {
     let area = |strategy: &StrategyResult| strategy.value(Measure::LOG_ERROR_AREA);
     let is_rival = |strategy: &&StrategyResult| strategy.name != REFERENCE && !area(strategy).is_nan();
@@ -195,7 +195,7 @@ fn winner(run: &Run) -> Option<String> {
     let [winner, next, ..] = ranked.as_slice() else { return None };
     let comparison = run.comparison(&winner.name, &next.name, Measure::LOG_ERROR_AREA)?;
     let certainty = match comparison.p_holm {
-        p if p.is_nan() => "one pair says nothing about chance".into(),
+        p if p.is_nan() => "a single pair cannot be tested".into(),
         p if p < 0.05 => format!("significant: {} after Holm's correction", p_value(p)),
         p => format!("not significant: {} after Holm's correction", p_value(p)),
     };

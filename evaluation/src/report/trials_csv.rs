@@ -4,7 +4,7 @@ use super::metric::Metric;
 use super::trial::Trial;
 use std::io::{self, Write};
 
-/// Writes all samples of all trials; a value that is undefined is an empty field.
+/// Writes all samples of all trials; an undefined value is an empty field.
 pub(super) fn write(trials: &[Trial], to: impl Write) -> io::Result<()> {
     let mut file = csv::Writer::from_writer(to);
     let names = Metric::ALL.map(Metric::name);

@@ -1,7 +1,4 @@
-//! Numbers and names as a person reads them, the same in the table, the figures and the verdict.
-
-use super::ReportSettings;
-use super::run::Run;
+//! The format of numbers and names in the table, the figures and the verdict.
 
 /// `12345` as `12,345`.
 pub(super) fn thousands(number: u64) -> String {
@@ -16,7 +13,7 @@ pub(super) fn value(value: f64, decimals: usize) -> String {
     if value.is_finite() { format!("{value:.decimals$}") } else { "-".into() }
 }
 
-/// A difference: always with its sign.
+/// A difference, with its sign.
 pub(super) fn difference(value: f64, decimals: usize) -> String {
     if value.is_finite() { format!("{value:+.decimals$}") } else { "-".into() }
 }
@@ -27,23 +24,5 @@ pub(super) fn p_value(p_value: f64) -> String {
         p if p.is_nan() => "no test".into(),
         p if p < 0.001 => "p < 0.001".into(),
         p => format!("p = {p:.3}"),
-    }
-}
-
-/// What was done: `5 trials of 20,000 steps, estimator two-state, sensor radius 4`.
-pub(super) fn conditions(run: &Run, settings: &ReportSettings) -> String {
-    let (trials, steps) = (trials(run), thousands(settings.steps));
-    let ReportSettings { sensor_radius, interrupted, .. } = settings;
-    let short = if *interrupted { " (interrupted)" } else { "" };
-    format!("{trials} of {steps} steps{short}, estimator {}, sensor radius {sensor_radius}", run.estimator)
-}
-
-/// How many trials of a strategy there are: `5 trials`, or `3 to 5 trials` of an interrupted run.
-fn trials(run: &Run) -> String {
-    let counts = run.strategies.iter().map(|strategy| strategy.trials);
-    match (counts.clone().min().unwrap_or(0), counts.max().unwrap_or(0)) {
-        (1, 1) => "1 trial".into(),
-        (least, most) if least == most => format!("{most} trials"),
-        (least, most) => format!("{least} to {most} trials"),
     }
 }

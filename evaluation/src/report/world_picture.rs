@@ -1,4 +1,4 @@
-//! A grid world as it is drawn beside its curves.
+//! The plan of a grid world, as drawn beside the curves.
 
 use interfaces::Cell;
 use sim::grid::{BlockSpec, GridSpec};
@@ -6,20 +6,20 @@ use sim::grid::{BlockSpec, GridSpec};
 /// The plan of a grid world. Cells are (column, row), rows counted from the bottom.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorldPicture {
-    /// The world's name, as in [`super::Trial::world`].
+    /// The name of the world, as in [`super::Trial::world`].
     pub name: String,
-    /// Which cells are walls; rows from the bottom, all of one length.
+    /// Whether each cell is a wall; rows from the bottom.
     pub walls: Vec<Vec<bool>>,
-    /// What moves: a name and every cell that it is ever on.
+    /// The moving things: the name, and every cell of the path.
     pub things: Vec<(String, Vec<(usize, usize)>)>,
-    /// Where the robot starts.
+    /// The start of the robot.
     pub start: (usize, usize),
-    /// How far its sensor reaches, in cells.
+    /// The range of the sensor, in cells.
     pub sensor_radius: u32,
 }
 
 impl WorldPicture {
-    /// What `world` looks like.
+    /// The plan of `world`.
     pub fn of(world: &GridSpec) -> Self {
         let at = |cell: &Cell| (cell.x as usize, cell.y as usize);
         let block = |block: &BlockSpec| (block.name.clone(), block.path.iter().map(at).collect());

@@ -1,9 +1,7 @@
-//! Many lives in grid worlds: every strategy under every estimator in every world, over and over
-//! with other seeds.
+//! Trials in grid worlds: every strategy with every estimator in every world, repeated with other seeds.
 //!
-//! Trials of the same world and seed are paired: the world's chance is the same whatever the robot
-//! does. Each trial depends on nothing but its own seed, so any number of threads gives the same
-//! results.
+//! Trials with the same world and seed are paired: the random streams of the world do not depend on the
+//! robot. A trial depends only on its own settings, so any number of threads gives the same results.
 
 mod run;
 mod strategy;
@@ -11,52 +9,53 @@ mod strategy;
 pub use run::{TrialSettings, TrialStep, run_trial};
 pub use strategy::TrialStrategy;
 
-use crate::report::Trial;
+use crate::report::{Report, ReportSettings, Trial};
 use agent::AgentSettings;
-use mapper::{Estimator, MapperSettings};
+use interfaces::SettingsError;
+use mapper::{EstimatorChoice, MapperSettings};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use sim::grid::GridSpec;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What is compared, and how.
+/// The trials of a comparison.
 #[derive(Clone, Debug)]
 pub struct Experiment {
     /// The worlds.
     pub worlds: Vec<GridSpec>,
-    /// The ways to estimate rates.
-    pub estimators: Vec<Estimator>,
-    /// The ways to choose goals.
+    /// The estimators of rates.
+    pub estimators: Vec<EstimatorChoice>,
+    /// The strategies.
     pub strategies: Vec<TrialStrategy>,
-    /// Trials of each combination.
+    /// The number of trials of each combination.
     pub trials: u64,
     /// The seed of the first trial; the others count up from it.
     pub seed: u64,
-    /// Steps of each trial, at least one.
+    /// The length of each trial, in steps; at least one.
     pub steps: u64,
-    /// How evidence becomes a map; the estimator here is not used.
+    /// The settings of the mapper; the estimator in it is not used.
     pub mapper: MapperSettings,
-    /// The agent's settings.
+    /// The settings of the agent.
     pub agent: AgentSettings,
-    /// The controller's settings.
+    /// The settings of the controller.
     pub controller: controller::Settings,
 }
 
-/// One trial: which world, estimator and strategy (by their places in the experiment), and its seed.
+/// One trial: the world, the estimator and the strategy by their indices in the experiment, and the seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Job {
-    /// The place of the world.
+    /// The index of the world.
     pub world: usize,
-    /// The place of the estimator.
+    /// The index of the estimator.
     pub estimator: usize,
-    /// The place of the strategy.
+    /// The index of the strategy.
     pub strategy: usize,
     /// The seed of the trial.
     pub seed: u64,
 }
 
 impl Experiment {
-    /// All trials. Those that are compared with each other come next to each other, so that what is
-    /// finished when a person interrupts can be compared.
+    /// All trials. Trials that are compared with each other are neighbors, so that the trials that are
+    /// finished at an interruption can be compared.
     pub fn jobs(&self) -> Vec<Job> {
         let mut jobs = Vec::new();
         for trial in 0..self.trials {
@@ -72,40 +71,59 @@ impl Experiment {
         jobs
     }
 
-    /// Runs trials on the threads of the present rayon pool, and gives them in the order of `jobs`.
-    /// `watch` is told of every finished one, from any thread; trials that have not ended when
-    /// `is_cancelled` is set are left out.
+    /// Runs trials on the threads of the present rayon pool. The results are in the order of `jobs`.
+    /// `observe` is called with every finished trial, from any thread. When `is_canceled` is set, trials that
+    /// have not ended are left out.
     ///
     /// # Errors
     ///
-    /// When settings make no sense.
+    /// When a setting is out of range.
     pub fn run(
         &self,
         jobs: Vec<Job>,
-        is_cancelled: &AtomicBool,
-        watch: impl Fn(&Trial) + Sync,
+        is_canceled: &AtomicBool,
+        observe: impl Fn(&Trial) + Sync,
     ) -> Result<Vec<Trial>, SettingsError> {
-        let trial = |job| -> Result<Option<Trial>, SettingsError> {
-            if is_cancelled.load(Ordering::Relaxed) {
+        let goes_on = || !is_canceled.load(Ordering::Relaxed);
+        let run = |job| -> Result<Option<Trial>, SettingsError> {
+            if !goes_on() {
                 return Ok(None);
             }
-            let trial = self.trial(job, is_cancelled)?;
-            trial.iter().for_each(&watch);
+            let trial = run_trial(&self.trial(job), |_| goes_on())?;
+            trial.iter().for_each(&observe);
             Ok(trial)
         };
-        let trials: Result<Vec<Option<Trial>>, SettingsError> = jobs.into_par_iter().map(trial).collect();
+        let trials: Result<Vec<Option<Trial>>, SettingsError> = jobs.into_par_iter().map(run).collect();
         Ok(trials?.into_iter().flatten().collect())
     }
 
-    /// One trial; `None` if it was cancelled.
-    fn trial(&self, job: Job, is_cancelled: &AtomicBool) -> Result<Option<Trial>, SettingsError> {
-        let life = self.life(job);
-        run_trial(&life, |_| !is_cancelled.load(Ordering::Relaxed))
+    /// The report of all trials, with the default rayon pool.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn report(&self) -> Result<Report, SettingsError> {
+        let trials = self.run(self.jobs(), &AtomicBool::new(false), |_| ())?;
+        Ok(Report::new(self.report_settings(), trials))
     }
 
-    /// What one trial is made of.
-    pub fn life(&self, job: Job) -> TrialSettings<'_> {
-        let mapper = MapperSettings { estimator: self.estimators[job.estimator], ..self.mapper.clone() };
+    /// The settings of the report, without version and arguments.
+    pub fn report_settings(&self) -> ReportSettings {
+        ReportSettings {
+            steps: self.steps,
+            trials: self.trials,
+            sensor_radius: self.worlds.first().map_or(0, |world| world.sensor_radius),
+            worlds: self.worlds.iter().map(|world| world.name.clone()).collect(),
+            estimators: self.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
+            strategies: self.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
+            ..ReportSettings::default()
+        }
+    }
+
+    /// The settings of one trial.
+    pub fn trial(&self, job: Job) -> TrialSettings<'_> {
+        let estimator = self.estimators[job.estimator].clone();
+        let mapper = MapperSettings { estimator, ..self.mapper.clone() };
         TrialSettings {
             world: &self.worlds[job.world],
             strategy: self.strategies[job.strategy].clone(),
@@ -116,15 +134,4 @@ impl Experiment {
             controller: self.controller,
         }
     }
-}
-
-/// A setting that contradicts itself or another.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SettingsError {
-    /// One of the mapper's.
-    #[error(transparent)]
-    Mapper(#[from] mapper::SettingsError),
-    /// One of the agent's or the controller's.
-    #[error(transparent)]
-    Other(#[from] interfaces::SettingsError),
 }

@@ -1,14 +1,14 @@
-use super::{SettingsError, TrialStrategy};
+use super::TrialStrategy;
 use crate::map_hash::map_hash;
 use crate::metrics::{ChangingAccuracy, Prediction, map_scores, rate_scores};
 use crate::oracle::Oracle;
 use crate::report::{Sample, Trial};
 use agent::{Agent, AgentSettings, Features};
 use controller::{CellDrive, Controller};
-use interfaces::{CellReading, GroundTruth, Purpose, RandomStream, Step};
+use interfaces::{CellReading, GroundTruth, Purpose, RandomStream, SettingsError, Step};
 use mapper::{Mapper, MapperSettings, ReadingError};
 use robot::{Autonomous, Belief, GoalSelector, Pilot, explore};
-use sim::grid::{GridSpec, GridTruth, GridWorld};
+use sim::grid::{GridGroundTruth, GridSpec, GridWorld};
 use std::ops::ControlFlow;
 
 /// The number of samples of a trial.
@@ -78,7 +78,7 @@ pub fn run_trial(
 fn run<G: GoalSelector>(
     trial: &TrialSettings,
     mut pilot: Autonomous<G, CellDrive>,
-    reveal: impl Fn(&mut G, &GridTruth),
+    reveal: impl Fn(&mut G, &GridGroundTruth),
     observe: &mut impl FnMut(TrialStep) -> bool,
 ) -> Result<Option<Trial>, SettingsError> {
     let mut world = GridWorld::new(trial.world, trial.seed);
@@ -149,19 +149,19 @@ struct Measured {
 }
 
 impl Measured {
-    fn count(&mut self, truth: &GridTruth, reading: &CellReading) {
+    fn count(&mut self, truth: &GridGroundTruth, reading: &CellReading) {
         let is_swept =
             |&(cell, _): &(_, bool)| truth.frame().index(cell).is_some_and(|index| truth.is_swept(index));
         self.steps += 1;
         self.steps_near_changes += u64::from(reading.cells.iter().any(is_swept));
     }
 
-    fn compare(&mut self, mapper: &Mapper, truth: &GridTruth) {
+    fn compare(&mut self, mapper: &Mapper, truth: &GridGroundTruth) {
         self.accuracy.sample(mapper, truth);
         self.prediction.sample(mapper, truth);
     }
 
-    fn sample(&mut self, step: u64, mapper: &Mapper, truth: &GridTruth) -> Sample {
+    fn sample(&mut self, step: u64, mapper: &Mapper, truth: &GridGroundTruth) -> Sample {
         let (rates, map) = (rate_scores(mapper, truth), map_scores(mapper, truth));
         let brier = std::mem::take(&mut self.prediction).scores();
         let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);

@@ -3,14 +3,14 @@
 use crate::house::{House, Thing, rectangle};
 use crate::observed::{Observed, assert_sound};
 use interfaces::{CellState, GridFrame, LaserReading, Scan, ScanError, Twist};
-use mapper::{Mapper, MapperSettings, OccupancyModel, ReadingError, SteadySettings};
+use mapper::{Mapper, MapperSettings, OccupancyChoice, ReadingError, SurfaceGridSettings};
 use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 const BEAMS: usize = 90;
 
-fn mapper(occupancy: OccupancyModel) -> Mapper {
+fn mapper(occupancy: OccupancyChoice) -> Mapper {
     let frame = GridFrame::new(Point2::origin(), 0.1, 40, 40).unwrap();
     Mapper::new(&MapperSettings { occupancy, ..MapperSettings::default() }, frame).unwrap()
 }
@@ -39,7 +39,7 @@ fn edited(edit: impl FnOnce(&mut LaserReading)) -> LaserReading {
 }
 
 /// A mapper that has seen the room.
-fn learned(occupancy: OccupancyModel) -> Mapper {
+fn learned(occupancy: OccupancyChoice) -> Mapper {
     let mut mapper = mapper(occupancy);
     for scan in 0..20 {
         mapper.update(&reading(f64::from(scan) * 0.1)).unwrap();
@@ -84,7 +84,7 @@ fn nonsense_is_refused_and_changes_nothing() {
         (edited(|r| r.scan.range_min_m = -1.0), "limits"),
         (edited(|r| r.scan.range_min_m = f64::NAN), "limits"),
     ];
-    for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
+    for occupancy in [OccupancyChoice::steady(), OccupancyChoice::naive()] {
         let mut mapper = learned(occupancy);
         let before = inside(&mapper);
         for (number, (reading, why)) in cases.iter().enumerate() {
@@ -104,7 +104,7 @@ fn nonsense_is_refused_and_changes_nothing() {
 
 /// The cells that a beam along +x from (2, 2) shows, as a picture: from the sensor to the border.
 fn along_first_beam(range_m: f32) -> String {
-    let mut mapper = mapper(OccupancyModel::Steady);
+    let mut mapper = mapper(OccupancyChoice::steady());
     for scan in 0..30 {
         let mut reading = reading(f64::from(scan) * 0.1);
         reading.pose = interfaces::pose(2.05, 2.05, 0.0);
@@ -133,7 +133,7 @@ fn ranges_mean_what_rep_117_says() {
 
 #[test]
 fn a_reading_may_repeat_the_last_time() {
-    let mut mapper = learned(OccupancyModel::Steady);
+    let mut mapper = learned(OccupancyChoice::steady());
     mapper.update(&reading(mapper.time())).unwrap();
     assert_sound(&mapper);
 }
@@ -183,9 +183,9 @@ fn odd_scans_are_taken() {
             }),
         ),
     ];
-    for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
+    for occupancy in [OccupancyChoice::steady(), OccupancyChoice::naive()] {
         for (name, edit) in &cases {
-            let mut mapper = learned(occupancy);
+            let mut mapper = learned(occupancy.clone());
             for scan in 0..30 {
                 let mut reading = reading(3.0 + f64::from(scan) * 0.1);
                 edit(&mut reading);
@@ -222,7 +222,7 @@ fn a_laser_outside_of_the_grid_sees_into_it() {
 
 #[test]
 fn settings_that_contradict_are_refused() {
-    let with = |edit: fn(&mut SteadySettings)| {
+    let with = |edit: fn(&mut SurfaceGridSettings)| {
         let mut settings = MapperSettings::default();
         edit(&mut settings.steady);
         let frame = GridFrame::new(Point2::origin(), 0.1, 4, 4).unwrap();
@@ -242,7 +242,7 @@ fn settings_that_contradict_are_refused() {
 /// Every setting at its limits, in a house where a box comes and goes.
 #[test]
 fn lawful_settings_are_lived_with() {
-    let edits: [fn(&mut SteadySettings); 9] = [
+    let edits: [fn(&mut SurfaceGridSettings); 9] = [
         |s| s.range_noise_std_m = 0.0,
         |s| s.surface_depth_m = 0.0,
         |s| (s.range_noise_std_m, s.surface_depth_m) = (0.5, 0.5),
@@ -284,9 +284,9 @@ proptest! {
             (prop::collection::vec(prop_oneof![any::<u32>().prop_map(f32::from_bits), 0.0..6.0f32], 0..=BEAMS),
              -1.0..5.0f64, -1.0..5.0f64, -PI..PI, any::<bool>()),
             1..12),
-        occupancy in prop::sample::select(vec![OccupancyModel::Steady, OccupancyModel::Naive]),
+        occupancy in prop::sample::select(vec![OccupancyChoice::steady(), OccupancyChoice::naive()]),
     ) {
-        let mut mappers = [mapper(occupancy), mapper(occupancy)];
+        let mut mappers = [mapper(occupancy.clone()), mapper(occupancy)];
         for (number, (ranges_m, x_m, y_m, heading_rad, repeated)) in scans.into_iter().enumerate() {
             let mut reading = reading(number as f64 * 0.1);
             reading.scan.range_min_m = 0.0;

@@ -15,6 +15,11 @@ pub(crate) struct ObservedCell {
     figures: [u64; 7],
 }
 
+/// The sum of all change probabilities, and the longest recency.
+pub(crate) fn features(mapper: &mut Mapper) -> [f64; 2] {
+    [mapper.sum_change_probability(), mapper.max_recency()]
+}
+
 /// A mapper as its readers see it; figures are compared bit by bit.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Observed {
@@ -51,8 +56,7 @@ impl Observed {
             ]
             .map(f64::to_bits),
         };
-        let mut again = mapper.clone();
-        let (p, r) = (again.sum_change_probability(), again.max_recency());
+        let [p, r] = features(&mut mapper.clone());
         Self {
             cells: (0..mapper.frame().len()).map(cell).collect(),
             transitions: mapper.transitions().to_vec(),
@@ -99,8 +103,7 @@ pub(crate) fn assert_sound(mapper: &Mapper) {
         let recency = mapper.recency(index);
         assert!(recency.is_finite() && recency >= 0.0, "recency {recency} of {seen:?}");
     }
-    let mut again = mapper.clone();
-    let (p, r) = (again.sum_change_probability(), again.max_recency());
+    let [p, r] = features(&mut mapper.clone());
     assert!((0.0..=mapper.frame().len() as f64).contains(&p), "p = {p}");
     assert!(r.is_finite() && r >= 0.0, "r = {r}");
 }

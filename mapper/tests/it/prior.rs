@@ -3,7 +3,7 @@
 use crate::house::{House, Thing, rectangle};
 use crate::observed::{assert_sound, changes};
 use interfaces::{CellState, Event, Grid};
-use mapper::{Mapper, MapperSettings, OccupancyModel};
+use mapper::{Mapper, MapperSettings, OccupancyChoice};
 
 /// A house as it was, with a box that is gone by now and without one that has come.
 fn prior(house: &House) -> Grid<CellState> {
@@ -21,7 +21,7 @@ fn house() -> House {
 #[test]
 fn the_map_starts_as_given() {
     let house = house();
-    for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
+    for occupancy in [OccupancyChoice::steady(), OccupancyChoice::naive()] {
         let settings = MapperSettings { occupancy, ..MapperSettings::default() };
         let mapper = Mapper::with_prior(&settings, prior(&house)).unwrap();
         assert_eq!(mapper.states(), &prior(&house));

@@ -3,7 +3,7 @@
 use crate::house::{House, Thing, rectangle};
 use crate::observed::changes;
 use interfaces::CellState;
-use mapper::{Mapper, MapperSettings, SteadySettings};
+use mapper::{Mapper, MapperSettings, SurfaceGridSettings};
 use nalgebra::{Isometry2, Point2};
 
 const PERIOD_S: f64 = 0.1;
@@ -128,7 +128,7 @@ fn cells_are_free_again_behind_a_disc_that_passes_along_a_wall() {
 fn a_single_scan_of_noise_changes_nothing() {
     let mut house = House::new(0.1, 0.0, 0.0, 360, 2);
     let mut wild = House::new(0.1, 0.0, 1.0, 360, 9);
-    let steady = SteadySettings { hits_to_block_in_open: 2, ..SteadySettings::default() };
+    let steady = SurfaceGridSettings { hits_to_block_in_open: 2, ..SurfaceGridSettings::default() };
     let settings = MapperSettings { steady, ..MapperSettings::default() };
     let mut mapper = Mapper::new(&settings, house.frame).unwrap();
     for scan in 0..600 {

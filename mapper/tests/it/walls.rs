@@ -3,7 +3,7 @@
 use crate::house::House;
 use crate::observed::{Observed, assert_sound, changes};
 use interfaces::{CellState, LaserReading};
-use mapper::{Mapper, MapperSettings, OccupancyModel};
+use mapper::{Mapper, MapperSettings, OccupancyChoice};
 
 const SCANS: u32 = 1500;
 
@@ -14,7 +14,7 @@ fn tour(house: &mut House) -> Vec<LaserReading> {
 }
 
 /// The mapper after all readings, and how many changes of known cells it reported.
-fn learn(house: &House, readings: &[LaserReading], occupancy: OccupancyModel) -> (Mapper, usize) {
+fn learn(house: &House, readings: &[LaserReading], occupancy: OccupancyChoice) -> (Mapper, usize) {
     let settings = MapperSettings { occupancy, ..MapperSettings::default() };
     let mut mapper = Mapper::new(&settings, house.frame).unwrap();
     let mut events = 0;
@@ -28,7 +28,7 @@ fn learn(house: &House, readings: &[LaserReading], occupancy: OccupancyModel) ->
 
 fn false_changes(house: &House, readings: &[LaserReading]) -> (usize, usize) {
     let [steady, naive] =
-        [OccupancyModel::Steady, OccupancyModel::Naive].map(|model| learn(house, readings, model).1);
+        [OccupancyChoice::steady(), OccupancyChoice::naive()].map(|model| learn(house, readings, model).1);
     assert!(naive > 1000, "the same scans make other maps flicker, or this tests nothing: {naive}");
     (steady, naive)
 }
@@ -63,7 +63,7 @@ fn turned_walls_and_noise_make_hardly_any_change() {
 #[test]
 fn the_map_is_the_true_grid() {
     let house = House::new(0.1, 0.0, 0.0, 360, 1);
-    let (mapper, _) = learn(&house, &tour(&mut house.clone()), OccupancyModel::Steady);
+    let (mapper, _) = learn(&house, &tour(&mut house.clone()), OccupancyChoice::steady());
     let states = mapper.states();
     let (mut wrong, mut unknown) = (Vec::new(), Vec::new());
     for index in 0..house.frame.len() {
@@ -86,13 +86,13 @@ fn the_map_is_the_true_grid() {
 fn the_same_readings_make_the_same_mapper() {
     let mut house = House::new(0.1, 10.0, 0.01, 360, 4);
     let readings = &tour(&mut house)[..300];
-    for occupancy in [OccupancyModel::Steady, OccupancyModel::Naive] {
-        let [first, second] = [(); 2].map(|()| Observed::of(&learn(&house, readings, occupancy).0));
+    for occupancy in [OccupancyChoice::steady(), OccupancyChoice::naive()] {
+        let [first, second] = [(); 2].map(|()| Observed::of(&learn(&house, readings, occupancy.clone()).0));
         assert!(first == second);
     }
     let mut other = House::new(0.1, 10.0, 0.01, 360, 5);
     let others = &tour(&mut other)[..300];
-    let [first, second] =
-        [readings, others].map(|readings| Observed::of(&learn(&house, readings, OccupancyModel::Steady).0));
+    let [first, second] = [readings, others]
+        .map(|readings| Observed::of(&learn(&house, readings, OccupancyChoice::steady()).0));
     assert!(first != second, "other noise, other map, or this tests nothing");
 }

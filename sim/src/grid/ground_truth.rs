@@ -77,11 +77,6 @@ impl GridGroundTruth {
         (cell.blocked_before + now) as f64
     }
 
-    /// The cells of all paths, each once and in order.
-    pub fn swept(&self) -> &[usize] {
-        &self.swept
-    }
-
     /// Takes over a step, in which the blocks `moved` from cell to cell. `is_blocked` gives the present state of a
     /// cell.
     pub(super) fn update(&mut self, moved: &[(Cell, Cell)], is_blocked: impl Fn(Cell) -> bool) {

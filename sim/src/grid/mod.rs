@@ -28,6 +28,6 @@ mod visibility;
 mod world;
 
 pub use generate::{GenerateSettings, PathKind};
-pub use ground_truth::{GridGroundTruth, GridGroundTruth as GridTruth};
+pub use ground_truth::GridGroundTruth;
 pub use spec::{BlockSpec, Course, GridSpec};
 pub use world::GridWorld;

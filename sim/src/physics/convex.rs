@@ -3,20 +3,20 @@
 use super::shape::point_segment_m;
 use nalgebra::Point2;
 
-/// How far two convex bodies are apart, m, along the side that parts them best: never more than
-/// their distance, and negative if they overlap.
+/// The gap between two convex bodies, m, across the side that separates them best: at most their distance, and
+/// negative if they overlap.
 pub fn gap_m(a: &[Point2<f64>], b: &[Point2<f64>]) -> f64 {
     beyond_m(a, b).max(beyond_m(b, a))
 }
 
-/// How far a convex body lies outside of a disc, m; negative if they overlap.
+/// The gap between a convex body and a disc, m; negative if they overlap.
 pub fn disc_gap_m(body: &[Point2<f64>], center: &Point2<f64>, radius_m: f64) -> f64 {
     let inside_m = beyond_m(body, &[*center]);
     let border_m = sides(body).map(|(from, to)| point_segment_m(center, from, to));
     if inside_m < 0.0 { inside_m - radius_m } else { border_m.fold(f64::INFINITY, f64::min) - radius_m }
 }
 
-/// How far all of `points` lie outside of that side of `body` of which they lie farthest, m.
+/// The largest distance, over the sides of `body`, by which all `points` lie outside of the side, m.
 fn beyond_m(body: &[Point2<f64>], points: &[Point2<f64>]) -> f64 {
     let outside = sides(body).map(|(from, to)| {
         let along = (to - from).normalize();

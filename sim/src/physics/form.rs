@@ -1,14 +1,14 @@
 use super::convex;
 use nalgebra::{Isometry2, Point2};
 
-/// The body of a robot somewhere.
+/// The outline of a robot at a pose.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Form {
     /// A disc.
     Disc {
-        /// Its middle, m.
+        /// The centre, m.
         center: Point2<f64>,
-        /// Its radius, m.
+        /// The radius, m.
         radius_m: f64,
     },
     /// A convex body by its corners, counter-clockwise, m.
@@ -16,8 +16,8 @@ pub enum Form {
 }
 
 impl Form {
-    /// The body of a robot at `pose`: a disc of `radius_m` without corners, else with these, in
-    /// its own frame.
+    /// The outline of a robot at `pose`: a polygon with `corners` in the frame of the robot, or a disc of `radius_m`
+    /// if there are no corners.
     pub fn new(corners: &[Point2<f64>], radius_m: f64, pose: &Isometry2<f64>) -> Self {
         if corners.is_empty() {
             return Self::Disc { center: pose.translation.vector.into(), radius_m };
@@ -25,7 +25,7 @@ impl Form {
         Self::Convex(corners.iter().map(|corner| pose * corner).collect())
     }
 
-    /// How far it is from a convex body, m; negative if they overlap.
+    /// The gap to a convex body, m; negative if they overlap.
     pub fn gap_m(&self, body: &[Point2<f64>]) -> f64 {
         match self {
             Self::Disc { center, radius_m } => convex::disc_gap_m(body, center, *radius_m),
@@ -33,7 +33,7 @@ impl Form {
         }
     }
 
-    /// How far it is from a point, m; negative inside.
+    /// The distance to a point, m; negative inside.
     pub fn gap_m_to(&self, point: &Point2<f64>) -> f64 {
         match self {
             Self::Disc { center, radius_m } => (point - center).norm() - radius_m,
@@ -41,7 +41,7 @@ impl Form {
         }
     }
 
-    /// How far it is from another robot's body, m; negative if they overlap.
+    /// The gap to the outline of another robot, m; negative if they overlap.
     pub fn apart_m(&self, other: &Self) -> f64 {
         match (self, other) {
             (Self::Disc { center, radius_m }, Self::Disc { center: other, radius_m: other_m }) => {
@@ -51,7 +51,7 @@ impl Form {
         }
     }
 
-    /// The corners of the upright box around it, m.
+    /// The corners of the upright box around the outline, m.
     pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
         match self {
             Self::Disc { center, radius_m } => {

@@ -28,7 +28,7 @@ mod world;
 pub use command::{Acceleration, Command, Velocity};
 pub use fleet::{Controller, Fleet, TeleportError};
 pub use form::Form;
-pub use ground_truth::{PhysicsGroundTruth, PhysicsGroundTruth as Truth};
+pub use ground_truth::PhysicsGroundTruth;
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView};
 pub use robot::RobotView;
 pub use sensors::{Fiducial, SensorReading, SonarReading};

@@ -3,14 +3,14 @@
 use interfaces::rotation;
 use nalgebra::{Isometry2, Point2, Rotation2, Translation2, UnitComplex, Vector2};
 
-/// Bodies closer than this touch, but do not overlap, m. Far above rounding, far below anything
-/// that a laser or a map can tell.
+/// Bodies that overlap by less than this only touch, m. The value is far above rounding, and far below anything
+/// that a laser or a map can resolve.
 pub const TOUCH_M: f64 = 1e-6;
 
-/// A rectangle that lies anywhere: a wall or a box.
+/// A rectangle at any pose: a wall or a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
-    /// The middle, and the direction of the first side, m and rad.
+    /// The centre, and the direction of the first side, m and rad.
     pub pose: Isometry2<f64>,
     /// Half the length of each side, m.
     pub half_m: Vector2<f64>,
@@ -26,18 +26,17 @@ impl Rectangle {
         }
     }
 
-    /// The rectangle of `thickness_m` whose middle line runs from `from` to `to` (m), and ends
-    /// there.
+    /// The rectangle of `thickness_m` whose centre line runs from `from` to `to` (m).
     pub fn along(from: Point2<f64>, to: Point2<f64>, thickness_m: f64) -> Self {
         let (along, middle) = (to - from, nalgebra::center(&from, &to));
         let length_m = along.norm();
-        // Not through an angle: an upright wall stays exactly upright.
+        // Not by way of an angle: an upright wall stays exactly upright.
         let turn = UnitComplex::from_cos_sin_unchecked(along.x / length_m, along.y / length_m);
         let half_m = Vector2::new(length_m, thickness_m) / 2.0;
         Self { pose: Isometry2::from_parts(middle.into(), turn), half_m }
     }
 
-    /// The rectangle with its middle at `center` and sides of `size` (m), turned by `heading_rad`.
+    /// The rectangle with the centre `center` and sides of `size` (m), rotated by `heading_rad`.
     pub fn around(center: Point2<f64>, size: Vector2<f64>, heading_rad: f64) -> Self {
         Self { pose: Isometry2::from_parts(center.into(), rotation(heading_rad)), half_m: size / 2.0 }
     }
@@ -48,15 +47,15 @@ impl Rectangle {
         [(-x, -y), (x, -y), (x, y), (-x, y)].map(|(x, y)| self.pose * Point2::new(x, y))
     }
 
-    /// How far `point` (m) lies outside, m; 0 inside.
+    /// The distance of `point` (m) from the rectangle, m; 0 inside.
     pub fn distance_m(&self, point: &Point2<f64>) -> f64 {
         let local = self.pose.inverse_transform_point(point);
         let outside = |x: f64, half_m: f64| (x.abs() - half_m).max(0.0);
         Vector2::new(outside(local.x, self.half_m.x), outside(local.y, self.half_m.y)).norm()
     }
 
-    /// How far away a ray from `origin` along the unit vector `direction` meets the rectangle, m;
-    /// 0 from inside, `None` if it does not.
+    /// The range at which a ray from `origin` along the unit vector `direction` hits the rectangle, m; 0 from inside,
+    /// `None` for a miss.
     pub fn ray_m(&self, origin: &Point2<f64>, direction: &Vector2<f64>) -> Option<f64> {
         let from = self.pose.inverse_transform_point(origin);
         let along = self.pose.inverse_transform_vector(direction);
@@ -75,7 +74,7 @@ impl Rectangle {
         (enter_m <= leave_m).then_some(enter_m)
     }
 
-    /// How far the segment from `a` to `b` (m) keeps from the rectangle, m; 0 if it enters.
+    /// The distance of the segment from `a` to `b` (m) from the rectangle, m; 0 if the segment enters.
     pub fn segment_distance_m(&self, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
         let corners = self.corners();
         let sides = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
@@ -100,17 +99,17 @@ impl Rectangle {
         })
     }
 
-    /// The same rectangle somewhere else (m).
+    /// The rectangle moved by a vector, m.
     pub fn moved(&self, by_m: Vector2<f64>) -> Self {
         Self { pose: Translation2::from(by_m) * self.pose, half_m: self.half_m }
     }
 
-    /// The same rectangle after the world has turned about `middle` (m).
+    /// The rectangle after a rotation of the world about `middle` (m).
     pub fn turned(&self, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Self {
         Self { pose: turned(&self.pose, turn, middle), half_m: self.half_m }
     }
 
-    /// The corners of the upright box around it, m.
+    /// The corners of the upright box around the rectangle, m.
     pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
         let turn = Rotation2::from(self.pose.rotation).into_inner().abs();
         let (middle, reach) = (Point2::from(self.pose.translation.vector), turn * self.half_m);
@@ -118,13 +117,13 @@ impl Rectangle {
     }
 }
 
-/// The same pose after the world has turned about `middle` (m).
+/// The pose after a rotation of the world about `middle` (m).
 pub fn turned(pose: &Isometry2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Isometry2<f64> {
     let at = turned_point(&pose.translation.vector.into(), turn, middle);
     Isometry2::from_parts(Translation2::from(at), turn * pose.rotation)
 }
 
-/// The same point after the world has turned about `middle` (m).
+/// The point after a rotation of the world about `middle` (m).
 pub fn turned_point(point: &Point2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Point2<f64> {
     middle + turn * (point - middle)
 }
@@ -137,7 +136,7 @@ pub fn point_segment_m(point: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) ->
     (to - along * share).norm()
 }
 
-/// Whether two segments cross each other properly.
+/// Whether two segments cross each other in their interiors.
 fn crosses(a: &Point2<f64>, b: &Point2<f64>, p: &Point2<f64>, q: &Point2<f64>) -> bool {
     let side = |from: &Point2<f64>, to: &Point2<f64>, point: &Point2<f64>| (to - from).perp(&(point - from));
     side(a, b, p) * side(a, b, q) < 0.0 && side(p, q, a) * side(p, q, b) < 0.0

@@ -117,3 +117,35 @@ pub(super) fn fingerprint(bytes: &[u8]) -> u64 {
     });
     mix(words.fold(0xcbf2_9ce4_8422_2325, mix), bytes.len() as u64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reads a number and a pose from a snapshot.
+    fn restored(snapshot: &[u8]) -> Result<(u64, Isometry2<f64>), SnapshotError> {
+        let (mut number, mut at) = (0, Isometry2::identity());
+        let mut bytes = check(snapshot, 5)?;
+        read(&mut bytes, vec![value(&mut number), pose(&mut at)])?;
+        Ok((number, at))
+    }
+
+    #[test]
+    fn values_come_back_bit_by_bit() {
+        let (mut number, mut at) = (7, interfaces::pose(0.1, -0.2, 0.3));
+        let snapshot = write(5, vec![value(&mut number), pose(&mut at)]);
+        assert_eq!(restored(&snapshot), Ok((number, at)));
+    }
+
+    #[test]
+    fn a_snapshot_with_too_few_values_is_damaged() {
+        let (mut number, mut at) = (u64::MAX, interfaces::pose(0.1, -0.2, 0.3));
+        let whole = write(5, vec![value(&mut number), pose(&mut at)]);
+        for length in 16..whole.len() - 8 {
+            // With the right checksum.
+            let mut cut = whole[..length].to_vec();
+            cut.extend(fingerprint(&cut).to_le_bytes());
+            assert_eq!(restored(&cut), Err(SnapshotError::Damaged), "{length}");
+        }
+    }
+}

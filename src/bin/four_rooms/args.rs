@@ -3,102 +3,105 @@
 use agent::Policy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use curious::recording::Live;
-use mapper::{Estimator, OccupancyModel};
+use mapper::{Choice, Estimator, EstimatorChoice, OccupancyChoice, OccupancyKind};
 use std::path::PathBuf;
+use viewer::recording::Live;
 
-/// A curious robot maps a house that changes, and learns where it changes and how often.
+/// Runs a curious robot in a physics world: it maps a changing building and learns where, and how often, the
+/// building changes.
 ///
-/// Without any option: the paper's four rooms for 20 simulated minutes, driven by the curious
-/// agent. What comes out lies in the folder four_rooms_out: pictures of the maps (figure5.png) and
-/// of the way (trajectory.png), a recording (four_rooms.rrd, open it with `rerun FILE`), the map
-/// in ROS form (map.yaml, map.pgm), the statistics of every cell (cell_statistics.csv) and
-/// summary.json.
+/// Without options, the curious agent explores the paper's four rooms for 20 simulated minutes. The folder
+/// four_rooms_out contains the results: pictures of the maps (figure5.png) and of the trajectories
+/// (trajectory.png), a recording (four_rooms.rrd, open it with `rerun FILE`), the map in ROS format (map.yaml,
+/// map.pgm), the statistics of every cell (cell_statistics.csv), and all results as JSON (summary.json).
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "four_rooms",
     version,
     max_term_width = 100,
-    after_help = "Exit codes: 0 done, 1 the run failed, 2 wrong arguments or input, 130 interrupted (Ctrl-C; \
-                  what was learned so far is written)."
+    after_help = "Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; \
+                  the results so far are written)."
 )]
 pub(crate) struct Args {
-    /// The world: a shipped one by its name (see --list-worlds), a TOML file, or a world of Stage (.world)
-    #[arg(long, value_name = "NAME|FILE", default_value = "four_rooms", help_heading = "What to run")]
+    /// The world: the name of a shipped world (see --list-worlds), a TOML file, or a Stage file (.world)
+    #[arg(long, value_name = "NAME|FILE", default_value = "four_rooms", help_heading = "World")]
     pub(crate) world: String,
 
-    /// List the shipped worlds and end
-    #[arg(long, help_heading = "What to run")]
+    /// List the shipped worlds and exit
+    #[arg(long, help_heading = "World")]
     pub(crate) list_worlds: bool,
 
     /// Start from a known map: a ROS map.yaml with its image
-    #[arg(long, value_name = "MAP.YAML", help_heading = "What to run")]
+    #[arg(long, value_name = "MAP.YAML", help_heading = "World")]
     pub(crate) map: Option<PathBuf>,
 
-    /// The seed of all chance: equal seeds give equal runs, bit for bit
-    #[arg(long, default_value_t = 0, help_heading = "What to run")]
+    /// The seed of all random streams: equal seeds give equal runs, bit for bit
+    #[arg(long, default_value_t = 0, help_heading = "World")]
     pub(crate) seed: u64,
 
-    /// How long to run, in simulated time: seconds, or with a unit as in 90s, 20m, 1h
-    #[arg(long, value_name = "TIME", default_value = "20m", value_parser = duration_s, help_heading = "What to run")]
+    /// The length of the run in simulated time: seconds, or with a unit as in 90s, 20m, 1h
+    #[arg(long, value_name = "TIME", default_value = "20m", value_parser = duration_s, help_heading = "World")]
     pub(crate) duration: f64,
 
-    /// Who drives the curious robot
-    #[arg(long, value_enum, default_value_t = DriveChoice::Agent, help_heading = "Who drives")]
+    /// The pilot of the curious robot
+    #[arg(long, value_enum, default_value_t = DriveChoice::Agent, help_heading = "Pilot")]
     pub(crate) drive: DriveChoice,
 
-    /// The waypoints of --drive tour, a TOML file; by default the shipped tour of the four rooms
-    #[arg(long, value_name = "FILE", help_heading = "Who drives")]
+    /// The waypoints for --drive tour, a TOML file [default: the shipped tour of the four rooms]
+    #[arg(long, value_name = "FILE", help_heading = "Pilot")]
     pub(crate) tour: Option<PathBuf>,
 
-    /// Where the agent goes
-    #[arg(long, default_value_t = Policy::default(), value_parser = strategies(), help_heading = "Who drives")]
+    /// The strategy of the agent
+    #[arg(long, default_value_t = Policy::default(), value_parser = strategies(), help_heading = "Pilot")]
     pub(crate) strategy: Policy,
 
-    /// Times real time; 1 is real time, max as fast as it goes [default: max, under keyboard 1]
-    #[arg(long, value_name = "FACTOR|max", value_parser = speed, help_heading = "Who drives")]
+    /// The speed as a multiple of real time, or max for full speed [default: max, with --drive keyboard 1]
+    #[arg(long, value_name = "FACTOR|max", value_parser = speed, help_heading = "Pilot")]
     pub(crate) speed: Option<f64>,
 
-    /// How rates of change are estimated
-    #[arg(long, default_value = "two-state-gaps", value_parser = estimators(), help_heading = "How to learn")]
-    pub(crate) estimator: Estimator,
+    /// The estimator of the rates of change
+    #[arg(long, default_value = "two-state-gaps", value_parser = mapper_part::<dyn Estimator>(), help_heading = "Mapper")]
+    pub(crate) estimator: EstimatorChoice,
 
-    /// How scans become a map: steady (walls never flicker) or naive (every beam counts, as in the
-    /// paper)
-    #[arg(long, default_value = "steady", value_parser = occupancies(), help_heading = "How to learn")]
-    pub(crate) occupancy: OccupancyModel,
+    /// The occupancy model: steady (static walls never change) or naive (every beam counts, as in the paper)
+    #[arg(long, default_value = "steady", value_parser = mapper_part::<OccupancyKind>(), help_heading = "Mapper")]
+    pub(crate) occupancy: OccupancyChoice,
 
-    /// The folder for everything that comes out
-    #[arg(long, value_name = "DIR", default_value = "four_rooms_out", help_heading = "What comes out")]
+    /// The folder for all results
+    #[arg(long, value_name = "DIR", default_value = "four_rooms_out", help_heading = "Output")]
     pub(crate) out: PathBuf,
 
-    /// The recording, instead of four_rooms.rrd in the output folder
-    #[arg(long, value_name = "FILE", conflicts_with = "no_rrd", help_heading = "What comes out")]
+    /// The file of the recording [default: four_rooms.rrd in the output folder]
+    #[arg(long, value_name = "FILE", conflicts_with = "no_rrd", help_heading = "Output")]
     pub(crate) rrd: Option<PathBuf>,
 
-    /// Make no recording: about twice as fast
-    #[arg(long, help_heading = "What comes out")]
+    /// Do not record: the run is about twice as fast
+    #[arg(long, help_heading = "Output")]
     pub(crate) no_rrd: bool,
 
-    /// Watch live: start the Rerun viewer (pip install rerun-sdk==0.36.3)
-    #[arg(long, help_heading = "What comes out")]
+    /// Write a moving picture of the run, a GIF file
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) gif: Option<PathBuf>,
+
+    /// Show the run live: start the Rerun viewer (pip install rerun-sdk==0.36.3)
+    #[arg(long, help_heading = "Output")]
     pub(crate) view: bool,
 
-    /// Watch live in a viewer that runs already, here or elsewhere
-    #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "127.0.0.1:9876", value_parser = Live::at, help_heading = "What comes out")]
+    /// Show the run live in a viewer that already runs, on this machine or another
+    #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "127.0.0.1:9876", value_parser = Live::at, help_heading = "Output")]
     pub(crate) connect: Option<Live>,
 
-    /// Print nothing but errors
-    #[arg(long, short, help_heading = "What comes out")]
+    /// Print only errors
+    #[arg(long, short, help_heading = "Output")]
     pub(crate) quiet: bool,
 }
 
-/// Who drives the curious robot.
+/// The pilot of the curious robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum DriveChoice {
-    /// The agent: it goes where looking is worth most
+    /// The agent: it goes where an observation is worth most
     Agent,
-    /// You: arrows or WASD drive, space stops, Q ends; best with --view
+    /// The keyboard: arrows or WASD drive, space stops, Q ends the run; best with --view
     Keyboard,
     /// A list of waypoints, see --tour
     Tour,
@@ -119,12 +122,10 @@ fn strategies() -> impl TypedValueParser<Value = Policy> {
     PossibleValuesParser::new(Policy::built_in().iter().map(named)).try_map(|name| name.parse::<Policy>())
 }
 
-fn estimators() -> impl TypedValueParser<Value = Estimator> {
-    one_of(&Estimator::ALL, Estimator::name)
-}
-
-fn occupancies() -> impl TypedValueParser<Value = OccupancyModel> {
-    one_of(&OccupancyModel::ALL, OccupancyModel::name)
+/// A parser of the name of a built-in part of the mapper.
+fn mapper_part<T: mapper::Named + ?Sized>() -> impl TypedValueParser<Value = Choice<T>> {
+    let names: Vec<_> = Choice::<T>::all().iter().map(Choice::name).collect();
+    PossibleValuesParser::new(names).try_map(Choice::try_from)
 }
 
 /// The longest run, s: 1000 hours.

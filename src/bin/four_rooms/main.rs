@@ -1,31 +1,30 @@
-//! Arguments → parts → loop → what comes out.
+//! Arguments → parts → loop → results.
 
 mod args;
 mod output;
 mod parts;
-mod progress;
 
-use agent::Features;
 use anyhow::Context;
 use args::{Args, DriveChoice};
 use clap::Parser;
-use curious::recording::{Live, Recorder, RecordingOptions};
-use curious::show::PhysicsShow;
+use curious::progress::Progress;
 use curious::worlds;
-use evaluation::observer::Observer;
 use evaluation::output::{make_folder, say};
+use evaluation::physics_trial::PhysicsTrial;
 use interfaces::{Reading, Twist};
-use mapper::Mapper;
-use parts::{Failure, Parts};
-use progress::Progress;
-use robot::{Belief, Pilot, explore};
-use sim::physics::PhysicsWorld;
+use parts::{Failure, Parts, input};
+use robot::Pilot;
 use std::io::{stderr, stdout};
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use viewer::pictures::Film;
+use viewer::recording::{Live, Recorder, RecordingOptions};
+use viewer::scene::{Scene, Visible};
+use viewer::show::Show;
+use viewer::view::{Measured, View};
 
 fn main() -> ExitCode {
     let args = Args::parse();
@@ -61,36 +60,26 @@ enum Ended {
 }
 
 fn run(args: &Args) -> Result<Ended, Failure> {
-    let Parts { world, mapper, settings } = Parts::new(args)?;
+    let parts = Parts::new(args)?;
     match args.drive {
-        DriveChoice::Agent => {
-            let pilot = settings.agent(args)?;
-            live(args, world, mapper, pilot, &settings)
-        }
-        DriveChoice::Tour => {
-            let pilot = settings.tour(args)?;
-            live(args, world, mapper, pilot, &settings)
-        }
-        DriveChoice::Keyboard => {
-            let pilot = settings.keyboard()?;
-            live(args, world, mapper, pilot, &settings)
-        }
+        DriveChoice::Agent => explore(args, &parts, parts.agent(args)?),
+        DriveChoice::Tour => explore(args, &parts, parts.tour(args)?),
+        DriveChoice::Keyboard => explore(args, &parts, parts.keyboard()?),
     }
 }
 
-/// Lets the robot live in the world, and writes what came of it.
-fn live(
-    args: &Args,
-    mut world: PhysicsWorld,
-    mut mapper: Mapper,
-    mut pilot: impl Pilot<Command = Twist>,
-    settings: &parts::Settings,
-) -> Result<Ended, Failure> {
+/// Runs the robot in the world, and writes the results.
+fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Result<Ended, Failure> {
+    let Parts { spec, settings, prior } = parts;
+    let trial = PhysicsTrial::new(spec, args.seed, &settings.mapper, prior.clone(), pilot);
+    let mut trial = trial.context("cannot make the mapper").map_err(input)?;
     make_folder(&args.out).map_err(anyhow::Error::from)?;
-    let recorder = recorder(args, &world)?;
-    let (mut observer, mut show) = (Observer::default(), PhysicsShow::new(&world, recorder));
-    let told = show.live_problem();
-    told.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
+    let scene = || trial.world.scene();
+    let recorder = recorder(args, scene())?;
+    let film = args.gif.is_some().then(|| Film::new(scene(), args.duration));
+    let mut show = Show::new(scene(), recorder, film);
+    let reported = show.live_problem().map(str::to_owned);
+    reported.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
     let is_interrupted = Arc::new(AtomicBool::new(false));
     let flag = is_interrupted.clone();
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
@@ -100,43 +89,47 @@ fn live(
         say(stderr(), "arrows or WASD drive, space stops, Q ends the run\r");
     }
     let speed = args.speed.unwrap_or(if is_keyboard { 1.0 } else { f64::INFINITY });
-    let mut progress = Progress::new(args.duration, args.quiet, is_keyboard);
+    let mut progress = Progress::of_time(args.duration, args.quiet, is_keyboard);
     let mut ended = Ended::Duration;
     let start = Instant::now();
-    explore(&mut world, &mut mapper, &mut pilot, |world, reading, belief, pilot| -> anyhow::Result<_> {
-        observer.observe(world, reading, belief, pilot);
-        show.show(world, belief, pilot, &observer)?;
-        progress.show(reading.time(), observer.scores());
+    trial.run_with(|world, reading, belief, pilot, observer| -> anyhow::Result<_> {
+        progress.show(reading.time(), observer.scores().map(|scores| scores.coverage));
+        let end = match () {
+            () if is_interrupted.load(Ordering::Relaxed) => Some(Ended::Interrupted),
+            () if pilot.is_done() => Some(Ended::Pilot),
+            () if reading.time() >= args.duration => Some(Ended::Duration),
+            () => None,
+        };
+        let measured =
+            Measured { scores: observer.scores(), rate_errors: None, messages: observer.messages() };
+        show.add(&View::new(world, reading, belief, pilot, measured), end.is_some())?;
+        if let Some(end) = end {
+            ended = end;
+            return Ok(ControlFlow::Break(()));
+        }
         if speed.is_finite() {
             let due = Duration::from_secs_f64(reading.time() / speed);
             std::thread::sleep(due.saturating_sub(start.elapsed()));
         }
-        ended = match () {
-            () if is_interrupted.load(Ordering::Relaxed) => Ended::Interrupted,
-            () if pilot.is_done() => Ended::Pilot,
-            () if reading.time() >= args.duration => Ended::Duration,
-            () => return Ok(ControlFlow::Continue(())),
-        };
-        Ok(ControlFlow::Break(()))
+        Ok(ControlFlow::Continue(()))
     })?;
     let wall_s = start.elapsed().as_secs_f64();
     progress.finish();
-    if let Some(problem) = show.live_problem().filter(|problem| Some(problem) != told.as_ref()) {
+    if let Some(problem) = show.live_problem().filter(|problem| Some(*problem) != reported.as_deref()) {
         say(stderr(), format_args!("note: {problem}"));
     }
 
-    let belief = Belief { pose: world.true_pose(), features: Features::of(&mut mapper), mapper: &mapper };
-    show.finish(&world, &belief, &pilot, &observer).map_err(anyhow::Error::from)?;
-    let summary = output::summary(args, settings, &world, &mapper, &pilot, &observer, ended, wall_s);
-    drop(pilot); // gives the terminal back before anything is printed
-    output::write(&args.out, &world, &mapper, &show, &observer, &summary)?;
+    let summary = output::summary(args, settings, &trial, ended, wall_s);
+    let PhysicsTrial { mapper, pilot, observer, .. } = trial;
+    drop(pilot); // restores the terminal before anything is printed
+    output::write(&args.out, args.gif.as_deref(), &mapper, show, &observer, &summary)?;
     if !args.quiet {
         say(stdout(), format_args!("{summary}\n  files     {}", args.out.display()));
     }
     Ok(ended)
 }
 
-fn recorder(args: &Args, world: &PhysicsWorld) -> Result<Option<Recorder>, Failure> {
+fn recorder(args: &Args, scene: Scene) -> Result<Option<Recorder>, Failure> {
     let mut live = Vec::from_iter(args.connect.clone());
     live.extend(args.view.then_some(Live::Spawn));
     let file = (!args.no_rrd).then(|| args.rrd.clone().unwrap_or_else(|| args.out.join("four_rooms.rrd")));
@@ -144,6 +137,6 @@ fn recorder(args: &Args, world: &PhysicsWorld) -> Result<Option<Recorder>, Failu
         return Ok(None);
     }
     let options = RecordingOptions { file, live, ..RecordingOptions::default() };
-    let recorder = Recorder::new(&options, PhysicsShow::scene(world)).map_err(anyhow::Error::from)?;
+    let recorder = Recorder::new(&options, scene).map_err(anyhow::Error::from)?;
     Ok(Some(recorder))
 }

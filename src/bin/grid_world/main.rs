@@ -1,26 +1,26 @@
 //! Arguments → trials → report.
 
 mod args;
-mod progress;
 
 use anyhow::{Context, bail};
 use args::Args;
 use clap::Parser;
 use controller::CellDrive;
-use curious::recording::{Recorder, RecordingError, RecordingOptions};
-use curious::show::{Recorded, record, scene};
+use curious::progress::TrialProgress;
 use curious::worlds;
 use evaluation::output::{make_folder, say, write_file};
 use evaluation::report::{Report, ReportSettings, Trial, WorldPicture};
-use evaluation::trials::{Experiment, SettingsError};
-use mapper::{Estimator, MapperSettings};
-use progress::Progress;
+use evaluation::trials::Experiment;
+use interfaces::SettingsError;
+use mapper::{EstimatorChoice, MapperSettings, Paper};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::collections::BTreeSet;
 use std::io::{stderr, stdout};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use viewer::recording::{Recorder, RecordingError, RecordingOptions};
+use viewer::trial::{Recorded, record};
 
 fn main() -> ExitCode {
     let args = Args::parse();
@@ -49,11 +49,11 @@ fn main() -> ExitCode {
     }
 }
 
-/// What the arguments ask for.
+/// The experiment that the arguments describe.
 fn experiment(args: &Args) -> anyhow::Result<Experiment> {
     let mut estimators = args.estimator.clone();
     if estimators.is_empty() {
-        estimators = vec![Estimator::Paper, Estimator::default()];
+        estimators = vec![Paper.into(), EstimatorChoice::default()];
     }
     let mut controller = CellDrive::settings();
     controller.exploration.max_steps = args.max_steps;
@@ -70,7 +70,7 @@ fn experiment(args: &Args) -> anyhow::Result<Experiment> {
     })
 }
 
-/// The worlds that were named, then those that are made; with what the arguments change in all.
+/// The named worlds, then the generated worlds, with the changes that the arguments ask for.
 fn worlds(args: &Args) -> anyhow::Result<Vec<GridSpec>> {
     let mut names: Vec<&str> = args.world.iter().map(String::as_str).collect();
     if names.is_empty() && args.generate.is_none() {
@@ -78,11 +78,13 @@ fn worlds(args: &Args) -> anyhow::Result<Vec<GridSpec>> {
     }
     let mut worlds = distinct(names).into_iter().map(worlds::load_grid).collect::<Result<Vec<_>, _>>()?;
     let settings = GenerateSettings::default();
-    let made = 0..args.generate.unwrap_or(0);
-    worlds.extend(made.map(|number| GridSpec::generate(&settings, args.seed.wrapping_add(number))));
+    let generated = 0..args.generate.unwrap_or(0);
+    worlds.extend(generated.map(|number| GridSpec::generate(&settings, args.seed.wrapping_add(number))));
     let mut names = BTreeSet::new();
     if let Some(twin) = worlds.iter().map(|world| &world.name).find(|name| !names.insert(*name)) {
-        bail!("two worlds are called `{twin}`: give each a name of its own, by which results are told");
+        bail!(
+            "two worlds have the name `{twin}`: results are listed by name, so give each world its own name"
+        );
     }
     for world in &mut worlds {
         for warning in world.warnings().iter().filter(|_| !args.quiet) {
@@ -92,15 +94,15 @@ fn worlds(args: &Args) -> anyhow::Result<Vec<GridSpec>> {
         if let Some(radius) = args.sensor_radius {
             changed = changed.with_sensor_radius(radius);
         }
-        if let Some(chance) = args.stochastic {
-            changed = changed.with_probabilities(chance, chance);
+        if let Some(probability) = args.stochastic {
+            changed = changed.with_probabilities(probability, probability);
         }
         *world = changed;
     }
     Ok(worlds)
 }
 
-/// Each value once, where it first comes.
+/// Every value once, in the order of first occurrence.
 fn distinct<T: PartialEq>(values: Vec<T>) -> Vec<T> {
     let mut distinct = Vec::new();
     for value in values {
@@ -111,48 +113,49 @@ fn distinct<T: PartialEq>(values: Vec<T>) -> Vec<T> {
     distinct
 }
 
-/// Runs the trials, the first of them with a recording if one is asked for. Returns also why not all of
-/// that one is recorded, if so: no trial is lost for it.
+/// Runs the trials, the first one with a recording if `--rrd` is given. A failure of the recording is
+/// returned beside the trials: no trial is lost.
 fn trials(
     args: &Args,
     experiment: &Experiment,
-    is_cancelled: &AtomicBool,
+    is_canceled: &AtomicBool,
 ) -> anyhow::Result<(Vec<Trial>, Option<RecordingError>)> {
-    let threads = usize::from(args.threads.unwrap_or(0)); // 0: as many as there are cores
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot make threads")?;
+    let threads = usize::from(args.threads.unwrap_or(0)); // 0: the number of cores
+    let pool =
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads")?;
     let mut jobs = experiment.jobs();
-    let progress = Progress::new(jobs.len(), args.quiet);
+    let progress = TrialProgress::new(jobs.len(), args.quiet);
     let first = match &args.rrd {
         None => None,
         Some(file) => {
-            let life = experiment.life(jobs.remove(0));
+            let trial = experiment.trial(jobs.remove(0));
             let options = RecordingOptions { file: Some(file.clone()), ..RecordingOptions::default() };
-            Some((Recorder::new(&options, scene(life.world))?, life))
+            Some((Recorder::new(&options, trial.world.into())?, trial))
         }
     };
     let record = || -> Result<_, SettingsError> {
-        let Some((recorder, life)) = first else { return Ok((None, None)) };
-        let Recorded { trial, problem } = record(&life, recorder, is_cancelled)?;
+        let Some((recorder, settings)) = first else { return Ok((None, None)) };
+        let Recorded { trial, problem } = record(&settings, recorder, is_canceled)?;
         trial.iter().for_each(|_| progress.step());
         Ok((trial, problem))
     };
-    let run = || experiment.run(jobs, is_cancelled, |_| progress.step());
+    let run = || experiment.run(jobs, is_canceled, |_| progress.step());
     let (first, others) = pool.install(|| rayon::join(record, run));
     progress.finish();
     let (first, problem) = first?;
     Ok((first.into_iter().chain(others?).collect(), problem))
 }
 
-/// Runs the trials, and writes what came of them.
+/// Runs the trials, and writes the results.
 fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     make_folder(&args.out)?;
-    let is_cancelled = Arc::new(AtomicBool::new(false));
-    let flag = is_cancelled.clone();
+    let is_canceled = Arc::new(AtomicBool::new(false));
+    let flag = is_canceled.clone();
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
-    let (trials, problem) = trials(args, experiment, &is_cancelled)?;
-    let is_interrupted = is_cancelled.load(Ordering::Relaxed);
+    let (trials, problem) = trials(args, experiment, &is_canceled)?;
+    let is_interrupted = is_canceled.load(Ordering::Relaxed);
     if trials.is_empty() {
-        say(stderr(), "interrupted before the first trial was finished: there is nothing to report");
+        say(stderr(), "interrupted before the first trial was finished: no report");
         return Ok(ExitCode::from(130));
     }
     if args.save_worlds {
@@ -165,13 +168,8 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     let settings = ReportSettings {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         arguments: std::env::args().skip(1).collect(),
-        steps: args.steps,
-        trials: args.trials,
-        sensor_radius: experiment.worlds[0].sensor_radius,
         interrupted: is_interrupted,
-        worlds: experiment.worlds.iter().map(|world| world.name.clone()).collect(),
-        estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
-        strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
+        ..experiment.report_settings()
     };
     let pictures: Vec<_> = experiment.worlds.iter().map(WorldPicture::of).collect();
     let report = Report::new(settings, trials);

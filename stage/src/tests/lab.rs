@@ -45,8 +45,8 @@ fn the_example_says_what_is_in_it() {
 fn the_example_runs() {
     let (spec, findings) = load(Path::new("lab.world"), &lab_files());
     let spec = spec.unwrap_or_else(|| panic!("{findings}"));
-    assert!(matches!(spec.robots[0].behaviour, BehaviorSpec::Wander(_)));
-    assert_eq!(spec.robots[1].behaviour, BehaviorSpec::Driven);
+    assert!(matches!(spec.robots[0].behavior, BehaviorSpec::Wander(_)));
+    assert_eq!(spec.robots[1].behavior, BehaviorSpec::Driven);
     // The border of 1 cm lies in the walls of the plan: nothing reaches out.
     assert_eq!((spec.frame.width(), spec.frame.height()), (160, 120));
     let mut fleet = Fleet::new(&spec, 1);

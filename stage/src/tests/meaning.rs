@@ -3,8 +3,9 @@
 use super::{good, load_one, one};
 use crate::Bounds;
 use nalgebra::Point2;
-use sim::physics::{FleetSpec, Rectangle};
+use sim::physics::Rectangle;
 use std::f64::consts::FRAC_PI_2;
+use worldfile::physics::parse_fleet;
 
 fn rectangle(min: [f64; 2], max: [f64; 2]) -> Rectangle {
     Rectangle::between(min.into(), max.into())

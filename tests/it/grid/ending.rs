@@ -47,7 +47,7 @@ fn ctrl_c_closes_the_recording_even_before_the_first_trial_is_finished() {
     send(Signal::SIGINT, &child);
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{ended:?}");
-    insta::assert_snapshot!(ended.stderr, @"interrupted before the first trial was finished: there is nothing to report");
+    insta::assert_snapshot!(ended.stderr, @"interrupted before the first trial was finished: no report");
     assert_eq!(names(&run.path("out")), [""; 0]);
 
     // Whether it came to its own end first does not matter.

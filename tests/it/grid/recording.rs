@@ -34,7 +34,7 @@ fn a_recording_agrees_with_its_world_and_its_trial() {
 
     // So do the blocks, on their paths, and never faster than they may.
     for block in &world.blocks {
-        let outlines = recording.outlines(&format!("/world/house/obstacles/{}", escaped(&block.name)));
+        let outlines = recording.outlines(&format!("/world/obstacles/{}", escaped(&block.name)));
         let ways: Vec<(i64, Cell)> =
             outlines.iter().map(|(step, corners)| (*step, middle(corners))).collect();
         assert_eq!(ways[0], (0, block.path[0]), "{}", block.name);

@@ -1,47 +1,46 @@
-//! Whether a cell that never changed does so at all, and what watching it is then worth.
+//! The probability that a cell without a change changes at all, and the gain of watching it.
 //!
-//! Most cells never change, so the rate of a cell has a spike at zero: it changes with probability θ
-//! before it is watched, and after it showed nothing with probability S (if it changes) still with
-//! θ S / (θ S + 1 − θ). The share θ is learned from the cells seen so far (empirical Bayes), and so
-//! are the odds of the rates.
+//! Most cells never change, so the distribution of the rate of a cell has a spike at zero: the cell changes
+//! with probability θ before it is observed, and with θ S / (θ S + 1 − θ) after an observation without an event,
+//! whose probability is S if the cell changes. The share θ and the distribution of the rates are learned from
+//! the cells seen so far (empirical Bayes).
 
-use super::rates::{Gains, Odds, RATES, Rates};
-use super::things::{Position, Things};
+use super::clusters::{Clusters, Position};
+use super::rates::{Distribution, Gains, RATES, Rates};
 use interfaces::CellState;
 use mapper::Mapper;
 
-/// θ far from all that changed, and the number of cells that this is believed as strongly as.
+/// θ far from all changed cells, and its weight in cells.
 const FAR: [f64; 2] = [0.05, 100.0];
-/// The same beside the middle of a thing's way.
+/// The same beside the middle of a cluster.
 const MIDDLE: [f64; 2] = [0.05, 10.0];
-/// θ beside the end of a way as far as it is known. Not learned: the cells that changed are those
-/// where it was right.
+/// θ beside the end of a cluster. Not learned: the changed cells are those where the assumption was right.
 const END: f64 = 0.5;
-/// θ of a cell that has been blocked since it was first seen: nearly all of them are walls.
+/// θ of a cell that has been blocked since it was first seen: nearly all such cells are walls.
 const BLOCKED: f64 = 0.003;
 
-/// An undiscovered thing would have shown itself in any cell of its way, as many as these: silence far
-/// from all things counts that often.
-const WAY_IN_VIEW: f64 = 5.0;
-/// A thing that stands somewhere leaves that cell as many times faster as its way is long.
-const WAY: f64 = 10.0;
-/// What an unknown cell is worth to one just seen free: more, since there may be others behind it.
+/// The number of cells in which an undiscovered moving thing could have been seen: an observation without an
+/// event far from all clusters counts that often.
+const PATH_IN_VIEW: f64 = 5.0;
+/// A moving thing leaves its present cell this many times faster than it returns: the length of its path.
+const PATH: f64 = 10.0;
+/// The worth of an unknown cell relative to a free one: more, since there may be others behind it.
 const UNKNOWN: f64 = 1.5;
-/// The share of cells beside a thing that move at its pace, if they change; the others at any.
-const SAME_PACE: f64 = 0.8;
-/// The number of cells that all rates are believed as strongly as to be equally likely.
+/// The share of the cells beside a cluster that change at its rate, if they change; the others at any rate.
+const SAME_RATE: f64 = 0.8;
+/// The weight of the uniform distribution of the rates, in cells.
 const FLAT: f64 = 2.0;
 
-/// What is believed of cells in general.
+/// What was learned of cells in general.
 #[derive(Clone, Debug)]
 pub(super) struct Change {
     far: f64,
     middle: f64,
-    /// The odds of the rates of cells that change.
-    odds: Odds,
+    /// The distribution of the rates of cells that change.
+    distribution: Distribution,
 }
 
-/// Sums from which shares are learned.
+/// A share that is learned as a mean.
 struct Share([f64; 2]);
 
 impl Share {
@@ -49,8 +48,8 @@ impl Share {
         Self([share * strength, strength])
     }
 
-    fn add(&mut self, chance: f64) {
-        self.0[0] += chance;
+    fn add(&mut self, probability: f64) {
+        self.0[0] += probability;
         self.0[1] += 1.0;
     }
 
@@ -61,70 +60,73 @@ impl Share {
 
 impl Change {
     pub(super) fn new() -> Self {
-        Self { far: FAR[0], middle: MIDDLE[0], odds: [1.0 / RATES as f64; RATES] }
+        Self { far: FAR[0], middle: MIDDLE[0], distribution: [1.0 / RATES as f64; RATES] }
     }
 
-    /// The odds of the rates of a cell that changes; at the pace of the thing beside it, if there is one.
-    pub(super) fn odds(&self, rates: &Rates, pace: Option<f64>) -> Odds {
-        let Some(pace) = pace else { return self.odds };
-        let around = rates.around(pace);
-        std::array::from_fn(|rate| SAME_PACE * around[rate] + (1.0 - SAME_PACE) * self.odds[rate])
+    /// The distribution of the rates of a cell that changes, given the rate of its cluster or the one beside it.
+    pub(super) fn distribution(&self, rates: &Rates, cluster_rate: Option<f64>) -> Distribution {
+        let Some(cluster_rate) = cluster_rate else { return self.distribution };
+        let around = rates.around(cluster_rate);
+        std::array::from_fn(|rate| SAME_RATE * around[rate] + (1.0 - SAME_RATE) * self.distribution[rate])
     }
 
-    /// Learns how fast cells are from the odds of all that changed.
-    pub(super) fn learn_odds<'a>(&mut self, changed: impl Iterator<Item = &'a Odds>) {
+    /// Learns the distribution of the rates from those of all cells that changed.
+    pub(super) fn learn_rates<'a>(&mut self, changed: impl Iterator<Item = &'a Distribution>) {
         let mut sums = [FLAT / RATES as f64; RATES];
-        for odds in changed {
-            sums.iter_mut().zip(odds).for_each(|(sum, odds)| *sum += odds);
+        for distribution in changed {
+            sums.iter_mut().zip(distribution).for_each(|(sum, probability)| *sum += probability);
         }
         let total: f64 = sums.iter().sum();
-        self.odds = sums.map(|sum| sum / total);
+        self.distribution = sums.map(|sum| sum / total);
     }
 
-    /// Gives `take` each cell that never changed and can be worth a look, with the gains of watching it, and
+    /// Calls `take` with each cell that never changed and can be worth a visit, and the gains of watching it;
     /// learns how likely such cells are to change. A pass over the map.
-    pub(super) fn judge(
+    pub(super) fn gains_of_unchanged(
         &mut self,
         mapper: &Mapper,
-        things: &Things,
+        clusters: &Clusters,
         rates: &Rates,
         mut take: impl FnMut(usize, &Gains),
     ) {
-        let table: Vec<(f64, Gains)> = (0..Rates::bins()).map(|bin| rates.silent(&self.odds, bin)).collect();
+        let table: Vec<(f64, Gains)> =
+            (0..Rates::bins()).map(|bin| rates.silent(&self.distribution, bin)).collect();
         let (mut far, mut middle) = (Share::new(FAR), Share::new(MIDDLE));
         let frame = mapper.frame();
         for (cell, state) in mapper.states().cells().iter().enumerate() {
             if !mapper.is_candidate(cell) && *state != CellState::Unknown {
                 continue; // the inside of a wall
             }
-            let (position, pace) = things.position(frame, cell);
-            if things.has(cell) {
+            let (position, cluster_rate) = clusters.position(frame, cell);
+            if clusters.has(cell) {
                 far.add(1.0);
                 if position == Position::Middle {
                     middle.add(1.0);
                 }
                 continue;
             }
-            let (chance, watched, factor) = match (state, position) {
-                (CellState::Unknown, _) => (self.chance(position), 0.0, UNKNOWN),
+            let (probability, watched, factor) = match (state, position) {
+                (CellState::Unknown, _) => (self.probability(position), 0.0, UNKNOWN),
                 (CellState::Free, Position::Far) => {
-                    (self.far, WAY_IN_VIEW * since_first_seen(mapper, cell), 1.0)
+                    (self.far, PATH_IN_VIEW * since_first_seen(mapper, cell), 1.0)
                 }
-                (CellState::Free, _) => (self.chance(position), mapper.statistics(cell).watched_free, 1.0),
-                (CellState::Blocked, _) => (BLOCKED, WAY * since_first_seen(mapper, cell), 1.0),
+                (CellState::Free, _) => {
+                    (self.probability(position), mapper.statistics(cell).watched_free, 1.0)
+                }
+                (CellState::Blocked, _) => (BLOCKED, PATH * since_first_seen(mapper, cell), 1.0),
             };
             let bin = Rates::bin(watched);
-            let (silent, gains) = if pace.is_finite() && *state != CellState::Blocked {
-                rates.silent(&self.odds(rates, Some(pace)), bin)
+            let (silent, gains) = if cluster_rate.is_finite() && *state != CellState::Blocked {
+                rates.silent(&self.distribution(rates, Some(cluster_rate)), bin)
             } else {
                 table[bin]
             };
-            let evidence = chance * silent + 1.0 - chance;
-            take(cell, &gains.map(|gain| factor * chance / evidence * gain));
+            let evidence = probability * silent + 1.0 - probability;
+            take(cell, &gains.map(|gain| factor * probability / evidence * gain));
             if *state == CellState::Free {
                 match position {
-                    Position::Far => far.add(chance * silent / evidence),
-                    Position::Middle => middle.add(chance * silent / evidence),
+                    Position::Far => far.add(probability * silent / evidence),
+                    Position::Middle => middle.add(probability * silent / evidence),
                     Position::End => {}
                 }
             }
@@ -132,7 +134,7 @@ impl Change {
         (self.far, self.middle) = (far.value(), middle.value());
     }
 
-    fn chance(&self, position: Position) -> f64 {
+    fn probability(&self, position: Position) -> f64 {
         match position {
             Position::Far => self.far,
             Position::Middle => self.middle,
@@ -141,8 +143,7 @@ impl Change {
     }
 }
 
-/// For how long the cell may have shown nothing: what both looks at the ends of a gap found alike counts as
-/// seen.
+/// The time for which the cell may have shown no event: a gap with the same state at both ends counts as seen.
 fn since_first_seen(mapper: &Mapper, cell: usize) -> f64 {
     let seen = mapper.statistics(cell);
     seen.last_seen - seen.first_seen

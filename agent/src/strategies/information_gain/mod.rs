@@ -1,85 +1,84 @@
-//! Where a look is expected to teach most about how often cells change.
+//! Where an observation is expected to reduce the error of the rates of change most.
 
 mod change;
+mod clusters;
+mod occlusion;
 mod rates;
 mod runs;
-mod sight;
-mod things;
-mod ways;
+mod travel_times;
+mod view_reliability;
 
-use crate::view::{Outlook, Places};
-use crate::{AgentSettings, Pick, Situation, Stay, Strategy};
+use super::{Pick, Stay, Strategy};
+use crate::settings::AgentSettings;
+use crate::situation::Situation;
+use crate::visibility::{Regions, Visibility};
 use change::Change;
+use clusters::{Clusters, Position};
 use interfaces::{Cell, CellState};
 use mapper::Mapper;
+use occlusion::Occlusion;
 use rates::{Gains, Rates, WATCHES};
 use runs::Runs;
-use sight::{Hiding, Sight};
-use things::{Position, Things};
+use view_reliability::ViewReliability;
 
-/// The robot watches for at most so long before it thinks again, in the unit of the readings' times. What
-/// it then sees often makes another place better.
-const THINK_AGAIN: f64 = 5.0;
-/// What every visit costs besides the way and the watch.
+/// The longest watch before the next decision, in the unit of the readings' times. New observations often make
+/// another region better.
+const LONGEST_WATCH: f64 = 5.0;
+/// The time that every visit takes besides the travel and the watch.
 const OVERHEAD: f64 = 1.0;
-/// Beside a thing's way the robot may stand in its way, which holds up what it came to see.
+/// The factor of the worth of a region beside a cluster, where the robot may stand in the way of a moving thing.
 const IN_THE_WAY: f64 = 0.5;
-/// From a place so near to the robot, what is in view now stays in view on the way.
+/// On the way to a region nearer than this, the cells in view stay in view.
 const STILL_IN_VIEW: f64 = 3.0;
 
-/// Go where a visit takes most from the error of the rates, per time to get there and to watch.
+/// Goes where a visit reduces the error of the rates most, per time to get there and to watch.
 ///
-/// The error of a cell's rate r is |ln(r̂ / r)|, at most ln 10, and ln 10 without an estimate r̂. The
-/// worth of a place is
+/// The error of a cell's rate r is |ln(r̂ / r)|, at most ln 10, and ln 10 without an estimate r̂. The worth of a
+/// region is
 ///
 /// ```text
 /// max over watches d of   Σ over cells c in view   v(c) · P(c changes) · E[error(c) now − error(c) after d]
 ///                         ―――――――――――――――――――――――――――――――――――――――――――――――――――――――――――――――――――――――
-///                                                 way + d + 1
+///                                              travel time + d + 1
 /// ```
 ///
-/// with v(c) the share of it that is really seen from there. So the robot leaves a place when the rest
-/// of what there is to learn there is worth less, per time, than the way to another: it does not waste time
-/// on cells that never change, nor follow what moves. Three beliefs go into it:
+/// with v(c) the share of the cell that is really seen from there. The robot leaves a region when the rest of
+/// what it can learn there is worth less, per time, than the travel to another region: it does not spend time on
+/// cells that never change, nor follow moving things. Three estimates enter:
 ///
-/// - *Whether a cell changes.* The rate has a spike at zero. The share of cells that change is
-///   learned from those seen so far, and is larger beside the end of a thing's way; a cell that was
-///   watched for long and showed nothing is believed to be static (empirical Bayes).
-/// - *What a watch teaches.* After n cycles of variance V the error is √(2 V / π) / n. With fewer than
-///   three it is averaged over the rates that the cell may have. A watch on end has less variance
+/// - *Whether a cell changes.* The distribution of the rate has a spike at zero. The share of cells that change
+///   is learned from those seen so far, and is larger beside the end of a cluster; a cell that was watched for
+///   long without an event is probably static (empirical Bayes).
+/// - *The gain of a watch.* After n cycles of variance V the error is √(2 V / π) / n. With fewer than three
+///   cycles the error is averaged over the rates that the cell may have. An uninterrupted watch has less variance
 ///   than one in pieces, which keeps the robot where it is.
-/// - *What is really seen.* What moves hides the cell behind it. A cell that things enter out of their
-///   own shadow is better not watched at all from there: its events are missed, its time counts.
+/// - *What is really seen.* A moving thing hides the cells behind it. A cell that things enter out of their own
+///   shadow is better not watched from there: its events are missed, but its time counts.
 ///
-/// Where the beliefs come from is told in the files beside this one. All times are in the unit of the
-/// readings', all constants were set on worlds other than those that figures are reported for.
+/// The files of this folder describe each estimate. All times are in the unit of the readings' times; all
+/// constants were set on other worlds than those of the reported results.
 #[derive(Clone, Debug)]
 pub struct InformationGain {
-    outlook: Outlook,
+    visibility: Visibility,
     rates: Rates,
     change: Change,
     runs: Runs,
-    sight: Sight,
+    reliability: ViewReliability,
     plan: Option<Plan>,
 }
 
-/// What was thought when the weights were written, for the goal that comes of it.
+/// The plan behind the last weights, for the goal that is selected by them.
 #[derive(Clone, Debug)]
 struct Plan {
-    places: Places,
-    /// The best watch from each place.
+    regions: Regions,
+    /// The best watch from each region.
     watches: Vec<f64>,
-    /// For how long each place was in view so far.
+    /// The time that each region was in view so far.
     watched: Vec<f64>,
 }
 
-/// The gains of watching each place, summed over its cells: by a watch that begins anew, and by one
-/// that goes on without a gap.
-#[derive(Clone, Debug)]
-struct PlaceGains {
-    anew: Vec<[f32; WATCHES.len()]>,
-    on_end: Vec<[f32; WATCHES.len()]>,
-}
+/// The gain of each watch of each region, summed over its cells.
+type RegionGains = Vec<[f32; WATCHES.len()]>;
 
 fn add(sums: &mut [f32; WATCHES.len()], gains: &Gains) {
     sums.iter_mut().zip(gains).for_each(|(sum, gain)| *sum += *gain as f32);
@@ -89,50 +88,51 @@ impl InformationGain {
     /// For a robot that sees as far as `settings.sensor_radius_m`.
     pub fn new(settings: &AgentSettings) -> Self {
         Self {
-            outlook: Outlook::new(settings.sensor_radius_m),
+            visibility: Visibility::new(settings.sensor_radius_m),
             rates: Rates::new(),
             change: Change::new(),
             runs: Runs::default(),
-            sight: Sight::default(),
+            reliability: ViewReliability::default(),
             plan: None,
         }
     }
 
-    fn gains(&mut self, mapper: &Mapper, things: &Things, places: &Places) -> PlaceGains {
-        let nothing = vec![[0.0; WATCHES.len()]; places.count()];
-        let mut gains = PlaceGains { anew: nothing.clone(), on_end: nothing };
+    /// The gains of a new watch, and of one that continues without a gap.
+    fn gains(&mut self, mapper: &Mapper, clusters: &Clusters, regions: &Regions) -> [RegionGains; 2] {
+        let mut anew = vec![[0.0; WATCHES.len()]; regions.count()];
+        let mut continued = anew.clone();
         let Self { change, runs, rates, .. } = self;
-        runs.update(mapper, |cell, seen| rates.of_changed(seen, &change.odds(rates, things.pace(cell))));
-        change.learn_odds(runs.expected().map(|(_, expected)| &expected.odds));
-        for (cell, expected) in runs.expected() {
-            let place = places.of(cell);
-            add(&mut gains.anew[place], &expected.anew);
-            let on_end = if mapper.is_in_view(cell) { &expected.on_end } else { &expected.anew };
-            add(&mut gains.on_end[place], on_end);
-        }
-        change.judge(mapper, things, rates, |cell, worth| {
-            let place = places.of(cell);
-            add(&mut gains.anew[place], worth);
-            add(&mut gains.on_end[place], worth);
+        runs.update(mapper, |cell, seen| {
+            rates.of_changed(seen, &change.distribution(rates, clusters.rate(cell)))
         });
-        gains
+        change.learn_rates(runs.expected().map(|(_, expected)| &expected.distribution));
+        for (cell, expected) in runs.expected() {
+            let region = regions.of(cell);
+            add(&mut anew[region], &expected.anew);
+            let is_in_view = mapper.is_in_view(cell);
+            add(&mut continued[region], if is_in_view { &expected.continued } else { &expected.anew });
+        }
+        change.gains_of_unchanged(mapper, clusters, rates, |cell, gains| {
+            add(&mut anew[regions.of(cell)], gains);
+            add(&mut continued[regions.of(cell)], gains);
+        });
+        [anew, continued]
     }
 
-    /// The gain of each watch from a place: what is in view there, as far as it will be seen.
+    /// The gain of each watch from a region, over the regions in view as far as they will be seen.
     fn in_view(
         &mut self,
-        place: usize,
-        gains: &[[f32; WATCHES.len()]],
-        clear: impl Fn(usize) -> f64,
+        region: usize,
+        gains: &RegionGains,
+        visible_share: impl Fn(usize) -> f64,
     ) -> [f32; WATCHES.len()] {
-        let view = self.outlook.seen_from(place);
+        let view = self.visibility.seen_from(region);
         let mut sums = [0.0; WATCHES.len()];
         let mut add = |seen: u32, share: f64| {
-            let factor = (share * clear(seen as usize)) as f32;
-            let gains = &gains[seen as usize];
-            sums.iter_mut().zip(gains).for_each(|(sum, gain)| *sum += factor * gain);
+            let factor = (share * visible_share(seen as usize)) as f32;
+            sums.iter_mut().zip(&gains[seen as usize]).for_each(|(sum, gain)| *sum += factor * gain);
         };
-        match self.sight.share(place, view) {
+        match self.reliability.share(region, view) {
             Some(shares) => view.iter().zip(shares).for_each(|(&seen, share)| add(seen, share)),
             None => view.iter().for_each(|&seen| add(seen, 1.0)),
         }
@@ -147,40 +147,39 @@ impl Strategy for InformationGain {
 
     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {
         let (mapper, frame) = (situation.mapper, situation.mapper.frame());
-        let places = self.outlook.follow(mapper);
-        self.sight.end(mapper, &mut self.outlook, &places, situation.cell());
-        let things = Things::new(mapper);
-        let gains = self.gains(mapper, &things, &places);
-        let travel = ways::times(situation);
-        // A thing that covers many cells does not hide as one that covers a cell.
-        let hiding = places.are_cells().then(|| Hiding::new(mapper, &things));
-        let mut watches = vec![0.0; places.count()];
-        for (place, chosen) in watches.iter_mut().enumerate() {
+        let regions = self.visibility.update(mapper);
+        self.reliability.end(mapper, &mut self.visibility, &regions, situation.cell());
+        let clusters = Clusters::new(mapper);
+        let [anew, continued] = self.gains(mapper, &clusters, &regions);
+        let travel = travel_times::times(situation);
+        // A thing that covers many cells does not hide as a thing that covers one cell.
+        let occlusion = regions.are_cells().then(|| Occlusion::new(mapper, &clusters));
+        let mut watches = vec![0.0; regions.count()];
+        for (region, chosen) in watches.iter_mut().enumerate() {
             let may_stand = |&cell: &usize| {
                 mapper.states().cells()[cell] == CellState::Free
-                    && !things.has(cell)
+                    && !clusters.has(cell)
                     && travel[cell] < f64::INFINITY
             };
             let nearest = |one: &usize, other: &usize| travel[*one].total_cmp(&travel[*other]);
-            let Some(cell) = places.cells(place).filter(may_stand).min_by(nearest) else { continue };
-            let way = travel[cell];
-            let gains = if way <= STILL_IN_VIEW { &gains.on_end } else { &gains.anew };
-            let sums = self.in_view(place, gains, |seen| match &hiding {
-                Some(hiding) if things.has(seen) => hiding.clear(place, seen),
+            let Some(cell) = regions.cells(region).filter(may_stand).min_by(nearest) else { continue };
+            let gains = if travel[cell] <= STILL_IN_VIEW { &continued } else { &anew };
+            let sums = self.in_view(region, gains, |seen| match &occlusion {
+                Some(occlusion) if clusters.has(seen) => occlusion.visible_share(region, seen),
                 _ => 1.0,
             });
-            let is_beside = things.position(frame, cell).0 != Position::Far;
+            let is_beside = clusters.position(frame, cell).0 != Position::Far;
             let factor = if is_beside { IN_THE_WAY } else { 1.0 };
             for (sum, watch) in sums.into_iter().zip(WATCHES) {
-                let worth = factor * f64::from(sum) / (way + watch + OVERHEAD);
+                let worth = factor * f64::from(sum) / (travel[cell] + watch + OVERHEAD);
                 if worth > weights[cell] {
                     weights[cell] = worth;
-                    *chosen = watch.min(THINK_AGAIN);
+                    *chosen = watch.min(LONGEST_WATCH);
                 }
             }
         }
-        let watched = (0..places.count()).map(|place| sight::watched(mapper, &places, place)).collect();
-        self.plan = Some(Plan { places, watches, watched });
+        let watched = |region| view_reliability::watched(mapper, &regions, region);
+        self.plan = Some(Plan { regions, watches, watched: (0..regions.count()).map(watched).collect() });
     }
 
     fn pick(&self) -> Pick {
@@ -192,10 +191,10 @@ impl Strategy for InformationGain {
     }
 
     fn stay(&mut self, goal: Cell) -> Stay {
-        let Some(Plan { places, watches, watched }) = &self.plan else { return Stay::Watch(0.0) };
-        let Some(place) = places.at_cell(goal) else { return Stay::Watch(0.0) };
-        let watch = watches[place];
-        self.sight.begin(&mut self.outlook, watched, place, watch);
+        let Some(Plan { regions, watches, watched }) = &self.plan else { return Stay::Watch(0.0) };
+        let Some(region) = regions.at_cell(goal) else { return Stay::Watch(0.0) };
+        let watch = watches[region];
+        self.reliability.begin(&mut self.visibility, watched, region, watch);
         Stay::Watch(watch)
     }
 }

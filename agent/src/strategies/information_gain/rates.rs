@@ -1,42 +1,42 @@
-//! What watching a cell is expected to take from the error of its rate.
+//! The expected fall of the error of a cell's rate when the cell is watched.
 //!
 //! The error of an estimate r̂ of a rate r is |ln(r̂ / r)|, at most ln 10, and ln 10 without an estimate:
 //! over- and underestimates weigh the same. Rates are cycles per unit of time: blocked, free and blocked
-//! again. Events of a thing that moves by rule are more regular than by chance. In a watch of x cycles on
-//! end their number varies by x / (1 + x / φ): by x, as Poisson's, where that is little, and never by more
-//! than φ, since a regular thing is at most one event off at each end of the watch. So a watch on end
-//! tells more than the same time in pieces.
+//! again. Events of a thing that moves by rule are more regular than those of a Poisson process. In an
+//! uninterrupted watch of x cycles the variance of their number is x / (1 + x / φ): x, as for a Poisson process,
+//! where x is small, and at most φ, since a regular thing is at most one event off at each end of the watch. An
+//! uninterrupted watch therefore has more information than the same time in pieces.
 
 use std::f64::consts::LN_10;
 
-/// How long the robot might watch, in the unit of the readings' times.
+/// The considered durations of a watch, in the unit of the readings' times.
 pub(super) const WATCHES: [f64; 8] = [1.0, 4.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0];
 /// The expected gain of each of [`WATCHES`], in units of the error.
 pub(super) type Gains = [f64; WATCHES.len()];
 
-/// The rates that are told apart.
+/// The number of different rates.
 pub(super) const RATES: usize = 14;
-/// How likely each of them is.
-pub(super) type Odds = [f64; RATES];
-/// The fastest, and each to the one before: from 3 to 8000 units of time per cycle.
+/// The probability of each rate.
+pub(super) type Distribution = [f64; RATES];
+/// The fastest rate, and the ratio of each to the one before: from 3 to 8000 units of time per cycle.
 const FASTEST: f64 = 0.3;
 const RATIO: f64 = 0.55;
 
-/// φ: the most by which the number of cycles in one watch varies.
+/// φ: the largest variance of the number of cycles in one watch.
 const MOST_VARIANCE: f64 = 0.5;
 /// The square of the mean deviation of a normal variable over its variance, 2 / π.
 const MEAN_OF_NORMAL: f64 = std::f64::consts::FRAC_2_PI;
-/// From so many cycles on the rate itself is taken for known, not its order of magnitude only.
+/// From this number of cycles on the rate counts as known; below it only its distribution is.
 const KNOWN_CYCLES: f64 = 3.0;
 /// The pseudocounts of a rate: half a cycle in ten units of time.
 const PRIOR_CYCLES: f64 = 0.5;
 const PRIOR_TIME: f64 = 10.0;
-/// Times watched are told apart exactly up to here, then by steps of [`BIN_RATIO`].
+/// The bins of observation times have width 1 up to here, then grow by [`BIN_RATIO`].
 const FINE_BINS: usize = 16;
 const BIN_RATIO: f64 = 1.15;
 const BINS: usize = 64;
 
-/// What was seen of a cell that changed.
+/// The observation of a cell that changed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watched {
     /// Half the events in view.
@@ -45,47 +45,47 @@ pub(super) struct Watched {
     pub(super) time: f64,
     /// The rate by the estimator in use; 0 without one.
     pub(super) estimate: f64,
-    /// The time of it that the cell has been in view on end up to now.
+    /// The time in view without interruption up to now.
     pub(super) run: f64,
-    /// By how much the number of cycles varied in earlier runs.
+    /// The variance of the number of cycles in earlier runs.
     pub(super) past_variance: f64,
 }
 
 impl Watched {
-    /// A rate that is never zero.
+    /// The rate with pseudocounts; never zero.
     pub(super) fn rate(&self) -> f64 {
         (self.cycles + PRIOR_CYCLES) / (self.time + PRIOR_TIME)
     }
 }
 
-/// By how much the number of cycles in a watch of `cycles` on end varies.
+/// The variance of the number of cycles in an uninterrupted watch of `cycles`.
 pub(super) fn variance(cycles: f64) -> f64 {
     cycles / (1.0 + cycles / MOST_VARIANCE)
 }
 
-/// What to expect of a cell that changed: how fast it is, and what it gains by a new watch, or by one
-/// that goes on without a gap.
+/// The expectation for a cell that changed: the distribution of its rate, and the gains of a new watch and of one
+/// that continues without a gap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expected {
-    pub(super) odds: Odds,
+    pub(super) distribution: Distribution,
     pub(super) anew: Gains,
-    pub(super) on_end: Gains,
+    pub(super) continued: Gains,
 }
 
-/// Tables over rates and times watched.
+/// Tables over rates and observation times.
 #[derive(Clone, Debug)]
 pub(super) struct Rates {
-    rates: Odds,
-    logs: Odds,
-    /// Of each time watched, the probability of no event at each rate.
-    silence: Vec<Odds>,
+    rates: Distribution,
+    logs: Distribution,
+    /// The probability of no event at each rate, for each observation time.
+    silence: Vec<Distribution>,
     /// The gain of each watch of a cell without an event, at each rate.
     first: [Gains; RATES],
 }
 
 impl Rates {
     pub(super) fn new() -> Self {
-        let rates: Odds = std::array::from_fn(|rate| FASTEST * libm::pow(RATIO, rate as f64));
+        let rates: Distribution = std::array::from_fn(|rate| FASTEST * libm::pow(RATIO, rate as f64));
         let first = |rate: f64| WATCHES.map(|watch| LN_10 - error_after_first(rate, 0.0, watch));
         let time = |bin: usize| match bin.checked_sub(FINE_BINS) {
             Some(step) => FINE_BINS as f64 * libm::pow(BIN_RATIO, step as f64),
@@ -99,7 +99,7 @@ impl Rates {
         }
     }
 
-    /// The number of the table line for so long a watch without an event.
+    /// The bin of an observation time without an event.
     pub(super) fn bin(time: f64) -> usize {
         let fine = FINE_BINS as f64;
         if time < fine {
@@ -109,33 +109,33 @@ impl Rates {
         ((fine + step.round()) as usize).min(BINS - 1)
     }
 
-    /// The number of table lines.
+    /// The number of bins.
     pub(super) const fn bins() -> usize {
         BINS
     }
 
-    /// For a cell that changes, at rates of these odds: the probability that it showed nothing for
-    /// so long, and the gains of watching it in the cases in which it did not.
-    pub(super) fn silent(&self, odds: &Odds, bin: usize) -> (f64, Gains) {
+    /// For a cell that changes, with this distribution of the rate: the probability of no event in the observation
+    /// time of a bin, and the gains of watching the cell, times that probability.
+    pub(super) fn silent(&self, distribution: &Distribution, bin: usize) -> (f64, Gains) {
         let (mut silent, mut gains) = (0.0, Gains::default());
-        for ((odds, silence), first) in odds.iter().zip(&self.silence[bin]).zip(&self.first) {
-            let odds = odds * silence;
-            silent += odds;
-            gains.iter_mut().zip(first).for_each(|(gain, first)| *gain += odds * first);
+        for ((probability, silence), first) in distribution.iter().zip(&self.silence[bin]).zip(&self.first) {
+            let probability = probability * silence;
+            silent += probability;
+            gains.iter_mut().zip(first).for_each(|(gain, first)| *gain += probability * first);
         }
         (silent, gains)
     }
 
-    /// Odds around a rate, on a scale of logarithms; each rate is about twice the next.
-    pub(super) fn around(&self, rate: f64) -> Odds {
+    /// A distribution around a rate, on a scale of logarithms; each rate is about twice the next.
+    pub(super) fn around(&self, rate: f64) -> Distribution {
         const SPREAD: f64 = 0.6;
         let middle = libm::log(rate);
         let distance = |log: f64| ((log - middle) / SPREAD).clamp(-20.0, 20.0);
         normalised(self.logs.map(|log| libm::exp(-0.5 * distance(log) * distance(log))))
     }
 
-    /// What to expect of a cell that changed, at rates of odds `prior` before it was watched.
-    pub(super) fn of_changed(&self, seen: &Watched, prior: &Odds) -> Expected {
+    /// The expectation for a cell that changed, with the distribution `prior` before it was observed.
+    pub(super) fn of_changed(&self, seen: &Watched, prior: &Distribution) -> Expected {
         if seen.cycles >= KNOWN_CYCLES && seen.estimate > 0.0 {
             self.of_known(seen)
         } else {
@@ -151,36 +151,37 @@ impl Rates {
         let now = spread(so_far, seen.cycles);
         let gain = |variance: f64, watch: f64| (now - spread(variance, seen.cycles + rate * watch)).max(0.0);
         Expected {
-            odds: self.nearest(rate),
+            distribution: self.nearest(rate),
             anew: WATCHES.map(|watch| gain(so_far + variance(rate * watch), watch)),
-            on_end: WATCHES
+            continued: WATCHES
                 .map(|watch| gain(seen.past_variance + variance(rate * (seen.run + watch)).max(0.02), watch)),
         }
     }
 
-    /// The error is averaged over the rates that the cell may have. At each it is the bias of the
-    /// estimate, and the spread of the cycles still to come.
-    fn of_hardly_known(&self, seen: &Watched, prior: &Odds) -> Expected {
+    /// The error is averaged over the rates that the cell may have. At each rate it is the bias of the estimate,
+    /// and the spread of the cycles still to come.
+    fn of_hardly_known(&self, seen: &Watched, prior: &Distribution) -> Expected {
         let &Watched { cycles, time, estimate, run, past_variance } = seen;
-        let mut odds: Odds = std::array::from_fn(|rate| {
+        let mut distribution: Distribution = std::array::from_fn(|rate| {
             let expected = (self.rates[rate] * time).max(1e-9);
             cycles * libm::log(expected) - expected + libm::log(prior[rate].max(1e-300))
         });
-        let top = odds.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        odds = normalised(odds.map(|log| libm::exp(log - top)));
-        // Half the spread so far: the other half is that of the odds.
+        let top = distribution.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        distribution = normalised(distribution.map(|log| libm::exp(log - top)));
+        // Half the spread so far: the other half is that of the distribution.
         let half = 0.5 * (past_variance + variance(seen.rate() * run).max(0.02));
         let has_estimate = estimate > 0.0 && cycles > 0.0;
         let estimate_time = if has_estimate { cycles / estimate } else { time };
-        let (mut anew, mut on_end) = (Gains::default(), Gains::default());
-        for (rate, odds) in self.rates.into_iter().zip(odds).filter(|(_, odds)| *odds > 1e-4) {
+        let (mut anew, mut continued) = (Gains::default(), Gains::default());
+        let likely = self.rates.into_iter().zip(distribution).filter(|(_, probability)| *probability > 1e-4);
+        for (rate, probability) in likely {
             let error = |bias: f64, variance: f64, cycles: f64| {
                 let squared = bias * bias + MEAN_OF_NORMAL * variance / (cycles * cycles);
                 libm::sqrt(squared).min(LN_10)
             };
             let now =
                 if has_estimate { error(libm::log(estimate / rate), half, cycles.max(0.5)) } else { LN_10 };
-            for (place, watch) in WATCHES.into_iter().enumerate() {
+            for (index, watch) in WATCHES.into_iter().enumerate() {
                 let (new, total) = (rate * watch, cycles + rate * watch);
                 let (first, longer) = if has_estimate {
                     let bias = libm::log(total / (estimate_time + watch) / rate);
@@ -191,17 +192,21 @@ impl Rates {
                     let after = error_after_first(rate, estimate_time, watch);
                     (after, after)
                 };
-                anew[place] += odds * (now - first);
-                on_end[place] += odds * (now - longer);
+                anew[index] += probability * (now - first);
+                continued[index] += probability * (now - longer);
             }
         }
-        // What is believed can make an estimate better than it will be; a look is never a loss.
-        Expected { odds, anew: anew.map(|gain| gain.max(0.0)), on_end: on_end.map(|gain| gain.max(0.0)) }
+        // The assumptions can make an estimate better than it will be; an observation is never a loss.
+        Expected {
+            distribution,
+            anew: anew.map(|gain| gain.max(0.0)),
+            continued: continued.map(|gain| gain.max(0.0)),
+        }
     }
 
-    fn nearest(&self, rate: f64) -> Odds {
-        let place = libm::log(rate / FASTEST) / libm::log(RATIO);
-        let nearest = (place.round().max(0.0) as usize).min(RATES - 1);
+    fn nearest(&self, rate: f64) -> Distribution {
+        let index = libm::log(rate / FASTEST) / libm::log(RATIO);
+        let nearest = (index.round().max(0.0) as usize).min(RATES - 1);
         std::array::from_fn(|rate| if rate == nearest { 1.0 } else { 0.0 })
     }
 }
@@ -217,9 +222,9 @@ fn error_after_first(rate: f64, time: f64, watch: f64) -> f64 {
     none * LN_10 + (1.0 - none) * libm::sqrt(squared).min(LN_10)
 }
 
-fn normalised(odds: Odds) -> Odds {
-    let sum: f64 = odds.iter().sum();
-    odds.map(|odds| odds / sum)
+fn normalised(distribution: Distribution) -> Distribution {
+    let sum: f64 = distribution.iter().sum();
+    distribution.map(|probability| probability / sum)
 }
 
 #[cfg(test)]
@@ -240,10 +245,13 @@ mod tests {
             assert!(gains[7] < silent * LN_10);
         }
         for cycles in [0.5, 2.0, 3.0, 50.0] {
-            let Expected { odds, anew, on_end } = rates.of_changed(&seen(cycles, 100.0), &flat);
-            assert!((odds.iter().sum::<f64>() - 1.0).abs() < 1e-9);
-            assert!(anew.iter().chain(&on_end).all(|gain| (0.0..=LN_10).contains(gain)));
-            assert!(anew.iter().zip(&on_end).all(|(anew, on_end)| anew <= on_end), "{cycles} cycles");
+            let Expected { distribution, anew, continued } = rates.of_changed(&seen(cycles, 100.0), &flat);
+            assert!((distribution.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+            assert!(anew.iter().chain(&continued).all(|gain| (0.0..=LN_10).contains(gain)));
+            assert!(
+                anew.iter().zip(&continued).all(|(anew, continued)| anew <= continued),
+                "{cycles} cycles"
+            );
         }
     }
 
@@ -258,12 +266,14 @@ mod tests {
     }
 
     #[test]
-    fn odds_turn_to_the_rate_that_was_seen() {
+    fn the_posterior_is_near_the_observed_rate() {
         let rates = Rates::new();
-        let mean = |odds: Odds| odds.iter().zip(rates.logs).map(|(odds, log)| odds * log).sum::<f64>();
+        let mean = |of: Distribution| {
+            of.iter().zip(rates.logs).map(|(probability, log)| probability * log).sum::<f64>()
+        };
         let seen = seen(2.0, 200.0);
         let flat = [1.0 / RATES as f64; RATES];
-        let posterior = rates.of_changed(&seen, &flat).odds;
+        let posterior = rates.of_changed(&seen, &flat).distribution;
         assert!((mean(posterior) - libm::log(0.01)).abs() < 0.5, "{posterior:?}");
         assert!((mean(rates.around(0.01)) - libm::log(0.01)).abs() < 0.1);
     }
@@ -277,8 +287,14 @@ mod tests {
                 for estimate in [0.0, 1e-300, 1e300] {
                     for run in [0.0, time] {
                         let seen = Watched { cycles, time, estimate, run, past_variance: 0.0 };
-                        let Expected { odds, anew, on_end } = rates.of_changed(&seen, &flat);
-                        assert!(odds.iter().chain(&anew).chain(&on_end).all(|figure| figure.is_finite()));
+                        let Expected { distribution, anew, continued } = rates.of_changed(&seen, &flat);
+                        assert!(
+                            distribution
+                                .iter()
+                                .chain(&anew)
+                                .chain(&continued)
+                                .all(|figure| figure.is_finite())
+                        );
                     }
                 }
             }

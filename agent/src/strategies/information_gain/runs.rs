@@ -1,12 +1,12 @@
-//! The cells that changed: for how long each has been in view on end, and what to expect of it.
+//! The cells that changed: the time that each has been in view without interruption, and its expected gains.
 
 use super::rates::{Expected, Watched, variance};
 use mapper::Mapper;
 
-/// Of the time between two goals, a cell in view for this share was in view all the time.
-const ON_END: f64 = 0.9;
+/// A cell that was in view for this share of the time between two goals counts as in view all the time.
+const UNINTERRUPTED: f64 = 0.9;
 
-/// A cell that changed, as it was at the last goal.
+/// A cell that changed, as observed at the last goal.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     cell: usize,
@@ -20,11 +20,11 @@ struct Run {
 pub(super) struct Runs(Vec<Run>);
 
 impl Runs {
-    /// Takes in what was seen since the last goal; `expect` says what to expect of a cell, and is only
-    /// asked of cells that were seen.
+    /// Applies the observations since the last goal. `expect` computes the expectation for a cell, and is called
+    /// only for cells that were observed.
     pub(super) fn update(&mut self, mapper: &Mapper, expect: impl Fn(usize, &Watched) -> Expected) {
         let now = mapper.time();
-        for (place, cell) in mapper.changed().enumerate() {
+        for (index, cell) in mapper.changed().enumerate() {
             let statistics = mapper.statistics(cell);
             let mut seen = Watched {
                 cycles: 0.5 * f64::from(statistics.block_events + statistics.free_events),
@@ -33,13 +33,13 @@ impl Runs {
                 run: statistics.watched_free + statistics.watched_blocked,
                 past_variance: 0.0,
             };
-            match self.0.get_mut(place).filter(|run| run.cell == cell) {
+            match self.0.get_mut(index).filter(|run| run.cell == cell) {
                 Some(run) => {
                     let before = run.seen;
                     let added = seen.time - before.time;
                     (seen.run, seen.past_variance) = (before.run, before.past_variance);
                     if added > 0.0 {
-                        if added >= ON_END * (now - run.time) {
+                        if added >= UNINTERRUPTED * (now - run.time) {
                             seen.run += added;
                         } else {
                             seen.past_variance += variance(seen.rate() * before.run);
@@ -51,15 +51,15 @@ impl Runs {
                     *run = Run { cell, time: now, seen, expected };
                 }
                 None => {
-                    // Another map: what follows belongs to the old one.
-                    self.0.truncate(place);
+                    // Another map: the following runs belong to the old one.
+                    self.0.truncate(index);
                     self.0.push(Run { cell, time: now, seen, expected: expect(cell, &seen) });
                 }
             }
         }
     }
 
-    /// What to expect of each cell that changed.
+    /// The expectation for each cell that changed.
     pub(super) fn expected(&self) -> impl Iterator<Item = (usize, &Expected)> {
         self.0.iter().map(|run| (run.cell, &run.expected))
     }

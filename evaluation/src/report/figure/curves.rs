@@ -1,8 +1,9 @@
-//! How a metric went on, for every strategy.
+//! The curves of a metric, one per strategy.
 
-use super::colours;
 use super::pen::{Pen, Sheet};
-use crate::drawing::{INK, why};
+use crate::drawing::{INK, ink, why};
+use crate::palette;
+use crate::report::REFERENCE;
 use crate::report::metric::Metric;
 use crate::report::run::StrategyResult;
 use crate::report::statistics::Estimate;
@@ -17,12 +18,12 @@ use std::ops::Range;
 
 /// The width of the labels at the left, in pixels of the finished picture.
 const LEFT: i32 = 58;
-/// How strong the colour of a band is.
+/// The opacity of a band.
 pub(super) const BAND: f64 = 0.16;
 const GRID: RGBColor = RGBColor(225, 228, 233);
-/// The first part of a run, when nothing is known yet, does not stretch the axis of values.
+/// The axis of values ignores this first part of a run, in which nothing is known yet.
 const BEGINNING: f64 = 0.03;
-/// An axis of the logarithm of steps reaches back to this part of a run.
+/// A logarithmic axis of steps starts at this part of a run.
 const EARLIEST: f64 = 0.003;
 
 type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -42,16 +43,17 @@ pub(super) fn draw<DB: DrawingBackend>(
     let before = |part: f64| steps.iter().take_while(|&&step| (step as f64) < part * horizon).count();
     let is_log = metric == Metric::LogError;
     let (first, settled) = if is_log { (before(EARLIEST), before(EARLIEST)) } else { (0, before(BEGINNING)) };
-    let place = |step: f64| if is_log { libm::log10(step.max(1.0)) } else { step };
-    let places: Vec<f64> = steps[first..].iter().map(|&step| place(step as f64)).collect();
-    let reach = if is_log { places.first().copied().unwrap_or(0.0) } else { 0.0 }..place(horizon).max(1e-9);
+    let position = |step: f64| if is_log { libm::log10(step.max(1.0)) } else { step };
+    let positions: Vec<f64> = steps[first..].iter().map(|&step| position(step as f64)).collect();
+    let reach =
+        if is_log { positions.first().copied().unwrap_or(0.0) } else { 0.0 }..position(horizon).max(1e-9);
     let curve = |strategy: &StrategyResult| strategy.curve(metric)[first..].to_vec();
     let shown = range(metric, strategies.iter().flat_map(|strategy| &strategy.curve(metric)[settled..]));
-    let step_label = |place: &f64| match is_log {
-        false => thousands(*place as u64),
+    let step_label = |position: &f64| match is_log {
+        false => thousands(*position as u64),
         // Between the powers of ten there are only lines.
-        true if (place - place.round()).abs() > 1e-6 => String::new(),
-        true => thousands(libm::exp10(*place).round() as u64),
+        true if (position - position.round()).abs() > 1e-6 => String::new(),
+        true => thousands(libm::exp10(*position).round() as u64),
     };
 
     let (above, _) = sheet.split_vertically(pen.px(34));
@@ -79,20 +81,24 @@ pub(super) fn draw<DB: DrawingBackend>(
         .draw()
         .map_err(why)?;
     for strategy in strategies.iter().rev() {
-        band(&chart, &places, &curve(strategy), &shown, colours::of_strategy(&strategy.name))?;
+        band(&chart, &positions, &curve(strategy), &shown, ink(palette::strategy(&strategy.name)))?;
     }
-    // What is dashed lies on top: a coin may go exactly as curious does.
-    for is_dashed in [false, true] {
-        let those =
-            strategies.iter().rev().filter(|strategy| colours::is_dashed(&strategy.name) == is_dashed);
+    // Dashed curves lie on top: the curve of a coin can be equal to that of curious.
+    for dashed in [false, true] {
+        let those = strategies.iter().rev().filter(|strategy| is_dashed(&strategy.name) == dashed);
         for strategy in those {
-            let style = pen.line(colours::of_strategy(&strategy.name), 2);
-            for line in lines(&places, &curve(strategy), &shown) {
-                draw_line(chart.plotting_area(), pen, line, style, is_dashed)?;
+            let style = pen.line(ink(palette::strategy(&strategy.name)), 2);
+            for line in lines(&positions, &curve(strategy), &shown) {
+                draw_line(chart.plotting_area(), pen, line, style, dashed)?;
             }
         }
     }
     Ok(())
+}
+
+/// Whether a strategy's curve is dashed: the strategies to compare with.
+pub(super) fn is_dashed(name: &str) -> bool {
+    ["random", "coin", REFERENCE].contains(&name)
 }
 
 /// Draws a line, dashed or not.
@@ -117,7 +123,7 @@ fn heading(metric: Metric) -> &'static str {
     match metric {
         Metric::RateError => "Relative error of the rates",
         Metric::LogError => "Log error of the rates: 0.69 is a factor of 2",
-        Metric::MapQuality => "Map quality: share of cells that are right",
+        Metric::MapQuality => "Map quality: share of cells that are correct",
         other => other.name(),
     }
 }
@@ -142,17 +148,17 @@ fn range<'a>(metric: Metric, settled: impl Iterator<Item = &'a Estimate>) -> Ran
 /// The band between the ends of the intervals, cut to what is shown.
 fn band<DB: DrawingBackend>(
     chart: &Chart<DB>,
-    places: &[f64],
+    positions: &[f64],
     curve: &[Estimate],
     shown: &Range<f64>,
     colour: RGBColor,
 ) -> Result<(), String> {
     let is_known = |at: &Estimate| at.low.is_finite() && at.high.is_finite();
     let known: Vec<(f64, &Estimate)> =
-        places.iter().copied().zip(curve).filter(|(_, at)| is_known(at)).collect();
+        positions.iter().copied().zip(curve).filter(|(_, at)| is_known(at)).collect();
     let cut = |value: f64| value.clamp(shown.start, shown.end);
-    let upper = known.iter().map(|(place, at)| (*place, cut(at.high)));
-    let lower = known.iter().rev().map(|(place, at)| (*place, cut(at.low)));
+    let upper = known.iter().map(|(position, at)| (*position, cut(at.high)));
+    let lower = known.iter().rev().map(|(position, at)| (*position, cut(at.low)));
     let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
     if known.len() < 2 {
         return Ok(());
@@ -161,8 +167,9 @@ fn band<DB: DrawingBackend>(
 }
 
 /// The mean as lines: cut where they leave what is shown, broken where there is no mean.
-fn lines(places: &[f64], curve: &[Estimate], shown: &Range<f64>) -> Vec<Vec<(f64, f64)>> {
-    let points: Vec<(f64, f64)> = places.iter().zip(curve).map(|(&place, at)| (place, at.mean)).collect();
+fn lines(positions: &[f64], curve: &[Estimate], shown: &Range<f64>) -> Vec<Vec<(f64, f64)>> {
+    let points: Vec<(f64, f64)> =
+        positions.iter().zip(curve).map(|(&position, at)| (position, at.mean)).collect();
     let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
     for piece in points.windows(2).filter_map(|ends| inside(ends[0], ends[1], shown)) {
         match lines.last_mut() {

@@ -1,19 +1,16 @@
-//! Figure 3 of the paper: the world, and beside it how the errors of the rates and the quality of
-//! the map went on, for every strategy, with bands of 95 % confidence.
+//! Figure 3 of the paper: the plan of the world, and the curves of the errors of the rates and of the map
+//! quality, one per strategy, with bands of 95 % confidence.
 
-mod colours;
 mod curves;
 mod pen;
 mod plan;
-mod vector;
 
 use super::metric::Metric;
-use super::run::Run;
-use super::wording::conditions;
+use super::run::{Run, conditions};
 use super::{ONE_BY_ONE, Report, WorldPicture};
-use crate::drawing::PictureError;
-use crate::drawing::{Canvas, why};
+use crate::drawing::{Canvas, PictureError, ink, why};
 use crate::output::write_file;
+use crate::palette;
 use pen::{Pen, Sheet, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -138,10 +135,10 @@ impl Figure<'_> {
         for (index, strategy) in self.run.strategies.iter().enumerate() {
             let left = MARGIN + (index % LEGEND_COLUMNS) as i32 * column_width;
             let middle = (index / LEGEND_COLUMNS) as i32 * LEGEND_ROW + LEGEND_ROW / 2;
-            let colour = colours::of_strategy(&strategy.name);
+            let colour = ink(palette::strategy(&strategy.name));
             pen.bar(sheet, [left, middle - 7], [26, 14], &colour.mix(curves::BAND))?;
             let line = [left, left + 26].map(|x| (pen.px(x), pen.px(middle)));
-            let is_dashed = colours::is_dashed(&strategy.name);
+            let is_dashed = curves::is_dashed(&strategy.name);
             curves::draw_line(sheet, pen, line.into(), pen.line(colour, 2), is_dashed)?;
             pen.write(sheet, (left + 34, middle), HPos::Left, 16, &strategy.name)?;
         }

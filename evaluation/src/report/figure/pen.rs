@@ -1,8 +1,6 @@
-//! One way of drawing, for pixels and for vectors.
+//! Lengths, lines and text for PNG and SVG figures.
 
-use super::vector::Vector;
 use crate::drawing::{FONT, INK, px, register_fonts, why};
-use ab_glyph::FontRef;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::TextStyle;
@@ -11,7 +9,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// A part of a figure to draw on.
 pub(super) type Sheet<DB> = DrawingArea<DB, Shift>;
 
-/// Turns lengths in pixels of the finished picture into those to draw with.
+/// Converts lengths in pixels of the finished picture to the units of a backend.
 pub(super) struct Pen {
     scale: i32,
     /// The library puts the middle of a letter a quarter of its height too high, but only there.
@@ -38,7 +36,7 @@ impl Pen {
         (FONT, self.px(height)).into_font().color(&INK)
     }
 
-    /// Writes a line; `at` is the middle of its left side, or of that which `anchor` tells.
+    /// Writes a line of text; `at` is the middle of the side that `anchor` gives.
     pub(super) fn write<DB: DrawingBackend>(
         &self,
         sheet: &Sheet<DB>,
@@ -68,17 +66,16 @@ impl Pen {
 /// The text of an SVG file of `size` with what `draw` puts on it.
 pub(super) fn svg(
     size: [u32; 2],
-    draw: impl FnOnce(&Sheet<Vector>) -> Result<(), String>,
+    draw: impl FnOnce(&Sheet<SVGBackend>) -> Result<(), String>,
 ) -> Result<String, String> {
     register_fonts()?;
-    let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).map_err(why)?;
     let drawn @ [width, height] = size.map(|length| length * Pen::VECTOR.scale as u32);
-    let mut elements = String::new();
-    draw(&Vector::new(drawn.into(), font, &mut elements).into_drawing_area())?;
+    let mut text = String::new();
+    let sheet = SVGBackend::with_string(&mut text, drawn.into()).into_drawing_area();
+    draw(&sheet)?;
+    sheet.present().map_err(why)?;
+    drop(sheet);
     // Drawn large, shown in its size. Sharp corners of thick lines would show as spikes.
-    Ok(format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" \
-         viewBox=\"0 0 {width} {height}\" stroke-linejoin=\"round\">\n{elements}</svg>\n",
-        size[0], size[1]
-    ))
+    let shown = format!("width=\"{}\" height=\"{}\" stroke-linejoin=\"round\"", size[0], size[1]);
+    Ok(text.replacen(&format!("width=\"{width}\" height=\"{height}\""), &shown, 1))
 }

@@ -1,8 +1,8 @@
 //! The plan of a world, or of several.
 
-use super::colours;
 use super::pen::{Pen, Sheet};
-use crate::drawing::{CURIOUS, INK, ink, why};
+use crate::drawing::{INK, ink, why};
+use crate::palette::{self, CURIOUS};
 use crate::report::WorldPicture;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -12,7 +12,7 @@ use std::ops::Range;
 /// The width of the legend beside a plan, in pixels of the finished picture.
 const LEGEND: i32 = 190;
 const ROW: i32 = 24;
-/// So many things are named, and so many worlds drawn.
+/// The maximum number of named things, and of drawn worlds.
 const THINGS: usize = 8;
 const WORLDS: usize = 12;
 const GRID: RGBColor = RGBColor(232, 234, 238);
@@ -43,7 +43,7 @@ pub(super) fn one<DB: DrawingBackend>(
     };
     row(&square(INK), "wall")?;
     for (index, (name, _)) in world.things.iter().take(THINGS).enumerate() {
-        row(&square(colours::of_thing(index)), name)?;
+        row(&square(ink(palette::thing(index))), name)?;
     }
     if world.things.len() > THINGS {
         row(&|_| Ok(()), &format!("and {} more that move", world.things.len() - THINGS))?;
@@ -76,9 +76,9 @@ pub(super) fn many<DB: DrawingBackend>(
         3..=6 => 3,
         _ => 4,
     };
-    let places = below.split_evenly((shown.div_ceil(columns), columns));
-    for (place, world) in places.iter().zip(worlds) {
-        cells(&place.margin(0, pen.px(16), pen.px(6), pen.px(6)), pen, world)?;
+    let areas = below.split_evenly((shown.div_ceil(columns), columns));
+    for (area, world) in areas.iter().zip(worlds) {
+        cells(&area.margin(0, pen.px(16), pen.px(6), pen.px(6)), pen, world)?;
     }
     Ok(())
 }
@@ -98,7 +98,7 @@ fn cells<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &WorldPicture)
         sheet.draw(&Rectangle::new(corners, colour.filled())).map_err(why)
     };
     for (index, (_, path)) in world.things.iter().enumerate() {
-        let colour = colours::of_thing(index);
+        let colour = ink(palette::thing(index));
         path.iter().try_for_each(|&(column, row)| fill(column..column + 1, row..row + 1, colour))?;
     }
     let (right, bottom) = (x(columns as f64), y(0.0));

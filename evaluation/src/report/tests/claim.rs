@@ -83,8 +83,8 @@ fn the_table_tells_who_won() {
     curious learns rates fastest: its log error over the run is 0.88 times that of recency
     (significant: p = 0.003 after Holm's correction).
 
-    How to read it: errors are 0 and map quality is 1 when all is right; final is the value at the end,
-    area the mean over the run, * the best; time at changes is spent with a changing cell in view.
+    How to read it: errors are 0 and map quality is 1 at best; final is the value at the end, area the
+    mean over the run, * the best; time at changes is the share of steps with a changing cell in view.
     ");
 }
 
@@ -117,6 +117,6 @@ fn the_oracle_cannot_win_and_false_changes_are_told() {
 #[test]
 fn no_trial_is_a_sentence() {
     let report = Report::new(ReportSettings::default(), Vec::new());
-    assert_eq!(report.table(), "No trial was finished: there is nothing to report.\n");
+    assert_eq!(report.table(), "No trial was finished.\n");
     assert_eq!(written(&report).len(), 2, "no figure");
 }

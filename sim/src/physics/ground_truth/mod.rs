@@ -59,54 +59,10 @@ impl PhysicsGroundTruth {
         }
     }
 
-    /// The cells.
-    pub fn frame(&self) -> &GridFrame {
-        &self.frame
-    }
-
-    /// The time since the start, s.
-    pub fn elapsed_s(&self) -> f64 {
-        self.elapsed_s
-    }
-
-    /// The states of all cells now, row-major, row 0 at the lowest y.
-    pub fn states(&self) -> &[TrueState] {
-        &self.states
-    }
-
-    /// How often each cell was blocked, row-major. A cell that is blocked again without having
-    /// been free in between was blocked once.
-    pub fn block_events(&self) -> &[u32] {
-        &self.block_events
-    }
-
     /// The first moving thing that touched each cell, by index: another robot, or an obstacle that moves, appears
     /// or disappears. `None` for static cells.
     pub fn movers(&self) -> &[Option<Body>] {
         &self.movers
-    }
-
-    /// What changed during the last `act`, in order.
-    pub fn changes(&self) -> &[TrueChange] {
-        &self.changes
-    }
-
-    /// What really is in a cell; `None` outside of the grid.
-    pub fn state(&self, cell: Cell) -> Option<TrueState> {
-        Some(self.states[self.frame.index(cell)?])
-    }
-
-    /// A cell's true cycle rate so far: block events per second, Hz; 0 outside of the grid.
-    pub fn cycle_rate_hz(&self, cell: Cell) -> f64 {
-        let events = self.frame.index(cell).map_or(0, |index| self.block_events[index]);
-        if self.elapsed_s > 0.0 { f64::from(events) / self.elapsed_s } else { 0.0 }
-    }
-
-    /// Whether the cell counts as one that can be seen now: it is free, or it is blocked and
-    /// shares a side with a cell that is not, where no wall parts them from the driven robot's
-    /// start. The grid as a whole is a sum over its cells; a single cell costs a few lookups.
-    pub fn can_be_seen(&self, cell: Cell) -> bool {
-        self.frame.index(cell).is_some_and(|index| GroundTruth::can_be_seen(self, index))
     }
 
     /// Starts a new list of changes.

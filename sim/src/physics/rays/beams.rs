@@ -6,7 +6,7 @@
 
 use super::edges::Edge;
 use nalgebra::{Isometry2, Point2, Vector2};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// An edge whose line passes the laser closer than this is seen edge-on, m.
@@ -202,25 +202,29 @@ impl<'a> Hits<'a> {
     }
 }
 
-/// The direction of a vector to within [`APPROXIMATE_RAD`], in [−π, π]: the start of a search.
-/// Abramowitz & Stegun (1964), 4.4.49.
-fn approximate_atan2(y: f64, x: f64) -> f64 {
-    let (along, across) = (x.abs(), y.abs());
-    let (low, high) = if across > along { (along, across) } else { (across, along) };
-    // 0/0 at the position of the laser gives 0 by the comparisons below.
-    let t = low / high.max(f64::MIN_POSITIVE);
-    let t2 = t * t;
-    let series =
-        0.999_866_0 + t2 * (-0.330_299_5 + t2 * (0.180_141_0 + t2 * (-0.085_133_0 + t2 * 0.020_835_1)));
-    let mut angle = t * series;
-    if across > along {
-        angle = FRAC_PI_2 - angle;
-    }
-    if x < 0.0 {
-        angle = PI - angle;
-    }
-    if y < 0.0 { -angle } else { angle }
+/// The direction of a vector to within [`APPROXIMATE_RAD`] (and single precision), in [−π, π], without
+/// branches: the start of a search. Abramowitz & Stegun (1964), 4.4.49.
+macro_rules! approximate_atan2 {
+    ($name:ident, $float:ident) => {
+        #[inline]
+        pub(super) fn $name(y: $float, x: $float) -> $float {
+            use std::$float::consts::{FRAC_PI_2, PI};
+            let (along, across) = (x.abs(), y.abs());
+            // 0 at the position of the laser, not 0/0.
+            let t = along.min(across) / along.max(across).max($float::MIN_POSITIVE);
+            let t2 = t * t;
+            let series =
+                0.999_866 + t2 * (-0.330_299_5 + t2 * (0.180_141 + t2 * (-0.085_133 + t2 * 0.020_835_1)));
+            let angle = t * series;
+            let angle = if across > along { FRAC_PI_2 - angle } else { angle };
+            let angle = if x < 0.0 { PI - angle } else { angle };
+            if y < 0.0 { -angle } else { angle }
+        }
+    };
 }
+
+approximate_atan2!(approximate_atan2, f64);
+approximate_atan2!(approximate_atan2_f32, f32);
 
 #[cfg(test)]
 mod tests {

@@ -108,12 +108,12 @@ impl Robot {
 
     /// Whether the main laser scanner measures at a step. The robot then decides.
     pub(super) fn decides(&self, step: u64) -> bool {
-        is_due(&self.sensors[0], step)
+        self.sensors[0].is_due(step)
     }
 
     /// Whether any sensor measures at a step.
     pub(super) fn senses(&self, step: u64) -> bool {
-        self.sensors.iter().any(|sensor| is_due(sensor, step))
+        self.sensors.iter().any(|sensor| sensor.is_due(step))
     }
 
     /// The latest reading of the main laser scanner.
@@ -162,7 +162,7 @@ impl Robot {
 
     fn sense(&mut self, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
         let platform = self.platform();
-        for sensor in self.sensors.iter_mut().filter(|sensor| is_due(sensor, surroundings.step)) {
+        for sensor in self.sensors.iter_mut().filter(|sensor| sensor.is_due(surroundings.step)) {
             sensor.measure(&platform, surroundings, scratch);
         }
     }
@@ -189,9 +189,4 @@ impl Robot {
         self.velocity = self.drive.settle(&bodies.velocity(self.index));
         self.odometry.update(&self.previous_pose, &self.pose);
     }
-}
-
-#[expect(clippy::borrowed_box, reason = "the items of a list")]
-fn is_due(sensor: &Box<dyn Sensor>, step: u64) -> bool {
-    step.is_multiple_of(sensor.period_steps())
 }

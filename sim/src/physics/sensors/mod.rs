@@ -26,6 +26,11 @@ pub(super) trait Sensor: Send + Sync {
     /// The physics steps from one measurement to the next; at least 1.
     fn period_steps(&self) -> u64;
 
+    /// Whether the sensor measures at a step.
+    fn is_due(&self, step: u64) -> bool {
+        step.is_multiple_of(self.period_steps())
+    }
+
     /// Measures, unless there is a reading of this moment already. `scratch` is overwritten.
     fn measure(&mut self, platform: &Platform, surroundings: &Surroundings<'_>, scratch: &mut Scratch);
 

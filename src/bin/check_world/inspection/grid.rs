@@ -1,66 +1,42 @@
-//! Grid worlds.
+//! The description of a grid world.
 
 use super::Content;
-use curious::pictures::{Plan, PlanRobot, PlanThing};
-use curious::show::{rectangle, scene};
-use interfaces::Cell;
-use nalgebra::Isometry2;
 use sim::grid::{BlockSpec, Course, GridSpec};
 
 pub(super) fn content(world: &GridSpec) -> Content {
     let frame = *world.frame();
     let free = world.walls.cells().iter().filter(|is_wall| !**is_wall).count();
-    let chance = |what: &str, chance: f64| format!("{what} moves with probability {chance}");
+    let moves = |what: &str, probability: f64| format!("{what} moves with probability {probability}");
     let mut lines = vec![
         ("size", format!("{} × {} cells, {free} of them free", frame.width(), frame.height())),
         (
             "robot",
             format!(
-                "starts at [{}, {}], sees {} cells far",
+                "starts at [{}, {}], sensor range {} cells",
                 world.start.x, world.start.y, world.sensor_radius
             ),
         ),
     ];
     if world.block_probability < 1.0 || world.robot_probability < 1.0 {
-        let both = [chance("a block", world.block_probability), chance("the robot", world.robot_probability)];
+        let both = [moves("a block", world.block_probability), moves("the robot", world.robot_probability)];
         lines.push(("chance", both.join(", ")));
     }
     lines.extend(world.blocks.iter().map(|block| ("block", describe(block))));
-    let square = |cell: Cell| rectangle(cell, cell, 0.0);
-    let start = frame.center(world.start);
-    let thing = |block: &BlockSpec| PlanThing {
-        name: block.name.clone(),
-        outline: block.path.first().map_or(Vec::new(), |&cell| square(cell)),
-        reach: block.path.iter().map(|&cell| square(cell)).collect(),
-    };
     Content {
         kind: "grid world",
         name: world.name.to_owned(),
         description: world.description.to_owned(),
         lines,
-        plan: Plan {
-            unit: "cells",
-            frame,
-            walls: scene(world).walls,
-            things: world.blocks.iter().map(thing).collect(),
-            robots: vec![PlanRobot {
-                name: "robot".to_owned(),
-                pose: Isometry2::translation(start.x, start.y),
-                radius: 0.4,
-                corners: Vec::new(),
-                views: Vec::new(),
-                is_driven: true,
-            }],
-        },
+        scene: world.into(),
     }
 }
 
-/// A block's name, way and rhythm.
+/// The name, the path and the dwell time of a block.
 fn describe(block: &BlockSpec) -> String {
     let course = match block.course {
-        Course::Loop => "round and round",
+        Course::Loop => "in a loop",
         Course::BackAndForth => "back and forth",
     };
     let (name, cells, dwell) = (&block.name, block.path.len(), block.dwell);
-    format!("`{name}` on {cells} cells, {course}, {dwell} steps on each")
+    format!("`{name}` moves along {cells} cells, {course}, {dwell} steps on each")
 }

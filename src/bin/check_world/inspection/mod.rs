@@ -1,47 +1,47 @@
-//! What is in a world file, in words and as a plan, whoever wrote it and for whatever simulator.
+//! The content of a world file of any format, as text and as a scene.
 
 mod grid;
 mod physics;
 #[cfg(test)]
 mod tests;
 
-use curious::pictures::Plan;
 use std::path::Path;
+use viewer::scene::Scene;
 use worldfile::floor_plan::FloorPlan;
 use worldfile::{Disk, Files, Findings, Severity, ros_map, shipped};
 
-/// What was found in one file.
+/// The result for one file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Inspection {
-    /// What the file was called by whoever asked.
+    /// The name of the file, as given.
     pub(crate) file: String,
     /// The world, unless there are errors.
     pub(crate) content: Option<Content>,
-    /// What the world will do otherwise than the file asks, then what is good to know, one message each.
+    /// Differences between the world and its file, then notes; one message each.
     pub(crate) warnings: Vec<String>,
-    /// What is wrong with the file, one message each; the last one can be about several.
+    /// The errors, one message each; the last message can be about several.
     pub(crate) errors: Vec<String>,
-    /// How many things are wrong with it.
+    /// The number of errors.
     pub(crate) error_count: usize,
 }
 
-/// What is in a world.
+/// The content of a world.
 #[derive(Clone, Debug)]
 pub(crate) struct Content {
-    /// What kind of world it is.
+    /// The kind of the world.
     pub(crate) kind: &'static str,
-    /// What it is called.
+    /// The name of the world.
     pub(crate) name: String,
-    /// What it shows, in its author's words; can be empty.
+    /// The description in the file; can be empty.
     pub(crate) description: String,
-    /// Lines of a name and what there is of it.
+    /// One line per part of the world: the name of the part, and its description.
     pub(crate) lines: Vec<(&'static str, String)>,
-    /// What it looks like.
-    pub(crate) plan: Plan,
+    /// The world from above.
+    pub(crate) scene: Scene,
 }
 
-/// Reads a file as what it is: a shipped world by its name, a world file (physics or grid), a `.world` file of
-/// Stage, or a `map.yaml` of ROS.
+/// Reads a shipped world by its name, or a file by its format: a world file (physics or grid), a Stage file, or
+/// a ROS map.
 pub(crate) fn inspect(name: &str) -> Inspection {
     let shipped = shipped::text(name);
     let path = Path::new(name);
@@ -52,16 +52,18 @@ pub(crate) fn inspect(name: &str) -> Inspection {
         (None, _) => match std::fs::read(path) {
             Ok(bytes) => match String::from_utf8(bytes) {
                 Ok(text) => world_file(name, &text, &Disk),
-                Err(_) => wrong(format!("error: cannot read `{name}`: it is no text, so no world file")),
+                Err(_) => invalid(format!("error: cannot read `{name}`: it is not a text file")),
             },
-            Err(why) => wrong(format!("error: cannot read `{name}`: {why}, and no world of this name ships")),
+            Err(why) => invalid(format!(
+                "error: cannot read `{name}`: {why}, and there is no shipped world of this name"
+            )),
         },
     };
     inspection.file = name.to_owned();
     inspection
 }
 
-/// The same world as a world file of ours, of a `.world` file of Stage that is right.
+/// A valid Stage world as a world file; `None` for other files.
 pub(crate) fn as_world_file(name: &str) -> Option<String> {
     let path = Path::new(name);
     let (world, _) = is_of_stage(path).then(|| stage::read(path, &Disk))?;
@@ -72,11 +74,11 @@ fn is_of_stage(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "world" || ending == "inc")
 }
 
-fn wrong(error: String) -> Inspection {
+fn invalid(error: String) -> Inspection {
     Inspection { errors: vec![error], error_count: 1, ..Inspection::default() }
 }
 
-/// A world file of ours: with a drawing for a `map` it is a grid world.
+/// A TOML world file: a grid world if `map` is a drawing.
 fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
     let is_grid =
         text.parse::<toml::Table>().is_ok_and(|file| file.get("map").is_some_and(toml::Value::is_str));

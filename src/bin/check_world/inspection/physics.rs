@@ -1,13 +1,13 @@
 //! Physics worlds, from whatever file.
 
 use super::Content;
-use curious::pictures::{Plan, PlanRobot, PlanThing, SensorView};
 use interfaces::GridFrame;
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Point2;
 use sim::physics::{
     BehaviorSpec, DriveKind, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec,
 };
 use std::path::Path;
+use viewer::scene::{Scene, TimeUnit};
 use worldfile::floor_plan::FloorPlan;
 
 /// The side of the cells that a floor plan is given for its frame, m.
@@ -33,34 +33,13 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
     ];
     lines.extend(world.obstacles.iter().map(|obstacle| ("thing", thing_line(obstacle))));
     lines.extend(robot_lines(&world.robots));
-    let robot = |robot: &RobotSpec| PlanRobot {
-        name: robot.name.clone(),
-        pose: robot.pose,
-        radius: robot.radius_m,
-        corners: robot.corners.clone(),
-        views: views(robot).collect(),
-        is_driven: robot.behavior == BehaviorSpec::Driven,
-    };
     Content {
         kind,
         name: world.name.to_owned(),
         description: world.description.to_owned(),
         lines,
-        plan: Plan {
-            unit: "m",
-            frame,
-            walls: world.walls.iter().map(|wall| wall.corners().to_vec()).collect(),
-            things: world.obstacles.iter().map(thing).collect(),
-            robots: world.robots.iter().map(robot).collect(),
-        },
+        scene: world.into(),
     }
-}
-
-/// Where the lasers and the sonars of a robot look.
-fn views(robot: &RobotSpec) -> impl Iterator<Item = SensorView> {
-    let lasers = robot.lasers().map(|laser| (laser.mount, laser.fov_rad, laser.range_max_m));
-    let sonars = robot.sonars.iter().map(|sonar| (sonar.mount, sonar.cone_rad, sonar.range_max_m));
-    lasers.chain(sonars).map(|(mount, angle_rad, range)| SensorView { mount, angle_rad, range })
 }
 
 /// A floor plan alone; none if it has no area.
@@ -72,9 +51,10 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
     let high = corners.iter().fold(corners[0], |high, corner| high.sup(corner));
     let rectangles: Vec<Rectangle> = plan.rectangles().collect();
     let bitmap = &plan.bitmap;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Some(Content {
         kind: "floor plan",
-        name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        name: name.clone(),
         description: String::new(),
         lines: vec![
             ("size", format!("{} × {} m", short(size.x), short(size.y))),
@@ -91,35 +71,15 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
                 ),
             ),
         ],
-        plan: Plan {
-            unit: "m",
+        scene: Scene {
+            title: name,
+            unit: TimeUnit::Second,
             frame: GridFrame::covering(low, high.x - low.x, high.y - low.y, PLAN_CELL_M.max(plan.pixel_m.x))?,
             walls: rectangles.iter().map(|wall| wall.corners().to_vec()).collect(),
-            things: Vec::new(),
+            obstacles: Vec::new(),
             robots: Vec::new(),
         },
     })
-}
-
-fn thing(obstacle: &ObstacleSpec) -> PlanThing {
-    let corners = |shape: Rectangle| shape.corners().to_vec();
-    let reach = match &obstacle.motion {
-        Motion::Fixed | Motion::Pushed(_) => Vec::new(),
-        Motion::Path(path) => {
-            path.keys.iter().map(|(_, middle)| corners(moved(&obstacle.shape, middle))).collect()
-        }
-        Motion::Door(door) => {
-            [0.0, 1.0].map(|openness| corners(door.shape(&obstacle.shape, openness))).to_vec()
-        }
-    };
-    let start = corners(obstacle.start());
-    let (outline, later) =
-        if obstacle.appears_s.is_none() { (start, Vec::new()) } else { (Vec::new(), vec![start]) };
-    PlanThing { name: obstacle.name.clone(), outline, reach: [later, reach].concat() }
-}
-
-fn moved(shape: &Rectangle, middle: &Point2<f64>) -> Rectangle {
-    Rectangle { pose: Isometry2::from_parts((*middle).into(), shape.pose.rotation), ..*shape }
 }
 
 fn thing_line(obstacle: &ObstacleSpec) -> String {

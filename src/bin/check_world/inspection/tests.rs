@@ -14,12 +14,12 @@ fn every_shipped_world_is_right_and_its_walls_lie_in_its_frame() {
     for name in names.chain(of_sim) {
         let inspection = inspect(&name);
         assert_eq!(inspection.errors, Vec::<String>::new());
-        let Content { plan, lines, .. } = inspection.content.unwrap();
-        assert!(!plan.walls.is_empty() && !plan.robots.is_empty() && lines.len() >= 3, "{name}");
-        let (low, cell_m) = (plan.frame.origin(), plan.frame.resolution_m());
+        let Content { scene, lines, .. } = inspection.content.unwrap();
+        assert!(!scene.walls.is_empty() && !scene.robots.is_empty() && lines.len() >= 3, "{name}");
+        let (low, cell_m) = (scene.frame.origin(), scene.frame.resolution_m());
         let high =
-            low + nalgebra::Vector2::new(plan.frame.width() as f64, plan.frame.height() as f64) * cell_m;
-        for corner in plan.walls.iter().flatten() {
+            low + nalgebra::Vector2::new(scene.frame.width() as f64, scene.frame.height() as f64) * cell_m;
+        for corner in scene.walls.iter().flatten() {
             let is_inside = corner.x >= low.x - 1e-6 && corner.y >= low.y - 1e-6;
             assert!(is_inside && corner.x <= high.x + 1e-6 && corner.y <= high.y + 1e-6, "{name}: {corner}");
         }
@@ -29,9 +29,12 @@ fn every_shipped_world_is_right_and_its_walls_lie_in_its_frame() {
 #[test]
 fn what_is_in_the_paper_s_worlds() {
     let grid = inspect("two_blocks").content.unwrap();
-    assert_eq!((grid.kind, grid.plan.things.len(), grid.plan.robots.len()), ("grid world", 2, 1));
+    assert_eq!((grid.kind, grid.scene.obstacles.len(), grid.scene.robots.len()), ("grid world", 2, 1));
     let physics = inspect("four_rooms").content.unwrap();
-    assert_eq!((physics.kind, physics.plan.things.len(), physics.plan.robots.len()), ("physics world", 0, 2));
+    assert_eq!(
+        (physics.kind, physics.scene.obstacles.len(), physics.scene.robots.len()),
+        ("physics world", 0, 2)
+    );
     assert_eq!(physics.lines[0], ("size", "12 × 12 m, 240 × 240 cells of 0.05 m".to_owned()));
 }
 
@@ -44,5 +47,5 @@ fn a_file_that_is_none_says_so() {
         "{:?}",
         inspection.errors
     );
-    assert!(inspect(&file("worlds/office.png")).errors[0].contains("no text"));
+    assert!(inspect(&file("worlds/office.png")).errors[0].contains("not a text file"));
 }

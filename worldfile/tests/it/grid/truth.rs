@@ -114,8 +114,8 @@ fn things_are_the_cells_of_paths() {
     let world = GridWorld::new(&spec("...\n...\n..R", &blocks), 0);
     let truth = world.truth();
     assert_eq!(*truth.moving_things(), [vec![6, 7, 8], vec![3, 4, 6, 7]]);
-    assert_eq!(truth.swept(), [3, 4, 6, 7, 8]);
-    assert_eq!((0..9).filter(|&index| truth.is_swept(index)).collect::<Vec<_>>(), truth.swept());
+    assert_eq!(*truth.swept(), [3, 4, 6, 7, 8]);
+    assert_eq!((0..9).filter(|&index| truth.is_swept(index)).collect::<Vec<_>>(), *truth.swept());
     assert_eq!((truth.elapsed(), truth.cycle_rate(6)), (0.0, 0.0));
 }
 

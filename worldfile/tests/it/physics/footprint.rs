@@ -2,8 +2,8 @@
 
 use super::fleet::{house, robot};
 use super::*;
+use interfaces::GroundTruth;
 use interfaces::LaserReading;
-use interfaces::TrueState;
 use nalgebra::Point2;
 
 /// A robot of 0.6 × 0.3 m at [3, 3], whose middle is 0.1 m behind that of its outline.
@@ -73,7 +73,7 @@ fn others_see_its_sides_and_truth_knows_its_cells() {
     let range_m = f64::from(world.sense().scan.ranges_m[45]);
     assert!((range_m - 1.6).abs() < 1e-6, "{range_m}");
     let frame = *world.truth().frame();
-    let state = |x: f64, y: f64| world.truth().state(frame.cell_at(&Point2::new(x, y))).unwrap();
+    let state = |x: f64, y: f64| world.truth().state(frame.index(frame.cell_at(&Point2::new(x, y))).unwrap());
     for (x, y, expected) in [
         (2.82, 2.87, TrueState::Blocked),
         (3.38, 3.12, TrueState::Blocked),

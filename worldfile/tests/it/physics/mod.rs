@@ -18,7 +18,7 @@ mod snapshot;
 mod things;
 mod truth;
 
-use interfaces::{GroundTruth, LaserReading, TrueState, Twist, World};
+use interfaces::{LaserReading, TrueState, Twist, World};
 use sim::physics::*;
 
 const FOUR_ROOMS: &str = include_str!("../../../../worlds/four_rooms.toml");

@@ -1,6 +1,6 @@
 use super::*;
 use interfaces::Cell;
-use interfaces::TrueState;
+use interfaces::GroundTruth;
 
 const BOX: &str = "[[obstacle]]\nname = \"box\"\nmin_m = [3.0, 1.8]\nmax_m = [3.4, 2.2]\n";
 
@@ -15,7 +15,8 @@ fn it_comes_and_goes_on_time_and_is_solid_meanwhile() {
         assert_eq!(world.obstacles().count(), usize::from(standing), "at {} s", world.time_s());
         assert!((ahead(&mut world) - if standing { 1.0 } else { 3.95 }).abs() < 1e-5);
         let expected = if standing { TrueState::Blocked } else { TrueState::Free };
-        assert_eq!(world.truth().state(Cell::new(64, 40)), Some(expected));
+        let truth = world.truth();
+        assert_eq!(truth.state(truth.frame().index(Cell::new(64, 40)).unwrap()), expected);
     }
     let events = world.obstacle_events();
     let told: Vec<_> = events.iter().map(|e| (e.name.as_str(), e.appeared, e.cells.len())).collect();

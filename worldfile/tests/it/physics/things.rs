@@ -2,8 +2,8 @@
 
 use super::fleet::{house, robot};
 use super::*;
+use interfaces::GroundTruth;
 use interfaces::LaserReading;
-use interfaces::TrueState;
 use nalgebra::Point2;
 
 /// A heavy robot at [1, 2] that drives straight on along x, and things.
@@ -75,12 +75,6 @@ pub(super) fn busy() -> FleetSpec {
         );
     }
     house(&robots, &things)
-}
-
-/// Robots that look at nothing and drive in wild curves.
-pub(super) fn reckless(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
-    let phase = reading.time_s * (0.3 + 0.1 * robot.index as f64);
-    Twist { linear_mps: 0.5 * libm::cos(phase * 0.7), angular_radps: 1.5 * libm::sin(phase) }
 }
 
 #[test]
@@ -277,8 +271,9 @@ fn what_moves_is_truth_and_contact() {
     let spec = four_rooms_but(&[("pose_m = [2.0, 2.0]", "pose_m = [1.0, 2.0]")], &things);
     let mut world = PhysicsWorld::new(&spec, 0);
     let frame = *world.truth().frame();
-    let state =
-        |world: &PhysicsWorld, x: f64| world.truth().state(frame.cell_at(&Point2::new(x, 2.01))).unwrap();
+    let state = |world: &PhysicsWorld, x: f64| {
+        world.truth().state(frame.index(frame.cell_at(&Point2::new(x, 2.01))).unwrap())
+    };
     assert_eq!((state(&world, 2.01), state(&world, 2.51)), (TrueState::Blocked, TrueState::Free));
     drive(&mut world, Twist { linear_mps: 0.4, angular_radps: 0.0 }, 4.5, |_| ());
     assert!(

@@ -1,0 +1,156 @@
+use crate::features::Features;
+use crate::settings::CuriousSettings;
+use interfaces::RandomStream;
+use rand::RngExt;
+use std::collections::BTreeMap;
+
+/// A value function over the features (p, r): several grids of tiles (tilings) with random offsets, and one
+/// weight per tile (section 4). Tiles are kept by column and row: two tiles never share a weight. The weight of
+/// a tile is 0 before it is learned.
+#[derive(Clone, Debug)]
+pub struct TileCoder {
+    /// The size of a tile in p and r.
+    tile: [f64; 2],
+    tilings: Vec<Tiling>,
+}
+
+#[derive(Clone, Debug)]
+struct Tiling {
+    /// The offset of the tiling in p and r, in tiles, in [0, 1).
+    offset: [f64; 2],
+    weights: BTreeMap<(i64, i64), f64>,
+}
+
+impl TileCoder {
+    /// A tile coder of value 0 with random offsets. Draws two numbers per tiling.
+    pub fn new(settings: &CuriousSettings, rng: &mut RandomStream) -> Self {
+        let offsets: Vec<_> = (0..settings.tilings).map(|_| [rng.random(), rng.random()]).collect();
+        Self::with_offsets([settings.tile_p, settings.tile_r], &offsets)
+    }
+
+    /// A tile coder of value 0 with tiles of size `tile` in p and r, and one tiling per offset, in tiles.
+    pub fn with_offsets(tile: [f64; 2], offsets: &[[f64; 2]]) -> Self {
+        let tiling = |&offset| Tiling { offset, weights: BTreeMap::new() };
+        Self { tile, tilings: offsets.iter().map(tiling).collect() }
+    }
+
+    /// V(p, r): the mean of the weights of the tiles that hold the features, one per tiling.
+    pub fn value(&self, features: Features) -> f64 {
+        let weight = |tiling: &Tiling| tiling.weights.get(&tile(tiling.offset, self.tile, features)).copied();
+        let sum: f64 = self.tilings.iter().filter_map(weight).sum();
+        sum / self.tilings.len().max(1) as f64
+    }
+
+    /// For every (p, r) of `trajectory`, moves each weight that holds it towards `target`:
+    /// w ← w (1 − λ) + target λ.
+    pub fn learn(&mut self, trajectory: &[Features], target: f64, learning_rate: f64) {
+        for tiling in &mut self.tilings {
+            let (offset, size) = (tiling.offset, self.tile);
+            let tile = |features: &Features| tile(offset, size, *features);
+            // Features move slowly: most of the time the next pair lies in the same tile.
+            for visit in trajectory.chunk_by(|a, b| tile(a) == tile(b)) {
+                let weight = tiling.weights.entry(tile(&visit[0])).or_insert(0.0);
+                for _ in visit {
+                    *weight = *weight * (1.0 - learning_rate) + target * learning_rate;
+                }
+            }
+        }
+    }
+}
+
+/// The tile of the features. The casts saturate, and NaN falls into tile 0: all features have a tile.
+fn tile(offset: [f64; 2], size: [f64; 2], features: Features) -> (i64, i64) {
+    let axis = |offset: f64, size: f64, feature: f64| (feature / size + offset).floor() as i64;
+    (axis(offset[0], size[0], features.p), axis(offset[1], size[1], features.r))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::Purpose;
+    use proptest::prelude::*;
+
+    fn at(p: f64, r: f64) -> Features {
+        Features { p, r }
+    }
+
+    /// Two tilings of 0.5 × 100: one from the origin, one displaced by half a tile in p and a
+    /// quarter of a tile in r.
+    fn two_tilings() -> TileCoder {
+        TileCoder::with_offsets([0.5, 100.0], &[[0.0, 0.0], [0.5, 0.25]])
+    }
+
+    #[test]
+    fn an_example_by_hand() {
+        let mut coder = two_tilings();
+        assert_eq!(coder.value(at(0.6, 80.0)), 0.0);
+        // p = 0.6: column 1 of the first tiling (0.5 to 1.0), column 1 of the second (0.25 to 0.75).
+        // r = 80: row 0 of the first (0 to 100), row 1 of the second (75 to 175).
+        coder.learn(&[at(0.6, 80.0)], 10.0, 0.9);
+        assert_eq!(coder.value(at(0.6, 80.0)), 9.0);
+        // In the same tile of the first tiling only: half of the value.
+        assert_eq!(coder.value(at(0.9, 10.0)), 4.5);
+        // In the same tile of the second only.
+        assert_eq!(coder.value(at(0.3, 170.0)), 4.5);
+        // In neither.
+        assert_eq!(coder.value(at(0.3, 60.0)), 0.0);
+        // A second visit of the first tile: 9 → 9 · 0.1 + 2 · 0.9 = 2.7; a first visit of another
+        // tile in the second tiling: 0 → 1.8.
+        coder.learn(&[at(0.9, 10.0)], 2.0, 0.9);
+        assert!((coder.value(at(0.9, 10.0)) - (2.7 + 1.8) / 2.0).abs() < 1e-12);
+        assert!((coder.value(at(0.6, 80.0)) - (2.7 + 9.0) / 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn each_pair_of_a_trajectory_counts() {
+        let mut coder = TileCoder::with_offsets([0.5, 100.0], &[[0.0, 0.0]]);
+        coder.learn(&[at(0.1, 1.0), at(0.2, 2.0), at(9.0, 2.0), at(0.3, 3.0)], 1.0, 0.5);
+        assert_eq!(coder.value(at(0.0, 0.0)), 1.0 - 0.5f64.powi(3));
+        assert_eq!(coder.value(at(9.0, 0.0)), 0.5);
+    }
+
+    #[test]
+    fn an_empty_trajectory_teaches_nothing() {
+        let mut coder = two_tilings();
+        coder.learn(&[], 10.0, 0.9);
+        assert_eq!(coder.value(at(0.0, 0.0)), 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn learning_one_pair_in_turn_is_learning_all(
+            pairs in prop::collection::vec((0.0..3.0, 0.0..400.0), 1..40),
+            seed in any::<u64>(),
+        ) {
+            let settings = CuriousSettings::default();
+            let mut whole = TileCoder::new(&settings, &mut RandomStream::new(seed, Purpose::Agent));
+            let mut single = whole.clone();
+            let trajectory: Vec<_> = pairs.iter().map(|&(p, r)| at(p, r)).collect();
+            whole.learn(&trajectory, 7.0, 0.9);
+            trajectory.iter().for_each(|&pair| single.learn(&[pair], 7.0, 0.9));
+            for &pair in &trajectory {
+                prop_assert_eq!(whole.value(pair), single.value(pair));
+            }
+        }
+
+        #[test]
+        fn values_stay_finite_and_between_zero_and_the_target(
+            p in prop_oneof![0.0..10.0, 0.0..f64::MAX, Just(f64::INFINITY), Just(f64::NAN)],
+            r in prop_oneof![0.0..1e6, 0.0..f64::MAX, Just(f64::INFINITY), Just(f64::NAN)],
+            target in 0.0..1e6,
+        ) {
+            let settings = CuriousSettings::default();
+            let mut coder = TileCoder::new(&settings, &mut RandomStream::new(3, Purpose::Agent));
+            coder.learn(&[at(p, r), at(p, r)], target, 0.9);
+            let value = coder.value(at(p, r));
+            prop_assert!((0.98 * target..=target * (1.0 + 1e-12)).contains(&value), "{}", value);
+        }
+
+        #[test]
+        fn far_apart_is_independent(dp in 0.5..1e5, dr in 0.0..1e5) {
+            let mut coder = TileCoder::new(&CuriousSettings::default(), &mut RandomStream::new(5, Purpose::Agent));
+            coder.learn(&[at(1.0, 50.0)], 10.0, 0.9);
+            prop_assert_eq!(coder.value(at(1.0 + dp + 1e-9, 50.0 + dr)), 0.0);
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! The time to each cell, also past obstacles that may have moved away.
+
+use super::clusters::beside;
+use crate::Situation;
+use interfaces::CellState;
+use std::collections::VecDeque;
+
+/// The additional time to pass a cell that was blocked when it was last seen, and may still be.
+const MAY_BE_CLOSED: f64 = 10.0;
+
+/// The time from the robot to each cell; ∞ where no path is known.
+///
+/// The planner knows no path past an obstacle that stood in a door when it was last seen, and a robot that
+/// never goes there never sees the door free. From a cell that changed, is mapped as blocked and is out of
+/// view, paths therefore continue from cell to cell, at a metre per unit of time.
+pub(super) fn times(situation: &Situation) -> Vec<f64> {
+    let (mapper, frame) = (situation.mapper, situation.mapper.frame());
+    let states = mapper.states().cells();
+    let mut times: Vec<f64> = (0..frame.len()).map(|cell| situation.travel_to(cell)).collect();
+    let mut is_passable: Vec<bool> = states.iter().map(|state| *state == CellState::Free).collect();
+    let mut open = VecDeque::new();
+    for cell in mapper.changed() {
+        if states[cell] == CellState::Blocked && !mapper.is_in_view(cell) {
+            is_passable[cell] = true;
+        }
+    }
+    for cell in mapper.changed().filter(|&cell| states[cell] == CellState::Blocked) {
+        if is_passable[cell] && times[cell] == f64::INFINITY {
+            open.extend(beside(frame, cell).filter(|&near| times[near] < f64::INFINITY));
+        }
+    }
+    while let Some(cell) = open.pop_front() {
+        for near in beside(frame, cell) {
+            if is_passable[near] && times[near] == f64::INFINITY {
+                let closed = if states[near] == CellState::Blocked { MAY_BE_CLOSED } else { 0.0 };
+                times[near] = times[cell] + frame.resolution_m() + closed;
+                open.push_back(near);
+            }
+        }
+    }
+    times
+}

@@ -1,0 +1,90 @@
+//! The share of a view that is really seen.
+
+use crate::visibility::{Regions, Visibility};
+use interfaces::Cell;
+use mapper::Mapper;
+
+/// The pseudo-observation of a complete view, in the unit of the readings' times.
+const TRUST: f64 = 10.0;
+
+/// The region of a visit, its planned duration, and the time that each region in view had been observed before.
+#[derive(Clone, Debug)]
+struct Visit {
+    region: usize,
+    duration: f64,
+    watched: Vec<f64>,
+}
+
+/// For each region the observations from there: the time that each region in view should have been seen, and
+/// the time that it was. Without them the robot would stay for ever where it cannot see what it came for, as
+/// behind an obstacle that its own presence holds up.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ViewReliability {
+    observations: Vec<Vec<[f32; 2]>>,
+    visit: Option<Visit>,
+}
+
+/// The time that a region has been in view: the mean over its cells.
+pub(super) fn watched(mapper: &Mapper, regions: &Regions, region: usize) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for cell in regions.cells(region) {
+        let seen = mapper.statistics(cell);
+        sum += seen.watched_free + seen.watched_blocked;
+        count += 1.0;
+    }
+    sum / count
+}
+
+impl ViewReliability {
+    /// Begins a visit; each region was `watched` for that time before.
+    pub(super) fn begin(
+        &mut self,
+        visibility: &mut Visibility,
+        watched: &[f64],
+        region: usize,
+        duration: f64,
+    ) {
+        let watched = visibility.seen_from(region).iter().map(|&seen| watched[seen as usize]).collect();
+        self.visit = Some(Visit { region, duration, watched });
+    }
+
+    /// Ends the last visit. A robot that did not reach the region has seen nothing from there.
+    pub(super) fn end(
+        &mut self,
+        mapper: &Mapper,
+        visibility: &mut Visibility,
+        regions: &Regions,
+        robot: Cell,
+    ) {
+        if self.observations.len() != regions.count() {
+            self.observations = vec![Vec::new(); regions.count()];
+            self.visit = None;
+        }
+        let Some(Visit { region, duration, watched: before }) = self.visit.take() else { return };
+        let view = visibility.seen_from(region);
+        // A wall that appeared or disappeared since makes another view.
+        if before.len() != view.len() {
+            return;
+        }
+        let is_there = mapper.frame().index(robot).is_some_and(|robot| regions.of(robot) == region);
+        let observations = &mut self.observations[region];
+        if observations.len() != view.len() {
+            *observations = vec![[0.0; 2]; view.len()];
+        }
+        for ((observation, before), &seen) in observations.iter_mut().zip(before).zip(view) {
+            observation[0] += duration as f32;
+            if is_there {
+                observation[1] +=
+                    (watched(mapper, regions, seen as usize) - before).clamp(0.0, duration) as f32;
+            }
+        }
+    }
+
+    /// The share of a watch from a region for which each region of its view is seen, in order; `None` for a region
+    /// that was never visited, where the whole view counts as seen.
+    pub(super) fn share(&self, region: usize, view: &[u32]) -> Option<impl Iterator<Item = f64>> {
+        let observations = &self.observations[region];
+        let share = |[due, seen]: &[f32; 2]| (f64::from(*seen) + TRUST) / (f64::from(*due) + TRUST);
+        (observations.len() == view.len() && !observations.is_empty()).then(|| observations.iter().map(share))
+    }
+}

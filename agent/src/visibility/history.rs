@@ -1,0 +1,94 @@
+use super::{Regions, Visibility};
+use crate::Situation;
+use interfaces::{Cell, GridFrame};
+use mapper::Mapper;
+
+/// Visibility, and which cells should have been in view from the goals so far: for strategies that go where
+/// many cells come into view.
+///
+/// The history is needed because an obstacle that hides a cell need not be on the map: without it the robot
+/// would go again and again to see a cell that cannot be seen.
+#[derive(Clone, Debug)]
+pub(crate) struct ViewHistory {
+    visibility: Visibility,
+    frame: Option<GridFrame>,
+    visits: Vec<Visits>,
+    /// The index of the last goal's cell, until the visit is over.
+    goal: Option<usize>,
+}
+
+/// The visits from which a cell should have been in view, whether it was seen or not.
+#[derive(Clone, Copy, Debug, Default)]
+struct Visits {
+    count: u8,
+    /// When the last visit was over.
+    time: f64,
+}
+
+impl ViewHistory {
+    /// For a robot that sees as far as `radius_m`.
+    pub(crate) fn new(radius_m: f64) -> Self {
+        Self { visibility: Visibility::new(radius_m), frame: None, visits: Vec::new(), goal: None }
+    }
+
+    /// Applies the present map and the visit of the last goal, which is over; returns the regions of the map.
+    pub(crate) fn update(&mut self, mapper: &Mapper) -> Regions {
+        let (regions, frame) = (self.visibility.update(mapper), *mapper.frame());
+        if self.frame != Some(frame) {
+            self.frame = Some(frame);
+            self.visits = vec![Visits::default(); frame.len()];
+            self.goal = None;
+        }
+        if let Some(goal) = self.goal.take() {
+            for &region in self.visibility.seen_from(regions.of(goal)) {
+                for cell in regions.cells(region as usize) {
+                    let count = self.visits[cell].count.saturating_add(1);
+                    self.visits[cell] = Visits { count, time: mapper.time() };
+                }
+            }
+        }
+        regions
+    }
+
+    /// Begins the visit of a goal.
+    pub(crate) fn go_to(&mut self, goal: Cell) {
+        self.goal = self.frame.and_then(|frame| frame.index(goal));
+    }
+
+    /// The number of visits from which the cell should have been in view, up to 255.
+    #[inline]
+    pub(crate) fn visits(&self, cell: usize) -> u8 {
+        self.visits[cell].count
+    }
+
+    /// The time since the cell was last seen, or should have been.
+    #[inline]
+    pub(crate) fn elapsed(&self, mapper: &Mapper, cell: usize) -> f64 {
+        mapper.recency(cell).min(mapper.time() - self.visits[cell].time)
+    }
+
+    /// Weighs each candidate by the worth of the regions in view from there, per time to get there and to stop
+    /// there for `watch`; `worth` has one value per region.
+    pub(crate) fn weigh(
+        &mut self,
+        situation: &Situation,
+        regions: &Regions,
+        worth: &[f64],
+        watch: f64,
+        weights: &mut [f64],
+    ) {
+        for region in 0..regions.count() {
+            let mut in_view = None; // not computed for regions where the robot cannot be
+            for cell in regions.cells(region) {
+                let time = situation.travel_to(cell) + watch;
+                if time < f64::INFINITY && situation.mapper.is_candidate(cell) {
+                    let in_view = *in_view.get_or_insert_with(|| {
+                        let seen = self.visibility.seen_from(region).iter();
+                        seen.map(|&seen| worth[seen as usize]).sum::<f64>()
+                    });
+                    weights[cell] = in_view / time;
+                }
+            }
+        }
+    }
+}

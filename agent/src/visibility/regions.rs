@@ -1,0 +1,67 @@
+use interfaces::{Cell, GridFrame};
+
+/// The largest number of regions that a view reaches: more would cost much and tell little.
+const REACH_REGIONS: f64 = 40.0;
+
+/// The map cut into square regions of `side` × `side` cells, from its lower left corner on; those at the right
+/// and upper border can be smaller. A region has an index in row-major order, as a cell has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Regions {
+    frame: GridFrame,
+    pub(super) side: usize,
+    pub(super) columns: usize,
+    pub(super) rows: usize,
+}
+
+impl Regions {
+    /// Regions for a sensor that sees as far as `radius_m`.
+    pub(super) fn new(frame: GridFrame, radius_m: f64) -> Self {
+        let reach_cells = radius_m / frame.resolution_m();
+        // At least one, and at most the whole map; the cast of a number too large is the largest.
+        let side =
+            ((reach_cells / REACH_REGIONS).ceil() as usize).clamp(1, frame.width().max(frame.height()));
+        Self { frame, side, columns: frame.width().div_ceil(side), rows: frame.height().div_ceil(side) }
+    }
+
+    /// The number of regions; at least one.
+    pub(crate) fn count(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// The region of a cell, both by index.
+    #[inline]
+    pub(crate) fn of(&self, index: usize) -> usize {
+        let width = self.frame.width();
+        index / width / self.side * self.columns + index % width / self.side
+    }
+
+    /// Whether each region is a cell.
+    pub(crate) fn are_cells(&self) -> bool {
+        self.side == 1
+    }
+
+    /// The region of a cell; `None` outside of the map.
+    pub(crate) fn at_cell(&self, cell: Cell) -> Option<usize> {
+        self.frame.index(cell).map(|index| self.of(index))
+    }
+
+    /// The indices of the cells of a region, row by row.
+    pub(crate) fn cells(&self, region: usize) -> impl Iterator<Item = usize> {
+        let (width, side) = (self.frame.width(), self.side);
+        let (left, bottom) = (region % self.columns * side, region / self.columns * side);
+        let right = (left + side).min(width);
+        let rows = bottom..(bottom + side).min(self.frame.height());
+        rows.flat_map(move |row| row * width + left..row * width + right)
+    }
+
+    #[inline]
+    pub(super) fn at(&self, column: i32, row: i32) -> Option<usize> {
+        let inside = (0..self.columns as i32).contains(&column) && (0..self.rows as i32).contains(&row);
+        inside.then(|| row as usize * self.columns + column as usize)
+    }
+
+    /// The number of regions in `radius_m`.
+    pub(super) fn reach(&self, radius_m: f64) -> f64 {
+        radius_m / (self.frame.resolution_m() * self.side as f64)
+    }
+}

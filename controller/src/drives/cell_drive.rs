@@ -1,0 +1,54 @@
+use super::{Body, Drive, Scene};
+use crate::planner::{InflationSettings, Moves, Path};
+use crate::settings::{NavigationSettings, Settings};
+use interfaces::Step;
+
+/// The robot of a grid world: as large as its cell, and each step it stays or moves to one of the four cells
+/// that share a side. Cells are 1 m wide, and a step of time lasts 1 s.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CellDrive;
+
+impl CellDrive {
+    /// The settings of a controller for this drive: no inflation, and a time limit that no path needs.
+    pub fn settings() -> Settings {
+        Settings {
+            inflation: InflationSettings { footprint_padding_m: 0.0, inflation_m: 0.0, inflation_cost: 1 },
+            navigation: NavigationSettings { goal_timeout_s: 1e5, ..NavigationSettings::default() },
+            ..Settings::default()
+        }
+    }
+}
+
+impl Drive for CellDrive {
+    type Command = Step;
+
+    fn body(&self) -> Body {
+        Body {
+            radius_m: 0.0,
+            moves: Moves::Four,
+            speed_mps: 1.0,
+            tolerance_m: 0.4,
+            step_m: 1.0,
+            directions: 4,
+            step_s: 1.0,
+            step_limit_s: 1.0,
+        }
+    }
+
+    fn follow(&mut self, scene: &Scene, path: &Path) -> Step {
+        let frame = scene.costmap.frame();
+        let here = frame.cell_at(&scene.situation.position());
+        let next = path.ahead().first().map(|next| frame.cell_at(next));
+        // The robot waits for a cell that became blocked, until there is another path.
+        let free = next.filter(|next| scene.costmap.is_traversable(*next));
+        free.and_then(|next| Step::between(here, next)).unwrap_or(Step::Stay)
+    }
+
+    fn rest(&mut self, _: &Scene) -> Step {
+        Step::Stay
+    }
+
+    fn recover(&mut self, _: &Scene, _: f64) -> Option<Step> {
+        None
+    }
+}

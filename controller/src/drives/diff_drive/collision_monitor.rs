@@ -1,0 +1,192 @@
+use crate::drives::Scene;
+use interfaces::CellState;
+use nalgebra::{Point2, Vector2};
+
+/// Points nearer to each other than this are one obstacle, m.
+const MERGE_M: f64 = 0.02;
+/// The largest distance between two checked points of a predicted trajectory, m.
+const CHECK_M: f64 = 0.04;
+/// The number of speeds tried between the wish and 0.
+const LEVELS: u32 = 8;
+
+/// How a robot stops, and the distance that it keeps from obstacles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Braking {
+    pub(super) radius_m: f64,
+    pub(super) margin_m: f64,
+    /// The additional margin per m/s of speed, s.
+    pub(super) margin_s: f64,
+    pub(super) reaction_s: f64,
+    pub(super) deceleration_mps2: f64,
+    /// The maximum speed of dynamic obstacles, m/s.
+    pub(super) obstacle_mps: f64,
+}
+
+impl Braking {
+    /// The time from the decision to stop until the robot stands, s.
+    fn stop_s(&self, speed_mps: f64) -> f64 {
+        self.reaction_s + speed_mps / self.deceleration_mps2
+    }
+
+    /// The stopping distance, m.
+    fn stop_m(&self, speed_mps: f64) -> f64 {
+        speed_mps * self.reaction_s + 0.5 * speed_mps * speed_mps / self.deceleration_mps2
+    }
+
+    /// The time at which the stopping robot passes the point at a distance, s.
+    fn passes_at_s(&self, speed_mps: f64, distance_m: f64) -> f64 {
+        let rolling_m = speed_mps * self.reaction_s;
+        if distance_m <= rolling_m {
+            return distance_m / speed_mps;
+        }
+        let braking_m = distance_m - rolling_m;
+        let left = (speed_mps * speed_mps - 2.0 * self.deceleration_mps2 * braking_m).max(0.0);
+        self.reaction_s + (speed_mps - left.sqrt()) / self.deceleration_mps2
+    }
+}
+
+/// An obstacle in the frame of the robot, m.
+#[derive(Clone, Copy, Debug)]
+struct Obstacle {
+    at: Vector2<f64>,
+    distance_m: f64,
+    is_dynamic: bool,
+}
+
+/// Predicts whether the robot can still stop in time. A speed is safe if the robot, which holds it until it
+/// can react and then brakes along the same arc, keeps its distance from all sensed points and all blocked
+/// cells, even if dynamic obstacles move straight towards it. From an obstacle that is already too near the
+/// robot may only move away.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CollisionMonitor {
+    obstacles: Vec<Obstacle>,
+}
+
+impl CollisionMonitor {
+    /// Gathers the obstacles that matter up to `speed_mps`.
+    pub(super) fn update(&mut self, braking: &Braking, scene: &Scene, speed_mps: f64) {
+        let reach_m = braking.radius_m
+            + braking.margin_m
+            + braking.margin_s * speed_mps
+            + braking.stop_m(speed_mps)
+            + braking.obstacle_mps * braking.stop_s(speed_mps);
+        self.obstacles.clear();
+        let robot = scene.situation.position();
+        for point in scene.situation.points {
+            if (point - robot).norm_squared() < reach_m * reach_m {
+                self.add(scene, point);
+            }
+        }
+        let frame = scene.situation.map.frame();
+        let corner = Vector2::repeat(reach_m);
+        let (first, last) = (frame.cell_at(&(robot - corner)), frame.cell_at(&(robot + corner)));
+        for y in first.y.max(0)..=last.y.min(frame.height() as i32 - 1) {
+            for x in first.x.max(0)..=last.x.min(frame.width() as i32 - 1) {
+                let cell = interfaces::Cell::new(x, y);
+                if scene.situation.map.get(cell) == Some(&CellState::Blocked) {
+                    let center = frame.center(cell);
+                    if (center - robot).norm_squared() < reach_m * reach_m {
+                        self.add(scene, &center);
+                    }
+                }
+            }
+        }
+    }
+
+    fn add(&mut self, scene: &Scene, point: &Point2<f64>) {
+        let at = scene.situation.pose.inverse_transform_point(point).coords;
+        if self.obstacles.last().is_some_and(|last| (last.at - at).norm_squared() < MERGE_M * MERGE_M) {
+            return;
+        }
+        let is_dynamic = scene.dynamic.is_dynamic(scene.situation, point);
+        self.obstacles.push(Obstacle { at, distance_m: at.norm(), is_dynamic });
+    }
+
+    /// The highest safe speed up to `wish_mps` (negative backwards) on the arc of a curvature.
+    pub(super) fn safe_speed_mps(&self, braking: &Braking, wish_mps: f64, curvature_radpm: f64) -> f64 {
+        let mut levels = (1..=LEVELS).rev().map(|level| wish_mps * f64::from(level) / f64::from(LEVELS));
+        levels.find(|speed| self.is_safe(braking, *speed, curvature_radpm)).unwrap_or(0.0)
+    }
+
+    fn is_safe(&self, braking: &Braking, velocity_mps: f64, curvature_radpm: f64) -> bool {
+        let speed_mps = velocity_mps.abs();
+        let keep_m = braking.radius_m + braking.margin_m + braking.margin_s * speed_mps;
+        let stop_m = braking.stop_m(speed_mps);
+        let checks = (stop_m / CHECK_M).ceil().max(1.0);
+        (1..=checks as u32).all(|check| {
+            let distance_m = stop_m * f64::from(check) / checks;
+            let at = along_arc(distance_m.copysign(velocity_mps), curvature_radpm);
+            let moves_m = braking.obstacle_mps * braking.passes_at_s(speed_mps, distance_m);
+            self.obstacles.iter().all(|obstacle| {
+                let keep_m = if obstacle.is_dynamic { keep_m + moves_m } else { keep_m };
+                let square = (obstacle.at - at).norm_squared();
+                square >= keep_m * keep_m || square >= obstacle.distance_m * obstacle.distance_m
+            })
+        })
+    }
+}
+
+/// The point at `distance_m` along an arc that starts forwards at the origin.
+fn along_arc(distance_m: f64, curvature_radpm: f64) -> Vector2<f64> {
+    let turn_rad = distance_m * curvature_radpm;
+    if turn_rad.abs() < 1e-6 {
+        return Vector2::new(distance_m, 0.5 * distance_m * turn_rad);
+    }
+    let (sin, cos) = libm::sincos(turn_rad);
+    Vector2::new(sin / curvature_radpm, (1.0 - cos) / curvature_radpm)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BRAKING: Braking = Braking {
+        radius_m: 0.2,
+        margin_m: 0.02,
+        margin_s: 0.0,
+        reaction_s: 0.2,
+        deceleration_mps2: 1.0,
+        obstacle_mps: 0.3,
+    };
+
+    fn monitor(x: f64, y: f64, is_dynamic: bool) -> CollisionMonitor {
+        let at = Vector2::new(x, y);
+        CollisionMonitor { obstacles: vec![Obstacle { at, distance_m: at.norm(), is_dynamic }] }
+    }
+
+    #[test]
+    fn a_safe_speed_leaves_room_to_stop() {
+        for distance_cm in 22..80 {
+            let ahead_m = f64::from(distance_cm) / 100.0;
+            let speed = monitor(ahead_m, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0);
+            assert!(BRAKING.stop_m(speed) <= (ahead_m - 0.22).max(0.0) + 1e-12);
+            assert!(speed == 0.5 || BRAKING.stop_m(speed + 0.5 / 8.0) > ahead_m - 0.22 - 1e-9);
+        }
+    }
+
+    #[test]
+    fn what_comes_closer_needs_more_room() {
+        let ahead_m = 0.22 + BRAKING.stop_m(0.5) + 0.01;
+        assert_eq!(monitor(ahead_m, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
+        assert!(monitor(ahead_m, 0.0, true).safe_speed_mps(&BRAKING, 0.5, 0.0) < 0.5);
+        let ahead_m = ahead_m + 0.3 * BRAKING.stop_s(0.5);
+        assert_eq!(monitor(ahead_m, 0.0, true).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
+    }
+
+    #[test]
+    fn beside_and_behind_do_not_stop_but_a_turn_towards_does() {
+        assert_eq!(monitor(0.1, 0.23, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
+        assert_eq!(monitor(-0.21, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
+        assert_eq!(monitor(-0.21, 0.0, false).safe_speed_mps(&BRAKING, -0.5, 0.0), 0.0);
+        assert!(monitor(0.1, 0.23, false).safe_speed_mps(&BRAKING, 0.5, 3.0) < 0.3);
+    }
+
+    #[test]
+    fn arcs_close_to_straight_ones_are_straight() {
+        assert!((along_arc(0.5, 1e-5) - along_arc(0.5, 1e-7)).norm() < 1e-5);
+        let quarter = along_arc(std::f64::consts::FRAC_PI_2, 1.0);
+        assert!((quarter - Vector2::new(1.0, 1.0)).norm() < 1e-12);
+        let back = along_arc(-std::f64::consts::FRAC_PI_2, 1.0);
+        assert!((back - Vector2::new(-1.0, 1.0)).norm() < 1e-12);
+    }
+}

@@ -1,0 +1,163 @@
+//! A robot with two driven wheels: turns in place, drives along arcs.
+
+mod collision_monitor;
+mod settings;
+
+pub use settings::DiffDriveSettings;
+
+use super::{Body, Drive, Scene};
+use crate::planner::{Costmap, Moves, Path};
+use collision_monitor::{Braking, CollisionMonitor};
+use interfaces::{SettingsError, Twist};
+use nalgebra::Point2;
+use std::f64::consts::PI;
+
+/// The part of `turn_in_place_rad` at which a turn in place ends, so that it does not begin again at once.
+const TURNED: f64 = 0.3;
+/// The least speed at the end of a path, m/s.
+const CREEP_MPS: f64 = 0.05;
+/// The duration of a recovery, s.
+const RECOVERY_S: f64 = 2.0;
+/// A longer tick does not allow a larger change of speed, s.
+const LONGEST_TICK_S: f64 = 0.2;
+
+/// Follows paths by pure pursuit (Coulter 1992) of the farthest visible point ahead, turns in place where the
+/// path lies behind, and brakes for sensed obstacles.
+#[derive(Clone, Debug)]
+pub struct DiffDrive {
+    settings: DiffDriveSettings,
+    monitor: CollisionMonitor,
+    is_turning: bool,
+    last: Twist,
+    last_time_s: f64,
+}
+
+impl DiffDrive {
+    /// A robot at rest.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range; the error names it.
+    pub fn new(settings: DiffDriveSettings) -> Result<Self, SettingsError> {
+        settings.check()?;
+        let monitor = CollisionMonitor::default();
+        Ok(Self { settings, monitor, is_turning: false, last: Twist::STOP, last_time_s: f64::NEG_INFINITY })
+    }
+
+    fn braking(&self) -> Braking {
+        Braking {
+            radius_m: self.settings.radius_m,
+            margin_m: self.settings.clearance_m,
+            margin_s: self.settings.clearance_s,
+            reaction_s: self.settings.reaction_s,
+            deceleration_mps2: self.settings.acceleration_mps2,
+            obstacle_mps: self.settings.max_obstacle_mps,
+        }
+    }
+
+    /// The rate of a turn in place by `angle_rad` that can still end there.
+    fn turn_radps(&self, angle_rad: f64) -> f64 {
+        // Half of what the robot can do: it senses its heading only once a tick.
+        let brakeable = (self.settings.angular_acceleration_radps2 * angle_rad.abs()).sqrt();
+        brakeable.min(self.settings.max_angular_radps).copysign(angle_rad)
+    }
+
+    /// Limits the acceleration within a tick. Deceleration is left to the robot.
+    fn command(&mut self, scene: &Scene, wish: Twist) -> Twist {
+        let tick_s = (scene.situation.time - self.last_time_s).clamp(0.0, LONGEST_TICK_S);
+        let faster = self.settings.acceleration_mps2 * tick_s;
+        let turns_more = self.settings.angular_acceleration_radps2 * tick_s;
+        let (v, w) = (self.last.linear_mps, self.last.angular_radps);
+        self.last = Twist {
+            linear_mps: wish.linear_mps.clamp(v.min(0.0) - faster, v.max(0.0) + faster),
+            angular_radps: wish.angular_radps.clamp(w.min(0.0) - turns_more, w.max(0.0) + turns_more),
+        };
+        self.last_time_s = scene.situation.time;
+        self.last
+    }
+}
+
+impl Drive for DiffDrive {
+    type Command = Twist;
+
+    fn body(&self) -> Body {
+        let DiffDriveSettings { radius_m, tolerance_m, max_linear_mps, .. } = self.settings;
+        let step_m = 2.0 * radius_m;
+        let step_s = step_m / max_linear_mps;
+        Body {
+            radius_m,
+            moves: Moves::Eight,
+            speed_mps: max_linear_mps,
+            tolerance_m,
+            step_m,
+            directions: 16,
+            step_s,
+            // To turn round, to accelerate and to brake.
+            step_limit_s: 2.0 * step_s + PI / self.settings.max_angular_radps,
+        }
+    }
+
+    fn follow(&mut self, scene: &Scene, path: &Path) -> Twist {
+        let settings = self.settings;
+        let position = scene.situation.position();
+        let Some(target) = visible_lookahead_point(scene.costmap, path, &position, settings.lookahead_m)
+        else {
+            return self.rest(scene);
+        };
+        let towards = scene.situation.pose.inverse_transform_point(&target).coords;
+        let off_rad = libm::atan2(towards.y, towards.x);
+        let allowed_rad = settings.turn_in_place_rad * if self.is_turning { TURNED } else { 1.0 };
+        self.is_turning = off_rad.abs() > allowed_rad;
+        let turn = Twist { linear_mps: 0.0, angular_radps: self.turn_radps(off_rad) };
+        if self.is_turning {
+            return self.command(scene, turn);
+        }
+        // The arc that starts in the robot's heading and passes through the target.
+        let curvature_radpm = 2.0 * towards.y / towards.norm_squared().max(1e-6);
+        let end_mps = (settings.acceleration_mps2 * path.remaining_m(&position)).sqrt().max(CREEP_MPS);
+        let aligned = 1.0 - (off_rad / settings.turn_in_place_rad).abs();
+        let wish_mps = (settings.max_linear_mps * aligned.max(0.2))
+            .min(end_mps)
+            .min(settings.max_angular_radps / curvature_radpm.abs().max(1e-6))
+            .min(self.last.linear_mps.max(0.0) + settings.acceleration_mps2 * LONGEST_TICK_S);
+        let braking = self.braking();
+        self.monitor.update(&braking, scene, wish_mps);
+        let safe_mps = self.monitor.safe_speed_mps(&braking, wish_mps, curvature_radpm);
+        if safe_mps == 0.0 {
+            return self.command(scene, turn);
+        }
+        self.command(scene, Twist { linear_mps: safe_mps, angular_radps: safe_mps * curvature_radpm })
+    }
+
+    fn rest(&mut self, scene: &Scene) -> Twist {
+        self.is_turning = false;
+        self.command(scene, Twist::STOP)
+    }
+
+    /// Backs up straight while that is safe, otherwise turns in place.
+    fn recover(&mut self, scene: &Scene, elapsed_s: f64) -> Option<Twist> {
+        if elapsed_s >= RECOVERY_S {
+            return None;
+        }
+        let braking = self.braking();
+        self.monitor.update(&braking, scene, self.settings.reverse_mps);
+        let back_mps = self.monitor.safe_speed_mps(&braking, -self.settings.reverse_mps, 0.0);
+        let turn_radps = if back_mps == 0.0 { 0.5 * self.settings.max_angular_radps } else { 0.0 };
+        Some(self.command(scene, Twist { linear_mps: back_mps, angular_radps: turn_radps }))
+    }
+}
+
+/// The point of the path at most `lookahead_m` ahead with no lethal cell between it and the robot.
+fn visible_lookahead_point(
+    costmap: &Costmap,
+    path: &Path,
+    position: &Point2<f64>,
+    lookahead_m: f64,
+) -> Option<Point2<f64>> {
+    let robot = costmap.frame().cell_at(position);
+    let mut ahead = [1.0, 0.7, 0.4, 0.2]
+        .into_iter()
+        .filter_map(|part| path.lookahead_point(position, part * lookahead_m));
+    let visible = |point: &Point2<f64>| costmap.line_cost(robot, costmap.frame().cell_at(point)).is_some();
+    ahead.find(visible).or_else(|| path.ahead().first().or(path.end()).copied())
+}

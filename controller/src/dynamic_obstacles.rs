@@ -1,0 +1,78 @@
+use crate::Situation;
+use interfaces::{Cell, CellState, Grid};
+use nalgebra::Point2;
+
+/// The time for which a cell counts as dynamic after a change in or beside it, s.
+const MEMORY_S: f64 = 10.0;
+
+/// Separates dynamic obstacles from walls: a sensed point is dynamic where the map changed lately, or where
+/// the map has nothing that the point could belong to.
+///
+/// The time of an update is proportional to the number of changes; a query reads the cells around a point.
+#[derive(Clone, Debug)]
+pub struct DynamicObstacleFilter {
+    /// When each cell, or a cell that touches it, last changed.
+    changed_at: Grid<f64>,
+}
+
+impl DynamicObstacleFilter {
+    /// A filter before any change.
+    pub fn new<T>(map: &Grid<T>) -> Self {
+        Self { changed_at: map.map(|_| f64::NEG_INFINITY) }
+    }
+
+    /// Applies the changes of this update.
+    pub fn update(&mut self, situation: &Situation) {
+        for changed in situation.transitions.iter().filter(|transition| transition.event().is_some()) {
+            for cell in around(changed.cell) {
+                if let Some(changed_at) = self.changed_at.get_mut(cell) {
+                    *changed_at = situation.time;
+                }
+            }
+        }
+    }
+
+    /// Whether the obstacle sensed at `point` may move.
+    pub fn is_dynamic(&self, situation: &Situation, point: &Point2<f64>) -> bool {
+        let cell = situation.map.frame().cell_at(point);
+        let changed_at = self.changed_at.get(cell).copied().unwrap_or(f64::NEG_INFINITY);
+        let blocked = |cell| situation.map.get(cell) == Some(&CellState::Blocked);
+        situation.time - changed_at < MEMORY_S || !around(cell).any(blocked)
+    }
+}
+
+/// A cell and the eight that touch it.
+fn around(cell: Cell) -> impl Iterator<Item = Cell> {
+    std::iter::once(cell).chain(cell.neighbours8())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::{find, states};
+    use interfaces::Transition;
+
+    #[test]
+    fn walls_are_still_and_what_changed_or_is_new_is_not() {
+        let rows = ["#........", "#....C...", "#........", "W.......N"];
+        let mut map = states(&rows, 1.0);
+        let at = |mark| map.frame().center(find(&rows, mark));
+        let (wall, changed, new) = (at('W'), at('C'), at('N'));
+        let transition =
+            Transition { cell: find(&rows, 'C'), before: CellState::Free, after: CellState::Blocked };
+        *map.get_mut(transition.cell).unwrap() = transition.after;
+        let pose = interfaces::pose(0.0, 0.0, 0.0);
+        let mut dynamic = DynamicObstacleFilter::new(&map);
+        let situation =
+            |time, transitions| Situation { time, pose: &pose, map: &map, transitions, points: &[] };
+        let transitions = [transition];
+        let now = situation(1.0, &transitions);
+        dynamic.update(&now);
+        assert!(!dynamic.is_dynamic(&now, &wall));
+        assert!(dynamic.is_dynamic(&now, &changed));
+        assert!(dynamic.is_dynamic(&now, &new));
+        let later = situation(1.0 + MEMORY_S, &[]);
+        assert!(!dynamic.is_dynamic(&later, &changed));
+        assert!(dynamic.is_dynamic(&later, &new));
+    }
+}

@@ -1,0 +1,121 @@
+use crate::drives::Body;
+use crate::planner::Costmap;
+use crate::settings::ExplorationSettings;
+use interfaces::RandomStream;
+use nalgebra::{Point2, Vector2};
+use rand::RngExt;
+use std::f64::consts::TAU;
+
+/// Local exploration (paper, section 2): a step towards the centroid of the last change, or a random step
+/// where nothing changed. Counts the steps.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LocalExploration {
+    steps: u32,
+    random_steps_in_a_row: u32,
+}
+
+impl LocalExploration {
+    /// The target of the next step; `None` after enough steps. `change` is the centroid of the last change,
+    /// `random` the target of a random step.
+    pub(crate) fn next(
+        &mut self,
+        settings: &ExplorationSettings,
+        change: Option<Point2<f64>>,
+        random: impl FnOnce() -> Point2<f64>,
+    ) -> Option<Point2<f64>> {
+        if self.steps >= settings.max_steps {
+            return None;
+        }
+        let target = match change {
+            Some(change) => {
+                self.random_steps_in_a_row = 0;
+                change
+            }
+            None if self.random_steps_in_a_row >= settings.max_random_steps => return None,
+            None => {
+                self.random_steps_in_a_row += 1;
+                random()
+            }
+        };
+        self.steps += 1;
+        Some(target)
+    }
+}
+
+/// The point one step away in a random traversable direction; `here` where there is none. Always draws one
+/// number.
+pub(crate) fn random_step(
+    body: &Body,
+    costmap: &Costmap,
+    here: &Point2<f64>,
+    rng: &mut RandomStream,
+) -> Point2<f64> {
+    let cell = |point: &Point2<f64>| costmap.frame().cell_at(point);
+    let step = |direction: u32| {
+        let (sin, cos) = libm::sincos(TAU * f64::from(direction) / f64::from(body.directions));
+        here + Vector2::new(cos, sin) * body.step_m
+    };
+    let is_traversable = |target: &Point2<f64>| costmap.line_cost(cell(here), cell(target)).is_some();
+    let targets: Vec<_> = (0..body.directions).map(step).filter(is_traversable).collect();
+    let draw: u32 = rng.random_range(0..body.directions.max(1));
+    // The first traversable direction from a random one on would favour those after a gap.
+    let index = u64::from(draw) * targets.len() as u64 / u64::from(body.directions.max(1));
+    targets.get(index as usize).copied().unwrap_or(*here)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Moves;
+    use crate::tests::{costmap, find};
+    use interfaces::Purpose;
+
+    const HERE: Point2<f64> = Point2::new(1.0, 1.0);
+    const CHANGE: Option<Point2<f64>> = Some(Point2::new(5.0, 5.0));
+
+    #[test]
+    fn it_follows_changes_up_to_the_bound() {
+        let (settings, mut exploration) = (ExplorationSettings::default(), LocalExploration::default());
+        for _ in 0..settings.max_steps {
+            assert_eq!(exploration.next(&settings, CHANGE, || HERE), CHANGE);
+        }
+        assert_eq!(exploration.next(&settings, CHANGE, || HERE), None);
+    }
+
+    #[test]
+    fn it_makes_fewer_than_two_random_steps_in_a_row() {
+        let (settings, mut exploration) = (ExplorationSettings::default(), LocalExploration::default());
+        assert_eq!(exploration.next(&settings, None, || HERE), Some(HERE));
+        assert_eq!(exploration.next(&settings, CHANGE, || HERE), CHANGE);
+        assert_eq!(exploration.next(&settings, None, || HERE), Some(HERE));
+        assert_eq!(exploration.next(&settings, None, || HERE), None);
+    }
+
+    #[test]
+    fn random_steps_lead_to_every_open_side_and_no_other() {
+        let rows = ["....", "#R..", ".#.."];
+        let map = costmap(&rows);
+        let body = Body {
+            radius_m: 0.0,
+            moves: Moves::Four,
+            speed_mps: 1.0,
+            tolerance_m: 0.1,
+            step_m: 1.0,
+            directions: 4,
+            step_s: 1.0,
+            step_limit_s: 1.0,
+        };
+        let robot = find(&rows, 'R');
+        let here = map.frame().center(robot);
+        let mut rng = RandomStream::new(1, Purpose::Controller);
+        let mut steps: Vec<_> =
+            (0..100).map(|_| map.frame().cell_at(&random_step(&body, &map, &here, &mut rng))).collect();
+        steps.sort();
+        steps.dedup();
+        let [right, up, ..] = robot.neighbours4();
+        assert_eq!(steps, [up, right]);
+        let walls = costmap(&["###", "#R#", "###"]);
+        let inside = Point2::new(1.5, 1.5);
+        assert_eq!(random_step(&body, &walls, &inside, &mut rng), inside);
+    }
+}

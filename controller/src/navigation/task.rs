@@ -1,0 +1,191 @@
+use crate::drives::{Drive, Scene};
+use crate::dynamic_obstacles::DynamicObstacleFilter;
+use crate::planner::{Path, PlanEnd, Planner};
+use crate::settings::NavigationSettings;
+use crate::situation::Situation;
+use nalgebra::Point2;
+
+/// Recoveries farther apart than this are counted separately, m.
+const SAME_POSITION_M: f64 = 1.0;
+/// A path that ends this much farther from the goal than an earlier path is worse, m.
+const WORSE_M: f64 = 0.1;
+
+/// What the controller derives from the map.
+#[derive(Clone, Debug)]
+pub(crate) struct Surroundings {
+    pub(crate) planner: Planner,
+    pub(crate) dynamic: DynamicObstacleFilter,
+}
+
+/// The inputs of one tick.
+pub(crate) struct Tick<'a> {
+    pub(crate) settings: &'a NavigationSettings,
+    pub(crate) situation: &'a Situation<'a>,
+    pub(crate) surroundings: &'a mut Surroundings,
+}
+
+impl Tick<'_> {
+    pub(crate) fn scene(&self) -> Scene<'_> {
+        let Surroundings { planner, dynamic } = &*self.surroundings;
+        Scene { situation: self.situation, costmap: planner.costmap(), dynamic }
+    }
+}
+
+/// The progress of a navigation task.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Progress<Command> {
+    /// On the path, with the next command.
+    Underway(Command),
+    /// The robot is at the end of its path.
+    Arrived(PlanEnd),
+    /// The robot is stuck, or the task took too long.
+    GivenUp,
+}
+
+/// The navigation to one goal: plans, replans, waits, recovers, gives up.
+#[derive(Clone, Debug)]
+pub(crate) struct NavigationTask {
+    goal: Point2<f64>,
+    start: Point2<f64>,
+    /// The task ends at this distance from the start, m.
+    max_distance_m: f64,
+    timeout_s: f64,
+    began_s: f64,
+    planned_at_s: f64,
+    plan: Option<PlanEnd>,
+    /// The shortest distance from the end of a path to the goal, m.
+    best_distance_m: f64,
+    waits_until_s: Option<f64>,
+    /// The position where the robot last moved on, and the time.
+    anchor: (Point2<f64>, f64),
+    recoveries: u32,
+    recovery_at: Point2<f64>,
+    recovering_since_s: Option<f64>,
+}
+
+impl NavigationTask {
+    /// A task from the present position to `goal`, or until the robot has come `max_distance_m`, given up
+    /// after `timeout_s`.
+    pub(crate) fn new(situation: &Situation, goal: Point2<f64>, max_distance_m: f64, timeout_s: f64) -> Self {
+        let (position, time) = (situation.position(), situation.time);
+        Self {
+            goal,
+            start: position,
+            max_distance_m,
+            timeout_s,
+            began_s: time,
+            planned_at_s: f64::NEG_INFINITY,
+            plan: None,
+            best_distance_m: f64::INFINITY,
+            waits_until_s: None,
+            anchor: (position, time),
+            recoveries: 0,
+            recovery_at: position,
+            recovering_since_s: None,
+        }
+    }
+
+    /// The goal of the task.
+    pub(crate) fn goal(&self) -> &Point2<f64> {
+        &self.goal
+    }
+
+    /// The time since the task began, s.
+    pub(crate) fn elapsed_s(&self, situation: &Situation) -> f64 {
+        situation.time - self.began_s
+    }
+
+    /// One tick: the progress, with the next command.
+    pub(crate) fn drive<D: Drive>(
+        &mut self,
+        tick: &mut Tick,
+        path: &mut Path,
+        drive: &mut D,
+    ) -> Progress<D::Command> {
+        let (situation, position) = (tick.situation, tick.situation.position());
+        if self.elapsed_s(situation) >= self.timeout_s {
+            return Progress::GivenUp;
+        }
+        let off_path_m = path.advance(&position);
+        if self.must_plan(tick, off_path_m) {
+            self.plan(tick, path);
+        }
+        let scene = tick.scene();
+        if self.waits(situation) {
+            self.anchor = (position, situation.time);
+            let may_stay = scene.costmap.is_traversable(scene.costmap.frame().cell_at(&position));
+            let command = if may_stay { drive.rest(&scene) } else { drive.follow(&scene, path) };
+            return Progress::Underway(command);
+        }
+        if let Some(end) = self.plan.filter(|_| path.remaining_m(&position) <= drive.body().tolerance_m) {
+            return Progress::Arrived(end);
+        }
+        if !self.keeps_trying(tick.settings, situation) {
+            return Progress::GivenUp;
+        }
+        if let Some(since_s) = self.recovering_since_s {
+            if let Some(command) = drive.recover(&scene, situation.time - since_s) {
+                return Progress::Underway(command);
+            }
+            self.recovering_since_s = None;
+            self.anchor = (position, situation.time);
+            // A recovery leaves the path: plan from where it ended.
+            self.planned_at_s = f64::NEG_INFINITY;
+            self.plan = None;
+        }
+        Progress::Underway(drive.follow(&scene, path))
+    }
+
+    /// Whether the robot waits for the path to become free. After a wait in vain the robot drives as near to
+    /// the goal as it can.
+    fn waits(&mut self, situation: &Situation) -> bool {
+        let waits = self.waits_until_s.is_some_and(|until_s| situation.time < until_s);
+        if !waits && self.waits_until_s.take().is_some() {
+            self.best_distance_m = self.plan.map_or(f64::INFINITY, |end| end.distance_to_goal_m);
+        }
+        waits
+    }
+
+    fn must_plan(&self, tick: &Tick, off_path_m: f64) -> bool {
+        let (settings, planner) = (tick.settings, &tick.surroundings.planner);
+        let since_s = tick.situation.time - self.planned_at_s;
+        let is_lost = self.plan.is_none() || off_path_m > settings.off_path_m;
+        planner.path_blocked() && since_s >= settings.replan_blocked_s
+            || (is_lost || planner.goal_cleared()) && since_s >= settings.replan_s
+    }
+
+    fn plan(&mut self, tick: &mut Tick, path: &mut Path) {
+        let Tick { settings, situation, surroundings } = tick;
+        let position = situation.position();
+        self.planned_at_s = situation.time;
+        self.plan = surroundings.planner.plan(situation.map, &position, &self.goal, path);
+        path.truncate((self.max_distance_m - (position - self.start).norm()).max(0.0));
+        let Some(end) = self.plan else { return };
+        if end.distance_to_goal_m <= self.best_distance_m + WORSE_M {
+            self.waits_until_s = None;
+            self.best_distance_m = self.best_distance_m.min(end.distance_to_goal_m);
+        } else if self.waits_until_s.is_none() && self.max_distance_m.is_infinite() {
+            // The obstacle may move away again. A step of local exploration is not worth the wait.
+            self.waits_until_s = Some(situation.time + settings.wait_s);
+        }
+    }
+
+    /// Checks the progress, and starts a recovery if the robot is stuck; false after too many recoveries.
+    fn keeps_trying(&mut self, settings: &NavigationSettings, situation: &Situation) -> bool {
+        let position = situation.position();
+        if (position - self.anchor.0).norm() > settings.required_movement_radius_m {
+            self.anchor = (position, situation.time);
+        }
+        let is_stuck = situation.time - self.anchor.1 >= settings.movement_time_allowance_s;
+        if self.recovering_since_s.is_some() || !is_stuck {
+            return true;
+        }
+        if (position - self.recovery_at).norm() > SAME_POSITION_M {
+            self.recoveries = 0;
+        }
+        self.recovery_at = position;
+        self.recoveries += 1;
+        self.recovering_since_s = Some(situation.time);
+        self.recoveries <= settings.max_recoveries
+    }
+}

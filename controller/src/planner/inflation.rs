@@ -1,0 +1,243 @@
+use super::costmap::{Costmap, FREE, LETHAL, MAX_COST};
+use interfaces::{Cell, CellState, Grid, Transition};
+use serde::{Deserialize, Serialize};
+
+/// The distance that paths keep from obstacles.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct InflationSettings {
+    /// A cell is lethal where its center is nearer to a blocked cell than the radius of the robot plus this,
+    /// m. Room for half a cell of rounding and for the error of path following.
+    pub footprint_padding_m: f64,
+    /// A cell costs more where its center is nearer to a blocked cell than the radius of the robot plus
+    /// this, m. Paths then lead through the middle of doors, and not along walls.
+    pub inflation_m: f64,
+    /// The cost of such a cell, relative to a free cell, from 1 to [`MAX_COST`].
+    pub inflation_cost: u8,
+}
+
+impl Default for InflationSettings {
+    fn default() -> Self {
+        Self { footprint_padding_m: 0.08, inflation_m: 0.25, inflation_cost: 3 }
+    }
+}
+
+/// A cell near a blocked cell, relative to it.
+#[derive(Clone, Copy, Debug)]
+struct Near {
+    dx: i32,
+    dy: i32,
+    is_lethal: bool,
+}
+
+/// The number of blocked cells near a cell.
+#[derive(Clone, Copy, Debug, Default)]
+struct Count {
+    /// So near that the cell is lethal.
+    lethal: u32,
+    /// So near that the cell costs more.
+    inflated: u32,
+}
+
+impl Count {
+    fn cost(self, inflation_cost: u8) -> u8 {
+        match self {
+            Self { lethal: 0, inflated: 0 } => FREE,
+            Self { lethal: 0, .. } => inflation_cost,
+            _ => LETHAL,
+        }
+    }
+}
+
+/// Turns the map into a costmap for the center of a round robot: lethal where the robot would touch
+/// something blocked, more costly near it. Cells outside of the grid count as blocked, unknown cells as free.
+///
+/// The blocked cells around each cell are counted, so that the cost of an update is proportional to the
+/// number of cells that became blocked or free.
+#[derive(Clone, Debug)]
+pub struct Inflation {
+    costmap: Costmap,
+    stencil: Vec<Near>,
+    counts: Vec<Count>,
+    cost: u8,
+}
+
+impl Inflation {
+    /// Inflates `map` for a robot of `radius_m`. With a radius and distances of 0 only the blocked cells
+    /// are lethal. The time is proportional to the size of the map.
+    pub fn new(settings: &InflationSettings, radius_m: f64, map: &Grid<CellState>) -> Self {
+        let frame = *map.frame();
+        let cells_of = |distance_m: f64| (radius_m + distance_m) / frame.resolution_m();
+        let (lethal, inflated) = (cells_of(settings.footprint_padding_m), cells_of(settings.inflation_m));
+        let stencil = stencil(lethal, inflated);
+        let mut counts = vec![Count::default(); frame.len()];
+        for (index, count) in counts.iter_mut().enumerate() {
+            let Cell { x, y } = frame.cell(index);
+            let (right, top) = (frame.width() as i32 - 1 - x, frame.height() as i32 - 1 - y);
+            // As if the nearest cell beyond the border were blocked.
+            let gap = f64::from(x.min(y).min(right).min(top)) + 0.5;
+            *count = Count { lethal: (gap < lethal).into(), inflated: (gap < inflated).into() };
+        }
+        let cost = settings.inflation_cost.clamp(FREE, MAX_COST);
+        let mut inflation = Self { costmap: Costmap::lethal(frame), stencil, counts, cost };
+        for (index, state) in map.cells().iter().enumerate() {
+            if *state == CellState::Blocked {
+                inflation.count_around(frame.cell(index), 1, |_, _, _| {});
+            }
+        }
+        inflation.costmap.set_costs(inflation.counts.iter().map(|count| count.cost(cost)));
+        inflation
+    }
+
+    /// The inflated map.
+    pub fn costmap(&self) -> &Costmap {
+        &self.costmap
+    }
+
+    /// Applies the changes of the map. Calls `blocked` with every cell that becomes lethal, and `cleared`
+    /// with every cell that ceases to be lethal. The transitions must be all since the last update.
+    pub fn update(
+        &mut self,
+        transitions: &[Transition],
+        mut blocked: impl FnMut(Cell),
+        mut cleared: impl FnMut(Cell),
+    ) {
+        for transition in transitions {
+            let was = transition.before == CellState::Blocked;
+            let is = transition.after == CellState::Blocked;
+            if was == is {
+                continue;
+            }
+            self.count_around(transition.cell, if is { 1 } else { -1 }, |costmap, cell, cost| {
+                match (costmap.cost(cell), cost) {
+                    (before, after) if before == after => return,
+                    (_, LETHAL) => blocked(cell),
+                    (LETHAL, _) => cleared(cell),
+                    _ => {}
+                }
+                costmap.set_cost(cell, cost);
+            });
+        }
+    }
+
+    /// Adds `change` to the count of blocked cells of every cell around `center`; calls `changed` with the
+    /// new cost of each cell whose cost may be another.
+    fn count_around(&mut self, center: Cell, change: i32, mut changed: impl FnMut(&mut Costmap, Cell, u8)) {
+        let frame = *self.costmap.frame();
+        for near in &self.stencil {
+            let cell = Cell::new(center.x + near.dx, center.y + near.dy);
+            let Some(index) = frame.index(cell) else { continue };
+            let count = &mut self.counts[index];
+            let before = count.cost(self.cost);
+            count.inflated = count.inflated.saturating_add_signed(change);
+            if near.is_lethal {
+                count.lethal = count.lethal.saturating_add_signed(change);
+            }
+            let cost = count.cost(self.cost);
+            if before != cost {
+                changed(&mut self.costmap, cell, cost);
+            }
+        }
+    }
+}
+
+/// The cells whose center is less than `inflated` (at least `lethal`) from the square of a blocked cell, in
+/// cells; the blocked cell is one of them.
+fn stencil(lethal: f64, inflated: f64) -> Vec<Near> {
+    let reach = inflated.max(lethal).max(0.0).ceil() as i32 + 1;
+    let mut near = Vec::new();
+    for dy in -reach..=reach {
+        for dx in -reach..=reach {
+            let gap = |d: i32| (f64::from(d.abs()) - 0.5).max(0.0);
+            let square = gap(dx) * gap(dx) + gap(dy) * gap(dy);
+            let within = |radius: f64| (dx, dy) == (0, 0) || radius > 0.0 && square < radius * radius;
+            if within(lethal.max(inflated)) {
+                near.push(Near { dx, dy, is_lethal: within(lethal) });
+            }
+        }
+    }
+    near
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::states;
+    use interfaces::GridFrame;
+    use nalgebra::Point2;
+    use proptest::prelude::*;
+
+    const RADIUS_M: f64 = 0.2;
+
+    /// The cost by the definition: the distance to every blocked square and to the border.
+    fn brute_force(settings: &InflationSettings, map: &Grid<CellState>) -> Vec<u8> {
+        let frame = map.frame();
+        let (width_m, height_m) =
+            (frame.width() as f64 * frame.resolution_m(), frame.height() as f64 * frame.resolution_m());
+        let cost = |index: usize| {
+            let at = frame.center(frame.cell(index));
+            let mut gap_m = at.x.min(at.y).min(width_m - at.x).min(height_m - at.y);
+            for (index, state) in map.cells().iter().enumerate() {
+                if *state == CellState::Blocked {
+                    let blocked = frame.center(frame.cell(index));
+                    let side = |d: f64| (d.abs() - frame.resolution_m() / 2.0).max(0.0);
+                    gap_m = gap_m.min(side(at.x - blocked.x).hypot(side(at.y - blocked.y)));
+                }
+            }
+            // The distances of the test never lie on a boundary but by rounding.
+            if gap_m < RADIUS_M + settings.footprint_padding_m - 1e-9 {
+                LETHAL
+            } else if gap_m < RADIUS_M + settings.inflation_m - 1e-9 {
+                settings.inflation_cost
+            } else {
+                FREE
+            }
+        };
+        (0..frame.len()).map(cost).collect()
+    }
+
+    fn costs(inflation: &Inflation) -> Vec<u8> {
+        let frame = inflation.costmap().frame();
+        (0..frame.len()).map(|index| inflation.costmap().cost(frame.cell(index))).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn updates_equal_brute_force(
+            start in prop::collection::vec(0..12_u8, 600),
+            updates in prop::collection::vec(prop::collection::vec((0..600_usize, 0..2_u8), 0..20), 1..6),
+        ) {
+            let frame = GridFrame::new(Point2::origin(), 0.05, 30, 20).unwrap();
+            let settings = InflationSettings { footprint_padding_m: 0.07, inflation_m: 0.13, inflation_cost: 4 };
+            let state = |n: u8| [CellState::Blocked, CellState::Unknown, CellState::Free][n.min(2) as usize];
+            let mut map = Grid::from_cells(frame, start.into_iter().map(state).collect()).unwrap();
+            let mut inflation = Inflation::new(&settings, RADIUS_M, &map);
+            prop_assert_eq!(costs(&inflation), brute_force(&settings, &map));
+            for update in updates {
+                let mut free: Vec<_> = costs(&inflation).iter().map(|cost| *cost != LETHAL).collect();
+                let transitions: Vec<_> = update.into_iter().filter_map(|(index, blocked)| {
+                    let (cell, after) = (frame.cell(index), state(2 * (1 - blocked)));
+                    let before = std::mem::replace(map.get_mut(cell)?, after);
+                    (before != after).then_some(Transition { cell, before, after })
+                }).collect();
+                let (mut blocked_cells, mut cleared_cells) = (Vec::new(), Vec::new());
+                inflation.update(&transitions, |cell| blocked_cells.push(cell), |cell| cleared_cells.push(cell));
+                prop_assert_eq!(costs(&inflation), brute_force(&settings, &map));
+                // Every cell that became lethal or ceased to be is reported.
+                for (index, was) in free.iter_mut().enumerate() {
+                    let (cell, is) = (frame.cell(index), inflation.costmap().is_traversable(frame.cell(index)));
+                    prop_assert!(is || !*was || blocked_cells.contains(&cell));
+                    prop_assert!(!is || *was || cleared_cells.contains(&cell));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_robot_without_extent_is_stopped_by_blocked_cells_only() {
+        let map = states(&["?#.", "..."], 1.0);
+        let point = InflationSettings { footprint_padding_m: 0.0, inflation_m: 0.0, inflation_cost: 1 };
+        let inflation = Inflation::new(&point, 0.0, &map);
+        assert_eq!(costs(&inflation), [FREE, FREE, FREE, FREE, LETHAL, FREE]);
+    }
+}

@@ -1,0 +1,335 @@
+use super::costmap::{Costmap, DIAGONAL, LETHAL, MAX_COST, Moves, STRAIGHT};
+use interfaces::{Cell, GridFrame};
+
+/// The path cost of a cell that no wave has reached.
+const UNREACHED: u32 = u32::MAX;
+/// A power of two above the largest cost of a move: more buckets are never in use at the same time.
+const BUCKETS: usize = (DIAGONAL as usize * MAX_COST as usize + 1).next_power_of_two();
+
+/// The directions of a move: four straight ones, then four diagonals.
+const EAST: usize = 0;
+const NORTH: usize = 1;
+const WEST: usize = 2;
+const SOUTH: usize = 3;
+/// The two straight directions of each diagonal.
+const PARTS: [[usize; 2]; 4] = [[EAST, NORTH], [WEST, NORTH], [WEST, SOUTH], [EAST, SOUTH]];
+
+/// A slot to expand, and the direction of the move that reached it.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    slot: u32,
+    direction: u32,
+}
+
+/// The cost of the cheapest path from every cell to a goal, in the order of cost from the goal (paper,
+/// section 2: a wave front planner). Dijkstra's algorithm with a bucket per cost (Dial 1969): costs are exact
+/// integers, so no comparison of floats can differ between machines.
+///
+/// Where a cell and the eight around it cost the same, the moves of a path can be reordered without a change
+/// of its cost, so only one order is followed: diagonal moves before straight ones (without diagonals: moves
+/// along a row before those along a column), as in jump point search (Harabor & Grastien 2011). A cell in
+/// free space is then offered a cost once, not eight times.
+///
+/// Buffers are reused. The cost of [`clear`](Self::clear) is proportional to what the last waves covered.
+#[derive(Clone, Debug)]
+pub struct Wavefront {
+    moves: Moves,
+    frame: GridFrame,
+    /// The difference of slots that each direction makes.
+    steps: [isize; 8],
+    /// The path cost of every slot of the [`Costmap`].
+    costs: Vec<u32>,
+    /// Slots to expand, by path cost modulo the number of buckets. A slot that found a lower cost since
+    /// stays in its old bucket, and is skipped there.
+    buckets: [Vec<Entry>; BUCKETS],
+    /// The number of slots in all buckets.
+    waiting: usize,
+    /// The first and the last slot expanded since the field was cleared.
+    expanded: Option<(usize, usize)>,
+}
+
+impl Wavefront {
+    /// A field over the cells of `frame` that no wave has reached.
+    pub fn new(frame: GridFrame, moves: Moves) -> Self {
+        let stride = frame.width() as isize + 2;
+        Self {
+            moves,
+            frame,
+            steps: [1, stride, -1, -stride, stride + 1, stride - 1, -stride - 1, -stride + 1],
+            costs: vec![UNREACHED; (frame.width() + 2) * (frame.height() + 2)],
+            buckets: std::array::from_fn(|_| Vec::new()),
+            waiting: 0,
+            expanded: None,
+        }
+    }
+
+    /// Removes all waves.
+    pub fn clear(&mut self) {
+        if let Some((first, last)) = self.expanded.take() {
+            // The slots around an expanded slot were reached, too.
+            let margin = self.frame.width() + 3;
+            self.costs[first - margin..=last + margin].fill(UNREACHED);
+        }
+    }
+
+    /// Spreads a wave from `source` until the cost of `target` is final (returns whether it is), or, without
+    /// a target, over all cells that can be reached. The path cost is the cost of a path *towards* the
+    /// source: the sum of the length of each move times the cost of the cell that it enters.
+    ///
+    /// Waves since the last [`clear`](Self::clear) stay: start a wave only where no other wave was. Nothing
+    /// spreads from a lethal source, or over a map of another frame.
+    pub fn spread(&mut self, map: &Costmap, source: Cell, target: Option<Cell>) -> bool {
+        if *map.frame() != self.frame || !map.is_traversable(source) {
+            return false;
+        }
+        // Without a target, a number that no slot has.
+        let target =
+            target.filter(|cell| map.is_traversable(*cell)).map_or(usize::MAX, |cell| map.slot(cell));
+        let source = map.slot(source);
+        self.costs[source] = 0;
+        let (mut first, mut last) = self.expanded.unwrap_or((source, source));
+        let (mut found, mut cost) = (source == target, 0);
+        self.expand_all(map.slots(), source, 0);
+        (first, last) = (first.min(source), last.max(source));
+        while self.waiting > 0 {
+            let index = cost as usize % BUCKETS;
+            // Every move costs something, so nothing is added to the bucket that is taken out here.
+            let mut bucket = std::mem::take(&mut self.buckets[index]);
+            self.waiting -= bucket.len();
+            for &Entry { slot, direction } in &bucket {
+                let slot = slot as usize;
+                if found || self.costs[slot] != cost {
+                    continue;
+                }
+                (first, last) = (first.min(slot), last.max(slot));
+                found = slot == target;
+                if map.is_uniform(slot) {
+                    self.expand(slot, direction as usize, cost, u32::from(map.slots()[slot]));
+                } else {
+                    self.expand_all(map.slots(), slot, cost);
+                }
+            }
+            bucket.clear();
+            self.buckets[index] = bucket;
+            cost += 1;
+        }
+        self.expanded = Some((first, last));
+        found
+    }
+
+    /// Expands a slot amid equal cell costs that was reached along `direction`.
+    fn expand(&mut self, slot: usize, direction: usize, cost: u32, cell_cost: u32) {
+        let straight = cost + cell_cost * STRAIGHT;
+        if let Some(parts) = direction.checked_sub(4).map(|diagonal| PARTS[diagonal]) {
+            self.offer(slot, direction, cost + cell_cost * DIAGONAL);
+            parts.into_iter().for_each(|part| self.offer(slot, part, straight));
+        } else {
+            self.offer(slot, direction, straight);
+            if self.moves == Moves::Four && (direction == EAST || direction == WEST) {
+                self.offer(slot, NORTH, straight);
+                self.offer(slot, SOUTH, straight);
+            }
+        }
+    }
+
+    /// Expands a slot in all directions that the map allows.
+    fn expand_all(&mut self, cell_costs: &[u8], slot: usize, cost: u32) {
+        let cell_cost = u32::from(cell_costs[slot]);
+        let passes = |direction: usize| cell_costs[slot.wrapping_add_signed(self.steps[direction])] != LETHAL;
+        let sides = [passes(EAST), passes(NORTH), passes(WEST), passes(SOUTH)];
+        let corners = std::array::from_fn::<_, 4, _>(|diagonal| {
+            let [across, up] = PARTS[diagonal];
+            self.moves == Moves::Eight && sides[across] && sides[up] && passes(4 + diagonal)
+        });
+        for direction in 0..4 {
+            if sides[direction] {
+                self.offer(slot, direction, cost + cell_cost * STRAIGHT);
+            }
+            if corners[direction] {
+                self.offer(slot, 4 + direction, cost + cell_cost * DIAGONAL);
+            }
+        }
+    }
+
+    /// Offers a path cost to the traversable slot that lies in `direction`.
+    fn offer(&mut self, from: usize, direction: usize, cost: u32) {
+        let slot = from.wrapping_add_signed(self.steps[direction]);
+        if cost < self.costs[slot] {
+            self.costs[slot] = cost;
+            let entry = Entry { slot: slot as u32, direction: direction as u32 };
+            self.buckets[cost as usize % BUCKETS].push(entry);
+            self.waiting += 1;
+        }
+    }
+
+    /// The cost of the path from `cell` to the source of the wave that reached it; `None` where no wave
+    /// was. After a wave with a target, costs above that of the target are upper bounds.
+    pub fn path_cost(&self, cell: Cell) -> Option<u32> {
+        if !self.frame.contains(cell) {
+            return None;
+        }
+        let cost = self.costs[(cell.y + 1) as usize * (self.frame.width() + 2) + (cell.x + 1) as usize];
+        (cost != UNREACHED).then_some(cost)
+    }
+
+    /// Writes the cells of a cheapest path from `from` to the source into `path`, both included: the descent
+    /// of the field (paper: hill climbing). Nothing where no wave was.
+    pub fn descend(&self, map: &Costmap, from: Cell, path: &mut Vec<Cell>) {
+        path.clear();
+        let Some(mut cost) = self.path_cost(from) else { return };
+        let mut at = from;
+        path.push(at);
+        while cost > 0 {
+            let step = at.neighbours8().into_iter().find_map(|next| {
+                let diagonal = next.x != at.x && next.y != at.y;
+                let allowed = !diagonal
+                    || self.moves == Moves::Eight
+                        && map.is_traversable(Cell::new(next.x, at.y))
+                        && map.is_traversable(Cell::new(at.x, next.y));
+                let length = if diagonal { DIAGONAL } else { STRAIGHT };
+                let here = self.path_cost(next)?.checked_add(u32::from(map.cost(next)) * length)?;
+                (allowed && here == cost).then_some(next)
+            });
+            let Some(next) = step else { return path.clear() };
+            at = next;
+            cost = self.path_cost(at).unwrap_or(0);
+            path.push(at);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::FREE;
+    use crate::tests::{costmap, find};
+    use nalgebra::Point2;
+    use proptest::prelude::*;
+    use std::cmp::Reverse;
+    use std::collections::BinaryHeap;
+
+    /// Dijkstra as in the textbook, without anything clever: the oracle.
+    fn dijkstra(map: &Costmap, source: Cell, moves: Moves) -> Vec<Option<u32>> {
+        let frame = map.frame();
+        let mut costs = vec![None; frame.len()];
+        let mut heap = BinaryHeap::from([Reverse((0, source))]);
+        while let Some(Reverse((cost, cell))) = heap.pop() {
+            let Some(index) = frame.index(cell).filter(|_| map.is_traversable(cell)) else { continue };
+            if costs[index].is_some() {
+                continue;
+            }
+            costs[index] = Some(cost);
+            for next in cell.neighbours8() {
+                let straight = next.x == cell.x || next.y == cell.y;
+                let past_corners = map.is_traversable(Cell::new(next.x, cell.y))
+                    && map.is_traversable(Cell::new(cell.x, next.y));
+                if straight || moves == Moves::Eight && past_corners {
+                    let length = if straight { STRAIGHT } else { DIAGONAL };
+                    heap.push(Reverse((cost + length * u32::from(map.cost(cell)), next)));
+                }
+            }
+        }
+        costs
+    }
+
+    fn all_costs(wave: &Wavefront, frame: &GridFrame) -> Vec<Option<u32>> {
+        (0..frame.len()).map(|index| wave.path_cost(frame.cell(index))).collect()
+    }
+
+    /// A map of random rectangles of random costs: halls, walls, and rings of higher cost.
+    fn random_map() -> impl Strategy<Value = (Costmap, Cell, Cell)> {
+        (3..30_i32, 3..30_i32).prop_flat_map(|(width, height)| {
+            let cell = move || (0..width, 0..height);
+            let cell_cost = prop_oneof![3 => Just(LETHAL), 2 => Just(FREE), 1 => 2..=MAX_COST];
+            let blocks = prop::collection::vec((cell(), (1..8_i32, 1..8_i32), cell_cost), 0..30);
+            (blocks, cell(), cell()).prop_map(move |(blocks, source, target)| {
+                let frame = GridFrame::new(Point2::origin(), 1.0, width as usize, height as usize).unwrap();
+                let mut map = Costmap::lethal(frame);
+                (0..frame.len()).for_each(|index| map.set_cost(frame.cell(index), FREE));
+                for ((left, bottom), (across, up), cell_cost) in blocks {
+                    for y in bottom..bottom + up {
+                        (left..left + across).for_each(|x| map.set_cost(Cell::new(x, y), cell_cost));
+                    }
+                }
+                (map, Cell::new(source.0, source.1), Cell::new(target.0, target.1))
+            })
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn every_cost_is_dijkstras((map, source, _) in random_map(), four in any::<bool>()) {
+            let moves = if four { Moves::Four } else { Moves::Eight };
+            let mut wave = Wavefront::new(*map.frame(), moves);
+            wave.spread(&map, source, None);
+            prop_assert_eq!(all_costs(&wave, map.frame()), dijkstra(&map, source, moves));
+        }
+
+        #[test]
+        fn a_wave_that_stops_early_is_right_up_to_its_target((map, source, target) in random_map()) {
+            let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
+            // The traces of an earlier wave must not show.
+            wave.spread(&map, target, Some(source));
+            wave.clear();
+            prop_assert!(all_costs(&wave, map.frame()).iter().all(Option::is_none));
+            let found = wave.spread(&map, source, Some(target));
+            let oracle = dijkstra(&map, source, Moves::Eight);
+            let cost = oracle[map.frame().index(target).unwrap()];
+            prop_assert_eq!(found, cost.is_some());
+            for (index, mine) in all_costs(&wave, map.frame()).into_iter().enumerate() {
+                if oracle[index].is_some_and(|theirs| cost.is_none_or(|cost| theirs <= cost)) {
+                    prop_assert_eq!(mine, oracle[index]);
+                }
+            }
+        }
+
+        #[test]
+        fn the_descent_pays_what_the_field_says((map, source, target) in random_map(), four in any::<bool>()) {
+            let moves = if four { Moves::Four } else { Moves::Eight };
+            let mut wave = Wavefront::new(*map.frame(), moves);
+            let mut path = Vec::new();
+            if wave.spread(&map, source, Some(target)) {
+                wave.descend(&map, target, &mut path);
+                prop_assert_eq!((path[0], path[path.len() - 1]), (target, source));
+                let paid: Option<u32> = path.windows(2).map(|step| map.line_cost(step[0], step[1])).sum();
+                prop_assert_eq!(paid, wave.path_cost(target));
+                let diagonal = |step: &[Cell]| step[0].x != step[1].x && step[0].y != step[1].y;
+                prop_assert!(moves == Moves::Eight || !path.windows(2).any(diagonal));
+            }
+        }
+    }
+
+    #[test]
+    fn the_way_leads_through_the_door() {
+        let rows = ["....#....", "....#....", "R...D....", "....#....", "....#...G"];
+        let map = costmap(&rows);
+        let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
+        assert!(wave.spread(&map, find(&rows, 'G'), Some(find(&rows, 'R'))));
+        let mut path = Vec::new();
+        wave.descend(&map, find(&rows, 'R'), &mut path);
+        assert!(path.contains(&find(&rows, 'D')));
+    }
+
+    #[test]
+    fn nothing_leads_through_a_wall_or_between_two_corners() {
+        let rows = ["R.#..", "..#.G", "###..", "....."];
+        let map = costmap(&rows);
+        let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
+        assert!(!wave.spread(&map, find(&rows, 'G'), Some(find(&rows, 'R'))));
+        let mut path = vec![Cell::new(0, 0)];
+        wave.descend(&map, find(&rows, 'R'), &mut path);
+        assert_eq!(path, []);
+    }
+
+    #[test]
+    fn a_wave_from_a_wall_or_from_outside_goes_nowhere() {
+        let map = costmap(&["#.", ".."]);
+        let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
+        for source in [Cell::new(0, 1), Cell::new(-1, 0), Cell::new(2, 0), Cell::new(0, 9)] {
+            assert!(!wave.spread(&map, source, Some(Cell::new(1, 1))));
+            assert_eq!(wave.path_cost(Cell::new(1, 1)), None);
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! A run in a physics world, as a library call: the settings of the robot, its parts, and the loop with the
+//! observer in it.
+
+use crate::map_hash::map_hash;
+use crate::metrics::{age, map_scores, rate_scores};
+use crate::observer::Observer;
+use crate::summary::{Liveliest, RunResults};
+use agent::{Agent, AgentSettings, Features, Policy};
+use controller::{Controller, DiffDrive, DiffDriveSettings};
+use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, SettingsError, Twist};
+use mapper::{Mapper, MapperSettings, ReadingError};
+use robot::{Autonomous, Belief, GoalSelector, Pilot, explore};
+use serde::Serialize;
+use sim::physics::{DriveKind, PhysicsWorld, WorldSpec};
+use std::ops::ControlFlow;
+
+/// The side of the patches in which goals are weighed, m.
+const PATCH_M: f64 = 0.5;
+/// The time for which something can hide a cell without interrupting the view of the cell, s: the time in
+/// which a slow robot and its shadow pass. Without it, only the changes that are seen from the right side
+/// would count, one in five.
+const HIDING_S: f64 = 8.0;
+/// The steps of local exploration. The paper's 42 suit a block that moves one cell per step; here a step is
+/// a robot's diameter, and following the dummy for longer leaves other rooms unseen.
+const LOCAL_STEPS: u32 = 15;
+/// The mapper takes no larger range noise.
+const MAX_NOISE_M: f64 = 0.5;
+
+/// All settings of a robot in a physics world.
+#[derive(Clone, Debug, Serialize)]
+pub struct PhysicsSettings {
+    /// The settings of the mapper.
+    pub mapper: MapperSettings,
+    /// The settings of the agent.
+    pub agent: AgentSettings,
+    /// The settings of the controller.
+    pub controller: controller::Settings,
+    /// The settings of the drive.
+    pub drive: DiffDriveSettings,
+}
+
+/// A driven robot that no controller can drive.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the driven robot `{robot}` has a drive of `kind = \"{drive}\"`, but the controller supports only \
+     `kind = \"diff\"`: change `[robot.drive]`, or let another robot be the driven one"
+)]
+pub struct UnsupportedDrive {
+    /// The name of the robot.
+    pub robot: String,
+    /// The drive, as in the world file.
+    pub drive: &'static str,
+}
+
+impl PhysicsSettings {
+    /// The default settings for the driven robot of a world.
+    ///
+    /// # Errors
+    ///
+    /// When the robot has no differential drive.
+    pub fn of(spec: &WorldSpec) -> Result<Self, UnsupportedDrive> {
+        let (robot, defaults) = (spec.driven(), DiffDriveSettings::default());
+        let unsupported = |drive| Err(UnsupportedDrive { robot: robot.name.clone(), drive });
+        match robot.drive.kind {
+            DriveKind::Differential => {}
+            DriveKind::Omni { .. } => return unsupported("omni"),
+            DriveKind::Car { .. } => return unsupported("car"),
+        }
+        let mut mapper = MapperSettings { max_gap: HIDING_S, ..MapperSettings::default() };
+        let noise_m = &mut mapper.steady.range_noise_std_m;
+        *noise_m = noise_m.max(robot.laser.noise_std_m).min(MAX_NOISE_M);
+        let cell_m = spec.frame.resolution_m();
+        let mut agent = AgentSettings {
+            patch_cells: (PATCH_M / cell_m).round().max(1.0) as _,
+            sensor_radius_m: robot.laser.range_max_m,
+            ..AgentSettings::default()
+        };
+        // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many cells
+        // wide, and each of its moves changes as many.
+        agent.curious.temperature *= (2.0 * robot.radius_m / cell_m).max(1.0);
+        let mut controller = controller::Settings::default();
+        controller.exploration.max_steps = LOCAL_STEPS;
+        let drive = DiffDriveSettings {
+            radius_m: robot.radius_m,
+            max_linear_mps: robot.drive.max_linear_mps,
+            max_angular_radps: robot.drive.max_angular_radps,
+            acceleration_mps2: robot.drive.max_linear_acceleration_mps2,
+            angular_acceleration_radps2: robot.drive.max_angular_acceleration_radps2,
+            tolerance_m: defaults.tolerance_m.min(robot.radius_m / 2.0),
+            reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s,
+            ..defaults
+        };
+        Ok(Self { mapper, agent, controller, drive })
+    }
+
+    /// The pilot that drives to the goals of `selector`.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn pilot<G: GoalSelector>(
+        &self,
+        selector: G,
+        seed: u64,
+    ) -> Result<Autonomous<G, DiffDrive>, SettingsError> {
+        let stream = RandomStream::new(seed, Purpose::Controller);
+        let controller = Controller::new(self.controller, DiffDrive::new(self.drive)?, stream)?;
+        Ok(Autonomous::new(selector, controller))
+    }
+
+    /// The agent that follows `policy`.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn agent(&self, policy: &Policy, seed: u64) -> Result<Agent, SettingsError> {
+        Agent::new(&self.agent, policy, RandomStream::new(seed, Purpose::Agent))
+    }
+}
+
+/// A run in a physics world: the world, the robot, and the measurements.
+pub struct PhysicsTrial<P> {
+    /// The world.
+    pub world: PhysicsWorld,
+    /// The map and the change statistics.
+    pub mapper: Mapper,
+    /// The pilot.
+    pub pilot: P,
+    /// The measurements.
+    pub observer: Observer,
+}
+
+impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
+    /// A run before its start. `prior` is the map that the robot knows at the start.
+    ///
+    /// # Errors
+    ///
+    /// When a setting of the mapper is out of range.
+    pub fn new(
+        spec: &WorldSpec,
+        seed: u64,
+        mapper: &MapperSettings,
+        prior: Option<Grid<CellState>>,
+        pilot: P,
+    ) -> Result<Self, SettingsError> {
+        let mapper = match prior {
+            None => Mapper::new(mapper, spec.frame)?,
+            Some(map) => Mapper::with_prior(mapper, map)?,
+        };
+        Ok(Self { world: PhysicsWorld::new(spec, seed), mapper, pilot, observer: Observer::default() })
+    }
+
+    /// Runs until `watch` breaks. `watch` is called once per reading, after the measurement.
+    ///
+    /// # Errors
+    ///
+    /// When `watch` fails.
+    pub fn run_with<E: From<ReadingError>>(
+        &mut self,
+        mut watch: impl FnMut(
+            &PhysicsWorld,
+            &LaserReading,
+            &Belief,
+            &mut P,
+            &Observer,
+        ) -> Result<ControlFlow<()>, E>,
+    ) -> Result<(), E> {
+        let Self { world, mapper, pilot, observer } = self;
+        explore(world, mapper, pilot, |world, reading, belief, pilot| {
+            observer.observe(world, reading, belief, pilot);
+            watch(world, reading, belief, pilot, observer)
+        })
+    }
+
+    /// Runs until `end_s` of simulated time, or until the pilot is done.
+    ///
+    /// # Errors
+    ///
+    /// When the mapper refuses a reading.
+    pub fn run(&mut self, end_s: f64) -> Result<(), ReadingError> {
+        self.run_with(|_, reading, _, pilot, _| {
+            let is_over = reading.time_s >= end_s || pilot.is_done();
+            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        })
+    }
+
+    /// The results so far.
+    pub fn results(&self) -> RunResults {
+        let Self { world, mapper, pilot, observer } = self;
+        let (truth, scores) = (world.truth(), map_scores(mapper, world.truth()));
+        let [block_latency, free_latency] = observer.delays();
+        let changing = observer.changing_scores();
+        let collisions = world.contacts().iter().filter(|contact| contact.moving).count();
+        let strategies = pilot.strategies(Features::default()).into_iter();
+        RunResults {
+            coverage: scores.coverage,
+            map_quality: scores.map_quality,
+            map_quality_changing: changing.in_view,
+            map_quality_changing_out_of_view: changing.out_of_view,
+            rates: rate_scores(mapper, truth),
+            age: age(mapper, truth),
+            block_latency,
+            free_latency,
+            collisions,
+            contacts_while_standing: world.contacts().len() - collisions,
+            goals: pilot.goals(),
+            strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
+            things: observer.things().cloned().collect(),
+            curve: observer.curve().to_vec(),
+            map_hash: map_hash(mapper),
+            liveliest: Liveliest::of(mapper),
+        }
+    }
+}

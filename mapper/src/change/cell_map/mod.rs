@@ -1,0 +1,96 @@
+//! The state and the change statistics of every cell. Occupancy models write here.
+
+mod last_seen;
+mod observing;
+mod queries;
+mod record;
+mod state_change;
+
+use super::EstimatorChoice;
+use super::gaps::{CellGaps, Regularity};
+use super::reading_times::{NEVER, PRIOR, ReadingIndex, ReadingTimes};
+use interfaces::{Cell, CellState, Grid, Transition};
+use last_seen::LastSeenCounts;
+use record::Record;
+
+/// The index of a cell among the cells that ever changed.
+pub(crate) type Slot = u32;
+
+/// The state of every cell, and its change statistics.
+///
+/// An [occupancy model](crate::OccupancyModel) decides which cells a reading observed and which changed their
+/// state, and writes that with [`observe`](Self::observe) and [`set_state`](Self::set_state); all statistics follow.
+/// Cells are addressed by their index in row-major order. An index outside of the map panics.
+#[derive(Clone, Debug)]
+pub struct CellMap {
+    pub(crate) estimator: EstimatorChoice,
+    /// A time without an observation up to this does not interrupt the view of a cell.
+    max_gap: f64,
+    states: Grid<CellState>,
+    times: ReadingTimes,
+    /// The last reading that observed each cell, with the mark [`observing::UNSETTLED`].
+    observed: Vec<ReadingIndex>,
+    records: Vec<Record>,
+    /// The gaps of every cell; empty if the estimator has no model of gaps.
+    gaps: Vec<CellGaps>,
+    regularity: Regularity,
+    /// The cells that ever changed, in the order of their first change.
+    pub(crate) changed: Vec<u32>,
+    /// Those of them that came back into view with the open reading.
+    pub(crate) returned: Vec<Slot>,
+    pub(crate) transitions: Vec<Transition>,
+    /// Cells that can be a goal: free cells, and surfaces and frontiers beside them.
+    pub(crate) candidates: Vec<bool>,
+    last_seen_counts: LastSeenCounts,
+}
+
+impl CellMap {
+    pub(crate) fn new(prior: Grid<CellState>, estimator: EstimatorChoice, max_gap: f64) -> Self {
+        let cells = prior.frame().len();
+        let gaps =
+            if estimator.gap_model().is_some() { vec![CellGaps::default(); cells] } else { Vec::new() };
+        let mut map = Self {
+            estimator,
+            max_gap,
+            states: prior,
+            times: ReadingTimes::default(),
+            observed: vec![NEVER | observing::UNSETTLED; cells],
+            records: vec![Record::default(); cells],
+            gaps,
+            regularity: Regularity::default(),
+            changed: Vec::new(),
+            returned: Vec::new(),
+            transitions: Vec::new(),
+            candidates: vec![false; cells],
+            last_seen_counts: LastSeenCounts::default(),
+        };
+        for index in 0..cells {
+            if map.state(index) != CellState::Unknown {
+                map.records[index] = Record::since(PRIOR);
+            }
+            map.update_candidate(index);
+        }
+        map
+    }
+
+    /// Opens the next reading.
+    pub(crate) fn open(&mut self, time: f64) {
+        self.transitions.clear();
+        self.returned.clear();
+        self.times.push(time);
+        self.last_seen_counts.open();
+    }
+
+    /// A cell is a candidate when it is free, or shares a side with a free cell: a frontier cell or
+    /// a surface. The inside of a wall never is.
+    fn update_candidate(&mut self, index: usize) {
+        let frame = self.states.frame();
+        let is_free = |cell: Cell| self.states.get(cell) == Some(&CellState::Free);
+        let cell = frame.cell(index);
+        let is = is_free(cell) || cell.neighbours4().into_iter().any(is_free);
+        if is != self.candidates[index] {
+            self.candidates[index] = is;
+            self.last_seen_counts.count(self.last_reading(index), is);
+        }
+    }
+}

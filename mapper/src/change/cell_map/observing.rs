@@ -1,0 +1,147 @@
+//! Cells that are observed, and found as they were.
+
+use super::record::state_index;
+use super::{CellMap, PRIOR, ReadingIndex};
+use interfaces::{Cell, CellState};
+
+/// Set in the last reading of a cell while an occupancy model has to look at the cell in every reading; see
+/// [`CellMap::observe_run`].
+pub(super) const UNSETTLED: ReadingIndex = 1 << 31;
+/// Cells that [`CellMap::observe_run`] takes at once.
+const BLOCK: usize = 16;
+
+impl CellMap {
+    /// The last reading that observed the cell.
+    #[inline]
+    pub(super) fn last_reading(&self, index: usize) -> ReadingIndex {
+        self.observed[index] & !UNSETTLED
+    }
+
+    /// Whether the open reading observed the cell.
+    #[inline]
+    pub fn is_seen_now(&self, index: usize) -> bool {
+        self.last_reading(index) == self.reading()
+    }
+
+    /// Whether the cell was in view when the open reading came: the reading before observed the cell, or one not
+    /// longer ago than [`MapperSettings::max_gap`](crate::MapperSettings::max_gap).
+    #[inline]
+    pub fn is_in_view(&self, index: usize) -> bool {
+        let (now, last) = (self.reading(), self.last_reading(index));
+        if last == now {
+            return self.records[index].since < now; // its view did not begin just now
+        }
+        last + 1 == now
+            || self.max_gap > 0.0 && last > PRIOR && self.time() - self.times.at(last) <= self.max_gap
+    }
+
+    /// Marks a free cell as settled: [`observe_run`](Self::observe_run) then takes the cell without a closer look. A
+    /// cell that becomes blocked is not settled any more.
+    #[inline]
+    pub fn set_settled(&mut self, index: usize, is_settled: bool) {
+        let last = self.last_reading(index);
+        self.observed[index] = if is_settled { last } else { last | UNSETTLED };
+    }
+
+    /// The open reading observed the cell, and its state is as before. Writes one number where the cell was in view
+    /// before; only at a gap the time up to the gap is recorded.
+    #[inline]
+    pub fn observe(&mut self, index: usize) {
+        if self.is_seen_now(index) {
+            return;
+        }
+        if !self.is_in_view(index) {
+            self.end_gap(index, self.state(index));
+            self.weigh_gaps(index);
+        }
+        self.mark(index);
+    }
+
+    /// Notes the first observation of the cell by the open reading.
+    #[inline]
+    pub(super) fn mark(&mut self, index: usize) {
+        let (now, last) = (self.reading(), self.last_reading(index));
+        self.observed[index] = now | self.observed[index] & UNSETTLED;
+        if self.candidates[index] {
+            self.last_seen_counts.moved(last, now);
+        }
+        if last + 1 < now
+            && let Some(slot) = self.records[index].slot()
+        {
+            self.returned.push(slot);
+        }
+    }
+
+    /// The open reading observed the cells of one row from `start` to before `end`, and found them free. Cells that
+    /// are [settled](Self::set_settled), and were in view before, are done with one number; the others are
+    /// appended to `closer`. Most cells of a scan are of the first kind, so the loop goes
+    /// block by block, without a branch per cell.
+    #[inline]
+    pub fn observe_run(&mut self, start: usize, end: usize, closer: &mut Vec<u32>) {
+        let now = self.reading();
+        let mut again = 0;
+        let mut block_start = start;
+        for block in self.observed[start..end].chunks_mut(BLOCK) {
+            // No early exit: the comparison of a whole block vectorises.
+            if block.len() == BLOCK && block.iter().fold(true, |all, &last| all & (last == now - 1)) {
+                block.fill(now);
+                again += BLOCK as u32;
+            } else {
+                for (offset, last) in block.iter_mut().enumerate() {
+                    if *last == now - 1 {
+                        *last = now;
+                        again += 1;
+                    } else if *last != now {
+                        closer.push((block_start + offset) as u32);
+                    }
+                }
+            }
+            block_start += BLOCK;
+        }
+        // A settled cell is free, and a free cell is a candidate.
+        self.last_seen_counts.observed_again(again);
+    }
+
+    /// The open reading observed the states of cells without error. Cells outside of the map are ignored.
+    pub fn observe_states(&mut self, cells: &[(Cell, bool)]) {
+        let frame = *self.frame();
+        let now = self.reading();
+        let mut again = 0;
+        for &(cell, is_blocked) in cells {
+            let Some(index) = frame.index(cell) else { continue };
+            let state = if is_blocked { CellState::Blocked } else { CellState::Free };
+            let is_as_before = self.state(index) == state;
+            // Most cells were in view before and are as they were.
+            if is_as_before && self.last_reading(index) == now - 1 {
+                self.observed[index] += 1;
+                again += u32::from(self.candidates[index]);
+                continue;
+            }
+            self.last_seen_counts.observed_again(std::mem::take(&mut again));
+            if is_as_before {
+                self.observe(index);
+            } else {
+                self.set_state(index, state, now, self.is_in_view(index));
+            }
+        }
+        self.last_seen_counts.observed_again(again);
+    }
+
+    /// The cell is observed again after a gap, or for the first time: records the time before.
+    pub(super) fn end_gap(&mut self, index: usize, after: CellState) {
+        let (before, last, now) = (self.state(index), self.last_reading(index), self.reading());
+        let record = &mut self.records[index];
+        if record.is_known() {
+            let length = self.times.at(now) - self.times.at(last);
+            record.watched[state_index(before)] += self.times.at(last) - self.times.at(record.since);
+            record.gaps[state_index(before)] += 1;
+            if let Some(gaps) = self.gaps.get_mut(index) {
+                gaps.add([last, now], length, [before, after].map(|state| state == CellState::Blocked));
+            }
+        } else {
+            record.first = now;
+        }
+        record.since = now;
+        record.is_whole = false;
+    }
+}

@@ -1,0 +1,113 @@
+use super::record::state_index;
+use super::{CellMap, PRIOR};
+use crate::change::gaps::MEAN_EVENTS;
+use crate::change::{Belief, CellStatistics, Exposure, GapWorth, ReadingIndex, TransitionRates};
+use interfaces::{CellState, Grid, GridFrame};
+
+impl CellMap {
+    /// The position and the size of the map.
+    pub fn frame(&self) -> &GridFrame {
+        self.states.frame()
+    }
+
+    /// The states of all cells.
+    pub fn states(&self) -> &Grid<CellState> {
+        &self.states
+    }
+
+    /// The state of a cell.
+    #[inline]
+    pub fn state(&self, index: usize) -> CellState {
+        self.states.cells()[index]
+    }
+
+    /// The number of the open reading.
+    #[inline]
+    pub fn reading(&self) -> ReadingIndex {
+        self.times.last()
+    }
+
+    /// The time of the open reading.
+    #[inline]
+    pub fn time(&self) -> f64 {
+        self.times.at(self.times.last())
+    }
+
+    /// The number of readings so far.
+    pub(crate) fn readings(&self) -> usize {
+        (self.reading() - PRIOR) as usize
+    }
+
+    #[inline]
+    pub(crate) fn last_seen(&self, index: usize) -> f64 {
+        self.times.at(self.last_reading(index))
+    }
+
+    pub(crate) fn was_ever_seen(&self, index: usize) -> bool {
+        self.last_reading(index) != super::NEVER
+    }
+
+    /// The time of the last observation of the candidate that was not observed for longest.
+    pub(crate) fn oldest_candidate(&mut self) -> Option<f64> {
+        self.last_seen_counts.oldest().map(|reading| self.times.at(reading))
+    }
+
+    /// The change statistics of a cell.
+    pub fn statistics(&self, index: usize) -> CellStatistics {
+        let record = &self.records[index];
+        if !record.is_known() {
+            return CellStatistics::default();
+        }
+        let last = self.last_reading(index);
+        let (first_seen, last_seen) = (self.times.at(record.first), self.times.at(last));
+        let mut watched = record.watched;
+        watched[state_index(self.state(index))] += last_seen - self.times.at(record.since);
+        let [watched_free, watched_blocked] = watched;
+        let period = self.times.period(last);
+        CellStatistics {
+            first_seen,
+            last_seen,
+            period,
+            unobserved: (last_seen - first_seen - watched_free - watched_blocked).max(0.0),
+            watched_free,
+            watched_blocked,
+            block_events: record.in_view[0],
+            free_events: record.in_view[1],
+            block_events_after_gap: record.after_gap[0],
+            free_events_after_gap: record.after_gap[1],
+            gaps_from_free: record.gaps[0],
+            gaps_from_blocked: record.gaps[1],
+            gap_worth: self.gaps.get(index).map_or(GapWorth::default(), |gaps| gaps.worth(period)),
+        }
+    }
+
+    /// The cycle rate of a cell by the estimator in use.
+    #[inline]
+    pub(crate) fn rate(&self, index: usize) -> f64 {
+        self.estimator.rate(&self.statistics(index))
+    }
+
+    /// The transition rates of a cell, if the estimator in use has them.
+    pub(crate) fn transition_rates(&self, index: usize) -> Option<TransitionRates> {
+        self.estimator.transition_rates(&self.statistics(index))
+    }
+
+    /// The belief about the transition probabilities of a cell, and the time of a step; `None` before the second
+    /// reading.
+    pub(crate) fn belief(&self, index: usize) -> Option<(Belief, f64)> {
+        let period = self.times.period(self.reading());
+        if period <= 0.0 {
+            return None;
+        }
+        let seen = CellStatistics { period, ..self.statistics(index) };
+        let model = self.estimator.gap_model().filter(|model| model.is_two_state());
+        let belief = match model {
+            Some(model) => self.gaps[index].belief(model, &seen, &self.regularity),
+            None => Belief {
+                exposure: Exposure::in_view(&seen) + Exposure::uniform(MEAN_EVENTS, 1.0),
+                mixed: 0.0,
+            },
+        };
+        Some((belief, period))
+    }
+}

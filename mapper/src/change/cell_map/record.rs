@@ -1,0 +1,62 @@
+use super::{NEVER, ReadingIndex, Slot};
+use interfaces::CellState;
+use std::num::NonZeroU32;
+
+/// The change record of one cell, without its last observation, which is written with
+/// every reading and stored apart.
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+pub(super) struct Record {
+    /// The first observation.
+    pub(super) first: ReadingIndex,
+    /// From here to the last observation the cell was in view in its present state without a gap,
+    /// and that time is not in `watched` yet.
+    pub(super) since: ReadingIndex,
+    /// Time in view while free and while blocked, up to `since`.
+    pub(super) watched: [f64; 2],
+    /// Block and free events in view.
+    pub(super) in_view: [u32; 2],
+    /// Block and free events that were found at the end of a gap.
+    pub(super) after_gap: [u32; 2],
+    /// Gaps that began while the cell was free, and while it was blocked.
+    pub(super) gaps: [u32; 2],
+    /// One more than the index among the cells that ever changed.
+    slot: Option<NonZeroU32>,
+    /// Whether the present state began with an event in view, and was in view since.
+    pub(super) is_whole: bool,
+}
+
+/// The index of a state in the arrays of a record.
+pub(super) const fn state_index(state: CellState) -> usize {
+    match state {
+        CellState::Unknown | CellState::Free => 0,
+        CellState::Blocked => 1,
+    }
+}
+
+impl Record {
+    /// The record of a cell first known in a reading.
+    pub(super) fn since(first: ReadingIndex) -> Self {
+        Self { first, since: first, ..Self::default() }
+    }
+
+    /// Whether the state of the cell is known.
+    #[inline]
+    pub(super) fn is_known(&self) -> bool {
+        self.first != NEVER
+    }
+
+    #[inline]
+    pub(super) fn has_changed(&self) -> bool {
+        self.slot.is_some()
+    }
+
+    /// The index among the cells that ever changed.
+    #[inline]
+    pub(super) fn slot(&self) -> Option<Slot> {
+        self.slot.map(|slot| slot.get() - 1)
+    }
+
+    pub(super) fn set_slot(&mut self, slot: Slot) {
+        self.slot = NonZeroU32::new(slot + 1);
+    }
+}

@@ -1,0 +1,112 @@
+//! Cells that change their state.
+
+use super::record::{Record, state_index};
+use super::{CellMap, PRIOR, ReadingIndex, Slot};
+use crate::change::gaps::{CellGaps, Neighborhood};
+use interfaces::{Cell, CellState, Transition};
+
+/// The neighborhood of a cell: this many cells to either side, along both axes.
+const NEAR: i32 = 3;
+
+impl CellMap {
+    /// The cell changes its state. `since` is the reading that first observed the new state; now, or earlier where
+    /// several readings were needed as evidence. `in_view` says whether the cell was
+    /// [in view](Self::is_in_view) at that reading: if so the change happened in view, else it was found
+    /// after a gap.
+    pub fn set_state(&mut self, index: usize, after: CellState, since: ReadingIndex, in_view: bool) {
+        let before = self.state(index);
+        let is_event = before != CellState::Unknown && self.records[index].is_known();
+        if !self.is_seen_now(index) && !self.is_in_view(index) {
+            self.end_gap(index, after);
+            self.mark(index);
+        } else if is_event && let Some(gaps) = self.gaps.get_mut(index) {
+            gaps.correct_last(since, after == CellState::Blocked);
+        }
+        if is_event {
+            self.record_event(index, before, since, in_view);
+        }
+        let cell = self.frame().cell(index);
+        self.transitions.push(Transition { cell, before, after });
+        self.states.cells_mut()[index] = after;
+        if after == CellState::Blocked {
+            self.set_settled(index, false);
+        }
+        self.observe(index);
+        self.weigh_gaps(index);
+        self.update_candidate(index);
+        for neighbour in cell.neighbours4() {
+            if let Some(neighbour) = self.frame().index(neighbour) {
+                self.update_candidate(neighbour);
+            }
+        }
+    }
+
+    /// Records the time in the state that a cell leaves, and the event.
+    fn record_event(&mut self, index: usize, before: CellState, since: ReadingIndex, in_view: bool) {
+        let last = self.last_reading(index);
+        let period = self.times.period(last);
+        let record = &mut self.records[index];
+        if !record.has_changed() {
+            record.set_slot(self.changed.len() as Slot);
+            self.changed.push(index as u32);
+        }
+        // The time since the first observation of the new state belongs to the new state.
+        let until = since.clamp(record.since, last.max(record.since));
+        let stayed = self.times.at(until) - self.times.at(record.since);
+        let event = state_index(before); // free → blocked is a block event, blocked → free a free event
+        record.watched[event] += stayed;
+        if let Some(gaps) = self.gaps.get_mut(index)
+            && (in_view && record.is_whole && period > 0.0)
+        {
+            gaps.add_stay(event, stayed / period, &mut self.regularity);
+        }
+        record.is_whole = in_view;
+        record.since = until;
+        if in_view { record.in_view[event] += 1 } else { record.after_gap[event] += 1 }
+    }
+
+    /// Whether the cell is still in the state of its first observation, not of a prior map,
+    /// and was in view for less than `confirm` (in the unit of the times of the readings).
+    pub fn is_unconfirmed(&self, index: usize, confirm: f64) -> bool {
+        let seen = self.statistics(index);
+        self.records[index].first > PRIOR && seen.events() == 0 && seen.observed() < confirm
+    }
+
+    /// The first observation of the cell was wrong: nothing changed, its state was `after` all the time.
+    pub fn correct(&mut self, index: usize, after: CellState) {
+        let now = self.reading();
+        self.observe(index);
+        self.records[index] = Record::since(now);
+        if let Some(gaps) = self.gaps.get_mut(index) {
+            *gaps = CellGaps::default();
+        }
+        let (cell, before) = (self.frame().cell(index), self.state(index));
+        self.transitions.push(Transition { cell, before, after: CellState::Unknown });
+        self.states.cells_mut()[index] = CellState::Unknown;
+        self.set_state(index, after, now, false);
+    }
+
+    /// Weighs the gaps of a cell that changes, when enough was observed since the last time.
+    pub(super) fn weigh_gaps(&mut self, index: usize) {
+        if self.gaps.is_empty() || !self.records[index].has_changed() {
+            return;
+        }
+        let seen = self.statistics(index);
+        let Some(model) = self.estimator.gap_model().filter(|_| self.gaps[index].is_due(&seen)) else {
+            return;
+        };
+        let frame = self.states.frame();
+        let cell = frame.cell(index);
+        let mut neighborhood = Neighborhood::around(self.gaps[index].own());
+        for y in cell.y - NEAR..=cell.y + NEAR {
+            for x in cell.x - NEAR..=cell.x + NEAR {
+                if let Some(other) = frame.index(Cell::new(x, y))
+                    && other != index
+                {
+                    neighborhood.add(self.gaps[other].own());
+                }
+            }
+        }
+        self.gaps[index].weigh(model, &seen, neighborhood.prior(), &self.regularity);
+    }
+}

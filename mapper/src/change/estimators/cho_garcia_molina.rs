@@ -1,0 +1,97 @@
+use super::Estimator;
+use crate::change::{CellStatistics, Exposure, GapBin, GapEvidence, GapHistogram, GapModel, GapWeights};
+
+/// `cho-garcia-molina`: Cho & Garcia-Molina's estimator of how often a web page changes ("Estimating frequency of
+/// change", 2003): one Poisson process, and each visit tells whether there was any event since the visit
+/// before. X of N visits at interval I found a change: −ln((N − X + ½)/(N + ½)) / I. Visits at irregular intervals
+/// by their maximum likelihood. In view each reading is a visit.
+#[derive(Clone, Copy, Debug)]
+pub struct ChoGarciaMolina;
+
+impl Estimator for ChoGarciaMolina {
+    fn name(&self) -> &'static str {
+        "cho-garcia-molina"
+    }
+
+    /// Every second change begins a cycle.
+    fn interval(&self, seen: &CellStatistics) -> f64 {
+        let time = seen.observed() + seen.unobserved;
+        2.0 * time / (changes_in_view(seen) + seen.gap_worth.block_events + seen.gap_worth.free_events)
+    }
+
+    fn gap_model(&self) -> Option<&dyn GapModel> {
+        Some(self)
+    }
+}
+
+impl GapModel for ChoGarciaMolina {
+    fn weigh(&self, evidence: &GapEvidence<'_>) -> Option<GapWeights> {
+        let events = [hidden_changes(evidence.gaps, evidence.seen), 0.0];
+        Some(GapWeights { worth: Exposure { events, ..Exposure::default() }, ..GapWeights::default() })
+    }
+}
+
+/// Changes in view, those between two readings included.
+fn changes_in_view(seen: &CellStatistics) -> f64 {
+    let changed = f64::from(seen.block_events + seen.free_events);
+    if changed == 0.0 {
+        return 0.0;
+    }
+    let visits = (seen.observed() / seen.period).max(changed);
+    if !visits.is_finite() {
+        return changed;
+    }
+    -visits * libm::log((visits - changed + 0.5) / (visits + 0.5))
+}
+
+/// Rounds at most; the rate is found to a millionth long before.
+const MOST_ROUNDS: usize = 100;
+
+/// The expected number of changes in all gaps together, at the rate that explains best the states
+/// after the gaps and the changes in view.
+///
+/// A gap tells whether there was any change: one of length I at rate r holds rI/(1 − e^(−rI)) if so, and
+/// none if not. As in their estimator, half an unchanged gap is added, so that a rate is found also
+/// where every gap showed a change.
+fn hidden_changes(bins: &GapHistogram, seen: &CellStatistics) -> f64 {
+    let (changes, time) = (changes_in_view(seen), seen.observed());
+    let total: f64 = bins.iter().map(|bin| bin.total).sum();
+    let count: f64 = bins.iter().map(|bin| f64::from(bin.count)).sum();
+    if total <= 0.0 {
+        return 0.0;
+    }
+    let total = total + 0.5 * total / count;
+    let changed = || bins.iter().filter(|bin| bin.before() != bin.after());
+    let expected = |rate: f64| -> f64 {
+        let of = |bin: GapBin| {
+            let mean = rate * bin.length();
+            f64::from(bin.count) * mean / -libm::expm1(-mean)
+        };
+        changed().map(of).sum()
+    };
+    // r (T + t) = changes + expected(r): the right side grows slower, so there is one solution.
+    let excess = |rate: f64| changes + expected(rate) - rate * (total + time);
+    let (mut low, mut high) =
+        (0.0, (changes + changed().map(|bin| f64::from(bin.count)).sum::<f64>()) / total);
+    if !(high > 0.0 && high.is_finite()) {
+        return 0.0;
+    }
+    for _ in 0..MOST_ROUNDS {
+        if excess(high) < 0.0 {
+            break;
+        }
+        (low, high) = (high, 2.0 * high);
+    }
+    for _ in 0..MOST_ROUNDS {
+        let middle = 0.5 * (low + high);
+        if excess(middle) > 0.0 {
+            low = middle
+        } else {
+            high = middle
+        }
+        if high - low < 1e-6 * high {
+            break;
+        }
+    }
+    0.5 * (low + high) * (total + time) - changes
+}

@@ -1,0 +1,164 @@
+//! Estimators of how often a cell changes, one per file.
+//!
+//! To add one: write a file with an [`Estimator`], and add a line to [`built_in`]. An estimator in a crate of its own
+//! goes into [`MapperSettings::estimator`](crate::MapperSettings::estimator) with `.into()`.
+
+mod cho_garcia_molina;
+mod imac;
+mod paper;
+mod two_state;
+mod two_state_gaps;
+
+use super::{CellStatistics, GapModel, TransitionRates};
+use crate::choice::{Choice, Named};
+pub use cho_garcia_molina::ChoGarciaMolina;
+pub use imac::Imac;
+pub use paper::{Paper, PaperAll};
+use std::fmt;
+use std::sync::Arc;
+pub use two_state::TwoState;
+pub use two_state_gaps::TwoStateGaps;
+
+/// The built-in estimators, in the order of reports.
+fn built_in() -> Vec<Arc<dyn Estimator>> {
+    vec![
+        Arc::new(Paper),
+        Arc::new(PaperAll),
+        Arc::new(ChoGarciaMolina),
+        Arc::new(Imac),
+        Arc::new(TwoState),
+        Arc::new(TwoStateGaps),
+    ]
+}
+
+/// An estimator of the rate at which a cell changes.
+pub trait Estimator: fmt::Debug + Send + Sync {
+    /// The name on the command line, in files and in reports.
+    fn name(&self) -> &'static str;
+
+    /// The mean time of one cycle, blocked to free and back (T of equation 1), in the unit of the times of the
+    /// statistics. Called only for cells with an event. A result that is not a positive number means that the
+    /// events tell no rate.
+    fn interval(&self, seen: &CellStatistics) -> f64;
+
+    /// The rates of both changes, from which the state of a cell out of view is predicted; `None` if unknown.
+    /// Called only for cells with an [interval](Estimator::interval). By default each state has the share of the
+    /// cycle in which it was observed.
+    fn transition_rates(&self, seen: &CellStatistics) -> Option<TransitionRates> {
+        Some(TransitionRates::shared(seen, 1.0 / self.interval(seen)))
+    }
+
+    /// The model of gaps in the view. Without one gaps are not recorded, and
+    /// [`CellStatistics::gap_worth`] stays 0.
+    fn gap_model(&self) -> Option<&dyn GapModel> {
+        None
+    }
+}
+
+/// A choice of an estimator. The default is `two-state-gaps`: `docs/estimators.md` says why.
+pub type EstimatorChoice = Choice<dyn Estimator>;
+
+impl Named for dyn Estimator {
+    fn name(&self) -> &'static str {
+        Estimator::name(self)
+    }
+
+    fn built_in() -> Vec<Arc<Self>> {
+        built_in()
+    }
+}
+
+impl<E: Estimator + 'static> From<E> for EstimatorChoice {
+    fn from(estimator: E) -> Self {
+        Self(Arc::new(estimator))
+    }
+}
+
+impl Default for EstimatorChoice {
+    fn default() -> Self {
+        TwoStateGaps.into()
+    }
+}
+
+impl EstimatorChoice {
+    /// The mean time of one cycle, T; ∞ for a cell without an event, or that was never in view for any time.
+    pub fn interval(&self, seen: &CellStatistics) -> f64 {
+        let interval = if seen.events() == 0 { f64::INFINITY } else { self.0.interval(seen) };
+        // The events of a cell that was in view for no time, or for a time without an inverse, tell that the cell
+        // changes, but not how often.
+        if interval >= f64::MIN_POSITIVE { interval } else { f64::INFINITY }
+    }
+
+    /// The number of cycles per unit of time, 1/T; 0 for a cell without an event.
+    pub fn rate(&self, seen: &CellStatistics) -> f64 {
+        1.0 / self.interval(seen)
+    }
+
+    /// The rates of both changes; `None` for a cell without a rate.
+    pub fn transition_rates(&self, seen: &CellStatistics) -> Option<TransitionRates> {
+        if self.rate(seen) == 0.0 {
+            return None;
+        }
+        self.0.transition_rates(seen).map(TransitionRates::bounded)
+    }
+
+    pub(crate) fn gap_model(&self) -> Option<&dyn GapModel> {
+        self.0.gap_model()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen() -> CellStatistics {
+        CellStatistics {
+            first_seen: 0.0,
+            last_seen: 130.0,
+            period: 1.0,
+            unobserved: 30.0,
+            watched_free: 80.0,
+            watched_blocked: 20.0,
+            block_events: 4,
+            free_events: 5,
+            block_events_after_gap: 6,
+            free_events_after_gap: 1,
+            gaps_from_free: 8,
+            gaps_from_blocked: 3,
+            ..CellStatistics::default()
+        }
+    }
+
+    #[test]
+    fn the_readings_of_equation_1() {
+        assert_eq!(Paper.interval(&seen()), 100.0 / 5.0);
+        assert_eq!(PaperAll.interval(&seen()), 100.0 / 10.0);
+    }
+
+    #[test]
+    fn two_state_adds_the_mean_dwells() {
+        assert_eq!(TwoState.interval(&seen()), 80.0 / 4.0 + 20.0 / 5.0);
+    }
+
+    #[test]
+    fn without_an_event_nothing_changes() {
+        let still = CellStatistics { last_seen: 9.0, watched_free: 9.0, ..Default::default() };
+        for estimator in EstimatorChoice::all() {
+            assert_eq!(estimator.interval(&still), f64::INFINITY);
+            assert_eq!(estimator.rate(&still), 0.0);
+            assert_eq!(estimator.transition_rates(&still), None);
+        }
+    }
+
+    #[test]
+    fn names_are_unique_and_choose() {
+        let all = EstimatorChoice::all();
+        for (index, choice) in all.iter().enumerate() {
+            assert_eq!(EstimatorChoice::named(choice.name()).as_ref(), Some(choice));
+            assert!(!all[..index].contains(choice));
+        }
+        assert!(all.contains(&EstimatorChoice::default()));
+        let error = EstimatorChoice::try_from("guess".to_owned()).unwrap_err();
+        assert!(error.starts_with("`guess` is not one of paper, paper-all, "), "{error}");
+    }
+}

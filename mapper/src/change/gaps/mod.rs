@@ -1,0 +1,205 @@
+//! The information in the gaps in the view of a cell: the state before, the state after, and the time between.
+//!
+//! [`CellGaps`] collects the gaps of a cell and decides when they are weighed. How they are weighed is up to the
+//! [`GapModel`] of the estimator.
+
+pub(super) mod fit;
+mod histogram;
+mod neighbors;
+mod regularity;
+
+use super::reading_times::ReadingIndex;
+use super::transition_kernel::Step;
+use super::{CellStatistics, Exposure, GapWorth};
+pub use histogram::{GapBin, GapHistogram};
+pub(super) use neighbors::Neighborhood;
+pub(super) use regularity::Regularity;
+
+/// Events of a cell without any observation, in one step. By Jeffreys' prior the rate after n events is
+/// distributed as Γ(n + ½), and its median, which is too high as often as too low, is that of n + ⅙ events.
+pub(super) const MEDIAN_EVENTS: f64 = 1.0 / 6.0;
+/// The same for the mean of that distribution.
+pub(super) const MEAN_EVENTS: f64 = 0.5;
+
+/// Gaps are weighed again when the events and gaps, or the time in view, have grown by these shares: the
+/// work per gap is bounded, and what is missed in between is little.
+const COUNTED_GROWTH: f64 = 1.0 / 8.0;
+const WATCHED_GROWTH: f64 = 1.0 / 4.0;
+
+/// Tells how much the gaps in the view of a cell say about the rates of the cell.
+pub trait GapModel {
+    /// Weighs the gaps of a cell. `None` keeps the result of the last time.
+    fn weigh(&self, evidence: &GapEvidence<'_>) -> Option<GapWeights>;
+
+    /// Whether [`GapWeights::worth`] is the exposure of a two-state chain. Credible intervals take the gaps into
+    /// account only then.
+    fn is_two_state(&self) -> bool {
+        false
+    }
+}
+
+/// Everything known of a cell when its gaps are weighed.
+#[derive(Clone, Copy, Debug)]
+pub struct GapEvidence<'a> {
+    /// The statistics of the cell.
+    pub seen: &'a CellStatistics,
+    /// The gaps.
+    pub gaps: &'a GapHistogram,
+    /// The exposure that stands for what is known before any observation.
+    pub prior: Exposure,
+    /// The exposure of the cells nearby, as far as they resemble this cell.
+    pub neighbors: Exposure,
+    /// The stays from an event in view to an event in view: their number, and their steps.
+    pub whole_stays: Exposure,
+    /// Per state, from 0 for stays of random length to 1 for equal stays; over all cells of the map.
+    pub regularity: [f64; 2],
+    /// [`GapWeights::step`] of the last time.
+    pub last_step: Option<Step>,
+}
+
+/// The information in the gaps of a cell. The default is: none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+pub struct GapWeights {
+    /// The exposure that tells as much as the gaps, with all other evidence that is not in view. It becomes
+    /// [`CellStatistics::gap_worth`].
+    pub worth: Exposure,
+    /// The part of `worth` that comes from the neighbors.
+    pub neighbors: Exposure,
+    /// The exposure of this cell alone, in view and in gaps. The neighbors learn from it.
+    pub own: Exposure,
+    /// The mixed term of the information about both transition probabilities, in log-odds.
+    pub mixed: f64,
+    /// The most probable chain: the start of the next search.
+    pub step: Option<Step>,
+}
+
+/// The belief about both transition probabilities of a cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Belief {
+    /// The exposure that tells as much.
+    pub(crate) exposure: Exposure,
+    /// See [`GapWeights::mixed`].
+    pub(crate) mixed: f64,
+}
+
+/// The gaps of one cell, and their weights.
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+pub(super) struct CellGaps {
+    histogram: GapHistogram,
+    /// Only of a cell that changed.
+    weighed: Option<Box<Weighed>>,
+}
+
+/// The weights of the gaps when they were last weighed, and when that was.
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+struct Weighed {
+    weights: GapWeights,
+    /// Gaps and events, and the time in view, at which the gaps are weighed next.
+    due: [f64; 2],
+    /// The last stay in each state from an event in view to an event in view, in steps; 0 before the first.
+    stays: [f64; 2],
+    /// All such stays: their number, and their steps.
+    whole_stays: Exposure,
+}
+
+impl CellGaps {
+    /// Adds a gap between two readings, `length` long, with whether the cell was blocked before and after.
+    pub(super) fn add(&mut self, between: [ReadingIndex; 2], length: f64, blocked: [bool; 2]) {
+        self.histogram.add(between, length, blocked);
+    }
+
+    /// The cell has been in another state, `after`, since the reading `since`: if that lies before the end of
+    /// the last gap, corrects the states of the gap.
+    pub(super) fn correct_last(&mut self, since: ReadingIndex, after: bool) {
+        self.histogram.correct_last(since, after);
+    }
+
+    /// The cell stayed in a state for a number of steps, from an event in view to an event in view.
+    pub(super) fn add_stay(&mut self, state: usize, steps: f64, regularity: &mut Regularity) {
+        let weighed = self.weighed.get_or_insert_default();
+        weighed.whole_stays.events[state] += 1.0;
+        weighed.whole_stays.steps[state] += steps;
+        let before = std::mem::replace(&mut weighed.stays[state], steps);
+        if before > 0.0 {
+            regularity.add(state, before, steps);
+        }
+    }
+
+    /// [`GapWeights::own`] of the last time.
+    pub(super) fn own(&self) -> Exposure {
+        self.weighed.as_ref().map_or(Exposure::default(), |weighed| weighed.weights.own)
+    }
+
+    /// The worth of the gaps, with steps of `period`.
+    pub(super) fn worth(&self, period: f64) -> GapWorth {
+        self.weighed.as_ref().map_or(GapWorth::default(), |weighed| {
+            let Exposure { events: [block_events, free_events], steps: [free, blocked] } =
+                weighed.weights.worth;
+            GapWorth {
+                watched_free: free * period,
+                watched_blocked: blocked * period,
+                block_events,
+                free_events,
+            }
+        })
+    }
+
+    /// Whether the gaps of a cell that changes are to be weighed again.
+    pub(super) fn is_due(&self, seen: &CellStatistics) -> bool {
+        let due = self.weighed.as_ref().map_or([0.0; 2], |weighed| weighed.due);
+        seen.period > 0.0 && (self.counted(seen) >= due[0] || seen.observed() >= due[1])
+    }
+
+    fn counted(&self, seen: &CellStatistics) -> f64 {
+        f64::from(self.histogram.count()) + f64::from(seen.events())
+    }
+
+    fn evidence<'a>(&'a self, seen: &'a CellStatistics, regularity: &Regularity) -> GapEvidence<'a> {
+        let weighed = self.weighed.as_deref();
+        GapEvidence {
+            seen,
+            gaps: &self.histogram,
+            prior: Exposure::uniform(MEDIAN_EVENTS, 1.0),
+            neighbors: Exposure::default(),
+            whole_stays: weighed.map_or(Exposure::default(), |weighed| weighed.whole_stays),
+            regularity: regularity.weights(),
+            last_step: weighed.and_then(|weighed| weighed.weights.step),
+        }
+    }
+
+    /// Weighs the gaps of a cell that changes.
+    pub(super) fn weigh(
+        &mut self,
+        model: &dyn GapModel,
+        seen: &CellStatistics,
+        neighbors: Exposure,
+        regularity: &Regularity,
+    ) {
+        let weights = model.weigh(&GapEvidence { neighbors, ..self.evidence(seen, regularity) });
+        let counted = self.counted(seen) * (1.0 + COUNTED_GROWTH) + 0.5;
+        let weighed = self.weighed.get_or_insert_default();
+        weighed.due = [counted, seen.observed() * (1.0 + WATCHED_GROWTH)];
+        weighed.weights = weights.unwrap_or(weighed.weights);
+    }
+
+    /// The belief about a cell, also about one that never changed.
+    pub(super) fn belief(
+        &self,
+        model: &dyn GapModel,
+        seen: &CellStatistics,
+        regularity: &Regularity,
+    ) -> Belief {
+        let prior = Exposure::uniform(MEAN_EVENTS, 1.0);
+        let exposure = Exposure::in_view(seen) + prior;
+        if let Some(Weighed { weights, .. }) = self.weighed.as_deref() {
+            let all = exposure + weights.worth;
+            // What moves shows itself to all cells nearby at the same time: they tell of the rate what
+            // the cell has mostly observed itself. They move the estimate, but do not make it more certain.
+            let own = [0, 1].map(|state| 1.0 - weights.neighbors.steps[state] / all.steps[state]);
+            return Belief { exposure: all.scaled(own), mixed: weights.mixed };
+        }
+        let weights =
+            model.weigh(&GapEvidence { prior, ..self.evidence(seen, regularity) }).unwrap_or_default();
+        Belief { exposure: exposure + weights.worth, mixed: weights.mixed }
+    }
+}

@@ -1,0 +1,110 @@
+//! What the cells nearby tell of a cell: a thing that moves goes from cell to cell, and stays equally long in
+//! each.
+
+use super::MEAN_EVENTS;
+use crate::change::Exposure;
+
+// The next four were chosen on generated block worlds; `docs/estimators.md` lists the alternatives.
+
+/// The neighbors count as this many events at most.
+const NEAR_EVENTS: f64 = 120.0;
+/// The same for a cell without an event of its own; each of its own events adds one. At first all were observed in
+/// the same few passages of the same thing, found because the thing was passing: many neighbors then
+/// tell as little as one, and their rate is too high.
+const FIRST_NEAR_EVENTS: f64 = 2.0;
+/// The variance of the logarithms of rates between similar neighbors.
+const NEAR_VARIANCE: f64 = 0.03;
+/// Degrees of freedom of the doubt whether a neighbor resembles the cell: few, so that a different neighbor soon
+/// counts for nothing.
+const FREEDOM: f64 = 1.5;
+
+/// The exposure of the cells around one cell.
+///
+/// Every neighbor counts by itself, and counts the less, the less it agrees with the observations of the cell: the
+/// ends of a path to and fro are entered half as often as the cells between, and another thing may move
+/// nearby.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::change) struct Neighborhood {
+    own: Exposure,
+    sum: Exposure,
+}
+
+impl Neighborhood {
+    /// The neighborhood, so far empty, of a cell with exposure `own`.
+    pub(in crate::change) fn around(own: Exposure) -> Self {
+        Self { own, sum: Exposure::default() }
+    }
+
+    /// Adds the exposure of a neighbor.
+    pub(in crate::change) fn add(&mut self, near: Exposure) {
+        for state in 0..2 {
+            let (events, steps) = (near.events[state], near.steps[state]);
+            if events <= 0.0 || steps <= 0.0 {
+                continue;
+            }
+            let leave = (events + MEAN_EVENTS) / (steps + 1.0);
+            let own_events = self.own.events[state].max(0.0) + MEAN_EVENTS;
+            let own_leave = own_events / (self.own.steps[state] + MEAN_EVENTS / leave);
+            let apart = libm::log(own_leave / leave);
+            let variance = NEAR_VARIANCE + 1.0 / own_events + 1.0 / (events + MEAN_EVENTS);
+            let doubt = 1.0 + apart * apart / variance / FREEDOM;
+            let weight = events / (1.0 + NEAR_VARIANCE * events) / (doubt * doubt);
+            self.sum.events[state] += weight;
+            self.sum.steps[state] += weight / leave;
+        }
+    }
+
+    /// The exposure of the cell itself that would tell the same.
+    pub(in crate::change) fn prior(self) -> Exposure {
+        let part = [0, 1].map(|state| {
+            let most = (FIRST_NEAR_EVENTS + self.own.events[state].max(0.0)).min(NEAR_EVENTS);
+            most / (most + self.sum.events[state])
+        });
+        self.sum.scaled(part)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn exposure(events: f64, steps: f64) -> Exposure {
+        Exposure { events: [events; 2], steps: [steps; 2] }
+    }
+
+    fn prior(own: Exposure, near: &[Exposure]) -> Exposure {
+        let mut around = Neighborhood::around(own);
+        near.iter().for_each(|&near| around.add(near));
+        around.prior()
+    }
+
+    #[test]
+    fn a_cell_without_events_takes_the_rate_of_its_neighbors() {
+        let prior = prior(Exposure::default(), &[exposure(40.0, 400.0); 8]);
+        assert!((prior.events[0] / prior.steps[0] - 0.1).abs() < 0.002);
+        assert!((1.5..=FIRST_NEAR_EVENTS).contains(&prior.events[0]));
+    }
+
+    #[test]
+    fn neighbors_count_more_for_a_cell_with_more_events() {
+        let events = |own: f64| prior(exposure(own, 10.0 * own), &[exposure(40.0, 400.0); 40]).events[0];
+        assert!(events(1.0) < 3.0 && events(10.0) > 10.0 && events(1000.0) > 50.0);
+        assert!(events(1e6) < NEAR_EVENTS);
+    }
+
+    #[test]
+    fn a_different_neighbor_counts_for_nothing_beside_a_similar_one() {
+        let leave = |of: Exposure| of.events[0] / of.steps[0];
+        let (own, alike) = (exposure(100.0, 1000.0), exposure(100.0, 1010.0));
+        for other_steps in [100.0, 300.0, 3000.0, 10_000.0] {
+            let prior = prior(own, &[alike, exposure(100.0, other_steps)]);
+            assert!((leave(own + prior) / leave(own) - 1.0).abs() < 0.03, "{other_steps}: {prior:?}");
+            assert!(prior.events[0] > 10.0, "{prior:?}");
+        }
+    }
+
+    #[test]
+    fn neighbors_that_never_change_tell_nothing() {
+        assert_eq!(prior(exposure(3.0, 10.0), &[exposure(0.0, 1e6)]), Exposure::default());
+    }
+}

@@ -1,0 +1,100 @@
+//! The regularity of the times that cells stay in a state.
+//!
+//! A Markov chain forgets: the rest of a stay does not depend on the time of the stay so far. A thing that
+//! moves by a clock is different, and that matters for gaps about as long as a stay: after the mean time of one
+//! stay 63 % of the stays of a chain have ended, and all stays of a clock.
+
+/// Two stays that differ by at most this share of their sum are equal.
+const EQUAL: f64 = 0.1;
+/// Pairs of a Markov chain that count as observed from the start: nothing is regular until shown.
+const DOUBT: f64 = 4.0;
+/// Up to the first share of pairs that are equal beyond chance the world is a Markov chain, from the second on
+/// a clock. Stays that begin and end within short visits are a little more equal than others; clocks stop while
+/// something blocks them.
+const BETWEEN: [f64; 2] = [0.15, 0.4];
+
+/// How often two consecutive stays of a cell are equal, over all cells.
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+pub(in crate::change) struct Regularity {
+    /// Per state: equal pairs, less those expected of Markov chains.
+    equal: [f64; 2],
+    /// Unequal pairs expected of Markov chains.
+    unequal: [f64; 2],
+}
+
+impl Regularity {
+    /// A cell stayed in a state for `steps`, from an event in view to an event in view; and before that for
+    /// `before` steps.
+    pub(super) fn add(&mut self, state: usize, before: f64, steps: f64) {
+        let (before, steps) = (libm::round(before), libm::round(steps));
+        let sum = before + steps;
+        if sum < 4.0 {
+            return; // two stays of one or two steps are equal, or not, for any motion
+        }
+        // For a Markov chain of any rates all ways to split the sum in two are equally likely. Of the
+        // sum − 1 ways this many count as equal:
+        let most = libm::floor(EQUAL * sum);
+        let ways = if sum % 2.0 == 0.0 {
+            2.0 * libm::floor(most / 2.0) + 1.0
+        } else {
+            2.0 * libm::floor((most + 1.0) / 2.0)
+        };
+        let expected = ways / (sum - 1.0);
+        self.equal[state] += f64::from(u8::from((before - steps).abs() <= most)) - expected;
+        self.unequal[state] += 1.0 - expected;
+    }
+
+    /// Per state, from 0 for Markov chains to 1 for clocks.
+    pub(super) fn weights(&self) -> [f64; 2] {
+        let [low, high] = BETWEEN;
+        [0, 1].map(|state| {
+            let share = self.equal[state] / (self.unequal[state] + DOUBT);
+            ((share - low) / (high - low)).clamp(0.0, 1.0)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, Geometric};
+
+    fn weight(stays: impl IntoIterator<Item = f64>) -> f64 {
+        let (mut regularity, mut before) = (Regularity::default(), 0.0);
+        for stay in stays {
+            if before > 0.0 {
+                regularity.add(1, before, stay);
+            }
+            before = stay;
+        }
+        regularity.weights()[1]
+    }
+
+    #[test]
+    fn a_markov_chain_of_any_rate_is_not_regular() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        for leave in [0.7, 0.5, 0.2, 0.01] {
+            let stays = Geometric::new(leave).unwrap();
+            let mut next = || stays.sample(&mut rng) as f64 + 1.0;
+            assert_eq!(weight((0..3000).map(|_| next())), 0.0, "leaving with {leave}");
+            // Only stays that fit in a window of ten steps are seen whole.
+            let seen: Vec<f64> = (0..3000).map(|_| next()).filter(|&stay| stay < 9.0).collect();
+            assert_eq!(weight(seen), 0.0, "leaving with {leave}, in short visits");
+        }
+    }
+
+    #[test]
+    fn a_clock_is_regular_once_shown_also_if_it_stops_at_times() {
+        assert!(weight([7.0; 2]) < 0.2);
+        assert_eq!(weight([7.0; 40]), 1.0);
+        let waits = |number: u32| if number.is_multiple_of(12) { 30.0 } else { 7.0 };
+        assert!(weight((0..120).map(waits)) > 0.7);
+    }
+
+    #[test]
+    fn stays_of_one_step_tell_nothing() {
+        assert_eq!(weight([1.0; 100]), 0.0);
+    }
+}

@@ -1,0 +1,20 @@
+//! How often cells change: the map with its change statistics, and the estimators of rates.
+
+mod cell_map;
+mod estimators;
+mod exposure;
+mod gaps;
+mod reading_times;
+mod statistics;
+mod transition_kernel;
+
+pub use cell_map::CellMap;
+pub use estimators::{
+    ChoGarciaMolina, Estimator, EstimatorChoice, Imac, Paper, PaperAll, TwoState, TwoStateGaps,
+};
+pub use exposure::Exposure;
+pub(crate) use gaps::Belief;
+pub use gaps::{GapBin, GapEvidence, GapHistogram, GapModel, GapWeights};
+pub use reading_times::ReadingIndex;
+pub use statistics::{CellStatistics, GapWorth};
+pub use transition_kernel::{Step, TransitionRates};

@@ -1,0 +1,46 @@
+//! The times of all readings.
+
+/// A reading by its number. Number 0 stands for "never", and its time, 0, is when a cell that was
+/// never observed counts as last seen. Number 1 stands for the prior map, also at time 0; no cell counts
+/// as last seen in reading 1, so that no first reading follows without a gap.
+pub type ReadingIndex = u32;
+pub(super) const NEVER: ReadingIndex = 0;
+pub(super) const PRIOR: ReadingIndex = 1;
+
+/// The time of every reading, by [`ReadingIndex`].
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+pub(super) struct ReadingTimes(Vec<f64>);
+
+impl Default for ReadingTimes {
+    fn default() -> Self {
+        Self(vec![0.0, 0.0])
+    }
+}
+
+impl ReadingTimes {
+    /// Starts the next reading.
+    pub(super) fn push(&mut self, time: f64) {
+        self.0.push(time);
+    }
+
+    /// The time of a reading.
+    #[inline]
+    pub(super) fn at(&self, reading: ReadingIndex) -> f64 {
+        self.0[reading as usize]
+    }
+
+    /// The last reading.
+    #[inline]
+    pub(super) fn last(&self) -> ReadingIndex {
+        (self.0.len() - 1) as ReadingIndex
+    }
+
+    /// The mean time from one reading to the next, up to `until`; 0 before the second.
+    pub(super) fn period(&self, until: ReadingIndex) -> f64 {
+        let first = PRIOR + 1;
+        if until <= first {
+            return 0.0;
+        }
+        (self.at(until) - self.at(first)) / f64::from(until - first)
+    }
+}

@@ -1,0 +1,59 @@
+/// What was observed of one cell (paper, section 3). Times are in the unit of the readings: seconds,
+/// or steps in a grid world.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+pub struct CellStatistics {
+    /// The time of the first observation, t_init.
+    pub first_seen: f64,
+    /// The time of the last observation, t_last.
+    pub last_seen: f64,
+    /// The mean time from one reading to the next, whichever cells they observed, up to the last observation of
+    /// the cell; 0 before the second reading.
+    pub period: f64,
+    /// The time between these two in which the cell was not in view, t_not obs. A cell is in view
+    /// between two consecutive readings that both observed the cell.
+    pub unobserved: f64,
+    /// The time in view while the cell was free.
+    pub watched_free: f64,
+    /// The time in view while the cell was blocked.
+    pub watched_blocked: f64,
+    /// Changes from free to blocked in view, n_block.
+    pub block_events: u32,
+    /// Changes from blocked to free in view, n_free.
+    pub free_events: u32,
+    /// Changes from free to blocked that were found at the end of a gap in the view.
+    pub block_events_after_gap: u32,
+    /// Changes from blocked to free that were found at the end of a gap in the view.
+    pub free_events_after_gap: u32,
+    /// Gaps in the view that began while the cell was free.
+    pub gaps_from_free: u32,
+    /// Gaps in the view that began while the cell was blocked.
+    pub gaps_from_blocked: u32,
+    /// The information in the gaps, if the estimator has a [model of gaps](crate::GapModel).
+    pub gap_worth: GapWorth,
+}
+
+/// The information in the gaps of a cell, as the observation in view that would tell the same. All 0 where the
+/// estimator has no model of gaps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+pub struct GapWorth {
+    /// Time in view while free.
+    pub watched_free: f64,
+    /// Time in view while blocked.
+    pub watched_blocked: f64,
+    /// Changes from free to blocked. Negative where the gaps indicate a lower rate than the rest.
+    pub block_events: f64,
+    /// Changes from blocked to free, likewise.
+    pub free_events: f64,
+}
+
+impl CellStatistics {
+    /// The time in view: t_last − t_not obs − t_init.
+    pub fn observed(&self) -> f64 {
+        self.last_seen - self.first_seen - self.unobserved
+    }
+
+    /// All changes of the cell, in view or not.
+    pub fn events(&self) -> u32 {
+        self.block_events + self.free_events + self.block_events_after_gap + self.free_events_after_gap
+    }
+}

@@ -1,0 +1,59 @@
+//! The textbook occupancy grid (`naive`), for comparison: every beam adds evidence to every
+//! cell it crosses, and a cell flips at even odds. Cells on a wall that grazing beams cross are
+//! hit and missed in turn, and flicker: the wall noise of figure 5 of the paper.
+
+use super::OccupancyModel;
+use super::footprint::cells_along;
+use super::inverse_sensor_model::{HIT_LOG_ODDS, MISS_LOG_ODDS};
+use super::projection::{BeamReturn, ProjectedScan};
+use crate::change::CellMap;
+use interfaces::CellState;
+
+/// The bounds of the sum of log-odds.
+const BOUNDS: (f32, f32) = (-2.0, 3.5);
+
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+pub(super) struct LogOddsGrid {
+    log_odds: Vec<f32>,
+}
+
+impl LogOddsGrid {
+    pub(super) fn new(cells: &CellMap) -> Self {
+        let start = |state: &CellState| match state {
+            CellState::Unknown => 0.0,
+            CellState::Free => BOUNDS.0,
+            CellState::Blocked => BOUNDS.1,
+        };
+        Self { log_odds: cells.states().cells().iter().map(start).collect() }
+    }
+
+    fn add(&mut self, index: usize, evidence: f32, cells: &mut CellMap) {
+        let was_in_view = cells.is_in_view(index);
+        let log_odds = &mut self.log_odds[index];
+        *log_odds = (*log_odds + evidence).clamp(BOUNDS.0, BOUNDS.1);
+        let state = if *log_odds > 0.0 { CellState::Blocked } else { CellState::Free };
+        if cells.state(index) == state {
+            cells.observe(index);
+        } else {
+            cells.set_state(index, state, cells.reading(), was_in_view);
+        }
+    }
+}
+
+impl OccupancyModel for LogOddsGrid {
+    fn update(&mut self, scan: &ProjectedScan, cells: &mut CellMap) {
+        let frame = *cells.frame();
+        for beam in 0..scan.len() {
+            let end_m = match scan.returns[beam] {
+                BeamReturn::Nothing => continue,
+                BeamReturn::Hit(range_m) | BeamReturn::Clear(range_m) => range_m,
+            };
+            let end = scan.point(beam, end_m);
+            let hit = matches!(scan.returns[beam], BeamReturn::Hit(_)).then(|| frame.cell_at(&end));
+            let hit = hit.and_then(|cell| frame.index(cell));
+            cells_along(&frame, &scan.origin, &end, |index| {
+                self.add(index, if hit == Some(index) { HIT_LOG_ODDS } else { MISS_LOG_ODDS }, cells);
+            });
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Occupancy: from scans to the states of cells.
+//!
+//! Steps: [`projection`] of a scan into the map, segmentation of its hits into surfaces, the footprint of the cells
+//! that beams passed, the [`inverse_sensor_model`] that turns beams into evidence about cells, and an
+//! [`OccupancyModel`] that accumulates evidence until a cell changes its state.
+//!
+//! To add a model: write a file with an [`OccupancyModel`], and add a line to [`Named::built_in`] below. A model in a
+//! crate of its own goes into [`MapperSettings::occupancy`] with [`OccupancyChoice::new`].
+
+mod footprint;
+mod inverse_sensor_model;
+mod log_odds_grid;
+mod projection;
+mod segmentation;
+mod surface_grid;
+
+use crate::MapperSettings;
+use crate::change::CellMap;
+use crate::choice::{Choice, Named};
+use interfaces::Cell;
+use log_odds_grid::LogOddsGrid;
+pub(crate) use projection::FARTHEST_M;
+pub use projection::{BeamReturn, ProjectedScan};
+use std::fmt;
+use std::sync::Arc;
+use surface_grid::SurfaceGrid;
+pub use surface_grid::SurfaceGridSettings;
+
+/// Accumulates evidence about the cells of one map, and decides when a cell changes its state.
+pub trait OccupancyModel: CloneModel + fmt::Debug + Send + Sync {
+    /// Learns from a laser scan: writes the observed cells and the changed states to `cells`.
+    fn update(&mut self, scan: &ProjectedScan, cells: &mut CellMap);
+
+    /// Learns from the states of cells, as a sensor without error observes them; true means blocked. By default the
+    /// states go into the map as they are.
+    fn update_cells(&mut self, states: &[(Cell, bool)], cells: &mut CellMap) {
+        cells.observe_states(states);
+    }
+}
+
+/// Clones a boxed model; implemented for every model that is `Clone`.
+pub trait CloneModel {
+    /// A copy in a box.
+    fn clone_box(&self) -> Box<dyn OccupancyModel>;
+}
+
+impl<M: OccupancyModel + Clone + 'static> CloneModel for M {
+    fn clone_box(&self) -> Box<dyn OccupancyModel> {
+        Box::new(self.clone())
+    }
+}
+
+impl Clone for Box<dyn OccupancyModel> {
+    fn clone(&self) -> Self {
+        (**self).clone_box()
+    }
+}
+
+type Build = dyn Fn(&MapperSettings, &mut CellMap) -> Box<dyn OccupancyModel> + Send + Sync;
+
+/// A kind of occupancy model, by its name.
+pub struct OccupancyKind {
+    name: &'static str,
+    build: Box<Build>,
+}
+
+/// A choice of an occupancy model. The default is `steady`.
+pub type OccupancyChoice = Choice<OccupancyKind>;
+
+impl Named for OccupancyKind {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn built_in() -> Vec<Arc<Self>> {
+        vec![
+            kind("steady", |settings, cells| Box::new(SurfaceGrid::new(settings.steady.clone(), cells))),
+            kind("naive", |_, cells| Box::new(LogOddsGrid::new(cells))),
+        ]
+    }
+}
+
+fn kind(
+    name: &'static str,
+    build: impl Fn(&MapperSettings, &mut CellMap) -> Box<dyn OccupancyModel> + Send + Sync + 'static,
+) -> Arc<OccupancyKind> {
+    Arc::new(OccupancyKind { name, build: Box::new(build) })
+}
+
+impl fmt::Debug for OccupancyKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl OccupancyChoice {
+    /// A model of the user. `build` makes the model for a map that holds the prior.
+    pub fn new(
+        name: &'static str,
+        build: impl Fn(&MapperSettings, &mut CellMap) -> Box<dyn OccupancyModel> + Send + Sync + 'static,
+    ) -> Self {
+        Self(kind(name, build))
+    }
+
+    /// `steady`: surfaces are remembered to a fraction of a cell, and a cell is cleared only by beams that
+    /// pass through its surface, so that static walls never change.
+    pub fn steady() -> Self {
+        Self::default()
+    }
+
+    /// `naive`: every beam counts on every cell that the beam crosses, and a cell flips at even odds. Walls flicker,
+    /// as in figure 5 of the paper.
+    pub fn naive() -> Self {
+        Self(OccupancyKind::built_in().swap_remove(1))
+    }
+
+    pub(crate) fn build(&self, settings: &MapperSettings, cells: &mut CellMap) -> Box<dyn OccupancyModel> {
+        (self.0.build)(settings, cells)
+    }
+}
+
+impl Default for OccupancyChoice {
+    fn default() -> Self {
+        Self(OccupancyKind::built_in().swap_remove(0))
+    }
+}

@@ -1,0 +1,129 @@
+//! Scan segmentation: which neighboring beams of one scan ended on the same surface, and the normals of the surfaces.
+
+use super::projection::ProjectedScan;
+use nalgebra::{Point2, Vector2};
+
+/// The direction of a surface is that of chords about this long, m, so that range noise
+/// does not turn the direction.
+const CHORD_M: f64 = 0.075;
+/// A surface whose two sides meet at more than 25° turns a corner.
+const CORNER_COS: f64 = 0.9;
+
+/// The end points of one scan, joined to surfaces.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Segmentation {
+    /// Per beam the end point of its hit, m.
+    pub(super) ends: Vec<Option<Point2<f64>>>,
+    /// Per beam whether the next beam hit the same surface.
+    pub(super) joined: Vec<bool>,
+    /// Per beam the first and the last beam of its surface. A surface behind the seam of a full
+    /// turn counts as two.
+    surfaces: Vec<(usize, usize)>,
+}
+
+/// A beam to either side on the same surface, and the chords to their end points, m.
+struct Sides {
+    before: usize,
+    after: usize,
+    back: Vector2<f64>,
+    ahead: Vector2<f64>,
+}
+
+impl Sides {
+    fn turns_corner(&self) -> bool {
+        let along = self.ahead.dot(&self.back);
+        along > 0.0
+            || along * along < CORNER_COS * CORNER_COS * self.ahead.norm_squared() * self.back.norm_squared()
+    }
+}
+
+impl Segmentation {
+    /// Finds the end points, and the neighbors on one surface: those nearer to each other than `join_m`.
+    pub(super) fn segment(&mut self, scan: &ProjectedScan, join_m: f64) {
+        self.ends.clear();
+        self.ends.extend((0..scan.len()).map(|beam| scan.hit(beam)));
+        self.joined.clear();
+        self.joined.extend((0..scan.len()).map(|beam| {
+            let next = scan.next(beam).and_then(|next| self.ends[next]);
+            matches!((self.ends[beam], next), (Some(a), Some(b)) if (b - a).norm_squared() < join_m * join_m)
+        }));
+        self.surfaces.clear();
+        let mut first = 0;
+        for last in 0..scan.len() {
+            if !self.joined[last] || last + 1 == scan.len() {
+                self.surfaces.resize(last + 1, (first, last));
+                first = last + 1;
+            }
+        }
+    }
+
+    /// Whether a hit is the first or the last of its surface, where the normal is uncertain.
+    pub(super) fn is_edge(&self, beam: usize) -> bool {
+        let (first, last) = self.surfaces[beam];
+        beam == first || beam == last
+    }
+
+    /// At an edge, where a neighboring beam passes the hit: the direction along the surface, away from
+    /// the edge.
+    pub(super) fn inward(
+        &self,
+        beam: usize,
+        end: &Point2<f64>,
+        scan: &ProjectedScan,
+    ) -> Option<Vector2<f64>> {
+        let (first, last) = self.surfaces[beam];
+        let passes = |neighbour: usize| scan.returns[neighbour].clear_m() > scan.returns[beam].clear_m();
+        let toward = |neighbour: usize| (self.ends[neighbour]? - end).try_normalize(1e-6);
+        if first == last {
+            None
+        } else if beam == first && beam > 0 && passes(beam - 1) {
+            toward(beam + 1)
+        } else if beam == last && beam + 1 < scan.len() && passes(beam + 1) {
+            toward(beam - 1)
+        } else {
+            None
+        }
+    }
+
+    /// The neighbors that give the direction of the surface at a hit.
+    fn sides(&self, beam: usize, end: &Point2<f64>, scan: &ProjectedScan) -> Sides {
+        let range_m = scan.returns[beam].clear_m();
+        let step = 1 + ((CHORD_M / (range_m * scan.spacing_rad)) as u32 as usize).min(scan.len());
+        let (first, last) = self.surfaces[beam];
+        let (before, after) = (beam.saturating_sub(step).max(first), (beam + step).min(last));
+        let chord = |to: usize| self.ends[to].map_or_else(Vector2::zeros, |to| to - end);
+        Sides { before, after, back: chord(before), ahead: chord(after) }
+    }
+
+    /// The normal of the surface at a hit, towards the sensor. Where the surface turns a corner,
+    /// the normal of the straighter side: a normal across the corner would point out of the body.
+    pub(super) fn normal(&self, beam: usize, end: &Point2<f64>, scan: &ProjectedScan) -> Vector2<f64> {
+        let sides = self.sides(beam, end, scan);
+        let Sides { before, after, back, ahead } = sides;
+        let tangent = if !sides.turns_corner() {
+            ahead - back
+        } else if self.bend_m(beam, after) <= self.bend_m(beam, before) {
+            ahead
+        } else {
+            -back
+        };
+        let length_m = tangent.norm();
+        if length_m < 1e-6 {
+            return -scan.directions[beam];
+        }
+        let normal = Vector2::new(-tangent.y, tangent.x) / length_m;
+        if normal.dot(&scan.directions[beam]) > 0.0 { -normal } else { normal }
+    }
+
+    /// The distance of the surface from the chord between two of its hits, m; ∞ without a hit
+    /// between them.
+    fn bend_m(&self, from: usize, to: usize) -> f64 {
+        let middle = from.midpoint(to);
+        match (self.ends[from], self.ends[middle], self.ends[to]) {
+            (Some(a), Some(b), Some(c)) if middle != from && middle != to => {
+                (b - a).perp(&(c - a)).abs() / (c - a).norm()
+            }
+            _ => f64::INFINITY,
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Hits: the evidence that a cell is blocked.
+
+use super::{SURFACE_MEMORY, Surface, SurfaceGrid, SurfaceGridSettings};
+use crate::change::CellMap;
+use crate::occupancy::footprint::cells_along;
+use crate::occupancy::inverse_sensor_model::{NOISE_STDS, hit_point};
+use crate::occupancy::projection::ProjectedScan;
+use interfaces::{Cell, CellState};
+use nalgebra::{Point2, Vector2};
+
+/// A hit farther than this from every standing surface, m, is in the open: a thing came.
+const OPEN_M: f64 = 0.1;
+
+impl SurfaceGrid {
+    /// Counts the hit of one beam (rules 1 and 3).
+    pub(super) fn hit(&mut self, beam: usize, scan: &ProjectedScan, cells: &mut CellMap) {
+        let Some(end) = self.segmentation.ends[beam] else { return };
+        let frame = *cells.frame();
+        let index_at = |point: Point2<f64>| frame.index(frame.cell_at(&point));
+        // Most beams end on known walls. Where the beam ends in a cell whose surface has
+        // settled, or right before the cell, the normal has nothing to add.
+        let ahead = end + scan.directions[beam] * (self.settings.surface_depth_m / 4.0);
+        if let Some(index) = index_at(ahead).filter(|&index| self.has_settled(index, cells)) {
+            self.support(index, None, cells);
+            if self.segmentation.joined[beam] {
+                self.support_between(beam, ahead, scan, cells);
+            }
+            return;
+        }
+        let point = hit_point(beam, &end, self.settings.surface_depth_m, &self.segmentation, scan);
+        // A surface in a cell is an observation of the cell, even where the hit counts for the cell behind: a cell
+        // that a thing moves into stays in view.
+        if let Some(index) = index_at(end).filter(|&index| cells.state(index) != CellState::Unknown) {
+            cells.observe(index);
+        }
+        let Some(index) = index_at(point) else { return };
+        if cells.state(index) == CellState::Blocked {
+            self.support(index, Some(point), cells);
+        } else {
+            self.hit_open(index, &end, point, cells);
+        }
+        let has_come = self.surfaces[index].came && self.surfaces[index].hits < self.settings.hits_to_stand;
+        if has_come && !self.segmentation.is_edge(beam) {
+            self.fill_body(&end, &point, cells);
+        }
+        if self.segmentation.joined[beam] {
+            self.support_between(beam, point, scan, cells);
+        }
+    }
+
+    /// Whether a cell holds a standing surface that further hits would hardly move.
+    fn has_settled(&self, index: usize, cells: &CellMap) -> bool {
+        let settled = self.settings.hits_to_stand.max(2 * SURFACE_MEMORY);
+        self.surfaces[index].hits >= settled && cells.state(index) == CellState::Blocked
+    }
+
+    /// Counts a hit for a cell that is not blocked.
+    fn hit_open(&mut self, index: usize, end: &Point2<f64>, point: Point2<f64>, cells: &mut CellMap) {
+        let SurfaceGridSettings { hits_to_stand, hits_to_block, hits_to_block_in_open, .. } = self.settings;
+        let noise_m = NOISE_STDS * self.settings.range_noise_std_m;
+        let is_free = cells.state(index) == CellState::Free;
+        let frame = *cells.frame();
+        let is_inside = |point: Point2<f64>| frame.index(frame.cell_at(&point)) == Some(index);
+        let near = self.surface_near(end, noise_m, if is_free { hits_to_stand } else { 0 }, cells);
+        if let Some(near) = near {
+            self.support(near, None, cells);
+        }
+        let hits_to_block = match near {
+            // A free cell beside a standing surface stays free. An unknown cell can be part of the
+            // surface, but that takes more hits.
+            Some(_) if is_free => return,
+            Some(_) => hits_to_stand,
+            // In the open one hit is enough, unless noise puts the hit into this cell.
+            None if is_free
+                && self.surface_near(end, OPEN_M, hits_to_stand, cells).is_none()
+                && is_inside(end + (point - end).normalize() * noise_m) =>
+            {
+                u16::from(hits_to_block_in_open)
+            }
+            None => u16::from(hits_to_block),
+        };
+        self.add_hit(index, point, hits_to_block, cells);
+    }
+
+    /// The nearest of the blocked cells with `min_hits` within `reach_m` along both axes:
+    /// within the noise, the surface that the hit comes from (rule 3).
+    fn surface_near(&self, end: &Point2<f64>, reach_m: f64, min_hits: u16, cells: &CellMap) -> Option<usize> {
+        let frame = cells.frame();
+        let reach = Vector2::repeat(reach_m);
+        let (low, high) = (frame.cell_at(&(end - reach)), frame.cell_at(&(end + reach)));
+        let near = (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| Cell::new(x, y)));
+        near.filter_map(|cell| {
+            let index = frame.index(cell)?;
+            let stands = cells.state(index) == CellState::Blocked && self.surfaces[index].hits >= min_hits;
+            stands.then(|| ((frame.center(cell) - end).norm_squared(), index))
+        })
+        .min_by(|(a, _), (b, _)| a.total_cmp(b))
+        .map(|(_, index)| index)
+    }
+
+    /// A thing that came into the open has a body (rule 4): the free cells behind a hit on the thing are blocked, as
+    /// deep as things are thick. These cells are hidden now, and no beam can show their state.
+    fn fill_body(&mut self, end: &Point2<f64>, point: &Point2<f64>, cells: &mut CellMap) {
+        let frame = *cells.frame();
+        let Some(inward) = (point - end).try_normalize(1e-9) else { return };
+        let layers = (self.settings.body_m / frame.resolution_m() + 1e-6) as usize;
+        for layer in 1..=layers {
+            let inside = point + inward * (layer as f64 * frame.resolution_m());
+            let Some(index) = frame.index(frame.cell_at(&inside)) else { return };
+            if cells.state(index) == CellState::Free && !cells.is_seen_now(index) {
+                let in_view = cells.is_in_view(index);
+                self.surfaces[index] = Surface {
+                    hit_at: cells.reading(),
+                    evidence: self.settings.misses_to_free_fresh as i8,
+                    ..Surface::default()
+                };
+                self.remember(index, inside, cells);
+                cells.set_state(index, CellState::Blocked, cells.reading(), in_view);
+            }
+        }
+    }
+
+    /// A blocked cell was hit, or lies on a surface that was hit.
+    fn support(&mut self, index: usize, point: Option<Point2<f64>>, cells: &mut CellMap) {
+        let now = cells.reading();
+        let surface = &mut self.surfaces[index];
+        if surface.hit_at != now {
+            surface.hit_at = now;
+            surface.hits = surface.hits.saturating_add(1);
+            surface.evidence = self.settings.misses_to_free_after(surface.hits);
+            cells.observe(index);
+        }
+        if let Some(point) = point {
+            self.remember(index, point, cells);
+        }
+    }
+
+    /// The cells between this hit and the next on the same surface lie on the surface too: the blocked ones
+    /// stand, and no beam passes any of them.
+    fn support_between(&mut self, beam: usize, from: Point2<f64>, scan: &ProjectedScan, cells: &mut CellMap) {
+        let frame = *cells.frame();
+        let ends = &self.segmentation.ends;
+        let (Some(end), Some(next)) = (ends[beam], scan.next(beam)) else { return };
+        let Some(next) = ends[next] else { return };
+        let to = from + (next - end);
+        let (first, last) = (frame.cell_at(&from), frame.cell_at(&to));
+        if first.x.abs_diff(last.x) + first.y.abs_diff(last.y) <= 1 {
+            return; // the two hits cover the cells between them
+        }
+        cells_along(&frame, &from, &to, |index| match cells.state(index) {
+            CellState::Blocked => self.support(index, None, cells),
+            CellState::Unknown => self.surfaces[index].surface_at = cells.reading(),
+            CellState::Free => cells.observe(index),
+        });
+    }
+
+    /// A hit in a cell that is not blocked; `hits_to_block` hits block the cell.
+    fn add_hit(&mut self, index: usize, point: Point2<f64>, hits_to_block: u16, cells: &mut CellMap) {
+        let now = cells.reading();
+        if self.surfaces[index].hit_at != now {
+            let in_view = cells.is_in_view(index);
+            let surface = &mut self.surfaces[index];
+            surface.hit_at = now;
+            if surface.evidence <= 0 {
+                surface.evidence = 0;
+                (surface.doubted_since, surface.doubted_in_view) = (now, in_view);
+                if cells.state(index) == CellState::Free {
+                    surface.hits = 0; // in an unknown cell hits add up, with or without misses between
+                }
+            }
+            surface.evidence += 1;
+            surface.hits = surface.hits.saturating_add(1);
+            cells.set_settled(index, false);
+            if cells.state(index) == CellState::Free {
+                cells.observe(index);
+            }
+        }
+        self.remember(index, point, cells);
+        let surface = &mut self.surfaces[index];
+        if surface.hits >= hits_to_block {
+            surface.evidence = self.settings.misses_to_free_fresh as i8;
+            if cells.is_unconfirmed(index, self.settings.confirm_s) {
+                cells.correct(index, CellState::Blocked);
+            } else {
+                surface.came = cells.state(index) == CellState::Free;
+                cells.set_state(index, CellState::Blocked, surface.doubted_since, surface.doubted_in_view);
+            }
+        }
+    }
+
+    /// Moves the remembered surface point towards a hit.
+    fn remember(&mut self, index: usize, point: Point2<f64>, cells: &CellMap) {
+        let surface = &mut self.surfaces[index];
+        let at = point - cells.frame().origin();
+        let weight = 1.0 / f32::from(surface.hits.clamp(1, SURFACE_MEMORY));
+        for (mean, at) in surface.point_m.iter_mut().zip([at.x as f32, at.y as f32]) {
+            *mean += (at - *mean) * weight;
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Misses: the evidence that a cell is free.
+
+use super::{Surface, SurfaceGrid};
+use crate::change::CellMap;
+use crate::occupancy::footprint::beyond_fan;
+use crate::occupancy::inverse_sensor_model::passes;
+use crate::occupancy::projection::ProjectedScan;
+use interfaces::{CellState, GridFrame};
+use nalgebra::Vector2;
+
+impl SurfaceGrid {
+    /// Counts the cells that the beams passed (rule 2).
+    pub(super) fn misses(&mut self, scan: &ProjectedScan, cells: &mut CellMap) {
+        let frame = *cells.frame();
+        let joined = &self.segmentation.joined;
+        let mut unsettled = std::mem::take(&mut self.unsettled);
+        unsettled.clear();
+        self.footprint.fill(
+            scan,
+            &frame,
+            self.settings.max_gap_m,
+            |beam| joined[beam],
+            |start, end| cells.observe_run(start, end, &mut unsettled),
+        );
+        beyond_fan(scan, &frame, self.settings.max_gap_m, |index| {
+            cells.observe_run(index, index + 1, &mut unsettled);
+        });
+        for &index in &unsettled {
+            self.miss(index as usize, scan, cells);
+        }
+        self.unsettled = unsettled;
+    }
+
+    fn miss(&mut self, index: usize, scan: &ProjectedScan, cells: &mut CellMap) {
+        let now = cells.reading();
+        if self.surfaces[index].hit_at == now {
+            return; // a hit beats a miss
+        }
+        match cells.state(index) {
+            CellState::Free => {
+                cells.observe(index);
+                let surface = &mut self.surfaces[index];
+                surface.evidence = (surface.evidence - 1).max(0);
+                surface.hits = surface.evidence as u16;
+                cells.set_settled(index, surface.evidence == 0);
+            }
+            CellState::Unknown if self.surfaces[index].surface_at != now => {
+                let misses = if self.is_beside_surface(index, cells.frame()) {
+                    self.settings.misses_to_discover_beside
+                } else {
+                    self.settings.misses_to_discover
+                };
+                let surface = &mut self.surfaces[index];
+                surface.evidence = surface.evidence.min(0) - 1;
+                if surface.evidence <= -(misses as i8) {
+                    surface.evidence = 0;
+                    cells.set_settled(index, true);
+                    cells.set_state(index, CellState::Free, now, false);
+                }
+            }
+            CellState::Blocked if self.is_passed(index, scan, cells.frame()) => {
+                let in_view = cells.is_in_view(index);
+                cells.observe(index);
+                let surface = &mut self.surfaces[index];
+                if surface.doubted_since <= surface.hit_at {
+                    (surface.doubted_since, surface.doubted_in_view) = (now, in_view);
+                }
+                surface.evidence -= 1;
+                if surface.evidence <= 0 {
+                    let Surface { doubted_since, doubted_in_view, .. } = std::mem::take(surface);
+                    cells.set_settled(index, true);
+                    if cells.is_unconfirmed(index, self.settings.confirm_s) {
+                        cells.correct(index, CellState::Free);
+                    } else {
+                        cells.set_state(index, CellState::Free, doubted_since, doubted_in_view);
+                    }
+                }
+            }
+            CellState::Unknown | CellState::Blocked => {}
+        }
+    }
+
+    fn is_beside_surface(&self, index: usize, frame: &GridFrame) -> bool {
+        let neighbours = frame.cell(index).neighbours8();
+        neighbours.into_iter().filter_map(|near| frame.index(near)).any(|near| self.surfaces[near].hits > 0)
+    }
+
+    /// Whether the scan passes through the surface in a blocked cell.
+    fn is_passed(&self, index: usize, scan: &ProjectedScan, frame: &GridFrame) -> bool {
+        let [x, y] = self.surfaces[index].point_m;
+        let surface = frame.origin() + Vector2::new(f64::from(x), f64::from(y));
+        let depth_m = self.settings.surface_depth_m;
+        let margin_m = depth_m.max(2.0 * self.settings.range_noise_std_m);
+        passes(scan, &surface, margin_m, self.settings.max_gap_m, depth_m)
+    }
+}

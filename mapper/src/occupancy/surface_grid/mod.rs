@@ -1,0 +1,106 @@
+//! The default occupancy model (`steady`): occupancy without flicker.
+//!
+//! Static walls seem to change because of grazing beams: a grazing beam crosses the cells of a
+//! surface that steeper beams hit, many scans in a row. Counts of hits and misses cannot distinguish that
+//! from a thing that went. Four rules can, because they remember *where in the cell* the surface
+//! is:
+//!
+//! 1. **A hit belongs behind the surface.** Surfaces lie on the borders of cells; the hit counts
+//!    for the cell a little behind the surface, along its normal.
+//! 2. **A cell is cleared through its surface.** Each blocked cell keeps the mean of the points
+//!    that were hit. A scan contradicts the cell only when *both* beams that enclose this point pass
+//!    beyond the point. The point lies inside the body, so next to a standing body one of the two beams
+//!    always ends before the point, at any angle.
+//! 3. **Noise belongs to the surface it comes from.** A hit within four standard deviations of a
+//!    standing surface is a hit on that surface, not a new thing beside it.
+//! 4. **A thing that comes has a body.** The cells that the body hides at once are blocked too, a little way behind
+//!    the surface.
+//!
+//! A hit beats a miss: a cell that was hit takes no miss from the same scan. And a first observation
+//! from afar can be wrong: what is overturned before it was confirmed is corrected, not a change.
+
+mod hits;
+mod misses;
+mod settings;
+
+use super::OccupancyModel;
+use super::footprint::Footprint;
+use super::projection::ProjectedScan;
+use super::segmentation::Segmentation;
+use crate::change::{CellMap, ReadingIndex};
+use interfaces::CellState;
+pub use settings::SurfaceGridSettings;
+
+/// The mean of the points hit forgets at this pace, in hits.
+const SURFACE_MEMORY: u16 = 32;
+
+/// The hits in a cell.
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+struct Surface {
+    /// The mean of the points that were hit, relative to the lower left corner of the grid, m.
+    point_m: [f32; 2],
+    /// Scans with a hit in this cell since the cell was last free.
+    hits: u16,
+    /// Of an unknown or free cell: hits (above 0) or misses (below) in a row. Of a blocked cell:
+    /// the misses left until the cell is free.
+    evidence: i8,
+    /// The reading of the last hit.
+    hit_at: ReadingIndex,
+    /// The last reading in which a surface between two hits went through the cell.
+    surface_at: ReadingIndex,
+    /// Whether the cell was free before: the surface is that of a thing that came.
+    came: bool,
+    /// The start of the evidence against the present state, and whether the cell was in view then.
+    doubted_since: ReadingIndex,
+    doubted_in_view: bool,
+}
+
+/// See the head of this file.
+#[derive(Clone, Debug)]
+pub(super) struct SurfaceGrid {
+    settings: SurfaceGridSettings,
+    surfaces: Vec<Surface>,
+    footprint: Footprint,
+    segmentation: Segmentation,
+    /// Scratch memory: the cells of a scan that need a closer look.
+    unsettled: Vec<u32>,
+}
+
+impl SurfaceGrid {
+    pub(super) fn new(settings: SurfaceGridSettings, cells: &mut CellMap) -> Self {
+        for index in 0..cells.frame().len() {
+            cells.set_settled(index, cells.state(index) == CellState::Free);
+        }
+        let frame = cells.frame();
+        let surface = |(index, &state): (usize, &CellState)| match state {
+            CellState::Blocked => {
+                let center = frame.center(frame.cell(index)) - frame.origin();
+                Surface {
+                    point_m: [center.x as f32, center.y as f32],
+                    hits: settings.hits_to_stand,
+                    evidence: settings.misses_to_free as i8,
+                    ..Surface::default()
+                }
+            }
+            _ => Surface::default(),
+        };
+        let states = cells.states().cells();
+        Self {
+            surfaces: states.iter().enumerate().map(surface).collect(),
+            settings,
+            footprint: Footprint::default(),
+            segmentation: Segmentation::default(),
+            unsettled: Vec::new(),
+        }
+    }
+}
+
+impl OccupancyModel for SurfaceGrid {
+    fn update(&mut self, scan: &ProjectedScan, cells: &mut CellMap) {
+        self.segmentation.segment(scan, self.settings.join_m);
+        for beam in 0..scan.len() {
+            self.hit(beam, scan, cells);
+        }
+        self.misses(scan, cells);
+    }
+}

@@ -1,0 +1,101 @@
+use interfaces::SettingsError;
+
+/// Settings of the occupancy model `steady`.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SurfaceGridSettings {
+    /// The standard deviation of the range noise of the laser, m. Surfaces are distinct from four standard deviations
+    /// on.
+    pub range_noise_std_m: f64,
+    /// A hit counts for the cell this far behind the surface, along its normal, m: a surface on
+    /// the border of two cells belongs to the solid one.
+    pub surface_depth_m: f64,
+    /// The smallest thickness of things that come, m: to this depth behind a hit on them cells are blocked. 0
+    /// marks surfaces only.
+    pub body_m: f64,
+    /// Hits nearer than this to each other, m, are one surface: no beam passes the cells on the surface.
+    pub join_m: f64,
+    /// Where neighboring beams are farther apart than this, m, the space between them counts as not
+    /// observed.
+    pub max_gap_m: f64,
+    /// Scans with a hit until a free or unknown cell is blocked.
+    pub hits_to_block: u8,
+    /// The same in the open, away from every standing surface. One hit is enough for a laser without
+    /// spurious returns, and sees things that pass.
+    pub hits_to_block_in_open: u8,
+    /// Scans that pass an unknown cell until the cell is free.
+    pub misses_to_discover: u8,
+    /// The same for an unknown cell beside a surface, which can still be part of the surface.
+    pub misses_to_discover_beside: u8,
+    /// Scans that pass a blocked cell until the cell is free, when the cell was just blocked.
+    pub misses_to_free_fresh: u8,
+    /// The same for a cell that was hit often.
+    pub misses_to_free: u8,
+    /// Hits after which a surface counts as standing: noise around a standing surface counts as the surface
+    /// itself, not as a new thing.
+    pub hits_to_stand: u16,
+    /// A first observation that is overturned after less than this time in view, s, was wrong: the state is
+    /// corrected, and that does not count as a change.
+    pub confirm_s: f64,
+}
+
+impl Default for SurfaceGridSettings {
+    fn default() -> Self {
+        Self {
+            range_noise_std_m: 0.01,
+            surface_depth_m: 0.02,
+            body_m: 0.2,
+            join_m: 1.0,
+            max_gap_m: 0.15,
+            hits_to_block: 2,
+            hits_to_block_in_open: 1,
+            misses_to_discover: 3,
+            misses_to_discover_beside: 20,
+            misses_to_free_fresh: 4,
+            misses_to_free: 8,
+            hits_to_stand: 20,
+            confirm_s: 2.0,
+        }
+    }
+}
+
+impl SurfaceGridSettings {
+    /// The misses in a row that free a blocked cell after this many hits.
+    pub(crate) fn misses_to_free_after(&self, hits: u16) -> i8 {
+        let fresh = u16::from(self.misses_to_free_fresh);
+        fresh.saturating_add(hits).min(u16::from(self.misses_to_free)) as i8
+    }
+
+    pub(crate) fn check(&self) -> Result<(), SettingsError> {
+        // Every hit searches as far as the noise reaches.
+        let ranges = [
+            ("steady.range_noise_std_m", self.range_noise_std_m, 0.0..=0.5, "from 0 to 0.5 m"),
+            ("steady.surface_depth_m", self.surface_depth_m, 0.0..=0.5, "from 0 to 0.5 m"),
+            ("steady.body_m", self.body_m, 0.0..=10.0, "from 0 to 10 m"),
+            ("steady.join_m", self.join_m, 0.0..=10.0, "from 0 to 10 m"),
+            ("steady.max_gap_m", self.max_gap_m, 0.0..=10.0, "from 0 to 10 m"),
+            ("steady.confirm_s", self.confirm_s, 0.0..=3600.0, "from 0 to 3600 s"),
+        ];
+        let count = |key, count: u8| (key, f64::from(count), 1.0..=100.0, "from 1 to 100");
+        let counts = [
+            count("steady.hits_to_block", self.hits_to_block),
+            count("steady.hits_to_block_in_open", self.hits_to_block_in_open),
+            count("steady.misses_to_discover", self.misses_to_discover),
+            count("steady.misses_to_discover_beside", self.misses_to_discover_beside),
+            count("steady.misses_to_free_fresh", self.misses_to_free_fresh),
+            count("steady.misses_to_free", self.misses_to_free),
+        ];
+        let order = (
+            "steady.misses_to_free_fresh",
+            f64::from(self.misses_to_free_fresh),
+            1.0..=f64::from(self.misses_to_free),
+            "at most steady.misses_to_free",
+        );
+        for (key, value, range, expected) in ranges.into_iter().chain(counts).chain([order]) {
+            if !range.contains(&value) {
+                return Err(SettingsError { part: "mapper", key, expected, found: value.to_string() });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,16 @@
+//! What a person sees of a run: the scene of a world, the layers of a map, pictures, a moving picture, and
+//! the Rerun recording.
+//!
+//! This is the only crate that knows Rerun. It reads the state of a run and changes nothing: no result
+//! depends on whether anything is shown. It does not know arguments, files of worlds, or how a run is made.
+
+#[cfg(test)]
+mod fake;
+pub mod layers;
+mod outline;
+pub mod pictures;
+pub mod recording;
+pub mod scene;
+pub mod show;
+pub mod trial;
+pub mod view;

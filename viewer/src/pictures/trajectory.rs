@@ -1,0 +1,59 @@
+//! The trajectories of the robots, as the paper's Figure 4.
+
+use super::panel::{Chart, Mark, Panel, pair};
+use super::{Pictures, ground};
+use crate::scene::Scene;
+use evaluation::drawing::{Area, ink, why};
+use evaluation::palette::{self, Rgb};
+use nalgebra::Point2;
+use plotters::prelude::*;
+
+/// Draws the scene, every trail with its start, and the goals.
+pub(super) fn draw(panel: &Panel, area: &Area, pictures: &Pictures) -> Result<(), String> {
+    let Pictures { scene, trails, goals, .. } = *pictures;
+    let (chart, legend) = panel.axes(area, &format!("Trajectories in {}", scene.title))?;
+    ground::draw(&chart, scene)?;
+    // The other robots' trails on top: the curious robot goes everywhere.
+    for is_driven in [true, false] {
+        for (robot, trail) in
+            scene.robots.iter().zip(trails).filter(|(robot, _)| robot.is_driven == is_driven)
+        {
+            line(panel, &chart, trail.points(), ground::robot_color(robot))?;
+        }
+    }
+    let plot = chart.plotting_area();
+    for goal in goals {
+        let cross = Cross::new(pair(goal), panel.px(3), panel.line(ink(palette::GOAL), 2));
+        plot.draw(&cross).map_err(why)?;
+    }
+    for (robot, trail) in scene.robots.iter().zip(trails) {
+        if let Some(first) = trail.points().first() {
+            let at = plot.map_coordinate(&pair(first));
+            panel.dot(&plot.use_screen_coord(), at, ground::robot_color(robot))?;
+        }
+    }
+    panel.frame(&chart)?;
+    panel.legend(&legend, &entries(scene, goals))
+}
+
+/// The entries of the legend.
+pub(super) fn entries(scene: &Scene, goals: &[Point2<f64>]) -> Vec<(Mark, String)> {
+    let robots =
+        scene.robots.iter().map(|robot| (Mark::Line(ground::robot_color(robot)), robot.name.clone()));
+    let mut entries: Vec<(Mark, String)> = robots.collect();
+    entries.push((Mark::Dot(palette::CURIOUS), "start".into()));
+    if !goals.is_empty() {
+        entries.push((Mark::Cross(palette::GOAL), format!("{} goals", goals.len())));
+    }
+    entries.extend(ground::entries(scene));
+    entries
+}
+
+/// Draws a line step by step: the library's thick lines break where a line turns back on itself.
+pub(super) fn line(panel: &Panel, chart: &Chart, points: &[Point2<f64>], color: Rgb) -> Result<(), String> {
+    let style = panel.line(ink(color), 3);
+    points.windows(2).try_for_each(|step| {
+        let step = PathElement::new(step.iter().map(pair).collect::<Vec<_>>(), style);
+        chart.plotting_area().draw(&step).map_err(why)
+    })
+}

@@ -1,0 +1,174 @@
+//! The Rerun recording of a run, in a file and in a live viewer.
+//!
+//! [`Recorder::log`] is called at every tick and decides what to log how often. The rows are sent every
+//! second, so that a killed run loses no more than one second.
+//!
+//! A new entity is a file in `tracks/` and a line in its list; for data that [`View`] does not have yet, also
+//! a field there and its source.
+
+mod file;
+mod layout;
+mod live;
+mod pace;
+mod path;
+mod rows;
+mod sinks;
+mod tracks;
+
+pub use live::{Live, LiveError};
+
+use crate::scene::Scene;
+use crate::view::View;
+use pace::Pace;
+use rerun::log::ChunkBatcherConfig;
+use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamError};
+use rows::{Now, Target};
+use sinks::Sinks;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use tracks::Track;
+
+/// The destinations of a recording: a file, viewers, or both.
+#[derive(Clone, Debug)]
+pub struct RecordingOptions {
+    /// The `.rrd` file to write; an older one is replaced.
+    pub file: Option<PathBuf>,
+    /// The viewers to show the run in while it goes on.
+    pub live: Vec<Live>,
+    /// The viewer's program, for [`Live::Spawn`].
+    pub viewer: String,
+}
+
+impl Default for RecordingOptions {
+    fn default() -> Self {
+        Self { file: None, live: Vec::new(), viewer: live::PROGRAM.into() }
+    }
+}
+
+/// Why a recording cannot be made, or cannot continue.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The file cannot be written.
+    #[error("cannot write the recording {}: {why}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The message of the operating system.
+        why: String,
+    },
+    /// No viewer can show the run, and there is no file.
+    #[error(transparent)]
+    Live(#[from] LiveError),
+    /// The SDK refused the data.
+    #[error("cannot record the run: {0}")]
+    Sdk(String),
+}
+
+/// The name of this program in the viewer, which keeps its settings under that name.
+const APPLICATION: &str = "curious";
+/// How long rows may wait before they are sent, in wall time.
+const FLUSH_FILE: Duration = Duration::from_secs(1);
+/// The same while a viewer watches.
+const FLUSH_LIVE: Duration = Duration::from_millis(50);
+
+impl From<RecordingStreamError> for RecordingError {
+    fn from(error: RecordingStreamError) -> Self {
+        Self::Sdk(error.to_string())
+    }
+}
+
+/// A recording in progress.
+pub struct Recorder {
+    stream: RecordingStream,
+    sinks: Sinks,
+    scene: Scene,
+    /// Made at the first view, which shows what there is to log.
+    tracks: Option<Vec<Box<dyn Track>>>,
+    flushed: Instant,
+    /// In the unit of the scene.
+    flushed_at: f64,
+    live_problem: Option<String>,
+}
+
+impl Recorder {
+    /// Opens the file and the viewers. A viewer that cannot be reached does not stop a recording with a file:
+    /// see [`Recorder::live_problem`].
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be written, or when there is no file and a viewer cannot be reached. Both are
+    /// known within two seconds, unless a viewer has to be started.
+    pub fn new(options: &RecordingOptions, scene: Scene) -> Result<Self, RecordingError> {
+        let (sinks, live_problem) = Sinks::open(options)?;
+        let (_, info, properties, ..) =
+            RecordingStreamBuilder::new(APPLICATION).recording_name(scene.title.clone()).into_args();
+        // Rows are sent in columns: there is nothing to batch.
+        let batching = Some(ChunkBatcherConfig::NEVER);
+        let stream =
+            RecordingStream::new(info, properties, batching, Default::default(), Box::new(sinks.clone()))?;
+        let flushed = Instant::now();
+        Ok(Self { stream, sinks, scene, tracks: None, flushed, flushed_at: 0.0, live_problem })
+    }
+
+    /// Records the run as it is now.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be written any more.
+    pub fn log(&mut self, view: &View) -> Result<(), RecordingError> {
+        self.record(view, false)?;
+        let wait = if self.sinks.is_live() { FLUSH_LIVE } else { FLUSH_FILE };
+        let is_much = view.time - self.flushed_at >= Pace::of(self.scene.unit).flush;
+        if is_much || self.flushed.elapsed() >= wait {
+            self.flushed_at = view.time;
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Records the end of the run, with every map as it is now, and closes the recording.
+    ///
+    /// # Errors
+    ///
+    /// When a part of the recording could not be written to the file.
+    pub fn finish(mut self, view: &View) -> Result<(), RecordingError> {
+        self.record(view, true)?;
+        self.flush()?;
+        self.stream.flush_blocking().map_err(|error| RecordingError::Sdk(error.to_string()))?;
+        self.sinks.finish()
+    }
+
+    /// Why a viewer does not show the run, or does not show it any more. The file is not affected.
+    pub fn live_problem(&self) -> Option<String> {
+        self.live_problem.clone().or_else(|| self.sinks.live_problem())
+    }
+
+    fn record(&mut self, view: &View, is_last: bool) -> Result<(), RecordingError> {
+        let tracks = match &mut self.tracks {
+            Some(tracks) => tracks,
+            none => {
+                // A viewer's y axis points down.
+                let upright = rerun::Transform3D::from_scale([1.0, -1.0, 1.0]);
+                self.stream.log_static(path::WORLD, &upright)?;
+                let tracks = none.insert(tracks::start(&self.stream, &self.scene, view)?);
+                layout::send(&self.stream, APPLICATION, &self.scene, view)?;
+                self.stream.flush_async().map_err(|error| RecordingError::Sdk(error.to_string()))?;
+                tracks
+            }
+        };
+        let now = Now { time: view.time, step: view.step };
+        tracks.iter_mut().for_each(|track| track.push(now, view, is_last));
+        Ok(())
+    }
+
+    /// Sends what waits.
+    fn flush(&mut self) -> Result<(), RecordingError> {
+        self.flushed = Instant::now();
+        let to = Target { stream: &self.stream, unit: self.scene.unit };
+        self.tracks.iter_mut().flatten().try_for_each(|track| track.flush(to))?;
+        self.sinks.check()
+    }
+}
+
+#[cfg(test)]
+mod tests;

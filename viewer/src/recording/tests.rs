@@ -1,0 +1,353 @@
+use super::*;
+use crate::fake::FakeRun;
+use crate::layers::Layer;
+use crate::scene::TimeUnit;
+use nalgebra::Point2;
+use rerun::components::{ImageBuffer, Position2D, Scalar, Text};
+use rerun::external::re_log_encoding::Decoder;
+use rerun::{
+    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, Points2D, Scalars,
+    SegmentationImage, StoreKind, TextLog,
+};
+use std::io::{self, Write};
+use std::path::Path;
+use std::sync::{Arc, Mutex};
+
+fn to(file: &Path) -> RecordingOptions {
+    RecordingOptions { file: Some(file.to_owned()), ..Default::default() }
+}
+
+/// Records `ticks` of a made-up run into a file.
+fn record(file: &Path, ticks: u64) -> FakeRun {
+    record_run(FakeRun::new(), file, ticks)
+}
+
+fn record_run(mut run: FakeRun, file: &Path, ticks: u64) -> FakeRun {
+    let mut recorder = Recorder::new(&to(file), run.scene.clone()).unwrap();
+    for _ in 0..ticks {
+        run.step();
+        run.with_view(|view| recorder.log(view)).unwrap();
+    }
+    run.with_view(|view| recorder.finish(view)).unwrap();
+    run
+}
+
+fn store(bytes: &[u8], kind: StoreKind) -> ChunkStore {
+    let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut &*bytes).unwrap();
+    let mut stores = stores.into_values().filter(|store| store.id().kind() == kind);
+    let store = stores.next().unwrap();
+    assert!(stores.next().is_none());
+    store
+}
+
+/// The rows of a component of an entity in the order of their simulated time, ns.
+fn rows<C: Component + Clone>(
+    store: &ChunkStore,
+    entity: &str,
+    component: ComponentIdentifier,
+) -> Vec<(i64, Vec<C>)> {
+    let entity = EntityPath::parse_forgiving(entity);
+    let mut rows = Vec::new();
+    for chunk in store.iter_physical_chunks() {
+        if chunk.entity_path() == &entity && !chunk.is_static() {
+            let time = chunk.timelines().values().find(|time| time.name() == rows::SIM_TIME);
+            let times = time.unwrap().times_raw();
+            let items = chunk.iter_component::<C>(component).map(|items| items.as_slice().to_vec());
+            rows.extend(times.iter().copied().zip(items));
+        }
+    }
+    rows.sort_by_key(|row: &(i64, Vec<C>)| row.0);
+    rows
+}
+
+#[test]
+fn everything_that_a_newcomer_looks_for_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    record(&file, 300);
+    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+    let entities: Vec<String> = store
+        .all_entities_sorted()
+        .iter()
+        .map(|path| path.to_string())
+        .filter(|path| !path.starts_with("/__"))
+        .collect();
+    let expected = [
+        "/curves/expected_changes/p",
+        "/curves/longest_unseen/r",
+        "/curves/scores/coverage",
+        "/curves/scores/map_quality",
+        "/curves/strategy",
+        "/curves/strategy_share/poisson",
+        "/curves/strategy_share/random",
+        "/curves/strategy_share/recency",
+        "/curves/strategy_value/poisson",
+        "/curves/strategy_value/random",
+        "/curves/strategy_value/recency",
+        "/log",
+        "/world",
+        "/world/field_of_view/cells",
+        "/world/field_of_view/outline",
+        "/world/goal",
+        "/world/legend/lines",
+        "/world/legend/rims",
+        "/world/legend/texts",
+        "/world/maps/change_probability",
+        "/world/maps/change_probability/cells",
+        "/world/maps/change_probability/color_bar",
+        "/world/maps/change_probability/marks",
+        "/world/maps/interval",
+        "/world/maps/interval/cells",
+        "/world/maps/interval/color_bar",
+        "/world/maps/interval/marks",
+        "/world/maps/occupancy",
+        "/world/maps/occupancy/cells",
+        "/world/maps/recency",
+        "/world/maps/recency/cells",
+        "/world/maps/recency/color_bar",
+        "/world/maps/recency/marks",
+        "/world/obstacles/toy",
+        "/world/obstacles/toy/name",
+        "/world/path",
+        "/world/robots/curious/body",
+        "/world/robots/curious/heading",
+        "/world/robots/curious/trail",
+        "/world/robots/dummy/body",
+        "/world/robots/dummy/heading",
+        "/world/robots/dummy/trail",
+        "/world/walls",
+    ];
+    assert_eq!(entities, expected);
+    assert_eq!(timelines(&store), ["sim_time", "step"]);
+}
+
+#[test]
+fn where_time_is_counted_in_steps_nothing_speaks_of_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let mut run = FakeRun::new();
+    run.scene = Scene { unit: TimeUnit::Step, ..run.scene };
+    record_run(run, &file, 3);
+    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+    assert_eq!(timelines(&store), ["step"]);
+    let titles = titles(&file);
+    for title in [
+        "The map so far: fake rooms",
+        "Change interval: steps per cycle",
+        "Longest time since a cell was seen (steps)",
+        "Recency: steps since last seen",
+    ] {
+        assert!(titles.iter().any(|found| found == title), "{title} is not in {titles:?}");
+    }
+    assert!(titles.iter().all(|title| !title.contains("second") && !title.contains("(s)")), "{titles:?}");
+}
+
+#[test]
+fn what_is_read_back_is_what_happened() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let run = record(&file, 305);
+    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+
+    let position = Points2D::descriptor_positions().component;
+    for (name, at) in run.positions() {
+        let body = rows::<Position2D>(&store, &path::robot(name, "body"), position);
+        assert!(body.len() > 250, "{name}: {}", body.len());
+        let (time, positions) = body.last().unwrap();
+        assert_eq!(*time, 30_500_000_000);
+        let last = Point2::new(f64::from(positions[0].x()), f64::from(positions[0].y()));
+        assert!((last - at).norm() < 1e-5);
+    }
+    let buffer = SegmentationImage::descriptor_buffer().component;
+    for layer in Layer::ALL {
+        let maps = rows::<ImageBuffer>(&store, &format!("{}/cells", path::map(layer)), buffer);
+        let most = if layer == Layer::Occupancy { 32 } else { 5 };
+        assert!((2..=most).contains(&maps.len()), "{layer:?}: {}", maps.len());
+        let last = maps.last().unwrap().1[0].0.to_vec();
+        assert_eq!(last, layer.classes(&run.mapper, TimeUnit::Second), "{layer:?} at the end");
+    }
+    let coverage = rows::<Scalar>(&store, "/curves/scores/coverage", Scalars::descriptor_scalars().component);
+    assert_eq!(coverage.len(), 32); // once a second, and at the end
+    assert!(coverage.windows(2).all(|pair| pair[0].1[0].0 <= pair[1].1[0].0));
+    let log = rows::<Text>(&store, path::LOG, TextLog::descriptor_text().component);
+    assert!(log.iter().any(|(_, text)| text[0].0.as_str().starts_with("goal reached; poisson chooses")));
+    let toy = rows::<rerun::LineStrip2D>(
+        &store,
+        &path::obstacle("toy"),
+        rerun::LineStrips2D::descriptor_strips().component,
+    );
+    assert_eq!(toy.len(), 1);
+    assert_eq!(toy[0].0, 20_100_000_000);
+}
+
+/// The titles of the views in the layout of a recording, sorted.
+fn titles(file: &Path) -> Vec<String> {
+    let store = store(&std::fs::read(file).unwrap(), StoreKind::Blueprint);
+    let name = rerun::external::re_sdk_types::blueprint::archetypes::ViewBlueprint::descriptor_display_name();
+    let mut names: Vec<String> = Vec::new();
+    for chunk in store.iter_physical_chunks() {
+        let found = chunk.iter_component::<rerun::components::Name>(name.component);
+        names.extend(found.flat_map(|names| names.as_slice().to_vec()).map(|name| name.0.to_string()));
+    }
+    names.sort();
+    names
+}
+
+fn timelines(store: &ChunkStore) -> Vec<String> {
+    let mut timelines: Vec<_> = store.schema().timelines().keys().map(|name| name.to_string()).collect();
+    timelines.sort();
+    timelines
+}
+
+#[test]
+fn the_layout_shows_every_view() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    record(&file, 3);
+    assert_eq!(
+        titles(&file),
+        [
+            "Change interval: seconds per cycle",
+            "Changes expected out of view",
+            "Longest time since a cell was seen (s)",
+            "Map: coverage and quality",
+            "Probability of a change since last seen",
+            "Recency: seconds since last seen",
+            "Strategies: expected map updates per step",
+            "Strategies: share of the goals",
+            "Strategy that chose the goal",
+            "The map so far: fake rooms",
+            "What happened",
+        ]
+    );
+}
+
+#[test]
+fn a_minute_is_small() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    record(&file, 600);
+    // 30 MB are allowed for twenty of them.
+    assert!(std::fs::metadata(&file).unwrap().len() < 1_500_000);
+}
+
+#[test]
+fn a_killed_run_leaves_what_was_handed_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let mut run = FakeRun::new();
+    let mut recorder = Recorder::new(&to(&file), run.scene.clone()).unwrap();
+    for _ in 0..100 {
+        run.step();
+        run.with_view(|view| recorder.log(view)).unwrap();
+    }
+    recorder.flush().unwrap();
+    recorder.stream.flush_blocking().unwrap();
+    // What the disk has now, whole and with the last message torn.
+    let killed = std::fs::read(&file).unwrap();
+    let whole = store(&killed, StoreKind::Recording);
+    let position = Points2D::descriptor_positions().component;
+    let body = rows::<Position2D>(&whole, &path::robot("curious", "body"), position);
+    assert_eq!(body.last().unwrap().0, 10_000_000_000);
+    let messages = |bytes: &[u8]| {
+        Decoder::<rerun::log::LogMsg>::decode_eager(io::Cursor::new(bytes.to_vec()))
+            .unwrap()
+            .take_while(Result::is_ok)
+            .count()
+    };
+    let all = messages(&killed);
+    assert!(all > 50, "{all}");
+    assert_eq!(messages(&killed[..killed.len() - 5]), all - 1);
+    drop(recorder);
+}
+
+#[test]
+fn a_file_that_cannot_be_made_is_one_clear_error() {
+    let error =
+        |file: &str| Recorder::new(&to(Path::new(file)), FakeRun::new().scene).err().unwrap().to_string();
+    let missing = error("no/such/folder/run.rrd");
+    assert!(missing.starts_with("cannot write the recording no/such/folder/run.rrd: "), "{missing}");
+    if Path::new("/dev/full").exists() {
+        let full = error("/dev/full");
+        assert!(
+            full.starts_with("cannot write the recording /dev/full: ") && full.contains("No space left"),
+            "{full}"
+        );
+    }
+}
+
+/// A disk with room for so many bytes.
+#[derive(Clone)]
+struct SmallDisk(Arc<Mutex<usize>>);
+
+impl Write for SmallDisk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut room = self.0.lock().unwrap();
+        *room = room.checked_sub(bytes.len()).ok_or(io::ErrorKind::StorageFull)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_disk_that_fills_up_is_told_while_it_goes_on_and_at_the_end() {
+    let mut run = FakeRun::new();
+    run.step();
+    let mut record = |room: usize| {
+        let mut recorder = Recorder::new(&RecordingOptions::default(), run.scene.clone()).unwrap();
+        let disk = SmallDisk(Arc::new(room.into()));
+        let file = file::RrdFile::with_output(Path::new("run.rrd"), Box::new(disk.clone())).unwrap();
+        recorder.sinks = Sinks::of_file(file);
+        recorder.stream.set_sink(Box::new(recorder.sinks.clone()));
+        run.with_view(|view| recorder.log(view)).unwrap();
+        recorder.flush().ok(); // the SDK writes in its own time
+        recorder.stream.flush_blocking().unwrap();
+        let meanwhile = recorder.flush().map_err(|error| error.to_string());
+        let end = run.with_view(|view| recorder.finish(view)).map_err(|error| error.to_string());
+        (meanwhile, end, *disk.0.lock().unwrap())
+    };
+    let full = Err("cannot write the recording run.rrd: no storage space".to_owned());
+    let (meanwhile, end, _) = record(20_000);
+    assert_eq!((meanwhile, end), (full.clone(), full.clone()));
+
+    const AMPLE: usize = 10_000_000;
+    let (meanwhile, end, left) = record(AMPLE);
+    assert_eq!((meanwhile, end), (Ok(()), Ok(())));
+
+    // Room for all but the end, which is more than a thousand bytes long.
+    let (meanwhile, end, _) = record(AMPLE - left - 1000);
+    assert_eq!((meanwhile, end), (Ok(()), full));
+}
+
+#[test]
+fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
+    let free = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let live = vec![Live::Connect(free.to_string())];
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let mut recorder =
+        Recorder::new(&RecordingOptions { live: live.clone(), ..to(&file) }, FakeRun::new().scene).unwrap();
+    let problem = recorder.live_problem().unwrap();
+    assert!(problem.starts_with("no viewer answers at "), "{problem}");
+    let mut run = FakeRun::new();
+    run.step();
+    run.with_view(|view| recorder.log(view)).unwrap();
+    run.with_view(|view| recorder.finish(view)).unwrap();
+    store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+
+    let options = RecordingOptions { live, ..Default::default() };
+    assert_eq!(Recorder::new(&options, FakeRun::new().scene).err().unwrap().to_string(), problem);
+}
+
+#[test]
+#[ignore = "writes a recording to look at, and says what it cost"]
+fn look() {
+    let file = std::env::temp_dir().join("look.rrd");
+    let start = Instant::now();
+    record(&file, std::env::var("TICKS").map_or(12_000, |ticks| ticks.parse().unwrap()));
+    let bytes = std::fs::metadata(&file).unwrap().len();
+    println!("{}: {} MB in {:?}", file.display(), bytes as f64 / 1e6, start.elapsed());
+}

@@ -1,0 +1,128 @@
+//! The parts of a world that stay the same for a whole run, as plain data, and the trait of a world that can
+//! be shown.
+
+mod grid;
+mod physics;
+mod state;
+
+pub use state::{RobotState, Sight};
+
+use interfaces::{GridFrame, World};
+use nalgebra::{Isometry2, Point2};
+
+/// The corners of a polygon, m; the last corner is joined to the first.
+pub type Outline = Vec<Point2<f64>>;
+
+/// The unit of time of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TimeUnit {
+    /// Seconds of simulated time.
+    Second,
+    /// Steps of a grid world, with nothing in between.
+    Step,
+}
+
+impl TimeUnit {
+    /// The unit as a word, for titles.
+    pub fn plural(self) -> &'static str {
+        match self {
+            Self::Second => "seconds",
+            Self::Step => "steps",
+        }
+    }
+
+    /// The unit behind a number.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Second => "s",
+            Self::Step => "steps",
+        }
+    }
+
+    /// The unit of length in a world with this unit of time.
+    pub fn length(self) -> &'static str {
+        match self {
+            Self::Second => "m",
+            Self::Step => "cells",
+        }
+    }
+}
+
+/// A world from above, at its start.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The name of the world.
+    pub title: String,
+    /// The unit of time.
+    pub unit: TimeUnit,
+    /// The rectangle that is shown, and its cells.
+    pub frame: GridFrame,
+    /// The walls.
+    pub walls: Vec<Outline>,
+    /// Everything that is neither a wall nor a robot, in the order of the world file.
+    pub obstacles: Vec<Obstacle>,
+    /// The robots, in the order of the world file.
+    pub robots: Vec<Robot>,
+}
+
+/// Something that is neither a wall nor a robot.
+#[derive(Clone, Debug)]
+pub struct Obstacle {
+    /// The name in the world file.
+    pub name: String,
+    /// The outline at the start, m; empty if the obstacle appears later.
+    pub outline: Outline,
+    /// Outlines at other times, as far as the world file gives them: the swing of a door, the path of a block.
+    pub reach: Vec<Outline>,
+}
+
+impl Obstacle {
+    /// Whether the obstacle stands at one place during the whole run, as furniture does.
+    pub fn is_fixed(&self) -> bool {
+        self.reach.is_empty()
+    }
+}
+
+/// A robot at its start.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    /// The name in the world file.
+    pub name: String,
+    /// The pose in the frame of the world, m and rad.
+    pub pose: Isometry2<f64>,
+    /// The radius of the circle around the body, m.
+    pub radius_m: f64,
+    /// The corners of the body in the frame of the robot, m; empty for a round body.
+    pub corners: Outline,
+    /// What the range sensors of the robot cover.
+    pub sectors: Vec<Sector>,
+    /// Whether the robot obeys commands: the curious robot, and not a part of its surroundings.
+    pub is_driven: bool,
+}
+
+/// What a laser scanner or a sonar covers.
+#[derive(Clone, Copy, Debug)]
+pub struct Sector {
+    /// The pose of the sensor in the frame of the robot.
+    pub mount: Isometry2<f64>,
+    /// The angle, half of it on either side of the direction of the sensor, rad.
+    pub angle_rad: f64,
+    /// The range, m.
+    pub range_m: f64,
+}
+
+/// A world that can be shown while a robot explores it.
+pub trait Visible: World {
+    /// The unit of time of the world.
+    const UNIT: TimeUnit;
+
+    /// What stays the same for a whole run.
+    fn scene(&self) -> Scene;
+
+    /// The robots now, in the order of [`Scene::robots`].
+    fn robots<'a>(&'a self, reading: &'a Self::Reading) -> Vec<RobotState<'a>>;
+
+    /// The outlines of the obstacles now, m, in the order of [`Scene::obstacles`]; `None` for an obstacle
+    /// that is absent.
+    fn obstacles(&self) -> Vec<Option<Outline>>;
+}

@@ -1,0 +1,86 @@
+//! Everything that shows one run: the recording, the moving picture, and the pictures at the end.
+
+use crate::pictures::{self, Film, Pictures};
+use crate::recording::{Recorder, RecordingError};
+use crate::scene::Scene;
+use crate::view::{Trail, View};
+use evaluation::drawing::PictureError;
+use mapper::Mapper;
+use nalgebra::Point2;
+use std::path::Path;
+
+/// Shows a run, and keeps the trails of its robots.
+pub struct Show {
+    scene: Scene,
+    trails: Vec<Trail>,
+    recorder: Option<Recorder>,
+    film: Option<Film>,
+    live_problem: Option<String>,
+}
+
+/// Why a run cannot be shown any more.
+#[derive(Debug, thiserror::Error)]
+pub enum ShowError {
+    /// The recording cannot continue.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// A picture cannot be made.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+impl Show {
+    /// Shows a run in `scene` to a recorder, in a film, in both or in none of them.
+    pub fn new(scene: Scene, recorder: Option<Recorder>, film: Option<Film>) -> Self {
+        let trails = vec![Trail::default(); scene.robots.len()];
+        let live_problem = recorder.as_ref().and_then(Recorder::live_problem);
+        Self { scene, trails, recorder, film, live_problem }
+    }
+
+    /// Shows the run as it is now. The last view closes the recording.
+    ///
+    /// # Errors
+    ///
+    /// When the recording cannot be written, or a frame of the film cannot be drawn.
+    pub fn add(&mut self, view: &View, is_last: bool) -> Result<(), ShowError> {
+        for (trail, robot) in self.trails.iter_mut().zip(&view.robots) {
+            trail.push(robot.pose.translation.vector.into());
+        }
+        if let Some(film) = &mut self.film {
+            film.add(view, &self.trails)?;
+        }
+        if let Some(mut recorder) = self.recorder.take() {
+            self.live_problem = recorder.live_problem();
+            if is_last {
+                recorder.finish(view)?;
+            } else {
+                recorder.log(view)?;
+                self.recorder = Some(recorder);
+            }
+        }
+        Ok(())
+    }
+
+    /// Why a viewer does not show the run, or does not show it any more. The file is not affected.
+    pub fn live_problem(&self) -> Option<&str> {
+        self.live_problem.as_deref()
+    }
+
+    /// Writes the pictures into `folder`, and the film to its file if there is one.
+    ///
+    /// # Errors
+    ///
+    /// When a picture cannot be drawn or written.
+    pub fn write(
+        self,
+        folder: &Path,
+        film: Option<&Path>,
+        mapper: &Mapper,
+        goals: &[Point2<f64>],
+    ) -> Result<(), PictureError> {
+        if let (Some(made), Some(path)) = (self.film, film) {
+            made.write(path)?;
+        }
+        pictures::write_all(folder, &Pictures { scene: &self.scene, mapper, trails: &self.trails, goals })
+    }
+}

@@ -1,0 +1,119 @@
+//! A run at one instant, as plain data: the input of the recording and of the moving picture.
+
+use crate::scene::{Outline, RobotState, Sight, TimeUnit, Visible};
+use agent::Features;
+use evaluation::metrics::{MapScores, RateErrors};
+use interfaces::Reading;
+use mapper::Mapper;
+use nalgebra::Point2;
+use robot::{Belief, Message, Pilot, StrategyState};
+
+/// A run at one instant.
+pub struct View<'a> {
+    /// Simulated time, in the unit of the scene.
+    pub time: f64,
+    /// The number of readings so far; the time where time is counted in steps.
+    pub step: u64,
+    /// The map and the statistics of its changes.
+    pub mapper: &'a Mapper,
+    /// The features by which the agent chooses a strategy.
+    pub features: Features,
+    /// The robots, in the order of the scene.
+    pub robots: Vec<RobotState<'a>>,
+    /// The outlines of the obstacles, m, in the order of the scene; `None` for an obstacle that is absent.
+    pub obstacles: Vec<Option<Outline>>,
+    /// The planned path of the curious robot, m; empty without a plan.
+    pub path: &'a [Point2<f64>],
+    /// The goal of the curious robot, m.
+    pub goal: Option<Point2<f64>>,
+    /// The strategies of the agent, in an order that never changes; empty without an agent.
+    pub strategies: Vec<StrategyState>,
+    /// What was measured against the ground truth.
+    pub measured: Measured<'a>,
+}
+
+/// What the observer of a run adds to what the robot knows.
+#[derive(Clone, Copy, Default)]
+pub struct Measured<'a> {
+    /// Coverage and quality of the map; `None` where they were not measured.
+    pub scores: Option<MapScores>,
+    /// Errors of the rates of change; `None` where they were not measured.
+    pub rate_errors: Option<RateErrors>,
+    /// Messages since the last view.
+    pub messages: &'a [Message],
+}
+
+impl<'a> View<'a> {
+    /// The run in `world` after `pilot` has decided on `reading`.
+    pub fn new<W: Visible<Reading: Reading>>(
+        world: &'a W,
+        reading: &'a W::Reading,
+        belief: &Belief<'a>,
+        pilot: &'a (impl Pilot<Command = W::Command> + ?Sized),
+        measured: Measured<'a>,
+    ) -> Self {
+        let time = belief.mapper.time();
+        Self {
+            time,
+            step: match W::UNIT {
+                TimeUnit::Second => belief.mapper.readings() as u64,
+                TimeUnit::Step => time as u64,
+            },
+            mapper: belief.mapper,
+            features: belief.features,
+            robots: world.robots(reading),
+            obstacles: world.obstacles(),
+            path: pilot.path(),
+            goal: pilot.goal(),
+            strategies: pilot.strategies(belief.features),
+            measured,
+        }
+    }
+
+    /// What the curious robot sees.
+    pub fn sight(&self) -> Option<Sight<'a>> {
+        self.robots.iter().find_map(|robot| robot.sight)
+    }
+}
+
+/// The positions of a robot since the start. Positions nearer than a few centimeters to the last one are
+/// dropped, so that a robot which stands still costs nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Trail {
+    points: Vec<Point2<f64>>,
+}
+
+/// The distance between two points of a trail, m: half a cell of the shipped worlds.
+const TRAIL_SPACING_M: f64 = 0.025;
+
+impl Trail {
+    /// Appends the position of the robot now, m. Returns whether the robot has moved far enough to keep it.
+    pub fn push(&mut self, position: Point2<f64>) -> bool {
+        let keep = self.points.last().is_none_or(|last| (position - last).norm() >= TRAIL_SPACING_M);
+        if keep {
+            self.points.push(position);
+        }
+        keep
+    }
+
+    /// The positions from the start on, m.
+    pub fn points(&self) -> &[Point2<f64>] {
+        &self.points
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trail_keeps_the_way_and_not_the_waiting() {
+        let mut trail = Trail::default();
+        for step in 0..100 {
+            trail.push(Point2::new(f64::from(step) * 0.01, 0.0));
+            trail.push(Point2::new(f64::from(step) * 0.01, 0.0));
+        }
+        assert_eq!(trail.points().len(), 34); // every 3 cm from 0 to 99 cm
+        assert_eq!(trail.points()[1], Point2::new(0.03, 0.0));
+    }
+}
