@@ -7,11 +7,11 @@ use super::footprint::{Footprint, footprint};
 use super::laser::lasers;
 use super::numbers::Table;
 use super::senses;
-use super::space::Around;
+use super::space::{Around, Solid};
 use crate::error::{Source, WorldError};
 use crate::together::Together;
 use interfaces::pose;
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Isometry2;
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{DriveKind, DriveLimits, Form, OdometryError, RobotSpec, convex};
 
