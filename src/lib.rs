@@ -2,6 +2,4 @@
 
 pub mod keyboard;
 pub mod progress;
-pub mod ros_map;
-pub mod tour_file;
 pub mod worlds;

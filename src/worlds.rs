@@ -49,8 +49,7 @@ pub fn load(name: &str) -> Result<Loaded, WorldError> {
 fn load_stage(name: &str) -> Result<Loaded, WorldError> {
     let (fleet, findings) = stage::load(Path::new(name), &Disk);
     let Some(fleet) = fleet else {
-        let errors = findings.messages(Severity::Error).join("\n\n");
-        return Err(WorldError::Stage(errors.trim_start_matches("error: ").to_owned()));
+        return Err(WorldError::Stage(findings.error_text()));
     };
     let mut warnings =
         [Severity::Warning, Severity::Note].map(|severity| findings.messages(severity)).concat();

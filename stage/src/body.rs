@@ -1,7 +1,7 @@
 //! The body of a thing: its blocks, its bitmap, or a box.
 
+use super::place::Place;
 use super::polygon;
-use super::sources::Place;
 use super::tree::Thing;
 use super::values::{Pose, Reader};
 use interfaces::pose;

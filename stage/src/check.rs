@@ -1,6 +1,7 @@
 //! What the physics cannot do, said at the line of the Stage file.
 
-use super::sources::{Place, Sources};
+use super::place::Place;
+use super::sources::Sources;
 use super::toml::{STEER_DEG, is_upright, short};
 use super::{Drive, StageRobot, StageWorld};
 use nalgebra::{Isometry2, Point2};

@@ -1,11 +1,8 @@
 //! What changes nothing here, in one note per file: so that what does change something stands out.
 
-use super::sources::{Place, Sources};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
-use worldfile::Severity;
 
-/// Of a name that stands in more lines, only the first are told.
+/// Of a name that stands in more lines, only the first are given.
 const MOST_LINES: usize = 3;
 
 /// The lines of names, by file.
@@ -14,23 +11,19 @@ pub(super) struct Harmless {
     lines: BTreeMap<u32, BTreeMap<String, BTreeSet<usize>>>,
 }
 
-impl Sources<'_> {
-    /// Remembers that what is called `name` changes nothing.
-    pub(super) fn harmless(&mut self, place: Place, name: &str) {
-        let line = self.line(place);
-        let names = self.harmless.lines.entry(place.file).or_default();
+impl Harmless {
+    /// Remembers that what is called `name` in a line of a file changes nothing.
+    pub(super) fn add(&mut self, file: u32, line: usize, name: &str) {
+        let names = self.lines.entry(file).or_default();
         names.entry(name.to_owned()).or_default().insert(line);
     }
 
-    /// Tells everything that changes nothing.
-    pub(super) fn tell_harmless(&mut self) {
-        for (file, names) in std::mem::take(&mut self.harmless).lines {
+    /// The names of each file, with their lines.
+    pub(super) fn take(&mut self) -> impl Iterator<Item = (u32, String)> + use<> {
+        std::mem::take(&mut self.lines).into_iter().map(|(file, names)| {
             let names: Vec<String> = names.iter().map(|(name, lines)| with_lines(name, lines)).collect();
-            let what = format!("these change nothing here: {}", names.join(", "));
-            let help = "they say how Stage draws or runs a world, or are about what is not here; in ( ) are their lines";
-            let path = self.path(Place { file, start: 0, end: 0 }).to_owned();
-            self.findings.add_file(Severity::Note, Path::new(&path), &what, help);
-        }
+            (file, names.join(", "))
+        })
     }
 }
 

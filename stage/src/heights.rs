@@ -1,6 +1,7 @@
 //! Stage's world has heights, this one has not: where they matter, it is said.
 
-use super::sources::{Place, Sources};
+use super::place::Place;
+use super::sources::Sources;
 use std::collections::BTreeSet;
 
 /// The maximum number of comparisons; further ones are left out.

@@ -1,6 +1,6 @@
 //! From text to words, numbers, texts in quotes and brackets, each with its place.
 
-use super::Place;
+use super::place::Place;
 
 /// A piece of a world file.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -44,6 +44,7 @@ mod load;
 mod looks;
 mod outline;
 mod pictures;
+mod place;
 mod polygon;
 mod robot;
 mod robots;
@@ -58,7 +59,8 @@ mod tree;
 mod values;
 mod world;
 
-use sources::{Place, Sources};
+use place::Place;
+use sources::Sources;
 
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{FleetSpec, Form, OdometryError, Rectangle};
@@ -281,6 +283,6 @@ fn open<'a>(path: &Path, files: &'a dyn Files) -> (Option<StageWorld>, Sources<'
         .read(path)
         .and_then(|tokens| tree::read(&mut sources, &tokens))
         .and_then(|tree| world::convert(&mut sources, path, files, &tree));
-    sources.tell_harmless();
+    sources.note_harmless();
     (world.filter(|_| sources.findings.errors() == 0), sources)
 }

@@ -1,7 +1,7 @@
 //! What a thing is called, and what it is to others.
 
 use super::body::Body;
-use super::sources::Place;
+use super::place::Place;
 use super::tree::Thing;
 use super::world::Builder;
 

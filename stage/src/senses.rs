@@ -1,7 +1,7 @@
 //! What a robot sees, hears and finds tags with.
 
+use super::place::Place;
 use super::robot::INVERSE_ROOT_3;
-use super::sources::Place;
 use super::tree::Thing;
 use super::values::{Pose, Reader};
 use super::{StageFiducial, StageLaser, StageSonar};

@@ -2,8 +2,8 @@
 
 use super::harmless::Harmless;
 use super::lexer::{self, Kind, Token};
+use super::place::Place;
 use std::io::ErrorKind;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use worldfile::Files;
 use worldfile::{Findings, Severity, SourceText};
@@ -14,20 +14,6 @@ const MAX_BYTES: u64 = 8 << 20;
 const MAX_ERRORS: usize = 100;
 /// Includes may not lie deeper in each other.
 const MAX_DEPTH: usize = 32;
-
-/// A place in one of the texts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
-    pub(super) file: u32,
-    pub(super) start: u32,
-    pub(super) end: u32,
-}
-
-impl Place {
-    pub(super) fn range(&self) -> Range<usize> {
-        self.start as usize..self.end as usize
-    }
-}
 
 /// All texts read so far, and what there is to say about them.
 pub(super) struct Sources<'a> {
@@ -188,6 +174,22 @@ impl<'a> Sources<'a> {
     /// The files, as they are called in messages.
     pub(super) fn file_names(&self) -> impl Iterator<Item = &str> {
         self.texts.iter().map(|text| text.name.as_str())
+    }
+
+    /// Remembers that what is called `name` changes nothing.
+    pub(super) fn harmless(&mut self, place: Place, name: &str) {
+        let line = self.line(place);
+        self.harmless.add(place.file, line, name);
+    }
+
+    /// Adds a note per file of everything that changes nothing.
+    pub(super) fn note_harmless(&mut self) {
+        let help =
+            "they say how Stage draws or runs a world, or are about what is not here; in ( ) are their lines";
+        for (file, names) in self.harmless.take() {
+            let what = format!("these change nothing here: {names}");
+            self.findings.add_file(Severity::Note, &self.paths[file as usize], &what, help);
+        }
     }
 
     pub(super) fn error(&mut self, place: Place, what: &str, label: &str, help: &str) {

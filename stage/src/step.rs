@@ -1,6 +1,7 @@
 //! The physics step of a world that does not say one.
 
-use super::sources::{Place, Sources};
+use super::place::Place;
+use super::sources::Sources;
 use super::{Drive, StageRobot};
 
 /// No physics step is longer, ms.

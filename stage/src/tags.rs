@@ -1,7 +1,8 @@
 //! What can have a tag: here only robots, and boxes by themselves.
 
 use super::StageWall;
-use super::sources::{Place, Sources};
+use super::place::Place;
+use super::sources::Sources;
 use nalgebra::Point2;
 use worldfile::physics::MAX_PIECES;
 

@@ -5,7 +5,8 @@
 //! definition of a name holds.
 
 use super::lexer::{Kind, Token};
-use super::sources::{Place, Sources};
+use super::place::Place;
+use super::sources::Sources;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;

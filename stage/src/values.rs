@@ -2,7 +2,8 @@
 
 use super::lexer::Kind;
 use super::pictures::Pictures;
-use super::sources::{Place, Sources};
+use super::place::Place;
+use super::sources::Sources;
 use super::tree::{Property, Thing};
 use interfaces::pose;
 use nalgebra::Isometry2;

@@ -96,18 +96,54 @@ fn worlds() {
 
 #[test]
 fn maps() {
-    insta::assert_snapshot!(refused("--map no.yaml"), @"error: cannot read no.yaml: No such file or directory (os error 2)");
-    insta::assert_snapshot!(refused_file("m.yaml", MAP, "--map m.yaml"), @"error: cannot read the picture gone.pgm, which `image` in m.yaml names: No such file or directory (os error 2)");
+    insta::assert_snapshot!(refused("--map no.yaml"), @"
+    error: no.yaml: cannot read this file: No such file or directory (os error 2)
+      = help: a map has e.g. `image: map.pgm`, `resolution: 0.05`, `origin: [-6.0, -6.0, 0.0]`, `negate: 0`, `occupied_thresh: 0.65`, `free_thresh: 0.196`
+    ");
+    insta::assert_snapshot!(refused_file("m.yaml", MAP, "--map m.yaml"), @"
+    error: cannot read the picture gone.pgm: No such file or directory (os error 2)
+     --> m.yaml:1:8
+      |
+    1 | image: gone.pgm
+      |        ^^^^^^^^
+      |
+      = help: `image` names a PNG or PGM picture, relative to this file
+    ");
+    let picture = |yaml: &str, pixels: &str| {
+        let run = Run::new();
+        run.write("m.yaml", yaml);
+        run.write("gone.pgm", pixels);
+        refuses(&run, "--map m.yaml", &["gone.pgm", "m.yaml"])
+    };
     let negative = MAP.replace("resolution: 0.05", "resolution: -1");
-    insta::assert_snapshot!(refused_file("m.yaml", &negative, "--map m.yaml"), @"error: cannot read the map m.yaml: `resolution` is -1, but must be the side of a pixel in metres, above 0");
+    insta::assert_snapshot!(picture(&negative, "P2 1 1 1 0"), @"
+    error: `resolution` is -1
+     --> m.yaml:2:13
+      |
+    2 | resolution: -1
+      |             ^^
+      |
+      = help: it must be the side of a pixel in metres, from 0.0001 to 100
+    ");
+    insta::assert_snapshot!(picture(MAP, "P5\n1000000 1000000\n255\n"), @"
+    error: cannot read the picture gone.pgm: 1000000 × 1000000 pixels are too many: at most 67108864
+     --> m.yaml:1:8
+      |
+    1 | image: gone.pgm
+      |        ^^^^^^^^
+      |
+      = help: `image` names a PNG or PGM picture, relative to this file
+    ");
     for broken in ["image: [", "resolution: 0.05", "", "\u{0}"] {
-        let message = refused_file("m.yaml", broken, "--map m.yaml");
-        assert!(message.contains("cannot read the map m.yaml") && message.contains("line 1"), "{message}");
+        let run = Run::new();
+        run.write("m.yaml", broken);
+        let ended = run.ends("--map m.yaml");
+        assert_eq!(
+            (ended.code, ended.stdout.as_str(), run.names()),
+            (Some(2), "", vec!["m.yaml".to_owned()])
+        );
+        assert!(ended.stderr.starts_with("error: ") && ended.stderr.contains("m.yaml:1"), "{}", ended.stderr);
     }
-    let picture = Run::new();
-    picture.write("m.yaml", MAP);
-    picture.write("gone.pgm", "P5\n1000000 1000000\n255\n");
-    insta::assert_snapshot!(refuses(&picture, "--map m.yaml", &["gone.pgm", "m.yaml"]), @"error: cannot read the picture gone.pgm, which `image` in m.yaml names: 1000000 × 1000000 pixels are too many: at most 67108864");
 }
 
 #[test]
@@ -123,20 +159,24 @@ fn drives_without_a_controller() {
 
 #[test]
 fn tours() {
-    insta::assert_snapshot!(refused("--drive tour --tour no.toml"), @"error: cannot read the tour no.toml: No such file or directory (os error 2)");
+    insta::assert_snapshot!(refused("--drive tour --tour no.toml"), @"error: cannot read the tour `no.toml`: No such file or directory (os error 2)");
     insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [\n  [1, 2],\n  [3]\n]", "--drive tour --tour t.toml"), @"
-    error: t.toml: TOML parse error at line 3, column 3
+    error: `waypoints_m` has the wrong type
+     --> t.toml:3:3
       |
     3 |   [3]
-      |   ^^^
-    invalid length 1, expected an array of length 2
+      |   ^^^ this is a list of 1
+      |
+      = help: it must be two numbers, as in `[1.0, 2.0]`
     ");
     insta::assert_snapshot!(refused_file("t.toml", "waypoint_m = [[1, 2]]", "--drive tour --tour t.toml"), @"
-    error: t.toml: TOML parse error at line 1, column 1
+    error: unknown key `waypoint_m`
+     --> t.toml:1:1
       |
     1 | waypoint_m = [[1, 2]]
-      | ^^^^^^^^^^
-    unknown field `waypoint_m`, expected `repeat` or `waypoints_m`
+      | ^^^^^^^^^^ not known here
+      |
+      = help: did you mean `waypoints_m`? the keys here are: repeat, waypoints_m
     ");
     insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [[1, 2]]", "--tour t.toml"), @"error: --tour needs --drive tour");
 }

@@ -95,13 +95,9 @@ impl WorldError {
         self.messages.len() + self.more
     }
 
-    /// A file that could not be read at all.
-    pub(crate) fn unreadable(name: &str, error: &std::io::Error) -> Self {
-        Self {
-            messages: vec![format!("cannot read the world file `{name}`: {error}")],
-            places: vec![0],
-            more: 0,
-        }
+    /// A file that cannot be read at all; `kind`: `world file` or `tour`.
+    pub(crate) fn unreadable(kind: &str, name: &str, error: &std::io::Error) -> Self {
+        Self { messages: vec![format!("cannot read the {kind} `{name}`: {error}")], places: vec![0], more: 0 }
     }
 }
 

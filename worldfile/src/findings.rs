@@ -110,6 +110,11 @@ impl Findings {
         messages
     }
 
+    /// All errors as one text, to be printed after `error: `.
+    pub fn error_text(&self) -> String {
+        self.messages(Severity::Error).join("\n\n").trim_start_matches("error: ").to_owned()
+    }
+
     /// Adds a finding about a place in a text. The same finding at the same place, as in a
     /// definition that is used often, is made once.
     pub fn add(&mut self, severity: Severity, source: &SourceText, what: &str, mark: Mark<'_>, help: &str) {

@@ -1,13 +1,14 @@
-//! Which kind of world a file describes.
+//! Which kind of file a text is.
 
 use crate::error::{Source, WorldError};
 use toml::de::{DeTable, DeValue};
 
-/// The two kinds of worlds.
+/// The kinds of files: two kinds of worlds, and tours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Grid,
     Physics,
+    Tour,
 }
 
 impl Kind {

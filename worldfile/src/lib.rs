@@ -32,9 +32,12 @@ mod kind;
 mod names;
 pub mod physics;
 mod reader;
+pub mod ros_map;
 pub mod shipped;
 mod together;
+mod tour;
 
 pub use error::WorldError;
 pub use files::{Disk, Files};
 pub use findings::{Finding, Findings, Severity, SourceText};
+pub use tour::TourSpec;

@@ -2,7 +2,6 @@
 
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
-use curious::ros_map;
 use evaluation::cell_statistics;
 use evaluation::observer::Observer;
 use evaluation::output::write_file;
@@ -13,6 +12,7 @@ use mapper::Mapper;
 use robot::Pilot;
 use std::path::Path;
 use viewer::show::Show;
+use worldfile::ros_map;
 
 /// Writes everything except the recording, which is written during the run.
 pub(crate) fn write(
@@ -24,7 +24,9 @@ pub(crate) fn write(
     summary: &Summary,
 ) -> anyhow::Result<()> {
     show.write(folder, film, mapper, observer.goals())?;
-    ros_map::write(folder, mapper.states())?;
+    let map = mapper.states();
+    write_file(&folder.join("map.pgm"), |file| file.write_all(&ros_map::pgm(map)))?;
+    write_file(&folder.join("map.yaml"), |file| write!(file, "{}", ros_map::yaml(map.frame(), "map.pgm")))?;
     cell_statistics::write(&folder.join("cell_statistics.csv"), mapper)?;
     let text = serde_json::to_string_pretty(summary)?;
     write_file(&folder.join("summary.json"), |file| writeln!(file, "{text}"))?;

@@ -5,8 +5,6 @@ use agent::Agent;
 use anyhow::{Context, anyhow};
 use controller::DiffDrive;
 use curious::keyboard::Keyboard;
-use curious::ros_map::RosMap;
-use curious::tour_file::TourSpec;
 use curious::worlds::{self, Loaded};
 use evaluation::output::say;
 use evaluation::physics_trial::PhysicsSettings;
@@ -15,6 +13,8 @@ use robot::{Autonomous, Tour};
 use sim::physics::WorldSpec;
 use std::io::stderr;
 use std::path::Path;
+use worldfile::ros_map::{self, RosMap};
+use worldfile::{Disk, Findings, Severity, TourSpec};
 
 /// Why there is no result.
 pub(crate) enum Failure {
@@ -55,8 +55,8 @@ impl Parts {
         let mut settings = settings.map_err(input)?;
         settings.mapper.estimator = args.estimator.clone();
         settings.mapper.occupancy = args.occupancy.clone();
-        let read = |path| RosMap::read(path).map(|map| map.onto(&spec.frame));
-        let prior = args.map.as_deref().map(read).transpose().map_err(input)?;
+        let read = |path| read_map(path).map(|map| map.onto(&spec.frame));
+        let prior = args.map.as_deref().map(read).transpose()?;
         Ok(Self { spec, settings, prior })
     }
 
@@ -69,7 +69,7 @@ impl Parts {
         let (name, text) = worlds::TOUR;
         let tour = match &args.tour {
             Some(path) => TourSpec::load(path),
-            None => TourSpec::parse(Path::new(name), text),
+            None => TourSpec::parse(name, text),
         };
         let TourSpec { waypoints, repeat } = tour.map_err(input)?;
         self.settings.pilot(Tour::new(waypoints, repeat), args.seed).map_err(input)
@@ -80,4 +80,14 @@ impl Parts {
         let max = Twist { linear_mps: drive.max_linear_mps, angular_radps: drive.max_angular_radps };
         Keyboard::new(max).map_err(input)
     }
+}
+
+/// The map of ROS in a file; its warnings go to the error output.
+fn read_map(path: &Path) -> Result<RosMap, Failure> {
+    let mut findings = Findings::default();
+    let map = ros_map::read(path, &Disk, &mut findings);
+    for warning in findings.messages(Severity::Warning) {
+        say(stderr(), format_args!("{warning}\n"));
+    }
+    map.ok_or_else(|| input(anyhow!(findings.error_text())))
 }

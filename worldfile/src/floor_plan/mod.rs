@@ -1,7 +1,7 @@
 //! Floor plans: pictures whose dark pixels are walls.
 //!
 //! A [`Bitmap`] knows which pixels are blocked. It is read from a PNG or PGM picture, alone or by
-//! way of a ROS `map.yaml` ([`ros`]), and a [`FloorPlan`] gives it a size and a place. From there
+//! way of a ROS `map.yaml` ([`crate::ros_map`]), and a [`FloorPlan`] gives it a size and a place. From there
 //! come two descriptions of the same walls, both exact on the borders of pixels:
 //!
 //! - [`FloorPlan::outline`]: the segments between blocked and free, for rays. Of a plan with right
@@ -15,12 +15,12 @@ mod bitmap;
 mod outline;
 mod picture;
 mod rectangles;
-pub mod ros;
 #[cfg(test)]
 mod tests;
 
 pub use bitmap::Bitmap;
 pub use outline::PixelSegment;
+pub(crate) use picture::Raster;
 pub use picture::{MAX_DECODED_BYTES, MAX_FILE_BYTES, MAX_PIXELS, Pixel};
 pub use rectangles::PixelRectangle;
 

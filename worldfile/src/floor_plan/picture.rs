@@ -40,9 +40,9 @@ impl Pixel {
 }
 
 /// A decoded picture.
-pub(super) struct Raster {
-    pub(super) width: u32,
-    pub(super) height: u32,
+pub(crate) struct Raster {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
     /// Colours, and perhaps opacity, of a pixel.
     channels: usize,
     /// Whether a value takes two bytes.
@@ -51,7 +51,7 @@ pub(super) struct Raster {
 }
 
 impl Raster {
-    pub(super) fn decode(bytes: &[u8]) -> Result<Self, PlanError> {
+    pub(crate) fn decode(bytes: &[u8]) -> Result<Self, PlanError> {
         let damaged = |error: image::ImageError| PlanError::Damaged(error.to_string());
         match bytes {
             [0x89, b'P', b'N', b'G', ..] => {
@@ -95,7 +95,7 @@ impl Raster {
     }
 
     /// The pixels of row `y`, counted from the top.
-    pub(super) fn row(&self, y: u32) -> impl Iterator<Item = Pixel> {
+    pub(crate) fn row(&self, y: u32) -> impl Iterator<Item = Pixel> {
         let pixel_bytes = self.channels * if self.is_wide { 2 } else { 1 };
         let row_bytes = self.width as usize * pixel_bytes;
         let row = &self.bytes[y as usize * row_bytes..][..row_bytes];

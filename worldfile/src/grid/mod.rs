@@ -42,7 +42,8 @@ use std::path::Path;
 /// When the file cannot be read, or as in [`parse`].
 pub fn load(path: impl AsRef<Path>) -> Result<GridSpec, WorldError> {
     let name = path.as_ref().display().to_string();
-    let text = std::fs::read_to_string(&path).map_err(|error| WorldError::unreadable(&name, &error))?;
+    let text = std::fs::read_to_string(&path)
+        .map_err(|error| WorldError::unreadable("world file", &name, &error))?;
     parse(&name, &text)
 }
 

@@ -1,10 +1,11 @@
 //! From the file as written to a world that makes sense.
 
-use super::file::{MapFile, ObstacleFile, Pair, RobotFile, WallFile, WorldFile};
+use super::file::{MapFile, ObstacleFile, RobotFile, WallFile, WorldFile};
 use super::floor_plan;
-use super::numbers::{Table, extent};
+use super::numbers::Table;
 use super::obstacle::obstacle;
-use super::robot::{Around, robot};
+use super::robot::robot;
+use super::space::{Around, Solid, inside, upright};
 use crate::error::{Source, WorldError, Wrong};
 use crate::files::Files;
 use crate::reader::Reading;
@@ -14,19 +15,9 @@ use nalgebra::Point2;
 use serde_spanned::Spanned;
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{DrivenError, FleetSpec, Motion, ObstacleSpec, Rectangle, RobotSpec, WorldSpec};
-use std::ops::Range;
 
 /// More cells than this are refused before anything is allocated for them.
 const MAX_CELLS: f64 = 4e6;
-/// The latest time that a file can name, s: some thirty years.
-pub(super) const MAX_TIME_S: f64 = 1e9;
-
-/// Something solid, and where the file speaks of it.
-pub(super) struct Solid {
-    pub(super) shape: Rectangle,
-    pub(super) span: Range<usize>,
-}
-
 /// Checks everything but who is driven.
 pub(super) fn check(
     source: &Source<'_>,
@@ -167,49 +158,6 @@ fn wall(source: &Source<'_>, file: &Spanned<WallFile>, size: &Point2<f64>) -> Re
     };
     inside(source, "a wall reaches out of the map", file.span(), &wall, size)?;
     Ok(wall)
-}
-
-/// The rectangle between two corners.
-pub(super) fn upright(
-    table: &Table<'_>,
-    min: &Pair,
-    max: &Pair,
-    size: &Point2<f64>,
-) -> Result<Rectangle, WorldError> {
-    let (low, high) = (table.point("min_m", min, size), table.point("max_m", max, size)).together()?;
-    if (high - low).min() < 0.001 {
-        let what = format!("`{}.max_m` is not above and to the right of `min_m`", table.path);
-        let help = "`min_m` is the lower left corner, `max_m` the upper right one, at least 0.001 m away";
-        return Err(table.source.error(
-            &what,
-            (max.span(), "upper right"),
-            &[(min.span(), "lower left")],
-            help,
-        ));
-    }
-    Ok(Rectangle::between(low, high))
-}
-
-pub(super) fn inside(
-    source: &Source<'_>,
-    what: &str,
-    span: Range<usize>,
-    shape: &Rectangle,
-    size: &Point2<f64>,
-) -> Result<(), WorldError> {
-    let (low, high) = shape.bounds();
-    if low.x >= -TOUCH_M && low.y >= -TOUCH_M && high.x <= size.x + TOUCH_M && high.y <= size.y + TOUCH_M {
-        return Ok(());
-    }
-    let help = format!(
-        "it spans [{:.3}, {:.3}] to [{:.3}, {:.3}], the map {}",
-        low.x,
-        low.y,
-        high.x,
-        high.y,
-        extent(size)
-    );
-    Err(source.error(what, (span, "this one"), &[], &help))
 }
 
 /// Refuses boxes that can be pushed and start in something else: they would burst apart.

@@ -1,12 +1,13 @@
 //! Walls from a picture.
 
-use super::check::inside;
 use super::file::FloorPlanFile;
 use super::numbers::Table;
+use super::space::inside;
 use crate::error::{Source, WorldError, Wrong};
 use crate::files::Files;
 use crate::findings::{Findings, Severity};
-use crate::floor_plan::{Bitmap, FloorPlan, MAX_FILE_BYTES, ros};
+use crate::floor_plan::{Bitmap, FloorPlan, MAX_FILE_BYTES};
+use crate::ros_map;
 use crate::together::Together;
 use interfaces::{heading_rad, pose};
 use nalgebra::{Point2, Vector2};
@@ -90,7 +91,7 @@ pub(super) fn walls(
 /// no warnings: what is one for a map alone, a key that may be misspelt and change the walls, is an error here.
 fn read_map(source: &Source<'_>, files: &dyn Files, map: &Spanned<String>) -> Result<FloorPlan, WorldError> {
     let mut findings = Findings::default();
-    let plan = ros::read(&beside(source, map), files, &mut findings);
+    let plan = ros_map::read_floor_plan(&beside(source, map), files, &mut findings);
     let mut wrong = Wrong::default();
     for finding in findings.iter().filter(|finding| finding.severity >= Severity::Warning) {
         let line = if finding.line == 0 { String::new() } else { format!("line {}: ", finding.line) };

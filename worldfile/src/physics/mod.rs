@@ -11,14 +11,15 @@ mod footprint;
 mod laser;
 mod numbers;
 mod obstacle;
-mod patrol;
 mod robot;
 mod senses;
+mod sensor;
+mod space;
 #[cfg(test)]
 mod tests;
 
 pub use floor_plan::MAX_PIECES;
-pub use laser::MOST_OUT_M;
+pub use sensor::MOST_OUT_M;
 
 use crate::error::{Source, WorldError};
 use crate::files::{Disk, Files};
@@ -93,7 +94,8 @@ pub fn parse_world_with(name: &str, text: &str, files: &dyn Files) -> Result<Wor
 /// What messages call a world file, and its text.
 fn read(path: &Path) -> Result<(String, String), WorldError> {
     let name = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| WorldError::unreadable(&name, &error))?;
+    let text =
+        std::fs::read_to_string(path).map_err(|error| WorldError::unreadable("world file", &name, &error))?;
     Ok((name, text))
 }
 

@@ -1,17 +1,17 @@
 //! A robot: its body and its odometry.
 
 use super::behavior::Context;
-use super::check::Solid;
 use super::drive::drive;
 use super::file::{OdometryFile, RobotFile};
 use super::footprint::{Footprint, footprint};
 use super::laser::lasers;
 use super::numbers::Table;
 use super::senses;
+use super::space::{Around, Solid};
 use crate::error::{Source, WorldError};
 use crate::together::Together;
 use interfaces::pose;
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Isometry2;
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{DriveKind, DriveLimits, Form, OdometryError, RobotSpec, convex};
 
@@ -23,18 +23,6 @@ const BOUNDLESS: DriveLimits = DriveLimits {
     max_linear_acceleration_mps2: f64::INFINITY,
     max_angular_acceleration_radps2: f64::INFINITY,
 };
-
-/// What a robot is put into. What is wrong in the file is missing here.
-pub(super) struct Around<'a> {
-    pub(super) size: Point2<f64>,
-    pub(super) step_s: f64,
-    /// What stands from the start to the end.
-    pub(super) solids: &'a [Solid],
-    /// What stands at the start but may be gone when a robot comes by.
-    pub(super) movers: &'a [Solid],
-    /// Whether nothing is missing.
-    pub(super) is_whole: bool,
-}
 
 pub(super) fn robot(
     source: &Source<'_>,

@@ -1,8 +1,8 @@
 //! Sensors other than lasers: bumpers, sonars, fiducial finders.
 
 use super::file::{BumperFile, FiducialFile, Number, Pair, SonarFile};
-use super::laser::{mount, period_steps};
 use super::numbers::Table;
+use super::sensor::{mount, period_steps, range};
 use crate::error::{Source, WorldError};
 use crate::together::Together;
 use nalgebra::Isometry2;
@@ -72,24 +72,4 @@ fn place(
     radius_m: f64,
 ) -> Result<Isometry2<f64>, WorldError> {
     mount(table, "a sensor", mount_m, mount_deg, radius_m)
-}
-
-/// The least and the greatest range, m.
-pub(super) fn range(
-    table: &Table<'_>,
-    least: &Option<Number>,
-    most: &Number,
-) -> Result<[f64; 2], WorldError> {
-    let (range_max_m, range_min_m) = (
-        table.number("range_max_m", most, 0.01..=1000.0),
-        table.number_or("range_min_m", least, 0.0, 0.0..=1000.0),
-    )
-        .together()?;
-    if let Some(min) = least.as_ref().filter(|_| range_min_m >= range_max_m) {
-        let marks = [(most.span(), "not below this")];
-        let help = "`range_min_m` must be smaller than `range_max_m`";
-        let what = if table.path == "robot.laser" { "a laser sees nothing" } else { "a sonar hears nothing" };
-        return Err(table.source.error(what, (min.span(), "too far"), &marks, help));
-    }
-    Ok([range_min_m, range_max_m])
 }

@@ -7,8 +7,8 @@ mod tests;
 
 use std::path::Path;
 use viewer::scene::Scene;
-use worldfile::floor_plan::{FloorPlan, ros};
-use worldfile::{Disk, Files, Findings, Severity, shipped};
+use worldfile::floor_plan::FloorPlan;
+use worldfile::{Disk, Files, Findings, Severity, ros_map, shipped};
 
 /// The result for one file.
 #[derive(Clone, Debug, Default)]
@@ -107,7 +107,7 @@ fn stage_file(path: &Path) -> Inspection {
 
 fn ros_file(path: &Path) -> Inspection {
     let mut findings = Findings::default();
-    let plan: Option<FloorPlan> = ros::read(path, &Disk, &mut findings);
+    let plan: Option<FloorPlan> = ros_map::read_floor_plan(path, &Disk, &mut findings);
     found(plan.and_then(|plan| physics::floor_plan(path, &plan)), &findings)
 }
 

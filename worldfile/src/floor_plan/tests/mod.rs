@@ -1,3 +1,2 @@
 mod geometry;
 mod pictures;
-mod ros;

@@ -3,8 +3,8 @@
 use super::Context;
 use crate::error::WorldError;
 use crate::physics::behavior::REPEATS;
-use crate::physics::check::{MAX_TIME_S, Solid, inside};
 use crate::physics::file::{Number, Pair};
+use crate::physics::space::{MAX_TIME_S, Solid, inside};
 use crate::together::Together;
 use nalgebra::{Point2, Vector2};
 use serde_spanned::Spanned;

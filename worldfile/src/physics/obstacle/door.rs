@@ -2,8 +2,8 @@
 
 use super::Context;
 use crate::error::WorldError;
-use crate::physics::check::{MAX_TIME_S, inside};
 use crate::physics::file::Number;
+use crate::physics::space::{MAX_TIME_S, inside};
 use crate::together::Together;
 use serde_spanned::Spanned;
 use sim::physics::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle};

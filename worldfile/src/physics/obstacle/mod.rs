@@ -4,9 +4,9 @@ mod block;
 mod door;
 
 use crate::error::{Source, WorldError};
-use crate::physics::check::{MAX_TIME_S, Solid, inside, upright};
 use crate::physics::file::ObstacleFile;
 use crate::physics::numbers::Table;
+use crate::physics::space::{MAX_TIME_S, Solid, inside, upright};
 use crate::together::Together;
 use nalgebra::Point2;
 use serde_spanned::Spanned;

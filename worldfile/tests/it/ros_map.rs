@@ -1,5 +1,21 @@
-use super::*;
-use interfaces::Cell;
+//! Maps as ROS keeps them: read, written, resampled.
+
+use interfaces::{Cell, CellState, Grid, GridFrame};
+use nalgebra::Point2;
+use std::fs;
+use std::path::Path;
+use worldfile::ros_map::{self, RosMap};
+use worldfile::{Disk, Findings};
+
+fn read(path: &Path) -> Result<RosMap, String> {
+    let mut findings = Findings::default();
+    ros_map::read(path, &Disk, &mut findings).ok_or_else(|| findings.error_text())
+}
+
+fn write(folder: &Path, map: &Grid<CellState>) {
+    fs::write(folder.join("map.pgm"), ros_map::pgm(map)).unwrap();
+    fs::write(folder.join("map.yaml"), ros_map::yaml(map.frame(), "map.pgm")).unwrap();
+}
 
 /// A map drawn with the highest row first: `.` free, `#` blocked, ` ` unknown.
 fn drawn(origin: (f64, f64), resolution_m: f64, rows: &[&str]) -> Grid<CellState> {
@@ -36,14 +52,14 @@ fn folder(yaml: &str, pixels: &[u8]) -> tempfile::TempDir {
 
 fn states(yaml: &str, pixels: &[u8]) -> String {
     let folder = folder(yaml, pixels);
-    let map = RosMap::read(&folder.path().join("map.yaml")).unwrap();
+    let map = read(&folder.path().join("map.yaml")).unwrap();
     draw(&map.cells).concat()
 }
 
 fn refused(yaml: &str) -> String {
     let folder = folder(yaml, &[0, 255]);
     let path = folder.path().join("map.yaml");
-    let error = RosMap::read(&path).unwrap_err().to_string();
+    let error = read(&path).unwrap_err();
     assert!(error.contains(&path.display().to_string()), "{error}");
     error
 }
@@ -52,8 +68,8 @@ fn refused(yaml: &str) -> String {
 fn what_is_written_comes_back() {
     let map = drawn((-1.25, 3.0), 0.25, &["#####", "#.. #", "#.###"]);
     let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), &map).unwrap();
-    let read = RosMap::read(&folder.path().join("map.yaml")).unwrap();
+    write(folder.path(), &map);
+    let read = read(&folder.path().join("map.yaml")).unwrap();
     assert_eq!(read.onto(map.frame()), map);
 }
 
@@ -61,7 +77,7 @@ fn what_is_written_comes_back() {
 fn the_files_are_as_ros_writes_them() {
     let map = drawn((-6.0, 0.5), 0.05, &[".#", " ."]);
     let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), &map).unwrap();
+    write(folder.path(), &map);
     assert_eq!(fs::read(folder.path().join("map.pgm")).unwrap(), b"P5\n2 2\n255\n\xfe\x00\xcd\xfe");
     let yaml = fs::read_to_string(folder.path().join("map.yaml")).unwrap();
     assert_eq!(
@@ -96,14 +112,14 @@ fn a_colour_picture_counts_by_its_mean() {
     let pixels = [[0, 0, 0], [255, 255, 255], [255, 100, 0], [60, 60, 0]].concat();
     let picture = image::RgbImage::from_raw(4, 1, pixels).unwrap();
     picture.save(folder.path().join("map.png")).unwrap();
-    let map = RosMap::read(&folder.path().join("map.yaml")).unwrap();
+    let map = read(&folder.path().join("map.yaml")).unwrap();
     assert_eq!(draw(&map.cells), ["#. #"]);
 }
 
 #[test]
 fn resampling_asks_at_the_middle_of_each_cell() {
     let folder = folder(YAML, &[0, 255, 0]); // x from 1 to 2.5 m, y from −2 to −1.5 m
-    let map = RosMap::read(&folder.path().join("map.yaml")).unwrap();
+    let map = read(&folder.path().join("map.yaml")).unwrap();
     let finer = GridFrame::new(Point2::new(0.75, -2.25), 0.25, 9, 4).unwrap();
     assert_eq!(draw(&map.onto(&finer)), ["         ", " ##..##  ", " ##..##  ", "         "]);
     let coarser = GridFrame::new(Point2::new(0.9, -2.1), 0.7, 2, 1).unwrap(); // middles at 1.25 and 1.95
@@ -114,56 +130,47 @@ fn resampling_asks_at_the_middle_of_each_cell() {
 fn a_turned_map_is_turned_back() {
     // A quarter turn: the picture's columns run upwards from (1, −2).
     let folder = folder(&YAML.replace("-2.0, 0.0]", "-2.0, 1.5707963267948966]"), &[0, 255, 0]);
-    let map = RosMap::read(&folder.path().join("map.yaml")).unwrap();
+    let map = read(&folder.path().join("map.yaml")).unwrap();
     let frame = GridFrame::new(Point2::new(0.0, -2.0), 0.5, 3, 3).unwrap();
     assert_eq!(draw(&map.onto(&frame)), [" # ", " . ", " # "]);
     assert_eq!(map.onto(&frame).get(Cell::new(1, 1)), Some(&CellState::Free));
 }
 
 #[test]
-fn a_value_that_makes_no_sense_is_named_with_what_would_be_right() {
+fn an_invalid_value_is_named_with_a_valid_one() {
     let cases = [
-        (
-            "resolution: 0.5",
-            "resolution: 0",
-            "`resolution` is 0, but must be the side of a pixel in metres, above 0",
-        ),
-        ("resolution: 0.5", "resolution: .inf", "`resolution` is inf, but must be"),
-        ("-2.0, 0.0]", "-2.0, .nan]", "`origin` is [1.0, -2.0, NaN], but must be [x, y, yaw]"),
-        ("negate: 0", "negate: 2", "`negate` is 2, but must be 0 or 1"),
-        (
-            "free_thresh: 0.196",
-            "free_thresh: 0.7",
-            "`free_thresh` is 0.7, but must be between 0 and `occupied_thresh`",
-        ),
-        (
-            "occupied_thresh: 0.65",
-            "occupied_thresh: 65",
-            "`occupied_thresh` is 65, but must be between 0 and 1",
-        ),
-        ("negate: 0", "mode: scale", "`mode` is `scale`, but must be `trinary`"),
+        ("resolution: 0.5", "resolution: 0", "`resolution` is 0", "the side of a pixel in metres"),
+        ("resolution: 0.5", "resolution: .inf", "`resolution` is .inf", "the side of a pixel in metres"),
+        ("-2.0, 0.0]", "-2.0, .nan]", "`origin` is [1.0, -2.0, .nan]", "[x, y, yaw] in m and rad"),
+        ("negate: 0", "negate: 2", "`negate` is 2", "it must be 0 or 1"),
+        ("free_thresh: 0.196", "free_thresh: 0.7", "`free_thresh` is 0.7", "above `occupied_thresh`"),
+        ("occupied_thresh: 0.65", "occupied_thresh: 65", "`occupied_thresh` is 65", "a number from 0 to 1"),
+        ("negate: 0", "mode: fancy", "`mode` is fancy", "`trinary`, `scale` or `raw`"),
+        ("resolution: 0.5", "resolution: abc", "`resolution` is abc", "the side of a pixel in metres"),
+        ("resolution: 0.5\n", "", "the key `resolution` is missing", "the side of a pixel in metres"),
+        ("1.0, -2.0, 0.0", "1.0, -2.0", "`origin` is [1.0, -2.0]", "[x, y, yaw] in m and rad"),
     ];
-    for (from, to, message) in cases {
+    for (from, to, invalid, valid) in cases {
         assert!(YAML.contains(from));
         let error = refused(&YAML.replace(from, to));
-        assert!(error.contains(message), "{error}");
+        assert!(error.contains(invalid) && error.contains(valid), "{error}");
     }
 }
 
 #[test]
-fn a_file_that_is_not_a_map_says_where_and_shows_a_right_one() {
-    let cases = [
-        (YAML.replace("resolution: 0.5", "resolution: abc"), "resolution: abc"),
-        (YAML.replace("resolution: 0.5\n", ""), "missing field `resolution`"),
-        (YAML.replace("1.0, -2.0, 0.0", "1.0, -2.0"), "array of length 3"),
-        (YAML.replace("negate: 0", "negate: maybe"), "`negate` must be 0 or 1"),
-        ("- 1".into(), "line 1"),
-        (String::new(), "unexpected end of input"),
-    ];
-    for (yaml, what) in cases {
-        let error = refused(&yaml);
-        assert!(error.contains(what) && error.contains("`occupied_thresh: 0.65`"), "{error}");
+fn a_file_that_is_not_a_map_says_where_and_shows_a_valid_one() {
+    for yaml in ["- 1", "image: ["] {
+        let error = refused(yaml);
+        assert!(error.contains("map.yaml:1") && error.contains("`occupied_thresh: 0.65`"), "{error}");
     }
+}
+
+#[test]
+fn an_unknown_key_is_a_warning() {
+    let folder = folder(&format!("{YAML}free_tresh: 0.2\n"), &[0, 255]);
+    let mut findings = Findings::default();
+    assert!(ros_map::read(&folder.path().join("map.yaml"), &Disk, &mut findings).is_some());
+    assert_eq!((findings.warnings(), findings.errors()), (1, 0));
 }
 
 #[test]
@@ -172,8 +179,8 @@ fn a_missing_or_damaged_picture_is_named() {
     assert!(error.contains("none.pgm") && error.contains("No such file"), "{error}");
     let error = refused(&YAML.replace("map.pgm", "map.yaml"));
     assert!(error.contains("cannot read the picture"), "{error}");
-    let error = RosMap::read(Path::new("no/map.yaml")).unwrap_err().to_string();
-    assert!(error.starts_with("cannot read no/map.yaml: "), "{error}");
+    let error = read(Path::new("no/map.yaml")).unwrap_err();
+    assert!(error.starts_with("no/map.yaml: cannot read this file: "), "{error}");
 }
 
 #[test]
@@ -181,7 +188,7 @@ fn an_absurd_picture_is_refused_by_its_header() {
     let folder = folder(YAML, &[]);
     for size in ["100000 100000", "4294967295 4294967295", "0 0"] {
         fs::write(folder.path().join("map.pgm"), format!("P5\n{size}\n255\n")).unwrap();
-        let error = RosMap::read(&folder.path().join("map.yaml")).unwrap_err().to_string();
+        let error = read(&folder.path().join("map.yaml")).unwrap_err();
         assert!(error.contains("cannot read the picture"), "{error}");
     }
 }

@@ -1,11 +1,11 @@
 //! What a robot does by itself.
 
-use super::check::Solid;
-use super::file::{BehaviourFile, RobotFile};
-use super::numbers::Table;
-use super::patrol;
-use super::robot::Around;
+mod patrol;
+
 use crate::error::{Source, WorldError};
+use crate::physics::file::{BehaviourFile, RobotFile};
+use crate::physics::numbers::Table;
+use crate::physics::space::{Around, Solid};
 use crate::together::Together;
 use nalgebra::Point2;
 use serde_spanned::Spanned;

@@ -1,9 +1,9 @@
 //! A patrol must be possible.
 
-use super::behavior::Context;
-use super::check::Solid;
-use super::file::{BehaviourFile, Pair, RobotFile};
+use super::Context;
 use crate::error::{Source, WorldError};
+use crate::physics::file::{BehaviourFile, Pair, RobotFile};
+use crate::physics::space::Solid;
 use crate::together::Together;
 use nalgebra::{Point2, Vector2};
 use sim::physics::shape::{TOUCH_M, point_segment_m};

@@ -1,4 +1,4 @@
-//! Maps of the `map_server` of ROS as floor plans.
+//! Occupancy maps as the `map_server` of ROS keeps them: a gray picture and a YAML file.
 //!
 //! | key | meaning |
 //! |---|---|
@@ -11,17 +11,23 @@
 //! | `mode` | `trinary` (default), `scale`, or `raw` |
 //!
 //! p = (255 − v)/255 for a pixel of brightness v, or v/255 with `negate`. In the mode `raw` the
-//! pixel is p in percent, and above 100 unknown; in `scale` a transparent pixel is unknown. What is
-//! unknown is taken as free, with a note that counts it: most maps have such pixels.
+//! pixel is p in percent, and above 100 unknown; in `scale` a transparent pixel is unknown.
+//!
+//! ROS ignores other keys. Here they are a warning: a misspelled key would change the map.
 
-use super::{Bitmap, FloorPlan, MAX_FILE_BYTES, Pixel};
+#[cfg(test)]
+mod tests;
+mod write;
+
+pub use write::{pgm, yaml};
+
 use crate::files::Files;
 use crate::findings::{Findings, Severity, SourceText};
-use interfaces::pose;
-use nalgebra::Vector2;
+use crate::floor_plan::{Bitmap, FloorPlan, MAX_FILE_BYTES, Pixel, Raster};
+use interfaces::{CellState, Grid, GridFrame, pose};
+use nalgebra::{Isometry2, Point2, Vector2};
 use serde::Deserialize;
 use serde_saphyr::Spanned;
-use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
@@ -33,9 +39,58 @@ const MAX_YAML_BYTES: u64 = 1 << 20;
 const EXAMPLE: &str = "a map has e.g. `image: map.pgm`, `resolution: 0.05`, `origin: [-6.0, -6.0, 0.0]`, \
                        `negate: 0`, `occupied_thresh: 0.65`, `free_thresh: 0.196`";
 
-/// Reads a `map.yaml` and the picture that it names. Without a plan there are errors among the
-/// findings.
-pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<FloorPlan> {
+/// A map with its pose in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RosMap {
+    /// The state of every pixel, in a frame whose lower left corner is the origin.
+    pub cells: Grid<CellState>,
+    /// The pose of that frame in the world.
+    pub origin: Isometry2<f64>,
+}
+
+impl RosMap {
+    /// The state of the map at the center of every cell of `frame`; unknown beyond the border of the map. The
+    /// cells of the map may have another size and another orientation.
+    pub fn onto(&self, frame: &GridFrame) -> Grid<CellState> {
+        let to_map = self.origin.inverse();
+        let states = (0..frame.len()).map(|index| {
+            let at = to_map * frame.center(frame.cell(index));
+            self.cells.get(self.cells.frame().cell_at(&at)).copied().unwrap_or_default()
+        });
+        let mut grid = Grid::filled(*frame, CellState::Unknown);
+        grid.cells_mut().iter_mut().zip(states).for_each(|(cell, state)| *cell = state);
+        grid
+    }
+}
+
+/// Reads a `map.yaml` and the picture that it names as a floor plan, in which unknown pixels are free, with a note
+/// that counts them. Without a plan there are errors among the findings.
+pub fn read_floor_plan(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<FloorPlan> {
+    let map = read(yaml, files, findings)?;
+    let states = map.cells.cells();
+    let unknown = states.iter().filter(|state| **state == CellState::Unknown).count();
+    if unknown > 0 {
+        let what = format!("{unknown} of the {} pixels are unknown", states.len());
+        let help = "they are taken as free: no walls, and lasers look through";
+        findings.add_file(Severity::Note, yaml, &what, help);
+    }
+    let frame = map.cells.frame();
+    let blocked = states.iter().map(|state| *state == CellState::Blocked).collect();
+    match Bitmap::new(frame.width() as u32, frame.height() as u32, blocked) {
+        Ok(bitmap) => {
+            let pixel_m = Vector2::repeat(frame.resolution_m());
+            Some(FloorPlan { bitmap: Arc::new(bitmap), pixel_m, origin: map.origin })
+        }
+        Err(error) => {
+            let help = "take a map with smoother walls";
+            findings.add_file(Severity::Error, yaml, &format!("this map makes no walls: {error}"), help);
+            None
+        }
+    }
+}
+
+/// Reads a `map.yaml` and the picture that it names. Without a map there are errors among the findings.
+pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<RosMap> {
     let bytes = match files.read(yaml, MAX_YAML_BYTES) {
         Ok(bytes) => bytes,
         Err(error) => {
@@ -61,9 +116,9 @@ pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<F
         }
     };
     let mut keys = Keys { source: &source, values, findings };
-    let plan = keys.plan(yaml, files);
+    let map = keys.map(yaml, files);
     keys.warn_of_others();
-    plan
+    map
 }
 
 /// Anything that a key may have.
@@ -92,28 +147,23 @@ enum Mode {
     Raw,
 }
 
-#[derive(PartialEq)]
-enum State {
-    Blocked,
-    Free,
-    Unknown,
-}
-
 impl Rule {
-    fn state(&self, pixel: Pixel) -> State {
-        let bright = if self.negate { 1.0 - pixel.brightness() } else { pixel.brightness() };
+    fn state(&self, pixel: Pixel) -> CellState {
+        // The brightness in ROS's scale, from 0 to 255; rounded, since thresholds are strict.
+        let level = (pixel.brightness() * 255e9).round() / 1e9;
+        let dark = if self.negate { level } else { 255.0 - level };
         let p = match self.mode {
-            Mode::Scale if pixel.alpha == 0.0 => return State::Unknown,
-            Mode::Trinary | Mode::Scale => 1.0 - bright,
-            Mode::Raw if (bright * 255.0).round() > 100.0 => return State::Unknown,
-            Mode::Raw => bright * 255.0 / 100.0,
+            Mode::Scale if pixel.alpha == 0.0 => return CellState::Unknown,
+            Mode::Trinary | Mode::Scale => dark / 255.0,
+            Mode::Raw if (255.0 - dark).round() > 100.0 => return CellState::Unknown,
+            Mode::Raw => (255.0 - dark) / 100.0,
         };
         if p > self.occupied {
-            State::Blocked
+            CellState::Blocked
         } else if p < self.free {
-            State::Free
+            CellState::Free
         } else {
-            State::Unknown
+            CellState::Unknown
         }
     }
 }
@@ -126,7 +176,7 @@ struct Keys<'a> {
 }
 
 impl Keys<'_> {
-    fn plan(&mut self, yaml: &Path, files: &dyn Files) -> Option<FloorPlan> {
+    fn map(&mut self, yaml: &Path, files: &dyn Files) -> Option<RosMap> {
         // All of them, so that all that is wrong is said at once.
         let image = self.text("image", "the name of a picture, as in `image: map.pgm`");
         let resolution =
@@ -139,36 +189,25 @@ impl Keys<'_> {
         let rule = self.rule(negate, occupied, free, mode);
         let (image, image_place) = image?;
         let path = yaml.parent().unwrap_or(Path::new("")).join(image);
-        let unknown = Cell::new(0_u64);
-        let is_blocked = |pixel| {
-            let state = rule.as_ref().map(|rule| rule.state(pixel));
-            unknown.set(unknown.get() + u64::from(state == Some(State::Unknown)));
-            state == Some(State::Blocked)
-        };
-        let bitmap = files
+        let raster = files
             .read(&path, MAX_FILE_BYTES)
             .map_err(|error| error.to_string())
-            .and_then(|bytes| Bitmap::decode(&bytes, is_blocked).map_err(|error| error.to_string()));
-        let bitmap = match bitmap {
-            Ok(bitmap) => bitmap,
+            .and_then(|bytes| Raster::decode(&bytes).map_err(|error| error.to_string()));
+        let raster = match raster {
+            Ok(raster) => raster,
             Err(error) => {
                 let what = format!("cannot read the picture {}: {error}", path.display());
                 self.error(&what, image_place, "`image` names a PNG or PGM picture, relative to this file");
                 return None;
             }
         };
-        let (resolution, origin, _) = (resolution?.0, origin?, rule?);
-        if unknown.get() > 0 {
-            let pixels = u64::from(bitmap.width()) * u64::from(bitmap.height());
-            let what = format!("{} of the {pixels} pixels are unknown", unknown.get());
-            let help = "they are taken as free: no walls, and lasers look through";
-            self.findings.add(Severity::Note, self.source, &what, (image_place, "in this picture"), help);
-        }
-        Some(FloorPlan {
-            bitmap: Arc::new(bitmap),
-            pixel_m: Vector2::repeat(resolution),
-            origin: pose(origin[0], origin[1], origin[2]),
-        })
+        let (resolution_m, origin, rule) = (resolution?.0, origin?, rule?);
+        let (width, height) = (raster.width as usize, raster.height as usize);
+        let frame = GridFrame::new(Point2::origin(), resolution_m, width, height)?;
+        let rows = (0..raster.height).rev();
+        let states = rows.flat_map(|y| raster.row(y).map(|pixel| rule.state(pixel)).collect::<Vec<_>>());
+        let cells = Grid::from_cells(frame, states.collect())?;
+        Some(RosMap { cells, origin: pose(origin[0], origin[1], origin[2]) })
     }
 
     /// How pixels become states, if all that says so is right.
