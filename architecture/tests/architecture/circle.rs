@@ -4,10 +4,6 @@ use crate::modules::Modules;
 use crate::workspace::packages;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Circles that are not yet removed; the list only shrinks. A line holds the module that contains the
-/// circle, then the modules of the circle.
-const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/architecture/known_circles.txt");
-
 /// Sibling modules each of which uses each other one.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Circle {
@@ -79,27 +75,13 @@ impl Circle {
             self.uses.iter().map(|((user, defines), path)| format!("    {user} -> {defines}: {path}\n"));
         format!("{self}\n{}", uses.collect::<String>())
     }
-
-    fn is_within(&self, known: &str) -> bool {
-        let Some((parent, modules)) = known.split_once(": ") else { return false };
-        let modules: BTreeSet<&str> = modules.split_whitespace().collect();
-        self.parent == parent && self.modules.iter().all(|name| modules.contains(name.as_str()))
-    }
 }
 
 #[test]
 fn no_circles_between_sibling_modules() {
     let targets = packages().into_iter().flat_map(|package| package.targets);
-    let circles: Vec<Circle> =
-        targets.flat_map(|(name, root)| circles(&Modules::read(&name, &root))).collect();
-    let known = std::fs::read_to_string(KNOWN).unwrap();
-    let known: Vec<&str> = known.lines().filter(|line| !line.starts_with('#')).collect();
-    let mut errors = String::new();
-    for circle in circles.iter().filter(|circle| !known.iter().any(|known| circle.is_within(known))) {
-        errors += &format!("a circle between modules: {}", circle.explained());
-    }
-    for known in known.iter().filter(|known| !circles.iter().any(|circle| circle.is_within(known))) {
-        errors += &format!("this circle is gone, remove it from known_circles.txt: {known}\n");
-    }
+    let circles = targets.flat_map(|(name, root)| circles(&Modules::read(&name, &root)));
+    let errors: String =
+        circles.map(|circle| format!("a circle between modules: {}", circle.explained())).collect();
     assert!(errors.is_empty(), "{errors}");
 }
