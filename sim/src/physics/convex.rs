@@ -1,7 +1,7 @@
 //! Convex bodies by their corners, counter-clockwise, m.
 
 use super::shape::point_segment_m;
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 /// The gap between two convex bodies, m, across the side that separates them best: at most their distance, and
 /// negative if they overlap.
@@ -14,6 +14,13 @@ pub fn disc_gap_m(body: &[Point2<f64>], center: &Point2<f64>, radius_m: f64) -> 
     let inside_m = beyond_m(body, &[*center]);
     let border_m = sides(body).map(|(from, to)| point_segment_m(center, from, to));
     if inside_m < 0.0 { inside_m - radius_m } else { border_m.fold(f64::INFINITY, f64::min) - radius_m }
+}
+
+/// The radius of a circle within a convex body, m.
+pub fn inner_m(body: &[Point2<f64>]) -> f64 {
+    let middle: Vector2<f64> =
+        body.iter().map(|corner| corner.coords).sum::<Vector2<f64>>() / body.len() as f64;
+    -disc_gap_m(body, &middle.into(), 0.0)
 }
 
 /// The largest distance, over the sides of `body`, by which all `points` lie outside of the side, m.

@@ -1,5 +1,5 @@
 use super::convex;
-use nalgebra::{Isometry2, Point2};
+use nalgebra::{Isometry2, Point2, Vector2};
 
 /// The outline of a robot at a pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,11 +51,29 @@ impl Form {
         }
     }
 
+    /// The radius of a circle within the body, m.
+    pub fn inner_m(&self) -> f64 {
+        match self {
+            Self::Disc { radius_m, .. } => *radius_m,
+            Self::Convex(corners) => convex::inner_m(corners),
+        }
+    }
+
+    /// How far the body reaches from the origin in a direction, m.
+    pub fn extent_m(&self, direction: &Vector2<f64>) -> f64 {
+        match self {
+            Self::Disc { center, radius_m } => center.coords.dot(direction) + radius_m,
+            Self::Convex(corners) => {
+                corners.iter().map(|corner| corner.coords.dot(direction)).fold(f64::NEG_INFINITY, f64::max)
+            }
+        }
+    }
+
     /// The corners of the upright box around the outline, m.
     pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
         match self {
             Self::Disc { center, radius_m } => {
-                let reach = nalgebra::Vector2::repeat(*radius_m);
+                let reach = Vector2::repeat(*radius_m);
                 (center - reach, center + reach)
             }
             Self::Convex(corners) => {

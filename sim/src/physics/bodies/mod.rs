@@ -10,6 +10,7 @@ pub(super) use movers::Mover;
 pub(super) use touch::Touch;
 
 use super::command::Velocity;
+use super::convex;
 use super::report::Body;
 use super::shape::Rectangle;
 use super::snapshot::{Values, value};
@@ -23,17 +24,30 @@ use serde::{Deserialize, Serialize};
 const MAX_MOVER_M: f64 = 0.125;
 /// The largest motion of a corner in a step that contacts are predicted for, m: a longer motion is not straight.
 const MAX_TURN_M: f64 = 0.25;
+/// What rounding adds to the motion of a step, m.
+const ROUNDING_M: f64 = 1e-4;
 
 /// All bodies: walls, obstacles and robots.
 pub(super) struct Bodies {
     world: rapier::PhysicsWorld,
     robots: Vec<Robot>,
-    /// Robots and pushed obstacles, with their poses before the last step.
-    free: Vec<(rapier::RigidBodyHandle, rapier::Pose)>,
+    /// Robots and pushed obstacles.
+    free: Vec<Free>,
     /// The body that pushed boxes have friction with.
     floor: Option<rapier::RigidBodyHandle>,
-    /// Whether contacts are predicted over the same distance for all bodies, and not by the velocity of each.
-    predicts_for_all: bool,
+    /// The motion in a step that contacts are predicted for, m, for all bodies; `None`: by the velocity of each.
+    predicted_m: Option<f64>,
+}
+
+/// A body that contacts move.
+#[derive(Clone, Copy)]
+struct Free {
+    body: rapier::RigidBodyHandle,
+    /// The pose before the last step.
+    before: rapier::Pose,
+    /// The longest motion in a step, m, for which it is enough to look at its end: contacts are predicted over it, and
+    /// no body passes through another one in it.
+    reach_m: f64,
 }
 
 #[derive(Clone)]
@@ -67,7 +81,7 @@ impl Clone for Bodies {
             robots: self.robots.clone(),
             free: self.free.clone(),
             floor: self.floor,
-            predicts_for_all: self.predicts_for_all,
+            predicted_m: self.predicted_m,
         }
     }
 }
@@ -77,21 +91,15 @@ impl Bodies {
     pub(super) fn new(spec: &FleetSpec) -> Self {
         let mut world = rapier::PhysicsWorld { gravity: rapier::Vector::ZERO, ..Default::default() };
         world.integration_parameters.dt = spec.step_s as f32;
-        let prediction_m = prediction_m(spec);
-        if let Some(prediction_m) = prediction_m {
-            let parameters = &mut world.integration_parameters;
-            parameters.normalized_prediction_distance =
-                parameters.normalized_prediction_distance.max(prediction_m);
+        let predicted_m = predicted_m(spec);
+        if let Some(predicted_m) = predicted_m {
+            // Twice: two bodies may move towards each other.
+            let distance_m = &mut world.integration_parameters.normalized_prediction_distance;
+            *distance_m = distance_m.max((2.0 * predicted_m) as f32);
         }
         // Distances of contacts are read at every step, so they must be up to date.
         world.integration_parameters.contact_recycling = false;
-        Self {
-            world,
-            robots: Vec::new(),
-            free: Vec::new(),
-            floor: None,
-            predicts_for_all: prediction_m.is_some(),
-        }
+        Self { world, robots: Vec::new(), free: Vec::new(), floor: None, predicted_m }
     }
 
     /// The values that a snapshot holds. The same bodies must have been added before.
@@ -130,15 +138,24 @@ impl Bodies {
         };
         // Contacts are predicted over the motion of a step, so that a fast robot does not enter a wall. (rapier
         // would leave out those that a body does not drive into by itself.)
-        let own_motion_m = if self.predicts_for_all { 0.0 } else { 2.0 * spec.drive.fastest_mps() * step_s };
+        let own_motion_m = spec.drive.fastest_mps() * step_s;
+        let own_prediction_m = if self.predicted_m.is_some() { 0.0 } else { 2.0 * own_motion_m };
         let body = rapier::RigidBodyBuilder::dynamic()
             .pose(to_rapier(&spec.pose))
             .can_sleep(false)
-            .soft_ccd_prediction(own_motion_m as f32);
+            .soft_ccd_prediction(own_prediction_m as f32);
         let body = if is_round { body } else { body.additional_mass_properties(disc_mass(spec)) };
         let (body, collider) = self.world.insert(body, collider);
-        self.free.push((body, to_rapier(&spec.pose)));
+        let inner_m = if is_round { spec.radius_m } else { convex::inner_m(&spec.corners) };
+        self.add_free(body, inner_m, self.predicted_m.unwrap_or(own_motion_m));
         self.robots.push(Robot { body, collider, forward: Vector2::x() });
+    }
+
+    /// Notes a body that contacts move, around a disc of `inner_m`.
+    fn add_free(&mut self, body: rapier::RigidBodyHandle, inner_m: f64, predicted_m: f64) {
+        // Half of it: the other body may move as well.
+        let reach_m = (inner_m / 2.0).min(predicted_m + ROUNDING_M);
+        self.free.push(Free { body, before: *self.world.bodies[body].position(), reach_m });
     }
 
     /// Sets the velocity of a robot for the next step: along the heading in the middle of the step, so that
@@ -155,8 +172,8 @@ impl Bodies {
 
     /// Lets one step pass.
     pub(super) fn step(&mut self) {
-        for (body, was) in &mut self.free {
-            *was = *self.world.bodies[*body].position();
+        for Free { body, before, .. } in &mut self.free {
+            *before = *self.world.bodies[*body].position();
         }
         self.world.step();
         self.resolve_penetration();
@@ -188,10 +205,10 @@ impl Bodies {
     }
 }
 
-/// The distance over which contacts are predicted for all bodies, m. `None`: the velocity of each body is
+/// The motion in a step that contacts are predicted for, for all bodies, m. `None`: the velocity of each body is
 /// enough. It is not enough where obstacles move (a pushed box moves as robots drive) or robots have corners
 /// (which move as the robot turns).
-fn prediction_m(spec: &FleetSpec) -> Option<f32> {
+fn predicted_m(spec: &FleetSpec) -> Option<f64> {
     let has_movers = spec.obstacles.iter().any(|obstacle| !matches!(obstacle.motion, Motion::Fixed));
     if !has_movers && spec.robots.iter().all(|robot| robot.corners.is_empty()) {
         return None;
@@ -201,9 +218,7 @@ fn prediction_m(spec: &FleetSpec) -> Option<f32> {
         let turn_m = (turn_radps * robot.radius_m * spec.step_s).min(MAX_TURN_M);
         robot.drive.fastest_mps() * spec.step_s + turn_m
     });
-    let farthest_m = motions_m.fold(if has_movers { MAX_MOVER_M } else { 0.0 }, f64::max);
-    // Twice: two bodies may move towards each other.
-    Some((2.0 * farthest_m) as f32)
+    Some(motions_m.fold(if has_movers { MAX_MOVER_M } else { 0.0 }, f64::max))
 }
 
 /// The mass of a disc about the centre of a robot.

@@ -46,7 +46,7 @@ impl Bodies {
         let collider = cuboid(body, shape).mass(pushed.mass_kg as f32);
         let body = rapier::RigidBodyBuilder::dynamic().pose(to_rapier(&shape.pose));
         let body = self.world.insert(body, collider).0;
-        self.free.push((body, to_rapier(&shape.pose)));
+        self.add_free(body, shape.half_m.min(), self.predicted_m.unwrap_or(0.0));
         let mut mover = Mover { body, friction: None };
         let weight_n = pushed.friction * pushed.mass_kg * GRAVITY_MPS2;
         if weight_n > 0.0 {

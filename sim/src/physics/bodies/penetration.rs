@@ -2,18 +2,24 @@
 //!
 //! rapier detects contacts at the begin of a step and approximates velocities that keep the bodies apart.
 //! Where heavy bodies press light ones together, or where corners turn, that is not enough. Bodies that
-//! penetrate each other are then shifted apart. Where there is no room to shift, they do a part of their step
-//! or none of it. They did not penetrate each other before the step, so the method terminates.
+//! penetrate each other are then shifted apart, each to the side where it was before the step. Where there is no
+//! room to shift, they do a part of their step or none of it. They did not penetrate each other before the step, so
+//! the method terminates.
+//!
+//! A small or thin body may pass through another one within a step. So a step counts as a straight path, of which
+//! as many poses are looked at as it takes to find the bodies in each other on the way.
 
-use super::{Bodies, from_rapier};
+use super::{Bodies, Free, MAX_MOVER_M, from_rapier};
 use crate::physics::form::Form;
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use rapier2d::parry::query::contact;
 use rapier2d::prelude as rapier;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The penetration that is allowed, m. A deeper one is reduced to half of this.
 const DEPTH_M: f64 = 0.005;
+/// A penetration that is allowed for the thinnest bodies as well, m.
+const SHALLOW_M: f64 = 0.0002;
 /// The largest number of rounds of shifting.
 const ROUNDS: usize = 16;
 /// The number of first rounds in which bodies are shifted by the inverse of their mass. A light body between
@@ -21,69 +27,197 @@ const ROUNDS: usize = 16;
 const WEIGHTED_ROUNDS: usize = 4;
 /// The shares of its step that a body keeps, tried in this order until there is room.
 const SHARES: [f32; 4] = [0.5, 0.25, 0.125, 0.0];
+/// The largest number of poses on a path that are looked at.
+const MOST_POSES: f64 = 1000.0;
+/// A distance that no two bodies exceed, m.
+const ANY_DISTANCE_M: f32 = 1e6;
 
 /// Two colliders that may touch.
 type Pair = [rapier::ColliderHandle; 2];
 /// Values for bodies, by the raw parts of their handles.
 type PerBody<T> = BTreeMap<(u32, u32), T>;
 
-/// The poses in a step with penetration.
+/// A step with penetration.
 struct Step {
     /// The poses of free bodies before the step.
     before: PerBody<rapier::Pose>,
     /// The bodies that were shifted or put back: the pose without being put back, and how often the body was
     /// put back.
     changed: PerBody<(rapier::Pose, usize)>,
+    /// The pairs that may penetrate each other, and the same by the raw parts of their handles.
+    pairs: Vec<Pair>,
+    known: BTreeSet<[(u32, u32); 2]>,
+}
+
+impl Step {
+    fn add(&mut self, pair: Pair) {
+        let mut key = pair.map(|collider| collider.into_raw_parts());
+        key.sort_unstable();
+        if self.known.insert(key) {
+            self.pairs.push(pair);
+        }
+    }
 }
 
 impl Bodies {
-    /// Separates all bodies that penetrate each other by more than allowed, after a step.
+    /// Separates all bodies that penetrate each other by more than allowed, or passed through each other, in a
+    /// step.
     pub(super) fn resolve_penetration(&mut self) {
-        let mut deep = self.penetrating();
-        if deep.is_empty() {
+        let quick: Vec<rapier::RigidBodyHandle> = self
+            .free
+            .iter()
+            .filter(|free| self.motion_m(free) > free.reach_m)
+            .map(|free| free.body)
+            .collect();
+        if quick.is_empty() && !self.touching().any(|pair| self.is_too_deep(pair, self.gap_m(pair))) {
             return;
         }
-        let before = self.free.iter().map(|(body, before)| (body.into_raw_parts(), *before)).collect();
-        let mut step = Step { before, changed: BTreeMap::new() };
+        let before = self.free.iter().map(|free| (free.body.into_raw_parts(), free.before)).collect();
+        let mut step = Step { before, changed: BTreeMap::new(), pairs: Vec::new(), known: BTreeSet::new() };
+        self.touching().for_each(|pair| step.add(pair));
+        self.add_near(&quick, &mut step);
+        let mut deep = self.violating(&step);
         for round in 0..ROUNDS {
+            let mut shifted = Vec::new();
             for (pair, _) in &deep {
-                self.shift_apart(*pair, round < WEIGHTED_ROUNDS, &mut step);
+                shifted.extend(self.shift_apart(*pair, round < WEIGHTED_ROUNDS, &mut step));
             }
-            deep = self.penetrating();
+            self.add_near(&shifted, &mut step);
+            deep = self.violating(&step);
             if deep.is_empty() {
                 break;
             }
         }
         loop {
             let is_put_back = deep.iter().fold(false, |any, (pair, gap_m)| {
-                let is_deeper = self.gap_m(*pair, Some(&step.before)) > *gap_m;
+                let is_deeper = self.gap_on_path_m(*pair, 0.0, &step) > *gap_m;
                 any | (is_deeper && pair.map(|collider| self.put_back(collider, &mut step)).contains(&true))
             });
             if !is_put_back {
                 return self.slow_down(&step);
             }
-            deep = self.penetrating();
+            deep = self.violating(&step);
         }
     }
 
-    /// All pairs of bodies that penetrate each other by more than allowed, with the gap between them, m. Not
-    /// only the pairs that rapier found touching: rapier misses some polygons side by side.
-    fn penetrating(&self) -> Vec<(Pair, f64)> {
-        let pairs = self.world.narrow_phase.contact_pairs().map(|pair| [pair.collider1, pair.collider2]);
-        pairs.map(|pair| (pair, self.gap_m(pair, None))).filter(|(_, gap_m)| *gap_m < -DEPTH_M).collect()
+    /// How far a body moved in the step, m, in its centre or at its border.
+    fn motion_m(&self, free: &Free) -> f64 {
+        let body = &self.world.bodies[free.body];
+        let turned_rad = free.before.rotation.angle_between(&body.position().rotation).abs();
+        let radius_m = if turned_rad > 0.0 { self.radius_m(free.body) } else { 0.0 };
+        let moved_m = (body.position().translation - free.before.translation).length();
+        f64::from(moved_m + turned_rad * radius_m)
     }
 
-    /// The gap between two bodies, m, now or at the poses `before`.
-    fn gap_m(&self, pair: Pair, before: Option<&PerBody<rapier::Pose>>) -> f64 {
-        let [a, b] = pair.map(|collider| self.form(collider, before));
+    /// The radius of a circle around the origin of a body that holds the body, m.
+    fn radius_m(&self, body: rapier::RigidBodyHandle) -> f32 {
+        let colliders = self.world.bodies[body].colliders();
+        colliders.first().map_or(0.0, |collider| {
+            let around = self.world.colliders[*collider].shape().compute_local_bounding_sphere();
+            around.center.length() + around.radius
+        })
+    }
+
+    /// All pairs of bodies that rapier found near to each other. Not only those that rapier found touching: rapier
+    /// misses some polygons side by side.
+    fn touching(&self) -> impl Iterator<Item = Pair> {
+        self.world.narrow_phase.contact_pairs().map(|pair| [pair.collider1, pair.collider2])
+    }
+
+    /// Adds all pairs with bodies that moved farther than contacts were predicted for.
+    fn add_near(&self, bodies: &[rapier::RigidBodyHandle], step: &mut Step) {
+        if bodies.is_empty() {
+            return;
+        }
+        let world = &self.world;
+        let query = world.broad_phase.as_query_pipeline(
+            world.narrow_phase.query_dispatcher(),
+            &world.bodies,
+            &world.colliders,
+            rapier::QueryFilter::default(),
+        );
+        // The query knows where the others were before the step.
+        let motions_m = self.free.iter().map(|free| self.motion_m(free));
+        let farthest_m = motions_m.fold(MAX_MOVER_M, f64::max) as f32;
+        for body in bodies {
+            let Some(own) = world.bodies[*body].colliders().first() else { continue };
+            let shape = world.colliders[*own].shape();
+            let now = shape.compute_aabb(world.bodies[*body].position());
+            let before = shape.compute_aabb(&step.before[&body.into_raw_parts()]);
+            let around = rapier::BoundingVolume::merged(&now, &before);
+            let around = rapier::BoundingVolume::loosened(&around, farthest_m);
+            let others = query.intersect_aabb_conservative(around).map(|(other, _)| other);
+            let mut others: Vec<_> = others.filter(|other| other != own).collect();
+            others.sort_unstable_by_key(|other| other.into_raw_parts());
+            others.into_iter().for_each(|other| step.add([*own, other]));
+        }
+    }
+
+    /// All pairs of bodies that penetrate each other by more than allowed somewhere on their path, with the least gap
+    /// between them, m.
+    fn violating(&self, step: &Step) -> Vec<(Pair, f64)> {
+        let gaps = step.pairs.iter().map(|pair| (*pair, self.least_gap_m(*pair, step)));
+        gaps.filter(|(pair, gap_m)| self.is_too_deep(*pair, *gap_m)).collect()
+    }
+
+    fn is_too_deep(&self, pair: Pair, gap_m: f64) -> bool {
+        gap_m < -SHALLOW_M && gap_m < -self.allowed_m(pair)
+    }
+
+    /// The penetration that is allowed between two bodies, m: so little that it shows from which side they met.
+    fn allowed_m(&self, pair: Pair) -> f64 {
+        DEPTH_M.min(self.inner_m(pair) / 2.0)
+    }
+
+    /// The larger one of the radii of the circles within two bodies, m.
+    fn inner_m(&self, pair: Pair) -> f64 {
+        let inner_m = |collider| self.form(collider, &rapier::Pose::IDENTITY).inner_m();
+        pair.map(inner_m).into_iter().fold(0.0, f64::max)
+    }
+
+    /// The least gap between two bodies on their path, m.
+    fn least_gap_m(&self, pair: Pair, step: &Step) -> f64 {
+        let motions_m = pair.map(|collider| self.path_m(collider, step));
+        let all_m = motions_m[0] + motions_m[1];
+        // No pose between is skipped in which the bodies are too deep in each other: see `allowed_m`.
+        let poses =
+            if all_m == 0.0 { 1.0 } else { (all_m / self.inner_m(pair)).ceil().clamp(1.0, MOST_POSES) };
+        let gaps_m = (1..=poses as usize).map(|pose| self.gap_on_path_m(pair, pose as f64 / poses, step));
+        gaps_m.fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far a body comes in the step, m.
+    fn path_m(&self, collider: rapier::ColliderHandle, step: &Step) -> f64 {
+        let Some(body) = self.world.colliders[collider].parent() else { return 0.0 };
+        let Some(before) = step.before.get(&body.into_raw_parts()) else { return 0.0 };
+        self.motion_m(&Free { body, before: *before, reach_m: 0.0 })
+    }
+
+    /// The gap between two bodies now, m.
+    fn gap_m(&self, pair: Pair) -> f64 {
+        let [a, b] = pair.map(|collider| self.form(collider, self.world.colliders[collider].position()));
         a.apart_m(&b)
     }
 
-    fn form(&self, collider: rapier::ColliderHandle, before: Option<&PerBody<rapier::Pose>>) -> Form {
+    /// The gap between two bodies at a share of the step, m.
+    fn gap_on_path_m(&self, pair: Pair, share: f64, step: &Step) -> f64 {
+        let [a, b] = pair.map(|collider| self.form(collider, &self.pose_at(collider, share, step)));
+        a.apart_m(&b)
+    }
+
+    /// The pose of a body at a share of the step.
+    fn pose_at(&self, collider: rapier::ColliderHandle, share: f64, step: &Step) -> rapier::Pose {
         let collider = &self.world.colliders[collider];
-        let before =
-            collider.parent().zip(before).and_then(|(body, before)| before.get(&body.into_raw_parts()));
-        let shape = collider.shape();
+        let before = collider.parent().and_then(|body| step.before.get(&body.into_raw_parts()));
+        match before {
+            Some(before) if share < 1.0 => before.lerp(collider.position(), share as f32),
+            _ => *collider.position(),
+        }
+    }
+
+    /// The outline of a body at a pose.
+    fn form(&self, collider: rapier::ColliderHandle, pose: &rapier::Pose) -> Form {
+        let shape = self.world.colliders[collider].shape();
         let corners = match (shape.as_cuboid(), shape.as_convex_polygon()) {
             (Some(rectangle), _) => rectangle.to_polyline(),
             (_, Some(polygon)) => polygon.points().to_vec(),
@@ -92,33 +226,53 @@ impl Bodies {
         let corners: Vec<_> =
             corners.iter().map(|corner| Point2::new(f64::from(corner.x), f64::from(corner.y))).collect();
         let radius_m = shape.as_ball().map_or(0.0, |disc| f64::from(disc.radius));
-        Form::new(&corners, radius_m, &from_rapier(before.unwrap_or(collider.position())))
+        Form::new(&corners, radius_m, &from_rapier(pose))
     }
 
-    /// Shifts two bodies apart along the normal of their contact.
-    fn shift_apart(&mut self, pair: Pair, is_weighted: bool, step: &mut Step) {
-        let [a, b] = pair.map(|collider| &self.world.colliders[collider]);
-        let Ok(Some(contact)) = contact(a.position(), a.shape(), b.position(), b.shape(), 0.0) else {
-            return;
-        };
-        let short_m = -contact.dist - 0.5 * DEPTH_M as f32;
-        let bodies = [a, b].map(|collider| collider.parent());
+    /// Shifts two bodies apart, and returns those that were shifted.
+    fn shift_apart(
+        &mut self,
+        pair: Pair,
+        is_weighted: bool,
+        step: &mut Step,
+    ) -> Vec<rapier::RigidBodyHandle> {
+        let Some((normal, depth_m)) = self.way_out(pair, step) else { return Vec::new() };
+        let short_m = (depth_m - self.allowed_m(pair) / 2.0) as f32;
+        let bodies = pair.map(|collider| self.world.colliders[collider].parent());
         let yields = bodies.map(|body| {
             let body = body.map(|body| &self.world.bodies[body]).filter(|body| body.is_dynamic());
             body.map_or(0.0, |body| if is_weighted { 1.0 / body.mass() } else { 1.0 })
         });
         let all = yields[0] + yields[1];
         if short_m <= 0.0 || all <= 0.0 {
-            return;
+            return Vec::new();
         }
+        let mut shifted = Vec::new();
         for ((body, own), side) in bodies.into_iter().zip(yields).zip([-1.0, 1.0]) {
             if let Some(body) = body.filter(|_| own > 0.0) {
                 let mut pose = *self.world.bodies[body].position();
-                pose.translation += contact.normal1 * (side * short_m * own / all);
+                pose.translation += normal * (side * short_m * own / all);
                 self.place(body, pose);
                 step.changed.insert(body.into_raw_parts(), (pose, 0));
+                shifted.push(body);
             }
         }
+        shifted
+    }
+
+    /// The direction from the first body to the second in which they are to be separated, and how deep they are in each
+    /// other along it, m: the shortest way out, unless it ends on the other side than before the step.
+    fn way_out(&self, pair: Pair, step: &Step) -> Option<(rapier::Vector, f64)> {
+        let [a, b] = pair.map(|collider| &self.world.colliders[collider]);
+        let [was_a, was_b] = pair.map(|collider| self.pose_at(collider, 0.0, step));
+        let was = contact(&was_a, a.shape(), &was_b, b.shape(), ANY_DISTANCE_M).ok()??;
+        let now = contact(a.position(), a.shape(), b.position(), b.shape(), 0.0).ok()?;
+        if let Some(now) = now.filter(|now| now.normal1.dot(was.normal1) > 0.0) {
+            return Some((now.normal1, f64::from(-now.dist)));
+        }
+        let normal = Vector2::new(f64::from(was.normal1.x), f64::from(was.normal1.y));
+        let [from, to] = pair.map(|collider| self.form(collider, self.world.colliders[collider].position()));
+        Some((was.normal1, from.extent_m(&normal) + to.extent_m(&-normal)))
     }
 
     /// Takes another part of its step from a free body. Returns whether there was a part left.

@@ -25,14 +25,24 @@ impl Blockers {
         self.things.push(Thing { center, radius_m, form });
     }
 
-    /// Whether a rectangle can move from one pose to the other: a body that is near afterwards was at least as
-    /// near before.
+    /// Whether a rectangle can move from one pose to the other: a body that is near on the way or afterwards was at
+    /// least as near before.
     pub(super) fn is_free(&self, from: &Rectangle, to: &Rectangle) -> bool {
-        let (before, after, near) = (from.corners(), to.corners(), Near::new(to));
+        let (before, after) = (from.corners(), to.corners());
+        let motions_m = before.iter().zip(&after).map(|(before, after)| (after - before).norm());
+        let motion_m = motions_m.fold(0.0, f64::max);
+        let near = Near::new(to, motion_m);
         let mut things = self.things.iter().filter(|thing| near.overlaps(&thing.center, thing.radius_m));
         things.all(|thing| {
-            let gap_m = thing.form.gap_m(&after);
-            gap_m >= ROOM_M || gap_m >= thing.form.gap_m(&before)
+            let before_m = thing.form.gap_m(&before);
+            let has_room = |gap_m: f64| gap_m >= ROOM_M || gap_m >= before_m;
+            // So many poses that a body between two of them is not skipped.
+            let poses = (motion_m / from.half_m.min().max(thing.form.inner_m())).ceil() as usize;
+            let mut between = (1..poses).map(|pose| {
+                let pose = from.pose.lerp_slerp(&to.pose, pose as f64 / poses as f64);
+                thing.form.gap_m(&Rectangle { pose, ..*from }.corners())
+            });
+            has_room(thing.form.gap_m(&after)) && between.all(has_room)
         })
     }
 
@@ -50,8 +60,10 @@ struct Near {
 }
 
 impl Near {
-    fn new(shape: &Rectangle) -> Self {
-        Self { center: shape.pose.translation.vector.into(), radius_m: shape.half_m.norm() + ROOM_M }
+    /// Around a rectangle and all poses within a distance of it.
+    fn new(shape: &Rectangle, motion_m: f64) -> Self {
+        let radius_m = shape.half_m.norm() + motion_m + ROOM_M;
+        Self { center: shape.pose.translation.vector.into(), radius_m }
     }
 
     fn overlaps(&self, at: &Point2<f64>, radius_m: f64) -> bool {

@@ -4,6 +4,7 @@ mod contacts;
 mod contract;
 mod docs;
 mod drives;
+mod extreme;
 mod fleet;
 mod floor_plan;
 mod footprint;

@@ -14,10 +14,10 @@ const WORLDS: u64 = 100;
 const SECONDS: f64 = 60.0;
 const SIDE_M: f64 = 6.0;
 
-struct Chance(ChaCha8Rng);
+pub(super) struct Chance(pub(super) ChaCha8Rng);
 
 impl Chance {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.0.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
     }
 
@@ -112,16 +112,16 @@ fn thing(thing: usize, at: [f64; 2], chance: &mut Chance) -> String {
 }
 
 /// How deep a segment of a robot's way lies in a wall: it passed through if its middle did.
-fn passes(fleet: &Fleet, from: &Point2<f64>, to: &Point2<f64>) -> bool {
+pub(super) fn passes(fleet: &Fleet, from: &Point2<f64>, to: &Point2<f64>) -> bool {
     fleet.spec().walls.iter().any(|wall| wall.segment_distance_m(from, to) <= 0.0)
 }
 
 /// How deep the bodies of two kinds lay in each other at most, m, and where.
 #[derive(Debug, Default)]
-struct Deepest(BTreeMap<(&'static str, &'static str), (f64, String)>);
+pub(super) struct Deepest(BTreeMap<(&'static str, &'static str), (f64, String)>);
 
 impl Deepest {
-    fn note(&mut self, fleet: &Fleet, seed: u64) {
+    pub(super) fn note(&mut self, fleet: &Fleet, seed: u64) {
         let mut note = |a: &'static str, b: &'static str, gap_m: f64| {
             let entry = self.0.entry((a, b)).or_default();
             if -gap_m > entry.0 {
@@ -154,7 +154,7 @@ impl Deepest {
     }
 
     /// Half a centimetre, and what rounding adds, whatever meets whatever at whatever speed.
-    fn check(&self) {
+    pub(super) fn check(&self) {
         for ((a, b), (depth_m, place)) in &self.0 {
             assert!(*depth_m < 0.0051, "{a} is {depth_m} m deep in {b}: {place}");
         }
