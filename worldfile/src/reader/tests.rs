@@ -30,7 +30,7 @@ fn messages(text: &str) -> Vec<String> {
         true => crate::grid::parse("world.toml", text).err(),
         false => crate::physics::parse_fleet("world.toml", text).err(),
     };
-    error.map(|error| error.messages().to_vec()).unwrap_or_default()
+    error.map(|error| error.messages()).unwrap_or_default()
 }
 
 fn is_grid(text: &str) -> bool {
@@ -100,7 +100,7 @@ fn a_flood_is_counted() {
     for (text, more) in [(keys.as_str(), 99_982), (&room(&walls), 49_980)] {
         let messages = messages(text);
         assert_eq!(messages.len(), 21);
-        assert_eq!(messages[20], format!("world.toml: and {more} more errors"));
+        assert_eq!(messages[20], format!("… and {more} more errors"));
     }
 }
 
@@ -171,7 +171,7 @@ fn a_flood_of_wrong_values_is_counted() {
     let messages = messages(&room(&format!("{walls}[[robot]]\ncolour = 1\n")));
     assert_eq!(messages.len(), 21);
     // The robot has one key too many and lacks five.
-    assert_eq!(messages[20], format!("world.toml: and {} more errors", 20_000 + 6 - 20));
+    assert_eq!(messages[20], format!("… and {} more errors", 20_000 + 6 - 20));
 }
 
 /// The lines of a world that hold numbers which are wrong if they are as large as this, each with what comes

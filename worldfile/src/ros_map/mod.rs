@@ -121,7 +121,7 @@ pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<R
     map
 }
 
-/// Anything that a key may have.
+/// The value of any key.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Value {
@@ -131,6 +131,9 @@ enum Value {
     List(Vec<f64>),
     Other(serde::de::IgnoredAny),
 }
+
+/// A value and its place.
+type Found<T> = (T, Range<usize>);
 
 /// How pixels become states.
 struct Rule {
@@ -168,7 +171,7 @@ impl Rule {
     }
 }
 
-/// The keys of the file that nobody has asked for yet.
+/// The keys of the file that were not asked for yet.
 struct Keys<'a> {
     source: &'a SourceText,
     values: BTreeMap<String, Spanned<Value>>,
@@ -177,22 +180,43 @@ struct Keys<'a> {
 
 impl Keys<'_> {
     fn map(&mut self, yaml: &Path, files: &dyn Files) -> Option<RosMap> {
-        // All of them, so that all that is wrong is said at once.
-        let image = self.text("image", "the name of a picture, as in `image: map.pgm`");
-        let resolution =
-            self.number("resolution", 1e-4..=100.0, "the side of a pixel in metres, from 0.0001 to 100");
-        let origin = self.origin();
+        // All of them, so that everything that is invalid is reported at once.
+        let name = "the name of a picture, as in `image: map.pgm`";
+        let image = self.value("image", None, name, |value| match value {
+            Value::Text(text) if !text.is_empty() => Some(text.clone()),
+            _ => None,
+        });
+        let side = "the side of a pixel in metres, from 0.0001 to 100";
+        let resolution = self.number("resolution", 1e-4..=100.0, side);
+        let origin = "[x, y, yaw] in m and rad, at most 1000 km away, as in `[-6.0, -6.0, 0.0]`";
+        let origin = self.value("origin", None, origin, |value| match value {
+            Value::List(numbers) if numbers.iter().all(|number| number.abs() <= 1e6) => {
+                <[f64; 3]>::try_from(numbers.as_slice()).ok()
+            }
+            _ => None,
+        });
         let occupied = self.number("occupied_thresh", 0.0..=1.0, "a number from 0 to 1, as in 0.65");
         let free = self.number("free_thresh", 0.0..=1.0, "a number from 0 to 1, as in 0.196");
-        let negate = self.negate();
-        let mode = self.mode();
-        let rule = self.rule(negate, occupied, free, mode);
+        let negate = self.value("negate", Some(false), "0 or 1", |value| match value {
+            Value::Number(0.0) | Value::Flag(false) => Some(false),
+            Value::Number(1.0) | Value::Flag(true) => Some(true),
+            _ => None,
+        });
+        let modes = "`trinary`, `scale` or `raw`";
+        let mode = self.value("mode", Some(Mode::Trinary), modes, |value| match value {
+            Value::Text(text) => match text.as_str() {
+                "trinary" => Some(Mode::Trinary),
+                "scale" => Some(Mode::Scale),
+                "raw" => Some(Mode::Raw),
+                _ => None,
+            },
+            _ => None,
+        });
+        let is_ordered = self.are_ordered(free.as_ref(), occupied.as_ref());
         let (image, image_place) = image?;
         let path = yaml.parent().unwrap_or(Path::new("")).join(image);
-        let raster = files
-            .read(&path, MAX_FILE_BYTES)
-            .map_err(|error| error.to_string())
-            .and_then(|bytes| Raster::decode(&bytes).map_err(|error| error.to_string()));
+        let bytes = files.read(&path, MAX_FILE_BYTES).map_err(|error| error.to_string());
+        let raster = bytes.and_then(|bytes| Raster::decode(&bytes).map_err(|error| error.to_string()));
         let raster = match raster {
             Ok(raster) => raster,
             Err(error) => {
@@ -201,110 +225,74 @@ impl Keys<'_> {
                 return None;
             }
         };
-        let (resolution_m, origin, rule) = (resolution?.0, origin?, rule?);
+        is_ordered?;
+        let [x, y, yaw] = origin?.0;
+        let rule = Rule { negate: negate?.0, occupied: occupied?.0, free: free?.0, mode: mode?.0 };
         let (width, height) = (raster.width as usize, raster.height as usize);
-        let frame = GridFrame::new(Point2::origin(), resolution_m, width, height)?;
+        let frame = GridFrame::new(Point2::origin(), resolution?.0, width, height)?;
         let rows = (0..raster.height).rev();
         let states = rows.flat_map(|y| raster.row(y).map(|pixel| rule.state(pixel)).collect::<Vec<_>>());
         let cells = Grid::from_cells(frame, states.collect())?;
-        Some(RosMap { cells, origin: pose(origin[0], origin[1], origin[2]) })
+        Some(RosMap { cells, origin: pose(x, y, yaw) })
     }
 
-    /// How pixels become states, if all that says so is right.
-    fn rule(
-        &mut self,
-        negate: Option<bool>,
-        occupied: Option<(f64, Range<usize>)>,
-        free: Option<(f64, Range<usize>)>,
-        mode: Option<Mode>,
-    ) -> Option<Rule> {
-        let ((occupied, _), (free, place)) = (occupied?, free?);
+    fn are_ordered(&mut self, free: Option<&Found<f64>>, occupied: Option<&Found<f64>>) -> Option<()> {
+        let ((free, place), (occupied, _)) = (free?, occupied?);
         if free > occupied {
             let what = format!("`free_thresh` is {free}, above `occupied_thresh`, which is {occupied}");
-            self.error(&what, place, "a pixel cannot be both free and blocked");
+            self.error(&what, place.clone(), "a pixel cannot be both free and blocked");
             return None;
         }
-        Some(Rule { negate: negate?, occupied, free, mode: mode? })
+        Some(())
     }
 
     fn error(&mut self, what: &str, place: Range<usize>, help: &str) {
         self.findings.add(Severity::Error, self.source, what, (place, ""), help);
     }
 
-    /// The value of a key that must be there, and its place.
-    fn take(&mut self, key: &str, right: &str) -> Option<(Value, Range<usize>)> {
+    /// The value of a key as `parse` reads it, and its place. Without a default the key must be given; `valid`
+    /// says what it must be.
+    fn value<T>(
+        &mut self,
+        key: &str,
+        default: Option<T>,
+        valid: &str,
+        parse: impl Fn(&Value) -> Option<T>,
+    ) -> Option<Found<T>> {
+        let help = format!("it must be {valid}");
         let Some(value) = self.values.remove(key) else {
-            self.error(&format!("the key `{key}` is missing"), 0..0, &format!("it must be {right}"));
-            return None;
+            if default.is_none() {
+                self.error(&format!("the key `{key}` is missing"), 0..0, &help);
+            }
+            return Some((default?, 0..0));
         };
-        let place = self.source.place(value.defined.line() as usize, value.defined.column() as usize);
-        Some((value.value, place))
-    }
-
-    fn wrong<T>(&mut self, key: &str, place: Range<usize>, right: &str) -> Option<T> {
-        let found = self.source.text.get(place.clone()).unwrap_or_default();
-        let what =
-            if found.is_empty() { format!("`{key}` has no value") } else { format!("`{key}` is {found}") };
-        self.error(&what, place, &format!("it must be {right}"));
-        None
-    }
-
-    fn text(&mut self, key: &str, right: &str) -> Option<(String, Range<usize>)> {
-        match self.take(key, right)? {
-            (Value::Text(text), place) if !text.is_empty() => Some((text, place)),
-            (_, place) => self.wrong(key, place, right),
+        let place = self.place(&value);
+        let parsed = parse(&value.value);
+        if parsed.is_none() {
+            let what = match self.source.text.get(place.clone()).unwrap_or_default() {
+                "" => format!("`{key}` has no value"),
+                found => format!("`{key}` is {found}"),
+            };
+            self.error(&what, place.clone(), &help);
         }
+        Some((parsed?, place))
     }
 
-    fn number(&mut self, key: &str, range: RangeInclusive<f64>, right: &str) -> Option<(f64, Range<usize>)> {
-        match self.take(key, right)? {
-            (Value::Number(number), place) if range.contains(&number) => Some((number, place)),
-            (_, place) => self.wrong(key, place, right),
-        }
-    }
-
-    fn origin(&mut self) -> Option<[f64; 3]> {
-        let right = "[x, y, yaw] in m and rad, at most 1000 km away, as in `[-6.0, -6.0, 0.0]`";
-        let (value, place) = self.take("origin", right)?;
-        let numbers = match &value {
-            Value::List(numbers) => <[f64; 3]>::try_from(numbers.as_slice()).ok(),
+    fn number(&mut self, key: &str, range: RangeInclusive<f64>, valid: &str) -> Option<Found<f64>> {
+        self.value(key, None, valid, |value| match value {
+            Value::Number(number) => Some(*number).filter(|number| range.contains(number)),
             _ => None,
-        };
-        match numbers.filter(|numbers| numbers.iter().all(|number| number.abs() <= 1e6)) {
-            Some(numbers) => Some(numbers),
-            None => self.wrong("origin", place, right),
-        }
+        })
     }
 
-    fn negate(&mut self) -> Option<bool> {
-        if !self.values.contains_key("negate") {
-            return Some(false);
-        }
-        match self.take("negate", "0 or 1")? {
-            (Value::Number(0.0) | Value::Flag(false), _) => Some(false),
-            (Value::Number(1.0) | Value::Flag(true), _) => Some(true),
-            (_, place) => self.wrong("negate", place, "0 or 1"),
-        }
+    fn place(&self, value: &Spanned<Value>) -> Range<usize> {
+        self.source.place(value.defined.line() as usize, value.defined.column() as usize)
     }
 
-    fn mode(&mut self) -> Option<Mode> {
-        if !self.values.contains_key("mode") {
-            return Some(Mode::Trinary);
-        }
-        let right = "`trinary`, `scale` or `raw`";
-        let (text, place) = self.text("mode", right)?;
-        match text.as_str() {
-            "trinary" => Some(Mode::Trinary),
-            "scale" => Some(Mode::Scale),
-            "raw" => Some(Mode::Raw),
-            _ => self.wrong("mode", place, right),
-        }
-    }
-
-    /// ROS ignores other keys; a misspelt one would change the walls.
+    /// ROS ignores other keys; a misspelled one would change the walls.
     fn warn_of_others(&mut self) {
         for (key, value) in &self.values {
-            let place = self.source.place(value.defined.line() as usize, value.defined.column() as usize);
+            let place = self.place(value);
             let help = "the keys are image, resolution, origin, negate, occupied_thresh, free_thresh, mode";
             let what = format!("the key `{key}` means nothing here");
             self.findings.add(Severity::Warning, self.source, &what, (place, ""), help);
