@@ -12,11 +12,14 @@ use std::path::Path;
 #[error("{}", findings.error_text())]
 pub struct WorldError {
     findings: Findings,
+    messages: Vec<String>,
 }
 
 impl WorldError {
     pub(crate) fn new(findings: Findings) -> Self {
-        Self { findings }
+        let messages = findings.messages(Severity::Error).into_iter();
+        let messages = messages.map(|message| message.trim_start_matches("error: ").to_owned()).collect();
+        Self { findings, messages }
     }
 
     /// The errors.
@@ -25,9 +28,8 @@ impl WorldError {
     }
 
     /// The errors, one message each; at least one. Of more than 20 errors, the last message counts the rest.
-    pub fn messages(&self) -> Vec<String> {
-        let messages = self.findings.messages(Severity::Error).into_iter();
-        messages.map(|message| message.trim_start_matches("error: ").to_owned()).collect()
+    pub fn messages(&self) -> &[String] {
+        &self.messages
     }
 
     /// The number of errors.

@@ -18,7 +18,7 @@ const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Information; nothing is wrong.
+    /// Information; nothing is invalid.
     Note,
     /// The world can be made, but a part of the file is ignored or has a slightly different meaning.
     Warning,
@@ -244,7 +244,8 @@ impl SourceText {
         let all = || spans.iter().chain([&main]);
         let line = self.line_number(all().map(|span| span.start).min().unwrap_or_default());
         let last = self.line_number(all().map(|span| span.start).max().unwrap_or_default());
-        let mut shown = self.whole_line(line).start..self.whole_line(last).end;
+        // With the end of the line, at which a mark can be.
+        let mut shown = self.whole_line(line).start..self.text.len().min(self.whole_line(last).end + 1);
         if line == last && shown.len() > LONG_LINE {
             let from = main.start.saturating_sub(LONG_LINE / 2).max(shown.start);
             let to = (main.start + LONG_LINE / 2).min(shown.end);
@@ -290,7 +291,7 @@ mod tests {
             add(Severity::Warning, "odd", line, "as often");
             add(Severity::Warning, "odd", line, "as often");
         }
-        add(Severity::Warning, "rare", 200, "but told");
+        add(Severity::Warning, "rare", 200, "and kept");
         add(Severity::Error, "bad", 201, "and first");
         let whats: Vec<&str> = findings.iter().map(|finding| finding.what.as_str()).collect();
         assert_eq!((whats.len(), whats[0], whats[10], whats[11]), (112, "bad", "odd", "rare"));

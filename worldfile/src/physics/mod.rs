@@ -24,17 +24,8 @@ use sim::physics::{FleetSpec, WorldSpec};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Reads and checks a world file, in which any number of robots may be driven, or none.
-///
-/// # Errors
-///
-/// When the file cannot be read, or as in [`parse_fleet`].
-pub fn load_fleet(path: impl AsRef<Path>) -> Result<FleetSpec, WorldError> {
-    let (name, text) = read_text("world file", path.as_ref())?;
-    parse_fleet_with(&name, &text, &Disk)
-}
-
-/// Checks the text of a world file; `name` is what messages call the file. There are no pictures beside it.
+/// Checks the text of a world file, in which any number of robots can be driven, or none; `name` is the name of the
+/// file in messages. There are no pictures beside it.
 ///
 /// # Errors
 ///

@@ -12,8 +12,6 @@ pub(super) fn nearest<'a>(unknown: &str, known: impl Iterator<Item = &'a str>) -
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn near_names_are_found_and_far_ones_are_not() {
         let known = ["radius_m", "heading_deg", "name"];

@@ -17,7 +17,7 @@ pub(super) const KEYS: &str = "kind, from_m, to_m, speed_mps, wall_side, clearan
 
 /// Each kind of behavior, its keys, and what it does.
 const KINDS: [(&str, &str, &str); 6] = [
-    ("driven", "", "goes where it is told to"),
+    ("driven", "", "obeys commands"),
     ("standing", "", "stands"),
     ("circle", "speed_mps, turn_radius_m, direction", "drives a circle"),
     ("wander", "speed_mps, clearance_m", "drives about"),

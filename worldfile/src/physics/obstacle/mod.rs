@@ -52,8 +52,7 @@ pub(super) fn obstacle(table: &Table<'_>, space: &Space) -> Option<ObstacleSpec>
         return table.error(&format!("`{word}` is no kind of obstacle"), mark, &[], &help);
     };
     let help = format!("leave it out: such an obstacle {does}; its keys are {keys}");
-    let is_own =
-        |key: &str| ["name", "tag", "kind"].into_iter().chain(keys.split(", ")).any(|own| own == key);
+    let is_own = |key: &str| has("name, tag, kind", key) || has(keys, key);
     let foreign = table.given().filter(|(key, _)| !is_own(key)).map(|(key, span)| {
         let what = format!("an obstacle that is `{kind}` has no `{key}`");
         table.error::<()>(&what, (span, "not for this obstacle"), &[], &help)
