@@ -1,5 +1,5 @@
 use super::*;
-use crate::fake::FakeRun;
+use crate::tests::FakeRun;
 use evaluation::palette::{self, Rgb};
 use image::RgbImage;
 use interfaces::CellState;

@@ -13,7 +13,7 @@ pub(super) struct Pace {
     unit: TimeUnit,
     /// Of fields of view.
     pub(super) sight: f64,
-    /// Of occupancy maps; skipped while nothing changes.
+    /// Of occupancy maps.
     pub(super) occupancy: f64,
     /// Of the other maps.
     pub(super) maps: f64,
@@ -42,26 +42,5 @@ impl Pace {
             TimeUnit::Second => period,
             TimeUnit::Step => period * frame.len().div_ceil(STEP_CELLS) as f64,
         }
-    }
-}
-
-/// Decides when something that is logged at a lower rate is due.
-pub(super) struct Due {
-    period: f64,
-    next: f64,
-}
-
-impl Due {
-    pub(super) fn every(period: f64) -> Self {
-        Self { period, next: f64::NEG_INFINITY }
-    }
-
-    pub(super) fn now(&mut self, time: f64) -> bool {
-        // Half a millisecond of slack: 0.1 added ten times is not 1.
-        let is_due = time >= self.next - 5e-4;
-        if is_due {
-            self.next = time + self.period;
-        }
-        is_due
     }
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::fake::FakeRun;
+use crate::tests::FakeRun;
 use crate::layers::Layer;
 use crate::scene::TimeUnit;
 use nalgebra::Point2;
@@ -26,9 +26,9 @@ fn record_run(mut run: FakeRun, file: &Path, ticks: u64) -> FakeRun {
     let mut recorder = Recorder::new(&to(file), run.scene.clone()).unwrap();
     for _ in 0..ticks {
         run.step();
-        run.with_view(|view| recorder.log(view)).unwrap();
+        run.with_view(|view| recorder.log(view, false)).unwrap();
     }
-    run.with_view(|view| recorder.finish(view)).unwrap();
+    run.with_view(|view| recorder.log(view, true)).unwrap();
     run
 }
 
@@ -50,7 +50,7 @@ fn rows<C: Component + Clone>(
     let mut rows = Vec::new();
     for chunk in store.iter_physical_chunks() {
         if chunk.entity_path() == &entity && !chunk.is_static() {
-            let time = chunk.timelines().values().find(|time| time.name() == rows::SIM_TIME);
+            let time = chunk.timelines().values().find(|time| time.name() == entity::SIM_TIME);
             let times = time.unwrap().times_raw();
             let items = chunk.iter_component::<C>(component).map(|items| items.as_slice().to_vec());
             rows.extend(times.iter().copied().zip(items));
@@ -151,7 +151,7 @@ fn what_is_read_back_is_what_happened() {
 
     let position = Points2D::descriptor_positions().component;
     for (name, at) in run.positions() {
-        let body = rows::<Position2D>(&store, &path::robot(name, "body"), position);
+        let body = rows::<Position2D>(&store, &tracks::robot(name, "body"), position);
         assert!(body.len() > 250, "{name}: {}", body.len());
         let (time, positions) = body.last().unwrap();
         assert_eq!(*time, 30_500_000_000);
@@ -160,7 +160,7 @@ fn what_is_read_back_is_what_happened() {
     }
     let buffer = SegmentationImage::descriptor_buffer().component;
     for layer in Layer::ALL {
-        let maps = rows::<ImageBuffer>(&store, &format!("{}/cells", path::map(layer)), buffer);
+        let maps = rows::<ImageBuffer>(&store, &format!("{}/cells", tracks::map(layer)), buffer);
         let most = if layer == Layer::Occupancy { 32 } else { 5 };
         assert!((2..=most).contains(&maps.len()), "{layer:?}: {}", maps.len());
         let last = maps.last().unwrap().1[0].0.to_vec();
@@ -169,11 +169,11 @@ fn what_is_read_back_is_what_happened() {
     let coverage = rows::<Scalar>(&store, "/curves/scores/coverage", Scalars::descriptor_scalars().component);
     assert_eq!(coverage.len(), 32); // once a second, and at the end
     assert!(coverage.windows(2).all(|pair| pair[0].1[0].0 <= pair[1].1[0].0));
-    let log = rows::<Text>(&store, path::LOG, TextLog::descriptor_text().component);
+    let log = rows::<Text>(&store, tracks::LOG, TextLog::descriptor_text().component);
     assert!(log.iter().any(|(_, text)| text[0].0.as_str().starts_with("goal reached; poisson chooses")));
     let toy = rows::<rerun::LineStrip2D>(
         &store,
-        &path::obstacle("toy"),
+        "/world/obstacles/toy",
         rerun::LineStrips2D::descriptor_strips().component,
     );
     assert_eq!(toy.len(), 1);
@@ -239,7 +239,7 @@ fn a_killed_run_leaves_what_was_handed_on() {
     let mut recorder = Recorder::new(&to(&file), run.scene.clone()).unwrap();
     for _ in 0..100 {
         run.step();
-        run.with_view(|view| recorder.log(view)).unwrap();
+        run.with_view(|view| recorder.log(view, false)).unwrap();
     }
     recorder.flush().unwrap();
     recorder.stream.flush_blocking().unwrap();
@@ -247,7 +247,7 @@ fn a_killed_run_leaves_what_was_handed_on() {
     let killed = std::fs::read(&file).unwrap();
     let whole = store(&killed, StoreKind::Recording);
     let position = Points2D::descriptor_positions().component;
-    let body = rows::<Position2D>(&whole, &path::robot("curious", "body"), position);
+    let body = rows::<Position2D>(&whole, &tracks::robot("curious", "body"), position);
     assert_eq!(body.last().unwrap().0, 10_000_000_000);
     let messages = |bytes: &[u8]| {
         Decoder::<rerun::log::LogMsg>::decode_eager(io::Cursor::new(bytes.to_vec()))
@@ -302,11 +302,11 @@ fn a_disk_that_fills_up_is_told_while_it_goes_on_and_at_the_end() {
         let file = file::RrdFile::with_output(Path::new("run.rrd"), Box::new(disk.clone())).unwrap();
         recorder.sinks = Sinks::of_file(file);
         recorder.stream.set_sink(Box::new(recorder.sinks.clone()));
-        run.with_view(|view| recorder.log(view)).unwrap();
+        run.with_view(|view| recorder.log(view, false)).unwrap();
         recorder.flush().ok(); // the SDK writes in its own time
         recorder.stream.flush_blocking().unwrap();
         let meanwhile = recorder.flush().map_err(|error| error.to_string());
-        let end = run.with_view(|view| recorder.finish(view)).map_err(|error| error.to_string());
+        let end = run.with_view(|view| recorder.log(view, true)).map_err(|error| error.to_string());
         (meanwhile, end, *disk.0.lock().unwrap())
     };
     let full = Err("cannot write the recording run.rrd: no storage space".to_owned());
@@ -334,8 +334,8 @@ fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
     assert!(problem.starts_with("no viewer answers at "), "{problem}");
     let mut run = FakeRun::new();
     run.step();
-    run.with_view(|view| recorder.log(view)).unwrap();
-    run.with_view(|view| recorder.finish(view)).unwrap();
+    run.with_view(|view| recorder.log(view, false)).unwrap();
+    run.with_view(|view| recorder.log(view, true)).unwrap();
     store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
 
     let options = RecordingOptions { live, ..Default::default() };

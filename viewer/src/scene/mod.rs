@@ -3,12 +3,10 @@
 
 mod grid;
 mod physics;
-mod state;
 
-pub use state::{RobotState, Sight};
-
-use interfaces::{GridFrame, World};
-use nalgebra::{Isometry2, Point2};
+use evaluation::palette::{self, Rgb};
+use interfaces::{CellReading, GridFrame, LaserReading, World};
+use nalgebra::{Isometry2, Point2, Vector2};
 
 /// The corners of a polygon, m; the last corner is joined to the first.
 pub type Outline = Vec<Point2<f64>>;
@@ -65,6 +63,23 @@ pub struct Scene {
     pub robots: Vec<Robot>,
 }
 
+impl Scene {
+    /// Whether a robot is driven, or is part of the surroundings.
+    pub(crate) fn has_robot(&self, is_driven: bool) -> bool {
+        self.robots.iter().any(|robot| robot.is_driven == is_driven)
+    }
+
+    /// Whether an obstacle is fixed, or moves, appears or disappears.
+    pub(crate) fn has_obstacle(&self, is_fixed: bool) -> bool {
+        self.obstacles.iter().any(|obstacle| obstacle.is_fixed() == is_fixed)
+    }
+}
+
+/// Lower left corner and size of a frame, m.
+pub(crate) fn extent(frame: &GridFrame) -> (Point2<f64>, Vector2<f64>) {
+    (frame.origin(), Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m())
+}
+
 /// Something that is neither a wall nor a robot.
 #[derive(Clone, Debug)]
 pub struct Obstacle {
@@ -77,9 +92,14 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
-    /// Whether the obstacle stands at one place during the whole run, as furniture does.
+    /// Whether the obstacle has the same pose during the whole run, as furniture does.
     pub fn is_fixed(&self) -> bool {
         self.reach.is_empty()
+    }
+
+    /// The color of the obstacle.
+    pub(crate) fn color(&self) -> Rgb {
+        if self.is_fixed() { palette::FURNITURE } else { palette::MOVING }
     }
 }
 
@@ -100,6 +120,13 @@ pub struct Robot {
     pub is_driven: bool,
 }
 
+impl Robot {
+    /// The color of the robot.
+    pub(crate) fn color(&self) -> Rgb {
+        if self.is_driven { palette::CURIOUS } else { palette::OTHER_ROBOT }
+    }
+}
+
 /// What a laser scanner or a sonar covers.
 #[derive(Clone, Copy, Debug)]
 pub struct Sector {
@@ -109,6 +136,29 @@ pub struct Sector {
     pub angle_rad: f64,
     /// The range, m.
     pub range_m: f64,
+}
+
+/// A robot at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct RobotState<'a> {
+    /// The pose in the frame of the world, m and rad. A robot in a grid world has no heading.
+    pub pose: Isometry2<f64>,
+    /// What the curious robot sees; `None` for every other robot.
+    pub sight: Option<Sight<'a>>,
+}
+
+/// What a robot sees.
+#[derive(Clone, Copy, Debug)]
+pub enum Sight<'a> {
+    /// The last scan of a laser.
+    Laser(&'a LaserReading),
+    /// Cells.
+    Cells {
+        /// The cells that are seen now.
+        reading: &'a CellReading,
+        /// The range of the sensor, cells.
+        radius: u32,
+    },
 }
 
 /// A world that can be shown while a robot explores it.
