@@ -1,6 +1,6 @@
 //! The legends of the pictures and of the recording.
 
-use crate::scene::{Scene};
+use crate::scene::Scene;
 use crate::view::View;
 use evaluation::palette::{self, Rgb};
 

@@ -1,6 +1,6 @@
 //! Everything that shows one run: the recording, the moving picture, and the pictures at the end.
 
-use crate::pictures::{self, Film, Pictures};
+use crate::pictures::{self, Film};
 use crate::recording::{Recorder, RecordingError};
 use crate::scene::Scene;
 use crate::view::{Trail, View};
@@ -73,6 +73,6 @@ impl Show {
         if let (Some(made), Some(path)) = (self.film, film) {
             made.write(path)?;
         }
-        pictures::write_all(folder, &Pictures { scene: &self.scene, mapper, trails: &self.trails, goals })
+        pictures::write_all(folder, &self.scene, mapper, &self.trails, goals)
     }
 }

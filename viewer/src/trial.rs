@@ -76,7 +76,6 @@ fn log(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::RecordingOptions;
     use agent::AgentSettings;
     use controller::CellDrive;
     use evaluation::trials::{Experiment, TrialStrategy};
@@ -104,8 +103,7 @@ mod tests {
     fn recorded(steps: u64, file: &Path, is_canceled: bool) -> Recorded {
         let experiment = experiment(steps);
         let life = experiment.trial(experiment.jobs()[0]);
-        let options = RecordingOptions { file: Some(file.to_owned()), ..Default::default() };
-        let recorder = Recorder::new(&options, life.world.into()).unwrap();
+        let recorder = Recorder::new(Some(file), &[], life.world.into()).unwrap();
         record(&life, recorder, &is_canceled.into()).unwrap()
     }
 

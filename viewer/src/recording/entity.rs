@@ -14,10 +14,7 @@ pub(super) const STEP: &str = "step";
 
 /// The timeline that a viewer opens with.
 pub(super) fn timeline(unit: TimeUnit) -> &'static str {
-    match unit {
-        TimeUnit::Second => SIM_TIME,
-        TimeUnit::Step => STEP,
-    }
+    unit.choose(SIM_TIME, STEP)
 }
 
 /// An entity that changes during a run.

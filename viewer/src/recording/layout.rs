@@ -6,7 +6,7 @@
 use super::entity::timeline;
 use super::tracks::{self, BAR_SHARE, LEGEND_SHARE, has_choice, plots};
 use crate::layers::Layer;
-use crate::scene::{Scene, TimeUnit, extent};
+use crate::scene::{Scene, extent};
 use crate::view::View;
 use rerun::blueprint::components::{BackgroundKind, ContainerKind, Corner2D, PanelState, PlayState};
 use rerun::external::re_log_types::BlueprintActivationCommand;
@@ -14,14 +14,6 @@ use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLog
 use rerun::external::re_sdk_types::blueprint::{archetypes as blueprint, components::VisibleTimeRange};
 use rerun::external::re_sdk_types::datatypes::{self, TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::{Archetype, AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
-
-/// How much of the curious robot's trail is shown, on the timeline: all of it would hide the map.
-fn recent(unit: TimeUnit) -> i64 {
-    match unit {
-        TimeUnit::Second => 300 * 1_000_000_000,
-        TimeUnit::Step => 60,
-    }
-}
 
 /// Sends the layout for a run whose first view is `view`. Only panels that will have a content are shown.
 pub(super) fn send(
@@ -125,11 +117,13 @@ impl Layout<'_> {
         let name = format!("The map so far: {}", scene.title);
         let contents = ["+ /world/**", "- /world/maps/**", "+ /world/maps/occupancy/**"];
         let part = self.spatial(&name, &contents, [0.02, LEGEND_SHARE])?;
+        // Nanoseconds or steps of the curious robot's trail: all of it would hide the map.
+        let recent = TimeRangeBoundary::CursorRelative(TimeInt(-unit.choose(300 * 1_000_000_000, 60)));
         for robot in &scene.robots {
-            let recent = TimeRangeBoundary::CursorRelative(TimeInt(-recent(unit)));
             let start = if robot.is_driven { recent } else { past().start };
             let range = TimeRange { start, ..past() };
-            let range = VisibleTimeRange(datatypes::VisibleTimeRange { timeline: timeline(unit).into(), range });
+            let range =
+                VisibleTimeRange(datatypes::VisibleTimeRange { timeline: timeline(unit).into(), range });
             let trail = tracks::robot(&robot.name, "trail");
             let path = format!("{}/ViewContents/overrides{trail}/visualizers", part.path);
             self.stream.log(path, &blueprint::VisibleTimeRanges::new([range]))?;

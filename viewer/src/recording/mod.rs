@@ -10,7 +10,6 @@ mod entity;
 mod file;
 mod layout;
 mod live;
-mod pace;
 mod sinks;
 mod tracks;
 
@@ -19,29 +18,11 @@ pub use live::{Live, LiveError};
 use crate::scene::Scene;
 use crate::view::View;
 use entity::Track;
-use pace::Pace;
 use rerun::log::ChunkBatcherConfig;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamError};
 use sinks::Sinks;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-
-/// The destinations of a recording: a file, viewers, or both.
-#[derive(Clone, Debug)]
-pub struct RecordingOptions {
-    /// The `.rrd` file to write; an older one is replaced.
-    pub file: Option<PathBuf>,
-    /// The viewers to show the run in while it goes on.
-    pub live: Vec<Live>,
-    /// The viewer's program, for [`Live::Spawn`].
-    pub viewer: String,
-}
-
-impl Default for RecordingOptions {
-    fn default() -> Self {
-        Self { file: None, live: Vec::new(), viewer: live::PROGRAM.into() }
-    }
-}
 
 /// Why a recording cannot be made, or cannot continue.
 #[derive(Debug, thiserror::Error)]
@@ -89,15 +70,15 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the file and the viewers. A viewer that cannot be reached does not stop a recording with a file:
+    /// Opens the `.rrd` file, over an older one, and the viewers that show the run while it goes on. A viewer that cannot be reached does not stop a recording with a file:
     /// see [`Recorder::live_problem`].
     ///
     /// # Errors
     ///
     /// When the file cannot be written, or when there is no file and a viewer cannot be reached. Both are
     /// known within two seconds, unless a viewer has to be started.
-    pub fn new(options: &RecordingOptions, scene: Scene) -> Result<Self, RecordingError> {
-        let (sinks, live_problem) = Sinks::open(options)?;
+    pub fn new(file: Option<&Path>, live: &[Live], scene: Scene) -> Result<Self, RecordingError> {
+        let (sinks, live_problem) = Sinks::open(file, live)?;
         let (_, info, properties, ..) =
             RecordingStreamBuilder::new(APPLICATION).recording_name(scene.title.clone()).into_args();
         // Rows are sent in columns: there is nothing to batch.
@@ -123,7 +104,8 @@ impl Recorder {
         }
         self.tracks.iter_mut().flatten().for_each(|track| track.push(view, is_last));
         let wait = if self.sinks.is_live() { FLUSH_LIVE } else { FLUSH_FILE };
-        let is_much = view.time - self.flushed_at >= Pace::of(self.scene.unit).flush;
+        // Maps at hundreds of times real time fill the memory.
+        let is_much = view.time - self.flushed_at >= self.scene.unit.choose(60.0, 2000.0);
         if is_last || is_much || self.flushed.elapsed() >= wait {
             self.flushed_at = view.time;
             self.flush()?;

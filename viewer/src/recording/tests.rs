@@ -1,20 +1,20 @@
 use super::*;
-use crate::tests::FakeRun;
 use crate::layers::Layer;
 use crate::scene::TimeUnit;
+use crate::tests::FakeRun;
 use nalgebra::Point2;
-use rerun::components::{ImageBuffer, Position2D, Scalar, Text};
+use rerun::components::{ImageBuffer, Scalar, Text, Translation3D};
 use rerun::external::re_log_encoding::Decoder;
 use rerun::{
-    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, Points2D, Scalars,
-    SegmentationImage, StoreKind, TextLog,
+    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, Scalars, SegmentationImage,
+    StoreKind, TextLog, Transform3D,
 };
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 
-fn to(file: &Path) -> RecordingOptions {
-    RecordingOptions { file: Some(file.to_owned()), ..Default::default() }
+fn to(file: &Path) -> Result<Recorder, RecordingError> {
+    Recorder::new(Some(file), &[], FakeRun::new().scene)
 }
 
 /// Records `ticks` of a made-up run into a file.
@@ -23,7 +23,7 @@ fn record(file: &Path, ticks: u64) -> FakeRun {
 }
 
 fn record_run(mut run: FakeRun, file: &Path, ticks: u64) -> FakeRun {
-    let mut recorder = Recorder::new(&to(file), run.scene.clone()).unwrap();
+    let mut recorder = Recorder::new(Some(file), &[], run.scene.clone()).unwrap();
     for _ in 0..ticks {
         run.step();
         run.with_view(|view| recorder.log(view, false)).unwrap();
@@ -110,10 +110,10 @@ fn everything_that_a_newcomer_looks_for_is_there() {
         "/world/obstacles/toy/name",
         "/world/path",
         "/world/robots/curious/body",
-        "/world/robots/curious/heading",
+        "/world/robots/curious/body/name",
         "/world/robots/curious/trail",
         "/world/robots/dummy/body",
-        "/world/robots/dummy/heading",
+        "/world/robots/dummy/body/name",
         "/world/robots/dummy/trail",
         "/world/walls",
     ];
@@ -149,9 +149,9 @@ fn what_is_read_back_is_what_happened() {
     let run = record(&file, 305);
     let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
 
-    let position = Points2D::descriptor_positions().component;
+    let position = Transform3D::descriptor_translation().component;
     for (name, at) in run.positions() {
-        let body = rows::<Position2D>(&store, &tracks::robot(name, "body"), position);
+        let body = rows::<Translation3D>(&store, &tracks::robot(name, "body"), position);
         assert!(body.len() > 250, "{name}: {}", body.len());
         let (time, positions) = body.last().unwrap();
         assert_eq!(*time, 30_500_000_000);
@@ -236,7 +236,7 @@ fn a_killed_run_leaves_what_was_handed_on() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
     let mut run = FakeRun::new();
-    let mut recorder = Recorder::new(&to(&file), run.scene.clone()).unwrap();
+    let mut recorder = to(&file).unwrap();
     for _ in 0..100 {
         run.step();
         run.with_view(|view| recorder.log(view, false)).unwrap();
@@ -246,8 +246,8 @@ fn a_killed_run_leaves_what_was_handed_on() {
     // What the disk has now, whole and with the last message torn.
     let killed = std::fs::read(&file).unwrap();
     let whole = store(&killed, StoreKind::Recording);
-    let position = Points2D::descriptor_positions().component;
-    let body = rows::<Position2D>(&whole, &tracks::robot("curious", "body"), position);
+    let position = Transform3D::descriptor_translation().component;
+    let body = rows::<Translation3D>(&whole, &tracks::robot("curious", "body"), position);
     assert_eq!(body.last().unwrap().0, 10_000_000_000);
     let messages = |bytes: &[u8]| {
         Decoder::<rerun::log::LogMsg>::decode_eager(io::Cursor::new(bytes.to_vec()))
@@ -263,8 +263,7 @@ fn a_killed_run_leaves_what_was_handed_on() {
 
 #[test]
 fn a_file_that_cannot_be_made_is_one_clear_error() {
-    let error =
-        |file: &str| Recorder::new(&to(Path::new(file)), FakeRun::new().scene).err().unwrap().to_string();
+    let error = |file: &str| to(Path::new(file)).err().unwrap().to_string();
     let missing = error("no/such/folder/run.rrd");
     assert!(missing.starts_with("cannot write the recording no/such/folder/run.rrd: "), "{missing}");
     if Path::new("/dev/full").exists() {
@@ -297,7 +296,7 @@ fn a_disk_that_fills_up_is_told_while_it_goes_on_and_at_the_end() {
     let mut run = FakeRun::new();
     run.step();
     let mut record = |room: usize| {
-        let mut recorder = Recorder::new(&RecordingOptions::default(), run.scene.clone()).unwrap();
+        let mut recorder = Recorder::new(None, &[], run.scene.clone()).unwrap();
         let disk = SmallDisk(Arc::new(room.into()));
         let file = file::RrdFile::with_output(Path::new("run.rrd"), Box::new(disk.clone())).unwrap();
         recorder.sinks = Sinks::of_file(file);
@@ -325,11 +324,10 @@ fn a_disk_that_fills_up_is_told_while_it_goes_on_and_at_the_end() {
 #[test]
 fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
     let free = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let live = vec![Live::Connect(free.to_string())];
+    let live = [Live::Connect(free.to_string())];
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
-    let mut recorder =
-        Recorder::new(&RecordingOptions { live: live.clone(), ..to(&file) }, FakeRun::new().scene).unwrap();
+    let mut recorder = Recorder::new(Some(&file), &live, FakeRun::new().scene).unwrap();
     let problem = recorder.live_problem().unwrap();
     assert!(problem.starts_with("no viewer answers at "), "{problem}");
     let mut run = FakeRun::new();
@@ -338,8 +336,7 @@ fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
     run.with_view(|view| recorder.log(view, true)).unwrap();
     store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
 
-    let options = RecordingOptions { live, ..Default::default() };
-    assert_eq!(Recorder::new(&options, FakeRun::new().scene).err().unwrap().to_string(), problem);
+    assert_eq!(Recorder::new(None, &live, FakeRun::new().scene).err().unwrap().to_string(), problem);
 }
 
 #[test]

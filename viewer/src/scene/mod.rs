@@ -21,28 +21,27 @@ pub enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// The unit as a word, for titles.
-    pub fn plural(self) -> &'static str {
+    /// The value that belongs to the unit.
+    pub(crate) fn choose<T>(self, second: T, step: T) -> T {
         match self {
-            Self::Second => "seconds",
-            Self::Step => "steps",
+            Self::Second => second,
+            Self::Step => step,
         }
     }
 
-    /// The unit behind a number.
+    /// The unit as a word, for titles.
+    pub fn plural(self) -> &'static str {
+        self.choose("seconds", "steps")
+    }
+
+    /// The unit after a number.
     pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Second => "s",
-            Self::Step => "steps",
-        }
+        self.choose("s", "steps")
     }
 
     /// The unit of length in a world with this unit of time.
     pub fn length(self) -> &'static str {
-        match self {
-            Self::Second => "m",
-            Self::Step => "cells",
-        }
+        self.choose("m", "cells")
     }
 }
 
@@ -78,6 +77,12 @@ impl Scene {
 /// Lower left corner and size of a frame, m.
 pub(crate) fn extent(frame: &GridFrame) -> (Point2<f64>, Vector2<f64>) {
     (frame.origin(), Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m())
+}
+
+/// The lowest and the highest coordinates of an outline, m.
+pub(crate) fn span(outline: &[Point2<f64>]) -> [Point2<f64>; 2] {
+    let first = outline.first().copied().unwrap_or(Point2::origin());
+    outline.iter().fold([first; 2], |[low, high], corner| [low.inf(corner), high.sup(corner)])
 }
 
 /// Something that is neither a wall nor a robot.
@@ -165,9 +170,6 @@ pub enum Sight<'a> {
 pub trait Visible: World {
     /// The unit of time of the world.
     const UNIT: TimeUnit;
-
-    /// What stays the same for a whole run.
-    fn scene(&self) -> Scene;
 
     /// The robots now, in the order of [`Scene::robots`].
     fn robots<'a>(&'a self, reading: &'a Self::Reading) -> Vec<RobotState<'a>>;

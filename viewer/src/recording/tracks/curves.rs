@@ -92,7 +92,7 @@ pub(in crate::recording) fn has_choice(view: &View) -> bool {
 }
 
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
-    let (view, when) = (tracks.view, (Kind::Events, tracks.pace.curves));
+    let (view, when) = (tracks.view, (Kind::Events, tracks.scene.unit.choose(1.0, 10.0)));
     for plot in plots(tracks.scene, view) {
         for Curve { part, name, color: own, value } in plot.curves {
             let path = format!("{}/{part}", plot.path);

@@ -1,7 +1,7 @@
 //! What the curious robot sees: the field of view of a laser, or cells around the robot.
 
 use super::maps::{Picture, images};
-use super::{Kind, Tracks, WORLD, class, color, line, order, position, strips};
+use super::{Tracks, WORLD, class, color, line, order, position, strips};
 use crate::outline;
 use crate::scene::Sight;
 use crate::view::View;
@@ -19,9 +19,10 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
     let path = format!("{WORLD}/field_of_view");
     let (cells, outline) = (format!("{path}/cells"), format!("{path}/outline"));
     let frame = frame(sight, tracks.view.mapper.frame());
-    let when = (Kind::State, tracks.pace.picture(tracks.pace.sight, &frame));
+    let when = tracks.images(&frame, 0.2, 1.0);
     let classes = [("out of view", 0), ("in view", 255)];
-    let classes = (0..).zip(classes).map(|(id, (label, alpha))| class(id, label, color(palette::SENSOR, alpha)));
+    let classes =
+        (0..).zip(classes).map(|(id, (label, alpha))| class(id, label, color(palette::SENSOR, alpha)));
     tracks.always(&cells, &AnnotationContext::new(classes))?;
     Picture::of_frame(&frame).log(tracks, &cells, order::FIELD_OF_VIEW, 0.25)?;
     match sight {
@@ -34,10 +35,15 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
         }
         Sight::Cells { .. } => {
             let center = |view: &View| robot(view).map(|robot| position(&view.mapper.frame().center(robot)));
-            tracks.add(path, when, move |view| center(view).into_iter().collect(), |centers| {
-                let centers = centers.into_iter().map(|[x, y]| [x, y, 0.0]);
-                Transform3D::update_fields().with_many_translation(centers)
-            });
+            tracks.add(
+                path,
+                when,
+                move |view| center(view).into_iter().collect(),
+                |centers| {
+                    let centers = centers.into_iter().map(|[x, y]| [x, y, 0.0]);
+                    Transform3D::update_fields().with_many_translation(centers)
+                },
+            );
             tracks.add(cells, when, move |view| around(view, &frame).into_iter().collect(), images);
         }
     }
@@ -75,7 +81,9 @@ fn corners(view: &View) -> Option<Vec<Point2<f64>>> {
 fn robot(view: &View) -> Option<Cell> {
     match view.sight()? {
         Sight::Laser(_) => None,
-        Sight::Cells { reading, .. } => Some(view.mapper.frame().cell_at(&reading.pose.translation.vector.into())),
+        Sight::Cells { reading, .. } => {
+            Some(view.mapper.frame().cell_at(&reading.pose.translation.vector.into()))
+        }
     }
 }
 

@@ -29,10 +29,13 @@ pub(super) fn add(tracks: &Tracks) -> RecordingStreamResult<()> {
     };
     let lines = (0..entries.len()).map(|index| [at(index, -0.2, 0.0), at(index, 0.2, 0.0)]);
     // Colors and half the widths, in points of the viewer.
-    let marks: Vec<_> = entries.iter().map(|(mark, _)| match *mark {
-        Mark::Line(color) => (color, 1.5),
-        Mark::Area(color) | Mark::Cross(color) | Mark::Dot(color) => (color, 5.0),
-    }).collect();
+    let marks: Vec<_> = entries
+        .iter()
+        .map(|(mark, _)| match *mark {
+            Mark::Line(color) => (color, 1.5),
+            Mark::Area(color) | Mark::Cross(color) | Mark::Dot(color) => (color, 5.0),
+        })
+        .collect();
     // A dark rim shows white areas on a light ground.
     for (part, rim) in [("rims", 0.75), ("lines", 0.0)] {
         let colors = marks.iter().map(|mark| if rim > 0.0 { palette::BLOCKED_FAINT } else { mark.0 });

@@ -1,6 +1,6 @@
 //! The layers of the map, each with its color bar.
 
-use super::{Kind, Tracks, WORLD, class, color, labels, order};
+use super::{Tracks, WORLD, class, color, labels, order};
 use crate::layers::Layer;
 use crate::scene::extent;
 use crate::view::View;
@@ -20,7 +20,7 @@ pub(in crate::recording) fn map(layer: Layer) -> String {
 }
 
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
-    let (unit, pace, frame) = (tracks.scene.unit, tracks.pace, tracks.view.mapper.frame());
+    let (unit, frame) = (tracks.scene.unit, tracks.view.mapper.frame());
     for layer in Layer::ALL {
         let cells = format!("{}/cells", map(layer));
         let classes = layer.legend(unit).into_iter();
@@ -28,8 +28,8 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
         tracks.always(&map(layer), &AnnotationContext::new(classes))?;
         Picture::of_frame(frame).log(tracks, &cells, order::MAP, 1.0)?;
         color_bar(tracks, layer, frame)?;
-        let period = if layer == Layer::Occupancy { pace.occupancy } else { pace.maps };
-        let when = (Kind::State, pace.picture(period, frame));
+        let [seconds, steps] = if layer == Layer::Occupancy { [1.0, 1.0] } else { [10.0, 20.0] };
+        let when = tracks.images(frame, seconds, steps);
         tracks.add(cells, when, move |view: &View| vec![layer.classes(view.mapper, unit)], images);
     }
     Ok(())

@@ -14,10 +14,10 @@ pub(super) use maps::{BAR_SHARE, map};
 pub(super) use robots::robot;
 
 use super::entity::{Entity, Kind, Track};
-use super::pace::Pace;
 use crate::scene::Scene;
 use crate::view::View;
 use evaluation::palette::Rgb;
+use interfaces::GridFrame;
 use nalgebra::Point2;
 use rerun::external::re_sdk_types::datatypes::AnnotationInfo;
 use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult};
@@ -35,7 +35,6 @@ struct Tracks<'a> {
     scene: &'a Scene,
     /// The first view of the run.
     view: &'a View<'a>,
-    pace: Pace,
     tracks: Vec<Box<dyn Track>>,
 }
 
@@ -45,7 +44,7 @@ pub(super) fn start(
     scene: &Scene,
     view: &View,
 ) -> RecordingStreamResult<Vec<Box<dyn Track>>> {
-    let mut tracks = Tracks { stream, scene, view, pace: Pace::of(scene.unit), tracks: Vec::new() };
+    let mut tracks = Tracks { stream, scene, view, tracks: Vec::new() };
     legend::add(&tracks)?;
     maps::add(&mut tracks)?;
     field_of_view::add(&mut tracks)?;
@@ -56,7 +55,17 @@ pub(super) fn start(
     Ok(tracks.tracks)
 }
 
+/// Where time is counted in steps, images with more cells than this are logged less often: a viewer holds
+/// 20,000 images of this size in 50 MB.
+const STEP_CELLS: usize = 2500;
+
 impl Tracks<'_> {
+    /// Images of the cells of `frame`, logged when they have changed, at intervals of at least `seconds` or
+    /// `steps`.
+    fn images(&self, frame: &GridFrame, seconds: f64, steps: f64) -> (Kind, f64) {
+        (Kind::State, self.scene.unit.choose(seconds, steps * frame.len().div_ceil(STEP_CELLS) as f64))
+    }
+
     /// Logs what never changes.
     fn always(&self, path: &str, components: &impl AsComponents) -> RecordingStreamResult<()> {
         self.stream.log_static(path, components)

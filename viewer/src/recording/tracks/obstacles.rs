@@ -1,9 +1,12 @@
 //! The walls, and everything else that is no robot.
 
-use super::{ON_CHANGE, Tracks, WORLD, closed, color, escape, labels, line, order, points, position, strips};
+use super::{
+    ON_CHANGE, Position, Tracks, WORLD, closed, color, escape, labels, line, order, points, position, strips,
+};
+use crate::scene::{Outline, span};
 use crate::view::View;
 use evaluation::palette;
-use nalgebra::center;
+use nalgebra::Point2;
 use rerun::RecordingStreamResult;
 
 /// More names than this would hide the map; a viewer still shows them one by one.
@@ -20,14 +23,22 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
         if scene.obstacles.len() <= MAX_LABELS {
             let name = format!("{path}/name");
             tracks.always(&name, &labels([obstacle.name.as_str()]))?;
-            let middle = move |view: &View| {
-                let outline = view.obstacles[index].iter();
-                outline.map(|outline| position(&center(&outline[0], &outline[2]))).collect()
-            };
-            tracks.add(name, ON_CHANGE, middle, points);
+            tracks.add(
+                name,
+                ON_CHANGE,
+                move |view| view.obstacles[index].iter().map(below).collect(),
+                points,
+            );
         }
-        let outline = move |view: &View| view.obstacles[index].iter().map(|outline| closed(outline)).collect();
+        let outline =
+            move |view: &View| view.obstacles[index].iter().map(|outline| closed(outline)).collect();
         tracks.add(path, ON_CHANGE, outline, strips);
     }
     Ok(())
+}
+
+/// The position of a name, below the middle of an outline.
+fn below(outline: &Outline) -> Position {
+    let [low, high] = span(outline);
+    position(&Point2::new(0.5 * (low.x + high.x), low.y))
 }
