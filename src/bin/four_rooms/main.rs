@@ -21,8 +21,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use viewer::pictures::Film;
-use viewer::recording::{Live, Recorder, RecordingOptions};
-use viewer::scene::{Scene, Visible};
+use viewer::recording::{Live, Recorder};
+use viewer::scene::Scene;
 use viewer::show::Show;
 use viewer::view::{Measured, View};
 
@@ -74,11 +74,11 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let trial = PhysicsTrial::new(spec, args.seed, &settings.mapper, prior.clone(), pilot);
     let mut trial = trial.context("cannot make the mapper").map_err(input)?;
     make_folder(&args.out).map_err(anyhow::Error::from)?;
-    let scene = || trial.world.scene();
+    let scene = || Scene::from(trial.world.spec().fleet());
     let recorder = recorder(args, scene())?;
     let film = args.gif.is_some().then(|| Film::new(scene(), args.duration));
     let mut show = Show::new(scene(), recorder, film);
-    let reported = show.live_problem().map(str::to_owned);
+    let reported = show.live_problem();
     reported.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
     let is_interrupted = Arc::new(AtomicBool::new(false));
     let flag = is_interrupted.clone();
@@ -115,7 +115,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     })?;
     let wall_s = start.elapsed().as_secs_f64();
     progress.finish();
-    if let Some(problem) = show.live_problem().filter(|problem| Some(*problem) != reported.as_deref()) {
+    if let Some(problem) = show.live_problem().filter(|problem| Some(problem) != reported.as_ref()) {
         say(stderr(), format_args!("note: {problem}"));
     }
 
@@ -136,7 +136,6 @@ fn recorder(args: &Args, scene: Scene) -> Result<Option<Recorder>, Failure> {
     if file.is_none() && live.is_empty() {
         return Ok(None);
     }
-    let options = RecordingOptions { file, live, ..RecordingOptions::default() };
-    let recorder = Recorder::new(&options, scene).map_err(anyhow::Error::from)?;
+    let recorder = Recorder::new(file.as_deref(), &live, scene).map_err(anyhow::Error::from)?;
     Ok(Some(recorder))
 }

@@ -19,7 +19,7 @@ use std::io::{stderr, stdout};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use viewer::recording::{Recorder, RecordingError, RecordingOptions};
+use viewer::recording::{Recorder, RecordingError};
 use viewer::trial::{Recorded, record};
 
 fn main() -> ExitCode {
@@ -129,8 +129,7 @@ fn trials(
         None => None,
         Some(file) => {
             let trial = experiment.trial(jobs.remove(0));
-            let options = RecordingOptions { file: Some(file.clone()), ..RecordingOptions::default() };
-            Some((Recorder::new(&options, trial.world.into())?, trial))
+            Some((Recorder::new(Some(file), &[], trial.world.into())?, trial))
         }
     };
     let record = || -> Result<_, SettingsError> {
