@@ -1,6 +1,6 @@
 //! The results of a run in a physics world: `summary.json`, and a few lines for the terminal.
 
-use crate::metrics::{Age, Delays, RateScores, ThingReport};
+use crate::metrics::{Age, ChangingScores, Delays, MapScores, RateScores, ThingReport};
 use mapper::Mapper;
 use robot::GoalCount;
 use serde::Serialize;
@@ -12,10 +12,9 @@ use std::fmt;
 pub struct CurvePoint {
     /// The simulated time, s.
     pub time_s: f64,
-    /// The share of the cells that can be seen that were seen.
-    pub coverage: f64,
-    /// The share of the cells that can be seen whose mapped state is the true state.
-    pub map_quality: f64,
+    /// The scores at this time.
+    #[serde(flatten)]
+    pub scores: MapScores,
 }
 
 /// `summary.json`.
@@ -55,14 +54,12 @@ pub struct Summary {
 /// The results of a run in a physics world.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunResults {
-    /// The share of the cells that can be seen that were seen.
-    pub coverage: f64,
-    /// The share of the cells that can be seen whose mapped state is the true state at the end.
-    pub map_quality: f64,
-    /// The balanced accuracy on swept cells in view, over the run; `null` where there was nothing to count.
-    pub map_quality_changing: Option<f64>,
-    /// The same out of view.
-    pub map_quality_changing_out_of_view: Option<f64>,
+    /// Coverage and map quality at the end.
+    #[serde(flatten)]
+    pub map: MapScores,
+    /// The accuracy on swept cells over the run; `null` where there was nothing to count.
+    #[serde(flatten)]
+    pub changing: ChangingScores,
     /// The estimated rates compared with the true rates.
     #[serde(flatten)]
     pub rates: RateScores,
@@ -151,13 +148,13 @@ impl fmt::Display for RunResults {
         writeln!(
             f,
             "  seen      {} of the cells that can be seen; the oldest observation is {:.0} s old",
-            percent(self.coverage),
+            percent(self.map.coverage),
             self.age.max_s
         )?;
         writeln!(
             f,
             "  map       {} correct now; {} false changes on {} static cells",
-            percent(self.map_quality),
+            percent(self.map.map_quality),
             rates.false_change_events,
             rates.static_cells
         )?;

@@ -1,9 +1,9 @@
 use super::*;
-use crate::trials::{TrialSettings, TrialStrategy, run_trial};
+use crate::trials::{Experiment, TrialStrategy};
 use agent::{AgentSettings, Features};
 use controller::CellDrive;
 use interfaces::{Cell, Step, World};
-use mapper::MapperSettings;
+use mapper::{EstimatorChoice, MapperSettings};
 use nalgebra::Isometry2;
 use sim::grid::{GenerateSettings, GridWorld};
 
@@ -107,24 +107,23 @@ fn a_place_that_disappoints_is_left() {
 #[test]
 fn it_learns_faster_than_those_who_do_not_know() {
     for seed in [1, 2] {
-        let world = GridSpec::generate(&GenerateSettings::default(), seed);
-        let error = |strategy| {
-            let life = TrialSettings {
-                world: &world,
-                strategy,
-                seed,
-                steps: 4000,
-                mapper: MapperSettings::default(),
-                agent: &AgentSettings::default(),
-                controller: CellDrive::settings(),
-            };
-            let trial = run_trial(&life, |_| true).unwrap().unwrap();
-            trial.samples.iter().map(|sample| sample.log_error).filter(|error| error.is_finite()).sum::<f64>()
+        let policy = |name: &str| TrialStrategy::Agent(name.parse().unwrap());
+        let experiment = Experiment {
+            worlds: vec![GridSpec::generate(&GenerateSettings::default(), seed)],
+            estimators: vec![EstimatorChoice::default()],
+            strategies: vec![TrialStrategy::Oracle, policy("recency"), policy("curious")],
+            trials: 1,
+            seed,
+            steps: 4000,
+            mapper: MapperSettings::default(),
+            agent: AgentSettings::default(),
+            controller: CellDrive::settings(),
         };
-        let oracle = error(TrialStrategy::Oracle);
-        for policy in ["recency", "curious"] {
-            let policy = TrialStrategy::Agent(policy.parse().unwrap());
-            assert!(oracle < error(policy.clone()), "{policy:?} {seed}");
-        }
+        let trials = experiment.run(experiment.jobs(), &false.into(), |_| ()).unwrap();
+        let errors = trials.iter().map(|trial| {
+            trial.samples.iter().map(|sample| sample.log_error).filter(|error| error.is_finite()).sum::<f64>()
+        });
+        let errors: Vec<f64> = errors.collect();
+        assert!(errors[0] < errors[1] && errors[0] < errors[2], "seed {seed}: {errors:?}");
     }
 }

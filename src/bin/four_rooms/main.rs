@@ -101,7 +101,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
             () => None,
         };
         let measured =
-            Measured { scores: observer.scores(), rate_errors: None, messages: observer.messages() };
+            Measured { scores: observer.scores(), rate_errors: None, messages: &observer.messages };
         show.add(&View::new(world, reading, belief, pilot, measured), end.is_some())?;
         if let Some(end) = end {
             ended = end;
@@ -122,7 +122,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let summary = output::summary(args, settings, &trial, ended, wall_s);
     let PhysicsTrial { mapper, pilot, observer, .. } = trial;
     drop(pilot); // restores the terminal before anything is printed
-    output::write(&args.out, args.gif.as_deref(), &mapper, show, &observer, &summary)?;
+    output::write(&args.out, args.gif.as_deref(), &mapper, show, &observer.goals, &summary)?;
     if !args.quiet {
         say(stdout(), format_args!("{summary}\n  files     {}", args.out.display()));
     }

@@ -9,7 +9,7 @@ use controller::CellDrive;
 use curious::progress::TrialProgress;
 use curious::worlds;
 use evaluation::output::{make_folder, say, write_file};
-use evaluation::report::{Report, ReportSettings, Trial, WorldPicture};
+use evaluation::report::{Report, ReportSettings, Trial};
 use evaluation::trials::Experiment;
 use interfaces::SettingsError;
 use mapper::{EstimatorChoice, MapperSettings, Paper};
@@ -128,7 +128,7 @@ fn trials(
     let first = match &args.rrd {
         None => None,
         Some(file) => {
-            let trial = experiment.trial(jobs.remove(0));
+            let trial = jobs.remove(0);
             let options = RecordingOptions { file: Some(file.clone()), ..RecordingOptions::default() };
             Some((Recorder::new(&options, trial.world.into())?, trial))
         }
@@ -171,9 +171,8 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
         interrupted: is_interrupted,
         ..experiment.report_settings()
     };
-    let pictures: Vec<_> = experiment.worlds.iter().map(WorldPicture::of).collect();
     let report = Report::new(settings, trials);
-    let files = report.write(&args.out, &pictures)?;
+    let files = report.write(&args.out, &experiment.worlds)?;
     if !args.quiet {
         say(stdout(), report.table());
         let names: Vec<_> = files.iter().filter_map(|file| file.file_name()?.to_str()).collect();
