@@ -142,71 +142,69 @@ impl fmt::Display for Summary {
 
 impl fmt::Display for RunResults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { rates, goals, .. } = self;
+        let Self { map, age, rates, goals, .. } = self;
         let or_none = |value: Option<f64>, text: fn(f64) -> String| value.map_or("-".into(), text);
         let number = |value: f64| format!("{value:.3}");
-        writeln!(
-            f,
-            "  seen      {} of the cells that can be seen; the oldest observation is {:.0} s old",
-            percent(self.map.coverage),
-            self.age.max_s
-        )?;
-        writeln!(
-            f,
-            "  map       {} correct now; {} false changes on {} static cells",
-            percent(self.map.map_quality),
-            rates.false_change_events,
-            rates.static_cells
-        )?;
-        match &self.liveliest {
-            None => writeln!(f, "  changes   none seen")?,
-            Some(Liveliest { low_m, high_m, cells, median_interval_s }) => writeln!(
-                f,
-                "  changes   {cells} cells between ({:.1}, {:.1}) and ({:.1}, {:.1}) m, median cycle \
-                 {median_interval_s:.0} s",
+        let (seen, correct) = (percent(map.coverage), percent(map.map_quality));
+        let (events, cells) = (rates.false_change_events, rates.static_cells);
+        let changes = match &self.liveliest {
+            None => "none seen".into(),
+            Some(Liveliest { low_m, high_m, cells, median_interval_s }) => format!(
+                "{cells} cells between ({:.1}, {:.1}) and ({:.1}, {:.1}) m, median cycle {median_interval_s:.0} s",
                 low_m[0], low_m[1], high_m[0], high_m[1]
-            )?,
-        }
+            ),
+        };
+        let mut lines = vec![
+            (
+                "seen",
+                format!(
+                    "{seen} of the cells that can be seen; the oldest observation is {:.0} s old",
+                    age.max_s
+                ),
+            ),
+            ("map", format!("{correct} correct now; {events} false changes on {cells} static cells")),
+            ("changes", changes),
+        ];
         if rates.rate_error_all.is_some() {
-            writeln!(
-                f,
-                "  rates     mean error {} of well-seen cells, {} of all changing cells; log error {}, AUC {}",
-                or_none(rates.rate_error, percent),
-                or_none(rates.rate_error_all, percent),
-                or_none(rates.log_error, number),
-                or_none(rates.rate_auc, number)
-            )?;
+            let errors = [rates.rate_error, rates.rate_error_all].map(|error| or_none(error, percent));
+            let [log_error, auc] = [rates.log_error, rates.rate_auc].map(|value| or_none(value, number));
+            lines.push((
+                "rates",
+                format!(
+                    "mean error {} of well-seen cells, {} of all changing cells; log error {log_error}, AUC {auc}",
+                    errors[0], errors[1]
+                ),
+            ));
         }
         for thing in &self.things {
             let verb = if thing.appeared { "appeared" } else { "disappeared" };
-            writeln!(
-                f,
-                "  thing     {} {verb} at {:.0} s: in view {}, first cell correct {}, 90 % correct {}",
-                thing.name,
-                thing.happened_s,
-                seconds(thing.in_view_s),
-                seconds(thing.noticed_s),
-                seconds(thing.right_s)
-            )?;
+            let [in_view, noticed, correct] = [thing.in_view_s, thing.noticed_s, thing.right_s].map(seconds);
+            lines.push((
+                "thing",
+                format!(
+                    "{} {verb} at {:.0} s: in view {in_view}, first cell correct {noticed}, 90 % correct {correct}",
+                    thing.name, thing.happened_s
+                ),
+            ));
         }
         let all = goals.reached + goals.given_up;
         if all > 0 {
-            let (reached, approached) = (goals.reached - goals.nearest, goals.nearest);
-            let given_up = goals.given_up;
-            writeln!(
-                f,
-                "  goals     {all}: {reached} reached, {approached} approached, {given_up} given up"
-            )?;
+            let (reached, approached, given_up) =
+                (goals.reached - goals.nearest, goals.nearest, goals.given_up);
+            lines.push((
+                "goals",
+                format!("{all}: {reached} reached, {approached} approached, {given_up} given up"),
+            ));
         }
         if !self.strategy_share.is_empty() {
             let share = |(name, share): (&String, &f64)| format!("{name} {}", percent(*share));
             let shares: Vec<String> = self.strategy_share.iter().map(share).collect();
-            writeln!(f, "  chosen    {}", shares.join(", "))?;
+            lines.push(("chosen", shares.join(", ")));
         }
-        write!(
-            f,
-            "  contacts  {} while the robot moved, {} while it stood still",
-            self.collisions, self.contacts_while_standing
-        )
+        for (name, text) in lines {
+            writeln!(f, "  {name:<9} {text}")?;
+        }
+        let (moving, standing) = (self.collisions, self.contacts_while_standing);
+        write!(f, "  contacts  {moving} while the robot moved, {standing} while it stood still")
     }
 }

@@ -65,7 +65,7 @@ fn chosen(report: &Report) -> Vec<(String, &Run)> {
                 name += &format!("-{}", in_file_name(&run.estimator));
             }
         }
-        // Two names may differ only in what a file's name cannot tell.
+        // Different names can become the same in a file name.
         let mut unique = name.clone();
         let mut number = 2;
         while !names.insert(unique.clone()) {
@@ -77,7 +77,7 @@ fn chosen(report: &Report) -> Vec<(String, &Run)> {
     chosen
 }
 
-/// A name as a part of a file's name: small letters, digits and dashes.
+/// A name as a part of a file name: lower-case letters, digits and dashes.
 fn in_file_name(name: &str) -> String {
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' };
     let dashed: String = name.chars().map(plain).collect();
@@ -87,9 +87,9 @@ fn in_file_name(name: &str) -> String {
 
 /// The plans of the worlds of `run`, in the report's order.
 fn worlds_of<'a>(report: &Report, run: &Run, worlds: &'a [GridSpec]) -> Vec<&'a GridSpec> {
-    let lived_in = |one: &&Run| one.worlds == 1 && one.estimator == run.estimator;
+    let has_trials = |one: &&Run| one.worlds == 1 && one.estimator == run.estimator;
     let is_wanted = |one: &&Run| run.worlds > 1 || one.world == run.world;
-    let names = report.runs.iter().filter(lived_in).filter(is_wanted).map(|one| &one.world);
+    let names = report.runs.iter().filter(has_trials).filter(is_wanted).map(|one| &one.world);
     names.filter_map(|name| worlds.iter().find(|world| world.name == *name)).collect()
 }
 
