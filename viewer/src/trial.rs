@@ -57,10 +57,11 @@ fn log(
     is_canceled: bool,
 ) -> Result<(), RecordingError> {
     let step = now.reading.time as u64;
-    let is_last = is_canceled || step >= settings.steps.min(RECORDED_STEPS);
+    let is_last = is_canceled || step >= settings.experiment.steps.min(RECORDED_STEPS);
     let mut messages = now.pilot.take_messages();
-    if is_last && !is_canceled && step < settings.steps {
-        let text = format!("the recording ends here; the trial goes on to step {}", settings.steps);
+    if is_last && !is_canceled && step < settings.experiment.steps {
+        let text =
+            format!("the recording ends here; the trial goes on to step {}", settings.experiment.steps);
         messages.push(Message { level: Level::Event, text });
     }
     let score_every = SCORE_EVERY * settings.world.frame().len().div_ceil(SCORE_CELLS) as u64;
@@ -102,7 +103,7 @@ mod tests {
 
     fn recorded(steps: u64, file: &Path, is_canceled: bool) -> Recorded {
         let experiment = experiment(steps);
-        let life = experiment.trial(experiment.jobs()[0]);
+        let life = experiment.jobs()[0];
         let recorder = Recorder::new(Some(file), &[], life.world.into()).unwrap();
         record(&life, recorder, &is_canceled.into()).unwrap()
     }

@@ -3,7 +3,8 @@
 use agent::Policy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use mapper::{Choice, Estimator, EstimatorChoice, OccupancyChoice, OccupancyKind};
+use curious::program::mapper_part;
+use mapper::{Estimator, EstimatorChoice, OccupancyChoice, OccupancyKind};
 use std::path::PathBuf;
 use viewer::recording::Live;
 
@@ -110,12 +111,6 @@ pub(crate) enum DriveChoice {
 fn strategies() -> impl TypedValueParser<Value = Policy> {
     let named = |policy: &Policy| PossibleValue::new(policy.name()).help(policy.description());
     PossibleValuesParser::new(Policy::built_in().iter().map(named)).try_map(|name| name.parse::<Policy>())
-}
-
-/// A parser of the name of a built-in part of the mapper.
-fn mapper_part<T: mapper::Named + ?Sized>() -> impl TypedValueParser<Value = Choice<T>> {
-    let names: Vec<_> = Choice::<T>::all().iter().map(Choice::name).collect();
-    PossibleValuesParser::new(names).try_map(Choice::try_from)
 }
 
 /// The longest run, s: 1000 hours.
