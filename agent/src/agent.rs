@@ -2,7 +2,7 @@ use crate::choosers::{Chooser, Trajectory};
 use crate::features::Features;
 use crate::goal_sampler::{Goal, GoalSampler};
 use crate::policy::Policy;
-use crate::settings::{AgentSettings, Reward, error};
+use crate::settings::{AgentSettings, Reward};
 use crate::situation::{Situation, Travel};
 use crate::strategies::Strategy;
 use interfaces::{RandomStream, SettingsError, Transition};
@@ -67,7 +67,8 @@ impl Agent {
     ) -> Result<Self, SettingsError> {
         settings.check()?;
         if strategies.is_empty() {
-            return Err(error("strategies", "at least one", "none"));
+            let (part, key, expected) = ("agent", "strategies", "at least one");
+            return Err(SettingsError { part, key, expected, found: "none".to_owned() });
         }
         Ok(Self {
             goal_counts: vec![0; strategies.len()],

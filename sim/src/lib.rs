@@ -35,5 +35,6 @@
 //! # Ok::<(), DrivenError>(())
 //! ```
 
+mod flood;
 pub mod grid;
 pub mod physics;

@@ -181,13 +181,8 @@ impl Wavefront {
         path.push(at);
         while cost > 0 {
             let step = at.neighbours8().into_iter().find_map(|next| {
-                let diagonal = next.x != at.x && next.y != at.y;
-                let allowed = !diagonal
-                    || self.moves == Moves::Eight
-                        && map.is_traversable(Cell::new(next.x, at.y))
-                        && map.is_traversable(Cell::new(at.x, next.y));
-                let length = if diagonal { DIAGONAL } else { STRAIGHT };
-                let here = self.path_cost(next)?.checked_add(u32::from(map.cost(next)) * length)?;
+                let allowed = self.moves == Moves::Eight || next.x == at.x || next.y == at.y;
+                let here = self.path_cost(next)?.checked_add(map.line_cost(at, next)?)?;
                 (allowed && here == cost).then_some(next)
             });
             let Some(next) = step else { return path.clear() };

@@ -3,7 +3,7 @@
 use agent::Policy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use mapper::{Choice, Estimator, EstimatorChoice, OccupancyChoice, OccupancyKind};
+use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
 use viewer::recording::Live;
 
@@ -60,11 +60,11 @@ pub(crate) struct Args {
     pub(crate) speed: Option<f64>,
 
     /// The estimator of the rates of change
-    #[arg(long, default_value = "two-state-gaps", value_parser = mapper_part::<dyn Estimator>(), help_heading = "Mapper")]
+    #[arg(long, default_value = "two-state-gaps", value_parser = estimators(), help_heading = "Mapper")]
     pub(crate) estimator: EstimatorChoice,
 
     /// The occupancy model: steady (static walls never change) or naive (every beam counts, as in the paper)
-    #[arg(long, default_value = "steady", value_parser = mapper_part::<OccupancyKind>(), help_heading = "Mapper")]
+    #[arg(long, default_value = "steady", value_parser = occupancy_models(), help_heading = "Mapper")]
     pub(crate) occupancy: OccupancyChoice,
 
     /// The folder for all results
@@ -112,10 +112,14 @@ fn strategies() -> impl TypedValueParser<Value = Policy> {
     PossibleValuesParser::new(Policy::built_in().iter().map(named)).try_map(|name| name.parse::<Policy>())
 }
 
-/// A parser of the name of a built-in part of the mapper.
-fn mapper_part<T: mapper::Named + ?Sized>() -> impl TypedValueParser<Value = Choice<T>> {
-    let names: Vec<_> = Choice::<T>::all().iter().map(Choice::name).collect();
-    PossibleValuesParser::new(names).try_map(Choice::try_from)
+fn estimators() -> impl TypedValueParser<Value = EstimatorChoice> {
+    let names = EstimatorChoice::all().into_iter().map(|estimator| estimator.name());
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<EstimatorChoice>())
+}
+
+fn occupancy_models() -> impl TypedValueParser<Value = OccupancyChoice> {
+    let names = OccupancyChoice::all().into_iter().map(|model| model.name());
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<OccupancyChoice>())
 }
 
 /// The longest run, s: 1000 hours.

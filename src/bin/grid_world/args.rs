@@ -4,7 +4,7 @@ use agent::Reward;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use evaluation::trials::TrialStrategy;
-use mapper::{Choice, Estimator, EstimatorChoice};
+use mapper::EstimatorChoice;
 use std::path::PathBuf;
 
 /// Compares exploration strategies in grid worlds with moving blocks: the paper's Figure 3, with statistics.
@@ -58,7 +58,7 @@ pub(crate) struct Args {
 
     /// How rates of change are estimated. Can be repeated [default: the paper's, and this program's
     /// choice]
-    #[arg(long, value_parser = mapper_part::<dyn Estimator>(), help_heading = "Comparison")]
+    #[arg(long, value_parser = estimators(), help_heading = "Comparison")]
     pub(crate) estimator: Vec<EstimatorChoice>,
 
     /// Trials of each combination, with seeds that count up from --seed
@@ -128,10 +128,9 @@ fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
     })
 }
 
-/// A parser of the name of a built-in part of the mapper.
-fn mapper_part<T: mapper::Named + ?Sized>() -> impl TypedValueParser<Value = Choice<T>> {
-    let names: Vec<_> = Choice::<T>::all().iter().map(Choice::name).collect();
-    PossibleValuesParser::new(names).try_map(Choice::try_from)
+fn estimators() -> impl TypedValueParser<Value = EstimatorChoice> {
+    let names = EstimatorChoice::all().into_iter().map(|estimator| estimator.name());
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<EstimatorChoice>())
 }
 
 fn probability(text: &str) -> Result<f64, String> {

@@ -34,10 +34,8 @@ impl CellMap {
         self.observe(index);
         self.weigh_gaps(index);
         self.update_candidate(index);
-        for neighbour in cell.neighbours4() {
-            if let Some(neighbour) = self.frame().index(neighbour) {
-                self.update_candidate(neighbour);
-            }
+        for neighbor in self.frame().beside(index) {
+            self.update_candidate(neighbor);
         }
     }
 

@@ -60,9 +60,9 @@ impl PotentiallyVisibleSet {
             cell_m,
             columns: count(extent.x),
             rows: count(extent.y),
-            edges: IndexLists::new(),
-            cells: IndexLists::new(),
-            boxes: IndexLists::new(),
+            edges: IndexLists::default(),
+            cells: IndexLists::default(),
+            boxes: IndexLists::default(),
         };
         let mut boxes_in = vec![Vec::new(); set.len()];
         for (i, shape) in boxes.iter().enumerate() {
