@@ -190,7 +190,7 @@ mod tests {
         let ln_10 = std::f64::consts::LN_10;
         let expected = [0.0, ln_10 - 1.0, ln_10 - 0.5f64.sqrt(), ln_10 - 3f64.sqrt() / 3.0, ln_10 - 0.5];
         assert!(known.iter().zip(expected).all(|(known, expected)| (known - expected).abs() < 1e-12));
-        // A change found after a gap tells no rate.
+        // A change found after a gap gives no rate.
         let away =
             CellReading { time: 5.0, pose: Isometry2::identity(), cells: vec![(Cell::new(0, 0), false)] };
         mapper.update(&away).unwrap();

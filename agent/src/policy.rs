@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_name_is_answered_with_the_known_ones() {
+    fn an_unknown_name_lists_the_known_ones() {
         assert_eq!(
             "Curius".parse::<Policy>().unwrap_err().to_string(),
             "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, frontier, \

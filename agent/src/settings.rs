@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_that_make_no_sense_are_refused() {
+    fn invalid_settings_are_refused() {
         assert_eq!(message(""), "fine");
         assert_eq!(message("patch_cells = 10\nreward = 'changes-and-discoveries'"), "fine");
         assert_eq!(message("patch_cells = 0"), "agent setting `patch_cells` must be from 1 to 1000, not 0");
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn rewards_count_what_they_say() {
+    fn rewards_count_their_transitions() {
         use CellState::{Blocked, Free, Unknown};
         let transitions: Vec<_> = [(Unknown, Free), (Unknown, Blocked), (Free, Blocked), (Blocked, Free)]
             .map(|(before, after)| Transition { cell: Cell::new(0, 0), before, after })

@@ -96,7 +96,7 @@ mod tests {
     use crate::{DiffDrive, DiffDriveSettings};
 
     #[test]
-    fn what_is_wrong_is_named() {
+    fn errors_name_the_setting() {
         let message = |text: &str| toml::from_str::<Settings>(text).unwrap().check().unwrap_err().to_string();
         assert_eq!(
             message("inflation.inflation_m = 0.01"),
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn defaults_are_right_and_unknown_keys_are_not() {
+    fn defaults_are_valid_and_unknown_keys_are_refused() {
         assert_eq!(Settings::default().check(), Ok(()));
         assert!(DiffDrive::new(DiffDriveSettings::default()).is_ok());
         assert_eq!(toml::from_str::<Settings>("").unwrap(), Settings::default());

@@ -1,7 +1,7 @@
 //! The values and traits that the crates exchange: cells and grids, scans and readings, commands, the
 //! traits [`World`] and [`GroundTruth`], parts chosen by name, checks of settings, and seeded random streams.
 //!
-//! This crate knows no other crate of the workspace. It has no clock and no input or output.
+//! This crate depends on no other crate of the workspace. It has no clock and no input or output.
 //!
 //! Units are SI; the name of a scalar carries its unit. Frames follow REP-103 (x forward, y left,
 //! counter-clockwise radians). Grids are row-major with row 0 at the lowest y.

@@ -14,7 +14,7 @@ pub struct SettingsError {
     pub found: String,
 }
 
-/// Checks the settings of a part of the robot. Every method refuses a number that is not finite.
+/// Checks the settings of a part of the robot. Every method refuses a value that is not finite, or not as described.
 #[derive(Clone, Copy, Debug)]
 pub struct SettingsCheck {
     /// [`SettingsError::part`].
@@ -22,23 +22,17 @@ pub struct SettingsCheck {
 }
 
 impl SettingsCheck {
-    /// # Errors
-    ///
-    /// When `value` is not above 0.
+    /// A value above 0.
     pub fn positive(self, key: &'static str, value: f64) -> Result<(), SettingsError> {
         self.valid(key, value, "a positive number", value > 0.0)
     }
 
-    /// # Errors
-    ///
-    /// When `value` is below 0.
+    /// A value of 0 or more.
     pub fn not_negative(self, key: &'static str, value: f64) -> Result<(), SettingsError> {
         self.valid(key, value, "0 or more", value >= 0.0)
     }
 
-    /// # Errors
-    ///
-    /// When `value` is not in `range`, which `expected` describes.
+    /// A value in `range`, which `expected` describes.
     pub fn within(
         self,
         key: &'static str,
@@ -50,9 +44,7 @@ impl SettingsCheck {
         self.valid(key, value, expected, range.contains(&value))
     }
 
-    /// # Errors
-    ///
-    /// When `value` is not `expected`, as `is_valid` says.
+    /// A value that is `expected`, as `is_valid` states.
     pub fn valid(
         self,
         key: &'static str,

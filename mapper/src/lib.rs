@@ -26,7 +26,9 @@ pub use occupancy::{
 };
 
 use derived::ExpectedChanges;
-use interfaces::{CellState, Grid, GridFrame, Observation, Reading, ScanError, SettingsCheck, SettingsError, Transition};
+use interfaces::{
+    CellState, Grid, GridFrame, Observation, Reading, ScanError, SettingsCheck, SettingsError, Transition,
+};
 use nalgebra::{Isometry2, Point2};
 use occupancy::FARTHEST_M;
 

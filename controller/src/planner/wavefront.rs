@@ -263,7 +263,7 @@ mod tests {
         }
 
         #[test]
-        fn a_wave_that_stops_early_is_right_up_to_its_target((map, source, target) in random_map()) {
+        fn a_wave_that_stops_early_is_exact_up_to_its_target((map, source, target) in random_map()) {
             let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
             // The traces of an earlier wave must not show.
             wave.spread(&map, target, Some(source));
@@ -281,7 +281,7 @@ mod tests {
         }
 
         #[test]
-        fn the_descent_pays_what_the_field_says((map, source, target) in random_map(), four in any::<bool>()) {
+        fn the_descent_costs_what_the_field_states((map, source, target) in random_map(), four in any::<bool>()) {
             let moves = if four { Moves::Four } else { Moves::Eight };
             let mut wave = Wavefront::new(*map.frame(), moves);
             let mut path = Vec::new();
@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_leads_through_the_door() {
+    fn the_path_leads_through_the_door() {
         let rows = ["....#....", "....#....", "R...D....", "....#....", "....#...G"];
         let map = costmap(&rows);
         let mut wave = Wavefront::new(*map.frame(), Moves::Eight);

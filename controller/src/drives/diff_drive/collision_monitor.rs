@@ -94,7 +94,12 @@ impl CollisionMonitor {
     }
 
     /// The highest safe speed up to `wish_mps` (negative backwards) on the arc of a curvature.
-    pub(super) fn safe_speed_mps(&self, settings: &DiffDriveSettings, wish_mps: f64, curvature_radpm: f64) -> f64 {
+    pub(super) fn safe_speed_mps(
+        &self,
+        settings: &DiffDriveSettings,
+        wish_mps: f64,
+        curvature_radpm: f64,
+    ) -> f64 {
         let mut levels = (1..=LEVELS).rev().map(|level| wish_mps * f64::from(level) / f64::from(LEVELS));
         levels.find(|speed| self.is_safe(settings, *speed, curvature_radpm)).unwrap_or(0.0)
     }
@@ -159,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_closer_needs_more_room() {
+    fn dynamic_obstacles_need_more_room() {
         let ahead_m = 0.22 + braking().stop_m(0.5) + 0.01;
         assert_eq!(monitor(ahead_m, 0.0, false).safe_speed_mps(&braking(), 0.5, 0.0), 0.5);
         assert!(monitor(ahead_m, 0.0, true).safe_speed_mps(&braking(), 0.5, 0.0) < 0.5);

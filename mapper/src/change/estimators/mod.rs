@@ -25,7 +25,7 @@ pub trait Estimator: fmt::Debug + Send + Sync {
 
     /// The mean time of one cycle, blocked to free and back (T of equation 1), in the unit of the times of the
     /// statistics. Called only for cells with an event. A result that is not a positive number means that the
-    /// events tell no rate.
+    /// events give no rate.
     fn interval(&self, seen: &CellStatistics) -> f64;
 
     /// The rates of both changes, from which the state of a cell out of view is predicted; `None` if unknown.
@@ -81,8 +81,7 @@ impl EstimatorChoice {
     /// The mean time of one cycle, T; ∞ for a cell without an event, or that was never in view for any time.
     pub fn interval(&self, seen: &CellStatistics) -> f64 {
         let interval = if seen.events() == 0 { f64::INFINITY } else { self.0.interval(seen) };
-        // The events of a cell that was in view for no time, or for a time without an inverse, tell that the cell
-        // changes, but not how often.
+        // The events of a cell that was in view for no time, or for a time without an inverse, give no rate.
         if interval >= f64::MIN_POSITIVE { interval } else { f64::INFINITY }
     }
 

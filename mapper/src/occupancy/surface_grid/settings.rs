@@ -10,8 +10,8 @@ pub struct SurfaceGridSettings {
     /// A hit counts for the cell this far behind the surface, along its normal, m: a surface on
     /// the border of two cells belongs to the solid one.
     pub surface_depth_m: f64,
-    /// The smallest thickness of things that come, m: to this depth behind a hit on them cells are blocked. 0
-    /// marks surfaces only.
+    /// The smallest thickness of new obstacles, m: to this depth behind a hit cells are blocked. 0 marks surfaces
+    /// only.
     pub body_m: f64,
     /// Hits nearer than this to each other, m, are one surface: no beam passes the cells on the surface.
     pub join_m: f64,
@@ -20,8 +20,7 @@ pub struct SurfaceGridSettings {
     pub max_gap_m: f64,
     /// Scans with a hit until a free or unknown cell is blocked.
     pub hits_to_block: u8,
-    /// The same in the open, away from every standing surface. One hit is enough for a laser without
-    /// spurious returns, and sees things that pass.
+    /// The same away from every standing surface. One hit is enough for a laser without spurious returns.
     pub hits_to_block_in_open: u8,
     /// Scans that pass an unknown cell until the cell is free.
     pub misses_to_discover: u8,
@@ -31,10 +30,9 @@ pub struct SurfaceGridSettings {
     pub misses_to_free_fresh: u8,
     /// The same for a cell that was hit often.
     pub misses_to_free: u8,
-    /// Hits after which a surface counts as standing: noise around a standing surface counts as the surface
-    /// itself, not as a new thing.
+    /// Hits after which a surface counts as standing: noise around it is then not a new obstacle.
     pub hits_to_stand: u16,
-    /// A first observation that is overturned after less than this time in view, s, was wrong: the state is
+    /// A first observation that is contradicted after less than this time in view, s, was wrong: the state is
     /// corrected, and that does not count as a change.
     pub confirm_s: f64,
 }

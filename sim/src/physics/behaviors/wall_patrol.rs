@@ -19,7 +19,7 @@ const MAX_LEAN_RAD: f64 = 0.25;
 /// its distance to the wall by laser and its heading by odometry, turns in place at the ends, and stops while
 /// anything else is in its way.
 #[derive(Clone, Debug)]
-pub(super) struct WallPatrol {
+pub(in crate::physics) struct WallPatrol {
     spec: PatrolSpec,
     legs: Legs,
     /// Whether the robot drives towards `to`; otherwise towards `from`.

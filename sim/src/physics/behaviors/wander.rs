@@ -19,7 +19,7 @@ const CURVE_SCANS: Range<f64> = 10.0..50.0;
 /// Drives without a goal: ahead in long random curves. Where something comes too near ahead, the robot turns
 /// in place towards the side with more space, until the way is free.
 #[derive(Clone, Debug)]
-pub(super) struct Wander {
+pub(in crate::physics) struct Wander {
     spec: WanderSpec,
     max_turn_radps: f64,
     /// Below the first range on a beam the robot stops; above the second it continues. 0 for beams that do

@@ -13,7 +13,7 @@ const SIDE_MARGIN_M: f64 = 0.03;
 /// Drives straight from point to point by odometry, turns in place at the points, and waits while the laser
 /// shows something in the way.
 #[derive(Clone, Debug)]
-pub(super) struct Waypoints {
+pub(in crate::physics) struct Waypoints {
     spec: WaypointsSpec,
     legs: Legs,
     /// The index of the next point; `None` after the last one.
@@ -39,7 +39,6 @@ impl Waypoints {
             }
         }
     }
-
 
     /// The velocity until the next reading.
     pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {

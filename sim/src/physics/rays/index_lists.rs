@@ -22,7 +22,11 @@ impl<T: Clone + Default> IndexLists<T> {
 
     /// Replaces everything by `lists` lists of the given entries, each with the list that it belongs to. Entries of
     /// one list keep their order.
-    pub(super) fn sort(&mut self, lists: usize, entries: impl DoubleEndedIterator<Item = (usize, T)> + Clone) {
+    pub(super) fn sort(
+        &mut self,
+        lists: usize,
+        entries: impl DoubleEndedIterator<Item = (usize, T)> + Clone,
+    ) {
         // Counting sort: the number of entries per list, summed up to the end of each list. Filled from the back,
         // ends become starts.
         self.starts.clear();

@@ -3,7 +3,7 @@ use super::circles::{Disc, Discs};
 use super::edges::{Edge, visible_edges};
 use super::index_lists::IndexLists;
 use super::polygons::{Polygons, Tested};
-use super::visibility::{PotentiallyVisibleSet, Reach};
+use super::visibility::PotentiallyVisibleSet;
 use crate::physics::shape::Rectangle;
 use nalgebra::{Isometry2, Point2};
 use std::sync::Arc;
@@ -50,7 +50,7 @@ impl Scene {
     ) -> Self {
         let edges = visible_edges(walls);
         let radius_m = discs.iter().fold(0.0, |most: f64, disc| most.max(disc.radius_m));
-        let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, &Reach { range_m, radius_m });
+        let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, range_m, radius_m);
         let solids = walls.iter().map(Edge::of_rectangle).collect();
         Self {
             walls: Arc::new(Walls { solids, edges, visible }),

@@ -129,7 +129,7 @@ impl Robot {
         self.command = *command;
     }
 
-    /// Puts the robot at `pose`, at rest. Its odometry starts anew there.
+    /// Puts the robot at `pose`, at rest. Its odometry starts again there.
     pub(super) fn put(&mut self, pose: Isometry2<f64>) {
         self.pose = pose;
         self.previous_pose = pose;

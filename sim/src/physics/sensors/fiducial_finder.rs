@@ -34,7 +34,7 @@ pub(in crate::physics) struct Tagged {
 
 /// A sensor that detects bodies with a tag.
 #[derive(Clone)]
-pub(super) struct FiducialFinder {
+pub(in crate::physics) struct FiducialFinder {
     pub(super) spec: FiducialSpec,
     /// A single beam straight ahead.
     beam: Beams,
@@ -51,8 +51,7 @@ impl FiducialFinder {
         let pose = platform.pose * self.spec.mount;
         self.found.clear();
         let own = Body::Robot(platform.robot);
-        for &Tagged { tag, body, center, ref form } in now.tagged.iter().filter(|it| it.body != own)
-        {
+        for &Tagged { tag, body, center, ref form } in now.tagged.iter().filter(|it| it.body != own) {
             let to = pose.inverse_transform_point(&center).coords;
             let (range_m, bearing_rad) = (to.norm(), libm::atan2(to.y, to.x));
             if range_m > self.spec.range_max_m || bearing_rad.abs() > self.spec.fov_rad / 2.0 + 1e-12 {

@@ -39,7 +39,8 @@ impl Sensor {
             Self::Laser(Box::new(LaserScanner::new(laser, beams, seed, stream(index))))
         });
         let sonars = spec.sonars.iter().enumerate();
-        let sonars = sonars.map(|(index, sonar)| Self::Sonar(Box::new(Sonar::new(sonar, seed, stream(index)))));
+        let sonars =
+            sonars.map(|(index, sonar)| Self::Sonar(Box::new(Sonar::new(sonar, seed, stream(index)))));
         let finder = spec.fiducial.iter().map(|finder| Self::Fiducials(FiducialFinder::new(finder)));
         lasers.chain(sonars).chain(finder).collect()
     }

@@ -18,7 +18,7 @@ pub struct SonarReading {
 
 /// A sonar or infrared range sensor.
 #[derive(Clone)]
-pub(super) struct Sonar {
+pub(in crate::physics) struct Sonar {
     pub(super) spec: SonarSpec,
     beams: Beams,
     pub(super) noise: RandomStream,
