@@ -3,10 +3,11 @@
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use evaluation::output::say;
-use mapper::{Choice, Named};
+use std::error::Error;
 use std::fmt::Display;
 use std::io::{stderr, stdout};
 use std::process::ExitCode;
+use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -66,8 +67,10 @@ pub fn list<E: Display>(worlds: &[(&str, &str)], width: usize, describe: impl Fn
     }
 }
 
-/// A parser of the name of a built-in part of the mapper.
-pub fn mapper_part<T: Named + ?Sized>() -> impl TypedValueParser<Value = Choice<T>> {
-    let names: Vec<_> = Choice::<T>::all().iter().map(Choice::name).collect();
-    PossibleValuesParser::new(names).try_map(Choice::try_from)
+/// A parser of the name of one of `all`.
+pub fn one_of<T>(all: Vec<T>) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err: Error + Send + Sync> + Display + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(all.iter().map(ToString::to_string)).try_map(|name| name.parse::<T>())
 }

@@ -3,9 +3,9 @@
 use agent::Reward;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use curious::program::mapper_part;
+use curious::program::one_of;
 use evaluation::trials::TrialStrategy;
-use mapper::{Estimator, EstimatorChoice};
+use mapper::EstimatorChoice;
 use std::path::PathBuf;
 
 /// Compares exploration strategies in grid worlds with moving blocks: the paper's Figure 3, with statistics.
@@ -58,7 +58,7 @@ pub(crate) struct Args {
     pub(crate) strategy: Vec<TrialStrategy>,
 
     /// The estimator of the rates of change. Can be repeated [default: the paper's, and this program's choice]
-    #[arg(long, value_parser = mapper_part::<dyn Estimator>(), help_heading = "Comparison")]
+    #[arg(long, value_parser = one_of(EstimatorChoice::all()), help_heading = "Comparison")]
     pub(crate) estimator: Vec<EstimatorChoice>,
 
     /// Trials of each combination, with seeds that count up from --seed

@@ -2,8 +2,8 @@ use crate::physics::form::Form;
 use crate::physics::shape::Rectangle;
 use nalgebra::Point2;
 
-/// A place is free for an obstacle if everything that moves is this far away, m: far enough that the physics
-/// engine pushes nothing apart.
+/// An obstacle may move to a pose if every body that moves is this far away, m: far enough that the physics engine
+/// pushes nothing apart.
 const ROOM_M: f64 = 0.005;
 
 /// The bodies that an obstacle must not run into. The obstacle waits instead, so that it crushes nothing.
@@ -28,9 +28,12 @@ impl Blockers {
     /// Whether a rectangle can move from one pose to the other: a body that is near afterwards was at least as
     /// near before.
     pub(super) fn is_free(&self, from: &Rectangle, to: &Rectangle) -> bool {
-        let (before, after, near) = (from.corners(), to.corners(), Near::new(to));
-        let mut things = self.things.iter().filter(|thing| near.overlaps(&thing.center, thing.radius_m));
-        things.all(|thing| {
+        let (before, after) = (from.corners(), to.corners());
+        // Most bodies are far away: compares circles first.
+        let (center, reach_m) = (Point2::from(to.pose.translation.vector), to.half_m.norm() + ROOM_M);
+        let is_near =
+            |thing: &&Thing| (thing.center - center).norm_squared() <= (reach_m + thing.radius_m).powi(2);
+        self.things.iter().filter(is_near).all(|thing| {
             let gap_m = thing.form.gap_m(&after);
             gap_m >= ROOM_M || gap_m >= thing.form.gap_m(&before)
         })
@@ -40,21 +43,5 @@ impl Blockers {
     pub(super) fn has_room(&self, shape: &Rectangle) -> bool {
         let corners = shape.corners();
         self.things.iter().all(|thing| thing.form.gap_m(&corners) >= ROOM_M)
-    }
-}
-
-/// A circle around a rectangle: most bodies are far away from it.
-struct Near {
-    center: Point2<f64>,
-    radius_m: f64,
-}
-
-impl Near {
-    fn new(shape: &Rectangle) -> Self {
-        Self { center: shape.pose.translation.vector.into(), radius_m: shape.half_m.norm() + ROOM_M }
-    }
-
-    fn overlaps(&self, at: &Point2<f64>, radius_m: f64) -> bool {
-        (at - self.center).norm_squared() <= (self.radius_m + radius_m).powi(2)
     }
 }
