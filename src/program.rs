@@ -68,9 +68,9 @@ pub fn list<E: Display>(worlds: &[(&str, &str)], width: usize, describe: impl Fn
 }
 
 /// A parser of the name of one of `all`.
-pub fn one_of<T>(all: Vec<T>) -> impl TypedValueParser<Value = T>
+pub fn one_of<T>(all: Vec<T>, name: fn(&T) -> &'static str) -> impl TypedValueParser<Value = T>
 where
-    T: FromStr<Err: Error + Send + Sync> + Display + Clone + Send + Sync + 'static,
+    T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
 {
-    PossibleValuesParser::new(all.iter().map(ToString::to_string)).try_map(|name| name.parse::<T>())
+    PossibleValuesParser::new(all.iter().map(name)).try_map(|name| name.parse::<T>())
 }

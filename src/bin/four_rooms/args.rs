@@ -61,11 +61,11 @@ pub(crate) struct Args {
     pub(crate) speed: Option<f64>,
 
     /// The estimator of the rates of change
-    #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all()), help_heading = "Mapper")]
+    #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Mapper")]
     pub(crate) estimator: EstimatorChoice,
 
     /// The occupancy model: steady (static walls never change) or naive (every beam counts, as in the paper)
-    #[arg(long, default_value = "steady", value_parser = one_of(OccupancyChoice::all()), help_heading = "Mapper")]
+    #[arg(long, default_value = "steady", value_parser = one_of(OccupancyChoice::all(), OccupancyChoice::name), help_heading = "Mapper")]
     pub(crate) occupancy: OccupancyChoice,
 
     /// The folder for all results

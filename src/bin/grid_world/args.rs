@@ -58,7 +58,7 @@ pub(crate) struct Args {
     pub(crate) strategy: Vec<TrialStrategy>,
 
     /// The estimator of the rates of change. Can be repeated [default: the paper's, and this program's choice]
-    #[arg(long, value_parser = one_of(EstimatorChoice::all()), help_heading = "Comparison")]
+    #[arg(long, value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Comparison")]
     pub(crate) estimator: Vec<EstimatorChoice>,
 
     /// Trials of each combination, with seeds that count up from --seed
