@@ -1,4 +1,4 @@
-//! What a step costs in a grid world: `cargo bench --bench grid_loop`.
+//! What a step costs in a grid world: `cargo bench -p benches --bench grid_loop`.
 //!
 //! Every bench takes 20,000 steps and tells how many there are in a second. [`whole`] is the loop as
 //! the program runs it, without metrics: sense, map, features, choose, plan, act. The other two leave
@@ -10,7 +10,6 @@
 
 use agent::{Agent, AgentSettings, Travel};
 use controller::{CellDrive, Controller};
-use curious::worlds;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use interfaces::{Purpose, RandomStream, Step};
@@ -40,7 +39,7 @@ fn world(name: &str) -> GridSpec {
     let side = match name {
         "25 x 25" => 25,
         "200 x 200" => 200,
-        shipped => return worlds::load_grid(shipped).expect("a shipped world is right"),
+        shipped => return worldfile::shipped::load_grid(shipped).expect("a shipped world is valid"),
     };
     // The larger, the more rooms.
     let rooms = (side / 12u32).pow(2);

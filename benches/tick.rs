@@ -4,8 +4,7 @@
 //! the robot alone, without metrics and recording; 200 µs are 500 times real time. 60 s over the
 //! time of [`explore_60_s`] is the same with what a start costs, and with metrics or without.
 //!
-//! `cargo bench --bench tick` measures the release build. `cargo bench --profile dev --bench tick`
-//! is built sooner: there, too, our crates and the physics are optimised.
+//! Run it by `cargo bench -p benches --bench tick`.
 
 use agent::{Agent, Features, Policy};
 use controller::DiffDrive;
@@ -31,7 +30,7 @@ struct Run {
 
 impl Run {
     fn new() -> Self {
-        let spec = curious::worlds::load("four_rooms").expect("the shipped world is valid").spec;
+        let spec = worldfile::shipped::load("four_rooms").expect("the shipped world is valid");
         let settings = PhysicsSettings::of(&spec).expect("the robot has a differential drive");
         let agent = settings.agent(&Policy::default(), 0).expect("the default settings are valid");
         let pilot = settings.pilot(agent, 0).expect("the default settings are valid");

@@ -1,4 +1,4 @@
-//! A person drives, with the keys of a terminal.
+//! The keyboard pilot: a person drives with the keys of a terminal.
 
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use crossterm::terminal;
@@ -7,24 +7,24 @@ use robot::{Belief, Pilot};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-/// Why a person cannot drive here.
+/// Why the keyboard cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum KeyboardError {
-    /// Nobody can press a key.
+    /// The standard input is not a terminal.
     #[error("--drive keyboard needs a terminal to read keys from; use --drive agent or --drive tour here")]
     NoTerminal,
-    /// The terminal does not hand over its keys.
+    /// The terminal does not give its keys.
     #[error("cannot read keys from this terminal: {0}")]
     Terminal(#[from] std::io::Error),
 }
 
-/// Terminals tell that a key is pressed, not that it is let go: a key counts for this long, longer
-/// than the pause before a held key repeats.
+/// A terminal reports that a key is pressed, but not that it is released: a key counts for this time, which is
+/// longer than the delay before a held key repeats.
 const HOLD: Duration = Duration::from_millis(600);
 
 /// Drives as the keys say: arrows or WASD, space to stop, Q or Esc to end the run.
 ///
-/// Keeps the terminal in raw mode for as long as it lives.
+/// The terminal is in raw mode until the value is dropped.
 #[derive(Debug)]
 pub struct Keyboard {
     max: Twist,
@@ -34,7 +34,7 @@ pub struct Keyboard {
 }
 
 impl Keyboard {
-    /// Takes over the terminal's keys; `max` is how fast the robot can drive and turn.
+    /// Takes the keys of the terminal; `max` is the maximum speed of the robot.
     ///
     /// # Errors
     ///
@@ -62,7 +62,7 @@ impl Keyboard {
             KeyCode::Char(' ') => (0.0, 0.0),
             _ => return,
         };
-        // Turning while driving keeps driving: a curve.
+        // A turn during a forward drive keeps the speed: a curve.
         let keeps_driving = angular != 0.0 && self.command.linear_mps > 0.0;
         self.command = Twist {
             linear_mps: if keeps_driving { self.command.linear_mps } else { linear * self.max.linear_mps },
@@ -76,7 +76,7 @@ impl Pilot for Keyboard {
     type Command = Twist;
 
     fn command(&mut self, _belief: &Belief) -> Twist {
-        // A terminal that fails here has gone: stop, and let the run end in order.
+        // The terminal is gone after an error: stop, and let the run write its results.
         loop {
             match event::poll(Duration::ZERO)
                 .and_then(|has| if has { event::read().map(Some) } else { Ok(None) })
@@ -103,7 +103,6 @@ impl Pilot for Keyboard {
 
 impl Drop for Keyboard {
     fn drop(&mut self) {
-        // Nothing is left to do if the terminal has gone.
-        let _ = terminal::disable_raw_mode();
+        let _ = terminal::disable_raw_mode(); // fails only without a terminal
     }
 }

@@ -1,5 +1,6 @@
-//! What the programs share: the shipped worlds, what is shown of a run, and the keyboard pilot.
+//! What the programs share: arguments and exit codes, worlds, progress, and the keyboard pilot.
 
 pub mod keyboard;
+pub mod program;
 pub mod progress;
 pub mod worlds;

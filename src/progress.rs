@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 /// The wall time between two plain lines.
 const LINE_EVERY: Duration = Duration::from_secs(5);
-/// The time before the first message on simulated time.
+/// The wall time before the first message on simulated time.
 const FIRST: Duration = Duration::from_millis(500);
 /// The rate at which the bar is drawn, at most.
 const BAR_HZ: u8 = 10;
@@ -21,52 +21,66 @@ enum Kind {
     Lines,
 }
 
-fn bar(kind: Kind, length: u64, template: &str) -> ProgressBar {
-    let target = match kind {
-        Kind::Bar => ProgressDrawTarget::stderr_with_hz(BAR_HZ),
-        _ => ProgressDrawTarget::hidden(),
-    };
-    let bar = ProgressBar::with_draw_target(Some(length), target);
-    bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
-}
-
-fn kind(is_quiet: bool, is_raw: bool) -> Kind {
-    match () {
-        () if is_quiet => Kind::Silent,
-        () if stderr().is_terminal() && !is_raw => Kind::Bar,
-        () => Kind::Lines,
-    }
-}
-
-/// The progress of one run in simulated time.
+/// The progress of one run in simulated time, or of many trials, from any thread.
 pub struct Progress {
     bar: ProgressBar,
     kind: Kind,
     start: Instant,
-    duration_s: f64,
-    next: Instant,
+    /// The time of the next message.
+    next: Mutex<Instant>,
 }
 
 impl Progress {
-    /// A run of `duration_s` of simulated time. `is_raw` says that the keyboard pilot uses the terminal.
+    /// A run of `duration_s` of simulated time. `is_raw`: the keyboard pilot uses the terminal.
     pub fn of_time(duration_s: f64, is_quiet: bool, is_raw: bool) -> Self {
-        let kind = kind(is_quiet, is_raw);
-        let bar = bar(kind, duration_s as u64, "{msg} {wide_bar} {percent:>3} %  {eta} left");
+        let template = "{msg} {wide_bar} {percent:>3} %  {eta} left";
+        Self::new(duration_s.round() as u64, template, FIRST, is_quiet, is_raw)
+    }
+
+    /// A number of trials.
+    pub fn of_trials(trials: usize, is_quiet: bool) -> Self {
+        let template = "{pos} of {len} trials {wide_bar} {percent:>3} %  {eta} left";
+        let progress = Self::new(trials as u64, template, LINE_EVERY, is_quiet, false);
+        if progress.kind == Kind::Bar {
+            progress.bar.enable_steady_tick(Duration::from_millis(200)); // the clock goes on during long trials
+        }
+        progress
+    }
+
+    fn new(length: u64, template: &str, first: Duration, is_quiet: bool, is_raw: bool) -> Self {
+        let (kind, target) = match () {
+            () if is_quiet => (Kind::Silent, ProgressDrawTarget::hidden()),
+            () if stderr().is_terminal() && !is_raw => {
+                (Kind::Bar, ProgressDrawTarget::stderr_with_hz(BAR_HZ))
+            }
+            () => (Kind::Lines, ProgressDrawTarget::hidden()),
+        };
+        let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::with_draw_target(Some(length), target).with_style(style);
         let start = Instant::now();
-        Self { bar, kind, start, duration_s, next: start + FIRST }
+        Self { bar, kind, start, next: Mutex::new(start + first) }
+    }
+
+    /// Whether a message is due. If so, the next one is due `wait` later.
+    fn is_due(&self, wait: Duration) -> bool {
+        let Ok(mut next) = self.next.lock() else { return false };
+        let is_due = Instant::now() >= *next;
+        if is_due {
+            *next = Instant::now() + wait;
+        }
+        is_due
     }
 
     /// Shows the simulated time and the coverage so far.
-    pub fn show(&mut self, time_s: f64, coverage: Option<f64>) {
-        if self.kind == Kind::Silent || Instant::now() < self.next {
+    pub fn show(&self, time_s: f64, coverage: Option<f64>) {
+        let wait = if self.kind == Kind::Bar { Duration::from_secs(1) / BAR_HZ.into() } else { LINE_EVERY };
+        if self.kind == Kind::Silent || !self.is_due(wait) {
             return;
         }
-        let wait = if self.kind == Kind::Bar { Duration::from_secs(1) / BAR_HZ.into() } else { LINE_EVERY };
-        self.next = Instant::now() + wait;
         let speed = time_s / self.start.elapsed().as_secs_f64().max(1e-3);
         let seen = coverage.map_or(String::new(), |share| format!(", seen {:.1} %", 100.0 * share));
-        let line = format!("{time_s:.0} of {:.0} s, {speed:.0} x real time{seen}", self.duration_s);
+        let all_s = self.bar.length().unwrap_or(0);
+        let line = format!("{time_s:.0} of {all_s} s, {speed:.0} x real time{seen}");
         if self.kind == Kind::Bar {
             self.bar.set_position(time_s as u64);
             self.bar.set_message(line);
@@ -75,40 +89,10 @@ impl Progress {
         }
     }
 
-    /// Removes the bar.
-    pub fn finish(&self) {
-        self.bar.finish_and_clear();
-    }
-}
-
-/// The progress of many trials, from any thread.
-pub struct TrialProgress {
-    bar: ProgressBar,
-    /// When the next plain line is due; `None` without plain lines.
-    next_line: Option<Mutex<Instant>>,
-    start: Instant,
-}
-
-impl TrialProgress {
-    /// The start of a number of trials.
-    pub fn new(trials: usize, is_quiet: bool) -> Self {
-        let kind = kind(is_quiet, false);
-        let bar = bar(kind, trials as u64, "{pos} of {len} trials {wide_bar} {percent:>3} %  {eta} left");
-        if kind == Kind::Bar {
-            bar.enable_steady_tick(Duration::from_millis(200)); // the clock goes on during long trials
-        }
-        let start = Instant::now();
-        let next_line = (kind == Kind::Lines).then(|| Mutex::new(start + LINE_EVERY));
-        Self { bar, next_line, start }
-    }
-
     /// Counts one more finished trial.
     pub fn step(&self) {
         self.bar.inc(1);
-        let Some(next_line) = &self.next_line else { return };
-        let Ok(mut next) = next_line.lock() else { return };
-        if Instant::now() >= *next {
-            *next += LINE_EVERY;
+        if self.kind == Kind::Lines && self.is_due(LINE_EVERY) {
             let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
             let left_s = self.start.elapsed().as_secs_f64() * (all as f64 / done.max(1) as f64 - 1.0);
             say(stderr(), format_args!("{done} of {all} trials, {left_s:.0} s left"));

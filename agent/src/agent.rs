@@ -2,7 +2,7 @@ use crate::choosers::{Chooser, Trajectory};
 use crate::features::Features;
 use crate::goal_sampler::{Goal, GoalSampler};
 use crate::policy::Policy;
-use crate::settings::{AgentSettings, Reward, error};
+use crate::settings::{AgentSettings, Reward};
 use crate::situation::{Situation, Travel};
 use crate::strategies::Strategy;
 use interfaces::{RandomStream, SettingsError, Transition};
@@ -67,7 +67,8 @@ impl Agent {
     ) -> Result<Self, SettingsError> {
         settings.check()?;
         if strategies.is_empty() {
-            return Err(error("strategies", "at least one", "none"));
+            let (part, key, expected) = ("agent", "strategies", "at least one");
+            return Err(SettingsError { part, key, expected, found: "none".to_owned() });
         }
         Ok(Self {
             goal_counts: vec![0; strategies.len()],
@@ -189,7 +190,7 @@ mod tests {
         let ln_10 = std::f64::consts::LN_10;
         let expected = [0.0, ln_10 - 1.0, ln_10 - 0.5f64.sqrt(), ln_10 - 3f64.sqrt() / 3.0, ln_10 - 0.5];
         assert!(known.iter().zip(expected).all(|(known, expected)| (known - expected).abs() < 1e-12));
-        // A change found after a gap tells no rate.
+        // A change found after a gap gives no rate.
         let away =
             CellReading { time: 5.0, pose: Isometry2::identity(), cells: vec![(Cell::new(0, 0), false)] };
         mapper.update(&away).unwrap();

@@ -9,6 +9,7 @@
 use crate::sampling::proportional;
 use crate::situation::Situation;
 use crate::strategies::{Pick, Stay, Strategy};
+use crate::visibility::Regions;
 use interfaces::{Cell, RandomStream};
 use mapper::Mapper;
 use rand::RngExt;
@@ -94,14 +95,14 @@ impl GoalSampler {
 
     /// A candidate by the weights of the patches; `None` where there is no candidate.
     fn draw(&self, mapper: &Mapper, rng: &mut RandomStream) -> Option<Cell> {
-        let (patch, nth) = match proportional(self.patches.iter().map(Patch::mean), rng) {
-            Some(patch) => (patch, rng.random_range(0..self.patches[patch].candidates)),
-            None => {
-                let candidates: usize = self.patches.iter().map(|patch| patch.candidates).sum();
-                self.patch_of((candidates > 0).then(|| rng.random_range(0..candidates))?)?
-            }
-        };
-        self.candidate(mapper, patch, nth)
+        let drawn = proportional(self.patches.iter().map(Patch::mean), rng);
+        let patches = drawn.map_or(0..self.patches.len(), |patch| patch..patch + 1);
+        let candidates: usize = self.patches[patches.clone()].iter().map(|patch| patch.candidates).sum();
+        let nth = (candidates > 0).then(|| rng.random_range(0..candidates))?;
+        let regions = Regions::with_side(*mapper.frame(), self.patch_cells);
+        let mut cells =
+            patches.flat_map(|patch| regions.cells(patch)).filter(|&cell| mapper.is_candidate(cell));
+        cells.nth(nth).map(|index| mapper.frame().cell(index))
     }
 
     /// Sums weights and candidates over the patches.
@@ -125,29 +126,5 @@ impl GoalSampler {
                 }
             }
         }
-    }
-
-    /// The patch of the `nth` candidate of the map, counted patch by patch, and its number in the patch.
-    fn patch_of(&self, mut nth: usize) -> Option<(usize, usize)> {
-        for (index, patch) in self.patches.iter().enumerate() {
-            if nth < patch.candidates {
-                return Some((index, nth));
-            }
-            nth -= patch.candidates;
-        }
-        None
-    }
-
-    /// The `nth` candidate of a patch in row-major order.
-    fn candidate(&self, mapper: &Mapper, patch: usize, nth: usize) -> Option<Cell> {
-        let (frame, side) = (mapper.frame(), self.patch_cells);
-        let columns = frame.width().div_ceil(side);
-        let (left, bottom) = (patch % columns * side, patch / columns * side);
-        let rows = bottom..(bottom + side).min(frame.height());
-        let row_end = (left + side).min(frame.width());
-        rows.flat_map(|row| (left..row_end).map(move |column| row * frame.width() + column))
-            .filter(|&index| mapper.is_candidate(index))
-            .nth(nth)
-            .map(|index| frame.cell(index))
     }
 }

@@ -24,7 +24,7 @@ pub use agent::Agent;
 pub use choosers::{Always, Chooser, Coin, Curious, Progress, TileCoder, Trajectory};
 pub use features::Features;
 pub use goal_sampler::Goal;
-pub use policy::{Parts, Policy, UnknownPolicy};
+pub use policy::{Parts, Policy};
 pub use settings::{AgentSettings, CuriousSettings, Reward};
 pub use situation::{Situation, StraightLineTravel, Travel};
 pub use strategies::{

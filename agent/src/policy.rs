@@ -2,9 +2,7 @@ use crate::choosers::{Always, Chooser, Coin, Curious, Progress};
 use crate::settings::AgentSettings;
 use crate::strategies::{Frontier, InformationGain, OptimalRevisiting, Poisson, Random, Recency, Strategy};
 use interfaces::RandomStream;
-use std::fmt;
 use std::num::NonZeroUsize;
-use std::str::FromStr;
 use std::sync::{Arc, LazyLock};
 
 /// The strategies of an agent, and the chooser among them.
@@ -137,54 +135,7 @@ impl Default for Policy {
     }
 }
 
-impl PartialEq for Policy {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
-}
-
-impl Eq for Policy {}
-
-impl fmt::Debug for Policy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Policy").field(&self.name).finish()
-    }
-}
-
-impl fmt::Display for Policy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name)
-    }
-}
-
-impl FromStr for Policy {
-    type Err = UnknownPolicy;
-
-    fn from_str(name: &str) -> Result<Self, UnknownPolicy> {
-        let found = BUILT_IN.iter().find(|policy| policy.name == name);
-        found.cloned().ok_or_else(|| UnknownPolicy { name: name.into() })
-    }
-}
-
-impl<'de> serde::Deserialize<'de> for Policy {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-    }
-}
-
-impl serde::Serialize for Policy {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name)
-    }
-}
-
-/// A name that no built-in policy has.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no strategy is called `{name}`; there are {}", Policy::built_in().iter().map(Policy::name).collect::<Vec<_>>().join(", "))]
-pub struct UnknownPolicy {
-    /// The name that was asked for.
-    pub name: String,
-}
+interfaces::chosen_by_name!(Policy, "strategy", Policy::built_in());
 
 #[cfg(test)]
 mod tests {
@@ -205,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_name_is_answered_with_the_known_ones() {
+    fn an_unknown_name_lists_the_known_ones() {
         assert_eq!(
             "Curius".parse::<Policy>().unwrap_err().to_string(),
             "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, frontier, \

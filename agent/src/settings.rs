@@ -1,4 +1,4 @@
-use interfaces::{CellState, SettingsError, Transition};
+use interfaces::{CellState, SettingsCheck, SettingsError, Transition};
 
 /// What counts as a map update when a trajectory is rewarded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
@@ -72,25 +72,18 @@ impl Default for CuriousSettings {
     }
 }
 
-/// An error in the agent's settings.
-pub(crate) fn error(key: &'static str, expected: &'static str, found: impl ToString) -> SettingsError {
-    SettingsError { part: "agent", key, expected, found: found.to_string() }
-}
-
 impl AgentSettings {
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
         let Self { patch_cells, sensor_radius_m, reward: _, ref curious } = *self;
-        let check = |key, value: f64, [least, most]: [f64; 2], expected| {
-            if (least..=most).contains(&value) { Ok(()) } else { Err(error(key, expected, value)) }
-        };
-        check("patch_cells", patch_cells as f64, [1.0, 1e3], "from 1 to 1000")?;
-        check("sensor_radius_m", sensor_radius_m, [1e-3, 1e6], "from 0.001 to 1000000")?;
-        check("curious.tilings", curious.tilings as f64, [1.0, 1e3], "from 1 to 1000")?;
-        check("curious.tile_p", curious.tile_p, [1e-9, 1e9], "from 1e-9 to 1e9")?;
-        check("curious.tile_r", curious.tile_r, [1e-9, 1e9], "from 1e-9 to 1e9")?;
-        check("curious.temperature", curious.temperature, [1e-9, 1e9], "from 1e-9 to 1e9")?;
-        let above_zero = [f64::from_bits(1), 1.0];
-        check("curious.learning_rate", curious.learning_rate, above_zero, "above 0, and at most 1")
+        let check = SettingsCheck { part: "agent" };
+        check.within("patch_cells", patch_cells as f64, 1.0..=1e3, "from 1 to 1000")?;
+        check.within("sensor_radius_m", sensor_radius_m, 1e-3..=1e6, "from 0.001 to 1000000")?;
+        check.within("curious.tilings", curious.tilings as f64, 1.0..=1e3, "from 1 to 1000")?;
+        check.within("curious.tile_p", curious.tile_p, 1e-9..=1e9, "from 1e-9 to 1e9")?;
+        check.within("curious.tile_r", curious.tile_r, 1e-9..=1e9, "from 1e-9 to 1e9")?;
+        check.within("curious.temperature", curious.temperature, 1e-9..=1e9, "from 1e-9 to 1e9")?;
+        let rate = curious.learning_rate;
+        check.valid("curious.learning_rate", rate, "above 0, and at most 1", rate > 0.0 && rate <= 1.0)
     }
 }
 
@@ -107,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_that_make_no_sense_are_refused() {
+    fn invalid_settings_are_refused() {
         assert_eq!(message(""), "fine");
         assert_eq!(message("patch_cells = 10\nreward = 'changes-and-discoveries'"), "fine");
         assert_eq!(message("patch_cells = 0"), "agent setting `patch_cells` must be from 1 to 1000, not 0");
@@ -142,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn rewards_count_what_they_say() {
+    fn rewards_count_their_transitions() {
         use CellState::{Blocked, Free, Unknown};
         let transitions: Vec<_> = [(Unknown, Free), (Unknown, Blocked), (Free, Blocked), (Blocked, Free)]
             .map(|(before, after)| Transition { cell: Cell::new(0, 0), before, after })

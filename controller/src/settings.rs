@@ -1,5 +1,5 @@
 use crate::planner::{InflationSettings, MAX_COST};
-use interfaces::SettingsError;
+use interfaces::{SettingsCheck, SettingsError};
 use serde::{Deserialize, Serialize};
 
 /// How the controller reaches goals, and when it gives up. Times are seconds, or steps in a grid world.
@@ -71,14 +71,13 @@ impl Default for ExplorationSettings {
 impl Settings {
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
         let Self { inflation, navigation, exploration: _ } = self;
-        let check = Check("controller");
+        let check = SettingsCheck { part: "controller" };
         check.not_negative("inflation.footprint_padding_m", inflation.footprint_padding_m)?;
         let (is_wide, expected) =
             (inflation.inflation_m >= inflation.footprint_padding_m, "at least footprint_padding_m");
         check.valid("inflation.inflation_m", inflation.inflation_m, expected, is_wide)?;
-        let cost = inflation.inflation_cost;
-        let is_cost = (1..=MAX_COST).contains(&cost);
-        check.valid("inflation.inflation_cost", cost.into(), "from 1 to 9", is_cost)?;
+        let costs = 1.0..=f64::from(MAX_COST);
+        check.within("inflation.inflation_cost", inflation.inflation_cost, costs, "from 1 to 9")?;
         check.not_negative("navigation.replan_blocked_s", navigation.replan_blocked_s)?;
         check.not_negative("navigation.replan_s", navigation.replan_s)?;
         check.positive("navigation.off_path_m", navigation.off_path_m)?;
@@ -91,40 +90,13 @@ impl Settings {
     }
 }
 
-/// Checks the settings of one part.
-pub(crate) struct Check(pub(crate) &'static str);
-
-impl Check {
-    pub(crate) fn positive(&self, key: &'static str, value: f64) -> Result<(), SettingsError> {
-        self.valid(key, value, "a positive number", value > 0.0)
-    }
-
-    pub(crate) fn not_negative(&self, key: &'static str, value: f64) -> Result<(), SettingsError> {
-        self.valid(key, value, "0 or more", value >= 0.0)
-    }
-
-    /// Refuses a value that is not finite, or not valid.
-    pub(crate) fn valid(
-        &self,
-        key: &'static str,
-        value: f64,
-        expected: &'static str,
-        is_valid: bool,
-    ) -> Result<(), SettingsError> {
-        if is_valid && value.is_finite() {
-            return Ok(());
-        }
-        Err(SettingsError { part: self.0, key, expected, found: value.to_string() })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{DiffDrive, DiffDriveSettings};
 
     #[test]
-    fn what_is_wrong_is_named() {
+    fn errors_name_the_setting() {
         let message = |text: &str| toml::from_str::<Settings>(text).unwrap().check().unwrap_err().to_string();
         assert_eq!(
             message("inflation.inflation_m = 0.01"),
@@ -154,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn defaults_are_right_and_unknown_keys_are_not() {
+    fn defaults_are_valid_and_unknown_keys_are_refused() {
         assert_eq!(Settings::default().check(), Ok(()));
         assert!(DiffDrive::new(DiffDriveSettings::default()).is_ok());
         assert_eq!(toml::from_str::<Settings>("").unwrap(), Settings::default());

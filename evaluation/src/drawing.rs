@@ -42,12 +42,12 @@ pub fn text(height: u32) -> TextStyle<'static> {
     (FONT, px(height)).into_font().color(&INK)
 }
 
-/// The colour of text and axes.
+/// The color of text and axes.
 pub const INK: RGBColor = ink(palette::INK);
 /// The name of the font.
 pub const FONT: &str = "sans-serif";
 
-/// The plotting library's colour.
+/// The plotting library's color.
 pub const fn ink([red, green, blue]: Rgb) -> RGBColor {
     RGBColor(red, green, blue)
 }

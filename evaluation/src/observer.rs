@@ -1,8 +1,6 @@
 //! Measures a run in the physics world against the ground truth, from outside the loop.
 
-use crate::metrics::{
-    ChangingAccuracy, ChangingScores, Delays, Latency, MapScores, ThingReport, Things, map_scores,
-};
+use crate::metrics::{ChangingAccuracy, Latency, MapScores, Things, map_scores};
 use crate::summary::CurvePoint;
 use interfaces::{GroundTruth, LaserReading, Twist};
 use mapper::Mapper;
@@ -18,13 +16,19 @@ const SAMPLE_EVERY: usize = 10;
 /// The measurements of a run so far.
 #[derive(Debug, Default)]
 pub struct Observer {
-    latency: Latency,
-    things: Things,
-    changing: ChangingAccuracy,
-    curve: Vec<CurvePoint>,
-    goals: Vec<Point2<f64>>,
+    /// The delays of the map behind the changes that a beam has shown.
+    pub latency: Latency,
+    /// The detection of the things that appeared or disappeared.
+    pub things: Things,
+    /// The accuracy on swept cells.
+    pub changing: ChangingAccuracy,
+    /// Coverage and map quality over time.
+    pub curve: Vec<CurvePoint>,
+    /// The goals of the curious robot, m.
+    pub goals: Vec<Point2<f64>>,
+    /// The messages of the last tick.
+    pub messages: Vec<Message>,
     contacts_reported: usize,
-    messages: Vec<Message>,
 }
 
 impl Observer {
@@ -40,39 +44,9 @@ impl Observer {
         self.collect_messages(world, pilot);
     }
 
-    /// The balanced accuracies on swept cells so far.
-    pub fn changing_scores(&self) -> ChangingScores {
-        self.changing.scores()
-    }
-
-    /// The delays of block events and of free events so far.
-    pub fn delays(&self) -> [Delays; 2] {
-        self.latency.delays()
-    }
-
-    /// The things that appeared or disappeared so far.
-    pub fn things(&self) -> impl Iterator<Item = &ThingReport> {
-        self.things.reports()
-    }
-
-    /// Coverage and map quality over time.
-    pub fn curve(&self) -> &[CurvePoint] {
-        &self.curve
-    }
-
-    /// The goals of the curious robot so far, m.
-    pub fn goals(&self) -> &[Point2<f64>] {
-        &self.goals
-    }
-
-    /// The messages of the last tick.
-    pub fn messages(&self) -> &[Message] {
-        &self.messages
-    }
-
     /// The last coverage and map quality.
     pub fn scores(&self) -> Option<MapScores> {
-        self.curve.last().map(|&CurvePoint { coverage, map_quality, .. }| MapScores { coverage, map_quality })
+        self.curve.last().map(|point| point.scores)
     }
 
     fn measure(&mut self, world: &PhysicsWorld, reading: &LaserReading, mapper: &Mapper) {
@@ -83,8 +57,7 @@ impl Observer {
             self.changing.sample(mapper, truth);
         }
         if mapper.readings() % SCORE_EVERY == 1 {
-            let MapScores { coverage, map_quality } = map_scores(mapper, truth);
-            self.curve.push(CurvePoint { time_s: reading.time_s, coverage, map_quality });
+            self.curve.push(CurvePoint { time_s: reading.time_s, scores: map_scores(mapper, truth) });
         }
     }
 

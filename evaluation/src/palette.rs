@@ -1,11 +1,11 @@
-//! The colours of every figure, picture and recording: one colour for one meaning.
+//! The colors of every figure, picture and recording: one color for one meaning.
 //!
-//! They are the colours of Okabe and Ito where possible, so that colour-blind readers can tell them apart.
-//! Their yellow is hardly visible on white; brown takes its place.
+//! They are the colors of Okabe and Ito where possible, so that color-blind readers can tell them apart.
+//! Their yellow has too little contrast on white: brown replaces it.
 
 use xxhash_rust::xxh3::xxh3_64;
 
-/// A colour: red, green, blue.
+/// A color: red, green, blue.
 pub type Rgb = [u8; 3];
 
 /// Text and axes.
@@ -24,7 +24,7 @@ pub const SENSOR: Rgb = [86, 180, 233];
 pub const SENSOR_AREA: Rgb = [214, 236, 250];
 /// A wall.
 pub const WALL: Rgb = [70, 74, 82];
-/// Something that stands at one place: furniture.
+/// A fixed obstacle: furniture.
 pub const FURNITURE: Rgb = [190, 170, 140];
 /// Something that moves, appears or disappears: a door, a block, a toy.
 pub const MOVING: Rgb = [204, 121, 167];
@@ -51,7 +51,7 @@ const STRATEGIES: [(&str, Rgb); 9] = [
     ("oracle", [0, 0, 0]),
 ];
 
-/// For other strategies: the dark colours of Paul Tol's muted scheme.
+/// For other strategies: the dark colors of Paul Tol's muted scheme.
 const OTHER_STRATEGIES: [Rgb; 5] =
     [[51, 34, 136], [17, 119, 51], [136, 34, 85], [153, 153, 51], [68, 170, 153]];
 
@@ -67,21 +67,21 @@ const THINGS: [Rgb; 8] = [
     [187, 204, 51],
 ];
 
-/// The colour of a strategy's curve.
+/// The color of a strategy's curve.
 pub fn strategy(name: &str) -> Rgb {
-    let known = STRATEGIES.iter().find(|(known, _)| *known == name).map(|(_, colour)| *colour);
+    let known = STRATEGIES.iter().find(|(known, _)| *known == name).map(|(_, color)| *color);
     let other = || (xxh3_64(name.as_bytes()) % OTHER_STRATEGIES.len() as u64) as usize;
     known.unwrap_or_else(|| OTHER_STRATEGIES[other()])
 }
 
-/// The colour of the cells of a thing that moves, by its index in the world.
+/// The color of the cells of a thing that moves, by its index in the world.
 pub fn thing(index: usize) -> Rgb {
     THINGS[index % THINGS.len()]
 }
 
-/// The same hue, bright enough for a dark ground.
-pub fn on_dark(colour: Rgb) -> Rgb {
-    let brightest = colour.into_iter().max().unwrap_or(0);
+/// The same hue, bright enough for a dark background.
+pub fn on_dark(color: Rgb) -> Rgb {
+    let brightest = color.into_iter().max().unwrap_or(0);
     let lift = |part: u8| part + (255 - part) / 5 * (190_u8.saturating_sub(brightest) / 20).min(4);
-    colour.map(lift)
+    color.map(lift)
 }

@@ -187,16 +187,13 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     /// The results so far.
     pub fn results(&self) -> RunResults {
         let Self { world, mapper, pilot, observer } = self;
-        let (truth, scores) = (world.truth(), map_scores(mapper, world.truth()));
-        let [block_latency, free_latency] = observer.delays();
-        let changing = observer.changing_scores();
+        let truth = world.truth();
+        let [block_latency, free_latency] = observer.latency.delays();
         let collisions = world.contacts().iter().filter(|contact| contact.moving).count();
         let strategies = pilot.strategies(Features::default()).into_iter();
         RunResults {
-            coverage: scores.coverage,
-            map_quality: scores.map_quality,
-            map_quality_changing: changing.in_view,
-            map_quality_changing_out_of_view: changing.out_of_view,
+            map: map_scores(mapper, truth),
+            changing: observer.changing.scores(),
             rates: rate_scores(mapper, truth),
             age: age(mapper, truth),
             block_latency,
@@ -205,8 +202,8 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             contacts_while_standing: world.contacts().len() - collisions,
             goals: pilot.goals(),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
-            things: observer.things().cloned().collect(),
-            curve: observer.curve().to_vec(),
+            things: observer.things.reports().cloned().collect(),
+            curve: observer.curve.clone(),
             map_hash: map_hash(mapper),
             liveliest: Liveliest::of(mapper),
         }

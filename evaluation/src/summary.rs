@@ -1,6 +1,6 @@
 //! The results of a run in a physics world: `summary.json`, and a few lines for the terminal.
 
-use crate::metrics::{Age, Delays, RateScores, ThingReport};
+use crate::metrics::{Age, ChangingScores, Delays, MapScores, RateScores, ThingReport};
 use mapper::Mapper;
 use robot::GoalCount;
 use serde::Serialize;
@@ -12,10 +12,9 @@ use std::fmt;
 pub struct CurvePoint {
     /// The simulated time, s.
     pub time_s: f64,
-    /// The share of the cells that can be seen that were seen.
-    pub coverage: f64,
-    /// The share of the cells that can be seen whose mapped state is the true state.
-    pub map_quality: f64,
+    /// The scores at this time.
+    #[serde(flatten)]
+    pub scores: MapScores,
 }
 
 /// `summary.json`.
@@ -55,14 +54,12 @@ pub struct Summary {
 /// The results of a run in a physics world.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunResults {
-    /// The share of the cells that can be seen that were seen.
-    pub coverage: f64,
-    /// The share of the cells that can be seen whose mapped state is the true state at the end.
-    pub map_quality: f64,
-    /// The balanced accuracy on swept cells in view, over the run; `null` where there was nothing to count.
-    pub map_quality_changing: Option<f64>,
-    /// The same out of view.
-    pub map_quality_changing_out_of_view: Option<f64>,
+    /// Coverage and map quality at the end.
+    #[serde(flatten)]
+    pub map: MapScores,
+    /// The accuracy on swept cells over the run; `null` where there was nothing to count.
+    #[serde(flatten)]
+    pub changing: ChangingScores,
     /// The estimated rates compared with the true rates.
     #[serde(flatten)]
     pub rates: RateScores,
@@ -145,71 +142,69 @@ impl fmt::Display for Summary {
 
 impl fmt::Display for RunResults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { rates, goals, .. } = self;
+        let Self { map, age, rates, goals, .. } = self;
         let or_none = |value: Option<f64>, text: fn(f64) -> String| value.map_or("-".into(), text);
         let number = |value: f64| format!("{value:.3}");
-        writeln!(
-            f,
-            "  seen      {} of the cells that can be seen; the oldest observation is {:.0} s old",
-            percent(self.coverage),
-            self.age.max_s
-        )?;
-        writeln!(
-            f,
-            "  map       {} correct now; {} false changes on {} static cells",
-            percent(self.map_quality),
-            rates.false_change_events,
-            rates.static_cells
-        )?;
-        match &self.liveliest {
-            None => writeln!(f, "  changes   none seen")?,
-            Some(Liveliest { low_m, high_m, cells, median_interval_s }) => writeln!(
-                f,
-                "  changes   {cells} cells between ({:.1}, {:.1}) and ({:.1}, {:.1}) m, median cycle \
-                 {median_interval_s:.0} s",
+        let (seen, correct) = (percent(map.coverage), percent(map.map_quality));
+        let (events, cells) = (rates.false_change_events, rates.static_cells);
+        let changes = match &self.liveliest {
+            None => "none seen".into(),
+            Some(Liveliest { low_m, high_m, cells, median_interval_s }) => format!(
+                "{cells} cells between ({:.1}, {:.1}) and ({:.1}, {:.1}) m, median cycle {median_interval_s:.0} s",
                 low_m[0], low_m[1], high_m[0], high_m[1]
-            )?,
-        }
+            ),
+        };
+        let mut lines = vec![
+            (
+                "seen",
+                format!(
+                    "{seen} of the cells that can be seen; the oldest observation is {:.0} s old",
+                    age.max_s
+                ),
+            ),
+            ("map", format!("{correct} correct now; {events} false changes on {cells} static cells")),
+            ("changes", changes),
+        ];
         if rates.rate_error_all.is_some() {
-            writeln!(
-                f,
-                "  rates     mean error {} of well-seen cells, {} of all changing cells; log error {}, AUC {}",
-                or_none(rates.rate_error, percent),
-                or_none(rates.rate_error_all, percent),
-                or_none(rates.log_error, number),
-                or_none(rates.rate_auc, number)
-            )?;
+            let errors = [rates.rate_error, rates.rate_error_all].map(|error| or_none(error, percent));
+            let [log_error, auc] = [rates.log_error, rates.rate_auc].map(|value| or_none(value, number));
+            lines.push((
+                "rates",
+                format!(
+                    "mean error {} of well-seen cells, {} of all changing cells; log error {log_error}, AUC {auc}",
+                    errors[0], errors[1]
+                ),
+            ));
         }
         for thing in &self.things {
             let verb = if thing.appeared { "appeared" } else { "disappeared" };
-            writeln!(
-                f,
-                "  thing     {} {verb} at {:.0} s: in view {}, first cell correct {}, 90 % correct {}",
-                thing.name,
-                thing.happened_s,
-                seconds(thing.in_view_s),
-                seconds(thing.noticed_s),
-                seconds(thing.right_s)
-            )?;
+            let [in_view, noticed, correct] = [thing.in_view_s, thing.noticed_s, thing.right_s].map(seconds);
+            lines.push((
+                "thing",
+                format!(
+                    "{} {verb} at {:.0} s: in view {in_view}, first cell correct {noticed}, 90 % correct {correct}",
+                    thing.name, thing.happened_s
+                ),
+            ));
         }
         let all = goals.reached + goals.given_up;
         if all > 0 {
-            let (reached, approached) = (goals.reached - goals.nearest, goals.nearest);
-            let given_up = goals.given_up;
-            writeln!(
-                f,
-                "  goals     {all}: {reached} reached, {approached} approached, {given_up} given up"
-            )?;
+            let (reached, approached, given_up) =
+                (goals.reached - goals.nearest, goals.nearest, goals.given_up);
+            lines.push((
+                "goals",
+                format!("{all}: {reached} reached, {approached} approached, {given_up} given up"),
+            ));
         }
         if !self.strategy_share.is_empty() {
             let share = |(name, share): (&String, &f64)| format!("{name} {}", percent(*share));
             let shares: Vec<String> = self.strategy_share.iter().map(share).collect();
-            writeln!(f, "  chosen    {}", shares.join(", "))?;
+            lines.push(("chosen", shares.join(", ")));
         }
-        write!(
-            f,
-            "  contacts  {} while the robot moved, {} while it stood still",
-            self.collisions, self.contacts_while_standing
-        )
+        for (name, text) in lines {
+            writeln!(f, "  {name:<9} {text}")?;
+        }
+        let (moving, standing) = (self.collisions, self.contacts_while_standing);
+        write!(f, "  contacts  {moving} while the robot moved, {standing} while it stood still")
     }
 }

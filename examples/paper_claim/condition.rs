@@ -1,15 +1,15 @@
-//! What is changed, one thing at a time.
+//! The conditions: each differs from the paper's in one setting.
 
 use agent::{AgentSettings, Reward};
 use controller::CellDrive;
 use curious::worlds::{SHIPPED_GRID, load_grid};
-use evaluation::report::{Report, ReportSettings, WorldPicture};
-use evaluation::trials::{Experiment, Job, TrialStrategy};
+use evaluation::report::{Report, ReportSettings};
+use evaluation::trials::{Experiment, TrialSettings, TrialStrategy};
 use mapper::{EstimatorChoice, MapperSettings, Paper, PaperAll};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::sync::atomic::AtomicBool;
 
-/// The name of the condition that the others differ from in one thing.
+/// The name of the condition from which the others differ in one setting.
 pub(crate) const BASE: &str = "the paper's";
 
 /// The strategies that the claim is about, and two baselines.
@@ -29,7 +29,7 @@ pub(crate) struct Condition {
     max_steps: u32,
 }
 
-/// The base, then what differs from it in one thing.
+/// The base, then the conditions that differ from it in one setting.
 pub(crate) fn conditions() -> Vec<Condition> {
     let base = Condition {
         name: BASE.to_owned(),
@@ -66,19 +66,21 @@ pub(crate) fn conditions() -> Vec<Condition> {
 }
 
 /// The shipped worlds.
-fn shipped() -> Vec<GridSpec> {
-    let load = |(name, _): &(&str, &str)| load_grid(name).expect("a shipped world is right");
+pub(crate) fn shipped() -> Vec<GridSpec> {
+    let load = |(name, _): &(&str, &str)| load_grid(name).expect("a shipped world is valid");
     SHIPPED_GRID.iter().map(load).collect()
 }
 
 impl Condition {
-    /// Lives all trials: `seeds` in each shipped world, and one in each of as many generated ones.
+    /// Runs all trials: `seeds` in each shipped world, and one in each of `seeds` generated worlds.
     pub(crate) fn run(&self, seeds: u64) -> anyhow::Result<(Report, Report)> {
         let generate = |number| GridSpec::generate(&GenerateSettings::default(), number);
         let generated = self.experiment((0..seeds).map(generate).collect(), 1);
-        // Every generated world has a seed of its own.
-        let own_seed = |job: Job| Job { seed: job.world as u64, ..job };
-        let jobs = generated.jobs().into_iter().map(own_seed).collect();
+        // Every generated world has its own seed.
+        let mut jobs = generated.jobs();
+        for (jobs, seed) in jobs.chunks_mut(STRATEGIES.len()).zip(0..) {
+            jobs.iter_mut().for_each(|job| job.seed = seed);
+        }
         let shipped = self.experiment(shipped(), seeds);
         Ok((report(&shipped, shipped.jobs())?, report(&generated, jobs)?))
     }
@@ -105,14 +107,9 @@ impl Condition {
     }
 }
 
-fn report(experiment: &Experiment, jobs: Vec<Job>) -> anyhow::Result<Report> {
+fn report(experiment: &Experiment, jobs: Vec<TrialSettings>) -> anyhow::Result<Report> {
     let trials = experiment.run(jobs, &AtomicBool::new(false), |_| ())?;
     let version = env!("CARGO_PKG_VERSION").to_owned();
     let settings = ReportSettings { version, ..experiment.report_settings() };
     Ok(Report::new(settings, trials))
-}
-
-/// What the shipped worlds look like.
-pub(crate) fn pictures() -> Vec<WorldPicture> {
-    shipped().iter().map(WorldPicture::of).collect()
 }

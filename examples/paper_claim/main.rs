@@ -5,8 +5,8 @@
 //! cargo run --example paper_claim -- quick 5          into another folder, with fewer seeds
 //! ```
 //!
-//! One thing is changed at a time. Each condition runs in the shipped worlds, with so many seeds in
-//! each, and in as many generated worlds, each with a seed of its own.
+//! Each condition changes one setting. It runs in the shipped worlds, with N seeds in each, and in N generated
+//! worlds, each with its own seed.
 
 mod condition;
 mod forest;
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/figure3");
 const SEEDS: u64 = 50;
 
-/// What one condition showed.
+/// The results of one condition.
 struct Finding {
     condition: Condition,
     /// In each shipped world.
@@ -31,16 +31,14 @@ struct Finding {
 }
 
 impl Finding {
-    /// The runs that a verdict is given on: every shipped world, then all generated ones as one.
-    fn runs(&self) -> impl Iterator<Item = (&Report, &Run)> {
-        let shipped = self.shipped.runs().iter().filter(|run| run.worlds == 1);
-        let generated = self.generated.runs().iter().filter(|run| run.worlds > 1);
-        let shipped = shipped.map(|run| (&self.shipped, run));
-        shipped.chain(generated.map(|run| (&self.generated, run)))
+    /// The runs with a verdict: every shipped world, then all generated worlds as one.
+    fn runs(&self) -> impl Iterator<Item = &Run> {
+        let shipped = self.shipped.runs.iter().filter(|run| run.worlds == 1);
+        shipped.chain(self.generated.runs.iter().filter(|run| run.worlds > 1))
     }
 
     fn claims(&self) -> Vec<Claim> {
-        self.runs().filter_map(|(report, run)| report.claim(&run.world, &run.estimator)).collect()
+        self.runs().filter_map(Claim::of).collect()
     }
 }
 
@@ -68,7 +66,7 @@ fn figures(findings: &[Finding], folder: &Path) -> anyhow::Result<()> {
     let base = findings.iter().find(|finding| finding.condition.name == BASE).context("no base")?;
     for (report, name) in [(&base.shipped, "two_blocks"), (&base.generated, "generated")] {
         let out = tempfile::tempdir()?;
-        report.write(out.path(), &condition::pictures())?;
+        report.write(out.path(), &condition::shipped())?;
         let figure = if name == "generated" { "figure3-all-worlds.svg" } else { "figure3.svg" };
         let from = out.path().join(figure);
         let text = std::fs::read(&from).with_context(|| format!("there is no {}", from.display()))?;

@@ -1,14 +1,14 @@
 //! The tables of docs/figure3/results.md.
 
 use crate::Finding;
-use evaluation::report::{Claim, Measure, Metric, Part};
+use evaluation::report::{Claim, Measure, Metric};
 use std::fmt::Write;
 
 pub(crate) fn markdown(findings: &[Finding], seeds: u64) -> String {
     let mut text = format!(
         "# Does the paper's Figure 3 hold? All results\n\n\
          Made by `cargo run --example paper_claim`, {seeds} seeds in each shipped world and {seeds} generated worlds, \
-         each with a seed of its own. [figure3.md](../figure3.md) explains the results.\n\n\
+         each with its own seed. [figure3.md](../figure3.md) explains the results.\n\n\
          Differences are curious minus the other strategy, over the run (area under the curve) for errors and \
          at the end for map quality, each with its 95 % interval, the ratio of the means, Cohen's d of the pairs \
          and the p-value of the paired t test. For errors, lower is better.\n"
@@ -36,10 +36,9 @@ fn overview(findings: &[Finding]) -> String {
     for finding in findings {
         let claims = finding.claims();
         let verdicts = claims.iter().map(|claim| claim.verdict.name()).collect::<Vec<_>>().join(" | ");
-        let generated = finding.runs().map(|(_, run)| run).find(|run| run.worlds > 1);
+        let generated = finding.runs().find(|run| run.worlds > 1);
         let ratios = ["recency", "coin", "poisson"].map(|other| {
-            let comparison =
-                generated.and_then(|run| run.comparison("curious", other, Measure::LOG_ERROR_AREA));
+            let comparison = generated.and_then(|run| run.comparison("curious", other, Measure::PRIMARY));
             comparison.map_or_else(String::new, |comparison| comparison.in_short())
         });
         let _ = writeln!(text, "| {} | {verdicts} | {} |", finding.condition.name, ratios.join(" | "));
@@ -47,21 +46,21 @@ fn overview(findings: &[Finding]) -> String {
     text
 }
 
-/// The share of time with changing cells in view, and the quality of the map: the lock-on.
+/// The share of time with changing cells in view, and the quality of the map.
 fn shares(finding: &Finding) -> String {
     let mut text = String::from(
         "| world | strategy | log error, area | log error, end | time at changes | map quality | changing cells | coverage |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
-    for (_, run) in finding.runs() {
+    for run in finding.runs() {
         for strategy in &run.strategies {
-            let last = |metric| strategy.value(Measure { metric, part: Part::Final });
+            let last = |metric| strategy.value(Measure::Final(metric));
             let _ = writeln!(
                 text,
                 "| {} | {} | {:.3} | {:.3} | {:.2} | {:.4} | {:.3} | {:.4} |",
                 run.world,
                 strategy.name,
-                strategy.value(Measure::LOG_ERROR_AREA),
+                strategy.value(Measure::PRIMARY),
                 last(Metric::LogError),
                 last(Metric::ChangingShare),
                 last(Metric::MapQuality),

@@ -1,7 +1,7 @@
 use crate::Cell;
 use nalgebra::Point2;
 
-/// Where a grid lies in the world: square cells, row-major, row 0 at the lowest y.
+/// The position and the size of a grid: square cells, row-major, row 0 at the lowest y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridFrame {
     origin: Point2<f64>,
@@ -87,16 +87,23 @@ impl GridFrame {
         (0..self.width as i32).contains(&cell.x) && (0..self.height as i32).contains(&cell.y)
     }
 
-    /// The place of a cell in row-major order; `None` outside of the grid.
+    /// The index of a cell in row-major order; `None` outside of the grid.
     #[inline]
     pub fn index(&self, cell: Cell) -> Option<usize> {
         self.contains(cell).then(|| cell.y as usize * self.width + cell.x as usize)
     }
 
-    /// The cell at a place in row-major order.
+    /// The cell of an index in row-major order.
     #[inline]
     pub fn cell(&self, index: usize) -> Cell {
         Cell::new((index % self.width) as i32, (index / self.width) as i32)
+    }
+
+    /// The indices of the cells that share a side with a cell, in the order of [`Cell::neighbours4`].
+    #[inline]
+    pub fn beside(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
+        let frame = *self;
+        frame.cell(index).neighbours4().into_iter().filter_map(move |cell| frame.index(cell))
     }
 }
 
@@ -128,7 +135,7 @@ impl<T> Grid<T> {
         (cells.len() == frame.len()).then_some(Self { frame, cells })
     }
 
-    /// Where the grid lies.
+    /// The position and the size of the grid.
     #[inline]
     pub fn frame(&self) -> &GridFrame {
         &self.frame

@@ -1,12 +1,13 @@
 //! The values and traits that the crates exchange: cells and grids, scans and readings, commands, the
-//! traits [`World`] and [`GroundTruth`], errors in settings, and seeded random streams.
+//! traits [`World`] and [`GroundTruth`], parts chosen by name, checks of settings, and seeded random streams.
 //!
-//! This crate knows no other crate of the workspace. It has no clock and no input or output.
+//! This crate depends on no other crate of the workspace. It has no clock and no input or output.
 //!
 //! Units are SI; the name of a scalar carries its unit. Frames follow REP-103 (x forward, y left,
 //! counter-clockwise radians). Grids are row-major with row 0 at the lowest y.
 
 mod angle;
+mod by_name;
 mod cell;
 mod command;
 mod grid;
@@ -15,11 +16,12 @@ mod random;
 mod reading;
 mod scan;
 pub mod serde_pose;
-mod settings_error;
+mod settings;
 mod state;
 mod world;
 
 pub use angle::{APPROXIMATE_ATAN2_ERROR_RAD, approximate_atan2, heading_rad, pose, rotation, wrap_rad};
+pub use by_name::UnknownName;
 pub use cell::Cell;
 pub use command::{Step, Twist};
 pub use grid::{Grid, GridFrame};
@@ -27,6 +29,6 @@ pub use ground_truth::{GroundTruth, TrueChange, TrueState};
 pub use random::{Purpose, RandomStream};
 pub use reading::{CellReading, LaserReading, Observation, Reading};
 pub use scan::{Scan, ScanError};
-pub use settings_error::SettingsError;
+pub use settings::{SettingsCheck, SettingsError};
 pub use state::{CellState, Event, Transition};
 pub use world::World;

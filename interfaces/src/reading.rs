@@ -53,12 +53,12 @@ impl Reading for LaserReading {
     }
 }
 
-/// The cells that a sensor without error sees.
+/// The cells that a sensor without error observes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellReading {
     /// The time of the reading, in steps.
     pub time: f64,
-    /// Where the robot is, in the map's frame.
+    /// The pose of the robot in the frame of the map.
     pub pose: Isometry2<f64>,
     /// The cells in view, each with whether it is blocked. Cells outside of the map are ignored.
     pub cells: Vec<(Cell, bool)>,

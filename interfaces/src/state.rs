@@ -1,14 +1,14 @@
 use crate::Cell;
 
-/// What the map says of a cell.
+/// The state of a cell in the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum CellState {
-    /// Never seen.
+    /// Never observed.
     #[default]
     Unknown,
-    /// Nothing stands there.
+    /// No solid is in the cell.
     Free,
-    /// Something stands there.
+    /// A solid is in the cell.
     Blocked,
 }
 
@@ -21,20 +21,20 @@ pub enum Event {
     Free,
 }
 
-/// A cell that took another state in an update: a first sighting, a change, or a first sighting that
-/// turned out wrong (the cell becomes unknown again, before it takes its right state).
+/// A change of the state of a cell in an update: a first sighting, a change of a known cell, or the correction of a
+/// first sighting (the cell becomes unknown again, before it takes its true state).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Transition {
     /// The cell.
     pub cell: Cell,
-    /// What the map said before.
+    /// The state before.
     pub before: CellState,
-    /// What the map says now.
+    /// The state after.
     pub after: CellState,
 }
 
 impl Transition {
-    /// The change of a known cell; `None` for a first sighting, right or wrong.
+    /// The change of a known cell; `None` for a first sighting or its correction.
     pub fn event(&self) -> Option<Event> {
         match (self.before, self.after) {
             (CellState::Free, CellState::Blocked) => Some(Event::Block),

@@ -1,14 +1,14 @@
-/// A place that a robot lives in: two verbs, and no way to fail.
+/// A world with one robot. Neither method can fail.
 pub trait World {
-    /// What the robot senses.
+    /// A reading of the sensors of the robot.
     type Reading;
-    /// What the robot can be told to do.
+    /// A command to the robot.
     type Command;
 
-    /// What the robot senses now. No time passes.
+    /// The present reading. No time passes.
     fn sense(&mut self) -> Self::Reading;
 
-    /// Obeys `command` until the next reading is due. A command that is not a number stops the
-    /// robot; one beyond its bounds is cut to them.
+    /// Executes `command` until the next reading is due. A command that is not a number stops the robot; one beyond
+    /// its bounds is cut to them.
     fn act(&mut self, command: &Self::Command);
 }

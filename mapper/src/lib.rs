@@ -13,7 +13,6 @@
 //! - `derived`: the maps that follow from both.
 
 mod change;
-mod choice;
 mod derived;
 mod occupancy;
 
@@ -22,14 +21,14 @@ pub use change::{
     GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, ReadingIndex, Step, TransitionRates,
     TwoState, TwoStateGaps,
 };
-pub use choice::{Choice, Named};
 pub use occupancy::{
-    BeamReturn, CloneModel, OccupancyChoice, OccupancyKind, OccupancyModel, ProjectedScan,
-    SurfaceGridSettings,
+    BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,
 };
 
 use derived::ExpectedChanges;
-use interfaces::{CellState, Grid, GridFrame, Observation, Reading, ScanError, SettingsError, Transition};
+use interfaces::{
+    CellState, Grid, GridFrame, Observation, Reading, ScanError, SettingsCheck, SettingsError, Transition,
+};
 use nalgebra::{Isometry2, Point2};
 use occupancy::FARTHEST_M;
 
@@ -52,11 +51,9 @@ pub struct MapperSettings {
 
 impl MapperSettings {
     fn check(&self) -> Result<(), SettingsError> {
-        if !(self.max_gap >= 0.0 && self.max_gap.is_finite()) {
-            let (part, key, expected) = ("mapper", "max_gap", "0 or more");
-            return Err(SettingsError { part, key, expected, found: self.max_gap.to_string() });
-        }
-        self.steady.check()
+        let check = SettingsCheck { part: "mapper" };
+        check.not_negative("max_gap", self.max_gap)?;
+        self.steady.check(check)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Worlds for a robot to live in, with their ground truth: this crate simulates.
+//! Simulated worlds for a robot, with their ground truth.
 //!
 //! [`physics`] is the two-dimensional world of the paper's section 5 and figures 4 and 5: walls,
 //! robots with real contacts, lasers.
@@ -6,8 +6,7 @@
 //! [`grid`] is the world of the paper's figure 3: cells that are blocked or free, blocks that move
 //! from cell to cell, a robot that takes a step at a time and sees exactly.
 //!
-//! Both implement [`interfaces::World`], and keep the truth that metrics (and nothing else) may look
-//! at. This crate is the only one that knows the physics engine. It reads no file and parses no text: a world is
+//! Both implement [`interfaces::World`], and keep the ground truth for metrics. This crate is the only one that knows the physics engine. It reads no file and parses no text: a world is
 //! a plain struct, which the crates `worldfile` and `stage` can make from files.
 //!
 //! ```
@@ -35,5 +34,6 @@
 //! # Ok::<(), DrivenError>(())
 //! ```
 
+mod flood;
 pub mod grid;
 pub mod physics;

@@ -1,50 +1,53 @@
-//! What the physics cannot do, said at the line of the Stage file.
+//! What the physics cannot do, reported at the line of the Stage file.
 
-use super::place::Place;
 use super::sources::Sources;
-use super::toml::{STEER_DEG, is_upright, short};
-use super::{Drive, StageRobot, StageWorld};
-use nalgebra::{Isometry2, Point2};
+use super::to_toml::{STEER_DEG, is_upright, short};
+use super::{Drive, StageRobot, StageWall, StageWorld, fastest};
+use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
-use std::path::Path;
 use worldfile::Severity;
 use worldfile::physics::{MAX_PIECES, MOST_OUT_M};
 
-/// A robot has no more lasers than this, nor sonars.
-const MOST_SENSORS: usize = 100;
-/// The least that a laser or a fiducial finder sees, rad: 1°.
-const LEAST_FOV_RAD: f64 = PI / 180.0;
-/// The longest side of a map, m, and the sides of what stands; upright walls may be of any length.
-const MOST_MAP_M: f64 = 1000.0;
+/// The maximum number of lasers of a robot, and of sonars.
+const MAX_SENSORS: usize = 100;
+/// The minimum field of view of a laser or a fiducial finder, rad: 1°.
+const MIN_FOV_RAD: f64 = PI / 180.0;
+/// The maximum side of a map, m.
+const MAX_MAP_M: f64 = 1000.0;
+/// The sides of a wall, m; upright ones may be of any length.
 const SIDE_M: RangeInclusive<f64> = 0.001..=100.0;
 
 /// Adds an error for everything that the physics cannot do, and a warning for what it does otherwise.
-pub(super) fn check(sources: &mut Sources<'_>, path: &Path, world: &StageWorld) {
+pub(super) fn check(sources: &mut Sources<'_>, world: &StageWorld) {
     let pieces: usize = world.walls.iter().map(|wall| wall.rectangles.len()).sum();
     if pieces > MAX_PIECES {
         let what = format!("the walls of this world are of {pieces} pieces");
         let help = format!("{MAX_PIECES} are the most: take coarser pictures, or blocks with fewer corners");
-        sources.findings.add_file(Severity::Error, path, &what, &help);
-        return;
+        return sources.add_file(Severity::Error, what, help);
     }
-    let size_m = world.size_m();
-    if size_m.max() > MOST_MAP_M {
+    let size_m = world.map().size_m;
+    if size_m.max() > MAX_MAP_M {
         let what = format!("this world is {:.0} × {:.0} m large", size_m.x, size_m.y);
-        let help = format!("its robots and walls must lie within {MOST_MAP_M} × {MOST_MAP_M} m");
-        sources.findings.add_file(Severity::Error, path, &what, &help);
+        let help = format!("its robots and walls must lie within {MAX_MAP_M} × {MAX_MAP_M} m");
+        sources.add_file(Severity::Error, what, help);
     }
     check_walls(sources, world);
     for (index, robot) in world.robots.iter().enumerate() {
         check_figures(sources, robot);
         warn_of_drive(sources, robot);
-        check_senses(sources, robot);
-        check_place(sources, world, index);
+        check_sensors(sources, robot);
+        check_room(sources, world, index);
     }
 }
 
 fn check_walls(sources: &mut Sources<'_>, world: &StageWorld) {
+    let help = format!(
+        "what stands is {} m thick or more, and what is turned or has a tag {} m or less",
+        SIDE_M.start(),
+        SIDE_M.end()
+    );
     for wall in &world.walls {
         let sides = wall.rectangles.iter().map(|rectangle| (rectangle, 2.0 * rectangle.half_m));
         let thin = sides.clone().find(|(_, sides)| short(sides.min()) < *SIDE_M.start());
@@ -52,44 +55,37 @@ fn check_walls(sources: &mut Sources<'_>, world: &StageWorld) {
             let side_m = if wall.tag.is_some() { sides.max() } else { sides.min() };
             (wall.tag.is_some() || !is_upright(rectangle)) && short(side_m) > *SIDE_M.end()
         });
-        let help = format!(
-            "what stands is {} m thick or more, and what is turned or has a tag {} m or less",
-            SIDE_M.start(),
-            SIDE_M.end()
-        );
         if let Some((_, sides)) = thin.or(thick) {
             let (x, y) = (short(sides.x), short(sides.y));
-            let what = format!("`{}` has a part of {x} × {y} m", wall.name);
-            sources.error(wall.at, &what, "", &help);
+            sources.error(wall.at, format!("`{}` has a part of {x} × {y} m", wall.name), &help);
         }
     }
 }
 
-/// A figure of a robot: the key that gives it, what it says, its unit, and how far it may go.
+/// A figure of a robot: the key that gives it, what it says, its value, its unit, and its range.
 type Figure = (&'static str, &'static str, f64, &'static str, RangeInclusive<f64>);
 
 /// Whether the figures of a robot are in the ranges of the physics.
 fn check_figures(sources: &mut Sources<'_>, robot: &StageRobot) {
-    let most = |[least, most]: [f64; 2]| most.max(-least);
     let velocity = &robot.velocity;
     let mut figures: Vec<Figure> = vec![
-        ("velocity_bounds", "drives at", most(velocity.x), " m/s", 0.001..=5.0),
-        ("velocity_bounds", "turns at", most(velocity.turn).to_degrees(), " °/s", 0.1..=3600.0),
+        ("velocity_bounds", "drives at", fastest(velocity.x), " m/s", 0.001..=5.0),
+        ("velocity_bounds", "turns at", fastest(velocity.turn).to_degrees(), " °/s", 0.1..=3600.0),
         ("odom_error", "errs along by", robot.odometry.distance_gain, "", -0.5..=0.5),
         ("odom_error", "errs in turns by", robot.odometry.turn_gain, "", -0.5..=0.5),
         ("size", "has a radius of", robot.radius_m(), " m", 0.02..=10.0),
     ];
     figures.extend(robot.mass_kg.map(|mass_kg| ("mass", "weighs", mass_kg, " kg", 0.001..=1e5)));
     if let Some(bounds) = &robot.acceleration {
-        let turn_degps2 = most(bounds.turn).to_degrees();
-        figures.push(("acceleration_bounds", "gains", most(bounds.x), " m/s²", 0.001..=100.0));
+        let turn_degps2 = fastest(bounds.turn).to_degrees();
+        figures.push(("acceleration_bounds", "gains", fastest(bounds.x), " m/s²", 0.001..=100.0));
         figures.push(("acceleration_bounds", "gains", turn_degps2, " °/s²", 0.1..=100_000.0));
     }
     match robot.drive {
         Drive::Differential => {}
         Drive::Omni => {
-            figures.push(("velocity_bounds", "drives sideways at", most(velocity.y), " m/s", 0.001..=5.0));
-            let gain = robot.acceleration.map(|bounds| most(bounds.y));
+            figures.push(("velocity_bounds", "drives sideways at", fastest(velocity.y), " m/s", 0.001..=5.0));
+            let gain = robot.acceleration.map(|bounds| fastest(bounds.y));
             let figure = |gain| ("acceleration_bounds", "gains sideways", gain, " m/s²", 0.001..=100.0);
             figures.extend(gain.map(figure));
         }
@@ -101,91 +97,78 @@ fn check_figures(sources: &mut Sources<'_>, robot: &StageRobot) {
         // As it will be written.
         let value = short(value);
         if !range.contains(&value) {
-            let what = format!("`{}` {what} {value}{unit}", robot.name);
             let help = format!("it must be {} to {}{unit}; see `{key}`", range.start(), range.end());
-            sources.error(robot.key(key), &what, "", &help);
+            sources.error(robot.key(key), format!("`{}` {what} {value}{unit}", robot.name), help);
         }
     }
 }
 
 fn warn_of_drive(sources: &mut Sources<'_>, robot: &StageRobot) {
-    let (at, name) = (robot.at, &robot.name);
+    let name = &robot.name;
     let is_lopsided = |[least, most]: [f64; 2]| -least != most;
     let (velocity, is_omni) = (&robot.velocity, robot.drive == Drive::Omni);
     if is_lopsided(velocity.x) || is_lopsided(velocity.turn) || is_omni && is_lopsided(velocity.y) {
         let what = format!("`{name}` may drive or turn faster one way than the other");
-        sources.warning(robot.key("velocity_bounds"), &what, "", "here the larger bound holds both ways");
+        sources.warning(robot.key("velocity_bounds"), what, "here the larger bound holds both ways");
     }
     if let Drive::Car { .. } = robot.drive {
+        let what = format!("Stage does not bound how far the wheels of `{name}` turn");
         let help = format!("here they turn by up to {STEER_DEG}°, and the car obeys commands");
-        sources.warning(at, &format!("Stage does not bound how far the wheels of `{name}` turn"), "", &help);
+        sources.warning(robot.at, what, help);
     }
 }
 
-/// Whether its sensors can be what they are meant to be.
-fn check_senses(sources: &mut Sources<'_>, robot: &StageRobot) {
-    let radius_m = robot.radius_m();
-    let mut check = |at: Place, what: &str, mount: &Isometry2<f64>, range_max_m: f64, is_fine: bool| {
-        let off_m = mount.translation.vector.norm() - radius_m;
+/// Whether the figures of the sensors of a robot are in the ranges of the physics.
+fn check_sensors(sources: &mut Sources<'_>, robot: &StageRobot) {
+    let (radius_m, name) = (robot.radius_m(), &robot.name);
+    for (kind, sensor) in robot.sensors() {
+        let off_m = sensor.mount.translation.vector.norm() - radius_m;
         if off_m > MOST_OUT_M {
-            let what = format!("a {what} of `{}` is mounted {off_m:.3} m off its robot", robot.name);
+            let what = format!("a {kind} of `{name}` is mounted {off_m:.3} m off its robot");
             let help = format!(
                 "here it is moved back, straight towards the point that the robot turns about, to {MOST_OUT_M} m from \
                  the circle about the body: it measures from there"
             );
-            sources.warning(robot.at, &what, "", &help);
+            sources.warning(robot.at, what, help);
         }
-        if !(0.01..=1000.0).contains(&range_max_m) || !is_fine {
+        let is_range_valid = (0.01..=1000.0).contains(&sensor.range_max_m);
+        if !is_range_valid || sensor.fov_rad < MIN_FOV_RAD || sensor.noise_std_m > 1.0 {
             let help = "it sees over 1° or more, up to 0.01 to 1000 m, with a noise of at most 1 m";
-            sources.error(at, &format!("a {what} of `{}` is out of range", robot.name), "", help);
+            sources.error(sensor.at, format!("a {kind} of `{name}` is out of range"), help);
         }
-    };
-    for laser in &robot.lasers {
-        let is_fine = laser.fov_rad >= LEAST_FOV_RAD && laser.noise_std_m <= 1.0;
-        check(laser.at, "laser", &laser.mount, laser.range_max_m, is_fine);
     }
-    for sonar in &robot.sonars {
-        check(sonar.at, "sonar", &sonar.mount, sonar.range_max_m, sonar.noise_std_m <= 1.0);
-    }
-    if let Some(finder) = &robot.fiducial {
-        let is_fine = finder.fov_rad >= LEAST_FOV_RAD;
-        check(finder.at, "fiducial finder", &finder.mount, finder.range_max_m, is_fine);
-    }
-    for (what, count) in [("lasers", robot.lasers.len()), ("sonars", robot.sonars.len())] {
-        if count > MOST_SENSORS {
-            let what = format!("`{}` has {count} {what}", robot.name);
-            sources.error(robot.at, &what, "", &format!("{MOST_SENSORS} are the most"));
+    for (kind, count) in [("lasers", robot.lasers.len()), ("sonars", robot.sonars.len())] {
+        if count > MAX_SENSORS {
+            let help = format!("{MAX_SENSORS} are the most");
+            sources.error(robot.at, format!("`{name}` has {count} {kind}"), help);
         }
     }
     if robot.lasers.is_empty() {
         let help =
             "every robot has one here: it is given a laser of 180 beams over 180°, up to 8 m, at 10 Hz";
-        sources.warning(robot.at, &format!("`{}` has no laser", robot.name), "", help);
+        sources.warning(robot.at, format!("`{name}` has no laser"), help);
     }
 }
 
 /// Whether a robot stands in a wall or in another robot.
-fn check_place(sources: &mut Sources<'_>, world: &StageWorld, index: usize) {
+fn check_room(sources: &mut Sources<'_>, world: &StageWorld, index: usize) {
     let robot = &world.robots[index];
-    let form = robot.form();
-    let stands_in = |wall: &&super::StageWall| {
-        let mut rectangles = wall.rectangles.iter().filter(|rectangle| {
-            let middle = Point2::from(robot.pose.translation.vector);
-            rectangle.distance_m(&middle) < robot.radius_m()
-        });
-        rectangles.any(|rectangle| form.gap_m(&rectangle.corners()) < -TOUCH_M)
+    let (form, radius_m) = (robot.form(), robot.radius_m());
+    let middle = Point2::from(robot.pose.translation.vector);
+    let stands_in = |wall: &&StageWall| {
+        let mut near = wall.rectangles.iter().filter(|rectangle| rectangle.distance_m(&middle) < radius_m);
+        near.any(|rectangle| form.gap_m(&rectangle.corners()) < -TOUCH_M)
     };
     if let Some(wall) = world.walls.iter().find(stands_in) {
         let what = format!("the robot `{}` stands in `{}`", robot.name, wall.name);
-        let help = format!("it may touch, but not overlap, {}", wall.place);
-        sources.error(robot.at, &what, "", &help);
+        sources.error(robot.at, what, format!("it may touch, but not overlap, {}", wall.place));
     }
     for other in &world.robots[..index] {
-        let apart_m = (other.pose.translation.vector - robot.pose.translation.vector).norm();
-        if apart_m < robot.radius_m() + other.radius_m() && form.apart_m(&other.form()) < -TOUCH_M {
+        let apart_m = (other.pose.translation.vector - middle.coords).norm();
+        if apart_m < radius_m + other.radius_m() && form.apart_m(&other.form()) < -TOUCH_M {
             let what = format!("the robots `{}` and `{}` overlap", other.name, robot.name);
             let help = format!("they may touch, but not overlap; the other one is at {}", other.place);
-            sources.error(robot.at, &what, "", &help);
+            sources.error(robot.at, what, help);
         }
     }
 }

@@ -1,13 +1,13 @@
-//! Stage's world has heights, this one has not: where they matter, it is said.
+//! A world of Stage has heights, this one has none: warnings where they matter.
 
-use super::place::Place;
+use super::lexer::Place;
 use super::sources::Sources;
 use std::collections::BTreeSet;
 
 /// The maximum number of comparisons; further ones are left out.
 const MAX_COMPARISONS: usize = 10_000_000;
 
-/// Something that takes up room.
+/// A body between two heights.
 pub(super) struct Solid {
     pub(super) name: String,
     /// The robot that it is a part of.
@@ -17,7 +17,7 @@ pub(super) struct Solid {
     pub(super) z_m: [f64; 2],
 }
 
-/// A laser's height, and where the file speaks of it.
+/// The height of a sensor, and its place in the file.
 pub(super) struct Beam {
     pub(super) robot: usize,
     pub(super) place: Place,
@@ -32,34 +32,33 @@ pub(super) struct Heights {
 }
 
 impl Heights {
-    /// Warns of beams that pass over things in Stage, and of robots that do.
+    /// Warns of beams that pass over bodies in Stage, and of robots that do.
     pub(super) fn compare(&self, sources: &mut Sources<'_>) {
         let mut left = MAX_COMPARISONS;
         for beam in &self.beams {
             let misses = |solid: &&Solid| {
                 solid.robot != Some(beam.robot) && !(solid.z_m[0]..=solid.z_m[1]).contains(&beam.z_m)
             };
-            if let Some(missed) = self.solids.iter().take(left).find(misses) {
-                let what = format!("in Stage these beams, {:.3} m high, miss `{}`", beam.z_m, missed.name);
-                let help = format!(
-                    "it reaches from {:.3} to {:.3} m; here there are no heights, and they meet it",
-                    missed.z_m[0], missed.z_m[1]
-                );
-                sources.warning(beam.place, &what, "", &help);
+            if let Some(Solid { name, z_m: [low_m, high_m], .. }) = self.solids.iter().take(left).find(misses)
+            {
+                let what = format!("in Stage these beams, {:.3} m high, miss `{name}`", beam.z_m);
+                let help = "here there are no heights, and they meet it";
+                let help = format!("it reaches from {low_m:.3} to {high_m:.3} m; {help}");
+                sources.warning(beam.place, what, help);
             }
             left = left.saturating_sub(self.solids.len());
         }
-        let mut told: BTreeSet<(u32, u32)> = BTreeSet::new();
+        let mut compared: BTreeSet<(u32, u32)> = BTreeSet::new();
         for a in self.solids.iter().filter(|solid| solid.robot.is_some()) {
             // The parts of one definition share its height: one of them is enough.
-            if !told.insert((a.place.file, a.place.start)) {
+            if !compared.insert((a.place.file, a.place.start)) {
                 continue;
             }
             let passes = |b: &&Solid| b.robot != a.robot && (a.z_m[1] < b.z_m[0] || b.z_m[1] < a.z_m[0]);
             if let Some(b) = self.solids.iter().take(left).find(passes) {
                 let what = format!("in Stage `{}` passes over or under `{}`", a.name, b.name);
                 let help = "here there are no heights, and they bump into each other";
-                sources.warning(a.place, &what, "", help);
+                sources.warning(a.place, what, help);
             }
             left = left.saturating_sub(self.solids.len());
         }

@@ -1,6 +1,21 @@
-//! From text to words, numbers, texts in quotes and brackets, each with its place.
+//! From text to names, numbers, texts in quotes and brackets, each with its place.
 
-use super::place::Place;
+use std::ops::Range;
+
+/// A place in one of the texts of a world, in bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Place {
+    /// The index of the text, in the order in which they were read.
+    pub(super) file: u32,
+    pub(super) start: u32,
+    pub(super) end: u32,
+}
+
+impl Place {
+    pub(super) fn range(&self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
 
 /// A piece of a world file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +29,7 @@ pub(super) enum Kind {
     /// A name, perhaps with an index, as in `point[3]`.
     Word,
     Number(f64),
-    /// A text; its place is what stands between the quotes.
+    /// A text; its place is between the quotes.
     Text,
     Open,
     Close,
@@ -22,32 +37,23 @@ pub(super) enum Kind {
     CloseTuple,
 }
 
-/// What cannot be read, and where.
-#[derive(Debug, PartialEq)]
-pub(super) struct LexError {
-    pub(super) what: &'static str,
-    pub(super) help: &'static str,
-    pub(super) place: Place,
-}
-
-/// The tokens of a text, which is the `file`th one. Comments and line ends are left out.
-pub(super) fn tokens(text: &str, file: u32) -> Result<Vec<Token>, LexError> {
+/// The tokens of a text, which is the `file`th one, without comments and line ends; or what cannot be read: its
+/// place, what it is, and what is valid.
+pub(super) fn tokens(text: &str, file: u32) -> Result<Vec<Token>, (Place, &'static str, &'static str)> {
     let bytes = text.as_bytes();
     let mut tokens = Vec::new();
-    let mut at = 0;
-    while let Some(&byte) = bytes.get(at) {
-        let start = at;
-        let place = |end: usize| Place { file, start: start as u32, end: end as u32 };
-        let run = |from: usize, part: &dyn Fn(u8) -> bool| {
-            from + bytes[from..].iter().take_while(|byte| part(**byte)).count()
+    let mut end = 0;
+    while let Some(&byte) = bytes.get(end) {
+        let start = end;
+        let place = |start: usize, end: usize| Place { file, start: start as u32, end: end as u32 };
+        let run = |from: usize, is_part: &dyn Fn(u8) -> bool| {
+            from + bytes[from..].iter().take_while(|byte| is_part(**byte)).count()
         };
+        end += 1;
         let kind = match byte {
-            b' ' | b'\t' | b'\r' | b'\n' => {
-                at += 1;
-                continue;
-            }
+            b' ' | b'\t' | b'\r' | b'\n' => continue,
             b'#' => {
-                at = run(at, &|byte| byte != b'\n');
+                end = run(start, &|byte| byte != b'\n');
                 continue;
             }
             b'(' => Kind::Open,
@@ -55,48 +61,37 @@ pub(super) fn tokens(text: &str, file: u32) -> Result<Vec<Token>, LexError> {
             b'[' => Kind::OpenTuple,
             b']' => Kind::CloseTuple,
             b'"' => {
-                let end = run(at + 1, &|byte| !matches!(byte, b'"' | b'\n' | b'\r'));
-                if bytes.get(end) != Some(&b'"') {
+                let close = run(end, &|byte| !matches!(byte, b'"' | b'\n' | b'\r'));
+                if bytes.get(close) != Some(&b'"') {
                     let help = "a text begins and ends with a quote, on one line";
-                    return Err(LexError { what: "a text does not end", help, place: place(end) });
+                    return Err((place(start, close), "a text does not end", help));
                 }
-                tokens.push(Token {
-                    kind: Kind::Text,
-                    place: Place { file, start: start as u32 + 1, end: end as u32 },
-                });
-                at = end + 1;
+                tokens.push(Token { kind: Kind::Text, place: place(end, close) });
+                end = close + 1;
                 continue;
             }
             b'+' | b'-' | b'.' | b'0'..=b'9' => {
-                let end = number_end(bytes, at);
+                end = number_end(bytes, start);
                 let number = text[start..end].parse().ok().filter(|number: &f64| number.is_finite());
-                let Some(number) = number else {
-                    let help = "a number is written as in 0.5, -12 or 1e-3";
-                    return Err(LexError { what: "this is not a number", help, place: place(end) });
-                };
-                tokens.push(Token { kind: Kind::Number(number), place: place(end) });
-                at = end;
-                continue;
+                let help = "a number is written as in 0.5, -12 or 1e-3";
+                Kind::Number(number.ok_or((place(start, end), "this is not a number", help))?)
             }
             b'a'..=b'z' | b'A'..=b'Z' | b'_' => {
-                let end = word_end(bytes, at);
-                tokens.push(Token { kind: Kind::Word, place: place(end) });
-                at = end;
-                continue;
+                end = word_end(bytes, start);
+                Kind::Word
             }
             _ => {
-                let end = text.ceil_char_boundary(start + 1);
+                let place = place(start, text.ceil_char_boundary(end));
                 let help = "outside of quotes there are names, numbers, ( ) and [ ]; comments begin with #";
-                return Err(LexError { what: "this character means nothing here", help, place: place(end) });
+                return Err((place, "this character means nothing here", help));
             }
         };
-        at += 1;
-        tokens.push(Token { kind, place: place(at) });
+        tokens.push(Token { kind, place: place(start, end) });
     }
     Ok(tokens)
 }
 
-/// Where a number that begins at `at` ends. Stage knows no exponents; they do no harm.
+/// Where a number that begins at `at` ends. Stage knows no exponents.
 fn number_end(bytes: &[u8], mut at: usize) -> usize {
     let is_digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
     while let Some(byte) = bytes.get(at) {
@@ -164,7 +159,7 @@ mod tests {
     #[test]
     fn faults_have_places() {
         for (text, place) in [("a \"b\nc", 2..4), ("x 1-2", 2..5), ("x é y", 2..4), ("1e999", 0..5)] {
-            assert_eq!(tokens(text, 0).unwrap_err().place.range(), place, "{text}");
+            assert_eq!(tokens(text, 0).unwrap_err().0.range(), place, "{text}");
         }
     }
 }

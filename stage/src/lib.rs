@@ -4,7 +4,7 @@
 //! [`StageWorld`]: the walls, the floor plans and the robots, in metres and radians, in Stage's own
 //! coordinates. [`load`] makes a fleet of it that runs, [`StageWorld::to_toml`] a world file of ours.
 //!
-//! Nothing is dropped in silence. What makes no sense is an error; what Stage has and this simulator
+//! Nothing is dropped in silence. What is not valid is an error; what Stage has and this simulator
 //! has not, or does otherwise, is a warning; both name the file and the line. What changes nothing
 //! but how Stage draws or runs a world is in one note per file.
 //!
@@ -12,54 +12,50 @@
 //!
 //! | Stage | here |
 //! |---|---|
-//! | `include`, `define`, things in things | written out, as in Stage; a file that includes itself is an error |
+//! | `include`, `define`, models in models | written out, as in Stage; a file that includes itself is an error |
 //! | `unit_length`, `unit_angle` | m, cm, mm; degrees, radians |
 //! | `name`, `interval_sim`, `quit_time` | the name, the longest physics step, the length of a run |
 //! | `model`, or a `define` of it | walls |
-//! | `bitmap` | a [`FloorPlan`]; its dark pixels (the first colour below 128) are scaled to fill `size` |
+//! | `bitmap` | a [`FloorPlan`]; its dark pixels (the first color below 128) are scaled to fill `size` |
 //! | `block` with `points`, `point[…]`, `z` | polygons, scaled to fill `size` together |
 //! | `pose`, `origin`, `size`, `boundary`, `stack_children` | as in Stage |
-//! | `obstacle_return`, `ranger_return`, `laser_return` | a thing that neither collides nor is seen is left out |
+//! | `obstacle_return`, `ranger_return`, `laser_return` | a model that neither collides nor is seen is left out |
 //! | `position` | a robot |
 //! | `drive`, `wheelbase`, `velocity_bounds`, `acceleration_bounds` | [`StageRobot`] |
 //! | `localization`, `localization_origin`, `odom_error` | [`OdometryError`] |
-//! | the body of a robot | its convex outline, or a disc where that is one or does not hold the point that the robot turns about |
-//! | `ranger` with `sensor`s, and the older `laser` | [`StageLaser`]; a `sensor` of one sample is a cone as wide as its `fov`, a [`StageSonar`] |
+//! | the body of a robot | its convex outline, or a disc if the body is one or does not hold the point that the robot turns about |
+//! | `ranger` with `sensor`s, and the older `laser` | a laser; a `sensor` of one sample is a sonar: a cone as wide as its `fov` |
 //! | `samples`, `fov`, `range`, `range_min`, `range_max`, `noise`, `update_interval` | of a laser or a sonar |
-//! | `fiducial` | [`StageFiducial`], as far as it tells tags apart (`range_max_id`) |
+//! | `fiducial` | a fiducial finder, as far as it tells tags apart (`range_max_id`) |
 //! | `fiducial_return` | the tag of a robot, or of a box that stands about its pose |
 //! | `color`, `mass`, `ctrl` | kept in [`StageRobot`] |
 //!
 //! Everything else (windows, cameras, blob finders, bumpers, grippers, energy, …) is named in a
-//! warning. Bumpers are no exception: those of Stage are short beams that may lie anywhere, ours
-//! are the parts of a ring around the robot, and feel touches.
+//! warning. So are bumpers: those of Stage are short beams that may lie anywhere, ours are the parts
+//! of a ring around the robot, and feel touches.
 
 mod body;
+mod builder;
 mod check;
-mod harmless;
+mod drive;
 mod heights;
-mod known;
+mod left_out;
 mod lexer;
 mod load;
-mod looks;
+mod models;
 mod outline;
 mod pictures;
-mod place;
 mod polygon;
-mod robot;
 mod robots;
 mod senses;
 mod sources;
-mod step;
-mod tags;
 #[cfg(test)]
 mod tests;
-mod toml;
+mod to_toml;
 mod tree;
-mod values;
 mod world;
 
-use place::Place;
+use lexer::Place;
 use sources::Sources;
 
 use nalgebra::{Isometry2, Point2};
@@ -73,11 +69,11 @@ use worldfile::floor_plan::FloorPlan;
 /// A world as a Stage file describes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageWorld {
-    /// What it is called: `name`, or else the file.
+    /// `name`, or else the name of the file.
     pub name: String,
     /// The file and all that it includes, in the order in which they were read.
     pub files: Vec<String>,
-    /// A physics step that no robot or laser finds too long, s.
+    /// A physics step that is short enough for every robot and sensor, s.
     pub step_s: f64,
     /// After how long Stage would stop, s.
     pub quit_time_s: Option<f64>,
@@ -87,36 +83,36 @@ pub struct StageWorld {
     pub robots: Vec<StageRobot>,
 }
 
-/// A thing that stands still.
+/// A model that stands still.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageWall {
-    /// What it is called; Stage's names are made up where the file gives none.
+    /// Its name, generated as in Stage where the file gives none.
     pub name: String,
-    /// Its colour in Stage.
+    /// Its color in Stage.
     pub color: Option<String>,
-    /// Where the file speaks of it, as in `cave.world:12`.
+    /// Its place in the file, as in `cave.world:12`.
     pub place: String,
     /// Its pixels, if it is a bitmap.
     pub plan: Option<FloorPlan>,
-    /// What it is made of, those of the plan included.
+    /// Its pieces, those of the plan included.
     pub rectangles: Vec<Rectangle>,
-    /// The tag by which fiducial finders know it; it is of one rectangle then.
+    /// The tag that fiducial finders find; a wall with a tag is one rectangle.
     pub tag: Option<u32>,
     at: Place,
 }
 
-/// A thing that drives.
+/// A model that drives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageRobot {
-    /// What it is called.
+    /// Its name, generated as in Stage where the file gives none.
     pub name: String,
-    /// Its colour in Stage.
+    /// Its color in Stage.
     pub color: Option<String>,
-    /// Where the file speaks of it, as in `cave.world:12`.
+    /// Its place in the file, as in `cave.world:12`.
     pub place: String,
-    /// Where it starts: the point that it turns about.
+    /// Its pose at the start: that of the point that it turns about.
     pub pose: Isometry2<f64>,
-    /// Polygons that its body is made of, in its own frame, m.
+    /// The polygons of its body, in its own frame, m.
     pub footprint: Vec<Vec<Point2<f64>>>,
     /// The corners of the convex outline that it has here, counter-clockwise, in its own frame, m;
     /// none: it is a disc.
@@ -129,12 +125,12 @@ pub struct StageRobot {
     pub acceleration: Option<Bounds>,
     /// How its odometry errs.
     pub odometry: OdometryError,
-    /// What it sees with; Stage's single rays are sonars.
-    pub lasers: Vec<StageLaser>,
-    /// What it hears with.
-    pub sonars: Vec<StageSonar>,
-    /// What it finds tags with.
-    pub fiducial: Option<StageFiducial>,
+    /// Its lasers.
+    pub lasers: Vec<StageSensor>,
+    /// Its sonars, which are single rays in Stage.
+    pub sonars: Vec<StageSensor>,
+    /// Its fiducial finder.
+    pub fiducial: Option<StageSensor>,
     /// Its own tag.
     pub tag: Option<u32>,
     /// Its mass, kg.
@@ -142,7 +138,7 @@ pub struct StageRobot {
     /// The controllers that Stage would load.
     pub controllers: Vec<String>,
     at: Place,
-    /// Where its keys stand.
+    /// The places of its keys.
     keys: BTreeMap<String, Place>,
 }
 
@@ -171,61 +167,30 @@ pub struct Bounds {
     pub turn: [f64; 2],
 }
 
-/// A laser.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StageLaser {
-    /// Where the file speaks of it, as in `sick.inc:3`.
-    pub place: String,
-    /// Where it sits on the robot.
-    pub mount: Isometry2<f64>,
-    /// The number of beams.
-    pub beams: usize,
-    /// The angle they are spread over, rad.
-    pub fov_rad: f64,
-    /// Nearer things are too close, m.
-    pub range_min_m: f64,
-    /// Farther things are not seen, m.
-    pub range_max_m: f64,
-    /// The time between two scans, ms.
-    pub interval_ms: u32,
-    /// Standard deviation of a range, m.
-    pub noise_std_m: f64,
-    at: Place,
+/// The larger magnitude of two bounds, the least and the most.
+fn fastest([least, most]: [f64; 2]) -> f64 {
+    most.max(-least)
 }
 
-/// A sonar: in Stage a single ray, here a cone.
+/// A laser, a sonar or a fiducial finder.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StageSonar {
-    /// Where the file speaks of it.
+pub struct StageSensor {
+    /// Its place in the file, as in `sick.inc:3`.
     pub place: String,
-    /// Where it sits on the robot.
+    /// Its pose on the robot.
     pub mount: Isometry2<f64>,
-    /// The angle of its cone, rad.
-    pub cone_rad: f64,
-    /// Nearer things are too close, m.
+    /// The number of beams of a laser; 1 for other sensors.
+    pub beams: usize,
+    /// The angle of the field of view, which is the cone of a sonar, rad.
+    pub fov_rad: f64,
+    /// Nearer things are not measured, m.
     pub range_min_m: f64,
-    /// Farther things are not heard, m.
+    /// Farther things are not measured, m.
     pub range_max_m: f64,
     /// The time between two measurements, ms.
     pub interval_ms: u32,
     /// Standard deviation of a range, m.
     pub noise_std_m: f64,
-    at: Place,
-}
-
-/// A fiducial finder.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StageFiducial {
-    /// Where the file speaks of it.
-    pub place: String,
-    /// Where it sits on the robot.
-    pub mount: Isometry2<f64>,
-    /// The angle that it sees, rad.
-    pub fov_rad: f64,
-    /// Tags farther away are not found, m.
-    pub range_max_m: f64,
-    /// The time between two looks, ms.
-    pub interval_ms: u32,
     at: Place,
 }
 
@@ -236,9 +201,16 @@ impl StageRobot {
         corners.map(|corner| corner.coords.norm()).fold(0.0, f64::max)
     }
 
-    /// Where the file gives this key, or else where it speaks of this robot.
+    /// The place of this key in the file, or else that of this robot.
     fn key(&self, key: &str) -> Place {
         self.keys.get(key).copied().unwrap_or(self.at)
+    }
+
+    /// All sensors, each with what it is.
+    fn sensors(&self) -> impl Iterator<Item = (&'static str, &StageSensor)> {
+        let lasers = self.lasers.iter().map(|sensor| ("laser", sensor));
+        let sonars = self.sonars.iter().map(|sensor| ("sonar", sensor));
+        lasers.chain(sonars).chain(self.fiducial.iter().map(|sensor| ("fiducial finder", sensor)))
     }
 
     /// What it covers here, where it starts.
@@ -279,10 +251,9 @@ pub fn load(path: &Path, files: &dyn Files) -> (Option<FleetSpec>, Findings) {
 
 fn open<'a>(path: &Path, files: &'a dyn Files) -> (Option<StageWorld>, Sources<'a>) {
     let mut sources = Sources::new(files);
-    let world = sources
-        .read(path)
-        .and_then(|tokens| tree::read(&mut sources, &tokens))
-        .and_then(|tree| world::convert(&mut sources, path, files, &tree));
-    sources.note_harmless();
+    let tokens = sources.read(path);
+    let tree = tokens.and_then(|tokens| tree::read(&mut sources, &tokens));
+    let world = tree.and_then(|tree| world::convert(&mut sources, &tree));
+    sources.note_no_effect();
     (world.filter(|_| sources.findings.errors() == 0), sources)
 }

@@ -1,27 +1,26 @@
 //! From a Stage world to one that runs here.
 
+use super::StageWorld;
 use super::check::check;
 use super::sources::Sources;
-use super::{StageWorld, toml};
+use super::to_toml::point;
 use nalgebra::Point2;
 use sim::physics::FleetSpec;
 use std::path::Path;
 use worldfile::Severity;
 use worldfile::physics::parse_fleet;
 
-/// Makes a fleet of a Stage world. Whatever the physics cannot do is said at the line of the Stage
-/// file.
+/// Makes a fleet of a Stage world. An error names the line of the Stage file.
 pub(super) fn load(sources: &mut Sources<'_>, path: &Path, world: &StageWorld) -> Option<FleetSpec> {
-    check(sources, path, world);
+    check(sources, world);
     if sources.findings.errors() > 0 {
         return None;
     }
     let low = world.map_origin();
     if low != Point2::origin() {
-        let (x, y) = (toml::short(low.x), toml::short(low.y));
-        let what = format!("[0, 0] of the world that runs is [{x}, {y}] of this file");
+        let what = format!("[0, 0] of the world that runs is {} of this file", point(&low));
         let help = "it is the lower left corner of all that is there; headings are as in the file";
-        sources.findings.add_file(Severity::Note, path, &what, help);
+        sources.add_file(Severity::Note, what, help);
     }
     let name = format!("{}, made from {}", path.with_extension("toml").display(), path.display());
     let text = world.to_toml();
@@ -37,7 +36,7 @@ pub(super) fn load(sources: &mut Sources<'_>, path: &Path, world: &StageWorld) -
 }
 
 /// The first line of a message about the made file, its help, and the place in the Stage file that
-/// the table in question names: nobody has seen the made file.
+/// its table names: the user has not seen the made file.
 fn in_stage<'a>(made: &'a str, message: &'a str) -> (&'a str, &'a str, Option<&'a str>) {
     let what = message.lines().next().unwrap_or_default();
     let help = message.rsplit_once("= help: ").map_or("", |(_, help)| help);

@@ -4,16 +4,16 @@ use super::polygon;
 use nalgebra::Point2;
 use sim::physics::Form;
 
-/// An outline here has no more corners than this.
-const MOST_CORNERS: usize = 32;
-/// Nor any by which it gains less than half of this area, m².
-const LEAST_CORNER_M2: f64 = 4e-6;
-/// The point that a robot turns about lies so far within its outline or farther, m.
-const LEAST_INNER_M: f64 = 0.02;
+/// The maximum number of corners of an outline.
+const MAX_CORNERS: usize = 32;
+/// A corner is left out if the outline gains less than half of this area by it, m².
+const MIN_CORNER_M2: f64 = 4e-6;
+/// The minimum distance from the point that a robot turns about to its outline, m.
+const MIN_INNER_M: f64 = 0.02;
 /// The number of lines that measure the area of a body of several parts.
 const LINES: usize = 256;
 
-/// The smallest convex outline around a body, as far as an outline can have that many corners.
+/// The smallest convex outline around a body, with at most [`MAX_CORNERS`].
 pub(super) struct Outline {
     /// Counter-clockwise, m.
     pub(super) corners: Vec<Point2<f64>>,
@@ -25,11 +25,11 @@ pub(super) struct Outline {
 pub(super) fn of(parts: &[Vec<Point2<f64>>]) -> Option<Outline> {
     let mut corners = hull(parts.iter().flatten().copied().collect());
     while let Some((flattest, area_m2)) = flattest(&corners)
-        && (corners.len() > MOST_CORNERS || area_m2 < LEAST_CORNER_M2)
+        && (corners.len() > MAX_CORNERS || area_m2 < MIN_CORNER_M2)
     {
         corners.remove(flattest);
     }
-    if corners.len() < 3 || inner_m(&corners) < LEAST_INNER_M {
+    if corners.len() < 3 || inner_m(&corners) < MIN_INNER_M {
         return None;
     }
     let area_m2 = polygon::area(&corners);
@@ -68,44 +68,30 @@ fn hull(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
 
 /// The corner without which an outline loses least, and twice the area that it loses, m².
 fn flattest(corners: &[Point2<f64>]) -> Option<(usize, f64)> {
-    let count = corners.len();
-    let twice_m2 = |i: usize| {
-        let (before, after) = (corners[(i + count - 1) % count], corners[(i + 1) % count]);
-        (corners[i] - before).perp(&(after - corners[i]))
-    };
-    (0..count).map(|i| (i, twice_m2(i))).min_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| count >= 3)
+    let twice_m2 = polygon::turns(corners).map(|[to, from]| to.perp(&from)).enumerate();
+    twice_m2.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| corners.len() >= 3)
 }
 
 /// By which share a convex outline is larger than the parts in it together, measured along lines
 /// across both.
 fn gain_by_lines(corners: &[Point2<f64>], parts: &[Vec<Point2<f64>>]) -> f64 {
-    let ys = || corners.iter().map(|corner| corner.y);
-    let (low, high) = (ys().fold(f64::MAX, f64::min), ys().fold(f64::MIN, f64::max));
+    let (low, high) = polygon::bounds(corners.iter().copied());
     let (mut outline_m, mut body_m) = (0.0, 0.0);
     for line in 0..LINES {
-        let y = low + (high - low) * (line as f64 + 0.5) / LINES as f64;
-        outline_m += length_m(&mut spans(corners, y));
-        body_m += length_m(&mut parts.iter().flat_map(|part| spans(part, y)).collect());
+        let y = low.y + (high.y - low.y) * (line as f64 + 0.5) / LINES as f64;
+        outline_m += length_m(polygon::spans(corners, y));
+        body_m += length_m(parts.iter().flat_map(|part| polygon::spans(part, y)).collect());
     }
     outline_m / body_m - 1.0
 }
 
-/// Where a line along x lies in a polygon, m.
-fn spans(corners: &[Point2<f64>], y: f64) -> Vec<[f64; 2]> {
-    let sides = (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
-    let crossing = sides.filter(|(a, b)| (a.y > y) != (b.y > y));
-    let mut xs: Vec<f64> = crossing.map(|(a, b)| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x)).collect();
-    xs.sort_by(f64::total_cmp);
-    xs.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
-}
-
 /// The length of spans that may overlap, together, m.
-fn length_m(spans: &mut Vec<[f64; 2]>) -> f64 {
+fn length_m(mut spans: Vec<[f64; 2]>) -> f64 {
     spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let (mut length_m, mut reached) = (0.0, f64::NEG_INFINITY);
     for [from, to] in spans {
-        length_m += (*to - from.max(reached)).max(0.0);
-        reached = reached.max(*to);
+        length_m += (to - from.max(reached)).max(0.0);
+        reached = reached.max(to);
     }
     length_m
 }
@@ -140,7 +126,7 @@ mod tests {
             (0..count).map(|i| corner(i) * Point2::new(radius_m, 0.0)).collect()
         };
         let outline = of(&[ring(0.3, 1000)]).unwrap();
-        assert_eq!(outline.corners.len(), MOST_CORNERS);
+        assert_eq!(outline.corners.len(), MAX_CORNERS);
         assert!(outline.gain < 0.0 && outline.gain > -0.02, "{}", outline.gain);
         assert!(inner_m(&outline.corners) > 0.29);
         assert!(of(&[square(0.0, 0.0, 1.0)]).is_none());

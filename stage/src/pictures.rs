@@ -6,32 +6,28 @@ use std::sync::Arc;
 use worldfile::Files;
 use worldfile::floor_plan::{Bitmap, MAX_FILE_BYTES};
 
-/// The first colour of a pixel that is blocked is below this.
+/// A pixel is blocked if its first color is below this.
 const BLOCKED_BELOW: f64 = 128.0 / 255.0;
-/// All bitmaps of a world together, each as often as it is used, may not have more pixels.
+/// The maximum number of pixels of all bitmaps together, each as often as it is used.
 const MAX_PIXELS: u64 = 1 << 27;
-/// Nor make more rectangles.
+/// The maximum number of rectangles of all bitmaps together, each as often as it is used.
 const MAX_RECTANGLES: usize = 1 << 20;
 
 /// Bitmaps by their paths.
-pub(super) struct Pictures<'a> {
-    files: &'a dyn Files,
+#[derive(Default)]
+pub(super) struct Pictures {
     decoded: BTreeMap<PathBuf, Arc<Bitmap>>,
     pixels: u64,
     rectangles: usize,
 }
 
-impl<'a> Pictures<'a> {
-    pub(super) fn new(files: &'a dyn Files) -> Self {
-        Self { files, decoded: BTreeMap::new(), pixels: 0, rectangles: 0 }
-    }
-
-    /// The bitmap of a file: dark is blocked, by the first colour as in Stage.
-    pub(super) fn get(&mut self, path: &Path) -> Result<Arc<Bitmap>, String> {
+impl Pictures {
+    /// The bitmap of a file: dark is blocked, by the first color as in Stage.
+    pub(super) fn get(&mut self, files: &dyn Files, path: &Path) -> Result<Arc<Bitmap>, String> {
         let bitmap = match self.decoded.get(path) {
             Some(bitmap) => Arc::clone(bitmap),
             None => {
-                let bytes = self.files.read(path, MAX_FILE_BYTES).map_err(|error| error.to_string())?;
+                let bytes = files.read(path, MAX_FILE_BYTES).map_err(|error| error.to_string())?;
                 let bitmap = Bitmap::decode(&bytes, |pixel| pixel.red < BLOCKED_BELOW);
                 let bitmap = Arc::new(bitmap.map_err(|error| error.to_string())?);
                 self.decoded.insert(path.to_owned(), Arc::clone(&bitmap));

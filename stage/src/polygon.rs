@@ -9,7 +9,7 @@ const SAME: f64 = 1e-7;
 /// How thick the rim of a polygon without right angles is at most, m.
 const RIM_M: f64 = 0.05;
 
-/// Rectangles that stand for a polygon.
+/// Rectangles that approximate a polygon.
 #[derive(Debug, PartialEq)]
 pub(super) struct Cover {
     pub(super) rectangles: Vec<Rectangle>,
@@ -28,7 +28,7 @@ pub(super) fn cover(points: &[Point2<f64>]) -> Cover {
     right_angled(&corners).unwrap_or_else(|| rim(&corners))
 }
 
-/// Without points on each other or on the line between their neighbours, counter-clockwise.
+/// Without points on each other or on the line between their neighbors, counter-clockwise.
 fn clean(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
     let mut corners: Vec<Point2<f64>> = Vec::new();
     for point in points {
@@ -39,13 +39,12 @@ fn clean(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
     while corners.len() > 1 && (corners[0] - corners[corners.len() - 1]).norm() <= SAME {
         corners.pop();
     }
-    let count = corners.len();
-    let is_corner = |i: usize| {
-        let (before, after) = (corners[(i + count - 1) % count], corners[(i + 1) % count]);
-        let (to, from) = ((corners[i] - before).normalize(), (after - corners[i]).normalize());
+    let is_corner = |[to, from]: [Vector2<f64>; 2]| {
+        let (to, from) = (to.normalize(), from.normalize());
         to.perp(&from).abs() > SAME || to.dot(&from) < 0.0
     };
-    let mut corners: Vec<Point2<f64>> = (0..count).filter(|i| is_corner(*i)).map(|i| corners[i]).collect();
+    let kept = corners.iter().zip(turns(&corners)).filter(|(_, turn)| is_corner(*turn));
+    let mut corners: Vec<Point2<f64>> = kept.map(|(corner, _)| *corner).collect();
     if area(&corners) < 0.0 {
         corners.reverse();
     }
@@ -58,9 +57,35 @@ pub(super) fn area(corners: &[Point2<f64>]) -> f64 {
     corners.windows(2).map(|pair| (pair[0] - first).perp(&(pair[1] - first))).sum::<f64>() / 2.0
 }
 
+/// The lower left and the upper right corner of the upright box around points.
+pub(super) fn bounds(points: impl Iterator<Item = Point2<f64>>) -> (Point2<f64>, Point2<f64>) {
+    let none = (Point2::new(f64::MAX, f64::MAX), Point2::new(f64::MIN, f64::MIN));
+    points.fold(none, |(low, high), point| (low.inf(&point), high.sup(&point)))
+}
+
 /// The sides of a polygon.
-fn sides(corners: &[Point2<f64>]) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> + Clone {
-    (0..corners.len()).map(move |i| (corners[i], corners[(i + 1) % corners.len()]))
+fn sides(corners: &[Point2<f64>]) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> {
+    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
+}
+
+/// Per corner of a polygon, the side that leads to it and the side that leads away from it.
+pub(super) fn turns(corners: &[Point2<f64>]) -> impl Iterator<Item = [Vector2<f64>; 2]> {
+    let from = sides(corners).map(|(a, b)| b - a);
+    let to = corners.iter().cycle().skip(corners.len().saturating_sub(1));
+    corners.iter().zip(to).zip(from).map(|((corner, before), from)| [corner - before, from])
+}
+
+/// Where a line along x lies in a polygon, m.
+pub(super) fn spans(corners: &[Point2<f64>], y: f64) -> Vec<[f64; 2]> {
+    let crossing = sides(corners).filter(|(a, b)| (a.y > y) != (b.y > y));
+    let mut xs: Vec<f64> = crossing.map(|(a, b)| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x)).collect();
+    xs.sort_by(f64::total_cmp);
+    xs.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
+}
+
+/// Whether a point lies in a polygon.
+fn contains(corners: &[Point2<f64>], point: &Point2<f64>) -> bool {
+    spans(corners, point.y).iter().any(|[from, to]| (*from..*to).contains(&point.x))
 }
 
 /// The exact cover of a polygon with right angles only: it is drawn on a grid whose lines go
@@ -103,9 +128,8 @@ fn right_angled(corners: &[Point2<f64>]) -> Option<Cover> {
 fn rim(corners: &[Point2<f64>]) -> Cover {
     let count = corners.len();
     let mut cover = Cover { rectangles: Vec::new(), off_m: 0.0 };
-    for i in 0..count {
-        let (before, a) = (corners[(i + count - 1) % count], corners[i]);
-        let (b, after) = (corners[(i + 1) % count], corners[(i + 2) % count]);
+    for (i, (a, b)) in sides(corners).enumerate() {
+        let (before, after) = (corners[(i + count - 1) % count], corners[(i + 2) % count]);
         let (length_m, along) = ((b - a).norm(), (b - a).normalize());
         let inwards = Vector2::new(-along.y, along.x);
         // Where the corner is sharper than a right angle, a rectangle would stick out.
@@ -117,15 +141,14 @@ fn rim(corners: &[Point2<f64>]) -> Cover {
         let mut thickness_m = RIM_M;
         for _ in 0..8 {
             let (from_m, to_m) = (cut_a * thickness_m, length_m - cut_b * thickness_m);
-            let inner =
-                [a + along * from_m + inwards * thickness_m, a + along * to_m + inwards * thickness_m];
-            if from_m < to_m && is_inside(corners, i, &inner) {
-                let middle = a + along * ((from_m + to_m) / 2.0) + inwards * (thickness_m / 2.0);
-                let turn = UnitComplex::from_cos_sin_unchecked(along.x, along.y);
-                cover.rectangles.push(Rectangle {
-                    pose: Isometry2::from_parts(middle.into(), turn),
-                    half_m: Vector2::new(to_m - from_m, thickness_m) / 2.0,
-                });
+            let middle = a + along * ((from_m + to_m) / 2.0) + inwards * (thickness_m / 2.0);
+            let turn = UnitComplex::from_cos_sin_unchecked(along.x, along.y);
+            let rectangle = Rectangle {
+                pose: Isometry2::from_parts(middle.into(), turn),
+                half_m: Vector2::new(to_m - from_m, thickness_m) / 2.0,
+            };
+            if from_m < to_m && is_inside(corners, i, &rectangle) {
+                cover.rectangles.push(rectangle);
                 cover.off_m = cover.off_m.max(from_m.max(length_m - to_m));
                 break;
             }
@@ -135,40 +158,16 @@ fn rim(corners: &[Point2<f64>]) -> Cover {
     cover
 }
 
-/// Whether the segment lies in the polygon and no corner but the ends of side `own` lies between
-/// the segment and that side.
-fn is_inside(corners: &[Point2<f64>], own: usize, inner: &[Point2<f64>; 2]) -> bool {
-    let (a, b) = (corners[own], corners[(own + 1) % corners.len()]);
-    let along = (b - a).normalize();
-    let thickness_m = along.perp(&(inner[0] - a));
-    let (from_m, to_m) = (along.dot(&(inner[0] - a)), along.dot(&(inner[1] - a)));
-    // Other sides may touch the rectangle, but not enter it: cut each to the strip and look.
-    let enters = sides(corners).enumerate().filter(|(i, _)| *i != own).any(|(_, (p, q))| {
-        let local = |point: Point2<f64>| Vector2::new(along.dot(&(point - a)), along.perp(&(point - a)));
-        let (p, q) = (local(p), local(q));
-        let (mut low, mut high) = (0.0_f64, 1.0_f64);
-        for (axis, least, most) in [(0, from_m + SAME, to_m - SAME), (1, SAME, thickness_m - SAME)] {
-            let step = q[axis] - p[axis];
-            if step.abs() < 1e-15 {
-                if p[axis] <= least || p[axis] >= most {
-                    return false;
-                }
-                continue;
-            }
-            let (s, t) = ((least - p[axis]) / step, (most - p[axis]) / step);
-            (low, high) = (low.max(s.min(t)), high.min(s.max(t)));
-        }
-        low < high
-    });
-    !enters && contains(corners, &nalgebra::center(&inner[0], &inner[1]))
-}
-
-/// Whether a point lies in a polygon.
-pub(super) fn contains(corners: &[Point2<f64>], point: &Point2<f64>) -> bool {
-    let crossings = sides(corners).filter(|(a, b)| {
-        (a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
-    });
-    crossings.count() % 2 == 1
+/// Whether a rectangle along the inside of side `own` lies in the polygon: its inner side does, and no other
+/// side enters it, though they may touch it.
+fn is_inside(corners: &[Point2<f64>], own: usize, rectangle: &Rectangle) -> bool {
+    let core = Rectangle { half_m: rectangle.half_m.add_scalar(-SAME), ..*rectangle };
+    let enters = |(a, b): (Point2<f64>, Point2<f64>)| {
+        // The range is in lengths of the side.
+        core.ray_m(&a, &(b - a)).is_some_and(|share| share < 1.0)
+    };
+    let inner = rectangle.pose * Point2::new(0.0, rectangle.half_m.y);
+    contains(corners, &inner) && !sides(corners).enumerate().any(|(i, side)| i != own && enters(side))
 }
 
 #[cfg(test)]

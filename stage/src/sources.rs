@@ -1,30 +1,35 @@
 //! The texts that make up a world: the file itself and what it includes.
 
-use super::harmless::Harmless;
-use super::lexer::{self, Kind, Token};
-use super::place::Place;
+use super::lexer::{self, Kind, Place, Token};
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use worldfile::Files;
 use worldfile::{Findings, Severity, SourceText};
 
-/// All texts together may not be longer; an include in an include in an include would be.
+/// The maximum length of all texts together; an include in an include in an include would exceed any.
 const MAX_BYTES: u64 = 8 << 20;
 /// The number of errors after which no more includes are read.
 const MAX_ERRORS: usize = 100;
-/// Includes may not lie deeper in each other.
+/// The maximum depth of includes in each other.
 const MAX_DEPTH: usize = 32;
+/// Of a name without effect that is in more lines, only the first are given.
+const MAX_LINES: usize = 3;
 
-/// All texts read so far, and what there is to say about them.
+/// All texts read so far, and the findings about them.
 pub(super) struct Sources<'a> {
-    files: &'a dyn Files,
+    pub(super) files: &'a dyn Files,
     texts: Vec<SourceText>,
     paths: Vec<PathBuf>,
-    /// How many bytes may still be read.
+    /// The file that is read and those that include it.
+    open: Vec<PathBuf>,
+    tokens: Vec<Token>,
+    /// The number of bytes that may still be read.
     bytes_left: u64,
     /// Whether something could not be included: what is not defined is no error then.
     pub(super) is_incomplete: bool,
-    pub(super) harmless: Harmless,
+    /// The lines of the names that change nothing, by file and name.
+    no_effect: BTreeMap<u32, BTreeMap<String, BTreeSet<usize>>>,
     pub(super) findings: Findings,
 }
 
@@ -34,9 +39,11 @@ impl<'a> Sources<'a> {
             files,
             texts: Vec::new(),
             paths: Vec::new(),
+            open: Vec::new(),
+            tokens: Vec::new(),
             bytes_left: MAX_BYTES,
             is_incomplete: false,
-            harmless: Harmless::default(),
+            no_effect: BTreeMap::new(),
             findings: Findings::default(),
         }
     }
@@ -44,39 +51,31 @@ impl<'a> Sources<'a> {
     /// The tokens of a file, with those of all files that it includes in their places, as far as these
     /// can be read; `None` if the file itself cannot.
     pub(super) fn read(&mut self, path: &Path) -> Option<Vec<Token>> {
-        let bytes = match self.files.read(path, self.bytes_left) {
-            Ok(bytes) => bytes,
+        match self.files.read(path, self.bytes_left) {
+            Ok(bytes) => self.append(path, bytes).then(|| std::mem::take(&mut self.tokens)),
             Err(error) => {
                 let help = "a world file is a text, and it and all that it includes has at most 8 MiB";
                 let what = format!("cannot read this file: {error}");
                 self.findings.add_file(Severity::Error, path, &what, help);
-                return None;
+                None
             }
-        };
-        let mut tokens = Vec::new();
-        self.append(path, bytes, &mut Vec::new(), &mut tokens).then_some(tokens)
+        }
     }
 
-    /// Appends the tokens of a text, unless it cannot be read as such. `open`: the files that include it.
-    fn append(
-        &mut self,
-        path: &Path,
-        bytes: Vec<u8>,
-        open: &mut Vec<PathBuf>,
-        tokens: &mut Vec<Token>,
-    ) -> bool {
+    /// Appends the tokens of a text; false if it cannot be read as such.
+    fn append(&mut self, path: &Path, bytes: Vec<u8>) -> bool {
         self.bytes_left -= bytes.len() as u64;
         let file = self.texts.len() as u32;
         self.texts.push(SourceText::new(path.display().to_string(), bytes));
         self.paths.push(path.to_owned());
         let own = match lexer::tokens(&self.texts[file as usize].text, file) {
             Ok(own) => own,
-            Err(error) => {
-                self.error(error.place, error.what, "", error.help);
+            Err((place, what, help)) => {
+                self.error(place, what, help);
                 return false;
             }
         };
-        open.push(path.to_owned());
+        self.open.push(path.to_owned());
         let mut own = own.into_iter().peekable();
         while let Some(token) = own.next() {
             if self.is_incomplete && self.findings.errors() >= MAX_ERRORS {
@@ -84,65 +83,58 @@ impl<'a> Sources<'a> {
             }
             let is_include = token.kind == Kind::Word && self.text(token.place) == "include";
             if !is_include {
-                tokens.push(token);
+                self.tokens.push(token);
                 continue;
             }
-            match own.next_if(|next| next.kind == Kind::Text) {
-                Some(name) => self.is_incomplete |= !self.include(path, name.place, open, tokens),
+            let is_read = match own.next_if(|next| next.kind == Kind::Text) {
+                Some(name) => self.include(path, name.place),
                 None => {
                     let help = "write the name of a file after it, as in `include \"robots.inc\"`";
-                    self.error(token.place, "an include without a file", "", help);
+                    self.error(token.place, "an include without a file", help);
                     own.next_if(|next| next.kind == Kind::Word);
-                    self.is_incomplete = true;
+                    false
                 }
-            }
+            };
+            self.is_incomplete |= !is_read;
         }
-        open.pop();
+        self.open.pop();
         true
     }
 
-    fn include(
-        &mut self,
-        from: &Path,
-        name: Place,
-        open: &mut Vec<PathBuf>,
-        tokens: &mut Vec<Token>,
-    ) -> bool {
-        // Stage looks in the folder of the world file, whatever file the include stands in.
-        let world = self.paths[0].clone();
-        let (first, second) = (self.beside(&world, name), self.beside(from, name));
-        let (path, bytes) = match self.files.read(&first, self.bytes_left) {
-            Err(error) if error.kind() == ErrorKind::NotFound && second != first => {
-                let bytes = self.files.read(&second, self.bytes_left);
-                (second, bytes)
-            }
-            bytes => (first, bytes),
-        };
-        if open.contains(&path) || open.len() >= MAX_DEPTH {
+    fn include(&mut self, from: &Path, name: Place) -> bool {
+        // Stage looks in the folder of the world file, whatever file the include is in.
+        let (mut path, second) = (self.beside(self.path(), name), self.beside(from, name));
+        let mut bytes = self.files.read(&path, self.bytes_left);
+        if second != path && bytes.as_ref().is_err_and(|error| error.kind() == ErrorKind::NotFound) {
+            bytes = self.files.read(&second, self.bytes_left);
+            path = second;
+        }
+        let is_circle = self.open.contains(&path);
+        if is_circle || self.open.len() >= MAX_DEPTH {
             let what = format!("`{}` includes itself", path.display());
-            let what = if open.contains(&path) { what } else { "too many includes in each other".to_owned() };
-            self.error(name, &what, "this leads back here", "leave one of the includes out");
+            let what = if is_circle { &what } else { "too many includes in each other" };
+            let (mark, help) = ((name.range(), "this leads back here"), "leave one of the includes out");
+            self.findings.add(Severity::Error, &self.texts[name.file as usize], what, mark, help);
             return false;
         }
         match bytes {
-            Ok(bytes) => self.append(&path, bytes, open, tokens),
+            Ok(bytes) => self.append(&path, bytes),
             Err(error) => {
-                let what = format!("cannot read `{}`: {error}", path.display());
                 let help = "included files are looked for beside the world file, then beside the file that includes them";
-                self.error(name, &what, "", help);
+                self.error(name, format!("cannot read `{}`: {error}", path.display()), help);
                 false
             }
         }
     }
 
-    /// The path of a file that is named in another one.
+    /// The path of a file that is named in the file `from`.
     pub(super) fn beside(&self, from: &Path, name: Place) -> PathBuf {
         // Not by the disk: `a/../b` is `b` here, so that a file has one name.
         let mut path = from.parent().unwrap_or(Path::new("")).to_owned();
         for part in Path::new(self.text(name)).components() {
             match part {
-                std::path::Component::CurDir => {}
-                std::path::Component::ParentDir if path.file_name().is_some() => {
+                Component::CurDir => {}
+                Component::ParentDir if path.file_name().is_some() => {
                     path.pop();
                 }
                 other => path.push(other),
@@ -151,59 +143,64 @@ impl<'a> Sources<'a> {
         path
     }
 
-    /// The file that a place is in.
-    pub(super) fn path(&self, place: Place) -> &Path {
-        &self.paths[place.file as usize]
+    /// The path of the world file.
+    pub(super) fn path(&self) -> &Path {
+        &self.paths[0]
     }
 
-    /// What stands at a place.
+    /// The text at a place.
     pub(super) fn text(&self, place: Place) -> &str {
         self.texts[place.file as usize].text.get(place.range()).unwrap_or_default()
     }
 
-    /// The line of a place in its file, from 1 on.
-    pub(super) fn line(&self, place: Place) -> usize {
-        self.texts[place.file as usize].line_number(place.start as usize)
-    }
-
-    /// A place as a person would name it, as in `cave.world:12`.
+    /// The file and line of a place, as in `cave.world:12`.
     pub(super) fn name(&self, place: Place) -> String {
-        format!("{}:{}", self.texts[place.file as usize].name, self.line(place))
+        let text = &self.texts[place.file as usize];
+        format!("{}:{}", text.name, text.line_number(place.start as usize))
     }
 
-    /// The files, as they are called in messages.
-    pub(super) fn file_names(&self) -> impl Iterator<Item = &str> {
-        self.texts.iter().map(|text| text.name.as_str())
+    /// The files, by their names in messages.
+    pub(super) fn file_names(&self) -> Vec<String> {
+        self.texts.iter().map(|text| text.name.clone()).collect()
     }
 
-    /// Remembers that what is called `name` changes nothing.
-    pub(super) fn harmless(&mut self, place: Place, name: &str) {
-        let line = self.line(place);
-        self.harmless.add(place.file, line, name);
+    /// Remembers that `name` at this place changes nothing.
+    pub(super) fn has_no_effect(&mut self, place: Place, name: &str) {
+        let line = self.texts[place.file as usize].line_number(place.start as usize);
+        let names = self.no_effect.entry(place.file).or_default();
+        names.entry(name.to_owned()).or_default().insert(line);
     }
 
-    /// Adds a note per file of everything that changes nothing.
-    pub(super) fn note_harmless(&mut self) {
+    /// Adds one note per file of all that changes nothing, so that other findings are not lost among them.
+    pub(super) fn note_no_effect(&mut self) {
         let help =
             "they say how Stage draws or runs a world, or are about what is not here; in ( ) are their lines";
-        for (file, names) in self.harmless.take() {
-            let what = format!("these change nothing here: {names}");
+        for (file, names) in std::mem::take(&mut self.no_effect) {
+            let names = names.iter().map(|(name, lines)| {
+                let first: Vec<String> = lines.iter().take(MAX_LINES).map(usize::to_string).collect();
+                let more = if lines.len() > MAX_LINES { ", …" } else { "" };
+                format!("`{name}` ({}{more})", first.join(", "))
+            });
+            let what = format!("these change nothing here: {}", names.collect::<Vec<_>>().join(", "));
             self.findings.add_file(Severity::Note, &self.paths[file as usize], &what, help);
         }
     }
 
-    pub(super) fn error(&mut self, place: Place, what: &str, label: &str, help: &str) {
-        let text = &self.texts[place.file as usize];
-        self.findings.add(Severity::Error, text, what, (place.range(), label), help);
+    pub(super) fn error(&mut self, place: Place, what: impl AsRef<str>, help: impl AsRef<str>) {
+        self.add(Severity::Error, place, what, help);
     }
 
-    pub(super) fn warning(&mut self, place: Place, what: &str, label: &str, help: &str) {
-        let text = &self.texts[place.file as usize];
-        self.findings.add(Severity::Warning, text, what, (place.range(), label), help);
+    pub(super) fn warning(&mut self, place: Place, what: impl AsRef<str>, help: impl AsRef<str>) {
+        self.add(Severity::Warning, place, what, help);
     }
 
-    pub(super) fn note(&mut self, place: Place, what: &str, help: &str) {
+    pub(super) fn add(&mut self, how: Severity, place: Place, what: impl AsRef<str>, help: impl AsRef<str>) {
         let text = &self.texts[place.file as usize];
-        self.findings.add(Severity::Note, text, what, (place.range(), ""), help);
+        self.findings.add(how, text, what.as_ref(), (place.range(), ""), help.as_ref());
+    }
+
+    /// Adds a finding about the world file as a whole.
+    pub(super) fn add_file(&mut self, how: Severity, what: impl AsRef<str>, help: impl AsRef<str>) {
+        self.findings.add_file(how, &self.paths[0], what.as_ref(), help.as_ref());
     }
 }

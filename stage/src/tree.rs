@@ -1,39 +1,27 @@
-//! From tokens to a tree of things, with every definition written out.
+//! From tokens to a tree of entities, with every definition written out.
 //!
-//! A `define` gives a name to a kind of thing with some of its keys and parts; a thing of that kind
+//! A `define` gives a name to a kind of entity with some of its keys and parts; an entity of that kind
 //! has these, then its own keys instead of or beside them, then its own parts. As in Stage, the first
 //! definition of a name holds.
 
-use super::lexer::{Kind, Token};
-use super::place::Place;
+use super::lexer::{Kind, Place, Token};
 use super::sources::Sources;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::rc::Rc;
 
-/// Brackets may not lie deeper in each other, nor definitions.
+/// The maximum depth of brackets and of definitions in each other.
 const MAX_DEPTH: usize = 64;
-/// A definition of definitions of definitions can be long: the maximum number of keys and parts.
+/// The maximum number of keys and parts, with all definitions written out.
 const MAX_ITEMS: usize = 1 << 19;
-
-/// A thing with keys and parts, before definitions are written out.
-struct Node {
-    kind: Place,
-    items: Vec<Item>,
-}
-
-enum Item {
-    Property(Rc<Property>),
-    Part(Rc<Node>),
-}
 
 /// A key with its values.
 #[derive(Debug)]
 pub(super) struct Property {
     pub(super) name: Place,
     pub(super) values: Vec<Token>,
-    /// Whether anybody has asked for it.
+    /// Whether a reader has asked for it.
     pub(super) is_used: Cell<bool>,
 }
 
@@ -45,37 +33,63 @@ impl Property {
     }
 }
 
-/// A thing of one of Stage's kinds, with all its keys and parts.
+/// What has keys and parts: the world, a model, a block, a sensor.
 #[derive(Debug)]
-pub(super) struct Thing {
-    /// Stage's own name for the kind, such as `position`.
+pub(super) struct Entity {
+    /// Such as `position`: Stage's own name for the kind, once definitions are written out.
     pub(super) kind: String,
-    /// Where it is called for.
+    /// The name of its kind where it is used.
     pub(super) place: Place,
     pub(super) properties: BTreeMap<String, Rc<Property>>,
-    pub(super) parts: Vec<Thing>,
+    pub(super) parts: Vec<Entity>,
 }
 
-/// The tree of a file: the keys of the world itself and the things in it. `None` if there are
-/// errors.
-pub(super) fn read(sources: &mut Sources<'_>, tokens: &[Token]) -> Option<Thing> {
-    let start = tokens.first().map_or(Place { file: 0, start: 0, end: 0 }, |token| token.place);
+impl Entity {
+    fn new(kind: &str, place: Place) -> Self {
+        Self { kind: kind.to_owned(), place, properties: BTreeMap::new(), parts: Vec::new() }
+    }
+
+    fn set(&mut self, name: &str, property: Rc<Property>) {
+        if let Some(old) = self.properties.insert(name.to_owned(), property) {
+            // It shall not be reported as unused: the key that overrides it counts.
+            old.is_used.set(true);
+        }
+    }
+
+    /// The key, if the entity has it. From now on it counts as used.
+    pub(super) fn get(&self, name: &str) -> Option<&Property> {
+        let property = self.properties.get(name)?;
+        property.is_used.set(true);
+        Some(property)
+    }
+
+    /// Where it gives this key, or else where it begins.
+    pub(super) fn place_of(&self, name: &str) -> Place {
+        self.properties.get(name).map_or(self.place, |property| property.place())
+    }
+
+    /// The parts that are not blocks of its body.
+    pub(super) fn carried(&self) -> impl Iterator<Item = &Self> {
+        self.parts.iter().filter(|part| part.kind != "block")
+    }
+}
+
+/// The tree of a file: the keys of the world itself and its models. `None` if there are errors.
+pub(super) fn read(sources: &mut Sources<'_>, tokens: &[Token]) -> Option<Entity> {
+    let start = tokens.first().map_or(Place::default(), |token| token.place);
     let mut parser = Parser { sources, tokens, at: 0, definitions: BTreeMap::new(), items: 0 };
-    let mut world =
-        Thing { kind: "world".to_owned(), place: start, properties: BTreeMap::new(), parts: Vec::new() };
+    let (mut world, mut models) = (Entity::new("world", start), Vec::new());
     while parser.at < tokens.len() {
         if parser.is_word("define") {
             parser.define()?;
             continue;
         }
-        match parser.item(0)? {
-            Item::Property(property) => parser.set(&mut world, property)?,
-            Item::Part(node) => {
-                let thing = parser.expand(&node, 0)?;
-                world.parts.push(thing);
-            }
+        parser.item(&mut world, 0)?;
+        if let Some(model) = world.parts.pop() {
+            models.push(parser.expand(&model, 0)?);
         }
     }
+    world.parts = models;
     Some(world)
 }
 
@@ -83,14 +97,15 @@ struct Parser<'a, 'b> {
     sources: &'a mut Sources<'b>,
     tokens: &'a [Token],
     at: usize,
-    definitions: BTreeMap<String, Rc<Node>>,
+    /// As they are in the file, by their names.
+    definitions: BTreeMap<String, Rc<Entity>>,
     /// Keys and parts written out so far.
     items: usize,
 }
 
 impl Parser<'_, '_> {
     fn error<T>(&mut self, place: Place, what: &str, help: &str) -> Option<T> {
-        self.sources.error(place, what, "", help);
+        self.sources.error(place, what, help);
         None
     }
 
@@ -127,120 +142,101 @@ impl Parser<'_, '_> {
             let what = "this definition has no body";
             return self.error(open.place, what, "write it as in `define sick laser( … )`");
         }
-        let node = self.body(kind, 1)?;
-        let text = self.sources.text(name).to_owned();
-        match self.definitions.entry(text) {
+        let entity = self.body(kind, 1)?;
+        match self.definitions.entry(self.sources.text(name).to_owned()) {
             Entry::Vacant(place) => {
-                place.insert(Rc::new(node));
+                place.insert(Rc::new(entity));
             }
             Entry::Occupied(first) => {
                 let what = format!("`{}` is defined again", first.key());
                 let help = "this definition has no effect: as in Stage, the first one holds";
-                self.sources.warning(name, &what, "", help);
+                self.sources.warning(name, what, help);
             }
         }
         Some(())
     }
 
-    /// A key with its value, or a thing.
-    fn item(&mut self, depth: usize) -> Option<Item> {
+    /// Reads a key with its value, or a part, into an entity.
+    fn item(&mut self, entity: &mut Entity, depth: usize) -> Option<()> {
         let name = self.word("a key or a thing")?;
         let next = self.next("a value or `(`")?;
-        match next.kind {
-            Kind::Open => Some(Item::Part(Rc::new(self.body(name, depth + 1)?))),
-            Kind::Number(_) | Kind::Text => Some(property(name, vec![next])),
-            Kind::OpenTuple => {
-                let mut values = Vec::new();
-                loop {
-                    let value = self.next("`]`")?;
-                    match value.kind {
-                        Kind::Number(_) | Kind::Text => values.push(value),
-                        Kind::CloseTuple => return Some(property(name, values)),
-                        _ => {
-                            let what =
-                                format!("`{}` is out of place in a list", self.sources.text(value.place));
-                            return self.error(
-                                value.place,
-                                &what,
-                                "a list holds numbers and texts, and ends with `]`",
-                            );
-                        }
-                    }
-                }
+        let values = match next.kind {
+            Kind::Open => {
+                entity.parts.push(self.body(name, depth + 1)?);
+                return Some(());
             }
+            Kind::Number(_) | Kind::Text => vec![next],
+            Kind::OpenTuple => self.list()?,
             _ => {
                 let what = format!("`{}` has no value", self.sources.text(name));
-                self.error(
-                    name,
-                    &what,
-                    "a key is followed by a number, a text in quotes or a list in `[ ]`, a thing by `( )`",
-                )
+                let help =
+                    "a key is followed by a number, a text in quotes or a list in `[ ]`, a thing by `( )`";
+                return self.error(name, &what, help);
+            }
+        };
+        let property = Rc::new(Property { name, values, is_used: Cell::new(false) });
+        entity.set(self.sources.text(name), property);
+        Some(())
+    }
+
+    /// The values of a list, of which the first bracket is read.
+    fn list(&mut self) -> Option<Vec<Token>> {
+        let mut values = Vec::new();
+        loop {
+            let value = self.next("`]`")?;
+            match value.kind {
+                Kind::Number(_) | Kind::Text => values.push(value),
+                Kind::CloseTuple => return Some(values),
+                _ => {
+                    let what = format!("`{}` is out of place in a list", self.sources.text(value.place));
+                    let help = "a list holds numbers and texts, and ends with `]`";
+                    return self.error(value.place, &what, help);
+                }
             }
         }
     }
 
-    /// What stands in the brackets of a thing, the first of which is read.
-    fn body(&mut self, kind: Place, depth: usize) -> Option<Node> {
+    /// An entity of which the first bracket is read.
+    fn body(&mut self, kind: Place, depth: usize) -> Option<Entity> {
         if depth > MAX_DEPTH {
             return self.error(kind, "too many brackets in each other", "64 are the most");
         }
-        let mut items = Vec::new();
-        loop {
-            if self.tokens.get(self.at).is_some_and(|next| next.kind == Kind::Close) {
-                self.at += 1;
-                return Some(Node { kind, items });
-            }
-            items.push(self.item(depth)?);
+        let mut entity = Entity::new(self.sources.text(kind), kind);
+        while self.tokens.get(self.at).is_none_or(|next| next.kind != Kind::Close) {
+            self.item(&mut entity, depth)?;
         }
+        self.at += 1;
+        Some(entity)
     }
 
-    /// Writes out all definitions in a thing.
-    fn expand(&mut self, node: &Node, depth: usize) -> Option<Thing> {
-        let kind = self.sources.text(node.kind).to_owned();
+    /// Writes out all definitions in an entity.
+    fn expand(&mut self, entity: &Entity, depth: usize) -> Option<Entity> {
+        let Entity { kind, place, .. } = entity;
         if depth > MAX_DEPTH {
             let help = "it is made of itself, or of too many definitions in each other";
-            return self.error(node.kind, &format!("the definition `{kind}` has no end"), help);
+            return self.error(*place, &format!("the definition `{kind}` has no end"), help);
         }
-        let mut thing = match self.definitions.get(&kind).cloned() {
-            Some(definition) => Thing { place: node.kind, ..self.expand(&definition, depth + 1)? },
-            None => Thing { kind, place: node.kind, properties: BTreeMap::new(), parts: Vec::new() },
+        let mut whole = match self.definitions.get(kind).cloned() {
+            Some(definition) => Entity { place: *place, ..self.expand(&definition, depth + 1)? },
+            None => Entity::new(kind, *place),
         };
-        for item in &node.items {
-            match item {
-                Item::Property(property) => self.set(&mut thing, Rc::clone(property))?,
-                Item::Part(part) => {
-                    self.count(part.kind)?;
-                    let part = self.expand(part, depth + 1)?;
-                    thing.parts.push(part);
-                }
-            }
+        for (name, property) in &entity.properties {
+            self.count(property.name)?;
+            whole.set(name, Rc::clone(property));
         }
-        Some(thing)
-    }
-
-    fn set(&mut self, thing: &mut Thing, property: Rc<Property>) -> Option<()> {
-        self.count(property.name)?;
-        let name = self.sources.text(property.name).to_owned();
-        if let Some(old) = thing.properties.insert(name, property) {
-            // Nobody will ask for it: what overrides it counts.
-            old.is_used.set(true);
+        for part in &entity.parts {
+            self.count(part.place)?;
+            whole.parts.push(self.expand(part, depth + 1)?);
         }
-        Some(())
+        Some(whole)
     }
 
     fn count(&mut self, place: Place) -> Option<()> {
         self.items += 1;
         if self.items > MAX_ITEMS {
-            return self.error(
-                place,
-                "too many things",
-                "half a million keys and things are the most, with all definitions written out",
-            );
+            let help = "half a million keys and things are the most, with all definitions written out";
+            return self.error(place, "too many things", help);
         }
         Some(())
     }
-}
-
-fn property(name: Place, values: Vec<Token>) -> Item {
-    Item::Property(Rc::new(Property { name, values, is_used: Cell::new(false) }))
 }

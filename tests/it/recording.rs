@@ -1,9 +1,9 @@
 //! Reads a recording back, as a viewer does.
 
-use rerun::components::{LineStrip2D, Position2D, Scalar, Text};
+use rerun::components::{LineStrip2D, Scalar, Text, Translation3D};
 use rerun::{
-    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, LineStrips2D, Points2D,
-    Scalars, StoreKind, TextLog,
+    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, LineStrips2D, Scalars,
+    StoreKind, TextLog, Transform3D,
 };
 use std::path::Path;
 
@@ -66,7 +66,8 @@ impl Recording {
 
     /// Where a robot is, whenever it has moved: step and place, m.
     pub(crate) fn places(&self, entity: &str) -> Vec<(i64, [f32; 2])> {
-        let places = self.rows::<Position2D>(entity, "step", Points2D::descriptor_positions().component);
+        let component = Transform3D::descriptor_translation().component;
+        let places = self.rows::<Translation3D>(entity, "step", component);
         places.iter().map(|(step, places)| (*step, [places[0].x(), places[0].y()])).collect()
     }
 

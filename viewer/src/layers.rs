@@ -249,7 +249,7 @@ mod tests {
 
     #[test]
     fn every_class_has_one_meaning() {
-        let mut run = crate::fake::FakeRun::new();
+        let mut run = crate::tests::FakeRun::new();
         (0..600).for_each(|_| run.step());
         for (layer, unit) in all() {
             let mut classes: Vec<u8> = layer.legend(unit).iter().map(|(class, _)| *class).collect();

@@ -4,13 +4,14 @@
 //! This is the only crate that knows Rerun. It reads the state of a run and changes nothing: no result
 //! depends on whether anything is shown. It does not know arguments, files of worlds, or how a run is made.
 
-#[cfg(test)]
-mod fake;
 pub mod layers;
+mod legend;
 mod outline;
 pub mod pictures;
 pub mod recording;
 pub mod scene;
 pub mod show;
+#[cfg(test)]
+mod tests;
 pub mod trial;
 pub mod view;

@@ -1,6 +1,6 @@
 //! Everything that shows one run: the recording, the moving picture, and the pictures at the end.
 
-use crate::pictures::{self, Film, Pictures};
+use crate::pictures::{self, Film};
 use crate::recording::{Recorder, RecordingError};
 use crate::scene::Scene;
 use crate::view::{Trail, View};
@@ -15,7 +15,6 @@ pub struct Show {
     trails: Vec<Trail>,
     recorder: Option<Recorder>,
     film: Option<Film>,
-    live_problem: Option<String>,
 }
 
 /// Why a run cannot be shown any more.
@@ -33,8 +32,7 @@ impl Show {
     /// Shows a run in `scene` to a recorder, in a film, in both or in none of them.
     pub fn new(scene: Scene, recorder: Option<Recorder>, film: Option<Film>) -> Self {
         let trails = vec![Trail::default(); scene.robots.len()];
-        let live_problem = recorder.as_ref().and_then(Recorder::live_problem);
-        Self { scene, trails, recorder, film, live_problem }
+        Self { scene, trails, recorder, film }
     }
 
     /// Shows the run as it is now. The last view closes the recording.
@@ -49,21 +47,15 @@ impl Show {
         if let Some(film) = &mut self.film {
             film.add(view, &self.trails)?;
         }
-        if let Some(mut recorder) = self.recorder.take() {
-            self.live_problem = recorder.live_problem();
-            if is_last {
-                recorder.finish(view)?;
-            } else {
-                recorder.log(view)?;
-                self.recorder = Some(recorder);
-            }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.log(view, is_last)?;
         }
         Ok(())
     }
 
-    /// Why a viewer does not show the run, or does not show it any more. The file is not affected.
-    pub fn live_problem(&self) -> Option<&str> {
-        self.live_problem.as_deref()
+    /// Why a viewer does not show the run, or no longer shows it. The file is not affected.
+    pub fn live_problem(&self) -> Option<String> {
+        self.recorder.as_ref()?.live_problem()
     }
 
     /// Writes the pictures into `folder`, and the film to its file if there is one.
@@ -81,6 +73,6 @@ impl Show {
         if let (Some(made), Some(path)) = (self.film, film) {
             made.write(path)?;
         }
-        pictures::write_all(folder, &Pictures { scene: &self.scene, mapper, trails: &self.trails, goals })
+        pictures::write_all(folder, &self.scene, mapper, &self.trails, goals)
     }
 }

@@ -35,35 +35,33 @@ pub struct Recorded {
 /// When settings are invalid.
 pub fn record(
     settings: &TrialSettings,
-    recorder: Recorder,
+    mut recorder: Recorder,
     is_canceled: &AtomicBool,
 ) -> Result<Recorded, SettingsError> {
-    let mut recorder = Some(recorder);
     let mut problem = None;
     let trial = run_trial(settings, |mut step| {
-        let goes_on = !is_canceled.load(Ordering::Relaxed);
-        if let Err(error) = log(&mut recorder, settings, &mut step, !goes_on) {
-            problem = Some(error);
+        let is_canceled = is_canceled.load(Ordering::Relaxed);
+        if problem.is_none() && step.reading.time as u64 <= RECORDED_STEPS {
+            problem = log(&mut recorder, settings, &mut step, is_canceled).err();
         }
-        goes_on
+        !is_canceled
     })?;
     Ok(Recorded { trial, problem })
 }
 
-/// Records one step, which is the last one if `is_canceled`. After the last step, or an error, there is no
-/// recorder any more.
+/// Records one step, which is the last one if `is_canceled`.
 fn log(
-    recorder: &mut Option<Recorder>,
+    recorder: &mut Recorder,
     settings: &TrialSettings,
     now: &mut TrialStep,
     is_canceled: bool,
 ) -> Result<(), RecordingError> {
-    let Some(mut open) = recorder.take() else { return Ok(()) };
     let step = now.reading.time as u64;
-    let is_last = is_canceled || step >= settings.steps.min(RECORDED_STEPS);
+    let is_last = is_canceled || step >= settings.experiment.steps.min(RECORDED_STEPS);
     let mut messages = now.pilot.take_messages();
-    if is_last && !is_canceled && step < settings.steps {
-        let text = format!("the recording ends here; the trial goes on to step {}", settings.steps);
+    if is_last && !is_canceled && step < settings.experiment.steps {
+        let text =
+            format!("the recording ends here; the trial goes on to step {}", settings.experiment.steps);
         messages.push(Message { level: Level::Event, text });
     }
     let score_every = SCORE_EVERY * settings.world.frame().len().div_ceil(SCORE_CELLS) as u64;
@@ -73,19 +71,12 @@ fn log(
         measured.scores = Some(map_scores(mapper, truth));
         measured.rate_errors = Some(RateErrors::from(&rate_scores(mapper, truth)));
     }
-    let view = View::new(now.world, now.reading, now.belief, &*now.pilot, measured);
-    if is_last {
-        return open.finish(&view);
-    }
-    open.log(&view)?;
-    *recorder = Some(open);
-    Ok(())
+    recorder.log(&View::new(now.world, now.reading, now.belief, &*now.pilot, measured), is_last)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::RecordingOptions;
     use agent::AgentSettings;
     use controller::CellDrive;
     use evaluation::trials::{Experiment, TrialStrategy};
@@ -112,9 +103,8 @@ mod tests {
 
     fn recorded(steps: u64, file: &Path, is_canceled: bool) -> Recorded {
         let experiment = experiment(steps);
-        let life = experiment.trial(experiment.jobs()[0]);
-        let options = RecordingOptions { file: Some(file.to_owned()), ..Default::default() };
-        let recorder = Recorder::new(&options, life.world.into()).unwrap();
+        let life = experiment.jobs()[0];
+        let recorder = Recorder::new(Some(file), &[], life.world.into()).unwrap();
         record(&life, recorder, &is_canceled.into()).unwrap()
     }
 

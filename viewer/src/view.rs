@@ -1,6 +1,6 @@
 //! A run at one instant, as plain data: the input of the recording and of the moving picture.
 
-use crate::scene::{Outline, RobotState, Sight, TimeUnit, Visible};
+use crate::scene::{Outline, RobotState, Sight, Visible};
 use agent::Features;
 use evaluation::metrics::{MapScores, RateErrors};
 use interfaces::Reading;
@@ -55,10 +55,7 @@ impl<'a> View<'a> {
         let time = belief.mapper.time();
         Self {
             time,
-            step: match W::UNIT {
-                TimeUnit::Second => belief.mapper.readings() as u64,
-                TimeUnit::Step => time as u64,
-            },
+            step: W::UNIT.choose(belief.mapper.readings() as u64, time as u64),
             mapper: belief.mapper,
             features: belief.features,
             robots: world.robots(reading),

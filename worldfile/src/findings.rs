@@ -1,4 +1,4 @@
-//! What a reader has to say about a file: everything at once, each with its place.
+//! What a reader reports about a file: all errors, warnings and notes at once, each with its place.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use std::collections::BTreeSet;
@@ -7,28 +7,28 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 use std::path::Path;
 
-/// So many findings of each severity are kept; further ones are only counted.
+/// The number of findings of each severity that are kept; further ones are only counted.
 const MOST_KEPT: usize = 100;
-/// So many warnings of one kind are kept, so that they leave room for others.
+/// The number of warnings with the same help that are kept, which leaves room for others.
 const MOST_ALIKE: usize = 10;
 /// Of a longer line only the part around the place is shown, in bytes.
-const LONG_LINE: usize = 200;
+const LONG_LINE: usize = 4000;
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Nothing is wrong, but it is good to know.
+    /// Information; nothing is invalid.
     Note,
-    /// The world can be made, but something in the file means nothing here, or not quite the same.
+    /// The world can be made, but a part of the file is ignored or has a slightly different meaning.
     Warning,
     /// The world cannot be made.
     Error,
 }
 
-/// One thing that is wrong with a file, or that the reader does otherwise than the file asks.
+/// One thing that is invalid in a file, or that the reader does otherwise than the file asks.
 ///
-/// Its `Display` is a message of several lines, without colour, that names the file and the line.
+/// Its `Display` is a message of several lines, without color, that names the file and the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
     /// How bad it is.
@@ -37,11 +37,23 @@ pub struct Finding {
     pub file: String,
     /// The line, from 1 on; 0 stands for the file as a whole.
     pub line: usize,
-    /// What is wrong.
+    /// What is invalid.
     pub what: String,
-    /// What would be right, or what is done instead.
+    /// What would be valid, or what is done instead.
     pub help: String,
     message: String,
+}
+
+impl Finding {
+    fn new(severity: Severity, file: &str, line: usize, what: &str, help: &str) -> Self {
+        let [file, what, help] = [file, what, help].map(str::to_owned);
+        Self { severity, file, line, what, help, message: String::new() }
+    }
+
+    /// An error about a file that cannot be read.
+    pub(crate) fn unreadable(file: &str, what: &str) -> Self {
+        Self { message: format!("error: {what}"), ..Self::new(Severity::Error, file, 0, what, "") }
+    }
 }
 
 impl fmt::Display for Finding {
@@ -75,25 +87,30 @@ impl Severity {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Findings {
     kept: Vec<Finding>,
-    /// How many there are of each severity, from notes to errors, kept or not.
+    /// The number of each severity, from notes to errors, kept or not.
     counts: [usize; 3],
-    /// What stands for each of them, kept or not: none is counted twice.
+    /// A hash of each finding, kept or not: none is counted twice.
     made: BTreeSet<u64>,
 }
 
 impl Findings {
+    /// These errors, and more that are only counted.
+    pub(crate) fn of_errors(kept: Vec<Finding>, more: usize) -> Self {
+        Self { counts: [0, 0, kept.len() + more], kept, made: BTreeSet::new() }
+    }
+
     /// The findings that were kept: the first hundred of each severity, and of warnings with the same
     /// help the first ten.
     pub fn iter(&self) -> impl Iterator<Item = &Finding> {
         self.kept.iter()
     }
 
-    /// How many errors there are, kept or not.
+    /// The number of errors, kept or not.
     pub fn errors(&self) -> usize {
         self.counts[Severity::Error as usize]
     }
 
-    /// How many warnings there are, kept or not.
+    /// The number of warnings, kept or not.
     pub fn warnings(&self) -> usize {
         self.counts[Severity::Warning as usize]
     }
@@ -115,39 +132,16 @@ impl Findings {
         self.messages(Severity::Error).join("\n\n").trim_start_matches("error: ").to_owned()
     }
 
-    /// Adds a finding about a place in a text. The same finding at the same place, as in a
+    /// Adds a finding about a place in a text. The same finding on the same line, as in a
     /// definition that is used often, is made once.
     pub fn add(&mut self, severity: Severity, source: &SourceText, what: &str, mark: Mark<'_>, help: &str) {
-        let (line, text, span) = source.line(&mark.0);
-        let new = Finding {
-            severity,
-            file: source.name.clone(),
-            line,
-            what: what.to_owned(),
-            help: help.to_owned(),
-            message: String::new(),
-        };
-        self.keep(new, |_| {
-            let snippet = Snippet::source(text).path(&source.name).line_start(line);
-            let label = (!mark.1.is_empty()).then(|| mark.1.to_owned());
-            let snippet = snippet.annotation(AnnotationKind::Primary.span(span).label(label));
-            let report =
-                [severity.level().primary_title(what).element(snippet).element(Level::HELP.message(help))];
-            Renderer::plain().render(&report)
-        });
+        let new = Finding::new(severity, &source.name, source.line_number(mark.0.start), what, help);
+        self.keep(new, |_| source.report(severity, what, &mark, &[], help));
     }
 
     /// Adds a finding about a file as a whole.
     pub fn add_file(&mut self, severity: Severity, path: &Path, what: &str, help: &str) {
-        let file = path.display().to_string();
-        let new = Finding {
-            severity,
-            file,
-            line: 0,
-            what: what.to_owned(),
-            help: help.to_owned(),
-            message: String::new(),
-        };
+        let new = Finding::new(severity, &path.display().to_string(), 0, what, help);
         self.keep(new, |new| {
             format!("{}: {}: {}\n  = help: {}", severity.name(), new.file, new.what, new.help)
         });
@@ -166,8 +160,8 @@ impl Findings {
         let kept = self.kept.iter().filter(|old| old.severity == new.severity).count();
         if kept < MOST_KEPT && !is_one_of_many {
             let message = message(&new);
-            let place = self.kept.partition_point(|old| old.severity >= new.severity);
-            self.kept.insert(place, Finding { message, ..new });
+            let index = self.kept.partition_point(|old| old.severity >= new.severity);
+            self.kept.insert(index, Finding { message, ..new });
         }
     }
 }
@@ -179,13 +173,13 @@ impl fmt::Display for Findings {
     }
 }
 
-/// A place in a text, as a range of bytes, with what is to be said of it.
+/// A place in a text, as a range of bytes, and its label; the label can be empty.
 pub(crate) type Mark<'a> = (Range<usize>, &'a str);
 
 /// A text to point into.
 #[derive(Clone, Debug)]
 pub struct SourceText {
-    /// What the file is called in messages.
+    /// The name of the file in messages.
     pub name: String,
     /// All of its text.
     pub text: String,
@@ -194,8 +188,8 @@ pub struct SourceText {
 }
 
 impl SourceText {
-    /// The text of a file, as UTF-8 or, where it is none, as Latin-1: old files have accents in
-    /// their comments. A mark of the byte order at the start, as some editors leave it, is no part of it.
+    /// The text of a file, as UTF-8 or, if it is not valid UTF-8, as Latin-1: old files have accents in
+    /// their comments. A byte order mark at the start, as some editors write it, is left out.
     pub fn new(name: String, mut bytes: Vec<u8>) -> Self {
         if bytes.starts_with(BYTE_ORDER_MARK) {
             bytes.drain(..BYTE_ORDER_MARK.len());
@@ -228,20 +222,55 @@ impl SourceText {
         self.line_starts[line - 1]..end
     }
 
-    /// The line where a place begins: its number, its text, and the place in this text. Of a long
-    /// line only a part.
-    fn line(&self, place: &Range<usize>) -> (usize, &str, Range<usize>) {
-        let number = self.line_number(place.start.min(self.text.len()));
-        let Range { mut start, mut end } = self.whole_line(number);
-        let from = place.start.clamp(start, end);
-        let to = place.end.clamp(from, end);
-        if end - start > LONG_LINE {
-            start = self.text.floor_char_boundary(start.max(from.saturating_sub(LONG_LINE / 2)));
-            end = self.text.ceil_char_boundary(end.min(from + LONG_LINE / 2));
+    /// An error at `mark`, with `others` that explain it and `help` that says what would be valid.
+    pub(crate) fn error(&self, what: &str, mark: &Mark<'_>, others: &[Mark<'_>], help: &str) -> Finding {
+        let message = self.report(Severity::Error, what, mark, others, help);
+        Finding {
+            message,
+            ..Finding::new(Severity::Error, &self.name, self.line_number(mark.0.start), what, help)
         }
-        let to = self.text.floor_char_boundary(to.min(end));
-        let from = self.text.floor_char_boundary(from.min(to));
-        (number, &self.text[start..end], from - start..to - start)
+    }
+
+    fn report(
+        &self,
+        severity: Severity,
+        what: &str,
+        mark: &Mark<'_>,
+        others: &[Mark<'_>],
+        help: &str,
+    ) -> String {
+        let main = self.first_line(&mark.0);
+        let spans: Vec<Range<usize>> = others.iter().map(|(span, _)| self.first_line(span)).collect();
+        let all = || spans.iter().chain([&main]);
+        let line = self.line_number(all().map(|span| span.start).min().unwrap_or_default());
+        let last = self.line_number(all().map(|span| span.start).max().unwrap_or_default());
+        // With the end of the line, at which a mark can be.
+        let mut shown = self.whole_line(line).start..self.text.len().min(self.whole_line(last).end + 1);
+        if line == last && shown.len() > LONG_LINE {
+            let from = main.start.saturating_sub(LONG_LINE / 2).max(shown.start);
+            let to = (main.start + LONG_LINE / 2).min(shown.end);
+            shown = self.text.floor_char_boundary(from)..self.text.ceil_char_boundary(to);
+        }
+        let annotation = |kind: AnnotationKind, span: &Range<usize>, label: &str| {
+            let [start, end] =
+                [span.start, span.end].map(|at| at.clamp(shown.start, shown.end) - shown.start);
+            kind.span(start..end).label((!label.is_empty()).then(|| label.to_owned()))
+        };
+        let context = spans.iter().zip(others);
+        let snippet = Snippet::source(&self.text[shown.clone()])
+            .line_start(line)
+            .path(&self.name)
+            .annotation(annotation(AnnotationKind::Primary, &main, mark.1))
+            .annotations(context.map(|(span, (_, label))| annotation(AnnotationKind::Context, span, label)));
+        let title = severity.level().primary_title(what);
+        Renderer::plain().render(&[title.element(snippet).element(Level::HELP.message(help))])
+    }
+
+    /// The part of a span on its first line: a whole table would be underlined otherwise.
+    fn first_line(&self, span: &Range<usize>) -> Range<usize> {
+        let start = self.text.floor_char_boundary(span.start);
+        let end = self.whole_line(self.line_number(start)).end;
+        start..self.text.floor_char_boundary(span.end.min(end)).max(start)
     }
 }
 
@@ -262,7 +291,7 @@ mod tests {
             add(Severity::Warning, "odd", line, "as often");
             add(Severity::Warning, "odd", line, "as often");
         }
-        add(Severity::Warning, "rare", 200, "but told");
+        add(Severity::Warning, "rare", 200, "and kept");
         add(Severity::Error, "bad", 201, "and first");
         let whats: Vec<&str> = findings.iter().map(|finding| finding.what.as_str()).collect();
         assert_eq!((whats.len(), whats[0], whats[10], whats[11]), (112, "bad", "odd", "rare"));

@@ -28,13 +28,10 @@ mod files;
 mod findings;
 pub mod floor_plan;
 pub mod grid;
-mod kind;
-mod names;
 pub mod physics;
 mod reader;
 pub mod ros_map;
 pub mod shipped;
-mod together;
 mod tour;
 
 pub use error::WorldError;

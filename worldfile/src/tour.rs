@@ -1,11 +1,8 @@
 //! Tours: waypoints to drive to, as a file gives them.
 
-use crate::error::{Source, WorldError};
-use crate::kind::Kind;
-use crate::reader::{self, Reading};
+use crate::error::{WorldError, read_text};
+use crate::reader::{self, Kind, Table};
 use nalgebra::Point2;
-use serde::Deserialize;
-use serde_spanned::Spanned;
 use std::path::Path;
 
 /// No waypoint is farther from the origin along an axis, m.
@@ -20,13 +17,6 @@ pub struct TourSpec {
     pub repeat: bool,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct TourFile {
-    repeat: Option<Spanned<bool>>,
-    waypoints_m: Spanned<Vec<Spanned<[f64; 2]>>>,
-}
-
 impl TourSpec {
     /// Reads a tour file: TOML with `waypoints_m`, a list of `[x, y]` in metres, and `repeat`
     /// (`false` by default: the run ends with the last waypoint).
@@ -35,9 +25,8 @@ impl TourSpec {
     ///
     /// When the file cannot be read, or as in [`TourSpec::parse`].
     pub fn load(path: &Path) -> Result<Self, WorldError> {
-        let name = path.display().to_string();
-        let text = std::fs::read_to_string(path);
-        Self::parse(&name, &text.map_err(|error| WorldError::unreadable("tour", &name, &error))?)
+        let (name, text) = read_text("tour", path)?;
+        Self::parse(&name, &text)
     }
 
     /// Checks the text of a tour file; `name` is what messages call the file.
@@ -46,34 +35,24 @@ impl TourSpec {
     ///
     /// When the text is not TOML, a key is unknown or missing, or a value is invalid.
     pub fn parse(name: &str, text: &str) -> Result<Self, WorldError> {
-        let source = Source::new(name, text);
-        let Reading { file, mut wrong, .. } = reader::read::<TourFile>(&source, Kind::Tour)?;
-        if !wrong.is_empty() {
-            return Err(wrong.into_error(&source));
-        }
-        let waypoints = file.waypoints_m.get_ref();
-        if waypoints.is_empty() {
-            let help = "a tour needs at least one `[x, y]` in metres";
-            wrong.keep::<()>(Err(source.error(
-                "`waypoints_m` is empty",
-                (file.waypoints_m.span(), ""),
-                &[],
-                help,
-            )));
-        }
-        for waypoint in waypoints {
-            let [x, y] = *waypoint.get_ref();
-            if !(x.abs() <= MAX_M && y.abs() <= MAX_M) {
-                let what = format!("`waypoints_m` has [{x}, {y}]");
-                let help = "both must be numbers of metres within the map";
-                wrong.keep::<()>(Err(source.error(&what, (waypoint.span(), "no place"), &[], help)));
+        reader::read(name, text, Kind::Tour, "repeat, waypoints_m", Self::from_table)
+    }
+
+    fn from_table(table: &Table<'_>) -> Option<Self> {
+        let repeat = table.flag("repeat");
+        let value = table.needed("waypoints_m")?;
+        let waypoints = value.list(|waypoint| {
+            let [x, y] = waypoint.pair()?;
+            if x.abs() <= MAX_M && y.abs() <= MAX_M {
+                return Some(Point2::new(x, y));
             }
+            let help = "both must be numbers of metres within the map";
+            waypoint.error(&format!("`waypoints_m` has [{x}, {y}]"), "no place", help)
+        })?;
+        if waypoints.is_empty() {
+            return value.invalid("is empty", "", "a tour needs at least one `[x, y]` in metres");
         }
-        if !wrong.is_empty() {
-            return Err(wrong.into_error(&source));
-        }
-        let waypoints = waypoints.iter().map(|at| Point2::from(*at.get_ref())).collect();
-        Ok(Self { waypoints, repeat: file.repeat.is_some_and(Spanned::into_inner) })
+        Some(Self { waypoints, repeat: repeat? })
     }
 }
 

@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_never_tried_is_chosen_evenly() {
+    fn untried_strategies_are_equally_likely() {
         assert_eq!(curious(4).probabilities(Features { p: 3.0, r: 7.0 }), [0.25; 4]);
     }
 

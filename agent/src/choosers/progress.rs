@@ -20,18 +20,14 @@ const READINGS_PER_EVENT: f64 = 5.0;
 /// Learns which strategy makes most progress in learning, by Thompson sampling.
 ///
 /// The reward is [`Trajectory::progress`]. All strategies make less progress the more is known, so that a
-/// strategy that was good early would look better than one that is good now. Each trajectory is therefore
+/// strategy that was good early would seem better than one that is good now. Each trajectory is therefore
 /// divided by the *mean progress*, the recent progress per reading of all strategies; the quotient is the
 /// efficiency of the strategy. Efficiencies change slowly, so that they can be estimated. An efficiency is
 /// drawn for each strategy from its posterior (a gamma distribution, as for the rate of a Poisson process),
 /// and the strategy of the largest draw is chosen.
 ///
-/// Alternatives that were tried on generated worlds: with the two strategies of the paper alone, nothing did
-/// better than a fair coin and than recency alone: no fixed mixture, no recency while some cells are unseen
-/// or old, no discounted Thompson sampling of the progress (even with the fall of the true error as reward),
-/// nor this chooser. The two strategies differ too little; the gain is in more strategies. Among more
-/// strategies, discounted progress without the division found the better ones less often, and map updates as
-/// reward selected the strategies that follow a block longest, which learn no more.
+/// Without the division, the better strategies were found less often. Map updates as the reward selected the
+/// strategies that follow a block longest, which learn no more. `docs/strategies.md` lists what else was tried.
 #[derive(Clone, Debug)]
 pub struct Progress {
     mean: Account,
@@ -161,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn it_sees_who_is_better_while_all_make_less_and_less_progress() {
+    fn the_better_strategy_is_found_while_progress_declines() {
         for seed in 0..10 {
             let declining = |round: usize| vec![1.0 / (10.0 + round as f64), 2.0 / (10.0 + round as f64)];
             let mut chooser = Progress::new(2);

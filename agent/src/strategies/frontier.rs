@@ -57,10 +57,6 @@ impl Strategy for Frontier {
         Pick::Best
     }
 
-    fn needs_travel(&self) -> bool {
-        true
-    }
-
     fn stay(&mut self, goal: Cell) -> Stay {
         self.history.go_to(goal);
         Stay::Watch(WATCH)

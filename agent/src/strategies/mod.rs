@@ -51,9 +51,9 @@ pub trait Strategy: std::fmt::Debug + Send {
         Pick::Patch
     }
 
-    /// Whether the strategy needs [`Situation::travel`].
+    /// Whether the strategy needs [`Situation::travel`]. By default if it picks the best cell.
     fn needs_travel(&self) -> bool {
-        false
+        self.pick() == Pick::Best
     }
 
     /// What to do at the goal that was selected by the last weights.

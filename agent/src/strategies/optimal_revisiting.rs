@@ -79,10 +79,6 @@ impl Strategy for OptimalRevisiting {
         Pick::Best
     }
 
-    fn needs_travel(&self) -> bool {
-        true
-    }
-
     fn stay(&mut self, goal: Cell) -> Stay {
         self.history.go_to(goal);
         Stay::Watch(WATCH)

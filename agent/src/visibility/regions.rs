@@ -1,6 +1,6 @@
 use interfaces::{Cell, GridFrame};
 
-/// The largest number of regions that a view reaches: more would cost much and tell little.
+/// The largest number of regions that a view reaches: more would take long and differ little.
 const REACH_REGIONS: f64 = 40.0;
 
 /// The map cut into square regions of `side` × `side` cells, from its lower left corner on; those at the right
@@ -18,8 +18,12 @@ impl Regions {
     pub(super) fn new(frame: GridFrame, radius_m: f64) -> Self {
         let reach_cells = radius_m / frame.resolution_m();
         // At least one, and at most the whole map; the cast of a number too large is the largest.
-        let side =
-            ((reach_cells / REACH_REGIONS).ceil() as usize).clamp(1, frame.width().max(frame.height()));
+        let side = ((reach_cells / REACH_REGIONS).ceil() as usize).max(1);
+        Self::with_side(frame, side.min(frame.width().max(frame.height())))
+    }
+
+    /// Regions of `side` × `side` cells.
+    pub(crate) fn with_side(frame: GridFrame, side: usize) -> Self {
         Self { frame, side, columns: frame.width().div_ceil(side), rows: frame.height().div_ceil(side) }
     }
 

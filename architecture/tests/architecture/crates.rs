@@ -30,14 +30,28 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("architecture", &[]),
+    (
+        "benches",
+        &["interfaces", "sim", "worldfile", "stage", "mapper", "agent", "controller", "robot", "evaluation"],
+    ),
 ];
 
 /// Packages that only these crates may name as a dependency.
 const RESERVED: &[(&str, &[&str])] = &[("rerun", &["viewer", "curious"]), ("rapier2d", &["sim"])];
 
 /// Crates that must build without Rerun.
-const WITHOUT_RERUN: &[&str] =
-    &["interfaces", "sim", "worldfile", "stage", "mapper", "agent", "controller", "robot", "evaluation"];
+const WITHOUT_RERUN: &[&str] = &[
+    "interfaces",
+    "sim",
+    "worldfile",
+    "stage",
+    "mapper",
+    "agent",
+    "controller",
+    "robot",
+    "evaluation",
+    "benches",
+];
 
 #[test]
 fn every_crate_uses_only_what_it_may() {

@@ -136,8 +136,8 @@ impl NavigationTask {
         Progress::Underway(drive.follow(&scene, path))
     }
 
-    /// Whether the robot waits for the path to become free. After a wait in vain the robot drives as near to
-    /// the goal as it can.
+    /// Whether the robot waits for the path to become free. When the wait is over, the robot drives as near
+    /// to the goal as it can.
     fn waits(&mut self, situation: &Situation) -> bool {
         let waits = self.waits_until_s.is_some_and(|until_s| situation.time < until_s);
         if !waits && self.waits_until_s.take().is_some() {

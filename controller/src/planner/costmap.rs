@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_pays_for_what_it_enters_and_stops_at_walls() {
+    fn a_line_costs_the_cells_it_enters_and_ends_at_walls() {
         let map = costmap(&["...#", "..#.", "3..."]);
         assert_eq!(map.line_cost(Cell::new(0, 2), Cell::new(2, 2)), Some(2 * STRAIGHT));
         assert_eq!(map.line_cost(Cell::new(0, 1), Cell::new(0, 0)), Some(3 * STRAIGHT));

@@ -134,11 +134,8 @@ impl Planner {
         let is_goal = last == wanted;
         // The robot stands beside the center of the first cell, or in a lethal cell before it.
         let skipped = usize::from(start == robot && self.corners.len() > 1);
-        let centers = self.corners[skipped..].iter().map(|cell| frame.center(*cell));
-        path.set(std::iter::once(*from).chain(centers));
-        if is_goal {
-            path.move_end(*goal);
-        }
+        let point = |&cell: &Cell| if is_goal && cell == last { *goal } else { frame.center(cell) };
+        path.set(std::iter::once(*from).chain(self.corners[skipped..].iter().map(point)));
         let distance_to_goal_m = distance_squared(last, self.goal).sqrt() * frame.resolution_m();
         self.end = Some(PlanEnd { is_goal, distance_to_goal_m, is_cut_off });
         self.mark_path(start);
@@ -363,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_is_nowhere_has_no_plan() {
+    fn a_robot_outside_of_the_map_has_no_plan() {
         let map = states(&["...", ".#.", "..."], 1.0);
         let (mut planner, mut path) = (planner(&map, Moves::Eight), Path::default());
         let goal = Point2::new(0.5, 0.5);

@@ -49,14 +49,6 @@ impl Path {
         self.measure();
     }
 
-    /// Moves the end of the path.
-    pub(crate) fn move_end(&mut self, end: Point2<f64>) {
-        if let Some(last) = self.points.last_mut() {
-            *last = end;
-        }
-        self.measure();
-    }
-
     /// Cuts the path at `length_m` from its start.
     pub(crate) fn truncate(&mut self, length_m: f64) {
         let mut walked_m = 0.0;

@@ -181,13 +181,8 @@ impl Wavefront {
         path.push(at);
         while cost > 0 {
             let step = at.neighbours8().into_iter().find_map(|next| {
-                let diagonal = next.x != at.x && next.y != at.y;
-                let allowed = !diagonal
-                    || self.moves == Moves::Eight
-                        && map.is_traversable(Cell::new(next.x, at.y))
-                        && map.is_traversable(Cell::new(at.x, next.y));
-                let length = if diagonal { DIAGONAL } else { STRAIGHT };
-                let here = self.path_cost(next)?.checked_add(u32::from(map.cost(next)) * length)?;
+                let allowed = self.moves == Moves::Eight || next.x == at.x || next.y == at.y;
+                let here = self.path_cost(next)?.checked_add(map.line_cost(at, next)?)?;
                 (allowed && here == cost).then_some(next)
             });
             let Some(next) = step else { return path.clear() };
@@ -268,7 +263,7 @@ mod tests {
         }
 
         #[test]
-        fn a_wave_that_stops_early_is_right_up_to_its_target((map, source, target) in random_map()) {
+        fn a_wave_that_stops_early_is_exact_up_to_its_target((map, source, target) in random_map()) {
             let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
             // The traces of an earlier wave must not show.
             wave.spread(&map, target, Some(source));
@@ -286,7 +281,7 @@ mod tests {
         }
 
         #[test]
-        fn the_descent_pays_what_the_field_says((map, source, target) in random_map(), four in any::<bool>()) {
+        fn the_descent_costs_what_the_field_states((map, source, target) in random_map(), four in any::<bool>()) {
             let moves = if four { Moves::Four } else { Moves::Eight };
             let mut wave = Wavefront::new(*map.frame(), moves);
             let mut path = Vec::new();
@@ -302,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_leads_through_the_door() {
+    fn the_path_leads_through_the_door() {
         let rows = ["....#....", "....#....", "R...D....", "....#....", "....#...G"];
         let map = costmap(&rows);
         let mut wave = Wavefront::new(*map.frame(), Moves::Eight);

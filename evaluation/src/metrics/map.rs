@@ -13,7 +13,7 @@ pub(super) fn is_correct(mapped: CellState, truth: TrueState) -> Option<bool> {
 }
 
 /// How good the map is. Both shares are 0 in a world without cells that can be seen.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MapScores {
     /// The share of the cells that can be seen that were seen.
     pub coverage: f64,

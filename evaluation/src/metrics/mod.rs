@@ -3,23 +3,18 @@
 //!
 //! A cell that solids cover only in part is neither correct nor incorrect, and is left out at that moment.
 
-mod auc;
 mod beams;
 mod changing;
 mod latency;
-mod log_error;
 mod map;
 mod mean;
-mod prediction;
 mod rates;
 mod things;
 
-pub use changing::{ChangingAccuracy, ChangingScores};
+pub use changing::{BrierScores, ChangingAccuracy, ChangingScores, Prediction};
 pub use latency::{Delays, Latency};
-pub use log_error::{log_error, mean_log_error};
 pub use map::{Age, MapScores, age, map_scores};
-pub use prediction::{BrierScores, Prediction};
-pub use rates::{RateErrors, RateScores, rate_scores};
+pub use rates::{RateErrors, RateScores, log_error, mean_log_error, rate_scores};
 pub use things::{ThingReport, Things};
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
-use super::auc::rate_auc;
-use super::log_error::mean_log_error;
 use super::mean::Mean;
 use interfaces::GroundTruth;
 use mapper::Mapper;
 use serde::Serialize;
 
+/// The log error is limited to this factor, in both directions.
+const MAX_FACTOR: f64 = 10.0;
 /// A cell counts for [`RateScores::rate_error`] when it was in view for this many true cycles.
 const MIN_CYCLES: f64 = 3.0;
 
@@ -18,7 +18,7 @@ pub struct RateScores {
     pub rate_error_cells: usize,
     /// The same mean over all cells that truly changed; no estimate counts as 0.
     pub rate_error_all: Option<f64>,
-    /// The log error of the rates, see [`super::mean_log_error`].
+    /// The log error of the rates, see [`mean_log_error`].
     pub log_error: Option<f64>,
     /// How well the rates separate changing cells from static ones: the area under the ROC curve. Cells
     /// within one cell of the border of the swept area are left out.
@@ -73,5 +73,92 @@ pub fn rate_scores(mapper: &Mapper, truth: &impl GroundTruth) -> RateScores {
         static_cells: false_rate.count,
         false_change_events,
         false_rate_hz: false_rate.get().unwrap_or(0.0),
+    }
+}
+
+/// The log error of one cell: min(|ln(estimate / truth)|, ln 10). No estimate counts as ln 10.
+pub fn log_error(estimate: f64, truth: f64) -> f64 {
+    let limit = libm::log(MAX_FACTOR);
+    if estimate > 0.0 { libm::log(estimate / truth).abs().min(limit) } else { limit }
+}
+
+/// The log error of the rates, the primary metric: the mean of [`log_error`] over the cells of each moving
+/// thing that truly changed, then the mean over the things. `None` before anything changed.
+///
+/// Over- and underestimates weigh the same, no error is unbounded, and a long path counts as much as a short
+/// one.
+pub fn mean_log_error(mapper: &Mapper, truth: &impl GroundTruth) -> Option<f64> {
+    let mut things = Mean::default();
+    for thing in truth.moving_things().iter() {
+        let mut cells = Mean::default();
+        for &index in thing {
+            let true_rate = truth.cycle_rate(index);
+            if true_rate > 0.0 {
+                cells.add(log_error(mapper.rate(index), true_rate));
+            }
+        }
+        things.add_mean(&cells);
+    }
+    things.get()
+}
+
+/// How well the estimated rates separate the cells that truly changed from static cells: the area under the
+/// ROC curve. Only observed cells count. Cells within one cell of the border of the swept area are left out.
+/// `None` without cells of both classes.
+fn rate_auc(mapper: &Mapper, truth: &impl GroundTruth) -> Option<f64> {
+    let frame = truth.frame();
+    let (mut changing, mut static_) = (Vec::new(), Vec::new());
+    for index in (0..frame.len()).filter(|&index| mapper.was_ever_seen(index)) {
+        let is_swept = |cell| frame.index(cell).is_some_and(|near| truth.is_swept(near));
+        let cell = frame.cell(index);
+        let swept_neighbours = cell.neighbours8().into_iter().filter(|&near| is_swept(near)).count();
+        match (truth.is_swept(index), swept_neighbours) {
+            (true, 8) if truth.cycle_rate(index) > 0.0 => changing.push(mapper.rate(index)),
+            (false, 0) => static_.push(mapper.rate(index)),
+            _ => {}
+        }
+    }
+    area_under_roc(&changing, &static_)
+}
+
+/// The probability that a positive is above a negative, ties counting half (Mann and Whitney, 1947).
+fn area_under_roc(positives: &[f64], negatives: &[f64]) -> Option<f64> {
+    if positives.is_empty() || negatives.is_empty() {
+        return None;
+    }
+    let mut sorted = negatives.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let won = |value: &f64| {
+        let below = sorted.partition_point(|negative| negative < value);
+        let not_above = sorted.partition_point(|negative| negative <= value);
+        (below + not_above) as f64 / 2.0
+    };
+    let sum: f64 = positives.iter().map(won).sum();
+    Some(sum / (positives.len() * negatives.len()) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_area_is_the_share_of_pairs_in_order() {
+        let (positives, negatives) = ([1.0, 0.0, 3.0], [0.0, 2.0]);
+        let brute: f64 = positives
+            .iter()
+            .flat_map(|p| {
+                negatives.iter().map(move |n| {
+                    if p > n {
+                        1.0
+                    } else if p == n {
+                        0.5
+                    } else {
+                        0.0
+                    }
+                })
+            })
+            .sum();
+        assert_eq!(area_under_roc(&positives, &negatives), Some(brute / 6.0));
+        assert_eq!(area_under_roc(&[], &negatives), None);
     }
 }

@@ -100,14 +100,14 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_never_seen_to_change_promises_more_the_longer_one_looks() {
+    fn a_longer_stay_promises_more_for_a_cell_that_was_never_seen_to_change() {
         let cell = Knowledge { truth: 0.1, estimate: 0.0, events: 0.0, watched: 0.0 };
         let falls = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0].map(|stay| cell.expected_fall(stay));
         assert!(falls.is_sorted() && falls[0] > 0.0 && falls[6] < cell.error(), "{falls:?}");
     }
 
     #[test]
-    fn an_estimate_that_is_right_by_luck_can_only_get_worse() {
+    fn a_correct_estimate_is_expected_to_get_worse() {
         let cell = Knowledge { truth: 0.1, estimate: 0.1, events: 4.0, watched: 20.0 };
         assert_eq!(cell.error(), 0.0);
         assert!(cell.expected_fall(8.0) < 0.0);

@@ -42,7 +42,7 @@ pub struct Oracle {
 /// The expectation of the last goal.
 #[derive(Clone, Debug)]
 struct Expected {
-    place: usize,
+    cell: usize,
     stay: f64,
     fall: f64,
     /// The error of the cells in view at the time.
@@ -75,8 +75,8 @@ impl Oracle {
     }
 
     /// The weighted error of the cells in view from a cell.
-    fn error(&self, mapper: &Mapper, place: usize) -> f64 {
-        let cells = self.sights[place].iter().filter(|&&cell| self.rates[cell] > 0.0);
+    fn error(&self, mapper: &Mapper, from: usize) -> f64 {
+        let cells = self.sights[from].iter().filter(|&&cell| self.rates[cell] > 0.0);
         cells.map(|&cell| self.weights[cell] * knowledge(mapper, cell, self.rates[cell]).error()).sum()
     }
 
@@ -84,15 +84,15 @@ impl Oracle {
     fn update_trust(&mut self, mapper: &Mapper) {
         let Some(last) = self.last.take() else { return };
         if last.fall > 0.0 {
-            let share = (last.error - self.error(mapper, last.place)) / last.fall;
-            let trust = &mut self.trust[last.place];
+            let share = (last.error - self.error(mapper, last.cell)) / last.fall;
+            let trust = &mut self.trust[last.cell];
             *trust = (0.5 * (*trust + share.clamp(0.0, 1.0))).max(LEAST_TRUST);
         }
     }
 
     /// The best cell and duration by the travel times; `None` if nothing is expected anywhere.
     fn best(&self, mapper: &Mapper, times: &[f64]) -> Option<Expected> {
-        // What each cell is expected to bring, for each stay.
+        // The expected fall of the error of each cell, for each stay.
         let falls: Vec<Option<[f64; STAYS.len()]>> = (0..self.rates.len())
             .map(|cell| {
                 let (rate, weight) = (self.rates[cell], self.weights[cell]);
@@ -101,23 +101,23 @@ impl Oracle {
             })
             .collect();
         let (mut best, mut most) = (None, 0.0);
-        for (place, sight) in self.sights.iter().enumerate() {
-            let time = times.get(place).copied().unwrap_or(f64::INFINITY);
+        for (cell, sight) in self.sights.iter().enumerate() {
+            let time = times.get(cell).copied().unwrap_or(f64::INFINITY);
             if !time.is_finite() {
                 continue;
             }
             let mut sums = [0.0; STAYS.len()];
-            for falls in sight.iter().filter_map(|&cell| falls[cell]) {
+            for falls in sight.iter().filter_map(|&seen| falls[seen]) {
                 sums.iter_mut().zip(falls).for_each(|(sum, fall)| *sum += fall);
             }
             for (stay, fall) in STAYS.into_iter().zip(sums) {
-                let worth = self.trust[place] * fall / (time + stay);
+                let worth = self.trust[cell] * fall / (time + stay);
                 if worth > most {
-                    (best, most) = (Some((place, stay, fall)), worth);
+                    (best, most) = (Some((cell, stay, fall)), worth);
                 }
             }
         }
-        best.map(|(place, stay, fall)| Expected { place, stay, fall, error: self.error(mapper, place) })
+        best.map(|(cell, stay, fall)| Expected { cell, stay, fall, error: self.error(mapper, cell) })
     }
 }
 
@@ -140,7 +140,7 @@ impl GoalSelector for Oracle {
         let frame = belief.mapper.frame();
         Some(match &self.last {
             Some(best) => {
-                Destination { position: frame.center(frame.cell(best.place)), stay: Stay::Watch(best.stay) }
+                Destination { position: frame.center(frame.cell(best.cell)), stay: Stay::Watch(best.stay) }
             }
             // Nothing has moved yet, or everything is known: wait a step.
             None => {

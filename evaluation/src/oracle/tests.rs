@@ -1,9 +1,9 @@
 use super::*;
-use crate::trials::{TrialSettings, TrialStrategy, run_trial};
+use crate::trials::{Experiment, TrialStrategy};
 use agent::{AgentSettings, Features};
 use controller::CellDrive;
 use interfaces::{Cell, Step, World};
-use mapper::MapperSettings;
+use mapper::{EstimatorChoice, MapperSettings};
 use nalgebra::Isometry2;
 use sim::grid::{GenerateSettings, GridWorld};
 
@@ -26,7 +26,7 @@ course = "back-and-forth"
 path = [[8, 3], [11, 3]]
 "##;
 
-/// As many steps as there are cells to go left, right, up or down, through walls.
+/// The Manhattan distance in cells, through walls.
 struct Straight;
 
 impl Travel for Straight {
@@ -39,7 +39,7 @@ impl Travel for Straight {
     }
 }
 
-/// The rooms after so many steps of a robot that stays where it is, and what it has learned.
+/// The world, the mapper and the oracle after a number of steps of a robot that stays in its cell.
 fn after(steps: usize) -> (GridWorld, Mapper, Oracle) {
     let spec = worldfile::grid::parse("rooms.toml", ROOMS).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), *spec.frame()).unwrap();
@@ -61,7 +61,7 @@ fn next_goal(world: &mut GridWorld, mapper: &Mapper, oracle: &mut Oracle) -> (us
 }
 
 #[test]
-fn it_goes_where_what_changes_is_in_view() {
+fn it_goes_to_a_cell_with_changing_cells_in_view() {
     let (mut world, mapper, mut oracle) = after(60);
     assert!(mapper.changed().next().is_none(), "nothing of it is seen from the start");
     let (goal, stay) = next_goal(&mut world, &mapper, &mut oracle);
@@ -72,7 +72,7 @@ fn it_goes_where_what_changes_is_in_view() {
 }
 
 #[test]
-fn where_nothing_has_moved_it_waits() {
+fn it_waits_before_anything_has_moved() {
     let (mut world, mapper, mut oracle) = after(1);
     let start = mapper.frame().index(world.robot()).unwrap();
     assert_eq!(next_goal(&mut world, &mapper, &mut oracle), (start, Stay::Watch(1.0)));
@@ -80,24 +80,24 @@ fn where_nothing_has_moved_it_waits() {
 }
 
 #[test]
-fn a_far_place_is_worth_less() {
+fn a_far_cell_is_worth_less() {
     let (_, mapper, oracle) = after(60);
     let mut times = vec![1.0; mapper.frame().len()];
     let first = oracle.best(&mapper, &times).unwrap();
-    times[first.place] = 1000.0;
+    times[first.cell] = 1000.0;
     let second = oracle.best(&mapper, &times).unwrap();
-    assert_ne!(first.place, second.place);
+    assert_ne!(first.cell, second.cell);
     times.fill(f64::INFINITY);
     assert!(oracle.best(&mapper, &times).is_none());
-    times[first.place] = 1000.0;
+    times[first.cell] = 1000.0;
     let far = oracle.best(&mapper, &times).unwrap();
-    assert!(far.place == first.place && far.stay >= first.stay, "a long way is for a long stay");
+    assert!(far.cell == first.cell && far.stay >= first.stay, "a long journey is for a long stay");
 }
 
 #[test]
-fn a_place_that_disappoints_is_left() {
+fn a_cell_where_nothing_is_learned_is_left() {
     let (mut world, mapper, mut oracle) = after(60);
-    // The map never learns anything, wherever it goes.
+    // The map stays the same after every goal.
     let mut goals: Vec<usize> = (0..30).map(|_| next_goal(&mut world, &mapper, &mut oracle).0).collect();
     goals.sort_unstable();
     goals.dedup();
@@ -105,26 +105,25 @@ fn a_place_that_disappoints_is_left() {
 }
 
 #[test]
-fn it_learns_faster_than_those_who_do_not_know() {
+fn it_learns_faster_than_strategies_without_the_truth() {
     for seed in [1, 2] {
-        let world = GridSpec::generate(&GenerateSettings::default(), seed);
-        let error = |strategy| {
-            let life = TrialSettings {
-                world: &world,
-                strategy,
-                seed,
-                steps: 4000,
-                mapper: MapperSettings::default(),
-                agent: &AgentSettings::default(),
-                controller: CellDrive::settings(),
-            };
-            let trial = run_trial(&life, |_| true).unwrap().unwrap();
-            trial.samples.iter().map(|sample| sample.log_error).filter(|error| error.is_finite()).sum::<f64>()
+        let policy = |name: &str| TrialStrategy::Agent(name.parse().unwrap());
+        let experiment = Experiment {
+            worlds: vec![GridSpec::generate(&GenerateSettings::default(), seed)],
+            estimators: vec![EstimatorChoice::default()],
+            strategies: vec![TrialStrategy::Oracle, policy("recency"), policy("curious")],
+            trials: 1,
+            seed,
+            steps: 4000,
+            mapper: MapperSettings::default(),
+            agent: AgentSettings::default(),
+            controller: CellDrive::settings(),
         };
-        let oracle = error(TrialStrategy::Oracle);
-        for policy in ["recency", "curious"] {
-            let policy = TrialStrategy::Agent(policy.parse().unwrap());
-            assert!(oracle < error(policy.clone()), "{policy:?} {seed}");
-        }
+        let trials = experiment.run(experiment.jobs(), &false.into(), |_| ()).unwrap();
+        let errors = trials.iter().map(|trial| {
+            trial.samples.iter().map(|sample| sample.log_error).filter(|error| error.is_finite()).sum::<f64>()
+        });
+        let errors: Vec<f64> = errors.collect();
+        assert!(errors[0] < errors[1] && errors[0] < errors[2], "seed {seed}: {errors:?}");
     }
 }

@@ -2,11 +2,11 @@
 //! strategy alone, and its map is as good as the map of recency.
 
 use super::comparison::Comparison;
-use super::metric::Measure;
+use super::metric::{Measure, Metric};
 use super::run::Run;
 use super::wording::{difference, p_value, value};
 
-/// A map quality lower by up to this is as good.
+/// A map quality that is lower by at most this is as good.
 const QUALITY_MARGIN: f64 = 0.005;
 
 /// The claim in one run. All differences are curious − the other.
@@ -69,11 +69,12 @@ fn is_worse_map(quality: &Comparison) -> bool {
 }
 
 impl Claim {
-    pub(super) fn of(run: &Run) -> Option<Self> {
+    /// The verdict in one run; `None` unless `curious`, `recency` and `poisson` are in it.
+    pub fn of(run: &Run) -> Option<Self> {
         let against = |other, measure| run.comparison("curious", other, measure);
-        let faster_than_recency = against("recency", Measure::LOG_ERROR_AREA)?;
-        let faster_than_poisson = against("poisson", Measure::LOG_ERROR_AREA)?;
-        let quality_like_recency = against("recency", Measure::FINAL_MAP_QUALITY)?;
+        let faster_than_recency = against("recency", Measure::PRIMARY)?;
+        let faster_than_poisson = against("poisson", Measure::PRIMARY)?;
+        let quality_like_recency = against("recency", Measure::Final(Metric::MapQuality))?;
 
         let speed = [&faster_than_recency, &faster_than_poisson];
         let verdict = if is_worse_map(&quality_like_recency) || speed.iter().any(|error| is_slower(error)) {
@@ -86,8 +87,8 @@ impl Claim {
         Some(Self {
             world: run.world.clone(),
             estimator: run.estimator.clone(),
-            rate_error_to_recency: against("recency", Measure::RATE_ERROR_AREA)?,
-            rate_error_to_poisson: against("poisson", Measure::RATE_ERROR_AREA)?,
+            rate_error_to_recency: against("recency", Measure::Area(Metric::RateError))?,
+            rate_error_to_poisson: against("poisson", Measure::Area(Metric::RateError))?,
             faster_than_recency,
             faster_than_poisson,
             quality_like_recency,
@@ -109,7 +110,7 @@ impl Claim {
             _ => "as good as",
         };
         format!(
-            "The paper's claim {}: curious learns rates {} recency and {} poisson,\nand its map is {map} that of recency.",
+            "The paper's claim {}: curious learns rates {} recency\nand {} poisson, and its map is {map} that of recency.",
             if self.verdict == Verdict::NotShown { "is not shown" } else { self.verdict.name() },
             speed(&self.faster_than_recency),
             speed(&self.faster_than_poisson),

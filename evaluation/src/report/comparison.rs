@@ -1,13 +1,13 @@
 //! The comparison of two strategies, paired by trial or by world.
 
-use super::group::TrialGroup;
-use super::metric::{Measure, Part};
+use super::metric::Measure;
+use super::run::{StrategyResult, Unit};
 use super::statistics::{Quantiles, holm, mean};
 use super::wording::{p_value, value};
 use serde::Serialize;
 
-/// The difference between two strategies in one measure: paired by seed within a world, by world
-/// in the entry over all worlds.
+/// The difference between two strategies in one measure: paired by seed within a world, by world in the run over
+/// all worlds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     /// The first strategy.
@@ -21,14 +21,13 @@ pub struct Comparison {
     pub pairs: usize,
     /// The mean of a − b, in the unit of the metric.
     pub mean_difference: f64,
-    /// The lower end of its 95 % confidence interval; not a number for a single pair.
+    /// The lower end of its 95 % confidence interval; NaN for a single pair.
     pub low: f64,
     /// The upper end.
     pub high: f64,
-    /// Of the paired t test, two-sided; not a number for a single pair, 1 where nothing differs.
+    /// Of the paired t test, two-sided; NaN for a single pair, 1 where nothing differs.
     pub p_value: f64,
-    /// The p-value after Holm's correction for all pairs of strategies compared in this measure
-    /// in this run.
+    /// The p-value after Holm's correction for all pairs of strategies compared in this measure in this run.
     pub p_holm: f64,
     /// The mean of a over that of b.
     pub ratio: f64,
@@ -37,7 +36,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Whether there is a difference, at 5 % and without correction for other tests.
+    /// Whether the difference is significant, at 5 % and without correction for other tests.
     pub fn is_significant(&self) -> bool {
         self.p_value < 0.05
     }
@@ -62,9 +61,8 @@ impl Comparison {
     }
 }
 
-/// Compares every pair of strategies in every measure of [`Measure::COMPARED`]; without those that
-/// have no pair.
-pub(super) fn compare_all(strategies: &[TrialGroup], quantiles: &Quantiles) -> Vec<Comparison> {
+/// Compares every pair of strategies in every measure of [`Measure::COMPARED`], where there is a pair of units.
+pub(super) fn compare_all(strategies: &[StrategyResult], quantiles: &Quantiles) -> Vec<Comparison> {
     let mut all = Vec::new();
     for measure in Measure::COMPARED {
         let family = all.len();
@@ -79,19 +77,19 @@ pub(super) fn compare_all(strategies: &[TrialGroup], quantiles: &Quantiles) -> V
     all
 }
 
-fn compare(a: &TrialGroup, b: &TrialGroup, measure: Measure, quantiles: &Quantiles) -> Option<Comparison> {
-    let value = |group: &TrialGroup, index: usize| match measure.part {
-        Part::Final => group.units[index].last(measure.metric),
-        Part::Area => group.units[index].area(measure.metric),
+fn compare(
+    a: &StrategyResult,
+    b: &StrategyResult,
+    measure: Measure,
+    quantiles: &Quantiles,
+) -> Option<Comparison> {
+    let pair = |unit: &Unit| {
+        // Units are in the order of their keys.
+        let partner = b.units.binary_search_by_key(&unit.key, |unit| unit.key).ok()?;
+        let pair = [unit, &b.units[partner]].map(|unit| unit.value(measure));
+        (!pair.iter().any(|value| value.is_nan())).then_some(pair)
     };
-    let pairs: Vec<[f64; 2]> = (0..a.units.len())
-        .filter_map(|index| {
-            // Units are in the order of their keys.
-            let partner = b.units.binary_search_by_key(&a.units[index].key, |unit| unit.key).ok()?;
-            Some([value(a, index), value(b, partner)])
-        })
-        .filter(|[a, b]| !a.is_nan() && !b.is_nan())
-        .collect();
+    let pairs: Vec<[f64; 2]> = a.units.iter().filter_map(pair).collect();
     if pairs.is_empty() {
         return None;
     }

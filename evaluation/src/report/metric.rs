@@ -1,141 +1,123 @@
-//! The measures that are compared: a metric of the samples, at the end of a trial or over the whole trial.
+//! Trials with their metrics, and the measures in which strategies are compared.
 
-use super::trial::Sample;
+/// Defines [`Sample`] and [`Metric`] from one list of metrics.
+macro_rules! metrics {
+    ($count:literal: $($(#[$doc:meta])+ $field:ident => $metric:ident,)+) => {
+        /// The metrics at the end of a step, see [`crate::metrics`]. A metric that is undefined at this step,
+        /// as the error of the rates before anything changed, is NaN.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Sample {
+            /// The number of steps so far.
+            pub step: u64,
+            $($(#[$doc])+ pub $field: f64,)+
+        }
 
-/// A metric of the samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Metric {
-    /// [`Sample::rate_error`].
-    RateError,
-    /// [`Sample::log_error`].
-    LogError,
-    /// [`Sample::map_quality`].
-    MapQuality,
-    /// [`Sample::map_quality_changing`].
-    MapQualityChanging,
-    /// [`Sample::coverage`].
-    Coverage,
-    /// [`Sample::false_rate`].
-    FalseRate,
-    /// [`Sample::changing_share`].
-    ChangingShare,
-    /// [`Sample::brier`].
-    Brier,
-    /// [`Sample::brier_last_seen`].
-    BrierLastSeen,
-    /// [`Sample::brier_mean`].
-    BrierMean,
+        /// A metric of the samples.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Metric {
+            $($(#[$doc])+ $metric,)+
+        }
+
+        impl Metric {
+            /// All, in the order of the files.
+            pub const ALL: [Self; $count] = [$(Self::$metric),+];
+
+            /// The name in `report.json` and `trials.csv`.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$metric => stringify!($field),)+ }
+            }
+
+            /// The value in `sample`.
+            pub fn of(self, sample: &Sample) -> f64 {
+                match self { $(Self::$metric => sample.$field,)+ }
+            }
+        }
+    };
 }
 
-impl Metric {
-    /// All, in the order of the files.
-    pub const ALL: [Self; 10] = [
-        Self::RateError,
-        Self::LogError,
-        Self::MapQuality,
-        Self::MapQualityChanging,
-        Self::Coverage,
-        Self::FalseRate,
-        Self::ChangingShare,
-        Self::Brier,
-        Self::BrierLastSeen,
-        Self::BrierMean,
-    ];
-
-    /// The name in `report.json` and `trials.csv`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::RateError => "rate_error",
-            Self::LogError => "log_error",
-            Self::MapQuality => "map_quality",
-            Self::MapQualityChanging => "map_quality_changing",
-            Self::Coverage => "coverage",
-            Self::FalseRate => "false_rate",
-            Self::ChangingShare => "changing_share",
-            Self::Brier => "brier",
-            Self::BrierLastSeen => "brier_last_seen",
-            Self::BrierMean => "brier_mean",
-        }
-    }
-
-    /// The value in `sample`.
-    pub fn of(self, sample: &Sample) -> f64 {
-        match self {
-            Self::RateError => sample.rate_error,
-            Self::LogError => sample.log_error,
-            Self::MapQuality => sample.map_quality,
-            Self::MapQualityChanging => sample.map_quality_changing,
-            Self::Coverage => sample.coverage,
-            Self::FalseRate => sample.false_rate,
-            Self::ChangingShare => sample.changing_share,
-            Self::Brier => sample.brier,
-            Self::BrierLastSeen => sample.brier_last_seen,
-            Self::BrierMean => sample.brier_mean,
-        }
-    }
+metrics! {
+    10:
+    /// Mean relative error of the rates over the cells that truly changed.
+    rate_error => RateError,
+    /// The log error of the rates: per moving thing, then over the things.
+    log_error => LogError,
+    /// The share of the cells that can be seen whose mapped state is the true state.
+    map_quality => MapQuality,
+    /// Balanced accuracy of the map on swept cells.
+    map_quality_changing => MapQualityChanging,
+    /// Share of the cells that can be seen that were seen.
+    coverage => Coverage,
+    /// Mean estimated rate over the observed static cells, 1/step.
+    false_rate => FalseRate,
+    /// The share of the steps so far with a swept cell in view. A large share is the paper's lock-down.
+    changing_share => ChangingShare,
+    /// Brier score of the two-state model for swept cells out of view.
+    brier => Brier,
+    /// The same of the state last seen.
+    brier_last_seen => BrierLastSeen,
+    /// The same of the average state.
+    brier_mean => BrierMean,
 }
 
-/// The part of a curve that a measure takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Part {
-    /// The value of the last sample.
-    Final,
-    /// The area under the curve divided by the length of the run: the mean over the run, in the
-    /// unit of the metric.
-    Area,
+/// The result of one trial: a strategy with an estimator in a world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// The name of the world.
+    pub world: String,
+    /// The name of the estimator.
+    pub estimator: String,
+    /// The name of the strategy.
+    pub strategy: String,
+    /// The seed of all random streams. Trials of different strategies with the same seed are a pair.
+    pub seed: u64,
+    /// The samples in order of time: at the same steps in all trials of a report, the last at the end.
+    pub samples: Vec<Sample>,
+    /// The share of the goals that each strategy of the agent chose, in the order of the chooser.
+    pub strategy_share: Vec<(String, f64)>,
+    /// The number of change events on static cells.
+    pub false_change_events: u64,
+    /// The hash over all that was learned, see [`crate::map_hash`].
+    pub map_hash: String,
 }
 
 /// One number per trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Measure {
-    /// The metric.
-    pub metric: Metric,
-    /// The part of its curve.
-    pub part: Part,
+pub enum Measure {
+    /// The value of a metric in the last sample.
+    Final(Metric),
+    /// The area under the curve of a metric divided by the length of the run: the mean over the run, in the
+    /// unit of the metric.
+    Area(Metric),
 }
 
 impl Measure {
-    /// Error of the logarithm of the rates over the run: the primary measure.
-    pub const LOG_ERROR_AREA: Self = Self { metric: Metric::LogError, part: Part::Area };
-    /// Error of the logarithm of the rates at the end.
-    pub const FINAL_LOG_ERROR: Self = Self { metric: Metric::LogError, part: Part::Final };
-    /// Relative error of the rates over the run.
-    pub const RATE_ERROR_AREA: Self = Self { metric: Metric::RateError, part: Part::Area };
-    /// Relative error of the rates at the end.
-    pub const FINAL_RATE_ERROR: Self = Self { metric: Metric::RateError, part: Part::Final };
-    /// Map quality at the end.
-    pub const FINAL_MAP_QUALITY: Self = Self { metric: Metric::MapQuality, part: Part::Final };
-    /// Map quality of the changing cells at the end.
-    pub const FINAL_MAP_QUALITY_CHANGING: Self =
-        Self { metric: Metric::MapQualityChanging, part: Part::Final };
-    /// Brier score at the end.
-    pub const FINAL_BRIER: Self = Self { metric: Metric::Brier, part: Part::Final };
+    /// The primary measure: the log error of the rates over the run.
+    pub const PRIMARY: Self = Self::Area(Metric::LogError);
 
     /// The measures in which strategies are compared pair by pair.
     pub const COMPARED: [Self; 7] = [
-        Self::LOG_ERROR_AREA,
-        Self::FINAL_LOG_ERROR,
-        Self::RATE_ERROR_AREA,
-        Self::FINAL_RATE_ERROR,
-        Self::FINAL_MAP_QUALITY,
-        Self::FINAL_MAP_QUALITY_CHANGING,
-        Self::FINAL_BRIER,
+        Self::PRIMARY,
+        Self::Final(Metric::LogError),
+        Self::Area(Metric::RateError),
+        Self::Final(Metric::RateError),
+        Self::Final(Metric::MapQuality),
+        Self::Final(Metric::MapQualityChanging),
+        Self::Final(Metric::Brier),
     ];
 
     /// The name in `report.json`, as `final_log_error` or `log_error_area`.
     pub fn name(self) -> String {
-        match self.part {
-            Part::Final => format!("final_{}", self.metric.name()),
-            Part::Area => format!("{}_area", self.metric.name()),
+        match self {
+            Self::Final(metric) => format!("final_{}", metric.name()),
+            Self::Area(metric) => format!("{}_area", metric.name()),
         }
     }
 }
 
 /// The area under the curve through `values` at `steps` (increasing), divided by its length.
 ///
-/// Before the first step the first value holds, so that a curve which begins at step 1 is a mean
-/// over the whole run. Where values are not a number the curve has gaps, and the mean is over the
-/// rest; it is not a number where nothing is left.
+/// Before the first step the first value holds, so that a curve that begins at step 1 gives a mean over the whole
+/// run. Segments with NaN are left out of area and length; NaN without any value.
 pub(super) fn area(steps: &[u64], values: &[f64]) -> f64 {
     let (Some(&first_step), Some(&first)) = (steps.first(), values.first()) else { return f64::NAN };
     let (mut area, mut length) = (0.0, 0.0);

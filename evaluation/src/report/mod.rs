@@ -8,28 +8,23 @@
 mod claim;
 mod comparison;
 mod figure;
-mod group;
-mod json;
+mod files;
 mod metric;
 mod run;
 mod statistics;
 mod table;
-mod trial;
-mod trials_csv;
 mod wording;
-mod world_picture;
 
 pub use claim::{Claim, Verdict};
 pub use comparison::Comparison;
-pub use metric::{Measure, Metric, Part};
+pub use metric::{Measure, Metric, Sample, Trial};
 pub use run::{Run, StrategyResult};
 pub use statistics::Estimate;
-pub use trial::{Sample, Trial};
-pub use world_picture::WorldPicture;
 
 use crate::drawing::PictureError;
 use crate::output::{make_folder, write_file};
-use group::TrialGroup;
+use serde::Serialize;
+use sim::grid::GridSpec;
 use statistics::Quantiles;
 use std::path::{Path, PathBuf};
 
@@ -39,7 +34,7 @@ const ONE_BY_ONE: usize = 8;
 const REFERENCE: &str = "oracle";
 
 /// The settings of an experiment.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct ReportSettings {
     /// The version of the program.
     pub version: String,
@@ -55,20 +50,27 @@ pub struct ReportSettings {
     pub interrupted: bool,
     /// The names of the worlds in the order of the report; other worlds come last, by name. The same holds
     /// for estimators and strategies.
+    #[serde(skip)]
     pub worlds: Vec<String>,
     /// The names of the estimators in their order.
+    #[serde(skip)]
     pub estimators: Vec<String>,
     /// The names of the strategies in their order.
+    #[serde(skip)]
     pub strategies: Vec<String>,
 }
 
-/// The results of an experiment.
-#[derive(Clone, Debug)]
+/// The results of an experiment; serialized, they are `report.json`.
+#[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    settings: ReportSettings,
-    steps: Vec<u64>,
-    trials: Vec<Trial>,
-    runs: Vec<Run>,
+    /// The settings of the experiment.
+    #[serde(flatten)]
+    pub settings: ReportSettings,
+    /// The trials, by estimator, world, strategy and seed.
+    #[serde(skip)]
+    pub trials: Vec<Trial>,
+    /// One run per world and estimator, then the runs over all worlds.
+    pub runs: Vec<Run>,
 }
 
 impl Report {
@@ -102,27 +104,7 @@ impl Report {
         }
         // World by world, each with all estimators; the entries over all worlds stay at the end.
         runs.sort_by_cached_key(|run| (run.worlds > 1, position(&settings.worlds, &run.world)));
-        Self { settings, steps, trials, runs }
-    }
-
-    /// The settings of the experiment.
-    pub fn settings(&self) -> &ReportSettings {
-        &self.settings
-    }
-
-    /// The steps at which the trials were sampled.
-    pub fn steps(&self) -> &[u64] {
-        &self.steps
-    }
-
-    /// The trials, by estimator, world, strategy and seed.
-    pub fn trials(&self) -> &[Trial] {
-        &self.trials
-    }
-
-    /// One run per world and estimator, then the runs over all worlds.
-    pub fn runs(&self) -> &[Run] {
-        &self.runs
+        Self { settings, trials, runs }
     }
 
     /// The run with `estimator` in `world`, or over `all worlds (N)`.
@@ -130,13 +112,7 @@ impl Report {
         self.runs.iter().find(|run| run.world == world && run.estimator == estimator)
     }
 
-    /// The verdict on the paper's claim in one run; `None` unless `curious`, `recency` and
-    /// `poisson` are in it.
-    pub fn claim(&self, world: &str, estimator: &str) -> Option<Claim> {
-        Claim::of(self.run(world, estimator)?)
-    }
-
-    /// The table for a terminal, at most 100 columns wide.
+    /// The table for a terminal: 80 columns, if the names of the strategies are not too long.
     pub fn table(&self) -> String {
         table::table(self)
     }
@@ -146,22 +122,20 @@ impl Report {
     ///
     /// `figure3` shows the first run; the other figures are `figure3-<world>-<estimator>`, without the estimator
     /// if there is only one. With more than eight worlds, only the first world and all worlds together are drawn.
-    /// `pictures` are the plans of the worlds, in any order; a world without a plan is left out of its figure.
+    /// The plans of `worlds`, in any order, are drawn beside the curves; the plan of a world that is not given is
+    /// left out.
     ///
     /// # Errors
     ///
     /// When something cannot be drawn or written.
-    pub fn write(&self, folder: &Path, pictures: &[WorldPicture]) -> Result<Vec<PathBuf>, PictureError> {
+    pub fn write(&self, folder: &Path, worlds: &[GridSpec]) -> Result<Vec<PathBuf>, PictureError> {
         make_folder(folder)?;
         let report = folder.join("report.json");
-        write_file(&report, |file| {
-            json::write(self, &mut *file)?;
-            file.write_all(b"\n")
-        })?;
+        write_file(&report, |file| files::write_report(self, file))?;
         let trials = folder.join("trials.csv");
-        write_file(&trials, |file| trials_csv::write(&self.trials, file))?;
+        write_file(&trials, |file| files::write_trials(&self.trials, file))?;
         let mut files = vec![report, trials];
-        files.extend(figure::write_all(folder, self, pictures)?);
+        files.extend(figure::write_all(folder, self, worlds)?);
         Ok(files)
     }
 }
@@ -179,23 +153,22 @@ fn runs_of_estimator(
     quantiles: &Quantiles,
 ) -> Vec<Run> {
     let estimator = &trials[0].estimator;
-    let mut runs = Vec::new();
-    // For the run over all worlds: a world is one unit per strategy.
-    let mut in_worlds: Vec<TrialGroup> = Vec::new();
-    for (number, trials) in (0..).zip(trials.chunk_by(|a, b| a.world == b.world)) {
-        let group: Vec<TrialGroup> = trials
-            .chunk_by(|a, b| a.strategy == b.strategy)
-            .map(|trials| TrialGroup::in_world(trials, steps))
-            .collect();
-        in_worlds.extend(group.iter().map(|group| group.as_one_world(number, steps.len())));
-        runs.push(Run::new(trials[0].world.clone(), 1, estimator, group, quantiles));
-    }
+    let in_world = |trials: &[Trial]| {
+        let strategies = trials.chunk_by(|a, b| a.strategy == b.strategy);
+        let results = strategies.map(|trials| StrategyResult::in_world(trials, steps, quantiles)).collect();
+        Run::new(trials[0].world.clone(), 1, estimator, results, quantiles)
+    };
+    let mut runs: Vec<Run> = trials.chunk_by(|a, b| a.world == b.world).map(in_world).collect();
     let worlds = runs.len();
     if worlds > 1 {
+        let numbered =
+            (0..).zip(&runs).flat_map(|(number, run)| run.strategies.iter().map(move |of| (number, of)));
+        let mut results: Vec<(u64, &StrategyResult)> = numbered.collect();
         // Stable: within a strategy the worlds keep their order.
-        in_worlds.sort_by_cached_key(|group| position(strategies, &group.name));
-        let group = in_worlds.chunk_by(|a, b| a.name == b.name).map(TrialGroup::in_all).collect();
-        runs.push(Run::new(format!("all worlds ({worlds})"), worlds, estimator, group, quantiles));
+        results.sort_by_cached_key(|(_, of)| position(strategies, &of.name));
+        let all = results.chunk_by(|(_, a), (_, b)| a.name == b.name);
+        let all = all.map(|worlds| StrategyResult::in_all(worlds, quantiles)).collect();
+        runs.push(Run::new(format!("all worlds ({worlds})"), worlds, estimator, all, quantiles));
     }
     runs
 }

@@ -1,11 +1,8 @@
 //! All strategies with one estimator in one world, or over all worlds: curves, areas, comparisons.
 
-use super::ReportSettings;
 use super::comparison::{Comparison, compare_all};
-use super::group::TrialGroup;
-use super::metric::{Measure, Metric, Part};
+use super::metric::{Measure, Metric, Trial, area};
 use super::statistics::{Estimate, Quantiles, mean};
-use super::wording::thousands;
 
 /// The strategies with one estimator in one world, or over all worlds.
 #[derive(Clone, Debug)]
@@ -22,6 +19,34 @@ pub struct Run {
     pub comparisons: Vec<Comparison>,
 }
 
+impl Run {
+    pub(super) fn new(
+        world: String,
+        worlds: usize,
+        estimator: &str,
+        strategies: Vec<StrategyResult>,
+        quantiles: &Quantiles,
+    ) -> Self {
+        let comparisons = compare_all(&strategies, quantiles);
+        Self { world, worlds, estimator: estimator.into(), strategies, comparisons }
+    }
+
+    /// The strategy of a name.
+    pub fn strategy(&self, name: &str) -> Option<&StrategyResult> {
+        self.strategies.iter().find(|strategy| strategy.name == name)
+    }
+
+    /// The difference a − b between two strategies; `None` where there is no pair of trials.
+    pub fn comparison(&self, a: &str, b: &str, measure: Measure) -> Option<Comparison> {
+        let mut same = self.comparisons.iter().filter(|comparison| comparison.measure == measure);
+        same.find_map(|comparison| match (comparison.a.as_str(), comparison.b.as_str()) {
+            names if names == (a, b) => Some(comparison.clone()),
+            names if names == (b, a) => Some(comparison.flipped()),
+            _ => None,
+        })
+    }
+}
+
 /// The results of one strategy.
 #[derive(Clone, Debug)]
 pub struct StrategyResult {
@@ -35,27 +60,86 @@ pub struct StrategyResult {
     pub strategy_share: Vec<(String, f64)>,
     /// The number of change events on static cells, in all trials.
     pub false_change_events: u64,
+    /// The steps of the samples.
+    pub steps: Vec<u64>,
+    /// The trials (over all worlds: the worlds), in the order of their keys.
+    pub(super) units: Vec<Unit>,
     /// One per metric and sample, in the order of [`Metric::ALL`].
     curves: Vec<Vec<Estimate>>,
     /// One per metric.
     areas: Vec<f64>,
 }
 
+/// The unit of averages and pairs: a trial, or a world averaged over its trials.
+#[derive(Clone, Debug)]
+pub(super) struct Unit {
+    /// The seed, or the number of the world.
+    pub(super) key: u64,
+    /// One per metric and sample.
+    curves: Vec<Vec<f64>>,
+    /// One per metric.
+    areas: Vec<f64>,
+}
+
+impl Unit {
+    pub(super) fn value(&self, measure: Measure) -> f64 {
+        match measure {
+            Measure::Final(metric) => self.curves[metric as usize].last().copied().unwrap_or(f64::NAN),
+            Measure::Area(metric) => self.areas[metric as usize],
+        }
+    }
+}
+
 impl StrategyResult {
-    fn new(group: TrialGroup, quantiles: &Quantiles) -> Self {
-        let samples = group.units.first().map_or(0, |unit| unit.curves[0].len());
-        let units = &group.units;
+    /// The trials of one strategy in one world, at least one, in the order of their seeds.
+    pub(super) fn in_world(trials: &[Trial], steps: &[u64], quantiles: &Quantiles) -> Self {
+        let unit = |trial: &Trial| {
+            let curve = |metric: Metric| trial.samples.iter().map(|sample| metric.of(sample)).collect();
+            let curves: Vec<Vec<f64>> = Metric::ALL.map(curve).into();
+            let areas = curves.iter().map(|curve| area(steps, curve)).collect();
+            Unit { key: trial.seed, curves, areas }
+        };
+        Self {
+            trials: trials.len(),
+            map_hashes: trials.iter().map(|trial| (trial.seed, trial.map_hash.clone())).collect(),
+            strategy_share: mean_shares(trials.iter().map(|trial| &trial.strategy_share)),
+            false_change_events: trials.iter().map(|trial| trial.false_change_events).sum(),
+            ..Self::of_units(&trials[0].strategy, steps, trials.iter().map(unit).collect(), quantiles)
+        }
+    }
+
+    /// The run over all worlds, from the result in each world, at least one, with the number of the world.
+    pub(super) fn in_all(worlds: &[(u64, &Self)], quantiles: &Quantiles) -> Self {
+        let results = worlds.iter().map(|&(_, result)| result);
+        let means = |curve: &Vec<Estimate>| curve.iter().map(|at| at.mean).collect();
+        let unit = |&(key, result): &(u64, &Self)| Unit {
+            key,
+            curves: result.curves.iter().map(means).collect(),
+            areas: result.areas.clone(),
+        };
+        let first = worlds[0].1;
+        Self {
+            trials: results.clone().map(|result| result.trials).sum(),
+            strategy_share: mean_shares(results.clone().map(|result| &result.strategy_share)),
+            false_change_events: results.map(|result| result.false_change_events).sum(),
+            ..Self::of_units(&first.name, &first.steps, worlds.iter().map(unit).collect(), quantiles)
+        }
+    }
+
+    fn of_units(name: &str, steps: &[u64], units: Vec<Unit>, quantiles: &Quantiles) -> Self {
         let at = |metric: usize, sample: usize| units.iter().map(move |unit| unit.curves[metric][sample]);
-        let curve = |metric| (0..samples).map(|sample| quantiles.estimate(at(metric, sample))).collect();
+        let curve = |metric| (0..steps.len()).map(|sample| quantiles.estimate(at(metric, sample))).collect();
         let metrics = 0..Metric::ALL.len();
         Self {
+            name: name.to_owned(),
+            trials: 0,
+            map_hashes: Vec::new(),
+            strategy_share: Vec::new(),
+            false_change_events: 0,
+            steps: steps.to_vec(),
             curves: metrics.clone().map(curve).collect(),
             areas: metrics.map(|metric| mean(units.iter().map(|unit| unit.areas[metric]))).collect(),
-            name: group.name,
-            trials: group.trials,
-            map_hashes: group.map_hashes,
-            strategy_share: group.strategy_share,
-            false_change_events: group.false_change_events,
+            units,
         }
     }
 
@@ -64,59 +148,24 @@ impl StrategyResult {
         &self.curves[metric as usize]
     }
 
-    /// The mean over the trials (over all worlds: over the worlds); not a number where it is
-    /// undefined in all of them.
+    /// The mean over the trials (over all worlds: over the worlds); NaN where it is undefined in all of them.
     pub fn value(&self, measure: Measure) -> f64 {
-        match measure.part {
-            Part::Final => self.curve(measure.metric).last().map_or(f64::NAN, |last| last.mean),
-            Part::Area => self.areas[measure.metric as usize],
+        match measure {
+            Measure::Final(metric) => self.curve(metric).last().map_or(f64::NAN, |last| last.mean),
+            Measure::Area(metric) => self.areas[metric as usize],
         }
     }
 }
 
-impl Run {
-    /// The strategy of a name.
-    pub fn strategy(&self, name: &str) -> Option<&StrategyResult> {
-        self.strategies.iter().find(|strategy| strategy.name == name)
+/// The mean of every share, in the order of first occurrence; a share that a list lacks is 0 in it.
+fn mean_shares<'a>(lists: impl ExactSizeIterator<Item = &'a Vec<(String, f64)>>) -> Vec<(String, f64)> {
+    let count = lists.len() as f64;
+    let mut means: Vec<(String, f64)> = Vec::new();
+    for (name, share) in lists.flatten() {
+        match means.iter_mut().find(|(known, _)| known == name) {
+            Some((_, sum)) => *sum += share / count,
+            None => means.push((name.clone(), share / count)),
+        }
     }
-
-    /// The difference a − b between two strategies; `None` where there is no pair of trials.
-    pub fn comparison(&self, a: &str, b: &str, measure: Measure) -> Option<Comparison> {
-        let mut same = self.comparisons.iter().filter(|comparison| comparison.measure == measure);
-        same.find_map(|comparison| match (comparison.a == a, comparison.b == b) {
-            (true, true) => Some(comparison.clone()),
-            _ if comparison.a == b && comparison.b == a => Some(comparison.flipped()),
-            _ => None,
-        })
-    }
-
-    pub(super) fn new(
-        world: String,
-        worlds: usize,
-        estimator: &str,
-        strategies: Vec<TrialGroup>,
-        quantiles: &Quantiles,
-    ) -> Self {
-        let comparisons = compare_all(&strategies, quantiles);
-        let strategies = strategies.into_iter().map(|group| StrategyResult::new(group, quantiles)).collect();
-        Self { world, worlds, estimator: estimator.into(), strategies, comparisons }
-    }
-}
-
-/// The conditions of a run: `5 trials of 20,000 steps, estimator two-state, sensor radius 4`.
-pub(super) fn conditions(run: &Run, settings: &ReportSettings) -> String {
-    let (trials, steps) = (trials(run), thousands(settings.steps));
-    let ReportSettings { sensor_radius, interrupted, .. } = settings;
-    let short = if *interrupted { " (interrupted)" } else { "" };
-    format!("{trials} of {steps} steps{short}, estimator {}, sensor radius {sensor_radius}", run.estimator)
-}
-
-/// The number of trials per strategy: `5 trials`, or `3 to 5 trials` of an interrupted run.
-fn trials(run: &Run) -> String {
-    let counts = run.strategies.iter().map(|strategy| strategy.trials);
-    match (counts.clone().min().unwrap_or(0), counts.max().unwrap_or(0)) {
-        (1, 1) => "1 trial".into(),
-        (least, most) if least == most => format!("{most} trials"),
-        (least, most) => format!("{least} to {most} trials"),
-    }
+    means
 }

@@ -7,19 +7,19 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 pub struct Estimate {
     /// The number of values.
     pub count: usize,
-    /// Their mean; not a number if there are none.
+    /// Their mean; NaN if there are none.
     pub mean: f64,
-    /// The lower end of the interval; not a number for fewer than two values.
+    /// The lower end of the interval; NaN for fewer than two values.
     pub low: f64,
     /// The upper end.
     pub high: f64,
 }
 
-/// A mean difference of pairs, with the paired t test of "there is none".
+/// A mean difference of pairs, with the paired t test of the hypothesis that it is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PairedTest {
     pub(super) difference: Estimate,
-    /// Two-sided; not a number for fewer than two pairs.
+    /// Two-sided; NaN for fewer than two pairs.
     pub(super) p_value: f64,
     /// Cohen's d of pairs: the mean difference in standard deviations of the differences.
     pub(super) effect_size: f64,
@@ -35,7 +35,7 @@ impl Quantiles {
         Self((0..=count).map(quantile).collect())
     }
 
-    /// The mean of `values` with its interval. What is not a number is left out.
+    /// The mean of `values` with its interval. NaN is left out.
     pub(super) fn estimate(&self, values: impl Iterator<Item = f64> + Clone) -> Estimate {
         let (estimate, _) = self.estimate_and_deviation(values);
         estimate
@@ -60,7 +60,7 @@ impl Quantiles {
         let Estimate { count, mean, .. } = difference;
         let (p_value, effect_size) = match student(count) {
             None => (f64::NAN, f64::NAN),
-            // Nothing differs anywhere: 0/0 would say that nothing is known.
+            // Nothing differs anywhere: 0/0 would be NaN.
             Some(_) if mean == 0.0 && deviation == 0.0 => (1.0, 0.0),
             Some(student) => {
                 let effect_size = mean / deviation;
@@ -71,12 +71,12 @@ impl Quantiles {
     }
 }
 
-/// Student's t of a mean of `count` values; `None` if there is no spread to be known.
+/// Student's t of a mean of `count` values; `None` for fewer than two.
 fn student(count: usize) -> Option<StudentsT> {
     StudentsT::new(0.0, 1.0, count.checked_sub(1)? as f64).ok()
 }
 
-/// The mean of `values`, without those that are not a number.
+/// The mean of `values`, without NaN.
 pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     count_and_mean(values.filter(|value| !value.is_nan())).1
 }
@@ -86,8 +86,8 @@ fn count_and_mean(values: impl Iterator<Item = f64>) -> (usize, f64) {
     (count, sum / count as f64)
 }
 
-/// Holm's correction of the p-values of a family of tests, in their order: a test that is below
-/// 5 % after it is so although many were made. What is not a number stays so and counts as no test.
+/// Holm's correction of the p-values of a family of tests, in their order (Holm, 1979). NaN stays NaN and does not
+/// count as a test.
 pub(super) fn holm(p_values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..p_values.len()).filter(|&test| !p_values[test].is_nan()).collect();
     order.sort_by(|&a, &b| p_values[a].total_cmp(&p_values[b]));

@@ -1,8 +1,9 @@
-//! Made-up trials for tests: errors that fall and qualities that rise, with chance of their own.
+//! Synthetic trials for tests: errors that fall and qualities that rise, with noise.
 
-use super::{ReportSettings, Sample, Trial, WorldPicture};
+use super::{ReportSettings, Sample, Trial};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use sim::grid::GridSpec;
 
 pub(super) const HORIZON: u64 = 20_000;
 
@@ -69,7 +70,7 @@ fn world_name(world: usize) -> String {
     if world == 0 { "two_blocks".into() } else { format!("generated {world}") }
 }
 
-/// The trials of an experiment, and what was asked for.
+/// The settings and the trials of an experiment.
 pub(super) fn experiment(
     worlds: usize,
     estimators: &[&str],
@@ -99,48 +100,52 @@ pub(super) fn experiment(
     (settings, trials)
 }
 
-/// A world in the manner of the paper's.
-pub(super) fn picture(world: usize) -> WorldPicture {
-    let map = [
-        "#########################",
-        "#...........#...........#",
-        "#..aaaaaa...#...........#",
-        "#...........#...........#",
-        "#...........#...........#",
-        "#.......................#",
-        "#...........#...........#",
-        "#...........#...........#",
-        "#...........#...........#",
-        "######.#############.####",
-        "#.......................#",
-        "#.......................#",
-        "#.......................#",
-        "#.......................#",
-        "#.......................#",
-        "#####.#######.##########",
-        "#...........#...........#",
-        "#...........#...........#",
-        "#...........#...........#",
-        "#.......................#",
-        "#...........#...........#",
-        "#...........#...........#",
-        "#.bbbbbbbbbbbbbbbbbbbbb.#",
-        "#.bbbbbbbbbbbbbbbbbbbbb.#",
-        "#########################",
-    ];
-    let rows: Vec<Vec<char>> =
-        map.iter().rev().map(|row| format!("{row:#<25}").chars().collect::<Vec<_>>()).collect();
-    let cells = |letter: char| {
-        let all = rows.iter().enumerate().flat_map(|(row, letters)| {
-            letters.iter().enumerate().map(move |(column, found)| (column, row, *found))
-        });
-        all.filter(|(.., found)| *found == letter).map(|(column, row, _)| (column, row)).collect::<Vec<_>>()
-    };
-    WorldPicture {
-        name: world_name(world),
-        walls: rows.iter().map(|row| row.iter().map(|letter| *letter == '#').collect()).collect(),
-        things: vec![("top block".into(), cells('a')), ("bottom block".into(), cells('b'))],
-        start: (12, 12),
-        sensor_radius: 4,
-    }
+/// A world similar to the paper's: the upper block moves along 6 cells, the lower one along 42.
+pub(super) fn world(world: usize) -> GridSpec {
+    let text = r##"
+name = "two_blocks"
+sensor_radius = 4
+map = """
+#########################
+#...........#...........#
+#...........#...........#
+#...........#...........#
+#...........#...........#
+#.......................#
+#...........#...........#
+#...........#...........#
+#...........#...........#
+######.#############.####
+#.......................#
+#.......................#
+#...........R...........#
+#.......................#
+#.......................#
+#####.#######.###########
+#...........#...........#
+#...........#...........#
+#...........#...........#
+#.......................#
+#...........#...........#
+#...........#...........#
+#.......................#
+#.......................#
+#########################
+"""
+
+[[block]]
+name = "top block"
+dwell = 3
+course = "back-and-forth"
+path = [[3, 22], [8, 22]]
+
+[[block]]
+name = "bottom block"
+dwell = 1
+course = "loop"
+path = [[2, 1], [22, 1], [22, 2], [2, 2]]
+"##;
+    let mut spec = worldfile::grid::parse("two_blocks.toml", text).unwrap();
+    spec.name = world_name(world);
+    spec
 }

@@ -1,100 +1,69 @@
-//! The table for a terminal.
+//! The tables for a terminal of 80 columns.
 
 use super::claim::Claim;
-use super::comparison::Comparison;
-use super::metric::{Measure, Metric, Part};
-use super::run::{Run, StrategyResult, conditions};
-use super::wording::{difference, p_value, value};
+use super::metric::{Measure, Metric};
+use super::run::{Run, StrategyResult};
+use super::wording::{conditions, difference, p_value, value};
 use super::{ONE_BY_ONE, REFERENCE, Report};
+use tabled::Table;
+use tabled::settings::object::Columns;
+use tabled::settings::{Alignment, Padding, Span, Style};
 
 const HOW_TO_READ: &str = "\
-How to read it: errors are 0 and map quality is 1 at best; final is the value at the end, area the
-mean over the run, * the best; time at changes is the share of steps with a changing cell in view.
+How to read it: errors are 0 and map quality is 1 at best; final is the value at
+the end, area the mean over the run, * the best; time at changes is the share of
+steps with a changing cell in view.
 ";
 
+/// Longer names are broken at their hyphens beside the differences.
+const LONG_NAME: usize = 12;
+
 /// The meaning of a column.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 enum Kind {
     Error,
     Quality,
     Share,
 }
 
-struct Column {
-    name: &'static str,
-    measure: Measure,
-    kind: Kind,
-    width: usize,
-}
-
-/// The share of the steps with a swept cell in view.
-const CHANGING_SHARE: Measure = Measure { metric: Metric::ChangingShare, part: Part::Final };
-
-/// Above pairs of columns.
-const GROUPS: [&str; 4] = ["log error", "rate error", "map quality", "time at"];
-
-const COLUMNS: [Column; 7] = [
-    Column { name: "final", measure: Measure::FINAL_LOG_ERROR, kind: Kind::Error, width: 12 },
-    Column { name: "area", measure: Measure::LOG_ERROR_AREA, kind: Kind::Error, width: 9 },
-    Column { name: "final", measure: Measure::FINAL_RATE_ERROR, kind: Kind::Error, width: 12 },
-    Column { name: "area", measure: Measure::RATE_ERROR_AREA, kind: Kind::Error, width: 9 },
-    Column { name: "all cells", measure: Measure::FINAL_MAP_QUALITY, kind: Kind::Quality, width: 13 },
-    Column { name: "changing", measure: Measure::FINAL_MAP_QUALITY_CHANGING, kind: Kind::Quality, width: 10 },
-    Column { name: "changes", measure: CHANGING_SHARE, kind: Kind::Share, width: 12 },
+/// The group, the name, the numbers and their meaning; a group continues where its name is empty.
+const COLUMNS: [(&str, &str, Measure, Kind); 7] = [
+    ("log error", "final", Measure::Final(Metric::LogError), Kind::Error),
+    ("", "area", Measure::Area(Metric::LogError), Kind::Error),
+    ("rate error", "final", Measure::Final(Metric::RateError), Kind::Error),
+    ("", "area", Measure::Area(Metric::RateError), Kind::Error),
+    ("map quality", "all cells", Measure::Final(Metric::MapQuality), Kind::Quality),
+    ("", "changing", Measure::Final(Metric::MapQualityChanging), Kind::Quality),
+    ("time at", "changes", Measure::Final(Metric::ChangingShare), Kind::Share),
 ];
 
-impl Column {
-    fn text(&self, number: f64) -> String {
-        match self.kind {
-            Kind::Error => value(number, 3),
-            Kind::Quality => value(number, 4),
-            Kind::Share if number.is_nan() => "-".into(),
-            Kind::Share => format!("{:.1} %", 100.0 * number),
-        }
-    }
-
-    /// One cell per strategy; a star marks the best number, and numbers that are printed the same.
-    fn cells(&self, strategies: &[StrategyResult]) -> Vec<String> {
-        let rivals = strategies.iter().filter(|strategy| strategy.name != REFERENCE);
-        let numbers = rivals.map(|strategy| strategy.value(self.measure));
-        let best = match self.kind {
-            Kind::Error => numbers.fold(f64::NAN, f64::min),
-            Kind::Quality => numbers.fold(f64::NAN, f64::max),
-            Kind::Share => f64::NAN,
-        };
-        let best = (!best.is_nan()).then(|| self.text(best));
-        let cell = |strategy: &StrategyResult| {
-            let text = self.text(strategy.value(self.measure));
-            let is_best = best.as_ref() == Some(&text) && strategy.name != REFERENCE;
-            format!("{text}{}", if is_best { "*" } else { " " })
-        };
-        strategies.iter().map(cell).collect()
-    }
-}
+/// The columns of the differences, with their decimals.
+const DIFFERENCES: [(&str, Measure, usize); 3] = [
+    ("log error, area", Measure::Area(Metric::LogError), 3),
+    ("log error, final", Measure::Final(Metric::LogError), 3),
+    ("map quality, final", Measure::Final(Metric::MapQuality), 4),
+];
 
 /// The tables of all runs; with many worlds, only the runs over all worlds.
 pub(super) fn table(report: &Report) -> String {
     if report.runs.is_empty() {
         return "No trial was finished.\n".into();
     }
-    let worlds = report.runs.iter().map(|run| run.worlds).max().unwrap_or(1);
-    let is_short = worlds > ONE_BY_ONE;
-    let mut lines = Vec::new();
+    let is_short = report.runs.iter().any(|run| run.worlds > ONE_BY_ONE);
+    let mut text = String::new();
     for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
-        lines.push(run.world.clone());
-        lines.push(conditions(run, &report.settings));
-        lines.push(String::new());
-        let names = run.strategies.iter().map(|strategy| strategy.name.chars().count());
-        let name_width = names.max().unwrap_or(0).max("strategy".len());
-        lines.extend(values(run, name_width));
-        lines.push(String::new());
-        lines.extend(differences(run, name_width));
-        lines.extend(false_events(run));
-        lines.extend(winner(run));
-        lines.extend(Claim::of(run).map(|claim| claim.sentence()));
-        lines.push(String::new());
+        let parts = [
+            Some(format!("{}\n{}\n", run.world, conditions(run, &report.settings))),
+            Some(format!("{}\n", values(&run.strategies))),
+            differences(run),
+            false_events(run),
+            winner(run),
+            Claim::of(run).map(|claim| claim.sentence()),
+            Some(String::new()),
+        ];
+        let lines = parts.iter().flatten().flat_map(|part| part.split('\n'));
+        text.extend(lines.flat_map(|line| [line.trim_end(), "\n"]));
     }
-    let mut text: String = lines.iter().flat_map(|line| [line.trim_end(), "\n"]).collect();
     text.push_str(HOW_TO_READ);
     if is_short {
         text.push_str("The worlds one by one are in report.json.\n");
@@ -102,82 +71,90 @@ pub(super) fn table(report: &Report) -> String {
     text
 }
 
+/// Columns of numbers beside the names.
+fn aligned(rows: Vec<Vec<String>>) -> Table {
+    let mut table = Table::from_iter(rows);
+    table.with(Style::empty()).with(Alignment::right()).with(Padding::new(2, 0, 0, 0));
+    table.modify(Columns::first(), Alignment::left()).modify(Columns::first(), Padding::zero());
+    table
+}
+
 /// A row per strategy.
-fn values(run: &Run, name_width: usize) -> Vec<String> {
-    let groups: String = COLUMNS
-        .chunks(2)
-        .zip(GROUPS)
-        .map(|(columns, group)| {
-            let width: usize = columns.iter().map(|column| column.width).sum();
-            // Over the middle of its columns, where their numbers stand.
-            if columns.len() > 1 {
-                format!("{group:^0$}", width + 3)
-            } else {
-                format!("{group:>0$}", width - 4)
-            }
-        })
-        .collect();
-    let names: String =
-        COLUMNS.iter().map(|column| format!("{:>1$} ", column.name, column.width - 1)).collect();
-    let columns = COLUMNS.map(|column| {
-        column
-            .cells(&run.strategies)
-            .into_iter()
-            .map(move |cell| format!("{cell:>0$}", column.width))
-            .collect::<Vec<_>>()
-    });
-    let mut lines = vec![format!("{:name_width$}{groups}", ""), format!("{:name_width$}{names}", "strategy")];
-    for (row, strategy) in run.strategies.iter().enumerate() {
-        let cells: String = columns.iter().map(|column| column[row].as_str()).collect();
-        lines.push(format!("{:name_width$}{cells}", strategy.name));
+fn values(strategies: &[StrategyResult]) -> Table {
+    let head = |name: &str, of: fn(&(&str, &str, Measure, Kind)) -> String| {
+        [name.to_owned()].into_iter().chain(COLUMNS.iter().map(of)).collect()
+    };
+    let mut rows = vec![
+        head("", |(group, ..)| (*group).to_owned()),
+        head("strategy", |(_, name, ..)| (*name).to_owned()),
+    ];
+    rows.extend(strategies.iter().map(|strategy| vec![strategy.name.clone()]));
+    for (_, _, measure, kind) in COLUMNS {
+        let cells = cells(strategies, measure, kind);
+        rows[2..].iter_mut().zip(cells).for_each(|(row, cell)| row.push(cell));
     }
-    lines
+    let mut table = aligned(rows);
+    for (column, _) in
+        COLUMNS.iter().enumerate().filter(|(_, (_, name, ..))| ["final", "all cells"].contains(name))
+    {
+        table.modify((0, column + 1), Span::column(2)).modify((0, column + 1), Alignment::center());
+    }
+    table
+}
+
+/// One number per strategy; a star marks the best number, and numbers that are printed the same.
+fn cells(strategies: &[StrategyResult], measure: Measure, kind: Kind) -> impl Iterator<Item = String> {
+    let text = move |number: f64| match kind {
+        Kind::Error => value(number, 3),
+        Kind::Quality => value(number, 4),
+        Kind::Share if number.is_nan() => "-".into(),
+        Kind::Share => format!("{:.1} %", 100.0 * number),
+    };
+    let rivals = strategies.iter().filter(|strategy| strategy.name != REFERENCE);
+    let numbers = rivals.map(|strategy| strategy.value(measure));
+    let best = match kind {
+        Kind::Error => numbers.fold(f64::NAN, f64::min),
+        Kind::Quality => numbers.fold(f64::NAN, f64::max),
+        Kind::Share => f64::NAN,
+    };
+    let best = (!best.is_nan()).then(|| text(best));
+    strategies.iter().map(move |strategy| {
+        let text = text(strategy.value(measure));
+        let is_best = best.as_ref() == Some(&text) && strategy.name != REFERENCE;
+        text + if is_best { "*" } else { " " }
+    })
 }
 
 /// The first strategy against every other.
-fn differences(run: &Run, name_width: usize) -> Vec<String> {
-    let [first, others @ ..] = run.strategies.as_slice() else { return Vec::new() };
-    if others.is_empty() {
-        return Vec::new();
-    }
-    let head = ["log error, area", "log error, final", "map quality, final"];
-    let row = |name: &str, cells: [String; 3]| {
-        format!("{name:name_width$}{}", cells.map(|cell| format!("{cell:>26}")).concat())
-    };
-    let over = if run.worlds > 1 { "worlds" } else { "seeds" };
-    let mut lines = vec![
-        format!(
-            "Paired differences, {} minus the other: mean over {over} ± half its 95 % interval, t test",
-            first.name
-        ),
-        row("", head.map(String::from)),
-    ];
+fn differences(run: &Run) -> Option<String> {
+    let (first, others) = run.strategies.split_first().filter(|(_, others)| !others.is_empty())?;
+    let mut rows = vec![vec![String::new()]];
+    rows[0].extend(DIFFERENCES.map(|(name, ..)| name.to_owned()));
     for other in others {
-        let cell = |measure, decimals| {
-            let comparison = run.comparison(&first.name, &other.name, measure);
-            comparison.map_or("-".into(), |comparison| difference_cell(&comparison, decimals))
-        };
-        let cells = [
-            cell(Measure::LOG_ERROR_AREA, 3),
-            cell(Measure::FINAL_LOG_ERROR, 3),
-            cell(Measure::FINAL_MAP_QUALITY, 4),
-        ];
-        lines.push(row(&other.name, cells));
+        let is_long = other.name.chars().count() > LONG_NAME;
+        let mut row = vec![if is_long { other.name.replace('-', "-\n") } else { other.name.clone() }];
+        row.extend(DIFFERENCES.map(|(_, measure, decimals)| {
+            let Some(found) = run.comparison(&first.name, &other.name, measure) else { return "-".into() };
+            let mean = difference(found.mean_difference, decimals);
+            if found.p_value.is_nan() {
+                return mean;
+            }
+            let half_width = value((found.high - found.low) / 2.0, decimals);
+            let p_value = p_value(found.p_value).replace(['p', '=', ' '], "");
+            format!("{mean} ±{half_width} {p_value:>6}")
+        }));
+        rows.push(row);
     }
-    lines.push(String::new());
-    lines
+    let over = if run.worlds > 1 { "worlds" } else { "seeds" };
+    Some(format!(
+        "Paired differences over {over}, {} minus the other: mean ± half of its\n\
+         95 % interval, p-value of the t test\n{}\n",
+        first.name,
+        aligned(rows)
+    ))
 }
 
-fn difference_cell(comparison: &Comparison, decimals: usize) -> String {
-    let mean = difference(comparison.mean_difference, decimals);
-    if comparison.p_value.is_nan() {
-        return mean;
-    }
-    let half_width = value((comparison.high - comparison.low) / 2.0, decimals);
-    format!("{mean} ±{half_width} {}", p_value(comparison.p_value))
-}
-
-/// A line on false changes, if there are any.
+/// The false changes, if there are any.
 fn false_events(run: &Run) -> Option<String> {
     let those = run.strategies.iter().filter(|strategy| strategy.false_change_events > 0);
     let counts: Vec<String> =
@@ -188,19 +165,19 @@ fn false_events(run: &Run) -> Option<String> {
 
 /// The strategy that learned the rates fastest, and whether the difference is significant.
 fn winner(run: &Run) -> Option<String> {
-    let area = |strategy: &StrategyResult| strategy.value(Measure::LOG_ERROR_AREA);
+    let area = |strategy: &StrategyResult| strategy.value(Measure::PRIMARY);
     let is_rival = |strategy: &&StrategyResult| strategy.name != REFERENCE && !area(strategy).is_nan();
     let mut ranked: Vec<&StrategyResult> = run.strategies.iter().filter(is_rival).collect();
     ranked.sort_by(|a, b| area(a).total_cmp(&area(b)));
     let [winner, next, ..] = ranked.as_slice() else { return None };
-    let comparison = run.comparison(&winner.name, &next.name, Measure::LOG_ERROR_AREA)?;
+    let comparison = run.comparison(&winner.name, &next.name, Measure::PRIMARY)?;
     let certainty = match comparison.p_holm {
         p if p.is_nan() => "a single pair cannot be tested".into(),
         p if p < 0.05 => format!("significant: {} after Holm's correction", p_value(p)),
         p => format!("not significant: {} after Holm's correction", p_value(p)),
     };
     Some(format!(
-        "{} learns rates fastest: its log error over the run is {} times that of {}\n({certainty}).",
+        "{} learns rates fastest: its log error over the run is {} times\nthat of {} ({certainty}).",
         winner.name,
         value(comparison.ratio, 2),
         next.name

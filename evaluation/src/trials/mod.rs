@@ -40,31 +40,17 @@ pub struct Experiment {
     pub controller: controller::Settings,
 }
 
-/// One trial: the world, the estimator and the strategy by their indices in the experiment, and the seed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Job {
-    /// The index of the world.
-    pub world: usize,
-    /// The index of the estimator.
-    pub estimator: usize,
-    /// The index of the strategy.
-    pub strategy: usize,
-    /// The seed of the trial.
-    pub seed: u64,
-}
-
 impl Experiment {
     /// All trials. Trials that are compared with each other are neighbors, so that the trials that are
     /// finished at an interruption can be compared.
-    pub fn jobs(&self) -> Vec<Job> {
+    pub fn jobs(&self) -> Vec<TrialSettings<'_>> {
         let mut jobs = Vec::new();
         for trial in 0..self.trials {
-            for world in 0..self.worlds.len() {
-                for estimator in 0..self.estimators.len() {
-                    for strategy in 0..self.strategies.len() {
-                        let seed = self.seed.wrapping_add(trial);
-                        jobs.push(Job { world, estimator, strategy, seed });
-                    }
+            let seed = self.seed.wrapping_add(trial);
+            for world in &self.worlds {
+                for estimator in &self.estimators {
+                    let job = |strategy| TrialSettings { world, estimator, strategy, seed, experiment: self };
+                    jobs.extend(self.strategies.iter().map(job));
                 }
             }
         }
@@ -80,16 +66,16 @@ impl Experiment {
     /// When a setting is out of range.
     pub fn run(
         &self,
-        jobs: Vec<Job>,
+        jobs: Vec<TrialSettings>,
         is_canceled: &AtomicBool,
         observe: impl Fn(&Trial) + Sync,
     ) -> Result<Vec<Trial>, SettingsError> {
         let goes_on = || !is_canceled.load(Ordering::Relaxed);
-        let run = |job| -> Result<Option<Trial>, SettingsError> {
+        let run = |job: TrialSettings| -> Result<Option<Trial>, SettingsError> {
             if !goes_on() {
                 return Ok(None);
             }
-            let trial = run_trial(&self.trial(job), |_| goes_on())?;
+            let trial = run_trial(&job, |_| goes_on())?;
             trial.iter().for_each(&observe);
             Ok(trial)
         };
@@ -117,21 +103,6 @@ impl Experiment {
             estimators: self.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
             strategies: self.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
             ..ReportSettings::default()
-        }
-    }
-
-    /// The settings of one trial.
-    pub fn trial(&self, job: Job) -> TrialSettings<'_> {
-        let estimator = self.estimators[job.estimator].clone();
-        let mapper = MapperSettings { estimator, ..self.mapper.clone() };
-        TrialSettings {
-            world: &self.worlds[job.world],
-            strategy: self.strategies[job.strategy].clone(),
-            seed: job.seed,
-            steps: self.steps,
-            mapper,
-            agent: &self.agent,
-            controller: self.controller,
         }
     }
 }

@@ -1,4 +1,4 @@
-use super::TrialStrategy;
+use super::{Experiment, TrialStrategy};
 use crate::map_hash::map_hash;
 use crate::metrics::{ChangingAccuracy, Prediction, map_scores, rate_scores};
 use crate::oracle::Oracle;
@@ -6,7 +6,7 @@ use crate::report::{Sample, Trial};
 use agent::{Agent, AgentSettings, Features};
 use controller::{CellDrive, Controller};
 use interfaces::{CellReading, GroundTruth, Purpose, RandomStream, SettingsError, Step};
-use mapper::{Mapper, MapperSettings, ReadingError};
+use mapper::{EstimatorChoice, Mapper, MapperSettings, ReadingError};
 use robot::{Autonomous, Belief, GoalSelector, Pilot, explore};
 use sim::grid::{GridGroundTruth, GridSpec, GridWorld};
 use std::ops::ControlFlow;
@@ -17,22 +17,18 @@ const SAMPLES: u64 = 80;
 const COMPARE_EVERY: u64 = 10;
 
 /// Everything that determines a trial.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct TrialSettings<'a> {
     /// The world.
     pub world: &'a GridSpec,
-    /// How goals are chosen.
-    pub strategy: TrialStrategy,
+    /// The estimator of rates.
+    pub estimator: &'a EstimatorChoice,
+    /// The strategy that chooses goals.
+    pub strategy: &'a TrialStrategy,
     /// The seed of all random streams.
     pub seed: u64,
-    /// The length of the trial, in steps.
-    pub steps: u64,
-    /// The settings of the mapper.
-    pub mapper: MapperSettings,
-    /// The settings of the agent.
-    pub agent: &'a AgentSettings,
-    /// The settings of the controller.
-    pub controller: controller::Settings,
+    /// The other settings.
+    pub experiment: &'a Experiment,
 }
 
 /// One step of a trial.
@@ -60,11 +56,11 @@ pub fn run_trial(
     mut observe: impl FnMut(TrialStep) -> bool,
 ) -> Result<Option<Trial>, SettingsError> {
     let stream = RandomStream::new(trial.seed, Purpose::GridController);
-    let controller = Controller::new(trial.controller, CellDrive, stream)?;
-    match &trial.strategy {
+    let controller = Controller::new(trial.experiment.controller, CellDrive, stream)?;
+    match trial.strategy {
         TrialStrategy::Agent(policy) => {
             let sensor_radius_m = f64::from(trial.world.sensor_radius) * trial.world.frame().resolution_m();
-            let settings = AgentSettings { sensor_radius_m, ..trial.agent.clone() };
+            let settings = AgentSettings { sensor_radius_m, ..trial.experiment.agent.clone() };
             let agent = Agent::new(&settings, policy, RandomStream::new(trial.seed, Purpose::GridAgent))?;
             run(trial, Autonomous::new(agent, controller), |_, _| (), &mut observe)
         }
@@ -82,9 +78,11 @@ fn run<G: GoalSelector>(
     observe: &mut impl FnMut(TrialStep) -> bool,
 ) -> Result<Option<Trial>, SettingsError> {
     let mut world = GridWorld::new(trial.world, trial.seed);
-    let mut mapper = Mapper::new(&trial.mapper, *trial.world.frame())?;
+    let Experiment { steps, mapper, .. } = trial.experiment;
+    let settings = MapperSettings { estimator: trial.estimator.clone(), ..mapper.clone() };
+    let mut mapper = Mapper::new(&settings, *trial.world.frame())?;
     let mut samples = Vec::with_capacity(SAMPLES as usize);
-    let (mut step, mut due) = (0, sample_step(0, trial.steps));
+    let (mut step, mut due) = (0, sample_step(0, *steps));
     let mut measured = Measured::default();
     let mut is_complete = false;
     explore(
@@ -102,9 +100,9 @@ fn run<G: GoalSelector>(
             if step == due {
                 samples.push(measured.sample(step, belief.mapper, truth));
                 sample = samples.last();
-                due = sample_step(samples.len() as u64, trial.steps);
+                due = sample_step(samples.len() as u64, *steps);
             }
-            is_complete = step == trial.steps;
+            is_complete = step == *steps;
             step += 1;
             let goes_on = observe(TrialStep { world, reading, belief, pilot, sample });
             pilot.take_messages(); // messages that `observe` has not taken must not accumulate
@@ -114,7 +112,7 @@ fn run<G: GoalSelector>(
     .expect("a grid world gives valid readings");
     Ok(is_complete.then(|| Trial {
         world: trial.world.name.clone(),
-        estimator: trial.mapper.estimator.name().to_owned(),
+        estimator: trial.estimator.name().to_owned(),
         strategy: trial.strategy.name().to_owned(),
         seed: trial.seed,
         samples,

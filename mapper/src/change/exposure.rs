@@ -22,7 +22,7 @@ impl Exposure {
         }
     }
 
-    /// The exposure that tells as much as the gaps.
+    /// The exposure with the information of the gaps.
     pub fn of_gaps(seen: &CellStatistics) -> Self {
         let worth = &seen.gap_worth;
         Self {

@@ -8,7 +8,7 @@ pub(super) const NEVER: ReadingIndex = 0;
 pub(super) const PRIOR: ReadingIndex = 1;
 
 /// The time of every reading, by [`ReadingIndex`].
-#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug)]
 pub(super) struct ReadingTimes(Vec<f64>);
 
 impl Default for ReadingTimes {

@@ -32,7 +32,7 @@ pub struct CellStatistics {
     pub gap_worth: GapWorth,
 }
 
-/// The information in the gaps of a cell, as the observation in view that would tell the same. All 0 where the
+/// The information in the gaps of a cell, as the observation in view with the same information. All 0 where the
 /// estimator has no model of gaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct GapWorth {

@@ -61,7 +61,7 @@ impl Mapper {
 
     /// The rates at which the cell leaves its states, per unit of time: free → blocked (α) and
     /// blocked → free (β). Times the time between two readings they are probabilities of a step. `None` for a cell
-    /// that never changed, or whose changes tell no rate by the estimator in use.
+    /// that never changed, or for which the estimator in use has no rate.
     pub fn transition_rates(&self, index: usize) -> Option<(f64, f64)> {
         self.cells.transition_rates(index).map(|rates| (rates.block, rates.free))
     }

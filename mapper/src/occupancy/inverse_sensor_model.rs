@@ -39,14 +39,7 @@ pub(super) fn hit_point(
     let turn = along_beam.perp(&direction) * depth_m / (distance_m * scan.increment_rad);
     let beams = scan.len() as i32;
     let sees = |step: i32| {
-        let at = beam as i32 + step;
-        let at = if at < 0 {
-            at + beams
-        } else if at >= beams {
-            at - beams
-        } else {
-            at
-        };
+        let at = (beam as i32 + step).rem_euclid(beams);
         scan.returns[at as usize].clear_m() > distance_m + depth_m / 2.0
     };
     let is_seen = turn.abs() < f64::from(beams - 1) && {

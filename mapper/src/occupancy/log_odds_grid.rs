@@ -12,7 +12,7 @@ use interfaces::CellState;
 /// The bounds of the sum of log-odds.
 const BOUNDS: (f32, f32) = (-2.0, 3.5);
 
-#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug)]
 pub(super) struct LogOddsGrid {
     log_odds: Vec<f32>,
 }
@@ -44,13 +44,12 @@ impl OccupancyModel for LogOddsGrid {
     fn update(&mut self, scan: &ProjectedScan, cells: &mut CellMap) {
         let frame = *cells.frame();
         for beam in 0..scan.len() {
-            let end_m = match scan.returns[beam] {
-                BeamReturn::Nothing => continue,
-                BeamReturn::Hit(range_m) | BeamReturn::Clear(range_m) => range_m,
-            };
-            let end = scan.point(beam, end_m);
-            let hit = matches!(scan.returns[beam], BeamReturn::Hit(_)).then(|| frame.cell_at(&end));
-            let hit = hit.and_then(|cell| frame.index(cell));
+            let result = scan.returns[beam];
+            if result == BeamReturn::Nothing {
+                continue;
+            }
+            let end = scan.point(beam, result.clear_m());
+            let hit = scan.hit(beam).and_then(|end| frame.index(frame.cell_at(&end)));
             cells_along(&frame, &scan.origin, &end, |index| {
                 self.add(index, if hit == Some(index) { HIT_LOG_ODDS } else { MISS_LOG_ODDS }, cells);
             });

@@ -4,7 +4,7 @@
 //! that beams passed, the [`inverse_sensor_model`] that turns beams into evidence about cells, and an
 //! [`OccupancyModel`] that accumulates evidence until a cell changes its state.
 //!
-//! To add a model: write a file with an [`OccupancyModel`], and add a line to [`Named::built_in`] below. A model in a
+//! To add a model: write a file with an [`OccupancyModel`], and add a constructor to [`OccupancyChoice`] and its list. A model in a
 //! crate of its own goes into [`MapperSettings::occupancy`] with [`OccupancyChoice::new`].
 
 mod footprint;
@@ -16,7 +16,6 @@ mod surface_grid;
 
 use crate::MapperSettings;
 use crate::change::CellMap;
-use crate::choice::{Choice, Named};
 use interfaces::Cell;
 use log_odds_grid::LogOddsGrid;
 pub(crate) use projection::FARTHEST_M;
@@ -58,69 +57,54 @@ impl Clone for Box<dyn OccupancyModel> {
 
 type Build = dyn Fn(&MapperSettings, &mut CellMap) -> Box<dyn OccupancyModel> + Send + Sync;
 
-/// A kind of occupancy model, by its name.
-pub struct OccupancyKind {
+/// A choice of an occupancy model, by its name. The default is `steady`.
+#[derive(Clone)]
+pub struct OccupancyChoice {
     name: &'static str,
-    build: Box<Build>,
+    build: Arc<Build>,
 }
 
-/// A choice of an occupancy model. The default is `steady`.
-pub type OccupancyChoice = Choice<OccupancyKind>;
-
-impl Named for OccupancyKind {
-    fn name(&self) -> &'static str {
-        self.name
-    }
-
-    fn built_in() -> Vec<Arc<Self>> {
-        vec![
-            kind("steady", |settings, cells| Box::new(SurfaceGrid::new(settings.steady.clone(), cells))),
-            kind("naive", |_, cells| Box::new(LogOddsGrid::new(cells))),
-        ]
-    }
-}
-
-fn kind(
-    name: &'static str,
-    build: impl Fn(&MapperSettings, &mut CellMap) -> Box<dyn OccupancyModel> + Send + Sync + 'static,
-) -> Arc<OccupancyKind> {
-    Arc::new(OccupancyKind { name, build: Box::new(build) })
-}
-
-impl fmt::Debug for OccupancyKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name)
-    }
-}
+interfaces::chosen_by_name!(OccupancyChoice, "occupancy model", OccupancyChoice::all());
 
 impl OccupancyChoice {
-    /// A model of the user. `build` makes the model for a map that holds the prior.
+    /// A model of the user. `build` makes the model for a map that holds the prior. The name is that in files and
+    /// reports.
     pub fn new(
         name: &'static str,
         build: impl Fn(&MapperSettings, &mut CellMap) -> Box<dyn OccupancyModel> + Send + Sync + 'static,
     ) -> Self {
-        Self(kind(name, build))
+        Self { name, build: Arc::new(build) }
+    }
+
+    /// Every built-in model.
+    pub fn all() -> Vec<Self> {
+        vec![Self::steady(), Self::naive()]
     }
 
     /// `steady`: surfaces are remembered to a fraction of a cell, and a cell is cleared only by beams that
     /// pass through its surface, so that static walls never change.
     pub fn steady() -> Self {
-        Self::default()
+        Self::new("steady", |settings, cells| Box::new(SurfaceGrid::new(settings.steady.clone(), cells)))
     }
 
     /// `naive`: every beam counts on every cell that the beam crosses, and a cell flips at even odds. Walls flicker,
     /// as in figure 5 of the paper.
     pub fn naive() -> Self {
-        Self(OccupancyKind::built_in().swap_remove(1))
+        Self::new("naive", |_, cells| Box::new(LogOddsGrid::new(cells)))
+    }
+
+    /// The name on the command line, in files and in reports.
+    pub fn name(&self) -> &'static str {
+        self.name
     }
 
     pub(crate) fn build(&self, settings: &MapperSettings, cells: &mut CellMap) -> Box<dyn OccupancyModel> {
-        (self.0.build)(settings, cells)
+        (self.build)(settings, cells)
     }
 }
 
 impl Default for OccupancyChoice {
     fn default() -> Self {
-        Self(OccupancyKind::built_in().swap_remove(0))
+        Self::steady()
     }
 }

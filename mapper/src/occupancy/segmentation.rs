@@ -21,22 +21,6 @@ pub(super) struct Segmentation {
     surfaces: Vec<(usize, usize)>,
 }
 
-/// A beam to either side on the same surface, and the chords to their end points, m.
-struct Sides {
-    before: usize,
-    after: usize,
-    back: Vector2<f64>,
-    ahead: Vector2<f64>,
-}
-
-impl Sides {
-    fn turns_corner(&self) -> bool {
-        let along = self.ahead.dot(&self.back);
-        along > 0.0
-            || along * along < CORNER_COS * CORNER_COS * self.ahead.norm_squared() * self.back.norm_squared()
-    }
-}
-
 impl Segmentation {
     /// Finds the end points, and the neighbors on one surface: those nearer to each other than `join_m`.
     pub(super) fn segment(&mut self, scan: &ProjectedScan, join_m: f64) {
@@ -85,22 +69,20 @@ impl Segmentation {
         }
     }
 
-    /// The neighbors that give the direction of the surface at a hit.
-    fn sides(&self, beam: usize, end: &Point2<f64>, scan: &ProjectedScan) -> Sides {
-        let range_m = scan.returns[beam].clear_m();
-        let step = 1 + ((CHORD_M / (range_m * scan.spacing_rad)) as u32 as usize).min(scan.len());
-        let (first, last) = self.surfaces[beam];
-        let (before, after) = (beam.saturating_sub(step).max(first), (beam + step).min(last));
-        let chord = |to: usize| self.ends[to].map_or_else(Vector2::zeros, |to| to - end);
-        Sides { before, after, back: chord(before), ahead: chord(after) }
-    }
-
     /// The normal of the surface at a hit, towards the sensor. Where the surface turns a corner,
     /// the normal of the straighter side: a normal across the corner would point out of the body.
     pub(super) fn normal(&self, beam: usize, end: &Point2<f64>, scan: &ProjectedScan) -> Vector2<f64> {
-        let sides = self.sides(beam, end, scan);
-        let Sides { before, after, back, ahead } = sides;
-        let tangent = if !sides.turns_corner() {
+        let range_m = scan.returns[beam].clear_m();
+        let step = 1 + ((CHORD_M / (range_m * scan.spacing_rad)) as u32 as usize).min(scan.len());
+        let (first, last) = self.surfaces[beam];
+        // A beam to either side on the same surface, and the chords to their end points, m.
+        let (before, after) = (beam.saturating_sub(step).max(first), (beam + step).min(last));
+        let chord = |to: usize| self.ends[to].map_or_else(Vector2::zeros, |to| to - end);
+        let (back, ahead) = (chord(before), chord(after));
+        let along = ahead.dot(&back);
+        let turns_corner = along > 0.0
+            || along * along < CORNER_COS * CORNER_COS * ahead.norm_squared() * back.norm_squared();
+        let tangent = if !turns_corner {
             ahead - back
         } else if self.bend_m(beam, after) <= self.bend_m(beam, before) {
             ahead

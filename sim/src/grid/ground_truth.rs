@@ -17,7 +17,6 @@ pub struct GridGroundTruth {
     /// Cells that are connected with the start of the robot, past blocks but not walls.
     reachable: Vec<bool>,
     swept: Vec<usize>,
-    is_swept: Vec<bool>,
     things: Vec<Vec<usize>>,
     /// The changes in the last step.
     changes: Vec<TrueChange>,
@@ -27,6 +26,7 @@ pub struct GridGroundTruth {
 #[derive(Clone, Copy, Debug, Default)]
 struct CellTruth {
     is_blocked: bool,
+    is_swept: bool,
     block_events: u32,
     free_events: u32,
     /// How long the cell was blocked before it took its present state, steps.
@@ -50,12 +50,9 @@ impl GridGroundTruth {
             things.push(sorted(block.path.iter().filter_map(index).collect()));
         }
         let swept = sorted(things.concat());
-        let mut is_swept = vec![false; frame.len()];
-        for &index in &swept {
-            is_swept[index] = true;
-        }
+        swept.iter().for_each(|&index| cells[index].is_swept = true);
         let reachable = parts::connected(&spec.walls, spec.start);
-        Self { frame, time: 0, cells, reachable, swept, is_swept, things, changes: Vec::new() }
+        Self { frame, time: 0, cells, reachable, swept, things, changes: Vec::new() }
     }
 
     /// Whether a wall or a block is in a cell.
@@ -119,9 +116,7 @@ impl GroundTruth for GridGroundTruth {
         if !self.is_blocked(index) {
             return self.reachable[index];
         }
-        let is_open = |side: usize| !self.is_blocked(side) && self.reachable[side];
-        let mut sides = self.frame.cell(index).neighbours4().into_iter();
-        sides.any(|side| self.frame.index(side).is_some_and(is_open))
+        self.frame.beside(index).any(|side| !self.is_blocked(side) && self.reachable[side])
     }
 
     #[inline]
@@ -131,7 +126,7 @@ impl GroundTruth for GridGroundTruth {
 
     #[inline]
     fn is_swept(&self, index: usize) -> bool {
-        self.is_swept[index]
+        self.cells[index].is_swept
     }
 
     fn swept(&self) -> Cow<'_, [usize]> {

@@ -1,13 +1,11 @@
 //! The grid world: cells, blocks that move, a robot with an exact sensor (paper, section 5, figure 3).
 //!
-//! [`GridSpec`] describes a world or makes a random one, [`GridWorld`] lets time pass in it, a
+//! [`GridSpec`] describes a world or makes a random one, [`GridWorld`] simulates it, a
 //! step at a time. [`GridGroundTruth`] is for metrics.
 //!
-//! In every step the robot acts first: it stays, or moves to one of the four cells that share a
-//! side with its own, unless that is blocked. Then the blocks move, in the order of the spec. A
-//! block that has stood for its dwell moves to the next cell of its path; while the robot or
-//! another block is there, it waits, and its dwell begins anew when it has moved. Both happen at
-//! random if the spec says so.
+//! In every step the robot acts first: it stays, or moves to a free cell that shares a side with its own. Then the
+//! blocks move, in the order of the spec. A block that has stood for its dwell moves to the next cell of its path; it
+//! waits while the robot or another block is there. The spec can give both a probability below 1.
 //!
 //! ```
 //! use interfaces::{Step, World};

@@ -1,6 +1,5 @@
 //! Convex bodies by their corners, counter-clockwise, m.
 
-use super::shape::point_segment_m;
 use nalgebra::{Point2, Vector2};
 
 /// The gap between two convex bodies, m, across the side that separates them best: at most their distance, and
@@ -30,6 +29,14 @@ fn beyond_m(body: &[Point2<f64>], points: &[Point2<f64>]) -> f64 {
         points.iter().map(|point| (point - from).perp(&along)).fold(f64::INFINITY, f64::min)
     });
     outside.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The distance from a point to a segment, m.
+pub fn point_segment_m(point: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
+    let (along, to) = (b - a, point - a);
+    let length2 = along.norm_squared();
+    let share = if length2 > 0.0 { (to.dot(&along) / length2).clamp(0.0, 1.0) } else { 0.0 };
+    (to - along * share).norm()
 }
 
 /// The sides, in order.

@@ -1,6 +1,6 @@
 //! The physics world: a house with robots that have bodies and lasers (paper, section 5).
 //!
-//! [`FleetSpec`] describes a world with any number of robots, and [`Fleet`] lets time pass in it.
+//! [`FleetSpec`] describes a world with any number of robots, and [`Fleet`] simulates it.
 //! [`WorldSpec`] and [`PhysicsWorld`] are the same for a world in which one robot is driven, with the
 //! [`PhysicsGroundTruth`] of every cell, for metrics. Bodies and contacts are those of rapier; rays are our
 //! own, exact to the geometry.

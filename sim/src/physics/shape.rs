@@ -1,5 +1,7 @@
 //! Rectangles, and how points, segments and poses lie to each other.
 
+use super::convex::gap_m;
+pub use super::convex::point_segment_m;
 use interfaces::rotation;
 use nalgebra::{Isometry2, Point2, Rotation2, Translation2, UnitComplex, Vector2};
 
@@ -85,18 +87,9 @@ impl Rectangle {
         corners.iter().fold(ends, |least, corner| least.min(point_segment_m(corner, a, b)))
     }
 
-    /// Whether two rectangles overlap by more than a touch, by separating axes.
+    /// Whether two rectangles overlap by more than a touch.
     pub fn overlaps(&self, other: &Self) -> bool {
-        let (ours, theirs) = (self.corners(), other.corners());
-        let axes = [self, other].map(|r| [r.pose.rotation * Vector2::x(), r.pose.rotation * Vector2::y()]);
-        axes.iter().flatten().all(|axis| {
-            let span = |corners: &[Point2<f64>; 4]| {
-                let along = corners.map(|corner| corner.coords.dot(axis));
-                (along.into_iter().fold(f64::MAX, f64::min), along.into_iter().fold(f64::MIN, f64::max))
-            };
-            let ((our_low, our_high), (their_low, their_high)) = (span(&ours), span(&theirs));
-            our_low < their_high - TOUCH_M && their_low < our_high - TOUCH_M
-        })
+        gap_m(&self.corners(), &other.corners()) < -TOUCH_M
     }
 
     /// The rectangle moved by a vector, m.
@@ -126,14 +119,6 @@ pub fn turned(pose: &Isometry2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f6
 /// The point after a rotation of the world about `middle` (m).
 pub fn turned_point(point: &Point2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Point2<f64> {
     middle + turn * (point - middle)
-}
-
-/// The distance from a point to a segment, m.
-pub fn point_segment_m(point: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
-    let (along, to) = (b - a, point - a);
-    let length2 = along.norm_squared();
-    let share = if length2 > 0.0 { (to.dot(&along) / length2).clamp(0.0, 1.0) } else { 0.0 };
-    (to - along * share).norm()
 }
 
 /// Whether two segments cross each other in their interiors.

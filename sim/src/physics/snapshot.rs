@@ -53,7 +53,7 @@ pub(super) fn value<'a, T: Serialize + DeserializeOwned>(value: &'a mut T) -> Bo
 
 /// A pose.
 pub(super) fn pose(pose: &mut Isometry2<f64>) -> Box<dyn Value + '_> {
-    /// nalgebra knows no serde here.
+    /// nalgebra is built without serde.
     struct Pose<'a>(&'a mut Isometry2<f64>);
 
     #[derive(Deserialize, Serialize)]

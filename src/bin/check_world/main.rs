@@ -72,8 +72,8 @@ fn report(inspection: &Inspection) {
         say(stderr(), format_args!("{message}\n"));
     }
     match &inspection.content {
-        Some(Content { kind, name, description, lines, .. }) => {
-            say(stdout(), format_args!("{}: valid, a {kind} named `{name}`", inspection.file));
+        Some(Content { kind, description, lines, scene }) => {
+            say(stdout(), format_args!("{}: valid, a {kind} named `{}`", inspection.file, scene.title));
             if !description.is_empty() {
                 say(stdout(), format_args!("  {description}"));
             }

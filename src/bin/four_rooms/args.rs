@@ -3,7 +3,8 @@
 use agent::Policy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use mapper::{Choice, Estimator, EstimatorChoice, OccupancyChoice, OccupancyKind};
+use curious::program::one_of;
+use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
 use viewer::recording::Live;
 
@@ -60,11 +61,11 @@ pub(crate) struct Args {
     pub(crate) speed: Option<f64>,
 
     /// The estimator of the rates of change
-    #[arg(long, default_value = "two-state-gaps", value_parser = mapper_part::<dyn Estimator>(), help_heading = "Mapper")]
+    #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Mapper")]
     pub(crate) estimator: EstimatorChoice,
 
     /// The occupancy model: steady (static walls never change) or naive (every beam counts, as in the paper)
-    #[arg(long, default_value = "steady", value_parser = mapper_part::<OccupancyKind>(), help_heading = "Mapper")]
+    #[arg(long, default_value = "steady", value_parser = one_of(OccupancyChoice::all(), OccupancyChoice::name), help_heading = "Mapper")]
     pub(crate) occupancy: OccupancyChoice,
 
     /// The folder for all results
@@ -110,12 +111,6 @@ pub(crate) enum DriveChoice {
 fn strategies() -> impl TypedValueParser<Value = Policy> {
     let named = |policy: &Policy| PossibleValue::new(policy.name()).help(policy.description());
     PossibleValuesParser::new(Policy::built_in().iter().map(named)).try_map(|name| name.parse::<Policy>())
-}
-
-/// A parser of the name of a built-in part of the mapper.
-fn mapper_part<T: mapper::Named + ?Sized>() -> impl TypedValueParser<Value = Choice<T>> {
-    let names: Vec<_> = Choice::<T>::all().iter().map(Choice::name).collect();
-    PossibleValuesParser::new(names).try_map(Choice::try_from)
 }
 
 /// The longest run, s: 1000 hours.

@@ -7,48 +7,35 @@ mod parts;
 use anyhow::Context;
 use args::{Args, DriveChoice};
 use clap::Parser;
+use curious::program::{Failure, INTERRUPTED, exit_code, input, interrupt_flag, list};
 use curious::progress::Progress;
 use curious::worlds;
 use evaluation::output::{make_folder, say};
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::{Reading, Twist};
-use parts::{Failure, Parts, input};
+use parts::Parts;
 use robot::Pilot;
 use std::io::{stderr, stdout};
 use std::ops::ControlFlow;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use viewer::pictures::Film;
-use viewer::recording::{Live, Recorder, RecordingOptions};
-use viewer::scene::{Scene, Visible};
+use viewer::recording::{Live, Recorder};
+use viewer::scene::Scene;
 use viewer::show::Show;
 use viewer::view::{Measured, View};
 
 fn main() -> ExitCode {
     let args = Args::parse();
     if args.list_worlds {
-        for (name, _) in worlds::SHIPPED {
-            match worlds::load(name) {
-                Ok(world) => say(stdout(), format_args!("{name:<18} {}", world.spec.description)),
-                Err(error) => say(stderr(), error),
-            }
-        }
+        list(&worlds::SHIPPED, 18, |name| worlds::load(name).map(|world| world.spec.description.clone()));
         return ExitCode::SUCCESS;
     }
-    match run(&args) {
-        Ok(Ended::Interrupted) => ExitCode::from(130),
-        Ok(_) => ExitCode::SUCCESS,
-        Err(Failure::Input(error)) => {
-            say(stderr(), format_args!("error: {error:#}"));
-            ExitCode::from(2)
-        }
-        Err(Failure::Run(error)) => {
-            say(stderr(), format_args!("error: {error:#}"));
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(&args).map(|ended| match ended {
+        Ended::Interrupted => ExitCode::from(INTERRUPTED),
+        Ended::Duration | Ended::Pilot => ExitCode::SUCCESS,
+    }))
 }
 
 /// Why a run ended.
@@ -74,22 +61,20 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let trial = PhysicsTrial::new(spec, args.seed, &settings.mapper, prior.clone(), pilot);
     let mut trial = trial.context("cannot make the mapper").map_err(input)?;
     make_folder(&args.out).map_err(anyhow::Error::from)?;
-    let scene = || trial.world.scene();
+    let scene = || Scene::from(trial.world.spec().fleet());
     let recorder = recorder(args, scene())?;
     let film = args.gif.is_some().then(|| Film::new(scene(), args.duration));
     let mut show = Show::new(scene(), recorder, film);
-    let reported = show.live_problem().map(str::to_owned);
+    let reported = show.live_problem();
     reported.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
-    let is_interrupted = Arc::new(AtomicBool::new(false));
-    let flag = is_interrupted.clone();
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
+    let is_interrupted = interrupt_flag()?;
 
     let is_keyboard = args.drive == DriveChoice::Keyboard;
     if is_keyboard && !args.quiet {
         say(stderr(), "arrows or WASD drive, space stops, Q ends the run\r");
     }
     let speed = args.speed.unwrap_or(if is_keyboard { 1.0 } else { f64::INFINITY });
-    let mut progress = Progress::of_time(args.duration, args.quiet, is_keyboard);
+    let progress = Progress::of_time(args.duration, args.quiet, is_keyboard);
     let mut ended = Ended::Duration;
     let start = Instant::now();
     trial.run_with(|world, reading, belief, pilot, observer| -> anyhow::Result<_> {
@@ -101,7 +86,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
             () => None,
         };
         let measured =
-            Measured { scores: observer.scores(), rate_errors: None, messages: observer.messages() };
+            Measured { scores: observer.scores(), rate_errors: None, messages: &observer.messages };
         show.add(&View::new(world, reading, belief, pilot, measured), end.is_some())?;
         if let Some(end) = end {
             ended = end;
@@ -115,14 +100,14 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     })?;
     let wall_s = start.elapsed().as_secs_f64();
     progress.finish();
-    if let Some(problem) = show.live_problem().filter(|problem| Some(*problem) != reported.as_deref()) {
+    if let Some(problem) = show.live_problem().filter(|problem| Some(problem) != reported.as_ref()) {
         say(stderr(), format_args!("note: {problem}"));
     }
 
     let summary = output::summary(args, settings, &trial, ended, wall_s);
     let PhysicsTrial { mapper, pilot, observer, .. } = trial;
     drop(pilot); // restores the terminal before anything is printed
-    output::write(&args.out, args.gif.as_deref(), &mapper, show, &observer, &summary)?;
+    output::write(&args.out, args.gif.as_deref(), &mapper, show, &observer.goals, &summary)?;
     if !args.quiet {
         say(stdout(), format_args!("{summary}\n  files     {}", args.out.display()));
     }
@@ -136,7 +121,6 @@ fn recorder(args: &Args, scene: Scene) -> Result<Option<Recorder>, Failure> {
     if file.is_none() && live.is_empty() {
         return Ok(None);
     }
-    let options = RecordingOptions { file, live, ..RecordingOptions::default() };
-    let recorder = Recorder::new(&options, scene).map_err(anyhow::Error::from)?;
+    let recorder = Recorder::new(file.as_deref(), &live, scene).map_err(anyhow::Error::from)?;
     Ok(Some(recorder))
 }

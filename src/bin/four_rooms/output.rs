@@ -3,12 +3,12 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use evaluation::cell_statistics;
-use evaluation::observer::Observer;
 use evaluation::output::write_file;
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::summary::Summary;
 use interfaces::Twist;
 use mapper::Mapper;
+use nalgebra::Point2;
 use robot::Pilot;
 use std::path::Path;
 use viewer::show::Show;
@@ -20,10 +20,10 @@ pub(crate) fn write(
     film: Option<&Path>,
     mapper: &Mapper,
     show: Show,
-    observer: &Observer,
+    goals: &[Point2<f64>],
     summary: &Summary,
 ) -> anyhow::Result<()> {
-    show.write(folder, film, mapper, observer.goals())?;
+    show.write(folder, film, mapper, goals)?;
     let map = mapper.states();
     write_file(&folder.join("map.pgm"), |file| file.write_all(&ros_map::pgm(map)))?;
     write_file(&folder.join("map.yaml"), |file| write!(file, "{}", ros_map::yaml(map.frame(), "map.pgm")))?;

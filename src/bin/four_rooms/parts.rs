@@ -5,6 +5,7 @@ use agent::Agent;
 use anyhow::{Context, anyhow};
 use controller::DiffDrive;
 use curious::keyboard::Keyboard;
+use curious::program::{Failure, input};
 use curious::worlds::{self, Loaded};
 use evaluation::output::say;
 use evaluation::physics_trial::PhysicsSettings;
@@ -15,24 +16,6 @@ use std::io::stderr;
 use std::path::Path;
 use worldfile::ros_map::{self, RosMap};
 use worldfile::{Disk, Findings, Severity, TourSpec};
-
-/// Why there is no result.
-pub(crate) enum Failure {
-    /// An argument or an input file is invalid.
-    Input(anyhow::Error),
-    /// The run failed.
-    Run(anyhow::Error),
-}
-
-impl From<anyhow::Error> for Failure {
-    fn from(error: anyhow::Error) -> Self {
-        Self::Run(error)
-    }
-}
-
-pub(crate) fn input(error: impl Into<anyhow::Error>) -> Failure {
-    Failure::Input(error.into())
-}
 
 /// The world and the settings of the robot.
 pub(crate) struct Parts {
@@ -82,7 +65,7 @@ impl Parts {
     }
 }
 
-/// The map of ROS in a file; its warnings go to the error output.
+/// Reads a ROS map; its warnings go to the error output.
 fn read_map(path: &Path) -> Result<RosMap, Failure> {
     let mut findings = Findings::default();
     let map = ros_map::read(path, &Disk, &mut findings);

@@ -3,8 +3,9 @@
 use agent::Reward;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
+use curious::program::one_of;
 use evaluation::trials::TrialStrategy;
-use mapper::{Choice, Estimator, EstimatorChoice};
+use mapper::EstimatorChoice;
 use std::path::PathBuf;
 
 /// Compares exploration strategies in grid worlds with moving blocks: the paper's Figure 3, with statistics.
@@ -52,13 +53,12 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PROBABILITY", num_args = 0..=1, default_missing_value = "0.8", value_parser = probability, help_heading = "World")]
     pub(crate) stochastic: Option<f64>,
 
-    /// Where the robot goes. Can be repeated
+    /// The strategy of the robot. Can be repeated
     #[arg(long, default_values = ["curious", "recency", "poisson", "random", "coin"], value_parser = strategies(), help_heading = "Comparison")]
     pub(crate) strategy: Vec<TrialStrategy>,
 
-    /// How rates of change are estimated. Can be repeated [default: the paper's, and this program's
-    /// choice]
-    #[arg(long, value_parser = mapper_part::<dyn Estimator>(), help_heading = "Comparison")]
+    /// The estimator of the rates of change. Can be repeated [default: the paper's, and this program's choice]
+    #[arg(long, value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Comparison")]
     pub(crate) estimator: Vec<EstimatorChoice>,
 
     /// Trials of each combination, with seeds that count up from --seed
@@ -126,12 +126,6 @@ fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
     PossibleValuesParser::new(all.iter().map(named)).try_map(move |name| {
         all.iter().find(|strategy| strategy.name() == name).cloned().ok_or("not one of the possible values")
     })
-}
-
-/// A parser of the name of a built-in part of the mapper.
-fn mapper_part<T: mapper::Named + ?Sized>() -> impl TypedValueParser<Value = Choice<T>> {
-    let names: Vec<_> = Choice::<T>::all().iter().map(Choice::name).collect();
-    PossibleValuesParser::new(names).try_map(Choice::try_from)
 }
 
 fn probability(text: &str) -> Result<f64, String> {

@@ -6,10 +6,11 @@ use anyhow::{Context, bail};
 use args::Args;
 use clap::Parser;
 use controller::CellDrive;
-use curious::progress::TrialProgress;
+use curious::program::{Failure, INTERRUPTED, exit_code, interrupt_flag, list};
+use curious::progress::Progress;
 use curious::worlds;
 use evaluation::output::{make_folder, say, write_file};
-use evaluation::report::{Report, ReportSettings, Trial, WorldPicture};
+use evaluation::report::{Report, ReportSettings, Trial};
 use evaluation::trials::Experiment;
 use interfaces::SettingsError;
 use mapper::{EstimatorChoice, MapperSettings, Paper};
@@ -17,36 +18,18 @@ use sim::grid::{GenerateSettings, GridSpec};
 use std::collections::BTreeSet;
 use std::io::{stderr, stdout};
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use viewer::recording::{Recorder, RecordingError, RecordingOptions};
+use viewer::recording::{Recorder, RecordingError};
 use viewer::trial::{Recorded, record};
 
 fn main() -> ExitCode {
     let args = Args::parse();
     if args.list_worlds {
-        for (name, _) in worlds::SHIPPED_GRID {
-            match worlds::load_grid(name) {
-                Ok(spec) => say(stdout(), format_args!("{name:<20} {}", spec.description)),
-                Err(error) => say(stderr(), error),
-            }
-        }
+        list(&worlds::SHIPPED_GRID, 20, |name| worlds::load_grid(name).map(|spec| spec.description));
         return ExitCode::SUCCESS;
     }
-    let experiment = match experiment(&args) {
-        Ok(experiment) => experiment,
-        Err(error) => {
-            say(stderr(), format_args!("error: {error:#}"));
-            return ExitCode::from(2);
-        }
-    };
-    match run(&args, &experiment) {
-        Ok(code) => code,
-        Err(error) => {
-            say(stderr(), format_args!("error: {error:#}"));
-            ExitCode::FAILURE
-        }
-    }
+    let experiment = experiment(&args).map_err(Failure::Input);
+    exit_code(experiment.and_then(|experiment| Ok(run(&args, &experiment)?)))
 }
 
 /// The experiment that the arguments describe.
@@ -124,13 +107,12 @@ fn trials(
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads")?;
     let mut jobs = experiment.jobs();
-    let progress = TrialProgress::new(jobs.len(), args.quiet);
+    let progress = Progress::of_trials(jobs.len(), args.quiet);
     let first = match &args.rrd {
         None => None,
         Some(file) => {
-            let trial = experiment.trial(jobs.remove(0));
-            let options = RecordingOptions { file: Some(file.clone()), ..RecordingOptions::default() };
-            Some((Recorder::new(&options, trial.world.into())?, trial))
+            let trial = jobs.remove(0);
+            Some((Recorder::new(Some(file), &[], trial.world.into())?, trial))
         }
     };
     let record = || -> Result<_, SettingsError> {
@@ -149,14 +131,12 @@ fn trials(
 /// Runs the trials, and writes the results.
 fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     make_folder(&args.out)?;
-    let is_canceled = Arc::new(AtomicBool::new(false));
-    let flag = is_canceled.clone();
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
+    let is_canceled = interrupt_flag()?;
     let (trials, problem) = trials(args, experiment, &is_canceled)?;
     let is_interrupted = is_canceled.load(Ordering::Relaxed);
     if trials.is_empty() {
         say(stderr(), "interrupted before the first trial was finished: no report");
-        return Ok(ExitCode::from(130));
+        return Ok(ExitCode::from(INTERRUPTED));
     }
     if args.save_worlds {
         let named = experiment.worlds.len() - args.generate.unwrap_or(0) as usize;
@@ -171,9 +151,8 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
         interrupted: is_interrupted,
         ..experiment.report_settings()
     };
-    let pictures: Vec<_> = experiment.worlds.iter().map(WorldPicture::of).collect();
     let report = Report::new(settings, trials);
-    let files = report.write(&args.out, &pictures)?;
+    let files = report.write(&args.out, &experiment.worlds)?;
     if !args.quiet {
         say(stdout(), report.table());
         let names: Vec<_> = files.iter().filter_map(|file| file.file_name()?.to_str()).collect();
@@ -182,5 +161,5 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     if let Some(problem) = problem {
         return Err(problem.into());
     }
-    Ok(if is_interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
+    Ok(if is_interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
 }

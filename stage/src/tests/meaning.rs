@@ -117,7 +117,7 @@ fn single_rays_are_sonars_and_count_for_the_step() {
         ranger( update_interval 40 sensor( pose [0.1 0 0 90] range [0.2 3] fov 20 noise [0.01 0 0] ) ) )";
     let world = good(text);
     let [sonar] = world.robots[0].sonars.as_slice() else { panic!() };
-    assert!((sonar.cone_rad - 20.0_f64.to_radians()).abs() < 1e-12);
+    assert!((sonar.fov_rad - 20.0_f64.to_radians()).abs() < 1e-12);
     assert!((sonar.mount.rotation.angle() - FRAC_PI_2).abs() < 1e-12);
     assert_eq!((sonar.range_min_m, sonar.range_max_m, sonar.interval_ms), (0.2, 3.0, 40));
     // The laser that it is given scans every 100 ms.

@@ -1,18 +1,17 @@
 //! A moving picture of a run: the map with the robots, and beside it how often its cells change.
 
-use super::panel::{Chart, Mark, Panel, pair};
+use super::panel::{Chart, Panel, pair};
 use super::trajectory::line;
 use super::{ground, plan};
 use crate::layers::Layer;
+use crate::legend;
 use crate::outline::field_of_view;
-use crate::scene::Sight;
-use crate::scene::{Scene, TimeUnit};
+use crate::scene::{Scene, Sight, TimeUnit};
 use crate::view::{Trail, View};
 use evaluation::drawing::{Area, Canvas, PictureError, ink, px, why};
 use evaluation::output::write_file;
 use evaluation::palette::{self, Rgb};
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
-use nalgebra::Point2;
 use plotters::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -27,7 +26,7 @@ const TRAIL: usize = 500;
 /// The color index of a pixel that is as in the frame before.
 const SAME: u8 = 255;
 
-/// A moving picture in the making.
+/// A moving picture so far.
 pub struct Film {
     scene: Scene,
     duration: f64,
@@ -39,14 +38,14 @@ pub struct Film {
 }
 
 impl Film {
-    /// A film of a run in `scene` of a duration in the unit of time of the scene.
+    /// A film of a run in `scene`; `duration` in the unit of time of the scene.
     pub fn new(scene: Scene, duration: f64) -> Self {
         let panels = [false, true].map(|has_bar| Panel::of_film(&scene.frame, scene.unit, has_bar));
         Self { scene, duration, panels, colors: Colors::new(), frames: Vec::new(), last: Vec::new() }
     }
 
-    /// Takes in the run as it is now, with the trails of the robots. Frames are dense at the start, when most of the map is new, and rare at
-    /// the end.
+    /// Adds the run as it is now, with the trails of the robots. Frames are dense at the start, when most of the
+    /// map is new, and rare at the end.
     ///
     /// # Errors
     ///
@@ -66,7 +65,7 @@ impl Film {
         Ok(())
     }
 
-    /// Writes the film as a GIF file that repeats for ever.
+    /// Writes the film as a GIF file that repeats without end.
     ///
     /// # Errors
     ///
@@ -99,7 +98,7 @@ impl Film {
         left.cells(&chart, Layer::Occupancy, &Layer::Occupancy.classes(view.mapper, self.scene.unit))?;
         self.robots(left, &chart, view, trails)?;
         left.frame(&chart)?;
-        left.legend(&legend, &self.entries())?;
+        left.legend(&legend, &legend::of_run(&self.scene, view))?;
         right.layer(&second, view.mapper, Layer::Interval, self.scene.unit)
     }
 
@@ -118,7 +117,7 @@ impl Film {
         for (robot, trail) in self.scene.robots.iter().zip(trails) {
             let points = trail.points();
             let points = &points[points.len().saturating_sub(TRAIL)..];
-            line(panel, chart, points, ground::robot_color(robot))?;
+            line(panel, chart, points, robot.color())?;
         }
         line(panel, chart, view.path, palette::PATH)?;
         if let Some(goal) = view.goal {
@@ -126,36 +125,13 @@ impl Film {
             panel.dot(&plot.use_screen_coord(), goal, palette::GOAL)?;
         }
         for (robot, state) in self.scene.robots.iter().zip(&view.robots) {
-            ground::fill(chart, &plan::body(robot, &state.pose), ground::robot_color(robot))?;
-            let ahead = state.pose * Point2::new(robot.radius_m, 0.0);
-            let nose = PathElement::new(
-                vec![pair(&state.pose.translation.vector.into()), pair(&ahead)],
-                panel.line(WHITE, 3),
-            );
-            plot.draw(&nose).map_err(why)?;
+            plan::draw_robot(panel, chart, robot, &state.pose, robot.radius_m)?;
         }
         Ok(())
     }
-
-    fn entries(&self) -> Vec<(Mark, String)> {
-        let robot = |is_driven| self.scene.robots.iter().any(|robot| robot.is_driven == is_driven);
-        let has_moving = self.scene.obstacles.iter().any(|obstacle| !obstacle.is_fixed());
-        let entries = [
-            (true, Mark::Dot(palette::CURIOUS), "curious robot"),
-            (robot(false), Mark::Dot(palette::OTHER_ROBOT), "other robot"),
-            (has_moving, Mark::Area(palette::MOVING), "what moves"),
-            (true, Mark::Dot(palette::GOAL), "goal"),
-            (true, Mark::Line(palette::PATH), "planned path"),
-            (true, Mark::Area(palette::SENSOR_AREA), "field of view"),
-            (true, Mark::Area(palette::FREE), "free"),
-            (true, Mark::Area(palette::BLOCKED), "blocked"),
-            (true, Mark::Area(palette::UNKNOWN), "never seen"),
-        ];
-        entries.into_iter().filter(|entry| entry.0).map(|(_, mark, text)| (mark, text.to_owned())).collect()
-    }
 }
 
-/// A duration for people: 3 min 20 s, 150 steps.
+/// A duration as text: 3 min 20 s, 150 steps.
 fn duration(time: f64, unit: TimeUnit) -> String {
     match unit {
         TimeUnit::Second => format!("{} min {:02} s", time as u64 / 60, time as u64 % 60),

@@ -19,31 +19,24 @@ use nalgebra::Point2;
 use panel::Panel;
 use std::path::Path;
 
-/// What the pictures of a run show.
-#[derive(Clone, Copy)]
-pub struct Pictures<'a> {
-    /// The world.
-    pub scene: &'a Scene,
-    /// The map and the statistics of its changes.
-    pub mapper: &'a Mapper,
-    /// The trails of the robots, in the order of the scene.
-    pub trails: &'a [Trail],
-    /// The goals of the curious robot, m.
-    pub goals: &'a [Point2<f64>],
-}
-
 /// The panels of Figure 5, in its order.
 const FIGURE_5: [Layer; 3] = [Layer::Occupancy, Layer::Interval, Layer::ChangeProbability];
 
 /// Writes `figure5.png`, each of its panels and the recency as `<layer>.png`, and `trajectory.png` into
-/// `folder`, which is made unless it exists.
+/// `folder`, which is created if needed. `trails` are in the order of the robots of the scene; `goals` are
+/// those of the curious robot, m.
 ///
 /// # Errors
 ///
 /// When a picture cannot be drawn or written.
-pub fn write_all(folder: &Path, pictures: &Pictures) -> Result<(), PictureError> {
+pub fn write_all(
+    folder: &Path,
+    scene: &Scene,
+    mapper: &Mapper,
+    trails: &[Trail],
+    goals: &[Point2<f64>],
+) -> Result<(), PictureError> {
     make_folder(folder)?;
-    let Pictures { scene, mapper, goals, .. } = *pictures;
     let file = |name: &str| folder.join(format!("{name}.png"));
     let panel = Panel::of_layer(mapper.frame(), scene.unit);
     let [width, height] = panel.size();
@@ -56,7 +49,7 @@ pub fn write_all(folder: &Path, pictures: &Pictures) -> Result<(), PictureError>
         areas.iter().zip(FIGURE_5).try_for_each(|(area, layer)| panel.layer(area, mapper, layer, scene.unit))
     })?;
     let panel = Panel::of_scene(mapper.frame(), scene.unit, trajectory::entries(scene, goals).len());
-    save(&file("trajectory"), panel.size(), |area| trajectory::draw(&panel, area, pictures))
+    save(&file("trajectory"), panel.size(), |area| trajectory::draw(&panel, area, scene, trails, goals))
 }
 
 /// Draws a world from above to the PNG file `path`.

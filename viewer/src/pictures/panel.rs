@@ -1,7 +1,8 @@
 //! A map with a title, axes in meters, and a legend below.
 
 use crate::layers::Layer;
-use crate::scene::TimeUnit;
+use crate::legend::Mark;
+use crate::scene::{TimeUnit, extent};
 use evaluation::drawing::{Area, INK, ink, px, text, why};
 use evaluation::palette::Rgb;
 use interfaces::GridFrame;
@@ -47,19 +48,6 @@ pub(super) struct Panel {
     rows: u32,
     /// Whether there is room for a color bar.
     has_bar: bool,
-}
-
-/// How an entry of a legend is drawn.
-#[derive(Clone, Copy)]
-pub(super) enum Mark {
-    /// A filled square.
-    Area(Rgb),
-    /// A line.
-    Line(Rgb),
-    /// A cross.
-    Cross(Rgb),
-    /// A filled circle with a white rim.
-    Dot(Rgb),
 }
 
 impl Panel {
@@ -113,7 +101,8 @@ impl Panel {
         let (_, legend) = area.split_vertically(below);
         let (_, legend) = legend.split_horizontally(self.px(MARGIN));
         let (width, height) = area.dim_in_pixel();
-        let [from, to] = corners(&self.frame);
+        let (from, size) = extent(&self.frame);
+        let to = from + size;
         let mut chart = ChartBuilder::on(area)
             .margin_top(self.px(TITLE))
             .margin_left(self.px(4)) // the library writes the name of the y axis a little too far left
@@ -148,7 +137,8 @@ impl Panel {
 
     /// Draws a line around the map.
     pub(super) fn frame(&self, chart: &Chart) -> Result<(), String> {
-        let [from, to] = corners(&self.frame);
+        let (from, size) = extent(&self.frame);
+        let to = from + size;
         let border = Rectangle::new([(from.x, from.y), (to.x, to.y)], self.line(INK, 1));
         chart.plotting_area().draw(&border).map_err(why)
     }
@@ -189,10 +179,16 @@ impl Panel {
     }
 
     /// Writes a line; `at` is the middle of its left side, or of the line.
-    fn write(&self, area: &Area, at: (i32, i32), anchor: HPos, line: &str) -> Result<(), String> {
+    pub(super) fn write(&self, area: &Area, at: (i32, i32), anchor: HPos, line: &str) -> Result<(), String> {
         let style = text(LETTERS * self.scale).pos(Pos::new(anchor, VPos::Center));
         // The library puts the middle of a letter a quarter of its height too high.
         area.draw_text(line, &style, (at.0, at.1 + self.px(LETTERS) / 4)).map_err(why)
+    }
+
+    /// Width and height of a line of text, in pixels to draw with.
+    pub(super) fn text_size(&self, area: &Area, line: &str) -> Result<[i32; 2], String> {
+        let (width, height) = area.estimate_text_size(line, &text(LETTERS * self.scale)).map_err(why)?;
+        Ok([width as i32, height as i32])
     }
 
     /// Draws a layer of the map with its legend.
@@ -206,11 +202,6 @@ impl Panel {
         let (chart, legend) = self.axes(area, &layer.title(unit))?;
         self.cells(&chart, layer, &layer.classes(mapper, unit))?;
         self.frame(&chart)?;
-        self.layer_legend(&legend, layer, unit)
-    }
-
-    /// Draws the color bar and the other colors of a layer.
-    pub(super) fn layer_legend(&self, legend: &Area, layer: Layer, unit: TimeUnit) -> Result<(), String> {
         let mut panel = *self;
         if let Some(scale) = layer.scale(unit) {
             let (left, length) = (self.px(Y_AXIS - MARGIN), f64::from(self.px(self.width)));
@@ -226,7 +217,7 @@ impl Panel {
                 let x = at(scale.position(value));
                 let tick = PathElement::new([(x, bottom), (x, bottom + self.px(2))], self.line(INK, 1));
                 legend.draw(&tick).map_err(why)?;
-                self.write(legend, (x, bottom + self.px(10)), HPos::Center, &value.to_string())?;
+                self.write(&legend, (x, bottom + self.px(10)), HPos::Center, &value.to_string())?;
             }
         } else {
             panel.has_bar = false;
@@ -234,7 +225,7 @@ impl Panel {
         let entries = layer.plain_legend().into_iter();
         let entries: Vec<(Mark, String)> =
             entries.map(|(class, text)| (Mark::Area(layer.color(class)), text.to_owned())).collect();
-        panel.legend(legend, &entries)
+        panel.legend(&legend, &entries)
     }
 
     /// Draws the cells, as few rectangles as the rows allow.
@@ -265,13 +256,7 @@ impl Panel {
     }
 }
 
-/// The lower left and the upper right corner of a frame, m.
-fn corners(frame: &GridFrame) -> [Point2<f64>; 2] {
-    let size = nalgebra::Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
-    [frame.origin(), frame.origin() + size]
-}
-
-/// A number without needless digits: 2 and not 2.0.
+/// A number without unneeded digits: 2 and not 2.0.
 fn short(value: f64) -> String {
     format!("{}", (value * 100.0).round() / 100.0)
 }

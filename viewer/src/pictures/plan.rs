@@ -1,13 +1,14 @@
 //! A world from above, at its start.
 
-use super::ground::{self, fill, robot_color};
-use super::panel::{Chart, Mark, Panel};
-use crate::scene::{Robot, Scene, Sector};
-use evaluation::drawing::{Area, INK, px, text, why};
+use super::ground::{self, fill};
+use super::panel::{Chart, Panel, pair};
+use crate::legend::{self, Legend, Mark};
+use crate::scene::{Robot, Scene, Sector, span};
+use evaluation::drawing::{Area, why};
 use evaluation::palette;
 use nalgebra::{Isometry2, Point2};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::text_anchor::HPos;
 use std::f64::consts::TAU;
 
 /// The corners of the polygon that a circle is drawn as.
@@ -27,30 +28,37 @@ pub(super) fn draw(panel: &Panel, area: &Area, scene: &Scene) -> Result<(), Stri
     }
     ground::draw(&chart, scene)?;
     for robot in &scene.robots {
-        fill(&chart, &body(robot, &robot.pose), robot_color(robot))?;
         let front = robot.corners.iter().map(|corner| corner.x).reduce(f64::max).unwrap_or(robot.radius_m);
-        let [center, ahead] = [0.0, front].map(|x| robot.pose * Point2::new(x, 0.0));
-        let line = PathElement::new([(center.x, center.y), (ahead.x, ahead.y)], panel.line(WHITE, 4));
-        chart.plotting_area().draw(&line).map_err(why)?;
+        draw_robot(panel, &chart, robot, &robot.pose, front)?;
     }
     if !is_crowded(scene) {
-        names(&chart, scene)?;
+        names(panel, &chart, scene)?;
     }
     panel.frame(&chart)?;
     panel.legend(&legend, &entries(scene))
 }
 
+/// Draws the body of a robot at a pose, with a line from its center to its front, m.
+pub(super) fn draw_robot(
+    panel: &Panel,
+    chart: &Chart,
+    robot: &Robot,
+    pose: &Isometry2<f64>,
+    front_m: f64,
+) -> Result<(), String> {
+    fill(chart, &body(robot, pose), robot.color())?;
+    let ends = [0.0, front_m].map(|x| pair(&(pose * Point2::new(x, 0.0))));
+    chart.plotting_area().draw(&PathElement::new(ends, panel.line(WHITE, 3))).map_err(why)
+}
+
 /// The entries of the legend.
-pub(super) fn entries(scene: &Scene) -> Vec<(Mark, String)> {
-    let has = |is_driven: bool| scene.robots.iter().any(|robot| robot.is_driven == is_driven);
-    let entries = [
-        (has(true), palette::CURIOUS, "driven robot"),
-        (has(false), palette::OTHER_ROBOT, "other robot"),
-        (with_sensors(scene).next().is_some(), palette::SENSOR_AREA, "field of view"),
-    ];
-    let robots = entries.into_iter().filter(|entry| entry.0);
-    let robots = robots.map(|(_, color, text)| (Mark::Area(color), text.to_owned()));
-    ground::entries(scene).chain(robots).collect()
+pub(super) fn entries(scene: &Scene) -> Legend {
+    let robots = legend::entries([
+        (scene.has_robot(true), Mark::Area(palette::CURIOUS), "driven robot"),
+        (scene.has_robot(false), Mark::Area(palette::OTHER_ROBOT), "other robot"),
+        (with_sensors(scene).next().is_some(), Mark::Area(palette::SENSOR_AREA), "field of view"),
+    ]);
+    [ground::entries(scene), robots].concat()
 }
 
 fn is_crowded(scene: &Scene) -> bool {
@@ -64,7 +72,7 @@ fn with_sensors(scene: &Scene) -> impl Iterator<Item = &Robot> {
 }
 
 /// The outline of a robot at a pose.
-pub(super) fn body(robot: &Robot, pose: &Isometry2<f64>) -> Vec<Point2<f64>> {
+fn body(robot: &Robot, pose: &Isometry2<f64>) -> Vec<Point2<f64>> {
     if robot.corners.is_empty() {
         return arc(pose, robot.radius_m, TAU);
     }
@@ -90,30 +98,21 @@ fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<Point2<f64>>
     (0..=CORNERS).map(point).collect()
 }
 
-/// Writes the names: in the middle of what is large enough, otherwise below.
-fn names(chart: &Chart, scene: &Scene) -> Result<(), String> {
+/// Writes the names: that of an obstacle in its middle if there is room, every other name below.
+fn names(panel: &Panel, chart: &Chart, scene: &Scene) -> Result<(), String> {
     let obstacles = scene.obstacles.iter().filter_map(|obstacle| {
         let outline = if obstacle.outline.is_empty() { obstacle.reach.first()? } else { &obstacle.outline };
-        Some((obstacle.name.as_str(), outline.clone()))
+        Some((&obstacle.name, outline.clone(), true))
     });
-    let robots = scene.robots.iter().map(|robot| (robot.name.as_str(), body(robot, &robot.pose)));
+    let robots = scene.robots.iter().map(|robot| (&robot.name, body(robot, &robot.pose), false));
     let plot = chart.plotting_area();
-    for (name, outline) in obstacles.chain(robots) {
-        let pixels: Vec<(i32, i32)> =
-            outline.iter().map(|corner| plot.map_coordinate(&(corner.x, corner.y))).collect();
-        let span = |values: Vec<i32>| {
-            let (low, high) = (values.iter().min().copied(), values.iter().max().copied());
-            (low.unwrap_or(0), high.unwrap_or(0))
-        };
-        let (left, right) = span(pixels.iter().map(|pixel| pixel.0).collect());
-        let (top, bottom) = span(pixels.iter().map(|pixel| pixel.1).collect());
-        let style = text(20).color(&INK);
-        let (width, height) = plot.estimate_text_size(name, &style).map_err(why)?;
-        let fits = right - left > width as i32 && bottom - top > height as i32;
-        let y = if fits { (top + bottom) / 2 + px(5) } else { bottom + px(12) };
-        let style = style.pos(Pos::new(HPos::Center, VPos::Center));
-        let text = Text::new(name.to_owned(), ((left + right) / 2, y), style);
-        plot.use_screen_coord().draw(&text).map_err(why)?;
+    let pixels = plot.use_screen_coord();
+    for (name, outline, is_light) in obstacles.chain(robots) {
+        let [low, high] = span(&outline).map(|corner| plot.map_coordinate(&pair(&corner)));
+        let [width, height] = panel.text_size(&pixels, name)?;
+        let has_room = is_light && high.0 - low.0 > width && low.1 - high.1 > height;
+        let y = if has_room { (low.1 + high.1) / 2 } else { low.1 + height / 2 + panel.px(2) };
+        panel.write(&pixels, ((low.0 + high.0) / 2, y), HPos::Center, name)?;
     }
     Ok(())
 }

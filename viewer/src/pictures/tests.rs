@@ -1,5 +1,5 @@
 use super::*;
-use crate::fake::FakeRun;
+use crate::tests::FakeRun;
 use evaluation::palette::{self, Rgb};
 use image::RgbImage;
 use interfaces::CellState;
@@ -22,9 +22,8 @@ fn drawn(ticks: usize) -> Drawn {
             trail.push(at);
         }
     }
-    let pictures = Pictures { scene: &run.scene, mapper: &run.mapper, trails: &trails, goals: &GOALS };
     let start = std::time::Instant::now();
-    write_all(folder.path(), &pictures).unwrap();
+    write_all(folder.path(), &run.scene, &run.mapper, &trails, &GOALS).unwrap();
     println!("drawn in {:?}", start.elapsed());
     Drawn { folder, run }
 }
@@ -147,8 +146,7 @@ fn a_folder_that_cannot_be_written_is_named() {
     let file = tempfile::NamedTempFile::new().unwrap();
     let folder = file.path().join("pictures");
     let run = FakeRun::new();
-    let pictures = Pictures { scene: &run.scene, mapper: &run.mapper, trails: &[], goals: &[] };
-    let error = write_all(&folder, &pictures).unwrap_err().to_string();
+    let error = write_all(&folder, &run.scene, &run.mapper, &[], &[]).unwrap_err().to_string();
     assert!(error.starts_with(&format!("cannot write {}: ", folder.display())), "{error}");
 }
 

@@ -1,26 +1,29 @@
 //! The trajectories of the robots, as the paper's Figure 4.
 
-use super::panel::{Chart, Mark, Panel, pair};
-use super::{Pictures, ground};
+use super::ground;
+use super::panel::{Chart, Panel, pair};
+use crate::legend::{Legend, Mark};
 use crate::scene::Scene;
+use crate::view::Trail;
 use evaluation::drawing::{Area, ink, why};
 use evaluation::palette::{self, Rgb};
 use nalgebra::Point2;
 use plotters::prelude::*;
 
 /// Draws the scene, every trail with its start, and the goals.
-pub(super) fn draw(panel: &Panel, area: &Area, pictures: &Pictures) -> Result<(), String> {
-    let Pictures { scene, trails, goals, .. } = *pictures;
+pub(super) fn draw(
+    panel: &Panel,
+    area: &Area,
+    scene: &Scene,
+    trails: &[Trail],
+    goals: &[Point2<f64>],
+) -> Result<(), String> {
     let (chart, legend) = panel.axes(area, &format!("Trajectories in {}", scene.title))?;
     ground::draw(&chart, scene)?;
     // The other robots' trails on top: the curious robot goes everywhere.
-    for is_driven in [true, false] {
-        for (robot, trail) in
-            scene.robots.iter().zip(trails).filter(|(robot, _)| robot.is_driven == is_driven)
-        {
-            line(panel, &chart, trail.points(), ground::robot_color(robot))?;
-        }
-    }
+    let mut drawn: Vec<_> = scene.robots.iter().zip(trails).collect();
+    drawn.sort_by_key(|(robot, _)| !robot.is_driven);
+    drawn.iter().try_for_each(|(robot, trail)| line(panel, &chart, trail.points(), robot.color()))?;
     let plot = chart.plotting_area();
     for goal in goals {
         let cross = Cross::new(pair(goal), panel.px(3), panel.line(ink(palette::GOAL), 2));
@@ -29,7 +32,7 @@ pub(super) fn draw(panel: &Panel, area: &Area, pictures: &Pictures) -> Result<()
     for (robot, trail) in scene.robots.iter().zip(trails) {
         if let Some(first) = trail.points().first() {
             let at = plot.map_coordinate(&pair(first));
-            panel.dot(&plot.use_screen_coord(), at, ground::robot_color(robot))?;
+            panel.dot(&plot.use_screen_coord(), at, robot.color())?;
         }
     }
     panel.frame(&chart)?;
@@ -37,10 +40,9 @@ pub(super) fn draw(panel: &Panel, area: &Area, pictures: &Pictures) -> Result<()
 }
 
 /// The entries of the legend.
-pub(super) fn entries(scene: &Scene, goals: &[Point2<f64>]) -> Vec<(Mark, String)> {
-    let robots =
-        scene.robots.iter().map(|robot| (Mark::Line(ground::robot_color(robot)), robot.name.clone()));
-    let mut entries: Vec<(Mark, String)> = robots.collect();
+pub(super) fn entries(scene: &Scene, goals: &[Point2<f64>]) -> Legend {
+    let robots = scene.robots.iter().map(|robot| (Mark::Line(robot.color()), robot.name.clone()));
+    let mut entries: Legend = robots.collect();
     entries.push((Mark::Dot(palette::CURIOUS), "start".into()));
     if !goals.is_empty() {
         entries.push((Mark::Cross(palette::GOAL), format!("{} goals", goals.len())));

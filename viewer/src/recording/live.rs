@@ -4,11 +4,11 @@ use rerun::external::re_grpc_client::write::ClientConnectionState;
 use rerun::external::re_uri::ProxyUri;
 use rerun::log::LogMsg;
 use rerun::sink::{GrpcSink, LogSink};
+use std::fmt::Display;
 use std::io;
 use std::net::{TcpStream, ToSocketAddrs};
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -34,52 +34,13 @@ impl Live {
 
 /// Why a viewer cannot show the run.
 #[derive(Debug, thiserror::Error)]
-pub enum LiveError {
-    /// There is no viewer to start.
-    #[error(
-        "cannot start the viewer: there is no program `{program}`; install it with \
-         `pip install rerun-sdk=={version}`"
-    )]
-    Missing {
-        /// The program that was looked for.
-        program: String,
-        /// The version that fits.
-        version: String,
-    },
-    /// The viewer cannot be started.
-    #[error("cannot start the viewer `{program}`: {why}")]
-    Start {
-        /// The program that was started.
-        program: String,
-        /// The reason.
-        why: io::Error,
-    },
-    /// The viewer ended at once.
-    #[error("the viewer `{program}` ended at once ({status}); run it by itself to see why")]
-    Ended {
-        /// The program that was started.
-        program: String,
-        /// Its exit status.
-        status: std::process::ExitStatus,
-    },
-    /// The address is invalid.
-    #[error(
-        "`{address}` is not the address of a viewer: {why}; a valid address is rerun+http://127.0.0.1:9876/proxy"
-    )]
-    Address {
-        /// The given text.
-        address: String,
-        /// What is invalid.
-        why: String,
-    },
-    /// No viewer runs at the address.
-    #[error("no viewer answers at {address}: {why}; start one there with `rerun`")]
-    Unreachable {
-        /// The address.
-        address: String,
-        /// What happened instead.
-        why: String,
-    },
+#[error("{0}")]
+pub struct LiveError(String);
+
+impl LiveError {
+    fn unreachable(uri: &ProxyUri, why: impl Display) -> Self {
+        Self(format!("no viewer answers at {uri}: {why}; start one there with `rerun`"))
+    }
 }
 
 /// How long a running viewer may take to answer.
@@ -90,14 +51,14 @@ const START_TIMEOUT: Duration = Duration::from_secs(20);
 const STALL_TIMEOUT: Duration = Duration::from_secs(5);
 /// The number of messages that may wait for a viewer.
 const QUEUE: usize = 256;
-/// The program of the viewer, unless the options name another.
-pub(super) const PROGRAM: &str = "rerun";
+/// The program of the viewer.
+const PROGRAM: &str = "rerun";
 
 /// The connection to one viewer. A viewer that goes away, or accepts nothing, is lost: it never delays a run
 /// by more than [`STALL_TIMEOUT`].
 pub(super) struct LiveFeed {
     address: String,
-    state: Mutex<State>,
+    state: State,
 }
 
 enum State {
@@ -107,14 +68,14 @@ enum State {
 }
 
 impl LiveFeed {
-    /// Connects to `live`; `program` is the viewer to start.
-    pub(super) fn open(live: &Live, program: &str) -> Result<Self, LiveError> {
+    /// Connects to `live`.
+    pub(super) fn open(live: &Live) -> Result<Self, LiveError> {
         let uri = match live {
             Live::Connect(address) => parse(address)?,
             Live::Spawn => {
                 let uri = parse(rerun::DEFAULT_CONNECT_URL)?;
                 if reach(&uri).is_err() {
-                    spawn(program, &uri)?;
+                    spawn(PROGRAM, &uri)?;
                 }
                 uri
             }
@@ -123,48 +84,42 @@ impl LiveFeed {
         let (queue, messages) = sync_channel(QUEUE);
         let (report, delivered) = channel();
         thread::spawn(move || report.send(deliver(sink, messages)));
-        Ok(Self { address: uri.to_string(), state: State::Open { queue, delivered }.into() })
+        Ok(Self { address: uri.to_string(), state: State::Open { queue, delivered } })
     }
 
     pub(super) fn address(&self) -> &str {
         &self.address
     }
 
-    pub(super) fn send(&self, message: &LogMsg) {
-        let mut state = self.state();
-        let State::Open { queue, .. } = &*state else { return };
-        let deadline = Instant::now() + STALL_TIMEOUT;
-        let mut message = message.clone();
-        loop {
-            match queue.try_send(message) {
-                Ok(()) => return,
-                Err(TrySendError::Full(back)) if Instant::now() < deadline => message = back,
-                Err(_) => break,
+    pub(super) fn send(&mut self, message: &LogMsg) {
+        let State::Open { queue, .. } = &self.state else { return };
+        let mut waiting = Some(message.clone());
+        let is_sent = wait_for(STALL_TIMEOUT, || match queue.try_send(waiting.take()?) {
+            Ok(()) => Some(true),
+            Err(TrySendError::Disconnected(_)) => Some(false),
+            Err(TrySendError::Full(message)) => {
+                waiting = Some(message);
+                None
             }
-            thread::sleep(Duration::from_millis(2));
+        });
+        if is_sent != Some(true) {
+            self.state = State::Lost;
         }
-        *state = State::Lost;
     }
 
     /// Whether the viewer went away.
     pub(super) fn is_lost(&self) -> bool {
-        matches!(*self.state(), State::Lost)
+        matches!(self.state, State::Lost)
     }
 
     /// Waits until everything is delivered, or the viewer is lost.
-    pub(super) fn close(&self) {
-        let mut state = self.state();
-        let State::Open { queue, delivered } = std::mem::replace(&mut *state, State::Closed) else {
-            return;
-        };
-        drop(queue);
-        if delivered.recv_timeout(STALL_TIMEOUT) != Ok(true) {
-            *state = State::Lost;
+    pub(super) fn close(&mut self) {
+        if let State::Open { queue, delivered } = std::mem::replace(&mut self.state, State::Closed) {
+            drop(queue);
+            if delivered.recv_timeout(STALL_TIMEOUT) != Ok(true) {
+                self.state = State::Lost;
+            }
         }
-    }
-
-    fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -182,25 +137,35 @@ fn deliver(sink: GrpcSink, messages: Receiver<LogMsg>) -> bool {
 
 fn parse(address: &str) -> Result<ProxyUri, LiveError> {
     let long = if address.contains("://") { address.into() } else { format!("rerun+http://{address}/proxy") };
-    long.parse().map_err(|error| LiveError::Address { address: address.into(), why: format!("{error}") })
+    long.parse().map_err(|why| {
+        let valid = "rerun+http://127.0.0.1:9876/proxy";
+        LiveError(format!("`{address}` is not the address of a viewer: {why}; a valid address is {valid}"))
+    })
 }
 
-/// Checks that a server listens at `uri`. The SDK would try for ever.
+/// The first value of `poll` within `timeout`.
+fn wait_for<T>(timeout: Duration, mut poll: impl FnMut() -> Option<T>) -> Option<T> {
+    let deadline = Instant::now() + timeout;
+    loop {
+        let value = poll();
+        if value.is_some() || Instant::now() >= deadline {
+            return value;
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Checks that a server listens at `uri`. The SDK would try without end.
 fn reach(uri: &ProxyUri) -> io::Result<()> {
     let (host, port) = (uri.origin.host.to_string(), uri.origin.port);
     let (report, outcome) = channel();
     // In a thread, because the lookup of a name has no timeout of its own.
     thread::spawn(move || {
-        let host = host.trim_matches(['[', ']']);
-        let reached = (host, port).to_socket_addrs().and_then(|addresses| {
-            let mut reached = Err(io::Error::new(io::ErrorKind::NotFound, "the name has no address"));
-            for address in addresses {
-                reached = TcpStream::connect_timeout(&address, ANSWER_TIMEOUT).map(drop);
-                if reached.is_ok() {
-                    break;
-                }
-            }
-            reached
+        let reached = (host.trim_matches(['[', ']']), port).to_socket_addrs().and_then(|addresses| {
+            let none = Err(io::Error::new(io::ErrorKind::NotFound, "the name has no address"));
+            addresses.fold(none, |reached, address| {
+                reached.or_else(|_| TcpStream::connect_timeout(&address, ANSWER_TIMEOUT).map(drop))
+            })
         });
         report.send(reached)
     });
@@ -208,21 +173,18 @@ fn reach(uri: &ProxyUri) -> io::Result<()> {
 }
 
 fn connect(uri: &ProxyUri) -> Result<GrpcSink, LiveError> {
-    let unreachable = |why: String| LiveError::Unreachable { address: uri.to_string(), why };
-    reach(uri).map_err(|error| unreachable(error.to_string()))?;
+    reach(uri).map_err(|error| LiveError::unreachable(uri, error))?;
     let sink = GrpcSink::new(uri.clone());
-    let deadline = Instant::now() + ANSWER_TIMEOUT;
-    loop {
-        match sink.status() {
-            ClientConnectionState::Connected => return Ok(sink),
-            ClientConnectionState::Connecting { .. } if Instant::now() < deadline => {
-                thread::sleep(Duration::from_millis(2));
-            }
-            _ => break,
-        }
+    let is_connected = wait_for(ANSWER_TIMEOUT, || match sink.status() {
+        ClientConnectionState::Connected => Some(true),
+        ClientConnectionState::Connecting { .. } => None,
+        ClientConnectionState::Disconnected(_) => Some(false),
+    });
+    if is_connected == Some(true) {
+        return Ok(sink);
     }
     thread::spawn(move || drop(sink)); // waits for the viewer a while longer
-    Err(unreachable("what listens there is not a viewer".into()))
+    Err(LiveError::unreachable(uri, "what listens there is not a viewer"))
 }
 
 /// Starts the viewer and waits until it listens.
@@ -230,29 +192,29 @@ fn spawn(program: &str, uri: &ProxyUri) -> Result<(), LiveError> {
     let mut command = Command::new(program);
     command.arg("--port").arg(uri.origin.port.to_string()).arg("--hide-welcome-screen");
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    #[cfg(unix)] // Ctrl-C ends the run; the viewer stays, to look at what there is
+    #[cfg(unix)] // Ctrl-C ends the run, and the viewer stays open
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
-    let program = program.to_owned();
-    let mut viewer = match command.spawn() {
-        Ok(viewer) => viewer,
-        Err(why) if why.kind() == io::ErrorKind::NotFound => {
-            return Err(LiveError::Missing { program, version: rerun::build_info().version.to_string() });
-        }
-        Err(why) => return Err(LiveError::Start { program, why }),
-    };
-    let deadline = Instant::now() + START_TIMEOUT;
-    while reach(uri).is_err() {
-        match viewer.try_wait() {
-            // A launcher may end well while the viewer that it launched goes on.
-            Ok(Some(status)) if !status.success() => return Err(LiveError::Ended { program, status }),
-            _ if Instant::now() > deadline => {
-                let why = format!("it did not start within {} s", START_TIMEOUT.as_secs());
-                return Err(LiveError::Unreachable { address: uri.to_string(), why });
-            }
-            _ => thread::sleep(Duration::from_millis(50)),
-        }
-    }
-    Ok(())
+    let mut viewer = command.spawn().map_err(|why| {
+        LiveError(if why.kind() == io::ErrorKind::NotFound {
+            let version = rerun::build_info().version;
+            format!(
+                "cannot start the viewer: there is no program `{program}`; install it with \
+                 `pip install rerun-sdk=={version}`"
+            )
+        } else {
+            format!("cannot start the viewer `{program}`: {why}")
+        })
+    })?;
+    let started = wait_for(START_TIMEOUT, || match (reach(uri), viewer.try_wait()) {
+        (Ok(()), _) => Some(Ok(())),
+        // A launcher may end with success while the viewer that it launched goes on.
+        (_, Ok(Some(status))) if !status.success() => Some(Err(LiveError(format!(
+            "the viewer `{program}` ended at once ({status}); run it by itself to see why"
+        )))),
+        _ => None,
+    });
+    let timeout = || format!("it did not start within {} s", START_TIMEOUT.as_secs());
+    started.unwrap_or_else(|| Err(LiveError::unreachable(uri, timeout())))
 }
 
 #[cfg(test)]
@@ -261,7 +223,7 @@ mod tests {
     use std::net::TcpListener;
 
     fn fails(address: &str) -> String {
-        LiveFeed::open(&Live::Connect(address.into()), PROGRAM).err().unwrap().to_string()
+        LiveFeed::open(&Live::Connect(address.into())).err().unwrap().to_string()
     }
 
     #[test]

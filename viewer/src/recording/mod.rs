@@ -3,15 +3,13 @@
 //! [`Recorder::log`] is called at every tick and decides what to log how often. The rows are sent every
 //! second, so that a killed run loses no more than one second.
 //!
-//! A new entity is a file in `tracks/` and a line in its list; for data that [`View`] does not have yet, also
-//! a field there and its source.
+//! A new entity is a function in `tracks/` and a line in its list; for data that [`View`] does not have yet,
+//! also a field there and its source.
 
+mod entity;
 mod file;
 mod layout;
 mod live;
-mod pace;
-mod path;
-mod rows;
 mod sinks;
 mod tracks;
 
@@ -19,31 +17,12 @@ pub use live::{Live, LiveError};
 
 use crate::scene::Scene;
 use crate::view::View;
-use pace::Pace;
+use entity::Track;
 use rerun::log::ChunkBatcherConfig;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamError};
-use rows::{Now, Target};
 use sinks::Sinks;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use tracks::Track;
-
-/// The destinations of a recording: a file, viewers, or both.
-#[derive(Clone, Debug)]
-pub struct RecordingOptions {
-    /// The `.rrd` file to write; an older one is replaced.
-    pub file: Option<PathBuf>,
-    /// The viewers to show the run in while it goes on.
-    pub live: Vec<Live>,
-    /// The viewer's program, for [`Live::Spawn`].
-    pub viewer: String,
-}
-
-impl Default for RecordingOptions {
-    fn default() -> Self {
-        Self { file: None, live: Vec::new(), viewer: live::PROGRAM.into() }
-    }
-}
 
 /// Why a recording cannot be made, or cannot continue.
 #[derive(Debug, thiserror::Error)]
@@ -73,7 +52,7 @@ const FLUSH_LIVE: Duration = Duration::from_millis(50);
 
 impl From<RecordingStreamError> for RecordingError {
     fn from(error: RecordingStreamError) -> Self {
-        Self::Sdk(error.to_string())
+        sdk(error)
     }
 }
 
@@ -91,15 +70,15 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the file and the viewers. A viewer that cannot be reached does not stop a recording with a file:
+    /// Opens the `.rrd` file, over an older one, and the viewers that show the run while it goes on. A viewer that cannot be reached does not stop a recording with a file:
     /// see [`Recorder::live_problem`].
     ///
     /// # Errors
     ///
     /// When the file cannot be written, or when there is no file and a viewer cannot be reached. Both are
     /// known within two seconds, unless a viewer has to be started.
-    pub fn new(options: &RecordingOptions, scene: Scene) -> Result<Self, RecordingError> {
-        let (sinks, live_problem) = Sinks::open(options)?;
+    pub fn new(file: Option<&Path>, live: &[Live], scene: Scene) -> Result<Self, RecordingError> {
+        let (sinks, live_problem) = Sinks::open(file, live)?;
         let (_, info, properties, ..) =
             RecordingStreamBuilder::new(APPLICATION).recording_name(scene.title.clone()).into_args();
         // Rows are sent in columns: there is nothing to batch.
@@ -110,64 +89,50 @@ impl Recorder {
         Ok(Self { stream, sinks, scene, tracks: None, flushed, flushed_at: 0.0, live_problem })
     }
 
-    /// Records the run as it is now.
+    /// Records the run as it is now. The last view has every map, and closes the recording.
     ///
     /// # Errors
     ///
-    /// When the file cannot be written any more.
-    pub fn log(&mut self, view: &View) -> Result<(), RecordingError> {
-        self.record(view, false)?;
+    /// When the file can no longer be written; at the end, when a part of the recording could not be written.
+    pub fn log(&mut self, view: &View, is_last: bool) -> Result<(), RecordingError> {
+        if self.tracks.is_none() {
+            // A viewer's y axis points down.
+            self.stream.log_static(tracks::WORLD, &rerun::Transform3D::from_scale([1.0, -1.0, 1.0]))?;
+            self.tracks = Some(tracks::start(&self.stream, &self.scene, view)?);
+            layout::send(&self.stream, APPLICATION, &self.scene, view)?;
+            self.stream.flush_async().map_err(sdk)?;
+        }
+        self.tracks.iter_mut().flatten().for_each(|track| track.push(view, is_last));
         let wait = if self.sinks.is_live() { FLUSH_LIVE } else { FLUSH_FILE };
-        let is_much = view.time - self.flushed_at >= Pace::of(self.scene.unit).flush;
-        if is_much || self.flushed.elapsed() >= wait {
+        // Maps at hundreds of times real time fill the memory.
+        let is_much = view.time - self.flushed_at >= self.scene.unit.choose(60.0, 2000.0);
+        if is_last || is_much || self.flushed.elapsed() >= wait {
             self.flushed_at = view.time;
             self.flush()?;
+        }
+        if is_last {
+            self.stream.flush_blocking().map_err(sdk)?;
+            self.sinks.finish()?;
         }
         Ok(())
     }
 
-    /// Records the end of the run, with every map as it is now, and closes the recording.
-    ///
-    /// # Errors
-    ///
-    /// When a part of the recording could not be written to the file.
-    pub fn finish(mut self, view: &View) -> Result<(), RecordingError> {
-        self.record(view, true)?;
-        self.flush()?;
-        self.stream.flush_blocking().map_err(|error| RecordingError::Sdk(error.to_string()))?;
-        self.sinks.finish()
-    }
-
-    /// Why a viewer does not show the run, or does not show it any more. The file is not affected.
+    /// Why a viewer does not show the run, or no longer shows it. The file is not affected.
     pub fn live_problem(&self) -> Option<String> {
         self.live_problem.clone().or_else(|| self.sinks.live_problem())
-    }
-
-    fn record(&mut self, view: &View, is_last: bool) -> Result<(), RecordingError> {
-        let tracks = match &mut self.tracks {
-            Some(tracks) => tracks,
-            none => {
-                // A viewer's y axis points down.
-                let upright = rerun::Transform3D::from_scale([1.0, -1.0, 1.0]);
-                self.stream.log_static(path::WORLD, &upright)?;
-                let tracks = none.insert(tracks::start(&self.stream, &self.scene, view)?);
-                layout::send(&self.stream, APPLICATION, &self.scene, view)?;
-                self.stream.flush_async().map_err(|error| RecordingError::Sdk(error.to_string()))?;
-                tracks
-            }
-        };
-        let now = Now { time: view.time, step: view.step };
-        tracks.iter_mut().for_each(|track| track.push(now, view, is_last));
-        Ok(())
     }
 
     /// Sends what waits.
     fn flush(&mut self) -> Result<(), RecordingError> {
         self.flushed = Instant::now();
-        let to = Target { stream: &self.stream, unit: self.scene.unit };
-        self.tracks.iter_mut().flatten().try_for_each(|track| track.flush(to))?;
+        let (stream, unit) = (&self.stream, self.scene.unit);
+        self.tracks.iter_mut().flatten().try_for_each(|track| track.flush(stream, unit))?;
         self.sinks.check()
     }
+}
+
+fn sdk(error: impl std::fmt::Display) -> RecordingError {
+    RecordingError::Sdk(error.to_string())
 }
 
 #[cfg(test)]

@@ -2,79 +2,81 @@
 
 use super::file::RrdFile;
 use super::live::LiveFeed;
-use super::{LiveError, RecordingError, RecordingOptions};
+use super::{Live, RecordingError};
 use rerun::log::LogMsg;
 use rerun::sink::{LogSink, SinkFlushError};
-use std::sync::Arc;
+use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// The file and the viewers; shared with the SDK's thread.
 #[derive(Clone)]
-pub(super) struct Sinks {
-    file: Option<Arc<RrdFile>>,
-    live: Vec<Arc<LiveFeed>>,
+pub(super) struct Sinks(Arc<Mutex<Outputs>>);
+
+struct Outputs {
+    file: Option<RrdFile>,
+    live: Vec<LiveFeed>,
 }
 
 impl Sinks {
     /// Opens every destination. Returns also why a viewer is missing, if one is missing and there is a file.
-    pub(super) fn open(options: &RecordingOptions) -> Result<(Self, Option<String>), RecordingError> {
-        let create = |path: &std::path::PathBuf| match RrdFile::create(path) {
-            Ok(file) => Ok(Arc::new(file)),
-            Err(why) => Err(RecordingError::File { path: path.clone(), why }),
-        };
-        let file = options.file.as_ref().map(create).transpose()?;
+    pub(super) fn open(
+        file: Option<&Path>,
+        viewers: &[Live],
+    ) -> Result<(Self, Option<String>), RecordingError> {
+        let file = file.map(RrdFile::create).transpose()?;
         let (mut live, mut problem) = (Vec::new(), None);
-        for viewer in &options.live {
-            match LiveFeed::open(viewer, &options.viewer) {
-                Ok(feed) => live.push(Arc::new(feed)),
+        for viewer in viewers {
+            match LiveFeed::open(viewer) {
+                Ok(feed) => live.push(feed),
                 Err(error) if file.is_some() => problem = Some(error.to_string()),
-                Err(error) => return Err(LiveError::into(error)),
+                Err(error) => return Err(error.into()),
             }
         }
-        Ok((Self { file, live }, problem))
+        Ok((Self(Arc::new(Outputs { file, live }.into())), problem))
     }
 
     #[cfg(test)]
     pub(super) fn of_file(file: RrdFile) -> Self {
-        Self { file: Some(Arc::new(file)), live: Vec::new() }
+        Self(Arc::new(Outputs { file: Some(file), live: Vec::new() }.into()))
     }
 
     /// Whether a viewer shows the run.
     pub(super) fn is_live(&self) -> bool {
-        self.live.iter().any(|feed| !feed.is_lost())
+        self.outputs().live.iter().any(|feed| !feed.is_lost())
     }
 
     /// Which viewer went away, if one did.
     pub(super) fn live_problem(&self) -> Option<String> {
-        let lost = self.live.iter().find(|feed| feed.is_lost())?;
+        let outputs = self.outputs();
+        let lost = outputs.live.iter().find(|feed| feed.is_lost())?;
         Some(format!("the viewer at {} went away", lost.address()))
     }
 
     /// Whether everything so far was written to the file.
     pub(super) fn check(&self) -> Result<(), RecordingError> {
-        self.file_result(RrdFile::check)
+        self.outputs().file.as_ref().map_or(Ok(()), RrdFile::check)
     }
 
     /// Closes everything, once the stream was flushed.
     pub(super) fn finish(&self) -> Result<(), RecordingError> {
-        self.live.iter().for_each(|feed| feed.close());
-        self.file_result(RrdFile::finish)
+        let mut outputs = self.outputs();
+        outputs.live.iter_mut().for_each(LiveFeed::close);
+        outputs.file.iter_mut().for_each(RrdFile::finish);
+        drop(outputs);
+        self.check()
     }
 
-    fn file_result(&self, verb: impl Fn(&RrdFile) -> Result<(), String>) -> Result<(), RecordingError> {
-        let Some(file) = &self.file else { return Ok(()) };
-        verb(file).map_err(|why| RecordingError::File { path: file.path().to_owned(), why })
+    fn outputs(&self) -> MutexGuard<'_, Outputs> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl LogSink for Sinks {
     fn send(&self, message: LogMsg) {
-        if let Some(file) = &self.file {
-            file.send(&message);
-        }
-        for feed in &self.live {
-            feed.send(&message);
-        }
+        let mut outputs = self.outputs();
+        outputs.file.iter_mut().for_each(|file| file.send(&message));
+        outputs.live.iter_mut().for_each(|feed| feed.send(&message));
     }
 
     fn flush_blocking(&self, _timeout: Duration) -> Result<(), SinkFlushError> {

@@ -1,20 +1,20 @@
 use super::*;
-use crate::fake::FakeRun;
 use crate::layers::Layer;
 use crate::scene::TimeUnit;
+use crate::tests::FakeRun;
 use nalgebra::Point2;
-use rerun::components::{ImageBuffer, Position2D, Scalar, Text};
+use rerun::components::{ImageBuffer, Scalar, Text, Translation3D};
 use rerun::external::re_log_encoding::Decoder;
 use rerun::{
-    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, Points2D, Scalars,
-    SegmentationImage, StoreKind, TextLog,
+    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, Scalars, SegmentationImage,
+    StoreKind, TextLog, Transform3D,
 };
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 
-fn to(file: &Path) -> RecordingOptions {
-    RecordingOptions { file: Some(file.to_owned()), ..Default::default() }
+fn to(file: &Path) -> Result<Recorder, RecordingError> {
+    Recorder::new(Some(file), &[], FakeRun::new().scene)
 }
 
 /// Records `ticks` of a made-up run into a file.
@@ -23,12 +23,12 @@ fn record(file: &Path, ticks: u64) -> FakeRun {
 }
 
 fn record_run(mut run: FakeRun, file: &Path, ticks: u64) -> FakeRun {
-    let mut recorder = Recorder::new(&to(file), run.scene.clone()).unwrap();
+    let mut recorder = Recorder::new(Some(file), &[], run.scene.clone()).unwrap();
     for _ in 0..ticks {
         run.step();
-        run.with_view(|view| recorder.log(view)).unwrap();
+        run.with_view(|view| recorder.log(view, false)).unwrap();
     }
-    run.with_view(|view| recorder.finish(view)).unwrap();
+    run.with_view(|view| recorder.log(view, true)).unwrap();
     run
 }
 
@@ -50,7 +50,7 @@ fn rows<C: Component + Clone>(
     let mut rows = Vec::new();
     for chunk in store.iter_physical_chunks() {
         if chunk.entity_path() == &entity && !chunk.is_static() {
-            let time = chunk.timelines().values().find(|time| time.name() == rows::SIM_TIME);
+            let time = chunk.timelines().values().find(|time| time.name() == entity::SIM_TIME);
             let times = time.unwrap().times_raw();
             let items = chunk.iter_component::<C>(component).map(|items| items.as_slice().to_vec());
             rows.extend(times.iter().copied().zip(items));
@@ -110,10 +110,10 @@ fn everything_that_a_newcomer_looks_for_is_there() {
         "/world/obstacles/toy/name",
         "/world/path",
         "/world/robots/curious/body",
-        "/world/robots/curious/heading",
+        "/world/robots/curious/body/name",
         "/world/robots/curious/trail",
         "/world/robots/dummy/body",
-        "/world/robots/dummy/heading",
+        "/world/robots/dummy/body/name",
         "/world/robots/dummy/trail",
         "/world/walls",
     ];
@@ -149,9 +149,9 @@ fn what_is_read_back_is_what_happened() {
     let run = record(&file, 305);
     let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
 
-    let position = Points2D::descriptor_positions().component;
+    let position = Transform3D::descriptor_translation().component;
     for (name, at) in run.positions() {
-        let body = rows::<Position2D>(&store, &path::robot(name, "body"), position);
+        let body = rows::<Translation3D>(&store, &tracks::robot(name, "body"), position);
         assert!(body.len() > 250, "{name}: {}", body.len());
         let (time, positions) = body.last().unwrap();
         assert_eq!(*time, 30_500_000_000);
@@ -160,7 +160,7 @@ fn what_is_read_back_is_what_happened() {
     }
     let buffer = SegmentationImage::descriptor_buffer().component;
     for layer in Layer::ALL {
-        let maps = rows::<ImageBuffer>(&store, &format!("{}/cells", path::map(layer)), buffer);
+        let maps = rows::<ImageBuffer>(&store, &format!("{}/cells", tracks::map(layer)), buffer);
         let most = if layer == Layer::Occupancy { 32 } else { 5 };
         assert!((2..=most).contains(&maps.len()), "{layer:?}: {}", maps.len());
         let last = maps.last().unwrap().1[0].0.to_vec();
@@ -169,11 +169,11 @@ fn what_is_read_back_is_what_happened() {
     let coverage = rows::<Scalar>(&store, "/curves/scores/coverage", Scalars::descriptor_scalars().component);
     assert_eq!(coverage.len(), 32); // once a second, and at the end
     assert!(coverage.windows(2).all(|pair| pair[0].1[0].0 <= pair[1].1[0].0));
-    let log = rows::<Text>(&store, path::LOG, TextLog::descriptor_text().component);
+    let log = rows::<Text>(&store, tracks::LOG, TextLog::descriptor_text().component);
     assert!(log.iter().any(|(_, text)| text[0].0.as_str().starts_with("goal reached; poisson chooses")));
     let toy = rows::<rerun::LineStrip2D>(
         &store,
-        &path::obstacle("toy"),
+        "/world/obstacles/toy",
         rerun::LineStrips2D::descriptor_strips().component,
     );
     assert_eq!(toy.len(), 1);
@@ -236,18 +236,18 @@ fn a_killed_run_leaves_what_was_handed_on() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
     let mut run = FakeRun::new();
-    let mut recorder = Recorder::new(&to(&file), run.scene.clone()).unwrap();
+    let mut recorder = to(&file).unwrap();
     for _ in 0..100 {
         run.step();
-        run.with_view(|view| recorder.log(view)).unwrap();
+        run.with_view(|view| recorder.log(view, false)).unwrap();
     }
     recorder.flush().unwrap();
     recorder.stream.flush_blocking().unwrap();
     // What the disk has now, whole and with the last message torn.
     let killed = std::fs::read(&file).unwrap();
     let whole = store(&killed, StoreKind::Recording);
-    let position = Points2D::descriptor_positions().component;
-    let body = rows::<Position2D>(&whole, &path::robot("curious", "body"), position);
+    let position = Transform3D::descriptor_translation().component;
+    let body = rows::<Translation3D>(&whole, &tracks::robot("curious", "body"), position);
     assert_eq!(body.last().unwrap().0, 10_000_000_000);
     let messages = |bytes: &[u8]| {
         Decoder::<rerun::log::LogMsg>::decode_eager(io::Cursor::new(bytes.to_vec()))
@@ -263,8 +263,7 @@ fn a_killed_run_leaves_what_was_handed_on() {
 
 #[test]
 fn a_file_that_cannot_be_made_is_one_clear_error() {
-    let error =
-        |file: &str| Recorder::new(&to(Path::new(file)), FakeRun::new().scene).err().unwrap().to_string();
+    let error = |file: &str| to(Path::new(file)).err().unwrap().to_string();
     let missing = error("no/such/folder/run.rrd");
     assert!(missing.starts_with("cannot write the recording no/such/folder/run.rrd: "), "{missing}");
     if Path::new("/dev/full").exists() {
@@ -297,16 +296,16 @@ fn a_disk_that_fills_up_is_told_while_it_goes_on_and_at_the_end() {
     let mut run = FakeRun::new();
     run.step();
     let mut record = |room: usize| {
-        let mut recorder = Recorder::new(&RecordingOptions::default(), run.scene.clone()).unwrap();
+        let mut recorder = Recorder::new(None, &[], run.scene.clone()).unwrap();
         let disk = SmallDisk(Arc::new(room.into()));
         let file = file::RrdFile::with_output(Path::new("run.rrd"), Box::new(disk.clone())).unwrap();
         recorder.sinks = Sinks::of_file(file);
         recorder.stream.set_sink(Box::new(recorder.sinks.clone()));
-        run.with_view(|view| recorder.log(view)).unwrap();
+        run.with_view(|view| recorder.log(view, false)).unwrap();
         recorder.flush().ok(); // the SDK writes in its own time
         recorder.stream.flush_blocking().unwrap();
         let meanwhile = recorder.flush().map_err(|error| error.to_string());
-        let end = run.with_view(|view| recorder.finish(view)).map_err(|error| error.to_string());
+        let end = run.with_view(|view| recorder.log(view, true)).map_err(|error| error.to_string());
         (meanwhile, end, *disk.0.lock().unwrap())
     };
     let full = Err("cannot write the recording run.rrd: no storage space".to_owned());
@@ -325,21 +324,19 @@ fn a_disk_that_fills_up_is_told_while_it_goes_on_and_at_the_end() {
 #[test]
 fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
     let free = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let live = vec![Live::Connect(free.to_string())];
+    let live = [Live::Connect(free.to_string())];
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
-    let mut recorder =
-        Recorder::new(&RecordingOptions { live: live.clone(), ..to(&file) }, FakeRun::new().scene).unwrap();
+    let mut recorder = Recorder::new(Some(&file), &live, FakeRun::new().scene).unwrap();
     let problem = recorder.live_problem().unwrap();
     assert!(problem.starts_with("no viewer answers at "), "{problem}");
     let mut run = FakeRun::new();
     run.step();
-    run.with_view(|view| recorder.log(view)).unwrap();
-    run.with_view(|view| recorder.finish(view)).unwrap();
+    run.with_view(|view| recorder.log(view, false)).unwrap();
+    run.with_view(|view| recorder.log(view, true)).unwrap();
     store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
 
-    let options = RecordingOptions { live, ..Default::default() };
-    assert_eq!(Recorder::new(&options, FakeRun::new().scene).err().unwrap().to_string(), problem);
+    assert_eq!(Recorder::new(None, &live, FakeRun::new().scene).err().unwrap().to_string(), problem);
 }
 
 #[test]

@@ -45,10 +45,6 @@ impl From<&GridSpec> for Scene {
 impl Visible for GridWorld {
     const UNIT: TimeUnit = TimeUnit::Step;
 
-    fn scene(&self) -> Scene {
-        self.spec().into()
-    }
-
     fn robots<'a>(&'a self, reading: &'a CellReading) -> Vec<RobotState<'a>> {
         let sight = Sight::Cells { reading, radius: self.spec().sensor_radius };
         vec![RobotState { pose: reading.pose, sight: Some(sight) }]

@@ -3,12 +3,10 @@
 
 mod grid;
 mod physics;
-mod state;
 
-pub use state::{RobotState, Sight};
-
-use interfaces::{GridFrame, World};
-use nalgebra::{Isometry2, Point2};
+use evaluation::palette::{self, Rgb};
+use interfaces::{CellReading, GridFrame, LaserReading, World};
+use nalgebra::{Isometry2, Point2, Vector2};
 
 /// The corners of a polygon, m; the last corner is joined to the first.
 pub type Outline = Vec<Point2<f64>>;
@@ -23,28 +21,27 @@ pub enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// The unit as a word, for titles.
-    pub fn plural(self) -> &'static str {
+    /// The value that belongs to the unit.
+    pub(crate) fn choose<T>(self, second: T, step: T) -> T {
         match self {
-            Self::Second => "seconds",
-            Self::Step => "steps",
+            Self::Second => second,
+            Self::Step => step,
         }
     }
 
-    /// The unit behind a number.
+    /// The unit as a word, for titles.
+    pub fn plural(self) -> &'static str {
+        self.choose("seconds", "steps")
+    }
+
+    /// The unit after a number.
     pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Second => "s",
-            Self::Step => "steps",
-        }
+        self.choose("s", "steps")
     }
 
     /// The unit of length in a world with this unit of time.
     pub fn length(self) -> &'static str {
-        match self {
-            Self::Second => "m",
-            Self::Step => "cells",
-        }
+        self.choose("m", "cells")
     }
 }
 
@@ -65,6 +62,29 @@ pub struct Scene {
     pub robots: Vec<Robot>,
 }
 
+impl Scene {
+    /// Whether a robot is driven, or is part of the surroundings.
+    pub(crate) fn has_robot(&self, is_driven: bool) -> bool {
+        self.robots.iter().any(|robot| robot.is_driven == is_driven)
+    }
+
+    /// Whether an obstacle is fixed, or moves, appears or disappears.
+    pub(crate) fn has_obstacle(&self, is_fixed: bool) -> bool {
+        self.obstacles.iter().any(|obstacle| obstacle.is_fixed() == is_fixed)
+    }
+}
+
+/// Lower left corner and size of a frame, m.
+pub(crate) fn extent(frame: &GridFrame) -> (Point2<f64>, Vector2<f64>) {
+    (frame.origin(), Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m())
+}
+
+/// The lowest and the highest coordinates of an outline, m.
+pub(crate) fn span(outline: &[Point2<f64>]) -> [Point2<f64>; 2] {
+    let first = outline.first().copied().unwrap_or(Point2::origin());
+    outline.iter().fold([first; 2], |[low, high], corner| [low.inf(corner), high.sup(corner)])
+}
+
 /// Something that is neither a wall nor a robot.
 #[derive(Clone, Debug)]
 pub struct Obstacle {
@@ -77,9 +97,14 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
-    /// Whether the obstacle stands at one place during the whole run, as furniture does.
+    /// Whether the obstacle has the same pose during the whole run, as furniture does.
     pub fn is_fixed(&self) -> bool {
         self.reach.is_empty()
+    }
+
+    /// The color of the obstacle.
+    pub(crate) fn color(&self) -> Rgb {
+        if self.is_fixed() { palette::FURNITURE } else { palette::MOVING }
     }
 }
 
@@ -100,6 +125,13 @@ pub struct Robot {
     pub is_driven: bool,
 }
 
+impl Robot {
+    /// The color of the robot.
+    pub(crate) fn color(&self) -> Rgb {
+        if self.is_driven { palette::CURIOUS } else { palette::OTHER_ROBOT }
+    }
+}
+
 /// What a laser scanner or a sonar covers.
 #[derive(Clone, Copy, Debug)]
 pub struct Sector {
@@ -111,13 +143,33 @@ pub struct Sector {
     pub range_m: f64,
 }
 
+/// A robot at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct RobotState<'a> {
+    /// The pose in the frame of the world, m and rad. A robot in a grid world has no heading.
+    pub pose: Isometry2<f64>,
+    /// What the curious robot sees; `None` for every other robot.
+    pub sight: Option<Sight<'a>>,
+}
+
+/// What a robot sees.
+#[derive(Clone, Copy, Debug)]
+pub enum Sight<'a> {
+    /// The last scan of a laser.
+    Laser(&'a LaserReading),
+    /// Cells.
+    Cells {
+        /// The cells that are seen now.
+        reading: &'a CellReading,
+        /// The range of the sensor, cells.
+        radius: u32,
+    },
+}
+
 /// A world that can be shown while a robot explores it.
 pub trait Visible: World {
     /// The unit of time of the world.
     const UNIT: TimeUnit;
-
-    /// What stays the same for a whole run.
-    fn scene(&self) -> Scene;
 
     /// The robots now, in the order of [`Scene::robots`].
     fn robots<'a>(&'a self, reading: &'a Self::Reading) -> Vec<RobotState<'a>>;

@@ -24,10 +24,6 @@ impl From<&FleetSpec> for Scene {
 impl Visible for PhysicsWorld {
     const UNIT: TimeUnit = TimeUnit::Second;
 
-    fn scene(&self) -> Scene {
-        self.spec().fleet().into()
-    }
-
     fn robots<'a>(&'a self, _: &'a LaserReading) -> Vec<RobotState<'a>> {
         let state = |robot: sim::physics::RobotView<'a>| RobotState {
             pose: robot.pose,

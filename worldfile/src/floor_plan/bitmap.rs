@@ -84,19 +84,14 @@ impl Bitmap {
     /// The least box of pixels that holds all blocked ones, as its lower left and upper right
     /// corner; `None` if none is blocked.
     pub fn blocked_bounds(&self) -> Option<([u32; 2], [u32; 2])> {
-        let mut bounds: Option<([u32; 2], [u32; 2])> = None;
-        for y in 0..self.height {
-            let row = self.row(y);
-            let (Some(first), Some(last)) =
-                (row.iter().position(|blocked| *blocked), row.iter().rposition(|blocked| *blocked))
-            else {
-                continue;
-            };
-            let (low, high) = bounds.get_or_insert(([first as u32, y], [0, 0]));
-            low[0] = low[0].min(first as u32);
-            *high = [high[0].max(last as u32 + 1), y + 1];
-        }
-        bounds
+        let rows = (0..self.height).filter_map(|y| {
+            let first = self.row(y).iter().position(|blocked| *blocked)?;
+            let last = self.row(y).iter().rposition(|blocked| *blocked)?;
+            Some(([first as u32, y], [last as u32 + 1, y + 1]))
+        });
+        rows.reduce(|(low, high), (first, last)| {
+            ([low[0].min(first[0]), low[1]], [high[0].max(last[0]), last[1]])
+        })
     }
 
     /// The sides of pixels between a blocked pixel and a free one, or the border of the picture.

@@ -68,39 +68,25 @@ fn runs(row: &[bool]) -> impl Iterator<Item = [u32; 2]> {
     })
 }
 
-/// Where blocked pixels begin and end in each column.
-struct Columns {
-    /// The first change of each column, and the end of the last.
-    starts: Vec<u32>,
-    /// The rows at which a column changes between free and blocked, upwards from free.
-    changes: Vec<u32>,
-}
+/// The rows at which each column changes between free and blocked, upwards from free.
+struct Columns(Vec<Vec<u32>>);
 
 impl Columns {
     fn new(bitmap: &Bitmap) -> Self {
-        let mut starts = vec![0_u32; bitmap.width() as usize + 1];
-        let for_changes = |visit: &mut dyn FnMut(usize, u32)| {
-            bitmap.for_row_pairs(|y, below, above| {
-                let pairs = below.iter().zip(above).enumerate();
-                pairs.filter(|(_, (below, above))| below != above).for_each(|(x, _)| visit(x, y));
-            });
-        };
-        for_changes(&mut |x, _| starts[x + 1] += 1);
-        for x in 1..starts.len() {
-            starts[x] += starts[x - 1];
-        }
-        let mut next = starts.clone();
-        let mut changes = vec![0; starts[starts.len() - 1] as usize];
-        for_changes(&mut |x, y| {
-            changes[next[x] as usize] = y;
-            next[x] += 1;
+        let mut columns = vec![Vec::new(); bitmap.width() as usize];
+        bitmap.for_row_pairs(|y, below, above| {
+            for (column, (below, above)) in columns.iter_mut().zip(below.iter().zip(above)) {
+                if below != above {
+                    column.push(y);
+                }
+            }
         });
-        Self { starts, changes }
+        Self(columns)
     }
 
     /// The run of blocked pixels in column `x` that holds row `y`, which is blocked.
     fn run(&self, x: u32, y: u32) -> (u32, u32) {
-        let changes = &self.changes[self.starts[x as usize] as usize..self.starts[x as usize + 1] as usize];
+        let changes = &self.0[x as usize];
         let above = changes.partition_point(|change| *change <= y);
         (changes[above - 1], changes[above])
     }

@@ -1,131 +1,87 @@
-//! From the file as written to a world that makes sense.
+//! From the tables of a world file to the spec of a world.
 
-use super::file::{BlockFile, GridFile, TransitionsFile, Whole};
 use super::map::{Drawing, drawing};
 use super::path;
-use crate::error::{Source, WorldError};
-use crate::reader::Reading;
-use crate::together::Together;
-use serde_spanned::Spanned;
+use crate::reader::{Table, unique_names};
 use sim::grid::{BlockSpec, Course, GridSpec};
-use std::ops::RangeInclusive;
 
-pub(super) fn check(source: &Source<'_>, reading: Reading<GridFile>) -> Result<GridSpec, WorldError> {
-    let Reading { file, mut wrong, .. } = reading;
-    let files: Vec<&BlockFile> = file.blocks.sound().into_iter().map(Spanned::get_ref).collect();
-    let name = file.name.get().and_then(|name| wrong.keep(source.name("", name)));
-    let sensor_radius = file.sensor_radius.get().and_then(|radius| {
-        wrong.keep(whole(source, "sensor_radius", radius, 1..=GridSpec::MAX_SENSOR_RADIUS))
-    });
-    let chances = file.transitions.get().map(|transitions| {
-        let TransitionsFile { block_chance, robot_chance } = transitions.get_ref();
-        let block = wrong.keep(chance(source, "block_chance", block_chance));
-        (block, wrong.keep(chance(source, "robot_chance", robot_chance)))
-    });
-    wrong.keep(source.unique("block", files.iter().map(|block| &block.name)));
-    let drawing = file.map.get().and_then(|map| wrong.keep(drawing(source, map)));
-    // By their places among the files; none where one is wrong.
-    let mut blocks: Vec<Option<BlockSpec>> = Vec::new();
-    for written in &files {
-        let block = wrong.keep(block(source, written, drawing.as_ref()));
-        if let (Some(block), Some(drawing)) = (&block, &drawing) {
-            wrong.keep(apart(source, &files, written, block, &blocks, drawing));
+/// The keys of a world file.
+pub(super) const KEYS: &str = "name, description, sensor_radius, map, transitions, block";
+
+pub(super) fn world(root: &Table<'_>) -> Option<GridSpec> {
+    let name = root.name();
+    let description = root.description();
+    let sensor_radius = root.needed("sensor_radius");
+    let sensor_radius =
+        sensor_radius.and_then(|value| value.integer_within(&(1..=GridSpec::MAX_SENSOR_RADIUS)));
+    let drawing = root.needed("map").and_then(|map| drawing(root.file, map.text()?, map.span()));
+    let chances = root
+        .table_or_empty("transitions", "block_chance, robot_chance")
+        .map(|table| ["block_chance", "robot_chance"].map(|key| chance(&table, key)));
+    let tables = root.tables("block", "name, dwell, stood, course, path");
+    unique_names("block", &tables);
+    let mut blocks: Vec<(&Table<'_>, BlockSpec)> = Vec::new();
+    for table in &tables {
+        let Some(block) = block(table, drawing.as_ref()) else { continue };
+        if let Some(drawing) = &drawing {
+            apart(table, &block, &blocks, drawing);
         }
-        blocks.push(block);
+        blocks.push((table, block));
     }
-    let (
-        Some(name),
-        Some(sensor_radius),
-        Some((Some(block_probability), Some(robot_probability))),
-        Some(drawing),
-        true,
-    ) = (name, sensor_radius, chances, drawing, wrong.is_empty())
-    else {
-        return Err(wrong.into_error(source));
-    };
-    Ok(GridSpec {
-        name,
-        description: file.description.unwrap_or_default(),
+    let (drawing, [block_probability, robot_probability]) = (drawing?, chances?);
+    Some(GridSpec {
+        name: name?,
+        description: description?,
         walls: drawing.walls,
-        blocks: blocks.into_iter().flatten().collect(),
+        blocks: blocks.into_iter().map(|(_, block)| block).collect(),
         start: drawing.start,
-        sensor_radius,
-        block_probability,
-        robot_probability,
+        sensor_radius: sensor_radius?,
+        block_probability: block_probability?,
+        robot_probability: robot_probability?,
     })
 }
 
-fn block(source: &Source<'_>, file: &BlockFile, drawing: Option<&Drawing>) -> Result<BlockSpec, WorldError> {
-    let name = source.name("block", &file.name);
-    let dwell = whole(source, "block.dwell", &file.dwell, 1..=BlockSpec::MAX_DWELL);
-    let longest = dwell.as_ref().map_or(BlockSpec::MAX_DWELL, |dwell| dwell - 1);
-    let stood = file.stood.as_ref().map(|stood| whole(source, "block.stood", stood, 0..=longest)).transpose();
-    let course = match file.course.get_ref().as_str() {
-        "loop" => Ok(Course::Loop),
-        "back-and-forth" => Ok(Course::BackAndForth),
+fn block(table: &Table<'_>, drawing: Option<&Drawing>) -> Option<BlockSpec> {
+    let name = table.name();
+    let dwell = table.needed("dwell").and_then(|value| value.integer_within(&(1..=BlockSpec::MAX_DWELL)));
+    let longest = dwell.unwrap_or(BlockSpec::MAX_DWELL + 1) - 1;
+    let stood = table.get("stood").map_or(Some(0), |value| value.integer_within(&(0..=longest)));
+    let course = table.needed("course").and_then(|value| match value.text()? {
+        "loop" => Some(Course::Loop),
+        "back-and-forth" => Some(Course::BackAndForth),
         other => {
-            let what = format!("`block.course` is `{other}`, which is not known");
             let help = "it must be \"loop\" or \"back-and-forth\"";
-            Err(source.error(&what, (file.course.span(), "not known"), &[], help))
+            value.invalid(&format!("is `{other}`, which is not known"), "not known", help)
         }
-    };
-    // Without a map there is nothing to judge a path by, and any way round is right if the file has it wrong.
-    let way_round = *course.as_ref().unwrap_or(&Course::BackAndForth);
-    let path = drawing.map_or(Ok(Vec::new()), |drawing| path::cells(source, file, way_round, drawing));
-    let (name, dwell, stood, course, path) = (name, dwell, stood, course, path).together()?;
-    Ok(BlockSpec { name, dwell, stood: stood.unwrap_or_default(), course, path })
+    });
+    let called = name.as_deref().unwrap_or_default();
+    // Of a path whose course is invalid, only what every path must keep to is checked; without a map, nothing.
+    let path = path::cells(table, called, course.unwrap_or(Course::BackAndForth), drawing);
+    table.sound(BlockSpec { name: name?, dwell: dwell?, stood: stood?, course: course?, path: path? })
 }
 
-/// Refuses a block that starts where another one or the robot does.
-fn apart(
-    source: &Source<'_>,
-    files: &[&BlockFile],
-    written: &BlockFile,
-    block: &BlockSpec,
-    others: &[Option<BlockSpec>],
-    drawing: &Drawing,
-) -> Result<(), WorldError> {
-    let place = |block: &BlockFile| block.path.get_ref()[0].span();
+/// Notes a block that starts on the cell of another one or of the robot.
+fn apart(table: &Table<'_>, block: &BlockSpec, others: &[(&Table<'_>, BlockSpec)], drawing: &Drawing) {
     let start = block.path[0];
     if start == drawing.start {
         let what = format!("the robot and the block `{}` start on one cell", block.name);
         let help = "begin the path elsewhere, or draw an `R` where the robot starts";
-        return Err(source.error(&what, (place(written), "the robot starts here"), &[], help));
-    }
-    let mut others = others.iter().zip(files);
-    let other = others.find(|(other, _)| other.as_ref().is_some_and(|other| other.path[0] == start));
-    if let Some((_, other)) = other {
-        let what = format!("the blocks `{}` and `{}` start on one cell", other.name.get_ref(), block.name);
-        let marks = [(place(other), "the other one")];
+        table.error::<()>(&what, (table.at_item("path", 0), "the robot starts here"), &[], help);
+    } else if let Some((other, first)) = others.iter().find(|(_, other)| other.path[0] == start) {
+        let what = format!("the blocks `{}` and `{}` start on one cell", first.name, block.name);
+        let others = [(other.at_item("path", 0), "the other one")];
         let help = "begin one of the paths elsewhere";
-        return Err(source.error(&what, (place(written), "one starts here"), &marks, help));
+        table.error::<()>(&what, (table.at_item("path", 0), "one starts here"), &others, help);
     }
-    Ok(())
 }
 
-/// The number, if it is in `range`.
-fn whole(
-    source: &Source<'_>,
-    key: &str,
-    value: &Whole,
-    range: RangeInclusive<u32>,
-) -> Result<u32, WorldError> {
-    if let Some(number) = u32::try_from(*value.get_ref()).ok().filter(|number| range.contains(number)) {
-        return Ok(number);
-    }
-    let what = format!("`{key}` is {}, which is out of range", value.get_ref());
-    let help = format!("it must be a whole number from {} to {}", range.start(), range.end());
-    Err(source.error(&what, (value.span(), "out of range"), &[], &help))
-}
-
-/// The chance, if it is one above zero; 1 if it is left out.
-fn chance(source: &Source<'_>, key: &str, value: &Option<Spanned<f64>>) -> Result<f64, WorldError> {
-    let Some(value) = value else { return Ok(1.0) };
-    let number = *value.get_ref();
+/// A probability above zero; 1 if it is not given.
+fn chance(table: &Table<'_>, key: &'static str) -> Option<f64> {
+    let Some(value) = table.get(key) else { return Some(1.0) };
+    let number = value.number()?;
     if number > 0.0 && number <= 1.0 {
-        return Ok(number);
+        return Some(number);
     }
-    let what = format!("`transitions.{key}` is {number:?}, which is out of range");
     let help = "it must be a number above 0 and at most 1";
-    Err(source.error(&what, (value.span(), "out of range"), &[], help))
+    value.invalid(&format!("is {number:?}, which is out of range"), "out of range", help)
 }

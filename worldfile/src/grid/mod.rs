@@ -20,7 +20,6 @@
 //! | `block.path` | required | way points, joined by straight lines along rows and columns, clear of walls; two cells or more |
 
 mod check;
-mod file;
 mod map;
 mod path;
 #[cfg(test)]
@@ -29,9 +28,8 @@ mod write;
 
 pub use write::to_toml;
 
-use crate::error::{Source, WorldError};
-use crate::kind::Kind;
-use crate::reader;
+use crate::error::{WorldError, read_text};
+use crate::reader::{self, Kind};
 use sim::grid::GridSpec;
 use std::path::Path;
 
@@ -41,9 +39,7 @@ use std::path::Path;
 ///
 /// When the file cannot be read, or as in [`parse`].
 pub fn load(path: impl AsRef<Path>) -> Result<GridSpec, WorldError> {
-    let name = path.as_ref().display().to_string();
-    let text = std::fs::read_to_string(&path)
-        .map_err(|error| WorldError::unreadable("world file", &name, &error))?;
+    let (name, text) = read_text("world file", path.as_ref())?;
     parse(&name, &text)
 }
 
@@ -55,6 +51,5 @@ pub fn load(path: impl AsRef<Path>) -> Result<GridSpec, WorldError> {
 /// in the world contradict each other. The messages say where, and what would be valid: of everything
 /// that is invalid, as far as one error does not hide another.
 pub fn parse(file_name: &str, text: &str) -> Result<GridSpec, WorldError> {
-    let source = Source::new(file_name, text);
-    check::check(&source, reader::read(&source, Kind::Grid)?)
+    reader::read(file_name, text, Kind::Grid, check::KEYS, check::world)
 }

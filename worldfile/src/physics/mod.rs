@@ -5,14 +5,10 @@
 mod behavior;
 mod check;
 mod drive;
-mod file;
 mod floor_plan;
 mod footprint;
-mod laser;
-mod numbers;
 mod obstacle;
 mod robot;
-mod senses;
 mod sensor;
 mod space;
 #[cfg(test)]
@@ -21,25 +17,15 @@ mod tests;
 pub use floor_plan::MAX_PIECES;
 pub use sensor::MOST_OUT_M;
 
-use crate::error::{Source, WorldError};
+use crate::error::{WorldError, read_text};
 use crate::files::{Disk, Files};
-use crate::kind::Kind;
-use crate::reader;
+use crate::reader::{self, Kind};
 use sim::physics::{FleetSpec, WorldSpec};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Reads and checks a world file, in which any number of robots may be driven, or none.
-///
-/// # Errors
-///
-/// When the file cannot be read, or as in [`parse_fleet`].
-pub fn load_fleet(path: impl AsRef<Path>) -> Result<FleetSpec, WorldError> {
-    let (name, text) = read(path.as_ref())?;
-    parse_fleet_with(&name, &text, &Disk)
-}
-
-/// Checks the text of a world file; `name` is what messages call the file. There are no pictures beside it.
+/// Checks the text of a world file, in which any number of robots can be driven, or none; `name` is the name of the
+/// file in messages. There are no pictures beside it.
 ///
 /// # Errors
 ///
@@ -56,8 +42,7 @@ pub fn parse_fleet(name: &str, text: &str) -> Result<FleetSpec, WorldError> {
 ///
 /// As [`parse_fleet`], and when a picture cannot be read.
 pub fn parse_fleet_with(name: &str, text: &str, files: &dyn Files) -> Result<FleetSpec, WorldError> {
-    let source = Source::new(name, text);
-    check::check(&source, &reader::read(&source, Kind::Physics)?, files)
+    reader::read(name, text, Kind::Physics, check::KEYS, |root| check::fleet(root, files))
 }
 
 /// Reads and checks a world file.
@@ -66,7 +51,7 @@ pub fn parse_fleet_with(name: &str, text: &str, files: &dyn Files) -> Result<Fle
 ///
 /// When the file cannot be read, or as in [`parse_world`].
 pub fn load_world(path: impl AsRef<Path>) -> Result<WorldSpec, WorldError> {
-    let (name, text) = read(path.as_ref())?;
+    let (name, text) = read_text("world file", path.as_ref())?;
     parse_world_with(&name, &text, &Disk)
 }
 
@@ -85,21 +70,12 @@ pub fn parse_world(name: &str, text: &str) -> Result<WorldSpec, WorldError> {
 ///
 /// As [`parse_world`], and when a picture cannot be read.
 pub fn parse_world_with(name: &str, text: &str, files: &dyn Files) -> Result<WorldSpec, WorldError> {
-    let source = Source::new(name, text);
-    let reading = reader::read(&source, Kind::Physics)?;
-    let fleet = check::check(&source, &reading, files)?;
-    check::world(&source, &reading.file, fleet)
+    reader::read(name, text, Kind::Physics, check::KEYS, |root| {
+        check::fleet(root, files).and_then(|fleet| check::world(root, fleet))
+    })
 }
 
-/// What messages call a world file, and its text.
-fn read(path: &Path) -> Result<(String, String), WorldError> {
-    let name = path.display().to_string();
-    let text =
-        std::fs::read_to_string(path).map_err(|error| WorldError::unreadable("world file", &name, &error))?;
-    Ok((name, text))
-}
-
-/// Where a world file without a folder finds its pictures: nowhere.
+/// The pictures beside a world file without a folder.
 fn no_files() -> BTreeMap<PathBuf, Vec<u8>> {
     BTreeMap::new()
 }

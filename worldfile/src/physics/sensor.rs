@@ -1,70 +1,155 @@
-//! What all sensors of a robot have: a rate, a place, and perhaps a range.
+//! The sensors of a robot: lasers, bumpers, sonars, fiducial finders.
 
-use super::file::{Number, Pair};
-use super::numbers::Table;
-use crate::error::WorldError;
-use crate::together::Together;
+use crate::reader::Table;
 use interfaces::pose;
 use nalgebra::{Isometry2, Point2};
+use sim::physics::{BumperSpec, FiducialSpec, LaserSpec, SonarSpec};
 
 /// Sensors stick out of the circle about their robot by this at most, m.
 pub const MOST_OUT_M: f64 = 1.0;
+/// More lasers on one robot than this are refused.
+const MOST_LASERS: usize = 100;
+/// More sonars on one robot than this are refused.
+const MOST_SONARS: usize = 100;
 
-/// A rate (Hz), and the physics steps from one measurement to the next.
-pub(super) fn period_steps(table: &Table<'_>, rate: &Number, step_s: f64) -> Result<(f64, u64), WorldError> {
-    let rate_hz = table.number("rate_hz", rate, 0.01..=1000.0)?;
-    let steps = 1.0 / (rate_hz * step_s);
-    if steps.round() >= 1.0 && (steps - steps.round()).abs() <= 1e-6 * steps {
-        return Ok((rate_hz, steps.round() as u64));
-    }
-    let path = table.path;
-    let what = format!("`{path}.rate_hz` is {rate_hz}, a scan every {steps:.3} physics steps of {step_s} s");
-    let whole = steps.floor().max(1.0);
-    let near = [whole, whole + 1.0].map(|steps| format!("{:.6}", 1.0 / (steps * step_s)));
-    let near = near.map(|hz| hz.trim_end_matches('0').trim_end_matches('.').to_owned());
-    let help = format!("scans must be whole steps apart: {} or {} Hz would be", near[0], near[1]);
-    Err(table.source.error(&what, (rate.span(), "not whole steps apart"), &[], &help))
+const LASER_KEYS: &str =
+    "beams, fov_deg, range_min_m, range_max_m, rate_hz, mount_m, mount_deg, noise_std_m, dropout";
+const SONAR_KEYS: &str = "cone_deg, range_min_m, range_max_m, rate_hz, mount_m, mount_deg, noise_std_m";
+
+/// What the sensors of a robot must fit: the physics step (s) and the radius of its body (m).
+#[derive(Clone, Copy)]
+pub(super) struct Carrier {
+    pub(super) step_s: f64,
+    pub(super) radius_m: f64,
 }
 
-/// Where `what` sits on a robot that lies within `radius_m`, or how it sticks out of that.
-pub(super) fn mount(
-    table: &Table<'_>,
-    what: &str,
-    mount_m: &Option<Pair>,
-    mount_deg: &Option<Number>,
-    radius_m: f64,
-) -> Result<Isometry2<f64>, WorldError> {
-    let (at, mount_deg) = (
-        mount_m.as_ref().map_or(Ok(Point2::origin()), |m| table.pair("mount_m", m, -10.0..=10.0)),
-        table.number_or("mount_deg", mount_deg, 0.0, -360.0..=360.0),
-    )
-        .together()?;
-    if let Some(file) = mount_m.as_ref().filter(|_| at.coords.norm() > radius_m + MOST_OUT_M) {
-        let what = format!("{what} is mounted off its robot");
-        let help = format!(
-            "it must lie within the robot's radius of {radius_m} m, or stick out by {MOST_OUT_M} m at most"
-        );
-        return Err(table.source.error(&what, (file.span(), "off the robot"), &[], &help));
+impl Carrier {
+    /// The first laser of the robot `name`, and the others.
+    pub(super) fn lasers(self, robot: &Table<'_>, name: &str) -> Option<(LaserSpec, Vec<LaserSpec>)> {
+        let tables = robot.needed("laser")?.table_or_tables(LASER_KEYS)?;
+        if tables.is_empty() || tables.len() > MOST_LASERS {
+            let what = format!("the robot `{name}` has {} lasers", tables.len());
+            let help = format!("it must have 1 to {MOST_LASERS}");
+            return robot.error(&what, (robot.at("laser"), "these lasers"), &[], &help);
+        }
+        let lasers: Vec<_> = tables.iter().map(|table| self.laser(table)).collect();
+        let mut lasers = lasers.into_iter();
+        Some((lasers.next()??, lasers.collect::<Option<_>>()?))
     }
-    Ok(pose(at.x, at.y, mount_deg.to_radians()))
+
+    fn laser(self, table: &Table<'_>) -> Option<LaserSpec> {
+        let beams = table.count("beams", 2..=10_000);
+        let fov_deg = table.number_or("fov_deg", 360.0, 1.0..=360.0);
+        let range = range(table, "a laser sees nothing");
+        let rate = self.rate(table);
+        let mount = self.mount(table, "a laser");
+        let noise_std_m = table.number_or("noise_std_m", 0.0, 0.0..=1.0);
+        let dropout = table.number_or("dropout", 0.0, 0.0..=1.0);
+        let ([range_min_m, range_max_m], (rate_hz, period_steps)) = (range?, rate?);
+        table.sound(LaserSpec {
+            beams: beams?,
+            fov_rad: fov_deg?.to_radians(),
+            range_min_m,
+            range_max_m,
+            rate_hz,
+            period_steps,
+            mount: mount?,
+            noise_std_m: noise_std_m?,
+            dropout: dropout?,
+        })
+    }
+
+    pub(super) fn sonars(self, robot: &Table<'_>) -> Option<Vec<SonarSpec>> {
+        let tables = robot.tables("sonar", SONAR_KEYS);
+        if let Some(last) = tables.get(MOST_SONARS) {
+            let help = format!("{MOST_SONARS} are the most");
+            let mark = (last.span.clone(), "one too many");
+            return robot.error("a robot has too many sonars", mark, &[], &help);
+        }
+        let sonars: Vec<_> = tables.iter().map(|table| self.sonar(table)).collect();
+        sonars.into_iter().collect()
+    }
+
+    fn sonar(self, table: &Table<'_>) -> Option<SonarSpec> {
+        let cone_deg = table.number("cone_deg", 1.0..=180.0);
+        let range = range(table, "a sonar hears nothing");
+        let rate = self.rate(table);
+        let mount = self.mount(table, "a sensor");
+        let noise_std_m = table.number_or("noise_std_m", 0.0, 0.0..=1.0);
+        let ([range_min_m, range_max_m], (_, period_steps)) = (range?, rate?);
+        table.sound(SonarSpec {
+            cone_rad: cone_deg?.to_radians(),
+            range_min_m,
+            range_max_m,
+            period_steps,
+            mount: mount?,
+            noise_std_m: noise_std_m?,
+        })
+    }
+
+    /// `Some(None)`: the robot has none.
+    pub(super) fn fiducial(self, robot: &Table<'_>) -> Option<Option<FiducialSpec>> {
+        let Some(value) = robot.get("fiducial") else { return Some(None) };
+        let table = value.table("fov_deg, range_max_m, rate_hz, mount_m, mount_deg")?;
+        let fov_deg = table.number_or("fov_deg", 360.0, 1.0..=360.0);
+        let range_max_m = table.number("range_max_m", 0.01..=1000.0);
+        let rate = self.rate(&table);
+        let mount = self.mount(&table, "a sensor");
+        let fov_rad = fov_deg?.to_radians();
+        let (_, period_steps) = rate?;
+        table.sound(Some(FiducialSpec { fov_rad, range_max_m: range_max_m?, period_steps, mount: mount? }))
+    }
+
+    /// A rate (Hz), and the physics steps from one measurement to the next.
+    fn rate(self, table: &Table<'_>) -> Option<(f64, u64)> {
+        let (rate_hz, step_s) = (table.number("rate_hz", 0.01..=1000.0)?, self.step_s);
+        let steps = 1.0 / (rate_hz * step_s);
+        if steps.round() >= 1.0 && (steps - steps.round()).abs() <= 1e-6 * steps {
+            return Some((rate_hz, steps.round() as u64));
+        }
+        let path = table.path("rate_hz");
+        let what = format!("`{path}` is {rate_hz}, a scan every {steps:.3} physics steps of {step_s} s");
+        let whole = steps.floor().max(1.0);
+        let near = [whole, whole + 1.0].map(|steps| format!("{:.6}", 1.0 / (steps * step_s)));
+        let near = near.map(|hz| hz.trim_end_matches('0').trim_end_matches('.').to_owned());
+        let help = format!("scans must be whole steps apart: {} or {} Hz would be", near[0], near[1]);
+        table.error(&what, (table.at("rate_hz"), "not whole steps apart"), &[], &help)
+    }
+
+    /// The pose of the sensor `what` on its robot.
+    fn mount(self, table: &Table<'_>, what: &str) -> Option<Isometry2<f64>> {
+        let at = table.get("mount_m");
+        let at = at.map_or(Some(Point2::origin()), |value| value.pair_within(&(-10.0..=10.0)));
+        let mount_deg = table.number_or("mount_deg", 0.0, -360.0..=360.0);
+        let (at, radius_m) = (at?, self.radius_m);
+        if at.coords.norm() > radius_m + MOST_OUT_M {
+            let what = format!("{what} is mounted off its robot");
+            let help = format!(
+                "it must lie within the robot's radius of {radius_m} m, or stick out by {MOST_OUT_M} m at most"
+            );
+            return table.error(&what, (table.at("mount_m"), "off the robot"), &[], &help);
+        }
+        Some(pose(at.x, at.y, mount_deg?.to_radians()))
+    }
 }
 
-/// The least and the greatest range, m.
-pub(super) fn range(
-    table: &Table<'_>,
-    least: &Option<Number>,
-    most: &Number,
-) -> Result<[f64; 2], WorldError> {
-    let (range_max_m, range_min_m) = (
-        table.number("range_max_m", most, 0.01..=1000.0),
-        table.number_or("range_min_m", least, 0.0, 0.0..=1000.0),
-    )
-        .together()?;
-    if let Some(min) = least.as_ref().filter(|_| range_min_m >= range_max_m) {
-        let marks = [(most.span(), "not below this")];
+/// `Some(None)`: the robot has none.
+pub(super) fn bumper(robot: &Table<'_>) -> Option<Option<BumperSpec>> {
+    let Some(value) = robot.get("bumper") else { return Some(None) };
+    let table = value.table("sectors, fov_deg")?;
+    let sectors = table.count("sectors", 1..=64);
+    let fov_rad = table.number_or("fov_deg", 360.0, 1.0..=360.0)?.to_radians();
+    table.sound(Some(BumperSpec { sectors: sectors?, fov_rad }))
+}
+
+/// The least and the greatest range, m; `what`: the message if there is no range between them.
+fn range(table: &Table<'_>, what: &str) -> Option<[f64; 2]> {
+    let range_min_m = table.number_or("range_min_m", 0.0, 0.0..=1000.0);
+    let range_max_m = table.number("range_max_m", 0.01..=1000.0)?;
+    if range_min_m? >= range_max_m {
+        let others = [(table.at("range_max_m"), "not below this")];
         let help = "`range_min_m` must be smaller than `range_max_m`";
-        let what = if table.path == "robot.laser" { "a laser sees nothing" } else { "a sonar hears nothing" };
-        return Err(table.source.error(what, (min.span(), "too far"), &marks, help));
+        return table.error(what, (table.at("range_min_m"), "too far"), &others, help);
     }
-    Ok([range_min_m, range_max_m])
+    Some([range_min_m?, range_max_m])
 }

@@ -1,9 +1,6 @@
-//! The space that things of a file are put into: the map, and what is solid.
+//! The space that the things of a file are put into: the map, and what is solid.
 
-use super::file::Pair;
-use super::numbers::{Table, extent};
-use crate::error::{Source, WorldError};
-use crate::together::Together;
+use crate::reader::{File, Table, extent};
 use nalgebra::Point2;
 use sim::physics::Rectangle;
 use sim::physics::shape::TOUCH_M;
@@ -12,55 +9,58 @@ use std::ops::Range;
 /// The latest time that a file can name, s: some thirty years.
 pub(super) const MAX_TIME_S: f64 = 1e9;
 
-/// Something solid, and where the file speaks of it.
+/// Something solid, and its place in the file.
 pub(super) struct Solid {
     pub(super) shape: Rectangle,
     pub(super) span: Range<usize>,
 }
 
-/// What a robot is put into. What is wrong in the file is missing here.
-pub(super) struct Around<'a> {
+/// The surroundings of a robot or an obstacle. What is invalid in the file is missing.
+pub(super) struct Space {
+    /// The size of the map, m; infinite if it is invalid.
     pub(super) size: Point2<f64>,
+    /// The physics step, s; tiny if it is invalid.
     pub(super) step_s: f64,
-    /// What stands from the start to the end.
-    pub(super) solids: &'a [Solid],
-    /// What stands at the start but may be gone when a robot comes by.
-    pub(super) movers: &'a [Solid],
+    pub(super) walls: Vec<Solid>,
+    /// The obstacles that stand from the start to the end.
+    pub(super) fixed: Vec<Solid>,
+    /// The obstacles that stand at the start but can be gone later.
+    pub(super) movers: Vec<Solid>,
     /// Whether nothing is missing.
     pub(super) is_whole: bool,
 }
 
-/// The rectangle between two corners.
-pub(super) fn upright(
-    table: &Table<'_>,
-    min: &Pair,
-    max: &Pair,
-    size: &Point2<f64>,
-) -> Result<Rectangle, WorldError> {
-    let (low, high) = (table.point("min_m", min, size), table.point("max_m", max, size)).together()?;
-    if (high - low).min() < 0.001 {
-        let what = format!("`{}.max_m` is not above and to the right of `min_m`", table.path);
-        let help = "`min_m` is the lower left corner, `max_m` the upper right one, at least 0.001 m away";
-        return Err(table.source.error(
-            &what,
-            (max.span(), "upper right"),
-            &[(min.span(), "lower left")],
-            help,
-        ));
+impl Space {
+    /// Everything that stands from the start to the end.
+    pub(super) fn solids(&self) -> impl Iterator<Item = &Solid> {
+        self.walls.iter().chain(&self.fixed)
     }
-    Ok(Rectangle::between(low, high))
 }
 
+/// The rectangle between the corners `min_m` and `max_m` of a table.
+pub(super) fn upright(table: &Table<'_>, size: &Point2<f64>) -> Option<Rectangle> {
+    let [low, high] = ["min_m", "max_m"].map(|key| table.needed(key)?.point(size));
+    let (low, high) = (low?, high?);
+    if (high - low).min() < 0.001 {
+        let what = format!("`{}` is not above and to the right of `min_m`", table.path("max_m"));
+        let help = "`min_m` is the lower left corner, `max_m` the upper right one, at least 0.001 m away";
+        let others = [(table.at("min_m"), "lower left")];
+        return table.error(&what, (table.at("max_m"), "upper right"), &others, help);
+    }
+    Some(Rectangle::between(low, high))
+}
+
+/// Notes a shape that reaches out of the map.
 pub(super) fn inside(
-    source: &Source<'_>,
+    file: &File<'_>,
     what: &str,
     span: Range<usize>,
     shape: &Rectangle,
     size: &Point2<f64>,
-) -> Result<(), WorldError> {
+) -> Option<()> {
     let (low, high) = shape.bounds();
     if low.x >= -TOUCH_M && low.y >= -TOUCH_M && high.x <= size.x + TOUCH_M && high.y <= size.y + TOUCH_M {
-        return Ok(());
+        return Some(());
     }
     let help = format!(
         "it spans [{:.3}, {:.3}] to [{:.3}, {:.3}], the map {}",
@@ -70,5 +70,5 @@ pub(super) fn inside(
         high.y,
         extent(size)
     );
-    Err(source.error(what, (span, "this one"), &[], &help))
+    file.error(what, (span, "this one"), &[], &help)
 }

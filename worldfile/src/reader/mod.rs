@@ -1,84 +1,289 @@
-//! Reads a world file as far as it makes sense, so that one thing being wrong does not hide another.
+//! Reads a TOML file table by table and reports everything that is invalid at once.
 //!
-//! The types that describe a file derive `Deserialize`. A key may be left out if it is an `Option`, a list of
-//! [`Tables`], or a table all of whose keys may be left out. Where a key is unknown, missing or of the wrong
-//! type, that is noted, a stand-in takes its place, and reading goes on: once over the file, however much is
-//! wrong with it. No stand-in is ever seen outside, as the [`Sound`] part that it belongs to is withheld.
+//! The tables and values of a file are asked for by key, with their type and range. What is invalid is noted, and
+//! the answer is `None`: the caller goes on with the rest, so that one error does not hide another, and judges
+//! nothing by what it does not have, so that one error causes no other. A table is opened with the list of its
+//! keys, since an unknown key may be the misspelling of one that then seems to be missing.
 
-mod fault;
-mod stand_in;
+mod spelling;
 #[cfg(test)]
 mod tests;
 mod value;
 
-use crate::error::{Source, WorldError, Wrong};
-use crate::kind::Kind;
-use fault::Faults;
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
-use serde_spanned::Spanned;
+use crate::error::WorldError;
+use crate::findings::{Findings, Mark, SourceText};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
-use value::Value;
+pub(crate) use value::{Value, extent};
 
-/// A file that was read.
-pub(crate) struct Reading<T> {
-    /// What it says.
-    pub(crate) file: T,
-    /// What is wrong with its keys and their types.
-    pub(crate) wrong: Wrong,
-    /// Whether all keys are right that stand in no table.
-    pub(crate) is_root_sound: bool,
+/// The number of errors that are shown; further ones are only counted.
+const MOST_SHOWN: usize = 20;
+
+/// The kinds of files: two kinds of worlds, and tours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Grid,
+    Physics,
+    Tour,
 }
 
-/// A part of a file, with its place; only to be had if every key in it is right.
-#[derive(Deserialize)]
-pub(crate) struct Sound<T>(Spanned<T>, bool);
-
-impl<T> Sound<T> {
-    pub(crate) fn get(&self) -> Option<&Spanned<T>> {
-        self.1.then_some(&self.0)
-    }
+/// A file that is being read.
+pub(crate) struct File<'a> {
+    source: &'a SourceText,
+    errors: RefCell<Vec<FileError>>,
 }
 
-/// All tables of a kind, as in `[[wall]]`; there may be none.
-#[derive(Deserialize)]
-#[serde(transparent)]
-pub(crate) struct Tables<T>(Option<Vec<Sound<T>>>);
-
-impl<T> Tables<T> {
-    /// Those whose keys are right.
-    pub(crate) fn sound(&self) -> Vec<&Spanned<T>> {
-        self.0.iter().flatten().filter_map(Sound::get).collect()
-    }
-
-    /// Whether that is all of them.
-    pub(crate) fn are_sound(&self) -> bool {
-        self.0.iter().flatten().all(|table| table.get().is_some())
-    }
+/// An error before it is rendered: of many, only the first in the file are.
+struct FileError {
+    what: String,
+    mark: (Range<usize>, String),
+    others: Vec<(Range<usize>, String)>,
+    help: String,
 }
 
-/// A table, or a list of tables.
-#[derive(Deserialize)]
-pub(crate) struct OneOrMore<T>(pub(crate) Vec<T>);
-
-/// Reads a file that is to describe a world of this kind.
+/// Reads a file: `build` makes what it describes from its root table, which has the keys `keys`.
 ///
 /// # Errors
 ///
-/// When the text is no TOML, or describes a world of the other kind.
-pub(crate) fn read<T: DeserializeOwned>(source: &Source<'_>, kind: Kind) -> Result<Reading<T>, WorldError> {
-    let root = DeTable::parse(source.text).map_err(|error| source.syntax_error(&error))?;
-    kind.check(source, root.get_ref())?;
-    let root = Spanned::new(root.span(), DeValue::Table(root.into_inner()));
-    let faults = Faults::default();
-    let file = T::deserialize(Value::root(&root, &faults));
-    let file = file.map_err(|error| {
-        source.error(
-            &error.to_string(),
-            (0..0, ""),
-            &[],
-            "the keys of world files are in `worldfile/keys.md`",
-        )
-    })?;
-    Ok(Reading { file, is_root_sound: !faults.is_any_at_root(), wrong: faults.told(source) })
+/// When the text is not TOML, describes a world of the other kind, or anything was noted as invalid.
+pub(crate) fn read<T>(
+    name: &str,
+    text: &str,
+    kind: Kind,
+    keys: &'static str,
+    build: impl FnOnce(&Table<'_>) -> Option<T>,
+) -> Result<T, WorldError> {
+    let source = SourceText::new(name.to_owned(), text.into());
+    let file = File { source: &source, errors: RefCell::default() };
+    let value = match DeTable::parse(&source.text) {
+        Err(error) => file.syntax_error(&error),
+        Ok(root) if file.is_of_kind(kind, root.get_ref()) => {
+            build(&Table::open(&file, String::new(), keys, Some(root.get_ref()), root.span()))
+        }
+        Ok(_) => None,
+    };
+    value.filter(|_| file.is_sound()).ok_or_else(|| WorldError::new(file.findings()))
+}
+
+impl File<'_> {
+    /// Notes an error at `mark`, with `others` that explain it and `help` that says what would be valid.
+    pub(crate) fn error<T>(&self, what: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> Option<T> {
+        let owned = |(span, label): &Mark<'_>| (span.clone(), (*label).to_owned());
+        self.errors.borrow_mut().push(FileError {
+            what: what.to_owned(),
+            mark: owned(&mark),
+            others: others.iter().map(owned).collect(),
+            help: help.to_owned(),
+        });
+        None
+    }
+
+    /// Whether nothing was invalid so far.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.errors.borrow().is_empty()
+    }
+
+    /// The path of a file that this file names.
+    pub(crate) fn beside(&self, name: &str) -> PathBuf {
+        Path::new(&self.source.name).parent().unwrap_or(Path::new("")).join(name)
+    }
+
+    /// The text at a place.
+    pub(crate) fn text(&self, place: Range<usize>) -> &str {
+        self.source.text.get(place).unwrap_or_default()
+    }
+
+    /// The errors in the order of the file.
+    fn findings(&self) -> Findings {
+        let mut errors = self.errors.take();
+        errors.sort_by_key(|error| error.mark.0.start);
+        let shown = errors.iter().take(MOST_SHOWN).map(|FileError { what, mark, others, help }| {
+            let others: Vec<Mark<'_>> = others.iter().map(|(span, label)| (span.clone(), &**label)).collect();
+            self.source.error(what, &(mark.0.clone(), &mark.1), &others, help)
+        });
+        Findings::of_errors(shown.collect(), errors.len().saturating_sub(MOST_SHOWN))
+    }
+
+    fn syntax_error<T>(&self, error: &toml::de::Error) -> Option<T> {
+        let span = error.span().unwrap_or(0..0);
+        if error.message().starts_with("duplicate key") {
+            return self.error("a key is given twice", (span, "again here"), &[], "leave one of them out");
+        }
+        let (what, help) = match error.message().split_once(", expected ") {
+            Some((what, expected)) => (what, format!("expected {expected}")),
+            None => (error.message(), "see https://toml.io for how a TOML file is written".to_owned()),
+        };
+        self.error(&format!("not a TOML file: {what}"), (span, ""), &[], &help)
+    }
+
+    /// Whether the file does not describe a world of the other kind: `map` is a drawing, or a table of sizes.
+    fn is_of_kind(&self, kind: Kind, root: &DeTable<'_>) -> bool {
+        let Some((key, value)) = root.get_key_value("map") else { return true };
+        let (what, label, help) = match (kind, value.get_ref()) {
+            (Kind::Grid, DeValue::Table(_)) => (
+                "this is a physics world, not a grid world",
+                "sizes, not a drawing",
+                "a grid world draws its `map` as text: `#` wall, `.` free, one row of text per row of cells",
+            ),
+            (Kind::Physics, DeValue::String(_)) => (
+                "this is a grid world, not a physics world",
+                "a drawing, not sizes",
+                "a physics world has a table `[map]` with `size_m` and `cell_m`",
+            ),
+            _ => return true,
+        };
+        self.error(what, (key.span(), label), &[], help).unwrap_or(false)
+    }
+}
+
+/// A table of the file.
+pub(crate) struct Table<'a> {
+    pub(crate) file: &'a File<'a>,
+    /// As in `robot.laser`; empty for the root.
+    path: String,
+    /// Its keys, separated by `, `.
+    keys: &'static str,
+    /// `None`: it is left out.
+    entries: Option<&'a DeTable<'a>>,
+    /// Its place in the file; of a table with a header, the header.
+    pub(crate) span: Range<usize>,
+    is_sound: bool,
+    /// The keys that unknown keys seem to mean: they are not missing as well.
+    meant: Vec<&'static str>,
+}
+
+impl<'a> Table<'a> {
+    /// Notes every unknown key.
+    fn open(
+        file: &'a File<'a>,
+        path: String,
+        keys: &'static str,
+        entries: Option<&'a DeTable<'a>>,
+        span: Range<usize>,
+    ) -> Self {
+        let mut table = Self { file, path, keys, entries, span, is_sound: true, meant: Vec::new() };
+        for (key, _) in entries.into_iter().flatten().filter(|(key, _)| !has(keys, key.get_ref())) {
+            let near = spelling::nearest(key.get_ref(), keys.split(", "));
+            let hint = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
+            let help = format!("{hint}the keys here are: {keys}");
+            file.error::<()>(
+                &format!("unknown key `{}`", key.get_ref()),
+                (key.span(), "not known here"),
+                &[],
+                &help,
+            );
+            table.is_sound = false;
+            table.meant.extend(near);
+        }
+        table
+    }
+
+    /// The value, unless the table has unknown keys: what they mean is missing in it.
+    pub(crate) fn sound<T>(&self, value: T) -> Option<T> {
+        self.is_sound.then_some(value)
+    }
+
+    /// Notes an error about the meaning of the table, unless it could be due to an unknown key.
+    pub(crate) fn error<T>(&self, what: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> Option<T> {
+        self.sound(())?;
+        self.file.error(what, mark, others, help)
+    }
+
+    /// The value of a key, if it is given.
+    pub(crate) fn get<'t>(&'t self, key: &'static str) -> Option<Value<'t, 'a>> {
+        debug_assert!(has(self.keys, key), "`{key}` is not in the list of keys");
+        let found = self.entries?.get(key)?;
+        Some(Value { table: self, key, found })
+    }
+
+    /// The value of a key, which must be given.
+    pub(crate) fn needed<'t>(&'t self, key: &'static str) -> Option<Value<'t, 'a>> {
+        let value = self.get(key);
+        if value.is_none() && !self.meant.contains(&key) {
+            let help = format!("add a line `{key} = …` to this table");
+            let what = format!("the key `{key}` is missing");
+            self.file.error::<()>(&what, (self.span.clone(), "in this table"), &[], &help);
+        }
+        value
+    }
+
+    /// Whether a key is given.
+    pub(crate) fn has(&self, key: &'static str) -> bool {
+        self.get(key).is_some()
+    }
+
+    /// The keys that are given, with the places of their values.
+    pub(crate) fn given(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
+        let given = |key| Some((key, self.entries?.get(key)?.span()));
+        self.keys.split(", ").filter_map(given)
+    }
+
+    /// The place of the value of a key; of the table if it is not given.
+    pub(crate) fn at(&self, key: &'static str) -> Range<usize> {
+        self.get(key).map_or(self.span.clone(), |value| value.found.span())
+    }
+
+    /// The place of an item of the list that a key has; of the table if there is none.
+    pub(crate) fn at_item(&self, key: &'static str, index: usize) -> Range<usize> {
+        let item = self.get(key).and_then(|value| Some(value.found.get_ref().as_array()?.get(index)?.span()));
+        item.unwrap_or(self.span.clone())
+    }
+
+    /// The path of a key, as in `robot.laser.beams`.
+    pub(crate) fn path(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    /// The table that a key has; it must be given.
+    pub(crate) fn table(&self, key: &'static str, keys: &'static str) -> Option<Table<'a>> {
+        self.needed(key)?.table(keys)
+    }
+
+    /// The table that a key has, or a table without keys.
+    pub(crate) fn table_or_empty(&self, key: &'static str, keys: &'static str) -> Option<Table<'a>> {
+        match self.get(key) {
+            Some(value) => value.table(keys),
+            None => Some(Self::open(self.file, self.path(key), keys, None, self.span.clone())),
+        }
+    }
+
+    /// The tables of a list, as in `[[wall]]`; none if it is not given.
+    pub(crate) fn tables(&self, key: &'static str, keys: &'static str) -> Vec<Table<'a>> {
+        let items = self.get(key).and_then(|value| value.items()).unwrap_or_default();
+        items.into_iter().filter_map(|item| item.table(keys)).collect()
+    }
+
+    /// The name in the table; it must not be empty.
+    pub(crate) fn name(&self) -> Option<String> {
+        let name = self.needed("name")?.text()?;
+        if name.trim().is_empty() {
+            let what = format!("`{}` is empty", self.path("name"));
+            let help = "give it a name, as in `name = \"curious\"`";
+            return self.file.error(&what, (self.at("name"), "empty"), &[], help);
+        }
+        Some(name.to_owned())
+    }
+}
+
+/// Whether a list of keys has this key.
+pub(crate) fn has(keys: &str, key: &str) -> bool {
+    keys.split(", ").any(|known| known == key)
+}
+
+/// Notes every name that a table shares with an earlier one; `kind`: what the tables describe.
+pub(crate) fn unique_names(kind: &str, tables: &[Table<'_>]) {
+    let mut seen = BTreeMap::new();
+    for table in tables {
+        let name = table.get("name").and_then(|name| name.found.get_ref().as_str());
+        let Some((name, first)) = name.and_then(|name| Some((name, seen.insert(name, table.at("name"))?)))
+        else {
+            continue;
+        };
+        let what = format!("two {kind}s are called `{name}`");
+        let help = format!("every {kind} needs a name of its own");
+        table.error::<()>(&what, (table.at("name"), "again here"), &[(first, "first here")], &help);
+    }
 }

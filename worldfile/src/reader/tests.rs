@@ -1,4 +1,4 @@
-//! Whatever is wrong with a file, all of it is told, and nothing that is not.
+//! Everything that is invalid in a file is reported, and nothing else.
 
 use proptest::prelude::*;
 
@@ -37,13 +37,13 @@ fn is_grid(text: &str) -> bool {
     text.contains("sensor_radius")
 }
 
-/// What is wrong, without the places.
+/// The errors, without their places.
 fn firsts(text: &str) -> Vec<String> {
     messages(text).iter().map(|message| message.lines().next().unwrap_or_default().to_owned()).collect()
 }
 
 #[test]
-fn keys_types_and_meaning_are_told_in_the_order_of_the_file() {
+fn keys_types_and_meaning_are_reported_in_the_order_of_the_file() {
     let text = [
         robot("a", "pose_m = [1.0, 1.0]\ncolour = \"red\""),
         robot("b", "pose_m = [2.0, 1.0]"),
@@ -55,7 +55,7 @@ fn keys_types_and_meaning_are_told_in_the_order_of_the_file() {
 }
 
 #[test]
-fn every_key_that_is_missing_is_told_but_none_twice() {
+fn every_missing_key_is_reported_once() {
     assert_eq!(
         firsts("[map]\n"),
         ["name", "size_m", "cell_m"].map(|key| format!("the key `{key}` is missing"))
@@ -68,7 +68,7 @@ fn every_key_that_is_missing_is_told_but_none_twice() {
 }
 
 #[test]
-fn what_is_wrong_has_no_consequences() {
+fn an_invalid_key_or_type_causes_no_other_error() {
     let one = |text: &str, first: &str| assert_eq!(firsts(text), [first], "{text}");
     let good = robot("a", "pose_m = [1.0, 1.0]");
     let wall = |keys: &str| room(&format!("[[wall]]\n{keys}\n{good}"));
@@ -94,17 +94,17 @@ fn what_is_wrong_has_no_consequences() {
 }
 
 #[test]
-fn a_flood_is_counted() {
+fn of_many_errors_the_first_are_shown_and_the_rest_are_counted() {
     let keys: String = (0..100_000).map(|i| format!("k{i:05} = 1\n")).collect();
     let walls = "[[wall]]\nmin_m = 5\n".repeat(50_000);
     for (text, more) in [(keys.as_str(), 99_982), (&room(&walls), 49_980)] {
         let messages = messages(text);
         assert_eq!(messages.len(), 21);
-        assert_eq!(messages[20], format!("world.toml: and {more} more errors"));
+        assert_eq!(messages[20], format!("… and {more} more errors"));
     }
 }
 
-/// Has everything wrong that a value can have.
+/// Has every error that a value can have.
 const ALL_WRONG: &str = r#"name = ""
 wall = [{ from_m = [0.0, 0.0], to_m = [20.0, 0.0], thickness_m = -1.0 }]
 map = { size_m = [10.0, -4.0], cell_m = 100.0 }
@@ -131,12 +131,12 @@ bumper = { sectors = 0 }
 "#;
 
 #[test]
-fn every_wrong_value_is_told() {
+fn every_invalid_value_is_reported() {
     insta::assert_snapshot!(messages(ALL_WRONG).join("\n\n"));
 }
 
 #[test]
-fn wrong_values_have_no_consequences() {
+fn an_invalid_value_causes_no_other_error() {
     let one = |text: &str, first: &str| assert_eq!(firsts(text), [first], "{text}");
     let along = "kind = \"wall_patrol\"\nfrom_m = [1.0, 1.0]\nto_m = [1.0, 2.0]\nspeed_mps = 0.3\nwall_side = \"right\"";
     let patrol = room(&robot("a", "pose_m = [1.0, 1.0]").replace("kind = \"standing\"", along));
@@ -166,12 +166,12 @@ fn wrong_values_have_no_consequences() {
 }
 
 #[test]
-fn a_flood_of_wrong_values_is_counted() {
+fn many_invalid_values_are_counted() {
     let walls = "[[wall]]\nmin_m = [1.0, 1.0]\nmax_m = [0.0, 0.0]\n".repeat(20_000);
     let messages = messages(&room(&format!("{walls}[[robot]]\ncolour = 1\n")));
     assert_eq!(messages.len(), 21);
     // The robot has one key too many and lacks five.
-    assert_eq!(messages[20], format!("world.toml: and {} more errors", 20_000 + 6 - 20));
+    assert_eq!(messages[20], format!("… and {} more errors", 20_000 + 6 - 20));
 }
 
 /// The lines of a world that hold numbers which are wrong if they are as large as this, each with what comes
@@ -203,7 +203,7 @@ fn numbers(text: &str) -> Vec<(usize, &str)> {
 
 proptest! {
     #[test]
-    fn every_unknown_key_is_told_with_its_line(
+    fn every_unknown_key_is_reported_with_its_line(
         (text, places) in prop::sample::select(vec![HOUSE, FOUR_ROOMS, TWO_BLOCKS]).prop_flat_map(|text| {
             let headers = text.lines().enumerate().filter(|(_, line)| line.starts_with('['));
             let headers: Vec<usize> = headers.map(|(i, _)| i).collect();
@@ -225,7 +225,7 @@ proptest! {
     }
 
     #[test]
-    fn every_wrong_number_is_told_with_its_line(
+    fn every_invalid_number_is_reported_with_its_line(
         (text, places) in prop::sample::select(vec![HOUSE, YARD, FOUR_ROOMS, TWO_BLOCKS]).prop_flat_map(|text| {
             let numbers = numbers(text);
             let most = numbers.len().min(20);

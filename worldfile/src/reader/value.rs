@@ -1,201 +1,236 @@
-//! What the file says, as the type that is asked for.
+//! Values of a file: their types and ranges.
 
-use super::fault::{Faults, Path};
-use super::stand_in::{Judged, StandIn};
-use serde::de::value::{Error, SeqAccessDeserializer, SeqDeserializer};
-use serde::de::{DeserializeSeed, Deserializer, IntoDeserializer, MapAccess, Visitor};
-use serde::forward_to_deserialize_any;
-use serde_spanned::Spanned;
-use serde_spanned::de::{SpannedDeserializer, is_spanned};
-use std::cell::Cell;
-use toml::de::{DeFloat, DeInteger, DeTable, DeValue};
+use super::Table;
+use nalgebra::Point2;
+use std::fmt;
+use std::ops::{Range, RangeInclusive};
+use toml::Spanned;
+use toml::de::{DeFloat, DeInteger, DeValue};
 
-/// A value of the file.
+/// A number as one would write it: 1e300 has no 300 digits.
+struct Figure(f64);
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let plain = self.0 == 0.0 || !self.0.is_finite() || (1e-5..1e7).contains(&self.0.abs());
+        if plain { write!(f, "{}", self.0) } else { write!(f, "{:e}", self.0) }
+    }
+}
+
+/// From where to where a map of `size` (m) reaches; infinite: its size is invalid.
+pub(crate) fn extent(size: &Point2<f64>) -> String {
+    match size.x.is_finite() {
+        true => format!("[0, 0] to [{}, {}]", size.x, size.y),
+        false => "[0, 0] to its `size_m`".to_owned(),
+    }
+}
+
+/// The value of a key, or an item of its list.
 #[derive(Clone, Copy)]
-pub(super) struct Value<'a> {
-    found: &'a Spanned<DeValue<'a>>,
-    path: Path<'a>,
-    faults: &'a Faults,
+pub(crate) struct Value<'t, 'a> {
+    pub(super) table: &'t Table<'a>,
+    pub(super) key: &'static str,
+    pub(super) found: &'a Spanned<DeValue<'a>>,
 }
 
-impl<'a> Value<'a> {
-    /// The file as a whole.
-    pub(super) fn root(found: &'a Spanned<DeValue<'a>>, faults: &'a Faults) -> Self {
-        Self { found, path: Path::Root, faults }
+impl<'t, 'a> Value<'t, 'a> {
+    /// Its place in the file.
+    pub(crate) fn span(&self) -> Range<usize> {
+        self.found.span()
     }
 
-    /// Notes that something else was expected here.
-    fn refuse(&self, expected: &str) -> StandIn<'a> {
-        self.faults.mistyped(self.path, self.found, expected);
-        StandIn { is_needed: &self.faults.ignored }
+    fn mistyped<T>(&self, expected: &str) -> Option<T> {
+        let what = format!("`{}` has the wrong type", self.table.path(self.key));
+        let label = format!("this is {}", description(self.found.get_ref(), expected));
+        self.error(&what, &label, &format!("it must be {expected}"))
     }
 
-    fn list(&self, list: &'a [Spanned<DeValue<'a>>]) -> SeqDeserializer<impl Iterator<Item = Self>, Error> {
-        let Self { path, faults, .. } = *self;
-        SeqDeserializer::new(list.iter().map(move |found| Self { found, path, faults }))
-    }
-}
-
-impl<'de> Deserializer<'de> for Value<'_> {
-    type Error = Error;
-
-    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Error> {
-        Err(serde::de::Error::custom("a value of any type cannot be read"))
+    /// Notes an error about the value, as in `robot.laser.beams` **is 0, which is out of range**.
+    pub(crate) fn invalid<T>(&self, is: &str, label: &str, help: &str) -> Option<T> {
+        self.error(&format!("`{}` {is}", self.table.path(self.key)), label, help)
     }
 
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        visitor.visit_some(self)
+    pub(crate) fn error<T>(&self, what: &str, label: &str, help: &str) -> Option<T> {
+        self.table.file.error(what, (self.span(), label), &[], help)
     }
 
-    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.found.get_ref() {
-            DeValue::Boolean(truth) => visitor.visit_bool(*truth),
-            _ => self.refuse("`true` or `false`").deserialize_bool(visitor),
-        }
-    }
-
-    fn deserialize_i64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.found.get_ref().as_integer().and_then(whole) {
-            Some(number) => visitor.visit_i64(number),
-            None => self.refuse("a whole number").deserialize_i64(visitor),
-        }
-    }
-
-    fn deserialize_u32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.found.get_ref().as_integer().and_then(whole).map(u32::try_from) {
-            Some(Ok(number)) => visitor.visit_u32(number),
-            _ => self.refuse("a whole number of at least 0").deserialize_u32(visitor),
-        }
-    }
-
-    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+    /// `None`: not a number, or one that is too large.
+    pub(crate) fn number(&self) -> Option<f64> {
         let number = match self.found.get_ref() {
-            DeValue::Integer(number) => whole(number).map(|number| number as f64),
+            DeValue::Integer(number) => integer(number).map(|number| number as f64),
             DeValue::Float(number) => float(number),
             _ => None,
         };
-        match number {
-            Some(number) => visitor.visit_f64(number),
-            None => self.refuse("a number").deserialize_f64(visitor),
-        }
+        number.or_else(|| self.mistyped("a number"))
     }
 
-    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.found.get_ref() {
-            DeValue::String(text) => visitor.visit_str(text),
-            _ => self.refuse("a text in quotes").deserialize_string(visitor),
+    /// A number in `range`; NaN never is.
+    pub(crate) fn within(&self, range: &RangeInclusive<f64>) -> Option<f64> {
+        let number = self.number()?;
+        if range.contains(&number) {
+            return Some(number);
         }
+        let help = format!("it must be a number from {} to {}", Figure(*range.start()), Figure(*range.end()));
+        self.invalid(&format!("is {}, which is out of range", Figure(number)), "out of range", &help)
     }
 
-    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.found.get_ref() {
-            DeValue::Array(list) => visitor.visit_seq(self.list(list)),
-            _ => self.refuse(&self.path.list()).deserialize_seq(visitor),
-        }
+    pub(crate) fn integer(&self) -> Option<i64> {
+        let number = self.found.get_ref().as_integer().and_then(integer);
+        number.or_else(|| self.mistyped("a whole number"))
     }
 
-    /// Two numbers: the only tuple there is.
-    fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Error> {
-        match self.found.get_ref() {
-            DeValue::Array(list) if list.len() == length => visitor.visit_seq(self.list(list)),
-            _ => self.refuse("two numbers, as in `[1.0, 2.0]`").deserialize_tuple(length, visitor),
-        }
+    /// A whole number in `range`.
+    pub(crate) fn integer_within(&self, range: &RangeInclusive<u32>) -> Option<u32> {
+        let number = self.integer()?;
+        let found = u32::try_from(number).ok().filter(|number| range.contains(number));
+        found.or_else(|| {
+            let help = format!("it must be a whole number from {} to {}", range.start(), range.end());
+            self.invalid(&format!("is {number}, which is out of range"), "out of range", &help)
+        })
     }
 
-    /// A [`super::OneOrMore`].
-    fn deserialize_newtype_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        visitor: V,
-    ) -> Result<V::Value, Error> {
-        match self.found.get_ref() {
-            DeValue::Array(_) => visitor.visit_newtype_struct(self),
-            DeValue::Table(_) => {
-                let one = self.list(std::slice::from_ref(self.found));
-                visitor.visit_newtype_struct(SeqAccessDeserializer::new(one))
+    /// A whole number of at least 0.
+    pub(crate) fn natural(&self) -> Option<u32> {
+        let number = self.found.get_ref().as_integer().and_then(integer);
+        let natural = number.and_then(|number| u32::try_from(number).ok());
+        natural.or_else(|| self.mistyped("a whole number of at least 0"))
+    }
+
+    pub(crate) fn flag(&self) -> Option<bool> {
+        self.found.get_ref().as_bool().or_else(|| self.mistyped("`true` or `false`"))
+    }
+
+    pub(crate) fn text(&self) -> Option<&'a str> {
+        self.found.get_ref().as_str().or_else(|| self.mistyped("a text in quotes"))
+    }
+
+    /// One of several words.
+    pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
+        let text = self.text()?;
+        let found = choices.iter().find(|(word, _)| *word == text).map(|(_, choice)| *choice);
+        found.or_else(|| {
+            let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+            let help = format!("it must be {}", words.join(" or "));
+            self.invalid(&format!("is `{text}`"), "not known", &help)
+        })
+    }
+
+    /// Two numbers.
+    pub(crate) fn pair(&self) -> Option<[f64; 2]> {
+        match self.found.get_ref().as_array().map(|list| &list[..]) {
+            Some([x, y]) => {
+                let [x, y] = [x, y].map(|found| Self { found, ..*self }.number());
+                Some([x?, y?])
             }
-            _ => self
-                .refuse("a table of keys, or a list of them")
-                .deserialize_newtype_struct("OneOrMore", visitor),
+            _ => self.mistyped("two numbers, as in `[1.0, 2.0]`"),
         }
     }
 
-    /// A [`super::Sound`]: it is so unless reading it finds something wrong.
-    fn deserialize_tuple_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        _: usize,
-        visitor: V,
-    ) -> Result<V::Value, Error> {
-        let before = self.faults.count();
-        visitor.visit_seq(Judged { value: Some(self), is_sound: || self.faults.count() == before })
-    }
-
-    fn deserialize_struct<V: Visitor<'de>>(
-        self,
-        name: &'static str,
-        fields: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Error> {
-        if is_spanned(name) {
-            return visitor.visit_map(SpannedDeserializer::new(self, self.found.span()));
+    /// Two numbers in `range`.
+    pub(crate) fn pair_within(&self, range: &RangeInclusive<f64>) -> Option<Point2<f64>> {
+        let [x, y] = self.pair()?;
+        if range.contains(&x) && range.contains(&y) {
+            return Some(Point2::new(x, y));
         }
-        let DeValue::Table(entries) = self.found.get_ref() else {
-            return self.refuse("a table of keys").deserialize_struct(name, fields, visitor);
-        };
-        let unknown = entries.keys().filter(|key| !fields.contains(&key.get_ref().as_ref()));
-        let meant = unknown.filter_map(|key| self.faults.unknown(self.path, key, fields)).collect();
-        visitor.visit_map(Fields { table: self, entries, meant, fields: fields.iter(), field: "" })
+        let is = format!("is [{}, {}], which is out of range", Figure(x), Figure(y));
+        self.invalid(
+            &is,
+            "out of range",
+            &format!("both must be numbers from {} to {}", range.start(), range.end()),
+        )
     }
 
-    forward_to_deserialize_any! {
-        i8 i16 i32 i128 u8 u16 u64 u128 f32 char str bytes byte_buf unit unit_struct map enum identifier
-        ignored_any
-    }
-}
-
-impl<'de> IntoDeserializer<'de, Error> for Value<'_> {
-    type Deserializer = Self;
-
-    fn into_deserializer(self) -> Self {
-        self
-    }
-}
-
-/// The known keys of a table.
-struct Fields<'a> {
-    table: Value<'a>,
-    entries: &'a DeTable<'a>,
-    /// Those that an unknown key seems to mean: they are not missing as well.
-    meant: Vec<&'static str>,
-    fields: std::slice::Iter<'static, &'static str>,
-    field: &'static str,
-}
-
-impl<'de> MapAccess<'de> for Fields<'_> {
-    type Error = Error;
-
-    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
-        let Some(field) = self.fields.next() else { return Ok(None) };
-        self.field = field;
-        seed.deserialize(self.field.into_deserializer()).map(Some)
-    }
-
-    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Error> {
-        let Value { found: table, path, faults } = self.table;
-        if let Some(found) = self.entries.get(self.field) {
-            return seed.deserialize(Value { found, path: Path::Key(&path, self.field), faults });
+    /// A point (m) in the map of `size` (m).
+    pub(crate) fn point(&self, size: &Point2<f64>) -> Option<Point2<f64>> {
+        let [x, y] = self.pair()?;
+        if (0.0..=size.x).contains(&x) && (0.0..=size.y).contains(&y) {
+            return Some(Point2::new(x, y));
         }
-        let is_needed = Cell::new(false);
-        let value = seed.deserialize(StandIn { is_needed: &is_needed })?;
-        if is_needed.get() && !self.meant.contains(&self.field) {
-            faults.missing(path, table.span(), self.field);
+        let is = format!("is [{}, {}], which is outside of the map", Figure(x), Figure(y));
+        self.invalid(&is, "outside of the map", &format!("the map reaches from {}", extent(size)))
+    }
+
+    /// The items of a list.
+    pub(crate) fn items(&self) -> Option<Vec<Self>> {
+        if let DeValue::Array(list) = self.found.get_ref() {
+            return Some(list.iter().map(|found| Self { found, ..*self }).collect());
         }
-        Ok(value)
+        self.mistyped(&match self.key {
+            "path" => "a list of cells, as in `[[1, 2], [5, 2]]`".to_owned(),
+            key if key.ends_with("_m") => "a list of points, as in `[[1.0, 2.0], [3.0, 2.0]]`".to_owned(),
+            key if key.ends_with("_s") => "a list of numbers, as in `[1.0, 2.0]`".to_owned(),
+            key => format!("a list of tables, as in `[[{}]]`", self.table.path(key)),
+        })
+    }
+
+    /// The items of a list, each as `read` reads it; all of them are read.
+    pub(crate) fn list<T>(&self, read: impl Fn(&Self) -> Option<T>) -> Option<Vec<T>> {
+        let items: Vec<Option<T>> = self.items()?.iter().map(read).collect();
+        items.into_iter().collect()
+    }
+
+    pub(crate) fn table(&self, keys: &'static str) -> Option<Table<'a>> {
+        let DeValue::Table(entries) = self.found.get_ref() else { return self.mistyped("a table of keys") };
+        Some(Table::open(self.table.file, self.table.path(self.key), keys, Some(entries), self.span()))
+    }
+
+    /// A table, or a list of tables.
+    pub(crate) fn table_or_tables(&self, keys: &'static str) -> Option<Vec<Table<'a>>> {
+        match self.found.get_ref() {
+            DeValue::Array(_) => self.list(|item| item.table(keys)),
+            DeValue::Table(_) => Some(vec![self.table(keys)?]),
+            _ => self.mistyped("a table of keys, or a list of them"),
+        }
     }
 }
 
-fn whole(number: &DeInteger<'_>) -> Option<i64> {
+/// Keys with one value.
+impl Table<'_> {
+    pub(crate) fn number(&self, key: &'static str, range: RangeInclusive<f64>) -> Option<f64> {
+        self.needed(key)?.within(&range)
+    }
+
+    /// The number, or `default` if the key is not given.
+    pub(crate) fn number_or(
+        &self,
+        key: &'static str,
+        default: f64,
+        range: RangeInclusive<f64>,
+    ) -> Option<f64> {
+        self.get(key).map_or(Some(default), |value| value.within(&range))
+    }
+
+    /// The number, `Some(None)` if the key is not given.
+    pub(crate) fn number_if(&self, key: &'static str, range: RangeInclusive<f64>) -> Option<Option<f64>> {
+        self.get(key).map_or(Some(None), |value| value.within(&range).map(Some))
+    }
+
+    pub(crate) fn count(&self, key: &'static str, range: RangeInclusive<u32>) -> Option<usize> {
+        let value = self.needed(key)?;
+        value.natural()?;
+        Some(value.integer_within(&range)? as usize)
+    }
+
+    /// The number of a tag, `Some(None)` if it is not given.
+    pub(crate) fn tag(&self) -> Option<Option<u32>> {
+        self.get("tag").map_or(Some(None), |value| value.natural().map(Some))
+    }
+
+    pub(crate) fn flag(&self, key: &'static str) -> Option<bool> {
+        self.get(key).map_or(Some(false), |value| value.flag())
+    }
+
+    /// The first choice if the key is not given.
+    pub(crate) fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<T> {
+        self.get(key).map_or(Some(choices[0].1), |value| value.choice(choices))
+    }
+
+    pub(crate) fn description(&self) -> Option<String> {
+        self.get("description").map_or(Some(""), |value| value.text()).map(str::to_owned)
+    }
+}
+
+fn integer(number: &DeInteger<'_>) -> Option<i64> {
     i64::from_str_radix(number.as_str(), number.radix()).ok()
 }
 
@@ -203,4 +238,25 @@ fn whole(number: &DeInteger<'_>) -> Option<i64> {
 fn float(number: &DeFloat<'_>) -> Option<f64> {
     let value: f64 = number.as_str().parse().ok()?;
     (value.is_finite() || !number.as_str().contains(|c: char| c.is_ascii_digit())).then_some(value)
+}
+
+/// A value in everyday words.
+fn description(value: &DeValue<'_>, expected: &str) -> String {
+    let is_number = expected.contains("number");
+    match value {
+        DeValue::String(text) => format!("the text {text:?}"),
+        DeValue::Integer(number) if is_number && !number.as_str().starts_with('-') => {
+            format!("the number `{number}`, which is too large")
+        }
+        DeValue::Integer(number) => format!("the number `{number}`"),
+        DeValue::Float(number) if expected == "a number" => {
+            format!("the number `{number}`, which is too large")
+        }
+        DeValue::Float(number) => format!("the number `{number}`"),
+        DeValue::Boolean(truth) => format!("`{truth}`"),
+        DeValue::Datetime(_) => "a date or a time".to_owned(),
+        DeValue::Array(list) if expected.starts_with("two") => format!("a list of {}", list.len()),
+        DeValue::Array(_) => "a list".to_owned(),
+        DeValue::Table(_) => "a single table".to_owned(),
+    }
 }

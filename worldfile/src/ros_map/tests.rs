@@ -1,8 +1,9 @@
-//! `map.yaml`, right and wrong.
+//! `map.yaml`, valid and invalid.
 
 use super::*;
 use crate::Disk;
 use proptest::prelude::*;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 const GOOD: &str = "\
@@ -60,7 +61,7 @@ fn modes_and_negation() {
 }
 
 #[test]
-fn everything_that_is_wrong_is_said_at_once() {
+fn everything_invalid_is_reported_at_once() {
     let bad = "image: [1, 2]\nresolution: -0.05\norigin: [0.0, 0.0]\nnegate: 2\noccupied_thresh: high\n\
                free_thres: 0.1\nmode: fancy\n";
     let no_picture = GOOD.replace("house.pgm", "home.pgm").replace("0.05", "-1").replace("0.65", "65");
@@ -68,7 +69,7 @@ fn everything_that_is_wrong_is_said_at_once() {
 }
 
 #[test]
-fn a_mark_of_the_byte_order_is_skipped() {
+fn a_byte_order_mark_is_skipped() {
     assert_eq!(blocked(&format!("\u{feff}{GOOD}")), "#...##");
 }
 

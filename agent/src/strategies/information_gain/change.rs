@@ -6,7 +6,7 @@
 //! the cells seen so far (empirical Bayes).
 
 use super::clusters::{Clusters, Position};
-use super::rates::{Distribution, Gains, RATES, Rates};
+use super::rates::{BINS, Distribution, Gains, RATES, Rates};
 use interfaces::CellState;
 use mapper::Mapper;
 
@@ -89,8 +89,7 @@ impl Change {
         rates: &Rates,
         mut take: impl FnMut(usize, &Gains),
     ) {
-        let table: Vec<(f64, Gains)> =
-            (0..Rates::bins()).map(|bin| rates.silent(&self.distribution, bin)).collect();
+        let table: Vec<(f64, Gains)> = (0..BINS).map(|bin| rates.silent(&self.distribution, bin)).collect();
         let (mut far, mut middle) = (Share::new(FAR), Share::new(MIDDLE));
         let frame = mapper.frame();
         for (cell, state) in mapper.states().cells().iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Clusters of cells that changed, mostly the path of one moving thing. The cells beside a cluster are more
 //! likely to change, too.
 
-use interfaces::{Cell, GridFrame};
+use interfaces::GridFrame;
 use mapper::Mapper;
 
 /// The pseudocounts of the rate of a cluster: half a cycle in fifty units of time.
@@ -33,12 +33,6 @@ pub(super) struct Clusters {
     rates: Vec<f64>,
 }
 
-/// The indices of the cells that share a side with a cell.
-pub(super) fn beside(frame: &GridFrame, cell: usize) -> impl Iterator<Item = usize> {
-    let frame = *frame;
-    Cell::neighbours4(frame.cell(cell)).into_iter().filter_map(move |cell| frame.index(cell))
-}
-
 impl Clusters {
     /// The clusters of a map. A pass over the changed cells, with vectors as large as the map.
     pub(super) fn new(mapper: &Mapper) -> Self {
@@ -63,7 +57,7 @@ impl Clusters {
                 let seen = mapper.statistics(cell);
                 cycles += 0.5 * f64::from(seen.block_events + seen.free_events);
                 time += seen.watched_free + seen.watched_blocked;
-                for near in beside(frame, cell).filter(|&near| is_changed[near]) {
+                for near in frame.beside(cell).filter(|&near| is_changed[near]) {
                     clusters.degrees[cell] += 1;
                     if clusters.of[near] == NONE {
                         clusters.of[near] = cluster;
@@ -97,7 +91,7 @@ impl Clusters {
     /// (∞ far from all).
     pub(super) fn position(&self, frame: &GridFrame, cell: usize) -> (Position, f64) {
         let (mut position, mut rate) = (Position::Far, f64::INFINITY);
-        for near in beside(frame, cell).filter(|&near| self.has(near)) {
+        for near in frame.beside(cell).filter(|&near| self.has(near)) {
             let others = self.degrees[near] - u8::from(self.has(cell));
             position = position.max(if others <= 1 { Position::End } else { Position::Middle });
             rate = rate.min(self.rates[self.of[near] as usize]);

@@ -186,10 +186,6 @@ impl Strategy for InformationGain {
         Pick::Best
     }
 
-    fn needs_travel(&self) -> bool {
-        true
-    }
-
     fn stay(&mut self, goal: Cell) -> Stay {
         let Some(Plan { regions, watches, watched }) = &self.plan else { return Stay::Watch(0.0) };
         let Some(region) = regions.at_cell(goal) else { return Stay::Watch(0.0) };

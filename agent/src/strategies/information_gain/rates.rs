@@ -24,6 +24,8 @@ const RATIO: f64 = 0.55;
 
 /// φ: the largest variance of the number of cycles in one watch.
 const MOST_VARIANCE: f64 = 0.5;
+/// The smallest assumed variance of the number of cycles in the present run.
+const LEAST_VARIANCE: f64 = 0.02;
 /// The square of the mean deviation of a normal variable over its variance, 2 / π.
 const MEAN_OF_NORMAL: f64 = std::f64::consts::FRAC_2_PI;
 /// From this number of cycles on the rate counts as known; below it only its distribution is.
@@ -34,7 +36,7 @@ const PRIOR_TIME: f64 = 10.0;
 /// The bins of observation times have width 1 up to here, then grow by [`BIN_RATIO`].
 const FINE_BINS: usize = 16;
 const BIN_RATIO: f64 = 1.15;
-const BINS: usize = 64;
+pub(super) const BINS: usize = 64;
 
 /// The observation of a cell that changed.
 #[derive(Clone, Copy, Debug)]
@@ -109,11 +111,6 @@ impl Rates {
         ((fine + step.round()) as usize).min(BINS - 1)
     }
 
-    /// The number of bins.
-    pub(super) const fn bins() -> usize {
-        BINS
-    }
-
     /// For a cell that changes, with this distribution of the rate: the probability of no event in the observation
     /// time of a bin, and the gains of watching the cell, times that probability.
     pub(super) fn silent(&self, distribution: &Distribution, bin: usize) -> (f64, Gains) {
@@ -139,7 +136,7 @@ impl Rates {
         if seen.cycles >= KNOWN_CYCLES && seen.estimate > 0.0 {
             self.of_known(seen)
         } else {
-            self.of_hardly_known(seen, prior)
+            self.of_uncertain(seen, prior)
         }
     }
 
@@ -147,20 +144,21 @@ impl Rates {
     fn of_known(&self, seen: &Watched) -> Expected {
         let rate = seen.rate();
         let spread = |variance: f64, cycles: f64| libm::sqrt(MEAN_OF_NORMAL * variance) / cycles;
-        let so_far = seen.past_variance + variance(rate * seen.run).max(0.02);
+        let so_far = seen.past_variance + variance(rate * seen.run).max(LEAST_VARIANCE);
         let now = spread(so_far, seen.cycles);
         let gain = |variance: f64, watch: f64| (now - spread(variance, seen.cycles + rate * watch)).max(0.0);
         Expected {
             distribution: self.nearest(rate),
             anew: WATCHES.map(|watch| gain(so_far + variance(rate * watch), watch)),
-            continued: WATCHES
-                .map(|watch| gain(seen.past_variance + variance(rate * (seen.run + watch)).max(0.02), watch)),
+            continued: WATCHES.map(|watch| {
+                gain(seen.past_variance + variance(rate * (seen.run + watch)).max(LEAST_VARIANCE), watch)
+            }),
         }
     }
 
     /// The error is averaged over the rates that the cell may have. At each rate it is the bias of the estimate,
     /// and the spread of the cycles still to come.
-    fn of_hardly_known(&self, seen: &Watched, prior: &Distribution) -> Expected {
+    fn of_uncertain(&self, seen: &Watched, prior: &Distribution) -> Expected {
         let &Watched { cycles, time, estimate, run, past_variance } = seen;
         let mut distribution: Distribution = std::array::from_fn(|rate| {
             let expected = (self.rates[rate] * time).max(1e-9);
@@ -169,7 +167,7 @@ impl Rates {
         let top = distribution.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         distribution = normalised(distribution.map(|log| libm::exp(log - top)));
         // Half the spread so far: the other half is that of the distribution.
-        let half = 0.5 * (past_variance + variance(seen.rate() * run).max(0.02));
+        let half = 0.5 * (past_variance + variance(seen.rate() * run).max(LEAST_VARIANCE));
         let has_estimate = estimate > 0.0 && cycles > 0.0;
         let estimate_time = if has_estimate { cycles / estimate } else { time };
         let (mut anew, mut continued) = (Gains::default(), Gains::default());
@@ -279,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn absurd_figures_leave_numbers() {
+    fn extreme_observations_give_finite_results() {
         let rates = Rates::new();
         let flat = [1.0 / RATES as f64; RATES];
         for cycles in [0.0, 0.5, 1e9] {

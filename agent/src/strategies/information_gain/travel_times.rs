@@ -1,6 +1,5 @@
 //! The time to each cell, also past obstacles that may have moved away.
 
-use super::clusters::beside;
 use crate::Situation;
 use interfaces::CellState;
 use std::collections::VecDeque;
@@ -26,11 +25,11 @@ pub(super) fn times(situation: &Situation) -> Vec<f64> {
     }
     for cell in mapper.changed().filter(|&cell| states[cell] == CellState::Blocked) {
         if is_passable[cell] && times[cell] == f64::INFINITY {
-            open.extend(beside(frame, cell).filter(|&near| times[near] < f64::INFINITY));
+            open.extend(frame.beside(cell).filter(|&near| times[near] < f64::INFINITY));
         }
     }
     while let Some(cell) = open.pop_front() {
-        for near in beside(frame, cell) {
+        for near in frame.beside(cell) {
             if is_passable[near] && times[near] == f64::INFINITY {
                 let closed = if states[near] == CellState::Blocked { MAY_BE_CLOSED } else { 0.0 };
                 times[near] = times[cell] + frame.resolution_m() + closed;

@@ -1,3 +1,4 @@
+use super::DiffDriveSettings;
 use crate::drives::Scene;
 use interfaces::CellState;
 use nalgebra::{Point2, Vector2};
@@ -9,28 +10,20 @@ const CHECK_M: f64 = 0.04;
 /// The number of speeds tried between the wish and 0.
 const LEVELS: u32 = 8;
 
-/// How a robot stops, and the distance that it keeps from obstacles.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Braking {
-    pub(super) radius_m: f64,
-    pub(super) margin_m: f64,
-    /// The additional margin per m/s of speed, s.
-    pub(super) margin_s: f64,
-    pub(super) reaction_s: f64,
-    pub(super) deceleration_mps2: f64,
-    /// The maximum speed of dynamic obstacles, m/s.
-    pub(super) obstacle_mps: f64,
-}
+impl DiffDriveSettings {
+    /// The distance that the center of the robot keeps from obstacles, m.
+    fn keep_m(&self, speed_mps: f64) -> f64 {
+        self.radius_m + self.clearance_m + self.clearance_s * speed_mps
+    }
 
-impl Braking {
     /// The time from the decision to stop until the robot stands, s.
     fn stop_s(&self, speed_mps: f64) -> f64 {
-        self.reaction_s + speed_mps / self.deceleration_mps2
+        self.reaction_s + speed_mps / self.acceleration_mps2
     }
 
     /// The stopping distance, m.
     fn stop_m(&self, speed_mps: f64) -> f64 {
-        speed_mps * self.reaction_s + 0.5 * speed_mps * speed_mps / self.deceleration_mps2
+        speed_mps * self.reaction_s + 0.5 * speed_mps * speed_mps / self.acceleration_mps2
     }
 
     /// The time at which the stopping robot passes the point at a distance, s.
@@ -40,8 +33,8 @@ impl Braking {
             return distance_m / speed_mps;
         }
         let braking_m = distance_m - rolling_m;
-        let left = (speed_mps * speed_mps - 2.0 * self.deceleration_mps2 * braking_m).max(0.0);
-        self.reaction_s + (speed_mps - left.sqrt()) / self.deceleration_mps2
+        let left = (speed_mps * speed_mps - 2.0 * self.acceleration_mps2 * braking_m).max(0.0);
+        self.reaction_s + (speed_mps - left.sqrt()) / self.acceleration_mps2
     }
 }
 
@@ -64,12 +57,10 @@ pub(super) struct CollisionMonitor {
 
 impl CollisionMonitor {
     /// Gathers the obstacles that matter up to `speed_mps`.
-    pub(super) fn update(&mut self, braking: &Braking, scene: &Scene, speed_mps: f64) {
-        let reach_m = braking.radius_m
-            + braking.margin_m
-            + braking.margin_s * speed_mps
-            + braking.stop_m(speed_mps)
-            + braking.obstacle_mps * braking.stop_s(speed_mps);
+    pub(super) fn update(&mut self, settings: &DiffDriveSettings, scene: &Scene, speed_mps: f64) {
+        let reach_m = settings.keep_m(speed_mps)
+            + settings.stop_m(speed_mps)
+            + settings.max_obstacle_mps * settings.stop_s(speed_mps);
         self.obstacles.clear();
         let robot = scene.situation.position();
         for point in scene.situation.points {
@@ -103,20 +94,25 @@ impl CollisionMonitor {
     }
 
     /// The highest safe speed up to `wish_mps` (negative backwards) on the arc of a curvature.
-    pub(super) fn safe_speed_mps(&self, braking: &Braking, wish_mps: f64, curvature_radpm: f64) -> f64 {
+    pub(super) fn safe_speed_mps(
+        &self,
+        settings: &DiffDriveSettings,
+        wish_mps: f64,
+        curvature_radpm: f64,
+    ) -> f64 {
         let mut levels = (1..=LEVELS).rev().map(|level| wish_mps * f64::from(level) / f64::from(LEVELS));
-        levels.find(|speed| self.is_safe(braking, *speed, curvature_radpm)).unwrap_or(0.0)
+        levels.find(|speed| self.is_safe(settings, *speed, curvature_radpm)).unwrap_or(0.0)
     }
 
-    fn is_safe(&self, braking: &Braking, velocity_mps: f64, curvature_radpm: f64) -> bool {
+    fn is_safe(&self, settings: &DiffDriveSettings, velocity_mps: f64, curvature_radpm: f64) -> bool {
         let speed_mps = velocity_mps.abs();
-        let keep_m = braking.radius_m + braking.margin_m + braking.margin_s * speed_mps;
-        let stop_m = braking.stop_m(speed_mps);
+        let keep_m = settings.keep_m(speed_mps);
+        let stop_m = settings.stop_m(speed_mps);
         let checks = (stop_m / CHECK_M).ceil().max(1.0);
         (1..=checks as u32).all(|check| {
             let distance_m = stop_m * f64::from(check) / checks;
             let at = along_arc(distance_m.copysign(velocity_mps), curvature_radpm);
-            let moves_m = braking.obstacle_mps * braking.passes_at_s(speed_mps, distance_m);
+            let moves_m = settings.max_obstacle_mps * settings.passes_at_s(speed_mps, distance_m);
             self.obstacles.iter().all(|obstacle| {
                 let keep_m = if obstacle.is_dynamic { keep_m + moves_m } else { keep_m };
                 let square = (obstacle.at - at).norm_squared();
@@ -140,14 +136,17 @@ fn along_arc(distance_m: f64, curvature_radpm: f64) -> Vector2<f64> {
 mod tests {
     use super::*;
 
-    const BRAKING: Braking = Braking {
-        radius_m: 0.2,
-        margin_m: 0.02,
-        margin_s: 0.0,
-        reaction_s: 0.2,
-        deceleration_mps2: 1.0,
-        obstacle_mps: 0.3,
-    };
+    fn braking() -> DiffDriveSettings {
+        DiffDriveSettings {
+            radius_m: 0.2,
+            clearance_m: 0.02,
+            clearance_s: 0.0,
+            reaction_s: 0.2,
+            acceleration_mps2: 1.0,
+            max_obstacle_mps: 0.3,
+            ..DiffDriveSettings::default()
+        }
+    }
 
     fn monitor(x: f64, y: f64, is_dynamic: bool) -> CollisionMonitor {
         let at = Vector2::new(x, y);
@@ -158,27 +157,27 @@ mod tests {
     fn a_safe_speed_leaves_room_to_stop() {
         for distance_cm in 22..80 {
             let ahead_m = f64::from(distance_cm) / 100.0;
-            let speed = monitor(ahead_m, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0);
-            assert!(BRAKING.stop_m(speed) <= (ahead_m - 0.22).max(0.0) + 1e-12);
-            assert!(speed == 0.5 || BRAKING.stop_m(speed + 0.5 / 8.0) > ahead_m - 0.22 - 1e-9);
+            let speed = monitor(ahead_m, 0.0, false).safe_speed_mps(&braking(), 0.5, 0.0);
+            assert!(braking().stop_m(speed) <= (ahead_m - 0.22).max(0.0) + 1e-12);
+            assert!(speed == 0.5 || braking().stop_m(speed + 0.5 / 8.0) > ahead_m - 0.22 - 1e-9);
         }
     }
 
     #[test]
-    fn what_comes_closer_needs_more_room() {
-        let ahead_m = 0.22 + BRAKING.stop_m(0.5) + 0.01;
-        assert_eq!(monitor(ahead_m, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
-        assert!(monitor(ahead_m, 0.0, true).safe_speed_mps(&BRAKING, 0.5, 0.0) < 0.5);
-        let ahead_m = ahead_m + 0.3 * BRAKING.stop_s(0.5);
-        assert_eq!(monitor(ahead_m, 0.0, true).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
+    fn dynamic_obstacles_need_more_room() {
+        let ahead_m = 0.22 + braking().stop_m(0.5) + 0.01;
+        assert_eq!(monitor(ahead_m, 0.0, false).safe_speed_mps(&braking(), 0.5, 0.0), 0.5);
+        assert!(monitor(ahead_m, 0.0, true).safe_speed_mps(&braking(), 0.5, 0.0) < 0.5);
+        let ahead_m = ahead_m + 0.3 * braking().stop_s(0.5);
+        assert_eq!(monitor(ahead_m, 0.0, true).safe_speed_mps(&braking(), 0.5, 0.0), 0.5);
     }
 
     #[test]
     fn beside_and_behind_do_not_stop_but_a_turn_towards_does() {
-        assert_eq!(monitor(0.1, 0.23, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
-        assert_eq!(monitor(-0.21, 0.0, false).safe_speed_mps(&BRAKING, 0.5, 0.0), 0.5);
-        assert_eq!(monitor(-0.21, 0.0, false).safe_speed_mps(&BRAKING, -0.5, 0.0), 0.0);
-        assert!(monitor(0.1, 0.23, false).safe_speed_mps(&BRAKING, 0.5, 3.0) < 0.3);
+        assert_eq!(monitor(0.1, 0.23, false).safe_speed_mps(&braking(), 0.5, 0.0), 0.5);
+        assert_eq!(monitor(-0.21, 0.0, false).safe_speed_mps(&braking(), 0.5, 0.0), 0.5);
+        assert_eq!(monitor(-0.21, 0.0, false).safe_speed_mps(&braking(), -0.5, 0.0), 0.0);
+        assert!(monitor(0.1, 0.23, false).safe_speed_mps(&braking(), 0.5, 3.0) < 0.3);
     }
 
     #[test]

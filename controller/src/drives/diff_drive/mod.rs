@@ -7,7 +7,7 @@ pub use settings::DiffDriveSettings;
 
 use super::{Body, Drive, Scene};
 use crate::planner::{Costmap, Moves, Path};
-use collision_monitor::{Braking, CollisionMonitor};
+use collision_monitor::CollisionMonitor;
 use interfaces::{SettingsError, Twist};
 use nalgebra::Point2;
 use std::f64::consts::PI;
@@ -42,17 +42,6 @@ impl DiffDrive {
         settings.check()?;
         let monitor = CollisionMonitor::default();
         Ok(Self { settings, monitor, is_turning: false, last: Twist::STOP, last_time_s: f64::NEG_INFINITY })
-    }
-
-    fn braking(&self) -> Braking {
-        Braking {
-            radius_m: self.settings.radius_m,
-            margin_m: self.settings.clearance_m,
-            margin_s: self.settings.clearance_s,
-            reaction_s: self.settings.reaction_s,
-            deceleration_mps2: self.settings.acceleration_mps2,
-            obstacle_mps: self.settings.max_obstacle_mps,
-        }
     }
 
     /// The rate of a turn in place by `angle_rad` that can still end there.
@@ -120,9 +109,8 @@ impl Drive for DiffDrive {
             .min(end_mps)
             .min(settings.max_angular_radps / curvature_radpm.abs().max(1e-6))
             .min(self.last.linear_mps.max(0.0) + settings.acceleration_mps2 * LONGEST_TICK_S);
-        let braking = self.braking();
-        self.monitor.update(&braking, scene, wish_mps);
-        let safe_mps = self.monitor.safe_speed_mps(&braking, wish_mps, curvature_radpm);
+        self.monitor.update(&settings, scene, wish_mps);
+        let safe_mps = self.monitor.safe_speed_mps(&settings, wish_mps, curvature_radpm);
         if safe_mps == 0.0 {
             return self.command(scene, turn);
         }
@@ -139,9 +127,9 @@ impl Drive for DiffDrive {
         if elapsed_s >= RECOVERY_S {
             return None;
         }
-        let braking = self.braking();
-        self.monitor.update(&braking, scene, self.settings.reverse_mps);
-        let back_mps = self.monitor.safe_speed_mps(&braking, -self.settings.reverse_mps, 0.0);
+        let settings = self.settings;
+        self.monitor.update(&settings, scene, settings.reverse_mps);
+        let back_mps = self.monitor.safe_speed_mps(&settings, -settings.reverse_mps, 0.0);
         let turn_radps = if back_mps == 0.0 { 0.5 * self.settings.max_angular_radps } else { 0.0 };
         Some(self.command(scene, Twist { linear_mps: back_mps, angular_radps: turn_radps }))
     }

@@ -1,5 +1,4 @@
-use crate::settings::Check;
-use interfaces::SettingsError;
+use interfaces::{SettingsCheck, SettingsError};
 use serde::{Deserialize, Serialize};
 
 /// The body of a differential drive robot, and how it follows paths.
@@ -59,7 +58,7 @@ impl Default for DiffDriveSettings {
 
 impl DiffDriveSettings {
     pub(super) fn check(&self) -> Result<(), SettingsError> {
-        let check = Check("differential drive");
+        let check = SettingsCheck { part: "differential drive" };
         check.positive("radius_m", self.radius_m)?;
         check.positive("max_linear_mps", self.max_linear_mps)?;
         check.positive("max_angular_radps", self.max_angular_radps)?;

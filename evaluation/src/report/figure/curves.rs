@@ -36,9 +36,9 @@ pub(super) fn draw<DB: DrawingBackend>(
     sheet: &Sheet<DB>,
     pen: &Pen,
     metric: Metric,
-    steps: &[u64],
     strategies: &[StrategyResult],
 ) -> Result<(), String> {
+    let steps = strategies.first().map_or(&[][..], |strategy| &strategy.steps);
     let horizon = steps.last().copied().unwrap_or(0).max(1) as f64;
     let before = |part: f64| steps.iter().take_while(|&&step| (step as f64) < part * horizon).count();
     let is_log = metric == Metric::LogError;
@@ -151,7 +151,7 @@ fn band<DB: DrawingBackend>(
     positions: &[f64],
     curve: &[Estimate],
     shown: &Range<f64>,
-    colour: RGBColor,
+    color: RGBColor,
 ) -> Result<(), String> {
     let is_known = |at: &Estimate| at.low.is_finite() && at.high.is_finite();
     let known: Vec<(f64, &Estimate)> =
@@ -163,7 +163,7 @@ fn band<DB: DrawingBackend>(
     if known.len() < 2 {
         return Ok(());
     }
-    chart.plotting_area().draw(&Polygon::new(outline, colour.mix(BAND).filled())).map_err(why)
+    chart.plotting_area().draw(&Polygon::new(outline, color.mix(BAND).filled())).map_err(why)
 }
 
 /// The mean as lines: cut where they leave what is shown, broken where there is no mean.

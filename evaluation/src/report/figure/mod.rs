@@ -6,14 +6,16 @@ mod pen;
 mod plan;
 
 use super::metric::Metric;
-use super::run::{Run, conditions};
-use super::{ONE_BY_ONE, Report, WorldPicture};
+use super::run::Run;
+use super::wording::conditions;
+use super::{ONE_BY_ONE, Report};
 use crate::drawing::{Canvas, PictureError, ink, why};
 use crate::output::write_file;
 use crate::palette;
 use pen::{Pen, Sheet, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
+use sim::grid::GridSpec;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -29,7 +31,7 @@ const PANEL_HEIGHT: i32 = 360;
 pub(super) fn write_all(
     folder: &Path,
     report: &Report,
-    worlds: &[WorldPicture],
+    worlds: &[GridSpec],
 ) -> Result<Vec<PathBuf>, PictureError> {
     let mut files = Vec::new();
     for (name, run) in chosen(report) {
@@ -63,7 +65,7 @@ fn chosen(report: &Report) -> Vec<(String, &Run)> {
                 name += &format!("-{}", in_file_name(&run.estimator));
             }
         }
-        // Two names may differ only in what a file's name cannot tell.
+        // Different names can become the same in a file name.
         let mut unique = name.clone();
         let mut number = 2;
         while !names.insert(unique.clone()) {
@@ -75,7 +77,7 @@ fn chosen(report: &Report) -> Vec<(String, &Run)> {
     chosen
 }
 
-/// A name as a part of a file's name: small letters, digits and dashes.
+/// A name as a part of a file name: lower-case letters, digits and dashes.
 fn in_file_name(name: &str) -> String {
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' };
     let dashed: String = name.chars().map(plain).collect();
@@ -84,10 +86,10 @@ fn in_file_name(name: &str) -> String {
 }
 
 /// The plans of the worlds of `run`, in the report's order.
-fn worlds_of<'a>(report: &Report, run: &Run, worlds: &'a [WorldPicture]) -> Vec<&'a WorldPicture> {
-    let lived_in = |one: &&Run| one.worlds == 1 && one.estimator == run.estimator;
+fn worlds_of<'a>(report: &Report, run: &Run, worlds: &'a [GridSpec]) -> Vec<&'a GridSpec> {
+    let has_trials = |one: &&Run| one.worlds == 1 && one.estimator == run.estimator;
     let is_wanted = |one: &&Run| run.worlds > 1 || one.world == run.world;
-    let names = report.runs.iter().filter(lived_in).filter(is_wanted).map(|one| &one.world);
+    let names = report.runs.iter().filter(has_trials).filter(is_wanted).map(|one| &one.world);
     names.filter_map(|name| worlds.iter().find(|world| world.name == *name)).collect()
 }
 
@@ -95,7 +97,7 @@ fn worlds_of<'a>(report: &Report, run: &Run, worlds: &'a [WorldPicture]) -> Vec<
 struct Figure<'a> {
     report: &'a Report,
     run: &'a Run,
-    worlds: Vec<&'a WorldPicture>,
+    worlds: Vec<&'a GridSpec>,
 }
 
 impl Figure<'_> {
@@ -125,9 +127,10 @@ impl Figure<'_> {
             worlds => plan::many(&panels[0], pen, worlds)?,
         }
         let curves = [Metric::RateError, Metric::LogError, Metric::MapQuality];
-        panels[1..].iter().zip(curves).try_for_each(|(panel, metric)| {
-            curves::draw(panel, pen, metric, &self.report.steps, &self.run.strategies)
-        })
+        panels[1..]
+            .iter()
+            .zip(curves)
+            .try_for_each(|(panel, metric)| curves::draw(panel, pen, metric, &self.run.strategies))
     }
 
     fn legend<DB: DrawingBackend>(&self, sheet: &Sheet<DB>, pen: &Pen) -> Result<(), String> {
@@ -135,11 +138,11 @@ impl Figure<'_> {
         for (index, strategy) in self.run.strategies.iter().enumerate() {
             let left = MARGIN + (index % LEGEND_COLUMNS) as i32 * column_width;
             let middle = (index / LEGEND_COLUMNS) as i32 * LEGEND_ROW + LEGEND_ROW / 2;
-            let colour = ink(palette::strategy(&strategy.name));
-            pen.bar(sheet, [left, middle - 7], [26, 14], &colour.mix(curves::BAND))?;
+            let color = ink(palette::strategy(&strategy.name));
+            pen.bar(sheet, [left, middle - 7], [26, 14], &color.mix(curves::BAND))?;
             let line = [left, left + 26].map(|x| (pen.px(x), pen.px(middle)));
             let is_dashed = curves::is_dashed(&strategy.name);
-            curves::draw_line(sheet, pen, line.into(), pen.line(colour, 2), is_dashed)?;
+            curves::draw_line(sheet, pen, line.into(), pen.line(color, 2), is_dashed)?;
             pen.write(sheet, (left + 34, middle), HPos::Left, 16, &strategy.name)?;
         }
         Ok(())

@@ -27,8 +27,8 @@ impl Pen {
     }
 
     /// A line of a width.
-    pub(super) fn line(&self, colour: impl Color, width: u32) -> ShapeStyle {
-        colour.stroke_width(width * self.scale as u32)
+    pub(super) fn line(&self, color: impl Color, width: u32) -> ShapeStyle {
+        color.stroke_width(width * self.scale as u32)
     }
 
     /// Text of a height.
@@ -56,10 +56,10 @@ impl Pen {
         sheet: &Sheet<DB>,
         [left, top]: [i32; 2],
         [width, height]: [i32; 2],
-        colour: &impl Color,
+        color: &impl Color,
     ) -> Result<(), String> {
         let corners = [(self.px(left), self.px(top)), (self.px(left + width), self.px(top + height))];
-        sheet.draw(&Rectangle::new(corners, colour.filled())).map_err(why)
+        sheet.draw(&Rectangle::new(corners, color.filled())).map_err(why)
     }
 }
 

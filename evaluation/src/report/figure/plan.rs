@@ -3,26 +3,23 @@
 use super::pen::{Pen, Sheet};
 use crate::drawing::{INK, ink, why};
 use crate::palette::{self, CURIOUS};
-use crate::report::WorldPicture;
+use interfaces::Cell;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
+use sim::grid::GridSpec;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// The width of the legend beside a plan, in pixels of the finished picture.
 const LEGEND: i32 = 190;
 const ROW: i32 = 24;
-/// The maximum number of named things, and of drawn worlds.
-const THINGS: usize = 8;
+/// The maximum number of named blocks, and of drawn worlds.
+const BLOCKS: usize = 8;
 const WORLDS: usize = 12;
 const GRID: RGBColor = RGBColor(232, 234, 238);
 
 /// Draws a world with a legend.
-pub(super) fn one<DB: DrawingBackend>(
-    sheet: &Sheet<DB>,
-    pen: &Pen,
-    world: &WorldPicture,
-) -> Result<(), String> {
+pub(super) fn one<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &GridSpec) -> Result<(), String> {
     pen.write(sheet, (16, 18), HPos::Left, 17, "The world")?;
     let (width, _) = sheet.dim_in_pixel();
     let below = sheet.margin(pen.px(34), pen.px(14), pen.px(16), 0);
@@ -37,22 +34,22 @@ pub(super) fn one<DB: DrawingBackend>(
         middle += ROW;
         Ok::<_, String>(())
     };
-    let square = |colour: RGBColor| {
+    let square = |color: RGBColor| {
         let legend = &legend;
-        move |middle: i32| pen.bar(legend, [4, middle - 7], [14, 14], &colour)
+        move |middle: i32| pen.bar(legend, [4, middle - 7], [14, 14], &color)
     };
     row(&square(INK), "wall")?;
-    for (index, (name, _)) in world.things.iter().take(THINGS).enumerate() {
-        row(&square(ink(palette::thing(index))), name)?;
+    for (index, block) in world.blocks.iter().take(BLOCKS).enumerate() {
+        row(&square(ink(palette::thing(index))), &block.name)?;
     }
-    if world.things.len() > THINGS {
-        row(&|_| Ok(()), &format!("and {} more that move", world.things.len() - THINGS))?;
+    if world.blocks.len() > BLOCKS {
+        row(&|_| Ok(()), &format!("and {} more blocks", world.blocks.len() - BLOCKS))?;
     }
-    let centre = |middle: i32| (pen.px(11), pen.px(middle));
-    row(&|middle| dot(&legend, pen, centre(middle), 5), "start of the robot")?;
+    let center = |middle: i32| (pen.px(11), pen.px(middle));
+    row(&|middle| dot(&legend, pen, center(middle), 5), "start of the robot")?;
     let ring = pen.line(ink(CURIOUS), 2);
     row(
-        &|middle| legend.draw(&Circle::new(centre(middle), pen.px(7), ring)).map_err(why),
+        &|middle| legend.draw(&Circle::new(center(middle), pen.px(7), ring)).map_err(why),
         &format!("range of its sensor: {}", world.sensor_radius),
     )
 }
@@ -61,7 +58,7 @@ pub(super) fn one<DB: DrawingBackend>(
 pub(super) fn many<DB: DrawingBackend>(
     sheet: &Sheet<DB>,
     pen: &Pen,
-    worlds: &[&WorldPicture],
+    worlds: &[&GridSpec],
 ) -> Result<(), String> {
     let title = match worlds.len() {
         0 => return Ok(()),
@@ -83,23 +80,24 @@ pub(super) fn many<DB: DrawingBackend>(
     Ok(())
 }
 
-/// Draws the cells of a world as large as they fit, from the upper left corner. Returns where the
-/// plan ends at the right.
-fn cells<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &WorldPicture) -> Result<i32, String> {
-    let [columns, rows] = world.size();
+/// Draws the cells of a world as large as they fit, from the upper left corner. Returns the right end of the plan.
+fn cells<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &GridSpec) -> Result<i32, String> {
+    let (columns, rows) = (world.frame().width(), world.frame().height());
     let (width, height) = sheet.dim_in_pixel();
     let side = (f64::from(width) / columns.max(1) as f64).min(f64::from(height) / rows.max(1) as f64);
-    // Borders of cells, rounded so that neighbours neither overlap nor leave a gap.
+    // Borders of cells, rounded so that neighbors neither overlap nor leave a gap; in an SVG file, neighboring rows
+    // overlap by a tenth of a pixel, since a viewer would blend their border with the background.
     let x = |column: f64| (column * side).round() as i32;
     let y = |row: f64| ((rows as f64 - row) * side).round() as i32;
-    let fill = |columns: Range<usize>, rows: Range<usize>, colour: RGBColor| {
-        let corners =
-            [(x(columns.start as f64), y(rows.end as f64)), (x(columns.end as f64), y(rows.start as f64))];
-        sheet.draw(&Rectangle::new(corners, colour.filled())).map_err(why)
+    let fill = |columns: Range<usize>, row: usize, color: RGBColor| {
+        let upper_left = (x(columns.start as f64), y(row as f64 + 1.0));
+        let lower_right = (x(columns.end as f64), y(row as f64) + pen.px(1) / 10);
+        sheet.draw(&Rectangle::new([upper_left, lower_right], color.filled())).map_err(why)
     };
-    for (index, (_, path)) in world.things.iter().enumerate() {
-        let colour = ink(palette::thing(index));
-        path.iter().try_for_each(|&(column, row)| fill(column..column + 1, row..row + 1, colour))?;
+    for (index, block) in world.blocks.iter().enumerate() {
+        for &Cell { x, y } in &block.path {
+            fill(x as usize..x as usize + 1, y as usize, ink(palette::thing(index)))?;
+        }
     }
     let (right, bottom) = (x(columns as f64), y(0.0));
     if side >= f64::from(pen.px(7)) {
@@ -108,16 +106,17 @@ fn cells<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &WorldPicture)
         let thin = pen.line(GRID, 1);
         upright.chain(level).try_for_each(|line| sheet.draw(&PathElement::new(line, thin)).map_err(why))?;
     }
-    for (row, walls) in world.walls.iter().enumerate() {
-        stretches(walls).try_for_each(|stretch| fill(stretch, row..row + 1, INK))?;
-    }
-    // Upwards once more: where only rows touch, a hair of white would shine through.
-    for column in 0..columns {
-        let walls: Vec<bool> = world.walls.iter().map(|row| row.get(column) == Some(&true)).collect();
-        stretches(&walls).try_for_each(|stretch| fill(column..column + 1, stretch, INK))?;
+    for (row, cells) in world.walls.cells().chunks(columns).enumerate() {
+        let mut end = 0;
+        for run in cells.chunk_by(|a, b| a == b) {
+            end += run.len();
+            if run[0] {
+                fill(end - run.len()..end, row, INK)?;
+            }
+        }
     }
 
-    let start = (world.start.0 as f64 + 0.5, world.start.1 as f64 + 0.5);
+    let start = (f64::from(world.start.x) + 0.5, f64::from(world.start.y) + 0.5);
     let reach = f64::from(world.sensor_radius);
     let ring: Vec<(f64, f64)> = (0..=180)
         .map(|part| TAU * f64::from(part) / 180.0)
@@ -135,17 +134,8 @@ fn cells<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &WorldPicture)
     Ok(right)
 }
 
-/// Draws where the robot starts: a filled circle with a white rim.
+/// Draws the start of the robot: a filled circle with a white rim.
 fn dot<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, at: (i32, i32), radius: i32) -> Result<(), String> {
     sheet.draw(&Circle::new(at, pen.px(radius + 1), WHITE.filled())).map_err(why)?;
     sheet.draw(&Circle::new(at, pen.px(radius), ink(CURIOUS).filled())).map_err(why)
-}
-
-/// Where one wall follows another.
-fn stretches(walls: &[bool]) -> impl Iterator<Item = Range<usize>> {
-    let mut end = 0;
-    walls.chunk_by(|a, b| a == b).filter_map(move |stretch| {
-        end += stretch.len();
-        stretch[0].then_some(end - stretch.len()..end)
-    })
 }

@@ -123,8 +123,8 @@ fn names_are_escaped() {
 }
 
 #[test]
-#[ignore = "draws figures to look at"]
-fn look() {
+#[ignore = "draws figures for an inspection by eye"]
+fn draw_figures() {
     let nine = [FIVE.as_slice(), &["information-gain", "optimal-revisiting", "frontier", "oracle"]].concat();
     let folder = tempfile::tempdir().unwrap().keep();
     for (name, worlds, strategies, seeds) in [
@@ -136,8 +136,8 @@ fn look() {
         let start = std::time::Instant::now();
         let report = report(worlds, &["two-state"], &strategies, seeds);
         let made = start.elapsed();
-        let pictures: Vec<WorldPicture> = (0..worlds).map(picture).collect();
-        let files = report.write(&folder.join(name), &pictures).unwrap();
+        let plans: Vec<GridSpec> = (0..worlds).map(world).collect();
+        let files = report.write(&folder.join(name), &plans).unwrap();
         println!("{name}: statistics in {made:?}, {} files after {:?}", files.len(), start.elapsed());
     }
     println!("{}", folder.display());

@@ -4,7 +4,7 @@ mod files;
 mod runs;
 mod statistics;
 
-use super::synthetic::{HORIZON, experiment, normal, picture, uniform};
+use super::synthetic::{HORIZON, experiment, normal, uniform, world};
 use super::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -17,8 +17,8 @@ fn report(worlds: usize, estimators: &[&str], strategies: &[&str], seeds: u64) -
 /// All that a report writes, as names and contents.
 fn written(report: &Report) -> Vec<(String, Vec<u8>)> {
     let folder = tempfile::tempdir().unwrap();
-    let pictures: Vec<WorldPicture> = (0..3).map(picture).collect();
-    let files = report.write(folder.path(), &pictures).unwrap();
+    let worlds: Vec<GridSpec> = (0..3).map(world).collect();
+    let files = report.write(folder.path(), &worlds).unwrap();
     let name = |file: &PathBuf| file.file_name().unwrap().to_str().unwrap().to_owned();
     files.iter().map(|file| (name(file), std::fs::read(file).unwrap())).collect()
 }

@@ -52,8 +52,8 @@ fn runs_and_strategies_come_as_they_were_asked_for() {
     let order = |settings: &ReportSettings| {
         let report = Report::new(settings.clone(), trials.clone());
         let name = |run: &Run| format!("{}/{}", run.world, run.estimator);
-        let strategies = report.runs()[0].strategies.iter().map(|strategy| strategy.name.clone());
-        (report.runs().iter().map(name).collect::<Vec<_>>(), strategies.collect::<Vec<_>>())
+        let strategies = report.runs[0].strategies.iter().map(|strategy| strategy.name.clone());
+        (report.runs.iter().map(name).collect::<Vec<_>>(), strategies.collect::<Vec<_>>())
     };
     let (runs, strategies) = order(&settings);
     assert_eq!(
@@ -81,12 +81,12 @@ fn a_curve_is_the_mean_of_its_trials_with_what_is_undefined_left_out() {
     let mut trials = vec![flat("a", "x", 0, 1.0), flat("a", "x", 1, 2.0), flat("a", "x", 2, 6.0)];
     trials[2].samples[0].brier = f64::NAN;
     let report = Report::new(ReportSettings::default(), trials);
-    let strategy = report.runs()[0].strategy("x").unwrap();
+    let strategy = report.runs[0].strategy("x").unwrap();
     let curve = strategy.curve(Metric::Brier);
     assert_eq!((curve[0].count, curve[0].mean, curve[1].count, curve[1].mean), (2, 1.5, 3, 3.0));
     // 4.3027 √7 / √3 around 3.
     close(curve[1].high, 3.0 + 4.302_65 * (7.0_f64 / 3.0).sqrt(), 1e-4);
-    assert_eq!(strategy.value(Measure::FINAL_BRIER), 3.0);
+    assert_eq!(strategy.value(Measure::Final(Metric::Brier)), 3.0);
     assert_eq!((strategy.trials, strategy.false_change_events), (3, 3));
 }
 
@@ -97,14 +97,14 @@ fn trials_are_paired_by_seed_and_a_missing_one_costs_its_pair() {
     let y = [(1, 2.0), (2, 4.0), (4, 6.0), (7, -50.0)].map(|(seed, value)| flat("a", "y", seed, value));
     let report = Report::new(ReportSettings::default(), [x, y].concat());
     let run = report.run("a", "paper").unwrap();
-    let found = run.comparison("x", "y", Measure::FINAL_LOG_ERROR).unwrap();
+    let found = run.comparison("x", "y", Measure::Final(Metric::LogError)).unwrap();
     assert_eq!((found.pairs, found.mean_difference, found.ratio), (3, -2.0, 0.5));
     // The deviation is 1, so t = −2 √3 with 2 degrees of freedom: p = 1 − t/√(t² + 2).
     close(found.p_value, 1.0 - (12.0_f64 / 14.0).sqrt(), 1e-9);
     close(found.effect_size, -2.0, 1e-12);
     close(found.low, -2.0 - 4.302_653 / 3.0_f64.sqrt(), 1e-5);
     assert_eq!(found.p_holm, found.p_value, "one test in its family");
-    let flipped = run.comparison("y", "x", Measure::FINAL_LOG_ERROR).unwrap();
+    let flipped = run.comparison("y", "x", Measure::Final(Metric::LogError)).unwrap();
     assert_eq!((flipped.mean_difference, flipped.low, flipped.high), (2.0, -found.high, -found.low));
     assert_eq!((flipped.ratio, flipped.p_value), (2.0, found.p_value));
     assert_eq!(flipped.flipped(), found);
@@ -113,7 +113,7 @@ fn trials_are_paired_by_seed_and_a_missing_one_costs_its_pair() {
 #[test]
 fn every_pair_of_strategies_is_compared_in_every_measure() {
     let report = report(1, &["paper"], &["curious", "recency", "poisson", "random", "coin"], 3);
-    let run = &report.runs()[0];
+    let run = &report.runs[0];
     assert_eq!(run.comparisons.len(), 10 * Measure::COMPARED.len());
     for comparison in &run.comparisons {
         assert_eq!(comparison.pairs, 3);
@@ -136,19 +136,19 @@ fn over_all_worlds_a_world_counts_once_and_is_the_pair() {
     let report = Report::new(ReportSettings::default(), [x.as_slice(), &y].concat());
     let all = report.run("all worlds (2)", "paper").unwrap();
     let strategy = all.strategy("x").unwrap();
-    assert_eq!(strategy.value(Measure::LOG_ERROR_AREA), 4.0);
+    assert_eq!(strategy.value(Measure::PRIMARY), 4.0);
     assert_eq!((strategy.curve(Metric::LogError)[1].count, strategy.trials), (2, 4));
-    let found = all.comparison("x", "y", Measure::LOG_ERROR_AREA).unwrap();
+    let found = all.comparison("x", "y", Measure::PRIMARY).unwrap();
     // Differences −1 and −3.
     assert_eq!((found.pairs, found.mean_difference, found.ratio), (2, -2.0, 8.0 / 12.0));
     close(found.high, -2.0 + 12.7062, 1e-3);
-    assert_eq!(report.runs().len(), 3);
+    assert_eq!(report.runs.len(), 3);
     assert!(report.run("all worlds (2)", "two-state").is_none());
 }
 
 #[test]
 fn one_world_is_not_all_worlds() {
-    assert_eq!(report(1, &["paper"], &["curious"], 2).runs().len(), 1);
+    assert_eq!(report(1, &["paper"], &["curious"], 2).runs.len(), 1);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::{NEVER, ReadingIndex};
 use std::collections::VecDeque;
 
 /// For each reading from `oldest` on, the number of candidates that were last observed by that reading.
-#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug)]
 pub(super) struct LastSeenCounts {
     counts: VecDeque<u32>,
     oldest: ReadingIndex,

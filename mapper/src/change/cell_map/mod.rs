@@ -9,7 +9,7 @@ mod state_change;
 use super::EstimatorChoice;
 use super::gaps::{CellGaps, Regularity};
 use super::reading_times::{NEVER, PRIOR, ReadingIndex, ReadingTimes};
-use interfaces::{Cell, CellState, Grid, Transition};
+use interfaces::{CellState, Grid, Transition};
 use last_seen::LastSeenCounts;
 use record::Record;
 
@@ -84,10 +84,8 @@ impl CellMap {
     /// A cell is a candidate when it is free, or shares a side with a free cell: a frontier cell or
     /// a surface. The inside of a wall never is.
     fn update_candidate(&mut self, index: usize) {
-        let frame = self.states.frame();
-        let is_free = |cell: Cell| self.states.get(cell) == Some(&CellState::Free);
-        let cell = frame.cell(index);
-        let is = is_free(cell) || cell.neighbours4().into_iter().any(is_free);
+        let is_free = |index: usize| self.state(index) == CellState::Free;
+        let is = is_free(index) || self.frame().beside(index).any(is_free);
         if is != self.candidates[index] {
             self.candidates[index] = is;
             self.last_seen_counts.count(self.last_reading(index), is);

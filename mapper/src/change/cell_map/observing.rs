@@ -1,11 +1,11 @@
-//! Cells that are observed, and found as they were.
+//! Cells that are observed in the same state as before.
 
 use super::record::state_index;
 use super::{CellMap, PRIOR, ReadingIndex};
+use crate::change::gaps::Gap;
 use interfaces::{Cell, CellState};
 
-/// Set in the last reading of a cell while an occupancy model has to look at the cell in every reading; see
-/// [`CellMap::observe_run`].
+/// Set in the last reading of a cell that is not settled; see [`CellMap::observe_run`].
 pub(super) const UNSETTLED: ReadingIndex = 1 << 31;
 /// Cells that [`CellMap::observe_run`] takes at once.
 const BLOCK: usize = 16;
@@ -35,16 +35,15 @@ impl CellMap {
             || self.max_gap > 0.0 && last > PRIOR && self.time() - self.times.at(last) <= self.max_gap
     }
 
-    /// Marks a free cell as settled: [`observe_run`](Self::observe_run) then takes the cell without a closer look. A
-    /// cell that becomes blocked is not settled any more.
+    /// Marks a free cell as settled: [`observe_run`](Self::observe_run) then updates it at once. A cell that becomes
+    /// blocked is no longer settled.
     #[inline]
     pub fn set_settled(&mut self, index: usize, is_settled: bool) {
         let last = self.last_reading(index);
         self.observed[index] = if is_settled { last } else { last | UNSETTLED };
     }
 
-    /// The open reading observed the cell, and its state is as before. Writes one number where the cell was in view
-    /// before; only at a gap the time up to the gap is recorded.
+    /// The open reading observed the cell in the same state as before. At a gap, the time up to the gap is recorded.
     #[inline]
     pub fn observe(&mut self, index: usize) {
         if self.is_seen_now(index) {
@@ -73,9 +72,9 @@ impl CellMap {
     }
 
     /// The open reading observed the cells of one row from `start` to before `end`, and found them free. Cells that
-    /// are [settled](Self::set_settled), and were in view before, are done with one number; the others are
-    /// appended to `closer`. Most cells of a scan are of the first kind, so the loop goes
-    /// block by block, without a branch per cell.
+    /// are [settled](Self::set_settled) and were in view before are updated here; the others are appended to
+    /// `closer`. Most cells of a scan are of the first kind, so the loop goes block by block, without a branch per
+    /// cell.
     #[inline]
     pub fn observe_run(&mut self, start: usize, end: usize, closer: &mut Vec<u32>) {
         let now = self.reading();
@@ -136,7 +135,8 @@ impl CellMap {
             record.watched[state_index(before)] += self.times.at(last) - self.times.at(record.since);
             record.gaps[state_index(before)] += 1;
             if let Some(gaps) = self.gaps.get_mut(index) {
-                gaps.add([last, now], length, [before, after].map(|state| state == CellState::Blocked));
+                let [before, after] = [before, after].map(|state| state == CellState::Blocked);
+                gaps.histogram.add(Gap { start: last, end: now, length, before, after });
             }
         } else {
             record.first = now;

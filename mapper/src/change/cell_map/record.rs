@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 /// The change record of one cell, without its last observation, which is written with
 /// every reading and stored apart.
-#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Record {
     /// The first observation.
     pub(super) first: ReadingIndex,
@@ -43,11 +43,6 @@ impl Record {
     #[inline]
     pub(super) fn is_known(&self) -> bool {
         self.first != NEVER
-    }
-
-    #[inline]
-    pub(super) fn has_changed(&self) -> bool {
-        self.slot.is_some()
     }
 
     /// The index among the cells that ever changed.

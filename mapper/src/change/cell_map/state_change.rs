@@ -2,7 +2,7 @@
 
 use super::record::{Record, state_index};
 use super::{CellMap, PRIOR, ReadingIndex, Slot};
-use crate::change::gaps::{CellGaps, Neighborhood};
+use crate::change::gaps::{CellGaps, neighbors};
 use interfaces::{Cell, CellState, Transition};
 
 /// The neighborhood of a cell: this many cells to either side, along both axes.
@@ -20,7 +20,7 @@ impl CellMap {
             self.end_gap(index, after);
             self.mark(index);
         } else if is_event && let Some(gaps) = self.gaps.get_mut(index) {
-            gaps.correct_last(since, after == CellState::Blocked);
+            gaps.histogram.correct_last(since, after == CellState::Blocked);
         }
         if is_event {
             self.record_event(index, before, since, in_view);
@@ -34,10 +34,8 @@ impl CellMap {
         self.observe(index);
         self.weigh_gaps(index);
         self.update_candidate(index);
-        for neighbour in cell.neighbours4() {
-            if let Some(neighbour) = self.frame().index(neighbour) {
-                self.update_candidate(neighbour);
-            }
+        for neighbor in self.frame().beside(index) {
+            self.update_candidate(neighbor);
         }
     }
 
@@ -46,7 +44,7 @@ impl CellMap {
         let last = self.last_reading(index);
         let period = self.times.period(last);
         let record = &mut self.records[index];
-        if !record.has_changed() {
+        if record.slot().is_none() {
             record.set_slot(self.changed.len() as Slot);
             self.changed.push(index as u32);
         }
@@ -88,25 +86,17 @@ impl CellMap {
 
     /// Weighs the gaps of a cell that changes, when enough was observed since the last time.
     pub(super) fn weigh_gaps(&mut self, index: usize) {
-        if self.gaps.is_empty() || !self.records[index].has_changed() {
+        if self.gaps.is_empty() || self.records[index].slot().is_none() {
             return;
         }
         let seen = self.statistics(index);
         let Some(model) = self.estimator.gap_model().filter(|_| self.gaps[index].is_due(&seen)) else {
             return;
         };
-        let frame = self.states.frame();
-        let cell = frame.cell(index);
-        let mut neighborhood = Neighborhood::around(self.gaps[index].own());
-        for y in cell.y - NEAR..=cell.y + NEAR {
-            for x in cell.x - NEAR..=cell.x + NEAR {
-                if let Some(other) = frame.index(Cell::new(x, y))
-                    && other != index
-                {
-                    neighborhood.add(self.gaps[other].own());
-                }
-            }
-        }
-        self.gaps[index].weigh(model, &seen, neighborhood.prior(), &self.regularity);
+        let (frame, Cell { x, y }) = (self.frame(), self.frame().cell(index));
+        let cells = (y - NEAR..=y + NEAR).flat_map(|y| (x - NEAR..=x + NEAR).map(move |x| Cell::new(x, y)));
+        let others = cells.filter_map(|cell| frame.index(cell)).filter(|&other| other != index);
+        let prior = neighbors::prior(self.gaps[index].own(), others.map(|other| self.gaps[other].own()));
+        self.gaps[index].weigh(model, &seen, prior, &self.regularity);
     }
 }

@@ -2,7 +2,7 @@ use super::Estimator;
 use crate::change::{CellStatistics, Exposure, GapBin, GapEvidence, GapHistogram, GapModel, GapWeights};
 
 /// `cho-garcia-molina`: Cho & Garcia-Molina's estimator of how often a web page changes ("Estimating frequency of
-/// change", 2003): one Poisson process, and each visit tells whether there was any event since the visit
+/// change", 2003): one Poisson process, and each visit shows whether there was any event since the visit
 /// before. X of N visits at interval I found a change: −ln((N − X + ½)/(N + ½)) / I. Visits at irregular intervals
 /// by their maximum likelihood. In view each reading is a visit.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +50,7 @@ const MOST_ROUNDS: usize = 100;
 /// The expected number of changes in all gaps together, at the rate that explains best the states
 /// after the gaps and the changes in view.
 ///
-/// A gap tells whether there was any change: one of length I at rate r holds rI/(1 − e^(−rI)) if so, and
+/// A gap shows whether there was any change: one of length I at rate r holds rI/(1 − e^(−rI)) if so, and
 /// none if not. As in their estimator, half an unchanged gap is added, so that a rate is found also
 /// where every gap showed a change.
 fn hidden_changes(bins: &GapHistogram, seen: &CellStatistics) -> f64 {

@@ -1,6 +1,6 @@
 //! Estimators of how often a cell changes, one per file.
 //!
-//! To add one: write a file with an [`Estimator`], and add a line to [`built_in`]. An estimator in a crate of its own
+//! To add one: write a file with an [`Estimator`], and add a line to [`EstimatorChoice::all`]. An estimator in a crate of its own
 //! goes into [`MapperSettings::estimator`](crate::MapperSettings::estimator) with `.into()`.
 
 mod cho_garcia_molina;
@@ -10,7 +10,6 @@ mod two_state;
 mod two_state_gaps;
 
 use super::{CellStatistics, GapModel, TransitionRates};
-use crate::choice::{Choice, Named};
 pub use cho_garcia_molina::ChoGarciaMolina;
 pub use imac::Imac;
 pub use paper::{Paper, PaperAll};
@@ -19,18 +18,6 @@ use std::sync::Arc;
 pub use two_state::TwoState;
 pub use two_state_gaps::TwoStateGaps;
 
-/// The built-in estimators, in the order of reports.
-fn built_in() -> Vec<Arc<dyn Estimator>> {
-    vec![
-        Arc::new(Paper),
-        Arc::new(PaperAll),
-        Arc::new(ChoGarciaMolina),
-        Arc::new(Imac),
-        Arc::new(TwoState),
-        Arc::new(TwoStateGaps),
-    ]
-}
-
 /// An estimator of the rate at which a cell changes.
 pub trait Estimator: fmt::Debug + Send + Sync {
     /// The name on the command line, in files and in reports.
@@ -38,7 +25,7 @@ pub trait Estimator: fmt::Debug + Send + Sync {
 
     /// The mean time of one cycle, blocked to free and back (T of equation 1), in the unit of the times of the
     /// statistics. Called only for cells with an event. A result that is not a positive number means that the
-    /// events tell no rate.
+    /// events give no rate.
     fn interval(&self, seen: &CellStatistics) -> f64;
 
     /// The rates of both changes, from which the state of a cell out of view is predicted; `None` if unknown.
@@ -55,18 +42,11 @@ pub trait Estimator: fmt::Debug + Send + Sync {
     }
 }
 
-/// A choice of an estimator. The default is `two-state-gaps`: `docs/estimators.md` says why.
-pub type EstimatorChoice = Choice<dyn Estimator>;
+/// A choice of an estimator, by its name. The default is `two-state-gaps`: `docs/estimators.md` says why.
+#[derive(Clone)]
+pub struct EstimatorChoice(Arc<dyn Estimator>);
 
-impl Named for dyn Estimator {
-    fn name(&self) -> &'static str {
-        Estimator::name(self)
-    }
-
-    fn built_in() -> Vec<Arc<Self>> {
-        built_in()
-    }
-}
+interfaces::chosen_by_name!(EstimatorChoice, "estimator", EstimatorChoice::all());
 
 impl<E: Estimator + 'static> From<E> for EstimatorChoice {
     fn from(estimator: E) -> Self {
@@ -81,11 +61,27 @@ impl Default for EstimatorChoice {
 }
 
 impl EstimatorChoice {
+    /// Every built-in estimator, in the order of reports.
+    pub fn all() -> Vec<Self> {
+        vec![
+            Paper.into(),
+            PaperAll.into(),
+            ChoGarciaMolina.into(),
+            Imac.into(),
+            TwoState.into(),
+            TwoStateGaps.into(),
+        ]
+    }
+
+    /// The name on the command line, in files and in reports.
+    pub fn name(&self) -> &'static str {
+        self.0.name()
+    }
+
     /// The mean time of one cycle, T; ∞ for a cell without an event, or that was never in view for any time.
     pub fn interval(&self, seen: &CellStatistics) -> f64 {
         let interval = if seen.events() == 0 { f64::INFINITY } else { self.0.interval(seen) };
-        // The events of a cell that was in view for no time, or for a time without an inverse, tell that the cell
-        // changes, but not how often.
+        // The events of a cell that was in view for no time, or for a time without an inverse, give no rate.
         if interval >= f64::MIN_POSITIVE { interval } else { f64::INFINITY }
     }
 
@@ -154,11 +150,11 @@ mod tests {
     fn names_are_unique_and_choose() {
         let all = EstimatorChoice::all();
         for (index, choice) in all.iter().enumerate() {
-            assert_eq!(EstimatorChoice::named(choice.name()).as_ref(), Some(choice));
+            assert_eq!(choice.name().parse().as_ref(), Ok(choice));
             assert!(!all[..index].contains(choice));
         }
         assert!(all.contains(&EstimatorChoice::default()));
-        let error = EstimatorChoice::try_from("guess".to_owned()).unwrap_err();
-        assert!(error.starts_with("`guess` is not one of paper, paper-all, "), "{error}");
+        let error = "guess".parse::<EstimatorChoice>().unwrap_err().to_string();
+        assert!(error.starts_with("no estimator is called `guess`; there are paper, paper-all, "), "{error}");
     }
 }

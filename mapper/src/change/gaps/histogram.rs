@@ -23,12 +23,6 @@ pub struct GapBin {
 const DIGITS: u32 = 1;
 
 impl GapBin {
-    fn key(length: f64, before: bool, after: bool) -> u16 {
-        // The bits of positive numbers grow with them.
-        let magnitude = (length.clamp(SHORTEST, LONGEST).to_bits() >> (52 - DIGITS)) as u16;
-        magnitude << 2 | u16::from(before) << 1 | u16::from(after)
-    }
-
     /// Whether the cell was blocked before these gaps.
     pub fn before(self) -> bool {
         self.key & 2 != 0
@@ -45,42 +39,61 @@ impl GapBin {
     }
 }
 
-/// The last gap of a cell. Later readings can correct the states before and after the gap.
-#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
-struct Last {
+/// A gap in the view of a cell.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::change) struct Gap {
     /// The last reading before the gap, and the first after it.
-    start: ReadingIndex,
-    end: ReadingIndex,
-    length: f64,
-    before: bool,
-    after: bool,
+    pub(in crate::change) start: ReadingIndex,
+    pub(in crate::change) end: ReadingIndex,
+    pub(in crate::change) length: f64,
+    /// Whether the cell was blocked before and after the gap.
+    pub(in crate::change) before: bool,
+    pub(in crate::change) after: bool,
+}
+
+impl Gap {
+    /// The key of its bin.
+    fn key(&self) -> u16 {
+        // The bits of positive numbers grow with them.
+        let magnitude = (self.length.clamp(SHORTEST, LONGEST).to_bits() >> (52 - DIGITS)) as u16;
+        magnitude << 2 | u16::from(self.before) << 1 | u16::from(self.after)
+    }
 }
 
 /// All gaps of one cell, by length and by the states before and after.
-#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default)]
 pub struct GapHistogram {
     /// In the order of their keys.
     bins: Vec<GapBin>,
-    last: Option<Last>,
+    /// Later readings can correct its states.
+    last: Option<Gap>,
     count: u32,
 }
 
 impl GapHistogram {
-    /// Adds a gap between two readings, `length` long, with whether the cell was blocked before and after.
-    pub(super) fn add(&mut self, [start, end]: [ReadingIndex; 2], length: f64, [before, after]: [bool; 2]) {
-        self.put(length, before, after);
-        self.last = Some(Last { start, end, length, before, after });
+    /// Adds a gap.
+    pub(in crate::change) fn add(&mut self, gap: Gap) {
+        self.put(&gap);
+        self.last = Some(gap);
         self.count += 1;
     }
 
     /// The cell has been in another state, `after`, since the reading `since`: if that lies before the end of
     /// the last gap, corrects the states of the gap.
-    pub(super) fn correct_last(&mut self, since: ReadingIndex, after: bool) {
+    pub(in crate::change) fn correct_last(&mut self, since: ReadingIndex, after: bool) {
         let Some(last) = self.last.filter(|last| since <= last.end) else { return };
+        if let Ok(at) = self.find(last.key()) {
+            let bin = &mut self.bins[at];
+            bin.count -= 1;
+            bin.total -= last.length;
+            if bin.count == 0 {
+                self.bins.remove(at);
+            }
+        }
         let before = if since <= last.start { after } else { last.before };
-        self.take(last.length, last.before, last.after);
-        self.put(last.length, before, after);
-        self.last = Some(Last { before, after, ..last });
+        let corrected = Gap { before, after, ..last };
+        self.put(&corrected);
+        self.last = Some(corrected);
     }
 
     /// The number of gaps.
@@ -93,26 +106,18 @@ impl GapHistogram {
         self.bins.iter().copied()
     }
 
-    fn put(&mut self, length: f64, before: bool, after: bool) {
-        let key = GapBin::key(length, before, after);
-        match self.bins.binary_search_by_key(&key, |bin| bin.key) {
+    fn put(&mut self, gap: &Gap) {
+        let key = gap.key();
+        match self.find(key) {
             Ok(at) => {
                 self.bins[at].count += 1;
-                self.bins[at].total += length;
+                self.bins[at].total += gap.length;
             }
-            Err(at) => self.bins.insert(at, GapBin { key, count: 1, total: length }),
+            Err(at) => self.bins.insert(at, GapBin { key, count: 1, total: gap.length }),
         }
     }
 
-    fn take(&mut self, length: f64, before: bool, after: bool) {
-        let key = GapBin::key(length, before, after);
-        if let Ok(at) = self.bins.binary_search_by_key(&key, |bin| bin.key) {
-            let bin = &mut self.bins[at];
-            bin.count -= 1;
-            bin.total -= length;
-            if bin.count == 0 {
-                self.bins.remove(at);
-            }
-        }
+    fn find(&self, key: u16) -> Result<usize, usize> {
+        self.bins.binary_search_by_key(&key, |bin| bin.key)
     }
 }

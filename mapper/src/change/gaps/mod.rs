@@ -5,14 +5,13 @@
 
 pub(super) mod fit;
 mod histogram;
-mod neighbors;
+pub(super) mod neighbors;
 mod regularity;
 
-use super::reading_times::ReadingIndex;
 use super::transition_kernel::Step;
 use super::{CellStatistics, Exposure, GapWorth};
+pub(super) use histogram::Gap;
 pub use histogram::{GapBin, GapHistogram};
-pub(super) use neighbors::Neighborhood;
 pub(super) use regularity::Regularity;
 
 /// Events of a cell without any observation, in one step. By Jeffreys' prior the rate after n events is
@@ -26,7 +25,7 @@ pub(super) const MEAN_EVENTS: f64 = 0.5;
 const COUNTED_GROWTH: f64 = 1.0 / 8.0;
 const WATCHED_GROWTH: f64 = 1.0 / 4.0;
 
-/// Tells how much the gaps in the view of a cell say about the rates of the cell.
+/// Computes the information of the gaps in the view of a cell about its rates.
 pub trait GapModel {
     /// Weighs the gaps of a cell. `None` keeps the result of the last time.
     fn weigh(&self, evidence: &GapEvidence<'_>) -> Option<GapWeights>;
@@ -60,7 +59,7 @@ pub struct GapEvidence<'a> {
 /// The information in the gaps of a cell. The default is: none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct GapWeights {
-    /// The exposure that tells as much as the gaps, with all other evidence that is not in view. It becomes
+    /// The exposure with the information of the gaps and all other evidence that is not in view. It becomes
     /// [`CellStatistics::gap_worth`].
     pub worth: Exposure,
     /// The part of `worth` that comes from the neighbors.
@@ -76,22 +75,22 @@ pub struct GapWeights {
 /// The belief about both transition probabilities of a cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Belief {
-    /// The exposure that tells as much.
+    /// The exposure with the same information.
     pub(crate) exposure: Exposure,
     /// See [`GapWeights::mixed`].
     pub(crate) mixed: f64,
 }
 
 /// The gaps of one cell, and their weights.
-#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct CellGaps {
-    histogram: GapHistogram,
+    pub(super) histogram: GapHistogram,
     /// Only of a cell that changed.
     weighed: Option<Box<Weighed>>,
 }
 
 /// The weights of the gaps when they were last weighed, and when that was.
-#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default)]
 struct Weighed {
     weights: GapWeights,
     /// Gaps and events, and the time in view, at which the gaps are weighed next.
@@ -103,17 +102,6 @@ struct Weighed {
 }
 
 impl CellGaps {
-    /// Adds a gap between two readings, `length` long, with whether the cell was blocked before and after.
-    pub(super) fn add(&mut self, between: [ReadingIndex; 2], length: f64, blocked: [bool; 2]) {
-        self.histogram.add(between, length, blocked);
-    }
-
-    /// The cell has been in another state, `after`, since the reading `since`: if that lies before the end of
-    /// the last gap, corrects the states of the gap.
-    pub(super) fn correct_last(&mut self, since: ReadingIndex, after: bool) {
-        self.histogram.correct_last(since, after);
-    }
-
     /// The cell stayed in a state for a number of steps, from an event in view to an event in view.
     pub(super) fn add_stay(&mut self, state: usize, steps: f64, regularity: &mut Regularity) {
         let weighed = self.weighed.get_or_insert_default();
@@ -193,8 +181,7 @@ impl CellGaps {
         let exposure = Exposure::in_view(seen) + prior;
         if let Some(Weighed { weights, .. }) = self.weighed.as_deref() {
             let all = exposure + weights.worth;
-            // What moves shows itself to all cells nearby at the same time: they tell of the rate what
-            // the cell has mostly observed itself. They move the estimate, but do not make it more certain.
+            // The cells nearby saw mostly the same events: they move the estimate, but do not make it more certain.
             let own = [0, 1].map(|state| 1.0 - weights.neighbors.steps[state] / all.steps[state]);
             return Belief { exposure: all.scaled(own), mixed: weights.mixed };
         }

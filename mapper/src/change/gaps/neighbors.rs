@@ -1,5 +1,5 @@
-//! What the cells nearby tell of a cell: a thing that moves goes from cell to cell, and stays equally long in
-//! each.
+//! The information of the cells nearby about a cell: a thing that moves goes from cell to cell, and stays equally long
+//! in each.
 
 use super::MEAN_EVENTS;
 use crate::change::Exposure;
@@ -8,9 +8,9 @@ use crate::change::Exposure;
 
 /// The neighbors count as this many events at most.
 const NEAR_EVENTS: f64 = 120.0;
-/// The same for a cell without an event of its own; each of its own events adds one. At first all were observed in
-/// the same few passages of the same thing, found because the thing was passing: many neighbors then
-/// tell as little as one, and their rate is too high.
+/// The same for a cell without an event of its own; each of its own events adds one. At first all neighbors were
+/// observed in the same few passages of one obstacle: together they have little more information than one, and their
+/// rate is too high.
 const FIRST_NEAR_EVENTS: f64 = 2.0;
 /// The variance of the logarithms of rates between similar neighbors.
 const NEAR_VARIANCE: f64 = 0.03;
@@ -18,50 +18,33 @@ const NEAR_VARIANCE: f64 = 0.03;
 /// counts for nothing.
 const FREEDOM: f64 = 1.5;
 
-/// The exposure of the cells around one cell.
+/// The information of the cells `near` a cell with the exposure `own`, as an exposure of the cell itself.
 ///
 /// Every neighbor counts by itself, and counts the less, the less it agrees with the observations of the cell: the
-/// ends of a path to and fro are entered half as often as the cells between, and another thing may move
-/// nearby.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::change) struct Neighborhood {
-    own: Exposure,
-    sum: Exposure,
-}
-
-impl Neighborhood {
-    /// The neighborhood, so far empty, of a cell with exposure `own`.
-    pub(in crate::change) fn around(own: Exposure) -> Self {
-        Self { own, sum: Exposure::default() }
-    }
-
-    /// Adds the exposure of a neighbor.
-    pub(in crate::change) fn add(&mut self, near: Exposure) {
+/// ends of a path back and forth are entered half as often as the cells between, and another thing may move nearby.
+pub(in crate::change) fn prior(own: Exposure, near: impl Iterator<Item = Exposure>) -> Exposure {
+    let mut sum = Exposure::default();
+    for near in near {
         for state in 0..2 {
             let (events, steps) = (near.events[state], near.steps[state]);
             if events <= 0.0 || steps <= 0.0 {
                 continue;
             }
             let leave = (events + MEAN_EVENTS) / (steps + 1.0);
-            let own_events = self.own.events[state].max(0.0) + MEAN_EVENTS;
-            let own_leave = own_events / (self.own.steps[state] + MEAN_EVENTS / leave);
+            let own_events = own.events[state].max(0.0) + MEAN_EVENTS;
+            let own_leave = own_events / (own.steps[state] + MEAN_EVENTS / leave);
             let apart = libm::log(own_leave / leave);
             let variance = NEAR_VARIANCE + 1.0 / own_events + 1.0 / (events + MEAN_EVENTS);
             let doubt = 1.0 + apart * apart / variance / FREEDOM;
             let weight = events / (1.0 + NEAR_VARIANCE * events) / (doubt * doubt);
-            self.sum.events[state] += weight;
-            self.sum.steps[state] += weight / leave;
+            sum.events[state] += weight;
+            sum.steps[state] += weight / leave;
         }
     }
-
-    /// The exposure of the cell itself that would tell the same.
-    pub(in crate::change) fn prior(self) -> Exposure {
-        let part = [0, 1].map(|state| {
-            let most = (FIRST_NEAR_EVENTS + self.own.events[state].max(0.0)).min(NEAR_EVENTS);
-            most / (most + self.sum.events[state])
-        });
-        self.sum.scaled(part)
-    }
+    sum.scaled([0, 1].map(|state| {
+        let most = (FIRST_NEAR_EVENTS + own.events[state].max(0.0)).min(NEAR_EVENTS);
+        most / (most + sum.events[state])
+    }))
 }
 
 #[cfg(test)]
@@ -73,9 +56,7 @@ mod tests {
     }
 
     fn prior(own: Exposure, near: &[Exposure]) -> Exposure {
-        let mut around = Neighborhood::around(own);
-        near.iter().for_each(|&near| around.add(near));
-        around.prior()
+        super::prior(own, near.iter().copied())
     }
 
     #[test]

@@ -1,20 +1,19 @@
 //! The regularity of the times that cells stay in a state.
 //!
-//! A Markov chain forgets: the rest of a stay does not depend on the time of the stay so far. A thing that
-//! moves by a clock is different, and that matters for gaps about as long as a stay: after the mean time of one
-//! stay 63 % of the stays of a chain have ended, and all stays of a clock.
+//! The rest of a stay of a Markov chain does not depend on the time of the stay so far. Equal stays are different, and
+//! that matters for gaps about as long as a stay: after the mean time of one stay 63 % of the stays of a chain have
+//! ended, and all equal stays.
 
 /// Two stays that differ by at most this share of their sum are equal.
 const EQUAL: f64 = 0.1;
 /// Pairs of a Markov chain that count as observed from the start: nothing is regular until shown.
 const DOUBT: f64 = 4.0;
-/// Up to the first share of pairs that are equal beyond chance the world is a Markov chain, from the second on
-/// a clock. Stays that begin and end within short visits are a little more equal than others; clocks stop while
-/// something blocks them.
+/// Up to the first share of pairs that are equal beyond chance, stays are random; from the second on they are equal.
+/// Stays within short visits are a little more equal than others; regular motion stops while something blocks it.
 const BETWEEN: [f64; 2] = [0.15, 0.4];
 
 /// How often two consecutive stays of a cell are equal, over all cells.
-#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(in crate::change) struct Regularity {
     /// Per state: equal pairs, less those expected of Markov chains.
     equal: [f64; 2],
@@ -44,7 +43,7 @@ impl Regularity {
         self.unequal[state] += 1.0 - expected;
     }
 
-    /// Per state, from 0 for Markov chains to 1 for clocks.
+    /// Per state, from 0 for stays of random length to 1 for equal stays.
     pub(super) fn weights(&self) -> [f64; 2] {
         let [low, high] = BETWEEN;
         [0, 1].map(|state| {

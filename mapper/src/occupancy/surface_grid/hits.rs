@@ -8,7 +8,7 @@ use crate::occupancy::projection::ProjectedScan;
 use interfaces::{Cell, CellState};
 use nalgebra::{Point2, Vector2};
 
-/// A hit farther than this from every standing surface, m, is in the open: a thing came.
+/// A hit farther than this from every standing surface, m, is a hit on a new obstacle.
 const OPEN_M: f64 = 0.1;
 
 impl SurfaceGrid {
@@ -17,8 +17,7 @@ impl SurfaceGrid {
         let Some(end) = self.segmentation.ends[beam] else { return };
         let frame = *cells.frame();
         let index_at = |point: Point2<f64>| frame.index(frame.cell_at(&point));
-        // Most beams end on known walls. Where the beam ends in a cell whose surface has
-        // settled, or right before the cell, the normal has nothing to add.
+        // Most beams end on known walls: in a cell whose surface has settled, or right before it, no normal is needed.
         let ahead = end + scan.directions[beam] * (self.settings.surface_depth_m / 4.0);
         if let Some(index) = index_at(ahead).filter(|&index| self.has_settled(index, cells)) {
             self.support(index, None, cells);
@@ -29,7 +28,7 @@ impl SurfaceGrid {
         }
         let point = hit_point(beam, &end, self.settings.surface_depth_m, &self.segmentation, scan);
         // A surface in a cell is an observation of the cell, even where the hit counts for the cell behind: a cell
-        // that a thing moves into stays in view.
+        // that an obstacle moves into stays in view.
         if let Some(index) = index_at(end).filter(|&index| cells.state(index) != CellState::Unknown) {
             cells.observe(index);
         }
@@ -48,7 +47,7 @@ impl SurfaceGrid {
         }
     }
 
-    /// Whether a cell holds a standing surface that further hits would hardly move.
+    /// Whether a cell holds a standing surface whose position no longer changes with further hits.
     fn has_settled(&self, index: usize, cells: &CellMap) -> bool {
         let settled = self.settings.hits_to_stand.max(2 * SURFACE_MEMORY);
         self.surfaces[index].hits >= settled && cells.state(index) == CellState::Blocked
@@ -98,8 +97,8 @@ impl SurfaceGrid {
         .map(|(_, index)| index)
     }
 
-    /// A thing that came into the open has a body (rule 4): the free cells behind a hit on the thing are blocked, as
-    /// deep as things are thick. These cells are hidden now, and no beam can show their state.
+    /// A new obstacle has a body (rule 4): the free cells behind a hit are blocked, to the depth `body_m`. They are
+    /// hidden now, and no beam can show their state.
     fn fill_body(&mut self, end: &Point2<f64>, point: &Point2<f64>, cells: &mut CellMap) {
         let frame = *cells.frame();
         let Some(inward) = (point - end).try_normalize(1e-9) else { return };

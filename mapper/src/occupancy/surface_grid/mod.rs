@@ -1,9 +1,8 @@
 //! The default occupancy model (`steady`): occupancy without flicker.
 //!
-//! Static walls seem to change because of grazing beams: a grazing beam crosses the cells of a
-//! surface that steeper beams hit, many scans in a row. Counts of hits and misses cannot distinguish that
-//! from a thing that went. Four rules can, because they remember *where in the cell* the surface
-//! is:
+//! A grazing beam crosses the cells of a surface that steeper beams hit, many scans in a row. Counts of hits and misses
+//! cannot distinguish that from an obstacle that disappeared. Four rules can, because they remember *where in the cell*
+//! the surface is:
 //!
 //! 1. **A hit belongs behind the surface.** Surfaces lie on the borders of cells; the hit counts
 //!    for the cell a little behind the surface, along its normal.
@@ -11,13 +10,12 @@
 //!    that were hit. A scan contradicts the cell only when *both* beams that enclose this point pass
 //!    beyond the point. The point lies inside the body, so next to a standing body one of the two beams
 //!    always ends before the point, at any angle.
-//! 3. **Noise belongs to the surface it comes from.** A hit within four standard deviations of a
-//!    standing surface is a hit on that surface, not a new thing beside it.
-//! 4. **A thing that comes has a body.** The cells that the body hides at once are blocked too, a little way behind
-//!    the surface.
+//! 3. **Noise belongs to the nearest surface.** A hit within four standard deviations of a standing surface is a hit on
+//!    that surface, not a new obstacle beside it.
+//! 4. **A new obstacle has a body.** The cells that the body hides at once are blocked too, a little behind the surface.
 //!
-//! A hit beats a miss: a cell that was hit takes no miss from the same scan. And a first observation
-//! from afar can be wrong: what is overturned before it was confirmed is corrected, not a change.
+//! A cell that was hit takes no miss from the same scan. A first observation from afar can be wrong: a state that is
+//! contradicted before it was confirmed is corrected, and that is not a change.
 
 mod hits;
 mod misses;
@@ -31,11 +29,11 @@ use crate::change::{CellMap, ReadingIndex};
 use interfaces::CellState;
 pub use settings::SurfaceGridSettings;
 
-/// The mean of the points hit forgets at this pace, in hits.
+/// The mean of the points hit is over about this number of hits.
 const SURFACE_MEMORY: u16 = 32;
 
 /// The hits in a cell.
-#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Surface {
     /// The mean of the points that were hit, relative to the lower left corner of the grid, m.
     point_m: [f32; 2],
@@ -48,21 +46,21 @@ struct Surface {
     hit_at: ReadingIndex,
     /// The last reading in which a surface between two hits went through the cell.
     surface_at: ReadingIndex,
-    /// Whether the cell was free before: the surface is that of a thing that came.
+    /// Whether the cell was free before: the surface is that of a new obstacle.
     came: bool,
     /// The start of the evidence against the present state, and whether the cell was in view then.
     doubted_since: ReadingIndex,
     doubted_in_view: bool,
 }
 
-/// See the head of this file.
+/// See the documentation of this module.
 #[derive(Clone, Debug)]
 pub(super) struct SurfaceGrid {
     settings: SurfaceGridSettings,
     surfaces: Vec<Surface>,
     footprint: Footprint,
     segmentation: Segmentation,
-    /// Scratch memory: the cells of a scan that need a closer look.
+    /// Scratch memory: the cells of a scan that are not settled.
     unsettled: Vec<u32>,
 }
 

@@ -1,4 +1,4 @@
-use interfaces::SettingsError;
+use interfaces::{SettingsCheck, SettingsError};
 
 /// Settings of the occupancy model `steady`.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -10,8 +10,8 @@ pub struct SurfaceGridSettings {
     /// A hit counts for the cell this far behind the surface, along its normal, m: a surface on
     /// the border of two cells belongs to the solid one.
     pub surface_depth_m: f64,
-    /// The smallest thickness of things that come, m: to this depth behind a hit on them cells are blocked. 0
-    /// marks surfaces only.
+    /// The smallest thickness of new obstacles, m: to this depth behind a hit cells are blocked. 0 marks surfaces
+    /// only.
     pub body_m: f64,
     /// Hits nearer than this to each other, m, are one surface: no beam passes the cells on the surface.
     pub join_m: f64,
@@ -20,8 +20,7 @@ pub struct SurfaceGridSettings {
     pub max_gap_m: f64,
     /// Scans with a hit until a free or unknown cell is blocked.
     pub hits_to_block: u8,
-    /// The same in the open, away from every standing surface. One hit is enough for a laser without
-    /// spurious returns, and sees things that pass.
+    /// The same away from every standing surface. One hit is enough for a laser without spurious returns.
     pub hits_to_block_in_open: u8,
     /// Scans that pass an unknown cell until the cell is free.
     pub misses_to_discover: u8,
@@ -31,10 +30,9 @@ pub struct SurfaceGridSettings {
     pub misses_to_free_fresh: u8,
     /// The same for a cell that was hit often.
     pub misses_to_free: u8,
-    /// Hits after which a surface counts as standing: noise around a standing surface counts as the surface
-    /// itself, not as a new thing.
+    /// Hits after which a surface counts as standing: noise around it is then not a new obstacle.
     pub hits_to_stand: u16,
-    /// A first observation that is overturned after less than this time in view, s, was wrong: the state is
+    /// A first observation that is contradicted after less than this time in view, s, was wrong: the state is
     /// corrected, and that does not count as a change.
     pub confirm_s: f64,
 }
@@ -66,36 +64,22 @@ impl SurfaceGridSettings {
         fresh.saturating_add(hits).min(u16::from(self.misses_to_free)) as i8
     }
 
-    pub(crate) fn check(&self) -> Result<(), SettingsError> {
+    pub(crate) fn check(&self, check: SettingsCheck) -> Result<(), SettingsError> {
         // Every hit searches as far as the noise reaches.
-        let ranges = [
-            ("steady.range_noise_std_m", self.range_noise_std_m, 0.0..=0.5, "from 0 to 0.5 m"),
-            ("steady.surface_depth_m", self.surface_depth_m, 0.0..=0.5, "from 0 to 0.5 m"),
-            ("steady.body_m", self.body_m, 0.0..=10.0, "from 0 to 10 m"),
-            ("steady.join_m", self.join_m, 0.0..=10.0, "from 0 to 10 m"),
-            ("steady.max_gap_m", self.max_gap_m, 0.0..=10.0, "from 0 to 10 m"),
-            ("steady.confirm_s", self.confirm_s, 0.0..=3600.0, "from 0 to 3600 s"),
-        ];
-        let count = |key, count: u8| (key, f64::from(count), 1.0..=100.0, "from 1 to 100");
-        let counts = [
-            count("steady.hits_to_block", self.hits_to_block),
-            count("steady.hits_to_block_in_open", self.hits_to_block_in_open),
-            count("steady.misses_to_discover", self.misses_to_discover),
-            count("steady.misses_to_discover_beside", self.misses_to_discover_beside),
-            count("steady.misses_to_free_fresh", self.misses_to_free_fresh),
-            count("steady.misses_to_free", self.misses_to_free),
-        ];
-        let order = (
-            "steady.misses_to_free_fresh",
-            f64::from(self.misses_to_free_fresh),
-            1.0..=f64::from(self.misses_to_free),
-            "at most steady.misses_to_free",
-        );
-        for (key, value, range, expected) in ranges.into_iter().chain(counts).chain([order]) {
-            if !range.contains(&value) {
-                return Err(SettingsError { part: "mapper", key, expected, found: value.to_string() });
-            }
-        }
-        Ok(())
+        check.within("steady.range_noise_std_m", self.range_noise_std_m, 0.0..=0.5, "from 0 to 0.5 m")?;
+        check.within("steady.surface_depth_m", self.surface_depth_m, 0.0..=0.5, "from 0 to 0.5 m")?;
+        check.within("steady.body_m", self.body_m, 0.0..=10.0, "from 0 to 10 m")?;
+        check.within("steady.join_m", self.join_m, 0.0..=10.0, "from 0 to 10 m")?;
+        check.within("steady.max_gap_m", self.max_gap_m, 0.0..=10.0, "from 0 to 10 m")?;
+        check.within("steady.confirm_s", self.confirm_s, 0.0..=3600.0, "from 0 to 3600 s")?;
+        let count = |key, count: u8| check.within(key, count, 1.0..=100.0, "from 1 to 100");
+        count("steady.hits_to_block", self.hits_to_block)?;
+        count("steady.hits_to_block_in_open", self.hits_to_block_in_open)?;
+        count("steady.misses_to_discover", self.misses_to_discover)?;
+        count("steady.misses_to_discover_beside", self.misses_to_discover_beside)?;
+        count("steady.misses_to_free_fresh", self.misses_to_free_fresh)?;
+        count("steady.misses_to_free", self.misses_to_free)?;
+        let (fresh, most) = (self.misses_to_free_fresh, f64::from(self.misses_to_free));
+        check.within("steady.misses_to_free_fresh", fresh, 1.0..=most, "at most steady.misses_to_free")
     }
 }

@@ -29,7 +29,7 @@ fn check(spec: &GridSpec, seed: u64) {
 }
 
 #[test]
-fn two_hundred_worlds_are_as_they_should_be() {
+fn two_hundred_generated_worlds_are_valid() {
     let settings = GenerateSettings::default();
     let (mut kinds, mut worlds) = (BTreeSet::new(), BTreeSet::new());
     for seed in 0..200 {

@@ -20,7 +20,7 @@ pub struct GridSpec {
     pub blocks: Vec<BlockSpec>,
     /// The cell where the robot starts: no wall, and no block's first cell.
     pub start: Cell,
-    /// How far the robot sees, in cells from the center of its own cell to the center of another; 1 to
+    /// The range of the sensor between the centers of cells, in cells; 1 to
     /// [`GridSpec::MAX_SENSOR_RADIUS`].
     pub sensor_radius: u32,
     /// The probability per step that a block moves once its dwell is over; above 0, at most 1.
@@ -29,38 +29,38 @@ pub struct GridSpec {
     pub robot_probability: f64,
 }
 
-/// A block: it stands for a while on a cell of its path, and moves on to the next.
+/// A block that moves from cell to cell along its path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BlockSpec {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// How long it stands on every cell, steps; 1 to [`BlockSpec::MAX_DWELL`].
+    /// The time on every cell, steps; 1 to [`BlockSpec::MAX_DWELL`].
     pub dwell: u32,
-    /// How long it has stood on its first cell when time begins, steps; below `dwell`.
+    /// The time already spent on the first cell at the start, steps; below `dwell`.
     pub stood: u32,
-    /// What it does at the end of its path.
+    /// The continuation at the end of the path.
     pub course: Course,
-    /// Every cell of the path; it starts on the first. Consecutive cells share a side, and so do
-    /// the last and the first of a loop. At least two, none of them a wall.
+    /// The cells of the path, at least two, none of them a wall; the block starts on the first. Consecutive cells
+    /// share a side, and so do the last and the first of a loop.
     pub path: Vec<Cell>,
 }
 
-/// What a block does at the end of its path.
+/// The continuation at the end of the path of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Course {
-    /// It goes on with the first cell.
+    /// With the first cell.
     Loop,
-    /// It turns round.
+    /// Back along the path.
     BackAndForth,
 }
 
 impl BlockSpec {
-    /// A block that stands longer does not move in any practical run, steps.
+    /// The largest dwell, steps: a block with a longer one would not move in any practical run.
     pub const MAX_DWELL: u32 = 1_000_000;
 }
 
 impl GridSpec {
-    /// The farthest that a sensor can see, in cells.
+    /// The largest range of a sensor, in cells.
     pub const MAX_SENSOR_RADIUS: u32 = 100;
 
     /// The cells of the world.
@@ -68,8 +68,8 @@ impl GridSpec {
         self.walls.frame()
     }
 
-    /// What is valid, but may be a mistake: a sentence for every part of the map that the robot
-    /// cannot reach, named by its lowest, leftmost cell and its size.
+    /// Probable mistakes in a valid world: a sentence for every part of the map that the robot cannot reach, named by
+    /// its lowest, leftmost cell and its size.
     pub fn warnings(&self) -> Vec<String> {
         parts::warnings(&self.walls, self.start)
     }

@@ -132,7 +132,7 @@ fn a_pillar_hides_what_is_behind_it() {
 }
 
 #[test]
-fn a_gap_lets_through_what_lies_behind_it() {
+fn cells_behind_a_gap_are_seen() {
     let drawing = "......... ......... ###.##### ......... ....R....";
     insta::assert_snapshot!(seen(drawing, 6), @r"
     ??.??????
@@ -203,7 +203,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
-    fn sight_is_what_the_definition_says((walls, robot, radius) in scene(1..28, 1..=12)) {
+    fn sight_agrees_with_the_definition((walls, robot, radius) in scene(1..28, 1..=12)) {
         prop_assert_eq!(sorted(look(&walls, robot, radius)), oracle(&walls, robot, radius));
     }
 
@@ -232,7 +232,7 @@ proptest! {
 
     /// Where a row of the view takes more than one word.
     #[test]
-    fn sight_is_right_far_away((walls, robot, radius) in scene(60..150, 31..=100)) {
+    fn sight_agrees_with_the_definition_far_away((walls, robot, radius) in scene(60..150, 31..=100)) {
         // Few walls, or nothing is seen from far away.
         let sparse = Grid::from_cells(
             *walls.frame(),

@@ -1,4 +1,4 @@
-use super::pace::Pace;
+use super::pace::{HEADING_GAIN, Pace};
 use crate::physics::rays::Beams;
 use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::RobotSpec;
@@ -21,7 +21,7 @@ pub(super) struct Legs {
     clearance_m: f64,
     /// The unit vectors of the beams of the laser in the frame of the robot.
     beams: Vec<Vector2<f64>>,
-    pub(super) pace: Pace,
+    pace: Pace,
     turning: bool,
     blocked: bool,
 }
@@ -49,16 +49,34 @@ impl Legs {
         vec![value(&mut self.turning), value(&mut self.blocked)]
     }
 
-    /// The rotation from the frame of the robot to the frame of the leg along the unit vector `along`.
-    pub(super) fn lean(reading: &LaserReading, along: &Vector2<f64>) -> UnitComplex<f64> {
-        UnitComplex::from_cos_sin_unchecked(along.x, along.y).inverse() * reading.pose.rotation
-    }
-
-    /// The turn in place towards the leg, if the heading is too far off the leg.
-    pub(super) fn turn_in_place(&mut self, lean_rad: f64) -> Option<Twist> {
+    /// The velocity on the leg along the unit vector `along`, `remaining_m` before its end. `look` gets the rotation
+    /// from the frame of the robot to that of the leg, and returns the free distance ahead, m, and the heading to
+    /// steer to, rad from the direction of the leg.
+    pub(super) fn drive(
+        &mut self,
+        reading: &LaserReading,
+        along: &Vector2<f64>,
+        remaining_m: f64,
+        look: impl FnOnce(&Self, &UnitComplex<f64>) -> (f64, f64),
+    ) -> Twist {
+        let lean = UnitComplex::from_cos_sin_unchecked(along.x, along.y).inverse() * reading.pose.rotation;
+        let lean_rad = libm::atan2(lean.im, lean.re);
         self.turning = lean_rad.abs() > if self.turning { TURNED_RAD } else { TURN_BEYOND_RAD };
-        let angular_radps = self.pace.turn_radps(-lean_rad);
-        self.turning.then_some(Twist { linear_mps: 0.0, angular_radps })
+        if self.turning {
+            return Twist { linear_mps: 0.0, angular_radps: self.pace.turn_radps(-lean_rad) };
+        }
+        let (gap_m, heading_rad) = look(self, &lean);
+        let hysteresis_m = if self.blocked { HYSTERESIS_M } else { 0.0 };
+        let needed_m = self.clearance_m + self.pace.stopping_m + hysteresis_m;
+        // A body behind the end of the leg is not in the way.
+        self.blocked = gap_m < needed_m.min(remaining_m + END_MARGIN_M);
+        if self.blocked {
+            return Twist::STOP;
+        }
+        Twist {
+            linear_mps: self.pace.approach_mps(remaining_m),
+            angular_radps: HEADING_GAIN * (heading_rad - lean_rad),
+        }
     }
 
     /// The points that the laser sees, in the frame of the leg, m.
@@ -77,14 +95,5 @@ impl Legs {
     pub(super) fn gap_m(&self, point: &Vector2<f64>) -> f64 {
         let nose_m = (self.radius_m * self.radius_m - point.y * point.y).max(0.0).sqrt();
         point.x - nose_m
-    }
-
-    /// Whether the robot has to stop: only `gap_m` of the `remaining_m` of the leg are free.
-    pub(super) fn is_blocked(&mut self, gap_m: f64, remaining_m: f64) -> bool {
-        let hysteresis_m = if self.blocked { HYSTERESIS_M } else { 0.0 };
-        let needed_m = self.clearance_m + self.pace.stopping_m + hysteresis_m;
-        // A body behind the end of the leg is not in the way.
-        self.blocked = gap_m < needed_m.min(remaining_m + END_MARGIN_M);
-        self.blocked
     }
 }

@@ -16,57 +16,52 @@ use wander::Wander;
 use waypoints::Waypoints;
 
 /// A way to drive without commands.
-pub(super) trait Behavior: Send + Sync {
-    /// The velocity to drive at until the next reading.
-    fn decide(&mut self, reading: &LaserReading) -> Twist;
+#[derive(Clone)]
+pub(super) enum Behavior {
+    /// The same velocity at all times.
+    Steady(Twist),
+    Wander(Box<Wander>),
+    Waypoints(Waypoints),
+    WallPatrol(WallPatrol),
+}
+
+impl Behavior {
+    /// The behavior of `robot`, whose main laser has `beams`; `None`: the robot obeys commands.
+    pub(super) fn of(robot: &RobotSpec, step_s: f64, beams: &Beams, random: RandomStream) -> Option<Self> {
+        Some(match &robot.behavior {
+            BehaviorSpec::Driven => return None,
+            BehaviorSpec::Standing => Self::Steady(Twist::STOP),
+            BehaviorSpec::Circle(circle) => {
+                Self::Steady(Twist { linear_mps: circle.speed_mps, angular_radps: circle.turn_radps })
+            }
+            BehaviorSpec::Wander(spec) => {
+                Self::Wander(Box::new(Wander::new(*spec, robot, step_s, beams, random)))
+            }
+            BehaviorSpec::Waypoints(spec) => {
+                Self::Waypoints(Waypoints::new(spec.clone(), robot, step_s, beams))
+            }
+            BehaviorSpec::WallPatrol(spec) => Self::WallPatrol(WallPatrol::new(*spec, robot, step_s, beams)),
+        })
+    }
+
+    /// The velocity until the next reading.
+    pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {
+        match self {
+            Self::Steady(twist) => *twist,
+            Self::Wander(wander) => wander.decide(reading),
+            Self::Waypoints(waypoints) => waypoints.decide(reading),
+            Self::WallPatrol(patrol) => patrol.decide(reading),
+        }
+    }
 
     /// The values that a snapshot holds.
-    fn values(&mut self) -> Values<'_>;
-
-    /// A copy.
-    fn boxed(&self) -> Box<dyn Behavior>;
-}
-
-impl Clone for Box<dyn Behavior> {
-    fn clone(&self) -> Self {
-        self.boxed()
-    }
-}
-
-/// The behavior of `robot`, whose main laser has `beams`; `None`: the robot obeys commands.
-pub(super) fn of(
-    robot: &RobotSpec,
-    step_s: f64,
-    beams: &Beams,
-    random: RandomStream,
-) -> Option<Box<dyn Behavior>> {
-    Some(match &robot.behavior {
-        BehaviorSpec::Driven => return None,
-        BehaviorSpec::Standing => Box::new(Steady(Twist::STOP)),
-        BehaviorSpec::Circle(circle) => {
-            Box::new(Steady(Twist { linear_mps: circle.speed_mps, angular_radps: circle.turn_radps }))
+    pub(super) fn values(&mut self) -> Values<'_> {
+        match self {
+            Self::Steady(_) => Vec::new(),
+            Self::Wander(wander) => wander.values(),
+            Self::Waypoints(waypoints) => waypoints.values(),
+            Self::WallPatrol(patrol) => patrol.values(),
         }
-        BehaviorSpec::Wander(spec) => Box::new(Wander::new(*spec, robot, step_s, beams, random)),
-        BehaviorSpec::Waypoints(spec) => Box::new(Waypoints::new(spec.clone(), robot, step_s, beams)),
-        BehaviorSpec::WallPatrol(spec) => Box::new(WallPatrol::new(*spec, robot, step_s, beams)),
-    })
-}
-
-/// The same velocity at all times.
-#[derive(Clone)]
-struct Steady(Twist);
-
-impl Behavior for Steady {
-    fn decide(&mut self, _: &LaserReading) -> Twist {
-        self.0
-    }
-
-    fn values(&mut self) -> Values<'_> {
-        Vec::new()
-    }
-
-    fn boxed(&self) -> Box<dyn Behavior> {
-        Box::new(self.clone())
     }
 }
 

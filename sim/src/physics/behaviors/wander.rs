@@ -1,4 +1,3 @@
-use super::Behavior;
 use super::pace::Pace;
 use crate::physics::rays::Beams;
 use crate::physics::snapshot::{Values, value};
@@ -20,7 +19,7 @@ const CURVE_SCANS: Range<f64> = 10.0..50.0;
 /// Drives without a goal: ahead in long random curves. Where something comes too near ahead, the robot turns
 /// in place towards the side with more space, until the way is free.
 #[derive(Clone, Debug)]
-pub(super) struct Wander {
+pub(in crate::physics) struct Wander {
     spec: WanderSpec,
     max_turn_radps: f64,
     /// Below the first range on a beam the robot stops; above the second it continues. 0 for beams that do
@@ -90,10 +89,9 @@ impl Wander {
         let undecided = self.random.uniform(-1.0..1.0) * f64::from(max_m);
         1.0_f64.copysign(f64::from(more_left_m) + undecided)
     }
-}
 
-impl Behavior for Wander {
-    fn decide(&mut self, reading: &LaserReading) -> Twist {
+    /// The velocity until the next reading.
+    pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {
         let ranges_m = &reading.scan.ranges_m;
         let free_m = if self.turning.is_some() { &self.go_m } else { &self.stop_m };
         // No early exit: comparing several beams at once is faster. Too close (−∞) is below any bound.
@@ -110,17 +108,14 @@ impl Behavior for Wander {
         Twist { linear_mps: 0.0, angular_radps: turn_radps }
     }
 
-    fn values(&mut self) -> Values<'_> {
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
         vec![
             value(&mut self.random),
             value(&mut self.turning),
             value(&mut self.curve_radps),
             value(&mut self.scans_left),
         ]
-    }
-
-    fn boxed(&self) -> Box<dyn Behavior> {
-        Box::new(self.clone())
     }
 }
 

@@ -1,11 +1,9 @@
-use super::Behavior;
 use super::legs::Legs;
-use super::pace::HEADING_GAIN;
 use crate::physics::rays::Beams;
 use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::{Repeat, RobotSpec, WaypointsSpec};
 use interfaces::{LaserReading, Twist};
-use nalgebra::{Point2, UnitComplex, Vector2};
+use nalgebra::Point2;
 
 /// A waypoint counts as reached within this distance, m.
 const ARRIVED_M: f64 = 0.02;
@@ -15,7 +13,7 @@ const SIDE_MARGIN_M: f64 = 0.03;
 /// Drives straight from point to point by odometry, turns in place at the points, and waits while the laser
 /// shows something in the way.
 #[derive(Clone, Debug)]
-pub(super) struct Waypoints {
+pub(in crate::physics) struct Waypoints {
     spec: WaypointsSpec,
     legs: Legs,
     /// The index of the next point; `None` after the last one.
@@ -42,31 +40,8 @@ impl Waypoints {
         }
     }
 
-    fn drive(&mut self, reading: &LaserReading, along: &Vector2<f64>, remaining_m: f64) -> Twist {
-        let lean = Legs::lean(reading, along);
-        let lean_rad = libm::atan2(lean.im, lean.re);
-        if let Some(turn) = self.legs.turn_in_place(lean_rad) {
-            return turn;
-        }
-        if self.legs.is_blocked(self.gap_m(reading, &lean), remaining_m) {
-            return Twist::STOP;
-        }
-        Twist {
-            linear_mps: self.legs.pace.approach_mps(remaining_m),
-            angular_radps: -HEADING_GAIN * lean_rad,
-        }
-    }
-
-    /// How far the body can drive along the leg before it touches something that the laser sees, m.
-    fn gap_m(&self, reading: &LaserReading, lean: &UnitComplex<f64>) -> f64 {
-        let open_m = self.legs.radius_m + SIDE_MARGIN_M;
-        let ahead = self.legs.points(reading, lean).filter(|point| point.x > 0.0 && point.y.abs() < open_m);
-        ahead.fold(f64::INFINITY, |gap_m, point| gap_m.min(self.legs.gap_m(&point)))
-    }
-}
-
-impl Behavior for Waypoints {
-    fn decide(&mut self, reading: &LaserReading) -> Twist {
+    /// The velocity until the next reading.
+    pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {
         let at = Point2::from(reading.pose.translation.vector);
         // At most one round: where all points are within reach, there is nothing to do.
         for _ in 0..self.spec.points.len() {
@@ -74,20 +49,22 @@ impl Behavior for Waypoints {
             let leg = self.spec.points[next] - at;
             let remaining_m = leg.norm();
             if remaining_m >= ARRIVED_M {
-                return self.drive(reading, &(leg / remaining_m), remaining_m);
+                return self.legs.drive(reading, &(leg / remaining_m), remaining_m, |legs, lean| {
+                    let open_m = legs.radius_m + SIDE_MARGIN_M;
+                    let points = legs.points(reading, lean);
+                    let ahead = points.filter(|point| point.x > 0.0 && point.y.abs() < open_m);
+                    (ahead.fold(f64::INFINITY, |gap_m, point| gap_m.min(legs.gap_m(&point))), 0.0)
+                });
             }
             self.next = self.after(next);
         }
         Twist::STOP
     }
 
-    fn values(&mut self) -> Values<'_> {
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
         let mut values = vec![value(&mut self.next), value(&mut self.is_returning)];
         values.extend(self.legs.values());
         values
-    }
-
-    fn boxed(&self) -> Box<dyn Behavior> {
-        Box::new(self.clone())
     }
 }

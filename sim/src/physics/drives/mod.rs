@@ -47,26 +47,19 @@ impl Drive {
         };
         let is_nan = aim.forward_mps.is_nan() || aim.left_mps.is_nan() || aim.turn_radps.is_nan();
         let aim = if is_nan { Velocity::STOP } else { aim };
-        let follow = |now: f64, aim: f64, fastest: f64, gain: f64| {
+        let follow = |now: f64, aim: f64, (fastest, gain): (f64, f64)| {
             let most = gain * step_s;
             now + (aim.clamp(-fastest, fastest) - now).clamp(-most, most)
         };
-        let forward_mps = follow(
-            now.forward_mps,
-            aim.forward_mps,
-            limits.max_linear_mps,
-            limits.max_linear_acceleration_mps2,
-        );
-        let turn_radps = follow(
-            now.turn_radps,
-            aim.turn_radps,
-            limits.max_angular_radps,
-            limits.max_angular_acceleration_radps2,
-        );
+        let linear = (limits.max_linear_mps, limits.max_linear_acceleration_mps2);
+        let angular = (limits.max_angular_radps, limits.max_angular_acceleration_radps2);
+        let forward_mps = follow(now.forward_mps, aim.forward_mps, linear);
+        let turn_radps = follow(now.turn_radps, aim.turn_radps, angular);
         self.velocity = match limits.kind {
             DriveKind::Differential => Velocity { forward_mps, left_mps: 0.0, turn_radps },
             DriveKind::Omni { max_left_mps, max_left_acceleration_mps2 } => {
-                let left_mps = follow(now.left_mps, aim.left_mps, max_left_mps, max_left_acceleration_mps2);
+                let left = (max_left_mps, max_left_acceleration_mps2);
+                let left_mps = follow(now.left_mps, aim.left_mps, left);
                 Velocity { forward_mps, left_mps, turn_radps }
             }
             DriveKind::Car { .. } => {

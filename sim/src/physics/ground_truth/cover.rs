@@ -9,16 +9,16 @@ use nalgebra::{Point2, Vector2};
 /// A smaller share of the area of a cell than this is rounding.
 const SLIVER: f64 = 1e-6;
 
-/// Calls `visit` with every cell of the frame that a rectangle overlaps by more than a touch, and whether the
+/// Calls `visit` with the index of every cell of the frame that a rectangle overlaps by more than a touch, and whether the
 /// rectangle covers the whole cell. Row by row from the bottom.
-pub(super) fn box_cells(frame: &GridFrame, shape: &Rectangle, mut visit: impl FnMut(Cell, bool)) {
+pub(super) fn box_cells(frame: &GridFrame, shape: &Rectangle, mut visit: impl FnMut(usize, bool)) {
     let half_cell_m = frame.resolution_m() / 2.0;
     let (low, high) = shape.bounds();
     let (cos, sin) = (shape.pose.rotation.re.abs(), shape.pose.rotation.im.abs());
     // Half the extent of the cell along the sides of the rectangle, and of the rectangle along those of the cell.
     let cell_reach_m = half_cell_m * (cos + sin);
     let reach = (high - low) / 2.0;
-    for_cells(frame, &low, &high, |cell| {
+    for_cells(frame, &low, &high, |cell, index| {
         let center = frame.center(cell);
         let apart = (center - shape.pose.translation.vector).coords.abs();
         let local = shape.pose.inverse_transform_point(&center).coords.abs();
@@ -26,52 +26,52 @@ pub(super) fn box_cells(frame: &GridFrame, shape: &Rectangle, mut visit: impl Fn
         let meets = overlap(&apart, reach.add_scalar(half_cell_m))
             && overlap(&local, shape.half_m.add_scalar(cell_reach_m));
         if meets {
-            visit(cell, (shape.half_m - local).min() >= cell_reach_m - TOUCH_M);
+            visit(index, (shape.half_m - local).min() >= cell_reach_m - TOUCH_M);
         }
     });
 }
 
 /// The same for the body of a robot.
-pub(super) fn form_cells(frame: &GridFrame, form: &Form, visit: impl FnMut(Cell, bool)) {
+pub(super) fn form_cells(frame: &GridFrame, form: &Form, visit: impl FnMut(usize, bool)) {
     match form {
         Form::Disc { center, radius_m } => disc_cells(frame, center, *radius_m, visit),
         Form::Convex(corners) => convex_cells(frame, form, corners, visit),
     }
 }
 
-fn convex_cells(frame: &GridFrame, form: &Form, corners: &[Point2<f64>], mut visit: impl FnMut(Cell, bool)) {
+fn convex_cells(frame: &GridFrame, form: &Form, corners: &[Point2<f64>], mut visit: impl FnMut(usize, bool)) {
     let (half_m, (low, high)) = (frame.resolution_m() / 2.0, form.bounds());
-    for_cells(frame, &low, &high, |cell| {
+    for_cells(frame, &low, &high, |cell, index| {
         let corner = |(x, y): (f64, f64)| frame.center(cell) + Vector2::new(x, y) * half_m;
         let square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(corner);
         if convex::gap_m(corners, &square) < -TOUCH_M {
             let is_in = |corner: &Point2<f64>| convex::disc_gap_m(corners, corner, 0.0) < TOUCH_M;
-            visit(cell, square.iter().all(is_in));
+            visit(index, square.iter().all(is_in));
         }
     });
 }
 
 /// The same for a disc.
-fn disc_cells(frame: &GridFrame, center: &Point2<f64>, radius_m: f64, mut visit: impl FnMut(Cell, bool)) {
+fn disc_cells(frame: &GridFrame, center: &Point2<f64>, radius_m: f64, mut visit: impl FnMut(usize, bool)) {
     let half_cell_m = frame.resolution_m() / 2.0;
     let reach = Vector2::repeat(radius_m);
     let (inner2, outer2) = ((radius_m - TOUCH_M).max(0.0).powi(2), (radius_m + TOUCH_M).powi(2));
-    for_cells(frame, &(center - reach), &(center + reach), |cell| {
+    for_cells(frame, &(center - reach), &(center + reach), |cell, index| {
         let apart = (frame.center(cell) - center).abs();
         let nearest = apart.add_scalar(-half_cell_m).sup(&Vector2::zeros());
         if nearest.norm_squared() < inner2 {
-            visit(cell, apart.add_scalar(half_cell_m).norm_squared() <= outer2);
+            visit(index, apart.add_scalar(half_cell_m).norm_squared() <= outer2);
         }
     });
 }
 
-/// Calls `visit` with the cells of the frame that lie in an upright box, row by row.
-fn for_cells(frame: &GridFrame, low: &Point2<f64>, high: &Point2<f64>, mut visit: impl FnMut(Cell)) {
+/// Calls `visit` with the cells of the frame that lie in an upright box and their indices, row by row.
+fn for_cells(frame: &GridFrame, low: &Point2<f64>, high: &Point2<f64>, mut visit: impl FnMut(Cell, usize)) {
     let (first, last) = (frame.cell_at(low), frame.cell_at(high));
     let (right, top) = (frame.width() as i32 - 1, frame.height() as i32 - 1);
     for y in first.y.max(0)..=last.y.min(top) {
         for x in first.x.max(0)..=last.x.min(right) {
-            visit(Cell::new(x, y));
+            visit(Cell::new(x, y), y as usize * frame.width() + x as usize);
         }
     }
 }
@@ -142,7 +142,7 @@ mod tests {
     fn a_wall_on_cell_borders_covers_whole_cells_only() {
         let wall = Rectangle::between(Point2::new(0.1, -0.35), Point2::new(0.2, 0.65));
         let mut cells = Vec::new();
-        box_cells(&frame(), &wall, |cell, whole| cells.push((cell, whole)));
+        box_cells(&frame(), &wall, |index, whole| cells.push((frame().cell(index), whole)));
         assert_eq!(cells.len(), 2 * 20);
         assert!(cells.iter().all(|(cell, whole)| *whole && (22..24).contains(&cell.x)));
     }

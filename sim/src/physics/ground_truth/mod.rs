@@ -81,27 +81,19 @@ impl PhysicsGroundTruth {
             return;
         }
         let frame = self.frame;
-        cover::form_cells(&frame, to, |cell, whole| {
-            if let Some(index) = frame.index(cell) {
-                self.overlapped[index] += 1;
-                self.covered[index] += u16::from(whole);
-                self.movers[index].get_or_insert(body);
-            }
+        cover::form_cells(&frame, to, |index, whole| {
+            self.overlapped[index] += 1;
+            self.covered[index] += u16::from(whole);
+            self.movers[index].get_or_insert(body);
         });
         if let Some(from) = from {
-            cover::form_cells(&frame, from, |cell, whole| {
-                if let Some(index) = frame.index(cell) {
-                    self.overlapped[index] -= 1;
-                    self.covered[index] -= u16::from(whole);
-                    self.settle(cell, index);
-                }
+            cover::form_cells(&frame, from, |index, whole| {
+                self.overlapped[index] -= 1;
+                self.covered[index] -= u16::from(whole);
+                self.settle(index);
             });
         }
-        cover::form_cells(&frame, to, |cell, _| {
-            if let Some(index) = frame.index(cell) {
-                self.settle(cell, index);
-            }
-        });
+        cover::form_cells(&frame, to, |index, _| self.settle(index));
     }
 
     /// Updates the cells of an obstacle that has appeared or disappeared. `boxes` are the walls and obstacles that
@@ -114,17 +106,16 @@ impl PhysicsGroundTruth {
         mover: Option<Body>,
     ) -> Vec<Cell> {
         let near: Vec<Rectangle> = boxes.iter().filter(|other| may_meet(shape, other)).copied().collect();
-        let mut cells = Vec::new();
-        cover::box_cells(&self.frame, shape, |cell, _| cells.push(cell));
-        for &cell in &cells {
-            if let Some(index) = self.frame.index(cell) {
-                self.fixed[index] = start::state_of(cover::open_share(&self.frame, cell, near.iter()));
-                if let Some(body) = mover {
-                    self.movers[index].get_or_insert(body);
-                }
-                self.settle(cell, index);
+        let (frame, mut cells) = (self.frame, Vec::new());
+        cover::box_cells(&frame, shape, |index, _| {
+            let cell = frame.cell(index);
+            cells.push(cell);
+            self.fixed[index] = start::state_of(cover::open_share(&frame, cell, near.iter()));
+            if let Some(body) = mover {
+                self.movers[index].get_or_insert(body);
             }
-        }
+            self.settle(index);
+        });
         cells
     }
 
@@ -138,7 +129,7 @@ impl PhysicsGroundTruth {
     }
 
     /// Updates the state of a cell, and counts the event if the state has changed.
-    fn settle(&mut self, cell: Cell, index: usize) {
+    fn settle(&mut self, index: usize) {
         let before = self.states[index];
         let after = match self.fixed[index] {
             TrueState::Blocked => TrueState::Blocked,
@@ -158,6 +149,7 @@ impl PhysicsGroundTruth {
             }
             TrueState::Blocked | TrueState::PartlyCovered => {}
         }
+        let cell = self.frame.cell(index);
         self.changes.push(TrueChange { time: self.elapsed_s, cell, before, after });
     }
 }
@@ -179,10 +171,10 @@ impl GroundTruth for PhysicsGroundTruth {
         match self.states[index] {
             TrueState::Free => self.reachable[index],
             TrueState::PartlyCovered => false,
-            TrueState::Blocked => self.frame.cell(index).neighbours4().into_iter().any(|side| {
+            TrueState::Blocked => {
                 let is_open = |side: usize| self.states[side] != TrueState::Blocked && self.reachable[side];
-                self.frame.index(side).is_some_and(is_open)
-            }),
+                self.frame.beside(index).any(is_open)
+            }
         }
     }
 

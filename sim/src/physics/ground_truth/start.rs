@@ -1,6 +1,7 @@
 //! The states that the walls alone give the cells, once, at the start.
 
 use super::cover;
+use crate::flood::flood;
 use crate::physics::shape::Rectangle;
 use interfaces::{Cell, GridFrame, TrueState};
 
@@ -19,14 +20,10 @@ pub(super) fn walls_cover(frame: &GridFrame, walls: &[Rectangle]) -> Vec<TrueSta
     // Cells that no wall covers alone, with the walls that may together cover the cell.
     let mut shared = Vec::new();
     for (wall, shape) in walls.iter().enumerate() {
-        cover::box_cells(frame, shape, |cell, whole| {
-            if let Some(index) = frame.index(cell) {
-                match whole {
-                    true => states[index] = TrueState::Blocked,
-                    false if states[index] != TrueState::Blocked => shared.push((index, wall)),
-                    false => {}
-                }
-            }
+        cover::box_cells(frame, shape, |index, whole| match whole {
+            true => states[index] = TrueState::Blocked,
+            false if states[index] != TrueState::Blocked => shared.push((index, wall)),
+            false => {}
         });
     }
     shared.sort_unstable();
@@ -44,28 +41,12 @@ pub(super) fn walls_cover(frame: &GridFrame, walls: &[Rectangle]) -> Vec<TrueSta
 /// along an oblique wall these lead to the cells inside of the wall.
 pub(super) fn reachable(frame: &GridFrame, walls: &[TrueState], start: Cell) -> Vec<bool> {
     let mut reached = vec![false; frame.len()];
-    let mut frontier: Vec<Cell> = Vec::new();
-    let mut reach = |cell: Cell, frontier: &mut Vec<Cell>| {
-        if let Some(index) = frame.index(cell)
-            && walls[index] == TrueState::Free
-            && !std::mem::replace(&mut reached[index], true)
-        {
-            frontier.push(cell);
-        }
+    flood(frame, start, |index| walls[index] == TrueState::Free, &mut reached);
+    let is_fringe = |index: &usize| {
+        let mut near = frame.cell(*index).neighbours8().into_iter().filter_map(|near| frame.index(near));
+        walls[*index] == TrueState::PartlyCovered && near.any(|near| reached[near])
     };
-    reach(start, &mut frontier);
-    while let Some(cell) = frontier.pop() {
-        for side in cell.neighbours4() {
-            reach(side, &mut frontier);
-        }
-    }
-    let fringe = |index: usize| {
-        walls[index] == TrueState::PartlyCovered
-            && frame.cell(index).neighbours8().into_iter().any(|near| {
-                frame.index(near).is_some_and(|near| walls[near] == TrueState::Free && reached[near])
-            })
-    };
-    let fringe: Vec<usize> = (0..frame.len()).filter(|&index| fringe(index)).collect();
+    let fringe: Vec<usize> = (0..frame.len()).filter(is_fringe).collect();
     for index in fringe {
         reached[index] = true;
     }

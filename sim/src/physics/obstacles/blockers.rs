@@ -2,8 +2,8 @@ use crate::physics::form::Form;
 use crate::physics::shape::Rectangle;
 use nalgebra::Point2;
 
-/// A place is free for an obstacle if everything that moves is this far away, m: far enough that the physics
-/// engine pushes nothing apart.
+/// An obstacle may move to a pose if every body that moves is this far away, m: far enough that the physics engine
+/// pushes nothing apart.
 const ROOM_M: f64 = 0.005;
 
 /// The bodies that an obstacle must not run into. The obstacle waits instead, so that it crushes nothing.
@@ -31,12 +31,15 @@ impl Blockers {
         let (before, after) = (from.corners(), to.corners());
         let motions_m = before.iter().zip(&after).map(|(before, after)| (after - before).norm());
         let motion_m = motions_m.fold(0.0, f64::max);
-        let near = Near::new(to, motion_m);
-        let mut things = self.things.iter().filter(|thing| near.overlaps(&thing.center, thing.radius_m));
-        things.all(|thing| {
+        // Most bodies are far away: compares circles first.
+        let center = Point2::from(to.pose.translation.vector);
+        let reach_m = to.half_m.norm() + motion_m + ROOM_M;
+        let is_near =
+            |thing: &&Thing| (thing.center - center).norm_squared() <= (reach_m + thing.radius_m).powi(2);
+        self.things.iter().filter(is_near).all(|thing| {
             let before_m = thing.form.gap_m(&before);
             let has_room = |gap_m: f64| gap_m >= ROOM_M || gap_m >= before_m;
-            // So many poses that a body between two of them is not skipped.
+            // As many poses as it takes not to skip a body between two of them.
             let poses = (motion_m / from.half_m.min().max(thing.form.inner_m())).ceil() as usize;
             let mut between = (1..poses).map(|pose| {
                 let pose = from.pose.lerp_slerp(&to.pose, pose as f64 / poses as f64);
@@ -50,23 +53,5 @@ impl Blockers {
     pub(super) fn has_room(&self, shape: &Rectangle) -> bool {
         let corners = shape.corners();
         self.things.iter().all(|thing| thing.form.gap_m(&corners) >= ROOM_M)
-    }
-}
-
-/// A circle around a rectangle: most bodies are far away from it.
-struct Near {
-    center: Point2<f64>,
-    radius_m: f64,
-}
-
-impl Near {
-    /// Around a rectangle and all poses within a distance of it.
-    fn new(shape: &Rectangle, motion_m: f64) -> Self {
-        let radius_m = shape.half_m.norm() + motion_m + ROOM_M;
-        Self { center: shape.pose.translation.vector.into(), radius_m }
-    }
-
-    fn overlaps(&self, at: &Point2<f64>, radius_m: f64) -> bool {
-        (at - self.center).norm_squared() <= (self.radius_m + radius_m).powi(2)
     }
 }

@@ -5,15 +5,13 @@
 //! nearest hit is the largest value.
 
 use super::edges::Edge;
+use interfaces::{APPROXIMATE_ATAN2_ERROR_RAD, approximate_atan2};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::PI;
 use std::ops::Range;
 
 /// An edge whose line passes the laser closer than this is seen edge-on, m.
 const EDGE_ON_M: f64 = 1e-9;
-
-/// The largest error of [`approximate_atan2`], rad.
-pub(super) const APPROXIMATE_RAD: f64 = 1.2e-5;
 
 /// The directions of the beams of a laser.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +60,7 @@ impl Beams {
         let index = (angle_rad - self.angle_min_rad) * self.per_rad;
         let mut i = if index < 0.0 { 0 } else { (index as usize + 1).min(self.x.len()) };
         // The approximate angle may be wrong about beams as near as this, and about no other.
-        let near = APPROXIMATE_RAD * self.per_rad;
+        let near = APPROXIMATE_ATAN2_ERROR_RAD * self.per_rad;
         while i > 0 && index - ((i - 1) as f64) < near && is_after(i - 1) {
             i -= 1;
         }
@@ -202,45 +200,9 @@ impl<'a> Hits<'a> {
     }
 }
 
-/// The direction of a vector to within [`APPROXIMATE_RAD`] (and single precision), in [−π, π], without
-/// branches: the start of a search. Abramowitz & Stegun (1964), 4.4.49.
-macro_rules! approximate_atan2 {
-    ($name:ident, $float:ident) => {
-        #[inline]
-        pub(super) fn $name(y: $float, x: $float) -> $float {
-            use std::$float::consts::{FRAC_PI_2, PI};
-            let (along, across) = (x.abs(), y.abs());
-            // 0 at the position of the laser, not 0/0.
-            let t = along.min(across) / along.max(across).max($float::MIN_POSITIVE);
-            let t2 = t * t;
-            let series =
-                0.999_866 + t2 * (-0.330_299_5 + t2 * (0.180_141 + t2 * (-0.085_133 + t2 * 0.020_835_1)));
-            let angle = t * series;
-            let angle = if across > along { FRAC_PI_2 - angle } else { angle };
-            let angle = if x < 0.0 { PI - angle } else { angle };
-            if y < 0.0 { -angle } else { angle }
-        }
-    };
-}
-
-approximate_atan2!(approximate_atan2, f64);
-approximate_atan2!(approximate_atan2_f32, f32);
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn approximate_angles_are_near_the_exact_ones() {
-        for step in -3141..=3141 {
-            let (y, x) = libm::sincos(f64::from(step) * 1e-3);
-            assert!(
-                (approximate_atan2(y * 7.0, x * 7.0) - libm::atan2(y, x)).abs() < APPROXIMATE_RAD,
-                "{step}"
-            );
-        }
-        assert_eq!(approximate_atan2(0.0, 0.0), 0.0);
-    }
 
     /// Every beam lies on one side of a direction, exactly, wherever the direction is.
     #[test]

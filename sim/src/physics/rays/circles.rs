@@ -3,15 +3,17 @@
 //! Most of them are hidden. Whether they are is first computed approximately, for all of them in one loop
 //! without branches; only bodies that may be visible are then computed exactly.
 
-use super::beams::{APPROXIMATE_RAD, Hits, approximate_atan2_f32};
+use super::beams::Hits;
+use interfaces::APPROXIMATE_ATAN2_ERROR_RAD;
 use nalgebra::{Point2, Vector2};
+use std::f32::consts::{FRAC_PI_2, PI};
 
 /// The margins of approximate values: for single precision, and for the approximate angle.
-const SAFE_RAD: f32 = 3.0 * APPROXIMATE_RAD as f32;
+const SAFE_RAD: f32 = 3.0 * APPROXIMATE_ATAN2_ERROR_RAD as f32;
 const SAFE: f32 = 1.0 + 1e-5;
 
 /// A round body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::physics) struct Disc {
     /// The centre, m.
     pub(in crate::physics) center: Point2<f64>,
@@ -92,7 +94,7 @@ impl Discs {
         }
         // No branches: several discs at once.
         for i in 0..count {
-            angle[i] = approximate_atan2_f32(y[i], x[i]);
+            angle[i] = approximate_atan2(y[i], x[i]);
             let distance = (x[i] * x[i] + y[i] * y[i]).sqrt();
             // asin(s) ≤ s + (π/2 − 1)·s³.
             let s = (radius[i] / distance * SAFE).min(1.0);
@@ -102,6 +104,19 @@ impl Discs {
             nearest[i] = if gap > distance * 1e-4 { SAFE / (gap - distance * 1e-6) } else { f32::INFINITY };
         }
     }
+}
+
+/// The same as [`interfaces::approximate_atan2`] in single precision, without branches.
+#[inline]
+fn approximate_atan2(y: f32, x: f32) -> f32 {
+    let (along, across) = (x.abs(), y.abs());
+    let t = along.min(across) / along.max(across).max(f32::MIN_POSITIVE);
+    let t2 = t * t;
+    let series = 0.999_866 + t2 * (-0.330_299_5 + t2 * (0.180_141 + t2 * (-0.085_133 + t2 * 0.020_835_1)));
+    let angle = t * series;
+    let angle = if across > along { FRAC_PI_2 - angle } else { angle };
+    let angle = if x < 0.0 { PI - angle } else { angle };
+    if y < 0.0 { -angle } else { angle }
 }
 
 #[cfg(test)]

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_inside_of_walls_is_left_out_and_what_goes_on_is_one() {
+    fn edges_inside_of_walls_are_left_out_and_edges_on_one_line_merge() {
         // Two walls end to end, a third that ends at their side: an upside-down T.
         let boxes = [
             between([0.0, 0.0], [2.0, 0.1]),

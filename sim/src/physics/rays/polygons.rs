@@ -3,19 +3,17 @@
 
 use super::beams::Hits;
 use super::edges::Edge;
+use super::index_lists::IndexLists;
 use super::visibility::PotentiallyVisibleSet;
 use crate::physics::convex;
 use nalgebra::Point2;
-use std::ops::Range;
 
 /// Convex bodies, each with an index.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Polygons {
     polygons: Vec<Polygon>,
-    /// The bodies in each cell, one cell after the other; at the end the bodies that reach beyond the borders.
-    sorted: Vec<u32>,
-    /// The start of each cell in `sorted`.
-    starts: Vec<u32>,
+    /// The bodies in each cell; at the end the bodies that reach beyond the borders.
+    sorted: IndexLists,
     is_sorted: bool,
 }
 
@@ -59,10 +57,7 @@ impl Polygons {
         if self.is_sorted || self.polygons.is_empty() {
             return;
         }
-        // Counting sort, as for round robots; but a body may lie in several cells.
-        self.starts.clear();
-        self.starts.resize(visible.len() + 2, 0);
-        let cells: Vec<(u32, u32)> = self
+        let cells: Vec<(usize, u32)> = self
             .polygons
             .iter()
             .enumerate()
@@ -70,21 +65,10 @@ impl Polygons {
             .flat_map(|(i, polygon)| {
                 let (low, high) = polygon.bounds();
                 let beyond = visible.reaches_out(&low, &high).then_some(visible.len());
-                visible.around(&low, &high).chain(beyond).map(move |cell| (cell as u32, i as u32))
+                visible.around(&low, &high).chain(beyond).map(move |cell| (cell, i as u32))
             })
             .collect();
-        cells.iter().for_each(|(cell, _)| self.starts[*cell as usize] += 1);
-        let mut end = 0;
-        for start in &mut self.starts {
-            end += *start;
-            *start = end;
-        }
-        self.sorted.resize(cells.len(), 0);
-        for (cell, polygon) in cells.iter().rev() {
-            let start = &mut self.starts[*cell as usize];
-            *start -= 1;
-            self.sorted[*start as usize] = *polygon;
-        }
+        self.sorted.sort(visible.len() + 1, cells.iter().copied());
         self.is_sorted = true;
     }
 
@@ -96,7 +80,7 @@ impl Polygons {
 
     /// Adds the bodies in a cell that this cast has not added yet.
     pub(super) fn add_cell(&self, cell: usize, own: usize, tested: &mut Tested, hits: &mut Hits<'_>) {
-        for &i in &self.sorted[self.range(cell)] {
+        for &i in self.sorted.get(cell) {
             let last = &mut tested.last[i as usize];
             if *last != tested.cast {
                 *last = tested.cast;
@@ -116,13 +100,9 @@ impl Polygons {
             polygon.is_seen(own) && polygon.edges.iter().all(|edge| edge.gap_m(point) <= 0.0)
         };
         match cell {
-            Some(cell) => self.sorted[self.range(cell)].iter().any(|&i| is_in(&self.polygons[i as usize])),
+            Some(cell) => self.sorted.get(cell).iter().any(|&i| is_in(&self.polygons[i as usize])),
             None => self.polygons.iter().any(is_in),
         }
-    }
-
-    fn range(&self, cell: usize) -> Range<usize> {
-        self.starts[cell] as usize..self.starts[cell + 1] as usize
     }
 }
 

@@ -1,11 +1,11 @@
 use super::beams::{Beams, Hits};
 use super::circles::{Disc, Discs};
 use super::edges::{Edge, visible_edges};
+use super::index_lists::IndexLists;
 use super::polygons::{Polygons, Tested};
-use super::visibility::{PotentiallyVisibleSet, Reach};
+use super::visibility::PotentiallyVisibleSet;
 use crate::physics::shape::Rectangle;
 use nalgebra::{Isometry2, Point2};
-use std::ops::Range;
 use std::sync::Arc;
 
 /// Memory for casting rays, kept from cast to cast.
@@ -26,9 +26,7 @@ pub(in crate::physics) struct Scene {
     /// The robots, by index.
     discs: Vec<Disc>,
     /// The robots by the cell of their centre; at the end those beyond the borders.
-    sorted: Vec<(u32, Disc)>,
-    /// The start of each cell in `sorted`.
-    starts: Vec<u32>,
+    sorted: IndexLists<(u32, Disc)>,
     is_sorted: bool,
 }
 
@@ -52,14 +50,13 @@ impl Scene {
     ) -> Self {
         let edges = visible_edges(walls);
         let radius_m = discs.iter().fold(0.0, |most: f64, disc| most.max(disc.radius_m));
-        let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, &Reach { range_m, radius_m });
+        let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, range_m, radius_m);
         let solids = walls.iter().map(Edge::of_rectangle).collect();
         Self {
-            starts: vec![0; visible.len() + 2],
             walls: Arc::new(Walls { solids, edges, visible }),
             polygons: Polygons::new(polygons),
             discs,
-            sorted: Vec::new(),
+            sorted: IndexLists::default(),
             is_sorted: false,
         }
     }
@@ -87,24 +84,11 @@ impl Scene {
         if self.is_sorted {
             return;
         }
-        let outside = self.walls.visible.len();
-        let cell = |disc: &Disc| self.walls.visible.cell_at(&disc.center).unwrap_or(outside);
-        // Counting sort: the number of robots per cell, summed up to the end of each cell. Filled from the back,
-        // ends become starts.
-        self.starts.fill(0);
-        self.discs.iter().for_each(|disc| self.starts[cell(disc)] += 1);
-        let mut end = 0;
-        for start in &mut self.starts {
-            end += *start;
-            *start = end;
-        }
-        let nothing = Disc { center: Point2::origin(), radius_m: 0.0 };
-        self.sorted.resize(self.discs.len(), (0, nothing));
-        for (robot, disc) in self.discs.iter().enumerate().rev() {
-            let start = &mut self.starts[cell(disc)];
-            *start -= 1;
-            self.sorted[*start as usize] = (robot as u32, *disc);
-        }
+        let visible = &self.walls.visible;
+        let robots = self.discs.iter().enumerate().map(|(robot, disc)| {
+            (visible.cell_at(&disc.center).unwrap_or(visible.len()), (robot as u32, *disc))
+        });
+        self.sorted.sort(visible.len() + 1, robots);
         self.is_sorted = true;
     }
 
@@ -120,7 +104,7 @@ impl Scene {
         let Walls { solids, edges, visible } = &*self.walls;
         let Scratch { inverse, discs, tested } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);
-        discs.clear(self.sorted.len());
+        discs.clear(self.sorted.all().len());
         let at = Point2::from(laser.translation.vector);
         let contains = |sides: &[Edge; 4]| sides.iter().all(|side| side.gap_m(&at) <= 0.0);
         let own_cell = visible.cell_at(&at);
@@ -133,7 +117,7 @@ impl Scene {
                 visible.edges(cell).iter().for_each(|&i| hits.add_edge(&edges[i as usize]));
                 let cells = visible.cells(cell).iter().map(|&cell| cell as usize);
                 for cell in cells.chain([visible.len()]) {
-                    self.add_robots(discs, &mut hits, self.starts[cell]..self.starts[cell + 1], own);
+                    add_robots(discs, &mut hits, self.sorted.get(cell), own);
                     if has_polygons {
                         self.polygons.add_cell(cell, own, tested, &mut hits);
                     }
@@ -142,7 +126,7 @@ impl Scene {
             None => {
                 is_inside |= solids.iter().any(contains);
                 edges.iter().for_each(|edge| hits.add_edge(edge));
-                self.add_robots(discs, &mut hits, 0..self.sorted.len() as u32, own);
+                add_robots(discs, &mut hits, self.sorted.all(), own);
                 self.polygons.add_all(own, &mut hits);
             }
         }
@@ -152,14 +136,14 @@ impl Scene {
             hits.add_inside();
         }
     }
+}
 
-    // Runs for every visible cell, most of which are empty: a call would cost 5 % of a simulated second.
-    #[inline(always)]
-    fn add_robots(&self, discs: &mut Discs, hits: &mut Hits<'_>, sorted: Range<u32>, own: usize) {
-        for (robot, disc) in &self.sorted[sorted.start as usize..sorted.end as usize] {
-            if *robot as usize != own {
-                discs.push(disc, hits);
-            }
+// Runs for every visible cell, most of which are empty: a call would cost 5 % of a simulated second.
+#[inline(always)]
+fn add_robots(discs: &mut Discs, hits: &mut Hits<'_>, robots: &[(u32, Disc)], own: usize) {
+    for (robot, disc) in robots {
+        if *robot as usize != own {
+            discs.push(disc, hits);
         }
     }
 }

@@ -21,15 +21,6 @@ const MIN_OCCLUDER_SIZE: f64 = 0.1;
 /// Points this near to a cell or an edge may count as being on it, m.
 const MARGIN_M: f64 = 1e-6;
 
-/// How far lasers see, and how large robots are.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reach {
-    /// The longest range of any laser, m.
-    pub(super) range_m: f64,
-    /// The largest radius of any robot, m.
-    pub(super) radius_m: f64,
-}
-
 /// The cells, and what can be seen from each.
 #[derive(Clone, Debug)]
 pub(super) struct PotentiallyVisibleSet {
@@ -44,13 +35,15 @@ pub(super) struct PotentiallyVisibleSet {
 }
 
 impl PotentiallyVisibleSet {
-    /// Computes the lists for the world between two corners (m).
+    /// Computes the lists for the world between two corners (m). `range_m` is the longest range of any laser, and
+    /// `radius_m` the largest radius of any robot.
     pub(super) fn new(
         low: Point2<f64>,
         high: Point2<f64>,
         boxes: &[Rectangle],
         edges: &[Edge],
-        reach: &Reach,
+        range_m: f64,
+        radius_m: f64,
     ) -> Self {
         let extent = high - low;
         let cell_m = (extent.x * extent.y / MAX_CELLS).sqrt().max(MIN_CELL_M);
@@ -60,9 +53,9 @@ impl PotentiallyVisibleSet {
             cell_m,
             columns: count(extent.x),
             rows: count(extent.y),
-            edges: IndexLists::new(),
-            cells: IndexLists::new(),
-            boxes: IndexLists::new(),
+            edges: IndexLists::default(),
+            cells: IndexLists::default(),
+            boxes: IndexLists::default(),
         };
         let mut boxes_in = vec![Vec::new(); set.len()];
         for (i, shape) in boxes.iter().enumerate() {
@@ -74,9 +67,9 @@ impl PotentiallyVisibleSet {
         for (cell, inside) in boxes_in.into_iter().enumerate() {
             let own = set.square(cell, MARGIN_M);
             set.boxes.push(inside.into_iter());
-            let view = View::new(&own, edges, reach);
+            let view = View::new(&own, edges, range_m);
             set.edges.push(view.edges(edges));
-            let robots = (0..set.len()).map(|i| set.square(i, reach.radius_m + MARGIN_M));
+            let robots = (0..set.len()).map(|i| set.square(i, radius_m + MARGIN_M));
             let visible = robots.enumerate().filter(|(_, square)| view.sees(square));
             let mut visible: Vec<u32> = visible.map(|(i, _)| i as u32).collect();
             // The nearest cells first: robots in them hide others.
@@ -165,9 +158,9 @@ struct View {
 }
 
 impl View {
-    fn new(cell: &Rectangle, edges: &[Edge], reach: &Reach) -> Self {
+    fn new(cell: &Rectangle, edges: &[Edge], range_m: f64) -> Self {
         let (middle, half_m) = (Point2::from(cell.pose.translation.vector), cell.half_m.norm());
-        let far_m = reach.range_m + half_m + MARGIN_M;
+        let far_m = range_m + half_m + MARGIN_M;
         let is_near = |edge: &Edge| {
             let (along, to) = (edge.to - edge.from, middle - edge.from);
             // Most edges lie beyond a circle around the edge and the cell: the test needs no root.
@@ -186,7 +179,7 @@ impl View {
         }
         occluders.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let occluders = occluders.into_iter().take(MAX_OCCLUDERS).map(|(_, i)| edges[i]).collect();
-        Self { corners: cell.corners(), middle, half_m, range_m: reach.range_m, near, occluders }
+        Self { corners: cell.corners(), middle, half_m, range_m, near, occluders }
     }
 
     /// The edges that may be seen.

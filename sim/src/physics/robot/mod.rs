@@ -5,14 +5,14 @@ mod view;
 
 pub use view::RobotView;
 
-use super::behaviors::{self, Behavior};
+use super::behaviors::Behavior;
 use super::bodies::Bodies;
 use super::command::{Command, Velocity};
 use super::drives::Drive;
 use super::form::Form;
 use super::rays::{Beams, Scratch};
 use super::report::Body;
-use super::sensors::{self, Platform, Sensor, SensorReading, Surroundings};
+use super::sensors::{Platform, Sensor, SensorReading, Surroundings};
 use super::snapshot::{Values, pose, value};
 use super::spec::RobotSpec;
 use interfaces::{LaserReading, Purpose, RandomStream};
@@ -40,9 +40,9 @@ pub(super) struct Robot {
     drive: Drive,
     odometry: Odometry,
     /// `None`: the robot obeys commands.
-    behavior: Option<Box<dyn Behavior>>,
+    behavior: Option<Behavior>,
     /// All sensors, the main laser scanner first.
-    sensors: Vec<Box<dyn Sensor>>,
+    sensors: Vec<Sensor>,
 }
 
 impl Robot {
@@ -67,8 +67,8 @@ impl Robot {
             command: Command::STOP,
             drive: Drive::new(spec.drive),
             odometry: Odometry::new(spec, random(Purpose::OdometryNoise(index)), pose),
-            behavior: behaviors::of(spec, step_s, &beams[0], random(Purpose::Behavior(index))),
-            sensors: sensors::all(spec, beams, seed, index),
+            behavior: Behavior::of(spec, step_s, &beams[0], random(Purpose::Behavior(index))),
+            sensors: Sensor::all(spec, beams, seed, index),
             spec: spec.clone(),
         }
     }
@@ -86,8 +86,8 @@ impl Robot {
         ];
         values.extend(self.drive.values());
         values.extend(self.odometry.values());
-        values.extend(self.behavior.iter_mut().flat_map(|behavior| behavior.values()));
-        values.extend(self.sensors.iter_mut().flat_map(|sensor| sensor.values()));
+        values.extend(self.behavior.iter_mut().flat_map(Behavior::values));
+        values.extend(self.sensors.iter_mut().flat_map(Sensor::values));
         values
     }
 
@@ -129,7 +129,7 @@ impl Robot {
         self.command = *command;
     }
 
-    /// Puts the robot at `pose`, at rest. Its odometry starts anew there.
+    /// Puts the robot at `pose`, at rest. Its odometry starts again there.
     pub(super) fn put(&mut self, pose: Isometry2<f64>) {
         self.pose = pose;
         self.previous_pose = pose;
@@ -139,7 +139,7 @@ impl Robot {
         self.odometry.restart(pose);
         self.touching.clear();
         self.pressed_bumpers = 0;
-        self.sensors.iter_mut().for_each(|sensor| sensor.clear());
+        self.sensors.iter_mut().for_each(Sensor::clear);
     }
 
     /// Measures with the main laser scanner, and with all other sensors that are due.

@@ -33,7 +33,7 @@ impl Odometry {
         vec![value(&mut self.noise), snapshot::pose(&mut self.pose), value(&mut self.heading_rad)]
     }
 
-    /// Starts anew at a true pose.
+    /// Starts again at a true pose.
     pub(super) fn restart(&mut self, at: Isometry2<f64>) {
         self.pose = at;
         self.heading_rad = interfaces::heading_rad(&at);
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn wheels_slip_along_their_way() {
+    fn wheels_slip_in_the_direction_of_motion() {
         let aslant = Vector2::new(-0.6, 0.8);
         for (kind, towards) in [
             ("diff", Vector2::x()),

@@ -1,6 +1,6 @@
 use super::Robot;
 use crate::physics::report::Body;
-use crate::physics::sensors::{Fiducial, SensorReading, SonarReading};
+use crate::physics::sensors::{Fiducial, Sensor, SensorReading, SonarReading};
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
 use std::fmt;
@@ -37,7 +37,7 @@ pub struct RobotView<'a> {
 impl<'a> RobotView<'a> {
     /// The latest readings of all sensors, the main laser scanner first.
     pub fn readings(&self) -> impl Iterator<Item = SensorReading<'a>> + use<'a> {
-        self.robot.sensors.iter().map(|sensor| sensor.reading())
+        self.robot.sensors.iter().map(Sensor::reading)
     }
 
     /// The latest reading of each laser scanner, in the order of the spec.

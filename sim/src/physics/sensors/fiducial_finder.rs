@@ -1,8 +1,7 @@
-use super::{Platform, Sensor, SensorReading, Surroundings};
+use super::{Platform, Surroundings};
 use crate::physics::form::Form;
 use crate::physics::rays::{Beams, Scratch};
 use crate::physics::report::Body;
-use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::FiducialSpec;
 use interfaces::rotation;
 use nalgebra::{Isometry2, Point2};
@@ -35,30 +34,24 @@ pub(in crate::physics) struct Tagged {
 
 /// A sensor that detects bodies with a tag.
 #[derive(Clone)]
-pub(super) struct FiducialFinder {
-    spec: FiducialSpec,
+pub(in crate::physics) struct FiducialFinder {
+    pub(super) spec: FiducialSpec,
     /// A single beam straight ahead.
     beam: Beams,
-    found: Vec<Fiducial>,
+    pub(super) found: Vec<Fiducial>,
 }
 
 impl FiducialFinder {
     pub(super) fn new(spec: &FiducialSpec) -> Self {
         Self { spec: *spec, beam: Beams::new(0.0, 1.0, 1, spec.range_max_m), found: Vec::new() }
     }
-}
 
-impl Sensor for FiducialFinder {
-    fn period_steps(&self) -> u64 {
-        self.spec.period_steps
-    }
-
-    fn measure(&mut self, platform: &Platform, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
+    /// Measures, unless there is a reading of this moment already. `scratch` is overwritten.
+    pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
         let pose = platform.pose * self.spec.mount;
         self.found.clear();
         let own = Body::Robot(platform.robot);
-        for &Tagged { tag, body, center, ref form } in surroundings.tagged.iter().filter(|it| it.body != own)
-        {
+        for &Tagged { tag, body, center, ref form } in now.tagged.iter().filter(|it| it.body != own) {
             let to = pose.inverse_transform_point(&center).coords;
             let (range_m, bearing_rad) = (to.norm(), libm::atan2(to.y, to.x));
             if range_m > self.spec.range_max_m || bearing_rad.abs() > self.spec.fov_rad / 2.0 + 1e-12 {
@@ -66,27 +59,11 @@ impl Sensor for FiducialFinder {
             }
             // The first body that the ray to the centre hits must be the body itself.
             let ray = pose * Isometry2::from_parts(nalgebra::Translation2::identity(), rotation(bearing_rad));
-            surroundings.scene.cast(&self.beam, &ray, platform.robot, scratch);
+            now.scene.cast(&self.beam, &ray, platform.robot, scratch);
             let first_m = 1.0 / scratch.inverse[0];
             if first_m > range_m || form.gap_m_to(&(ray * Point2::new(first_m, 0.0))) < ON_SURFACE_M {
                 self.found.push(Fiducial { tag, body, bearing_rad, range_m });
             }
         }
-    }
-
-    fn reading(&self) -> SensorReading<'_> {
-        SensorReading::Fiducials(&self.found)
-    }
-
-    fn clear(&mut self) {
-        self.found.clear();
-    }
-
-    fn values(&mut self) -> Values<'_> {
-        vec![value(&mut self.found)]
-    }
-
-    fn boxed(&self) -> Box<dyn Sensor> {
-        Box::new(self.clone())
     }
 }

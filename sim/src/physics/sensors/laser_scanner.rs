@@ -1,6 +1,5 @@
-use super::{Platform, Sensor, SensorReading, Surroundings, reported};
+use super::{Platform, Surroundings, reported};
 use crate::physics::rays::{Beams, Scratch};
-use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::LaserSpec;
 use interfaces::{LaserReading, Purpose, RandomStream, Twist};
 use nalgebra::Isometry2;
@@ -9,11 +8,11 @@ use std::sync::Arc;
 /// A planar laser scanner.
 #[derive(Clone)]
 pub(in crate::physics) struct LaserScanner {
-    spec: LaserSpec,
+    pub(super) spec: LaserSpec,
     beams: Arc<Beams>,
-    noise: RandomStream,
-    dropout: RandomStream,
-    reading: Option<LaserReading>,
+    pub(super) noise: RandomStream,
+    pub(super) dropout: RandomStream,
+    pub(super) reading: Option<LaserReading>,
 }
 
 impl LaserScanner {
@@ -27,14 +26,9 @@ impl LaserScanner {
             reading: None,
         }
     }
-}
 
-impl Sensor for LaserScanner {
-    fn period_steps(&self) -> u64 {
-        self.spec.period_steps
-    }
-
-    fn measure(&mut self, platform: &Platform, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
+    /// Measures, unless there is a reading of this moment already. `scratch` is overwritten.
+    pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
         let LaserSpec { range_min_m, range_max_m, noise_std_m, dropout, mount, .. } = self.spec;
         let reading = self.reading.get_or_insert_with(|| LaserReading {
             // Before any time, so that the first measurement is a new one.
@@ -44,13 +38,13 @@ impl Sensor for LaserScanner {
             mount,
             scan: self.spec.empty_scan(),
         });
-        if reading.time_s == surroundings.time_s {
+        if reading.time_s == now.time_s {
             return;
         }
-        reading.time_s = surroundings.time_s;
+        reading.time_s = now.time_s;
         reading.pose = platform.odometry_pose;
         reading.twist = platform.odometry_twist;
-        surroundings.scene.cast(&self.beams, &(platform.pose * mount), platform.robot, scratch);
+        now.scene.cast(&self.beams, &(platform.pose * mount), platform.robot, scratch);
         let reported = |measured_m: f64| reported(measured_m, range_min_m, range_max_m);
         let ranges_m = &mut reading.scan.ranges_m;
         ranges_m.resize(scratch.inverse.len(), 0.0);
@@ -74,22 +68,6 @@ impl Sensor for LaserScanner {
                 }
             }
         }
-    }
-
-    fn reading(&self) -> SensorReading<'_> {
-        SensorReading::Laser(self.reading.as_ref())
-    }
-
-    fn clear(&mut self) {
-        self.reading = None;
-    }
-
-    fn values(&mut self) -> Values<'_> {
-        vec![value(&mut self.noise), value(&mut self.dropout), value(&mut self.reading)]
-    }
-
-    fn boxed(&self) -> Box<dyn Sensor> {
-        Box::new(self.clone())
     }
 }
 

@@ -1,7 +1,7 @@
 //! The sensors of a robot.
 //!
-//! Stepping, snapshots and views go through one list of sensors, [`all`]. A new sensor is a file that
-//! implements [`Sensor`], a variant of [`SensorReading`] and a line in [`all`].
+//! Stepping, snapshots and views go through one list of sensors, [`Sensor::all`]. A new sensor is a file, a variant of
+//! [`Sensor`] and one of [`SensorReading`].
 
 pub(super) mod bumper;
 mod fiducial_finder;
@@ -9,47 +9,87 @@ mod laser_scanner;
 mod sonar;
 
 pub use fiducial_finder::Fiducial;
+use fiducial_finder::FiducialFinder;
 pub(super) use fiducial_finder::Tagged;
-pub(super) use laser_scanner::LaserScanner;
-pub(super) use laser_scanner::SharedBeams;
+pub(super) use laser_scanner::{LaserScanner, SharedBeams};
+use sonar::Sonar;
 pub use sonar::SonarReading;
 
 use super::rays::{Beams, Scene, Scratch};
-use super::snapshot::Values;
+use super::snapshot::{Values, value};
 use super::spec::RobotSpec;
 use interfaces::{LaserReading, Twist};
 use nalgebra::Isometry2;
 use std::sync::Arc;
 
 /// A sensor on a robot, with its latest reading.
-pub(super) trait Sensor: Send + Sync {
-    /// The physics steps from one measurement to the next; at least 1.
-    fn period_steps(&self) -> u64;
+#[derive(Clone)]
+pub(super) enum Sensor {
+    Laser(Box<LaserScanner>),
+    Sonar(Box<Sonar>),
+    Fiducials(FiducialFinder),
+}
+
+impl Sensor {
+    /// All sensors of the robot with an index, the main laser scanner first. `beams` are those of its lasers.
+    pub(super) fn all(spec: &RobotSpec, beams: Vec<Arc<Beams>>, seed: u64, robot: usize) -> Vec<Self> {
+        // Each sensor has streams of its own; the streams of the first sensor of a kind are those of the robot.
+        let stream = |sensor: usize| robot + (sensor << 24);
+        let lasers = spec.lasers().zip(beams).enumerate().map(|(index, (laser, beams))| {
+            Self::Laser(Box::new(LaserScanner::new(laser, beams, seed, stream(index))))
+        });
+        let sonars = spec.sonars.iter().enumerate();
+        let sonars =
+            sonars.map(|(index, sonar)| Self::Sonar(Box::new(Sonar::new(sonar, seed, stream(index)))));
+        let finder = spec.fiducial.iter().map(|finder| Self::Fiducials(FiducialFinder::new(finder)));
+        lasers.chain(sonars).chain(finder).collect()
+    }
 
     /// Whether the sensor measures at a step.
-    fn is_due(&self, step: u64) -> bool {
-        step.is_multiple_of(self.period_steps())
+    pub(super) fn is_due(&self, step: u64) -> bool {
+        step.is_multiple_of(match self {
+            Self::Laser(laser) => laser.spec.period_steps,
+            Self::Sonar(sonar) => sonar.spec.period_steps,
+            Self::Fiducials(finder) => finder.spec.period_steps,
+        })
     }
 
     /// Measures, unless there is a reading of this moment already. `scratch` is overwritten.
-    fn measure(&mut self, platform: &Platform, surroundings: &Surroundings<'_>, scratch: &mut Scratch);
+    pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
+        match self {
+            Self::Laser(laser) => laser.measure(platform, now, scratch),
+            Self::Sonar(sonar) => sonar.measure(platform, now, scratch),
+            Self::Fiducials(finder) => finder.measure(platform, now, scratch),
+        }
+    }
 
     /// The latest reading.
-    fn reading(&self) -> SensorReading<'_>;
+    pub(super) fn reading(&self) -> SensorReading<'_> {
+        match self {
+            Self::Laser(laser) => SensorReading::Laser(laser.reading.as_ref()),
+            Self::Sonar(sonar) => SensorReading::Sonar(sonar.reading),
+            Self::Fiducials(finder) => SensorReading::Fiducials(&finder.found),
+        }
+    }
 
-    /// Forgets the latest reading.
-    fn clear(&mut self);
+    /// Removes the latest reading.
+    pub(super) fn clear(&mut self) {
+        match self {
+            Self::Laser(laser) => laser.reading = None,
+            Self::Sonar(sonar) => sonar.reading = None,
+            Self::Fiducials(finder) => finder.found.clear(),
+        }
+    }
 
     /// The values that a snapshot holds.
-    fn values(&mut self) -> Values<'_>;
-
-    /// A copy.
-    fn boxed(&self) -> Box<dyn Sensor>;
-}
-
-impl Clone for Box<dyn Sensor> {
-    fn clone(&self) -> Self {
-        self.boxed()
+    pub(super) fn values(&mut self) -> Values<'_> {
+        match self {
+            Self::Laser(laser) => {
+                vec![value(&mut laser.noise), value(&mut laser.dropout), value(&mut laser.reading)]
+            }
+            Self::Sonar(sonar) => vec![value(&mut sonar.noise), value(&mut sonar.reading)],
+            Self::Fiducials(finder) => vec![value(&mut finder.found)],
+        }
     }
 }
 
@@ -82,23 +122,6 @@ pub(super) struct Surroundings<'a> {
     pub(super) time_s: f64,
     pub(super) scene: &'a Scene,
     pub(super) tagged: &'a [Tagged],
-}
-
-/// All sensors of the robot with an index, the main laser scanner first. `beams` are those of its lasers.
-pub(super) fn all(spec: &RobotSpec, beams: Vec<Arc<Beams>>, seed: u64, robot: usize) -> Vec<Box<dyn Sensor>> {
-    // Each sensor has streams of its own; the streams of the first sensor of a kind are those of the robot.
-    let stream = |sensor: usize| robot + (sensor << 24);
-    let mut sensors: Vec<Box<dyn Sensor>> = Vec::new();
-    for (index, (laser, beams)) in spec.lasers().zip(beams).enumerate() {
-        sensors.push(Box::new(LaserScanner::new(laser, beams, seed, stream(index))));
-    }
-    for (index, spec) in spec.sonars.iter().enumerate() {
-        sensors.push(Box::new(sonar::Sonar::new(spec, seed, stream(index))));
-    }
-    if let Some(spec) = &spec.fiducial {
-        sensors.push(Box::new(fiducial_finder::FiducialFinder::new(spec)));
-    }
-    sensors
 }
 
 /// A measured range with the meaning of REP-117: too far is +∞, too close −∞.

@@ -1,6 +1,5 @@
-use super::{Platform, Sensor, SensorReading, Surroundings, reported};
+use super::{Platform, Surroundings, reported};
 use crate::physics::rays::{Beams, Scratch};
-use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::SonarSpec;
 use interfaces::{Purpose, RandomStream};
 use serde::{Deserialize, Serialize};
@@ -19,11 +18,11 @@ pub struct SonarReading {
 
 /// A sonar or infrared range sensor.
 #[derive(Clone)]
-pub(super) struct Sonar {
-    spec: SonarSpec,
+pub(in crate::physics) struct Sonar {
+    pub(super) spec: SonarSpec,
     beams: Beams,
-    noise: RandomStream,
-    reading: Option<SonarReading>,
+    pub(super) noise: RandomStream,
+    pub(super) reading: Option<SonarReading>,
 }
 
 impl Sonar {
@@ -38,38 +37,17 @@ impl Sonar {
             reading: None,
         }
     }
-}
 
-impl Sensor for Sonar {
-    fn period_steps(&self) -> u64 {
-        self.spec.period_steps
-    }
-
-    fn measure(&mut self, platform: &Platform, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
-        let time_s = surroundings.time_s;
+    /// Measures, unless there is a reading of this moment already. `scratch` is overwritten.
+    pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
+        let time_s = now.time_s;
         if self.reading.is_some_and(|reading| reading.time_s == time_s) {
             return;
         }
-        surroundings.scene.cast(&self.beams, &(platform.pose * self.spec.mount), platform.robot, scratch);
+        now.scene.cast(&self.beams, &(platform.pose * self.spec.mount), platform.robot, scratch);
         let nearest = scratch.inverse.iter().fold(0.0, |most: f64, inverse| most.max(*inverse));
         let SonarSpec { range_min_m, range_max_m, noise_std_m, .. } = self.spec;
         let measured_m = 1.0 / nearest + noise_std_m * self.noise.normal();
         self.reading = Some(SonarReading { time_s, range_m: reported(measured_m, range_min_m, range_max_m) });
-    }
-
-    fn reading(&self) -> SensorReading<'_> {
-        SensorReading::Sonar(self.reading)
-    }
-
-    fn clear(&mut self) {
-        self.reading = None;
-    }
-
-    fn values(&mut self) -> Values<'_> {
-        vec![value(&mut self.noise), value(&mut self.reading)]
-    }
-
-    fn boxed(&self) -> Box<dyn Sensor> {
-        Box::new(self.clone())
     }
 }

@@ -1,22 +1,22 @@
-//! What a robot does by itself.
+//! The behavior of a robot.
 
 use crate::physics::shape::turned_point;
 use nalgebra::{Point2, UnitComplex};
 
-/// What a robot does.
+/// The behavior of a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BehaviorSpec {
-    /// It obeys commands.
+    /// Obeys commands.
     Driven,
-    /// It stands.
+    /// Stands still.
     Standing,
-    /// It drives a circle and looks at nothing.
+    /// Drives a circle without regard to its sensors.
     Circle(CircleSpec),
-    /// It drives about, and turns away from what is ahead.
+    /// Drives without a goal, and turns away from obstacles ahead.
     Wander(WanderSpec),
-    /// It drives straight from point to point.
+    /// Drives straight from point to point.
     Waypoints(WaypointsSpec),
-    /// It follows a wall between two points, back and forth.
+    /// Follows a wall between two points, back and forth.
     WallPatrol(PatrolSpec),
 }
 
@@ -29,7 +29,7 @@ pub struct CircleSpec {
     pub turn_radps: f64,
 }
 
-/// A way without a goal.
+/// Driving without a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WanderSpec {
     /// The speed while nothing is ahead, m/s.
@@ -38,55 +38,54 @@ pub struct WanderSpec {
     pub clearance_m: f64,
 }
 
-/// A way from point to point.
+/// Driving from point to point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaypointsSpec {
     /// The points, at least one, m.
     pub points: Vec<Point2<f64>>,
-    /// The speed on the way, m/s.
+    /// The speed on the legs, m/s.
     pub speed_mps: f64,
-    /// What comes after the last point.
+    /// The continuation after the last point.
     pub repeat: Repeat,
-    /// The free space that the robot keeps ahead when it stops for something, m.
+    /// The free space that the robot keeps to an obstacle ahead, m.
     pub clearance_m: f64,
 }
 
-/// What comes after the last waypoint.
+/// The continuation after the last waypoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Repeat {
-    /// The first one.
+    /// The first waypoint.
     Loop,
-    /// The same way back.
+    /// The waypoints in reverse order.
     BackAndForth,
-    /// Nothing: the robot stands.
+    /// None: the robot stands still.
     Once,
 }
 
-/// A way along a wall, back and forth (paper, section 5).
+/// Driving along a wall, back and forth (paper, section 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatrolSpec {
-    /// One end of the way of the robot's middle, m.
+    /// One end of the path of the center of the robot, m.
     pub from: Point2<f64>,
     /// The other end, m.
     pub to: Point2<f64>,
-    /// The speed on the way, m/s.
+    /// The speed on the legs, m/s.
     pub speed_mps: f64,
-    /// Whether the wall is on the left on the way from `from` to `to`.
+    /// Whether the wall is on the left from `from` to `to`.
     pub wall_on_left: bool,
-    /// The distance from the robot's middle to the wall's surface, m, measured in the file's
-    /// house.
+    /// The distance from the center of the robot to the surface of the wall, m.
     pub wall_distance_m: f64,
-    /// The free space that the robot keeps ahead when it stops for something, m.
+    /// The free space that the robot keeps to an obstacle ahead, m.
     pub clearance_m: f64,
 }
 
 impl PatrolSpec {
-    /// The wall is farther away than the robot's radius by this at least, m.
+    /// The least distance between the wall and the body of the robot, m.
     pub const WALL_RELIEF_M: f64 = 0.05;
 }
 
 impl BehaviorSpec {
-    /// The same after the world has turned about `middle` (m).
+    /// Rotates the points with the world about `middle` (m).
     pub(super) fn turn(&mut self, turn: &UnitComplex<f64>, middle: &Point2<f64>) {
         let points: Vec<&mut Point2<f64>> = match self {
             Self::WallPatrol(patrol) => vec![&mut patrol.from, &mut patrol.to],

@@ -1,4 +1,4 @@
-//! Things that stand, come and go, are pushed, or move by themselves.
+//! Obstacles: boxes, moving blocks and doors.
 
 use crate::physics::shape::{Rectangle, turned_point};
 use nalgebra::{Point2, UnitComplex, Vector2};
@@ -6,27 +6,27 @@ use nalgebra::{Point2, UnitComplex, Vector2};
 /// A box, a moving block or a door.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObstacleSpec {
-    /// What it is called.
+    /// The name.
     pub name: String,
-    /// Where it is at the start; of a door: where its leaf is while closed.
+    /// The shape at the start; of a door: the leaf while closed.
     pub shape: Rectangle,
-    /// How it moves.
+    /// The motion.
     pub motion: Motion,
-    /// Its tag, by which robots find it.
+    /// The tag that fiducial finders detect.
     pub tag: Option<u32>,
-    /// When it is put there, s; `None`: it is there from the start.
+    /// When the obstacle appears, s; `None`: it is present from the start.
     pub appears_s: Option<f64>,
-    /// When it is taken away, s; `None`: never.
+    /// When the obstacle disappears, s; `None`: never.
     pub disappears_s: Option<f64>,
 }
 
 impl ObstacleSpec {
-    /// Whether it comes, goes or moves at all.
+    /// Whether the obstacle ever appears, disappears or moves.
     pub fn is_mover(&self) -> bool {
         self.appears_s.is_some() || self.disappears_s.is_some() || self.motion != Motion::Fixed
     }
 
-    /// Where it is at the start, a door open or closed.
+    /// The shape at the start, a door open or closed.
     pub fn start(&self) -> Rectangle {
         match &self.motion {
             Motion::Door(door) => door.shape(&self.shape, f64::from(u8::from(door.starts_open))),
@@ -34,7 +34,7 @@ impl ObstacleSpec {
         }
     }
 
-    /// The same after the world has turned about `middle` (m).
+    /// Rotates the obstacle with the world about `middle` (m).
     pub(super) fn turn(&mut self, turn: &UnitComplex<f64>, middle: &Point2<f64>) {
         self.shape = self.shape.turned(turn, middle);
         match &mut self.motion {
@@ -50,41 +50,39 @@ impl ObstacleSpec {
     }
 }
 
-/// How an obstacle moves.
+/// The motion of an obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// It stands.
+    /// None.
     Fixed,
-    /// Whatever drives against it pushes it.
+    /// Robots push the obstacle.
     Pushed(PushedSpec),
-    /// It moves along a path.
+    /// Along a path in time.
     Path(PathSpec),
-    /// It opens and closes.
+    /// Opens and closes.
     Door(DoorSpec),
 }
 
 /// A box that can be pushed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PushedSpec {
-    /// Its mass, kg.
+    /// The mass, kg.
     pub mass_kg: f64,
-    /// The coefficient of its friction on the floor: it takes this share of its weight to move it,
-    /// and slows it down again. 0: it glides.
+    /// The coefficient of friction on the floor; 0: the box glides.
     pub friction: f64,
 }
 
-/// A path in time. Something in the way makes a block wait; the rest of its path is later then.
+/// A path in time. A block waits while a body is in the way; the rest of the path is delayed by the wait.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathSpec {
-    /// Where its middle is at which time (s and m), in order, the first at 0; straight and even in
-    /// between.
+    /// Times and positions of the center (s and m), in order, the first at 0; linear in between.
     pub keys: Vec<(f64, Point2<f64>)>,
-    /// Whether it begins again at the last time (where the last place is the first one), or stays.
+    /// Whether the path begins again at the last time (the last position is then the first), or ends there.
     pub is_loop: bool,
 }
 
 impl PathSpec {
-    /// Where its middle is at a time (s) of its own, m.
+    /// The position of the center (m) at a time of the path (s).
     pub(in crate::physics) fn at(&self, time_s: f64) -> Point2<f64> {
         let (end_s, last) = self.keys[self.keys.len() - 1];
         let time_s = if self.is_loop { time_s % end_s } else { time_s };
@@ -97,21 +95,21 @@ impl PathSpec {
     }
 }
 
-/// A door. Something in the way of its leaf makes it wait.
+/// A door. It waits while a body is in the way of its leaf.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DoorSpec {
-    /// How its leaf moves.
+    /// The motion of the leaf.
     pub leaf: Leaf,
-    /// When it opens and closes.
+    /// The times of opening and closing.
     pub opening: Opening,
-    /// How long it takes from closed to open, s.
+    /// The time from closed to open, s.
     pub move_s: f64,
-    /// Whether it is open at the start.
+    /// Whether the door is open at the start.
     pub starts_open: bool,
 }
 
 impl DoorSpec {
-    /// Where a leaf is that is at `closed` while closed; `openness`: 0 closed, 1 open.
+    /// The leaf at an `openness` from 0 (closed, at `closed`) to 1 (open).
     pub fn shape(&self, closed: &Rectangle, openness: f64) -> Rectangle {
         match self.leaf {
             Leaf::Hinged { hinge, open_rad } => {
@@ -122,43 +120,43 @@ impl DoorSpec {
     }
 }
 
-/// How a door's leaf moves.
+/// The motion of the leaf of a door.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Leaf {
-    /// It turns.
+    /// Rotates.
     Hinged {
-        /// What it turns about, m.
+        /// The position of the hinge, m.
         hinge: Point2<f64>,
-        /// How far it is turned when open, counter-clockwise, rad.
+        /// The angle when open, counter-clockwise, rad.
         open_rad: f64,
     },
-    /// It slides.
+    /// Slides.
     Sliding {
-        /// How far away it is when open, m.
+        /// The displacement when open, m.
         by_m: Vector2<f64>,
     },
 }
 
-/// When a door opens and closes. Times count from when it begins to do so.
+/// When a door opens and closes. A change is the time at which the leaf begins to move.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Opening {
-    /// Always alike.
+    /// Periodically.
     Periodic {
-        /// How long it is told to be closed, s.
+        /// From the change to closed until the change to open, s.
         closed_s: f64,
-        /// How long it is told to be open, s.
+        /// From the change to open until the change to closed, s.
         open_s: f64,
     },
-    /// At random, by a Poisson process: the times are exponentially distributed.
+    /// At random: exponentially distributed times.
     Random {
-        /// The mean time that it is told to be closed, s.
+        /// The mean time from the change to closed until the change to open, s.
         closed_s: f64,
-        /// The mean time that it is told to be open, s.
+        /// The mean time from the change to open until the change to closed, s.
         open_s: f64,
     },
-    /// At these times, s, in order: each time the other way.
+    /// At given times, alternately.
     Scripted {
-        /// The times, s.
+        /// The times in order, s.
         switches_s: Vec<f64>,
     },
 }

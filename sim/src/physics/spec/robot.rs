@@ -1,4 +1,4 @@
-//! A robot and its parts, checked and in SI.
+//! A robot and its parts.
 
 use super::{BehaviorSpec, BumperSpec, FiducialSpec, SonarSpec};
 use crate::physics::form::Form;
@@ -9,33 +9,33 @@ use std::f64::consts::{PI, TAU};
 /// A robot with wheels and lasers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotSpec {
-    /// What it is called.
+    /// The name.
     pub name: String,
-    /// The radius of its body, m; with corners: that of the circle about its middle that holds it.
+    /// The radius of the body, m; with corners: of the circle about the center that contains the body.
     pub radius_m: f64,
-    /// The corners of its body in its own frame, convex, counter-clockwise, m; none: it is round.
+    /// The corners of the body in the frame of the robot, convex, counter-clockwise, m; none: the body is round.
     pub corners: Vec<Point2<f64>>,
-    /// Its mass, kg; `None`: 1 kg per m² of the circle. It counts when robots push each other.
+    /// The mass, kg; `None`: 1 kg per m² of the circle.
     pub mass_kg: Option<f64>,
-    /// Where it starts.
+    /// The pose at the start.
     pub pose: Isometry2<f64>,
-    /// What its wheels can do.
+    /// The drive.
     pub drive: DriveLimits,
-    /// How its odometry errs.
+    /// The errors of the odometry.
     pub odometry: OdometryError,
-    /// What it sees with: the laser whose scans its mind and its controller decide by.
+    /// The main laser scanner, by which behaviors and controllers decide.
     pub laser: LaserSpec,
-    /// Its other lasers.
+    /// The other laser scanners.
     pub more_lasers: Vec<LaserSpec>,
-    /// What it feels touches with.
+    /// The ring of bumpers.
     pub bumper: Option<BumperSpec>,
-    /// Its sonars and infrared sensors.
+    /// The sonars and infrared sensors.
     pub sonars: Vec<SonarSpec>,
-    /// What it finds tags with.
+    /// The fiducial finder.
     pub fiducial: Option<FiducialSpec>,
-    /// Its own tag, by which others find it.
+    /// The tag that fiducial finders of other robots detect.
     pub tag: Option<u32>,
-    /// What it does.
+    /// The behavior.
     pub behavior: BehaviorSpec,
 }
 
@@ -77,55 +77,55 @@ impl RobotSpec {
         }
     }
 
-    /// Its body at a pose.
+    /// The outline of the body at a pose.
     pub fn form(&self, pose: &Isometry2<f64>) -> Form {
         Form::new(&self.corners, self.radius_m, pose)
     }
 
-    /// All its lasers, the main one first.
+    /// All laser scanners, the main one first.
     pub fn lasers(&self) -> impl Iterator<Item = &LaserSpec> {
         [&self.laser].into_iter().chain(&self.more_lasers)
     }
 }
 
-/// How a robot moves.
+/// The kind of a drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DriveKind {
-    /// On two wheels: forwards, backwards, and turning, in place if need be.
+    /// Two driven wheels: turns in place.
     Differential,
-    /// In every direction at once.
+    /// Drives in every direction and turns at the same time.
     Omni {
-        /// To either side, m/s.
+        /// The maximum speed to either side, m/s.
         max_left_mps: f64,
-        /// The same, m/s².
+        /// The maximum acceleration to either side, m/s².
         max_left_acceleration_mps2: f64,
     },
-    /// With steered front wheels (Ackermann); its middle is that of the rear axle.
+    /// Steered front wheels (Ackermann); the center of the robot is that of the rear axle.
     Car {
-        /// From the rear to the front axle, m.
+        /// The distance between the axles, m.
         wheelbase_m: f64,
-        /// How far the front wheels turn to either side, rad.
+        /// The maximum steering angle to either side, rad.
         max_steer_rad: f64,
     },
 }
 
-/// The bounds of a drive, which hold at every physics step. All positive.
+/// The limits of a drive, which hold at every physics step. All positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveLimits {
-    /// How it moves.
+    /// The kind of the drive.
     pub kind: DriveKind,
-    /// Forwards and backwards, m/s.
+    /// The maximum speed forwards and backwards, m/s.
     pub max_linear_mps: f64,
-    /// Either way round, rad/s.
+    /// The maximum turn rate, rad/s.
     pub max_angular_radps: f64,
-    /// Speeding up and braking, m/s².
+    /// The maximum acceleration and deceleration, m/s².
     pub max_linear_acceleration_mps2: f64,
-    /// The same for turning, rad/s².
+    /// The maximum angular acceleration and deceleration, rad/s².
     pub max_angular_acceleration_radps2: f64,
 }
 
 impl DriveLimits {
-    /// The fastest in any direction, m/s.
+    /// The maximum speed in any direction, m/s.
     pub fn fastest_mps(&self) -> f64 {
         match self.kind {
             DriveKind::Omni { max_left_mps, .. } => libm::hypot(self.max_linear_mps, max_left_mps),
@@ -133,8 +133,8 @@ impl DriveLimits {
         }
     }
 
-    /// The tightest curve, rad/m; that of a car is as tight as its wheels can be turned, but no
-    /// tighter than leaves both bounds of acceleration true while it brakes in the curve.
+    /// The maximum curvature, rad/m. That of a car is limited by the steering angle, and so that braking in the curve
+    /// exceeds no limit of acceleration.
     pub fn max_curvature_radpm(&self) -> f64 {
         match self.kind {
             DriveKind::Differential | DriveKind::Omni { .. } => f64::INFINITY,
@@ -144,37 +144,37 @@ impl DriveLimits {
     }
 }
 
-/// How a robot's odometry errs; all zero is exact.
+/// The errors of odometry; all zero is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OdometryError {
-    /// Metres felt too many per metre.
+    /// Error of the distance per metre travelled.
     pub distance_gain: f64,
-    /// Radians felt too many per radian.
+    /// Error of the heading per radian turned.
     pub turn_gain: f64,
-    /// Radians felt per metre driven straight on.
+    /// Error of the heading per metre travelled, rad/m.
     pub turn_radpm: f64,
-    /// Standard deviation of the distance after 1 m, m; it grows with the square root of the way.
+    /// Standard deviation of the distance after 1 m, m; it grows with the square root of the distance.
     pub distance_noise_m: f64,
-    /// Standard deviation of the heading after a turn of 1 rad, rad; it grows likewise.
+    /// Standard deviation of the heading after a turn of 1 rad, rad; it grows with the square root of the turn.
     pub turn_noise_rad: f64,
 }
 
-/// A planar laser.
+/// A planar laser scanner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserSpec {
     /// The number of beams.
     pub beams: usize,
-    /// The angle they are spread over, rad, in (0, 2π].
+    /// The field of view, rad, in (0, 2π].
     pub fov_rad: f64,
-    /// Nearer things give −∞, m.
+    /// Below this range a beam gives −∞, m.
     pub range_min_m: f64,
-    /// Farther things give +∞, m.
+    /// Beyond this range a beam gives +∞, m.
     pub range_max_m: f64,
     /// Scans per second, Hz.
     pub rate_hz: f64,
     /// The physics steps from one scan to the next; at least 1.
     pub period_steps: u64,
-    /// Where it sits on the robot.
+    /// The pose in the frame of the robot.
     pub mount: Isometry2<f64>,
     /// Standard deviation of a range, m.
     pub noise_std_m: f64,
@@ -188,14 +188,14 @@ impl LaserSpec {
         if self.is_full_turn() { -PI } else { -self.fov_rad / 2.0 }
     }
 
-    /// The angle from beam to beam, rad. Of a full turn the last beam is a neighbour of the
-    /// first; of less, the first and the last lie on the borders.
+    /// The angle between neighboring beams, rad. In a full turn the last beam is a neighbor of the first; in a
+    /// narrower view, the first and the last beam lie on the borders.
     pub fn angle_increment_rad(&self) -> f64 {
         let gaps = if self.is_full_turn() { self.beams } else { self.beams - 1 };
         self.fov_rad / gaps as f64
     }
 
-    /// A scan of this laser that has seen nothing: no return on any beam.
+    /// A scan without a return on any beam.
     pub fn empty_scan(&self) -> Scan {
         Scan {
             angle_min_rad: self.angle_min_rad(),

@@ -28,7 +28,7 @@ fn cluttered() -> FleetSpec {
 }
 
 #[test]
-fn a_million_beams_are_where_rapier_has_them() {
+fn a_million_beams_agree_with_rapier() {
     let place = Place::new(cluttered());
     let laser = place.spec.robots[0].laser;
     let mut stream = ChaCha8Rng::seed_from_u64(1);
@@ -48,7 +48,7 @@ fn a_million_beams_are_where_rapier_has_them() {
 
 /// Houses side by side with many robots: what the cells hide must be hidden.
 #[test]
-fn in_a_crowd_of_houses_every_beam_is_right() {
+fn beams_agree_with_rapier_among_many_houses() {
     let mut stream = ChaCha8Rng::seed_from_u64(3);
     let mut spec = four_rooms();
     let middle = Point2::new(12.0, 12.0);
@@ -81,7 +81,7 @@ fn in_a_crowd_of_houses_every_beam_is_right() {
 
 /// Doors, blocks and boxes on the move, again and again.
 #[test]
-fn whatever_moves_is_seen_where_it_is() {
+fn moving_bodies_are_seen_at_their_poses() {
     let spec = busy();
     let mut fleet = Fleet::new(&spec, 5);
     let laser = LaserSpec { beams: 360, noise_std_m: 0.0, ..spec.robots[0].laser };

@@ -1,9 +1,9 @@
 use super::*;
 use interfaces::{LaserReading, Twist};
 
-/// Total energy of all bodies after everyone has been told to stand.
+/// Total energy of all bodies after all robots were commanded to stop.
 #[test]
-fn energy_never_grows_where_nobody_drives() {
+fn energy_never_grows_without_a_drive() {
     let drive =
         |linear_mps| move |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps, angular_radps: 0.0 };
     let mut fleet = Fleet::new(&heap(), 0);

@@ -51,7 +51,8 @@ pub(super) struct Place {
 /// The scan of a laser at `at` on robot `own`.
 pub(super) fn scan(spec: &LaserSpec, at: &Isometry2<f64>, scene: &Scene, own: usize) -> Scan {
     let spec = LaserSpec { mount: Isometry2::identity(), ..*spec };
-    let mut laser = LaserScanner::new(&spec, SharedBeams::default().of(&spec), 0, 0);
+    let laser = LaserScanner::new(&spec, SharedBeams::default().of(&spec), 0, 0);
+    let mut laser = Sensor::Laser(Box::new(laser));
     let platform = Platform { robot: own, pose: *at, odometry_pose: *at, odometry_twist: Twist::STOP };
     let surroundings = Surroundings { step: 0, time_s: 0.0, scene, tagged: &[] };
     laser.measure(&platform, &surroundings, &mut Scratch::default());

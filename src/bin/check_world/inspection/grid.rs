@@ -22,13 +22,7 @@ pub(super) fn content(world: &GridSpec) -> Content {
         lines.push(("chance", both.join(", ")));
     }
     lines.extend(world.blocks.iter().map(|block| ("block", describe(block))));
-    Content {
-        kind: "grid world",
-        name: world.name.to_owned(),
-        description: world.description.to_owned(),
-        lines,
-        scene: world.into(),
-    }
+    Content { kind: "grid world", description: world.description.to_owned(), lines, scene: world.into() }
 }
 
 /// The name, the path and the dwell time of a block.

@@ -30,13 +30,11 @@ pub(crate) struct Inspection {
 pub(crate) struct Content {
     /// The kind of the world.
     pub(crate) kind: &'static str,
-    /// The name of the world.
-    pub(crate) name: String,
     /// The description in the file; can be empty.
     pub(crate) description: String,
     /// One line per part of the world: the name of the part, and its description.
     pub(crate) lines: Vec<(&'static str, String)>,
-    /// The world from above.
+    /// The world from above; its title is the name of the world.
     pub(crate) scene: Scene,
 }
 

@@ -1,4 +1,4 @@
-//! Physics worlds, from whatever file.
+//! The description of physics worlds and floor plans.
 
 use super::Content;
 use interfaces::GridFrame;
@@ -10,7 +10,7 @@ use std::path::Path;
 use viewer::scene::{Scene, TimeUnit};
 use worldfile::floor_plan::FloorPlan;
 
-/// The side of the cells that a floor plan is given for its frame, m.
+/// The minimum side of the cells of a floor plan's frame, m.
 const PLAN_CELL_M: f64 = 0.05;
 
 pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
@@ -33,13 +33,7 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
     ];
     lines.extend(world.obstacles.iter().map(|obstacle| ("thing", thing_line(obstacle))));
     lines.extend(robot_lines(&world.robots));
-    Content {
-        kind,
-        name: world.name.to_owned(),
-        description: world.description.to_owned(),
-        lines,
-        scene: world.into(),
-    }
+    Content { kind, description: world.description.to_owned(), lines, scene: world.into() }
 }
 
 /// A floor plan alone; none if it has no area.
@@ -54,7 +48,6 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Some(Content {
         kind: "floor plan",
-        name: name.clone(),
         description: String::new(),
         lines: vec![
             ("size", format!("{} × {} m", short(size.x), short(size.y))),
@@ -85,12 +78,12 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
 fn thing_line(obstacle: &ObstacleSpec) -> String {
     let size = obstacle.shape.half_m * 2.0;
     let what = match &obstacle.motion {
-        Motion::Fixed => "a box that stands".to_owned(),
+        Motion::Fixed => "a fixed box".to_owned(),
         Motion::Pushed(pushed) => format!("a box of {} kg that can be pushed", short(pushed.mass_kg)),
         Motion::Path(path) => {
             let (last_s, _) = path.keys.last().copied().unwrap_or_default();
-            let again = if path.is_loop { "over and over" } else { "once" };
-            format!("a block on a path of {} places, {} s long, {again}", path.keys.len(), short(last_s))
+            let again = if path.is_loop { "repeated" } else { "once" };
+            format!("a block on a path of {} points, {} s long, {again}", path.keys.len(), short(last_s))
         }
         Motion::Door(door) => {
             let leaf = if matches!(door.leaf, Leaf::Hinged { .. }) { "hinged" } else { "sliding" };
@@ -117,7 +110,7 @@ fn thing_line(obstacle: &ObstacleSpec) -> String {
     )
 }
 
-/// A line for each robot; one for all in a row that differ in nothing but name and place.
+/// A line for each robot; consecutive robots that differ only in name and pose share a line.
 fn robot_lines(robots: &[RobotSpec]) -> impl Iterator<Item = (&'static str, String)> {
     robots.chunk_by(|one, next| robot_line(one) == robot_line(next)).map(|alike| {
         let (first, last) = (&alike[0], &alike[alike.len() - 1]);
@@ -169,7 +162,7 @@ fn robot_line(robot: &RobotSpec) -> String {
     parts.join("; ")
 }
 
-/// As short as it can be, to the thousandth: 2 and not 2.0.
+/// A number rounded to thousandths, without trailing zeros.
 fn short(value: f64) -> String {
     format!("{}", (value * 1000.0).round() / 1000.0)
 }

@@ -1,60 +1,114 @@
-//! The entities of a recording, one file for each kind: how they look, which is logged once, and their rows.
+//! The entities of a recording: their appearance, which is logged once, and the items that they have in a
+//! view of the run.
 
 mod curves;
 mod field_of_view;
 mod legend;
-mod log;
 mod maps;
 mod obstacles;
-mod plan;
 mod robots;
 
-pub(super) use curves::{has_choice, plots};
+pub(super) use curves::{STRATEGY, has_choice, plots};
 pub(super) use legend::SHARE as LEGEND_SHARE;
-pub(super) use maps::BAR_SHARE;
+pub(super) use maps::{BAR_SHARE, map};
+pub(super) use robots::robot;
 
-use super::pace::Pace;
-use super::rows::{Now, Position, Target, position};
-use crate::scene::{Outline, Scene};
+use super::entity::{Entity, Kind, Track};
+use crate::scene::Scene;
 use crate::view::View;
 use evaluation::palette::Rgb;
-use rerun::{Color, RecordingStream, RecordingStreamResult};
+use interfaces::GridFrame;
+use nalgebra::Point2;
+use rerun::external::re_sdk_types::datatypes::AnnotationInfo;
+use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult};
+use rerun::{EntityPathPart, TextLog, TextLogLevel};
+use robot::Level;
 
-/// One kind of entity while a run goes on.
-pub(super) trait Track: Send {
-    /// Appends the rows that are due; all of them if `is_last`.
-    fn push(&mut self, now: Now, view: &View, is_last: bool);
+/// The entity above everything that has a position.
+pub(super) const WORLD: &str = "/world";
+/// The messages of the run.
+pub(super) const LOG: &str = "/log";
 
-    /// Sends the rows.
-    fn flush(&mut self, to: Target) -> RecordingStreamResult<()>;
-}
-
-/// What the tracks are made from.
-#[derive(Clone, Copy)]
-struct Start<'a> {
+/// The entities so far, and what they are made from.
+struct Tracks<'a> {
     stream: &'a RecordingStream,
     scene: &'a Scene,
+    /// The first view of the run.
     view: &'a View<'a>,
-    pace: Pace,
+    tracks: Vec<Box<dyn Track>>,
 }
 
-/// Logs how everything looks, and returns every track. `view` is the first view of the run.
+/// Logs the appearance of everything, and returns what changes. `view` is the first view of the run.
 pub(super) fn start(
     stream: &RecordingStream,
     scene: &Scene,
     view: &View,
 ) -> RecordingStreamResult<Vec<Box<dyn Track>>> {
-    let start = Start { stream, scene, view, pace: Pace::of(scene.unit) };
-    legend::log(start)?;
-    Ok(vec![
-        Box::new(maps::Maps::new(start)?),
-        Box::new(field_of_view::FieldOfView::new(start)?),
-        Box::new(obstacles::Obstacles::new(start)?),
-        Box::new(robots::Robots::new(start)?),
-        Box::new(plan::Plan::new(start)?),
-        Box::new(curves::Curves::new(start)?),
-        Box::new(log::Log::new(start)),
-    ])
+    let mut tracks = Tracks { stream, scene, view, tracks: Vec::new() };
+    legend::add(&tracks)?;
+    maps::add(&mut tracks)?;
+    field_of_view::add(&mut tracks)?;
+    obstacles::add(&mut tracks)?;
+    robots::add(&mut tracks)?;
+    curves::add(&mut tracks)?;
+    messages(&mut tracks);
+    Ok(tracks.tracks)
+}
+
+/// Where time is counted in steps, images with more cells than this are logged less often: a viewer holds
+/// 20,000 images of this size in 50 MB.
+const STEP_CELLS: usize = 2500;
+
+impl Tracks<'_> {
+    /// Images of the cells of `frame`, logged when they have changed, at intervals of at least `seconds` or
+    /// `steps`.
+    fn images(&self, frame: &GridFrame, seconds: f64, steps: f64) -> (Kind, f64) {
+        (Kind::State, self.scene.unit.choose(seconds, steps * frame.len().div_ceil(STEP_CELLS) as f64))
+    }
+
+    /// Logs what never changes.
+    fn always(&self, path: &str, components: &impl AsComponents) -> RecordingStreamResult<()> {
+        self.stream.log_static(path, components)
+    }
+
+    /// Adds an entity; see [`Entity`].
+    fn add<T, C>(
+        &mut self,
+        path: impl Into<String>,
+        (kind, period): (Kind, f64),
+        items_of: impl FnMut(&View) -> Vec<T> + Send + 'static,
+        components: fn(Vec<T>) -> C,
+    ) where
+        T: Clone + PartialEq + Send + 'static,
+        C: AsComponents + 'static,
+    {
+        self.tracks.push(Box::new(Entity::new(path.into(), kind, period, items_of, components)));
+    }
+}
+
+/// A row when something has changed.
+const ON_CHANGE: (Kind, f64) = (Kind::State, 0.0);
+/// A row for every event.
+const EVENTS: (Kind, f64) = (Kind::Events, 0.0);
+
+/// Adds the messages of the run. The first is the name of the world, so that the log is never empty.
+fn messages(tracks: &mut Tracks) {
+    let mut first = Some((TextLogLevel::INFO, format!("the run in {} starts", tracks.scene.title)));
+    let lines = move |view: &View| {
+        let messages = view.measured.messages.iter().map(|message| {
+            let level = match message.level {
+                Level::Decision => TextLogLevel::INFO,
+                Level::Event => TextLogLevel::WARN,
+                Level::Trouble => TextLogLevel::ERROR,
+            };
+            (level, message.text.clone())
+        });
+        first.take().into_iter().chain(messages).collect()
+    };
+    tracks.add(LOG, EVENTS, lines, |lines| {
+        let (levels, texts): (Vec<_>, Vec<_>) = lines.into_iter().unzip();
+        TextLog::update_fields().with_many_level(levels).with_many_text(texts)
+    });
 }
 
 /// What is drawn over what, from the bottom up.
@@ -77,7 +131,53 @@ fn color([red, green, blue]: Rgb, alpha: u8) -> Color {
     Color::from_unmultiplied_rgba(red, green, blue, alpha)
 }
 
+/// The meaning and the color of a class of cells.
+fn class(id: u8, label: &str, color: Color) -> AnnotationInfo {
+    AnnotationInfo { id: id.into(), label: Some(label.into()), color: Some(*color) }
+}
+
+/// The appearance of lines with half a width in points of the viewer.
+fn line(color: Color, radius: f32, order: f32) -> LineStrips2D {
+    LineStrips2D::update_fields()
+        .with_colors([color])
+        .with_radii([Radius::new_ui_points(radius)])
+        .with_draw_order(order)
+}
+
+/// The appearance of names without points.
+fn labels<'a>(texts: impl IntoIterator<Item = &'a str>) -> Points2D {
+    Points2D::update_fields()
+        .with_labels(texts)
+        .with_show_labels(true)
+        .with_radii([Radius::new_ui_points(0.0)])
+        .with_colors([color(LABEL, 255)])
+}
+
+/// A position, m.
+type Position = [f32; 2];
+/// Joined lines, m.
+type Strip = Vec<Position>;
+
+fn position(point: &Point2<f64>) -> Position {
+    [point.x as f32, point.y as f32]
+}
+
+/// The components of lines.
+fn strips(strips: Vec<Strip>) -> LineStrips2D {
+    LineStrips2D::update_fields().with_strips(strips)
+}
+
+/// The components of points.
+fn points(points: Vec<Position>) -> Points2D {
+    Points2D::update_fields().with_positions(points)
+}
+
 /// An outline as a line that ends where it begins.
-fn closed(outline: &Outline) -> Vec<Position> {
+fn closed(outline: &[Point2<f64>]) -> Strip {
     outline.iter().chain(outline.first()).map(position).collect()
+}
+
+/// A name from a world file as one part of a path, whatever characters it has.
+fn escape(name: &str) -> String {
+    EntityPathPart::new(name).escaped_string()
 }

@@ -1,107 +1,94 @@
-//! The robots: body, heading and trail.
+//! The robots, and the plan of the curious robot.
 
-use super::{LABEL, Start, Track, color, order};
-use crate::recording::path;
-use crate::recording::rows::{Arrow, Now, Position, Rows, Strip, Target, position};
-use crate::scene::RobotState;
-use crate::scene::{Robot, TimeUnit};
+use super::{EVENTS, LABEL, ON_CHANGE, Strip, Tracks, WORLD, color, escape, labels, line, order, points};
+use super::{position, strips};
+use crate::scene::TimeUnit;
 use crate::view::{Trail, View};
 use evaluation::palette;
 use interfaces::rotation;
-use nalgebra::{Isometry2, Point2, Vector2};
-use rerun::{Arrows2D, LineStrips2D, Points2D, Radius, RecordingStreamResult};
+use nalgebra::{Isometry2, Vector2};
+use rerun::{Arrows2D, AsComponents, Points2D, Radius, RecordingStreamResult, Transform3D};
 
-pub(super) struct Robots(Vec<RobotRows>);
-
-struct RobotRows {
-    body: Rows<Position>,
-    heading: Rows<Arrow>,
-    trail: Rows<Strip>,
-    so_far: Trail,
-    radius_m: f64,
-    /// Whether a pose has a heading. The robot of a grid world is drawn along its last move.
-    has_heading: bool,
-    last: Option<Isometry2<f64>>,
+/// A part of a robot.
+pub(in crate::recording) fn robot(name: &str, part: &str) -> String {
+    format!("{WORLD}/robots/{}/{part}", escape(name))
 }
 
-impl Robots {
-    pub(super) fn new(start: Start) -> RecordingStreamResult<Self> {
-        start.scene.robots.iter().try_for_each(|robot| log(start, robot))?;
-        let has_heading = start.scene.unit == TimeUnit::Second;
-        let rows = |robot: &Robot| RobotRows {
-            body: Rows::new(path::robot(&robot.name, "body")),
-            heading: Rows::new(path::robot(&robot.name, "heading")),
-            trail: Rows::new(path::robot(&robot.name, "trail")),
-            so_far: Trail::default(),
-            radius_m: robot.radius_m,
-            has_heading,
-            last: None,
+pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
+    let scene = tracks.scene;
+    for (index, robot) in scene.robots.iter().enumerate() {
+        body(tracks, index)?;
+        let trail = self::robot(&robot.name, "trail");
+        let order = if robot.is_driven { order::TRAIL } else { order::OTHER_TRAIL };
+        tracks.always(&trail, &line(color(robot.color(), 140), 1.0, order))?;
+        let mut so_far = Trail::default();
+        let step = move |view: &View| -> Vec<Strip> {
+            let moved = so_far.push(view.robots[index].pose.translation.vector.into());
+            let step = so_far.points().last_chunk::<2>().filter(|_| moved);
+            step.map(|step| step.iter().map(position).collect()).into_iter().collect()
         };
-        Ok(Self(start.scene.robots.iter().map(rows).collect()))
+        tracks.add(trail, EVENTS, step, strips);
     }
+    plan(tracks)
 }
 
-impl Track for Robots {
-    fn push(&mut self, now: Now, view: &View, _: bool) {
-        self.0.iter_mut().zip(&view.robots).for_each(|(rows, robot)| rows.push(now, robot));
+/// Adds the body of a robot: a disc, its heading, and its name below if there are several robots.
+fn body(tracks: &mut Tracks, index: usize) -> RecordingStreamResult<()> {
+    let scene = tracks.scene;
+    let robot = &scene.robots[index];
+    let (path, radius_m) = (self::robot(&robot.name, "body"), robot.radius_m as f32);
+    let disc = Points2D::new([[0.0, 0.0]])
+        .with_colors([color(robot.color(), 255)])
+        .with_radii([Radius::new_scene_units(radius_m)])
+        .with_draw_order(order::BODY);
+    let heading = Arrows2D::update_fields()
+        .with_colors([color(LABEL, 255)])
+        .with_radii([Radius::new_ui_points(1.5)])
+        .with_draw_order(order::HEADING);
+    tracks.always(&path, &[&disc as &dyn AsComponents, &heading])?;
+    if scene.robots.len() > 1 {
+        let below = labels([robot.name.as_str()]).with_positions([[0.0, -1.2 * radius_m]]);
+        tracks.always(&format!("{path}/name"), &below)?;
     }
-
-    fn flush(&mut self, to: Target) -> RecordingStreamResult<()> {
-        self.0.iter_mut().try_for_each(|rows| {
-            rows.body.flush(to)?;
-            rows.heading.flush(to)?;
-            rows.trail.flush(to)
-        })
-    }
-}
-
-impl RobotRows {
-    fn push(&mut self, now: Now, robot: &RobotState) {
-        let mut pose = robot.pose;
-        if let (false, Some(last)) = (self.has_heading, self.last) {
+    // The pose in a grid world has no heading: the robot is drawn along its last move.
+    let has_heading = scene.unit == TimeUnit::Second;
+    let nose = Vector2::new(1.4 * robot.radius_m, 0.0);
+    let mut last: Option<Isometry2<f64>> = None;
+    let pose = move |view: &View| {
+        let mut pose = view.robots[index].pose;
+        if let (false, Some(last)) = (has_heading, last) {
             let moved = pose.translation.vector - last.translation.vector;
             let is_still = moved.norm() == 0.0;
             pose.rotation = if is_still { last.rotation } else { rotation(libm::atan2(moved.y, moved.x)) };
         }
-        if self.last == Some(pose) {
-            return;
-        }
-        self.last = Some(pose);
-        let center = Point2::from(pose.translation.vector);
-        let nose = pose * Vector2::new(1.4 * self.radius_m, 0.0);
-        self.body.push(now, [position(&center)]);
-        self.heading.push(now, [Arrow { origin: position(&center), vector: [nose.x as f32, nose.y as f32] }]);
-        if self.so_far.push(center)
-            && let [.., from, to] = self.so_far.points()
-        {
-            self.trail.push(now, [Strip(vec![position(from), position(to)])]);
-        }
-    }
+        last = Some(pose);
+        vec![(position(&pose.translation.vector.into()), position(&(pose * nose).into()))]
+    };
+    tracks.add(path, ON_CHANGE, pose, |poses| -> [Box<dyn AsComponents>; 2] {
+        let places = poses.iter().map(|([x, y], _)| [*x, *y, 0.0]);
+        let vectors = poses.iter().map(|(_, vector)| *vector);
+        [
+            Box::new(Transform3D::update_fields().with_many_translation(places)),
+            Box::new(Arrows2D::update_fields().with_vectors(vectors)),
+        ]
+    });
+    Ok(())
 }
 
-/// Logs how a robot looks. The name is the label of the arrow, because a label has the color of its owner.
-fn log(start: Start, robot: &Robot) -> RecordingStreamResult<()> {
-    let part = |part| path::robot(&robot.name, part);
-    let (own, trail_order) = if robot.is_driven {
-        (palette::CURIOUS, order::TRAIL)
-    } else {
-        (palette::OTHER_ROBOT, order::OTHER_TRAIL)
+/// Adds path and goal of the curious robot.
+fn plan(tracks: &mut Tracks) -> RecordingStreamResult<()> {
+    let (path, goal) = (format!("{WORLD}/path"), format!("{WORLD}/goal"));
+    tracks.always(&path, &line(color(palette::PATH, 255), 1.5, order::PATH))?;
+    let dot = Points2D::update_fields()
+        .with_colors([color(palette::GOAL, 255)])
+        .with_radii([Radius::new_ui_points(6.0)])
+        .with_draw_order(order::PATH);
+    tracks.always(&goal, &dot)?;
+    let strip = |view: &View| {
+        let path: Strip = view.path.iter().map(position).collect();
+        if path.len() > 1 { vec![path] } else { Vec::new() }
     };
-    let body = Points2D::update_fields()
-        .with_colors([color(own, 255)])
-        .with_radii([Radius::new_scene_units(robot.radius_m as f32)])
-        .with_draw_order(order::BODY);
-    start.stream.log_static(part("body"), &body)?;
-    let heading = Arrows2D::update_fields()
-        .with_colors([color(LABEL, 255)])
-        .with_radii([Radius::new_ui_points(1.5)])
-        .with_labels([robot.name.as_str()])
-        .with_show_labels(start.scene.robots.len() > 1)
-        .with_draw_order(order::HEADING);
-    start.stream.log_static(part("heading"), &heading)?;
-    let trail = LineStrips2D::update_fields()
-        .with_colors([color(own, 140)])
-        .with_radii([Radius::new_ui_points(1.0)])
-        .with_draw_order(trail_order);
-    start.stream.log_static(part("trail"), &trail)
+    tracks.add(path, ON_CHANGE, strip, strips);
+    tracks.add(goal, ON_CHANGE, |view| view.goal.iter().map(position).collect(), points);
+    Ok(())
 }

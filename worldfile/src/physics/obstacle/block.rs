@@ -1,15 +1,12 @@
-//! A block's path: it must lead through free space, and its times must make sense.
+//! A block that moves along a path: the path must lead through free space, and its times must be possible.
 
-use super::Context;
-use crate::error::WorldError;
+use super::{Obstacle, spec};
 use crate::physics::behavior::REPEATS;
-use crate::physics::file::{Number, Pair};
 use crate::physics::space::{MAX_TIME_S, Solid, inside};
-use crate::together::Together;
 use nalgebra::{Point2, Vector2};
-use serde_spanned::Spanned;
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{Motion, ObstacleSpec, PathSpec, Rectangle, Repeat, convex};
+use std::ops::Range;
 
 const MOST_POINTS: usize = 1000;
 /// The fastest block, m/s.
@@ -17,104 +14,85 @@ const FASTEST_MPS: f64 = 5.0;
 
 type Keys = Vec<(f64, Point2<f64>)>;
 
-/// How fast a block goes on its path.
-enum Pace<'a> {
-    /// At each point at a time of its own.
-    Timed { times: &'a Spanned<Vec<Number>>, times_s: Vec<f64> },
-    /// Always alike, with a stay at each point.
+/// How fast a block moves on its path.
+enum Pace {
+    /// The time at each point, s.
+    Timed(Vec<f64>),
+    /// At a constant speed, with a stay at each point.
     Even { speed_mps: f64, dwell_s: f64 },
 }
 
-impl Context<'_> {
-    pub(super) fn block(self) -> Result<ObstacleSpec, WorldError> {
-        let (table, file) = (self.table(), self.file);
-        let size = self.needed("size_m", &file.size_m);
-        let path = self.needed("path_m", &file.path_m).and_then(|path| {
-            if (1..=MOST_POINTS).contains(&path.get_ref().len()) {
-                return Ok((path, table.points("path_m", path.get_ref(), self.size)?));
+impl Obstacle<'_> {
+    pub(super) fn block(self) -> Option<ObstacleSpec> {
+        let sides = self.needed("size_m").and_then(|value| value.pair_within(&(0.001..=100.0)));
+        let heading_rad = self.heading_rad();
+        let points = self.needed("path_m").and_then(|path| {
+            let count = path.items()?.len();
+            if !(1..=MOST_POINTS).contains(&count) {
+                let help = format!("it must have 1 to {MOST_POINTS}, as in `[[1.0, 2.0], [3.0, 2.0]]`");
+                return path.invalid(&format!("has {count} points"), "these points", &help);
             }
-            let what = format!("`obstacle.path_m` has {} points", path.get_ref().len());
-            let help = format!("it must have 1 to {MOST_POINTS}, as in `[[1.0, 2.0], [3.0, 2.0]]`");
-            Err(self.source.error(&what, (path.span(), "these points"), &[], &help))
+            path.list(|point| point.point(&self.space.size))
         });
-        let (sides, heading_deg, (path, points), pace, repeat) = (
-            size.and_then(|size| table.pair("size_m", size, 0.001..=100.0)),
-            table.number_or("heading_deg", &file.heading_deg, 0.0, -360.0..=360.0),
-            path,
-            self.pace(),
-            table.choice("repeat", &file.repeat, &REPEATS),
-        )
-            .together()?;
-        let shape = Rectangle::around(points[0], sides.coords, heading_deg.to_radians());
-        let keys = match pace {
-            Pace::Timed { times, times_s } => self.timed(path, &points, times, &times_s, repeat),
-            Pace::Even { speed_mps, dwell_s } => Ok(dwelling(&points, speed_mps, dwell_s, repeat)),
-        };
-        let is_free = self.is_way_free(path, &points, repeat, &shape);
-        let (keys, ()) = (keys, is_free).together()?;
+        let pace = self.pace();
+        let repeat = self.table.choice("repeat", &REPEATS);
+        let (points, repeat) = (points?, repeat?);
+        let shape = Rectangle::around(points[0], sides?.coords, heading_rad?);
+        let keys = pace.and_then(|pace| match pace {
+            Pace::Timed(times_s) => self.timed(&points, &times_s, repeat),
+            Pace::Even { speed_mps, dwell_s } => Some(dwelling(&points, speed_mps, dwell_s, repeat)),
+        });
+        self.is_path_free(&points, repeat, &shape)?;
+        let keys = keys?;
         // A block that never moves has no time to begin again at.
         let is_loop = repeat != Repeat::Once && keys[keys.len() - 1].0 > 0.0;
-        Ok(self.spec(shape, Motion::Path(PathSpec { keys, is_loop })))
+        Some(spec(shape, Motion::Path(PathSpec { keys, is_loop })))
     }
 
-    /// How fast it goes, as far as that makes sense without its path.
-    fn pace(&self) -> Result<Pace<'_>, WorldError> {
-        let (table, file) = (self.table(), self.file);
-        match (&file.times_s, &file.speed_mps) {
-            (Some(times), None) if file.dwell_s.is_none() => {
-                let times_s = table.numbers("times_s", times.get_ref(), 0.0..=MAX_TIME_S)?;
-                Ok(Pace::Timed { times, times_s })
+    /// How fast it moves, as far as that can be judged without its path.
+    fn pace(&self) -> Option<Pace> {
+        let table = self.table;
+        match ["times_s", "speed_mps", "dwell_s"].map(|key| table.has(key)) {
+            [true, false, false] => {
+                let times_s = table.get("times_s")?.list(|time| time.within(&(0.0..=MAX_TIME_S)));
+                Some(Pace::Timed(times_s?))
             }
-            (None, Some(speed)) => {
-                let speed_mps = table.number("speed_mps", speed, 0.001..=FASTEST_MPS);
-                let speed_mps = speed_mps.and_then(|mps| self.is_slow_enough(mps, speed).map(|()| mps));
-                let dwell_s = table.number_or("dwell_s", &file.dwell_s, 0.0, 0.0..=MAX_TIME_S);
-                let (speed_mps, dwell_s) = (speed_mps, dwell_s).together()?;
-                Ok(Pace::Even { speed_mps, dwell_s })
+            [false, true, _] => {
+                let speed_mps = table.number("speed_mps", 0.001..=FASTEST_MPS);
+                let dwell_s = table.number_or("dwell_s", 0.0, 0.0..=MAX_TIME_S);
+                let speed_mps = speed_mps?;
+                self.is_slow_enough(speed_mps, table.at("speed_mps"))?;
+                Some(Pace::Even { speed_mps, dwell_s: dwell_s? })
             }
             _ => {
                 let help =
                     "it needs either `times_s`, or `speed_mps` and, if it stays at its points, `dwell_s`";
-                Err(self.incomplete("block", help))
+                self.incomplete("block", help)
             }
         }
     }
 
     /// At each point at a time of its own.
-    fn timed(
-        &self,
-        path: &Spanned<Vec<Pair>>,
-        points: &[Point2<f64>],
-        times: &Spanned<Vec<Number>>,
-        times_s: &[f64],
-        repeat: Repeat,
-    ) -> Result<Keys, WorldError> {
-        let (list, span) = (times.get_ref(), times.span());
+    fn timed(&self, points: &[Point2<f64>], times_s: &[f64], repeat: Repeat) -> Option<Keys> {
+        let table = self.table;
         let error = |what: &str, help: &str| {
-            Err(self.source.error(
-                what,
-                (span.clone(), "these times"),
-                &[(path.span(), "of these points")],
-                help,
-            ))
+            let others = [(table.at("path_m"), "of these points")];
+            table.error(what, (table.at("times_s"), "these times"), &others, help)
         };
-        if list.len() != points.len() {
-            let what = format!("{} times for {} points", list.len(), points.len());
+        if times_s.len() != points.len() {
+            let what = format!("{} times for {} points", times_s.len(), points.len());
             return error(&what, "`times_s` has one time for each point of `path_m`");
         }
-        let mut keys = Keys::new();
-        for ((time, &time_s), at) in list.iter().zip(times_s).zip(points) {
-            let Some((before_s, before)) = keys.last() else {
-                if time_s != 0.0 {
-                    return error("`times_s` does not begin at 0", "the block starts at its first point");
-                }
-                keys.push((time_s, *at));
-                continue;
-            };
-            if time_s <= *before_s {
+        if times_s[0] != 0.0 {
+            return error("`times_s` does not begin at 0", "the block starts at its first point");
+        }
+        let mut keys = vec![(0.0, points[0])];
+        for (i, (&time_s, at)) in times_s.iter().zip(points).enumerate().skip(1) {
+            let (before_s, before) = keys[i - 1];
+            if time_s <= before_s {
                 return error("`times_s` is not in order", "each time must be later than the one before");
             }
-            self.is_slow_enough((at - before).norm() / (time_s - before_s), time)?;
+            self.is_slow_enough((at - before).norm() / (time_s - before_s), table.at_item("times_s", i))?;
             keys.push((time_s, *at));
         }
         match repeat {
@@ -130,50 +108,39 @@ impl Context<'_> {
                 keys.extend(back);
             }
         }
-        Ok(keys)
+        Some(keys)
     }
 
-    /// In one step it goes no farther than what the physics keeps apart.
-    fn is_slow_enough(&self, speed_mps: f64, at: &Number) -> Result<(), WorldError> {
+    /// In one step it moves no farther than what the physics keeps apart.
+    fn is_slow_enough(&self, speed_mps: f64, span: Range<usize>) -> Option<()> {
         let fastest_mps = FASTEST_MPS.min(self.fastest_mps());
         if speed_mps <= fastest_mps {
-            return Ok(());
+            return Some(());
         }
         let what = format!("the block `{}` moves at {speed_mps:.3} m/s", self.name);
-        let help = format!("{fastest_mps} m/s are the most with a physics step of {} s", self.step_s);
-        Err(self.source.error(&what, (at.span(), "too fast"), &[], &help))
+        let help = format!("{fastest_mps} m/s are the most with a physics step of {} s", self.space.step_s);
+        self.table.error(&what, (span, "too fast"), &[], &help)
     }
 
-    /// The fastest that a surface may move, m/s: 0.1 m in a physics step.
-    pub(super) fn fastest_mps(&self) -> f64 {
-        0.1 / self.step_s
-    }
-
-    fn is_way_free(
-        &self,
-        path: &Spanned<Vec<Pair>>,
-        points: &[Point2<f64>],
-        repeat: Repeat,
-        shape: &Rectangle,
-    ) -> Result<(), WorldError> {
-        let back = (repeat == Repeat::Loop).then(|| (points[0], path.get_ref()[0].span()));
-        let ends: Vec<_> =
-            points.iter().copied().zip(path.get_ref().iter().map(Spanned::span)).chain(back).collect();
-        let first = ends[..1].iter().chain(&ends);
-        for ((from, _), (to, span)) in first.zip(&ends) {
+    fn is_path_free(&self, points: &[Point2<f64>], repeat: Repeat, shape: &Rectangle) -> Option<()> {
+        let back = (repeat == Repeat::Loop).then_some(0);
+        let mut from = points[0];
+        for i in (0..points.len()).chain(back) {
+            let (to, span) = (points[i], self.table.at_item("path_m", i));
             let at = |point: &Point2<f64>| shape.moved(point - points[0]);
             let what = format!("the path of `{}` leads out of the map", self.name);
-            inside(self.source, &what, span.clone(), &at(to), self.size)?;
-            let swept = swept(&at(from), &(to - from));
+            inside(self.table.file, &what, span.clone(), &at(&to), &self.space.size)?;
+            let swept = swept(&at(&from), &(to - from));
             let is_in_way = |wall: &&Solid| convex::gap_m(&swept, &wall.shape.corners()) < -TOUCH_M;
-            if let Some(wall) = self.walls.iter().find(is_in_way) {
+            if let Some(wall) = self.space.walls.iter().find(is_in_way) {
                 let what = format!("the path of `{}` leads through a wall", self.name);
-                let marks = [(wall.span.clone(), "through this one")];
+                let others = [(wall.span.clone(), "through this one")];
                 let help = "the block may touch walls all the way, but not overlap them";
-                return Err(self.source.error(&what, (span.clone(), "on the way here"), &marks, help));
+                return self.table.error(&what, (span, "on the way here"), &others, help);
             }
+            from = to;
         }
-        Ok(())
+        Some(())
     }
 }
 

@@ -1,4 +1,4 @@
-//! What it costs to read a world of Stage: `cargo bench -p stage`.
+//! What it costs to read a world of Stage: `cargo bench -p benches --bench stage_lab`.
 
 use divan::{Bencher, black_box};
 use sim::physics::{Fleet, FleetSpec};
@@ -13,10 +13,10 @@ fn main() {
 #[divan::bench]
 fn stage_lab(bencher: Bencher<'_, '_>) {
     let files: [(&str, &[u8]); 4] = [
-        ("lab.world", include_bytes!("../../worlds/stage/lab.world")),
-        ("rover.inc", include_bytes!("../../worlds/stage/rover.inc")),
-        ("scanner.inc", include_bytes!("../../worlds/stage/scanner.inc")),
-        ("lab.png", include_bytes!("../../worlds/stage/lab.png")),
+        ("lab.world", include_bytes!("../worlds/stage/lab.world")),
+        ("rover.inc", include_bytes!("../worlds/stage/rover.inc")),
+        ("scanner.inc", include_bytes!("../worlds/stage/scanner.inc")),
+        ("lab.png", include_bytes!("../worlds/stage/lab.png")),
     ];
     let files: BTreeMap<PathBuf, Vec<u8>> =
         files.map(|(name, bytes)| (PathBuf::from(name), bytes.to_vec())).into();

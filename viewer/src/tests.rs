@@ -1,4 +1,4 @@
-//! A made-up run for tests: four rooms, a robot that drives a tour, another that goes back and
+//! What the tests share: a simulated run of four rooms, a robot that drives a tour, another that goes back and
 //! forth, and scans from a few lines of geometry. No physics, no agent.
 
 use crate::scene::{Obstacle, Outline, Robot, RobotState, Scene, Sight, TimeUnit};

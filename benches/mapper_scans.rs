@@ -4,7 +4,7 @@
 //! of the time. A part of the difference is that `naive` flickers, and the features cost time in proportion to
 //! the cells that ever changed.
 
-#[path = "../tests/house/mod.rs"]
+#[path = "../mapper/tests/house/mod.rs"]
 mod house;
 
 use divan::Bencher;

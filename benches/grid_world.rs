@@ -1,4 +1,4 @@
-//! What a step of a grid world costs: `cargo bench -p sim --bench grid`.
+//! What a step of a grid world costs: `cargo bench -p benches --bench grid_world`.
 
 use divan::{Bencher, black_box};
 use interfaces::{Step, World};

@@ -1,4 +1,4 @@
-//! What a tick of the shipped worlds costs, and a step of fleets: `cargo bench -p sim`.
+//! What a tick of the shipped worlds costs, and a step of fleets: `cargo bench -p benches --bench physics`.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -13,8 +13,8 @@ fn main() {
 
 fn world(name: &str) -> PhysicsWorld {
     let text = match name {
-        "four_rooms" => include_str!("../../worlds/four_rooms.toml"),
-        _ => include_str!("../../worlds/turned_house.toml"),
+        "four_rooms" => include_str!("../worlds/four_rooms.toml"),
+        _ => include_str!("../worlds/turned_house.toml"),
     };
     match worldfile::physics::parse_world(name, text) {
         Ok(spec) => PhysicsWorld::new(&spec, 0),
@@ -54,7 +54,7 @@ const BEAMS: usize = 360;
 
 /// The four rooms with robots that wander, on a grid of places.
 fn fleet(robots: usize) -> FleetSpec {
-    let text = include_str!("../../worlds/four_rooms.toml");
+    let text = include_str!("../worlds/four_rooms.toml");
     let mut text = text[..text.find("[[robot]]").unwrap_or(text.len())].to_owned();
     for robot in 0..robots {
         let at = [robot % 20, robot / 20].map(|place| 0.55 + 0.57 * place as f64);

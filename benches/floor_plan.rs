@@ -1,4 +1,4 @@
-//! What it costs to read floor plans: `cargo bench -p worldfile --bench floor_plan`.
+//! What it costs to read floor plans: `cargo bench -p benches --bench floor_plan`.
 
 use divan::{Bencher, black_box};
 use image::{DynamicImage, GrayImage, ImageFormat, Luma};
@@ -20,11 +20,11 @@ fn picture(kind: &str) -> Vec<u8> {
     let shipped = |bytes: &[u8]| Bitmap::decode_dark(bytes, 0.5).unwrap_or_else(|error| panic!("{error}"));
     let is_dark: Box<dyn Fn(u32, u32) -> bool> = match kind {
         "office" => {
-            let plan = shipped(include_bytes!("../../worlds/office.png"));
+            let plan = shipped(include_bytes!("../worlds/office.png"));
             Box::new(move |x, y| plan.is_blocked(x % plan.width(), y % plan.height()))
         }
         "cave" => {
-            let plan = shipped(include_bytes!("../../worlds/cave.png"));
+            let plan = shipped(include_bytes!("../worlds/cave.png"));
             Box::new(move |x, y| plan.is_blocked(x % plan.width(), y % plan.height()))
         }
         "rooms" => Box::new(|x, y| (x % 20 < 2 || y % 20 < 2) && (x % 20) / 4 != 2 && (y % 20) / 4 != 2),

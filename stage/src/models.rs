@@ -1,0 +1,223 @@
+//! Models: their names, their bodies, and those that are walls.
+
+use super::StageWall;
+use super::body::Body;
+use super::builder::{Builder, Pose};
+use super::heights::Solid;
+use super::left_out;
+use super::lexer::Place;
+use super::tree::Entity;
+use worldfile::Severity;
+use worldfile::physics::MAX_PIECES;
+
+/// The size of a model, where the file gives none, m.
+pub(super) const DEFAULT_SIZE_M: [f64; 3] = [0.1; 3];
+/// The pose of a box is its middle if it is as near as this, m.
+const NEAR_M: f64 = 1e-6;
+
+/// A model at its pose.
+pub(super) struct Placed {
+    pub(super) name: String,
+    pub(super) color: Option<String>,
+    /// Whether robots bump into it or lasers see it.
+    pub(super) is_solid: bool,
+    /// Its tag, and the place of the tag in the file.
+    pub(super) tag: Option<(u32, Place)>,
+    pub(super) at: Pose,
+    /// What the poses of its parts are relative to: its pose, on top of it if they are stacked.
+    pub(super) top: Pose,
+    pub(super) body: Body,
+}
+
+impl Builder<'_, '_> {
+    /// A model on another one or on the floor. `has_box`: without blocks or a bitmap it is a box.
+    pub(super) fn placed(
+        &mut self,
+        model: &Entity,
+        on: &Pose,
+        default_size_m: [f64; 3],
+        has_box: bool,
+    ) -> Placed {
+        let name = self.name(model);
+        let color = self.text(model, "color").map(|(color, place)| {
+            self.sources.has_no_effect(place, "color");
+            color
+        });
+        let collides = self.flag(model, "obstacle_return").unwrap_or(true);
+        let by_rangers = self.number(model, "ranger_return", -1e5..=1e5).is_none_or(|value| value >= 0.0);
+        let by_lasers = self.flag(model, "laser_return").unwrap_or(true);
+        let is_seen = by_rangers && by_lasers;
+        if let Some((_, place)) = self.numbers(model, "mass", 1..=1).filter(|_| model.kind != "position") {
+            let help = "robots push nothing in Stage, and no walls here; in a world file of ours they push an \
+                        `[[obstacle]]` of `kind = \"box\"`";
+            let what = "the `mass` of what is no robot changes nothing";
+            self.sources.add(Severity::Note, place, what, help);
+        }
+        let tag = self.tag(model);
+        let at = on.then(&self.pose(model, "pose"));
+        let size_m = self.size_m(model, default_size_m);
+        let body = self.body(model, &at, size_m, has_box);
+        let is_stacked = self.flag(model, "stack_children").unwrap_or(true);
+        let top = Pose { z_m: at.z_m + if is_stacked { size_m[2] } else { 0.0 }, ..at };
+        if collides != is_seen && !body.is_empty() {
+            let (what, help) = match collides {
+                true => ("this thing cannot be seen in Stage", "here lasers see whatever robots bump into"),
+                false => {
+                    ("nothing bumps into this thing in Stage", "here robots bump into whatever lasers see")
+                }
+            };
+            self.sources.warning(model.place, what, help);
+        }
+        Placed { name, color, is_solid: collides || is_seen, tag, at, top, body }
+    }
+
+    /// A name that no other model has.
+    fn name(&mut self, model: &Entity) -> String {
+        let given = self.text(model, "name");
+        let mut name = given.as_ref().map_or_else(|| model.kind.clone(), |(name, _)| name.clone());
+        if given.is_none() || self.names.contains(&name) {
+            // As Stage generates names.
+            let count = self.generated.entry(name.clone()).or_default();
+            let mut free = format!("{name}:{count}");
+            while self.names.contains(&free) {
+                *count += 1;
+                free = format!("{name}:{count}");
+            }
+            *count += 1;
+            if let Some((_, place)) = given {
+                let help = format!("this one is called `{free}` here");
+                self.sources.warning(place, format!("two things are called `{name}`"), help);
+            }
+            name = free;
+        }
+        self.names.insert(name.clone());
+        name
+    }
+
+    /// Adds a model that stands on the floor or on another one that does.
+    pub(super) fn add(&mut self, model: &Entity, on: &Pose, is_first: bool) {
+        match model.kind.as_str() {
+            "position" if is_first => self.robot(model),
+            "position" => {
+                let help = "here it is a part of that thing; put it at the top level to let it drive";
+                self.sources.warning(model.place, "a robot on another thing", help);
+                self.wall(model, on);
+            }
+            "model" | "puck" => self.wall(model, on),
+            "ranger" | "laser" => {
+                let help = "only robots have lasers here";
+                self.left_out(model, "a laser that stands alone is left out", help);
+            }
+            "fiducial" => {
+                let help = "only robots have fiducial finders here";
+                self.left_out(model, "a fiducial finder that stands alone is left out", help);
+            }
+            _ => self.other(model),
+        }
+    }
+
+    fn wall(&mut self, model: &Entity, on: &Pose) {
+        let placed = self.placed(model, on, DEFAULT_SIZE_M, true);
+        let Placed { name, color, tag, at, top, body, .. } = placed;
+        if let Some((_, place)) = self.text(model, "ctrl") {
+            let what = "controllers of Stage cannot be loaded";
+            self.sources.warning(place, what, "this thing stands still");
+        }
+        let is_wall = placed.is_solid && !body.is_empty();
+        if let Some((_, place)) = tag.filter(|_| !is_wall) {
+            let help = "only what robots bump into has a tag here";
+            self.sources.warning(place, "the tag of a thing without a body is left out", help);
+        }
+        if is_wall {
+            let (rectangles, off_m) = body.rectangles();
+            if off_m == f64::INFINITY {
+                let help = "a block without area is left out; give it three corners that are not on a line";
+                self.sources.warning(model.place, "a block without area", help);
+            } else if off_m > 1e-6 {
+                let what = format!("sharp corners of this thing are cut off, by up to {off_m:.3} m");
+                let help = "walls here are made of rectangles, which do not fill a corner of less than 90°";
+                self.sources.warning(model.place, what, help);
+            }
+            let (solid_name, place) = (name.clone(), model.place);
+            self.heights.solids.push(Solid { name: solid_name, robot: None, place, z_m: body.z_m });
+            if let Some((_, place)) = tag {
+                self.tagged.push((self.walls.len(), at.flat.translation.vector.into(), place));
+            }
+            let (place, plan, at) = (self.sources.name(place), body.plan, place);
+            let tag = tag.map(|(tag, _)| tag);
+            self.walls.push(StageWall { name, color, place, plan, rectangles, tag, at });
+        }
+        for part in model.carried() {
+            self.add(part, &top, false);
+        }
+    }
+
+    /// An entity that is neither a wall nor a robot.
+    pub(super) fn other(&mut self, entity: &Entity) {
+        let kind = entity.kind.as_str();
+        if left_out::has_no_effect(kind) {
+            self.sources.has_no_effect(entity.place, kind);
+            return use_all(entity);
+        }
+        if let Some(why) = left_out::why_not_here(kind) {
+            return self.left_out(entity, &format!("`{kind}` is left out"), why);
+        }
+        let (what, help) = match kind {
+            "block" => ("a block outside of a thing", "it belongs into the ( ) of a model or robot"),
+            "sensor" => ("a sensor outside of a ranger", "it belongs into the ( ) of a `ranger`"),
+            // It may be defined in what could not be read.
+            _ if self.sources.is_incomplete => return use_all(entity),
+            _ => (
+                "an unknown kind of thing",
+                "Stage knows no such model; is the `include` of its `define` missing?",
+            ),
+        };
+        self.sources.error(entity.place, what, help);
+        use_all(entity);
+    }
+
+    pub(super) fn left_out(&mut self, entity: &Entity, what: &str, why: &str) {
+        self.sources.warning(entity.place, what, why);
+        use_all(entity);
+    }
+
+    /// Leaves the tags of all walls out that cannot be obstacles here, which are one rectangle with the tag in
+    /// its middle and lie outside of walls.
+    pub(super) fn check_tags(&mut self) {
+        let pieces: usize = self.walls.iter().map(|wall| wall.rectangles.len()).sum();
+        for (index, position, place) in &self.tagged {
+            let (what, help) = match self.walls[*index].rectangles.as_slice() {
+                [shape] if (shape.pose.translation.vector - position.coords).norm() > NEAR_M => {
+                    let help = "here a tag is in the middle of its thing: give it no `origin`";
+                    ("the tag of a thing that does not lie about its pose is left out", help)
+                }
+                [shape] => {
+                    let others = self.walls.iter().enumerate().filter(|(other, _)| other != index);
+                    let mut others = others.flat_map(|(_, wall)| &wall.rectangles);
+                    let overlaps = |other: &sim::physics::Rectangle| {
+                        let apart_m = (other.pose.translation.vector - shape.pose.translation.vector).norm();
+                        apart_m <= shape.half_m.norm() + other.half_m.norm() && shape.overlaps(other)
+                    };
+                    // A world of too many pieces does not run.
+                    if pieces > MAX_PIECES || !others.any(overlaps) {
+                        continue;
+                    }
+                    let what = "the tag of a thing that lies in another one is left out";
+                    (what, "here what has a tag lies by itself")
+                }
+                _ => {
+                    let help = "here a tag is that of one rectangle: give the thing no bitmap and no blocks";
+                    ("the tag of a thing of several pieces is left out", help)
+                }
+            };
+            self.walls[*index].tag = None;
+            self.sources.warning(*place, what, help);
+        }
+    }
+}
+
+/// Marks all keys as used: nothing of this entity shall be reported again.
+fn use_all(entity: &Entity) {
+    entity.properties.values().for_each(|property| property.is_used.set(true));
+    entity.parts.iter().for_each(use_all);
+}
