@@ -11,7 +11,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The exit code of a run that Ctrl-C has ended.
+/// The exit code of a run that Ctrl-C or another signal has ended.
 pub const INTERRUPTED: u8 = 130;
 
 /// Why a program has no result.
@@ -45,7 +45,7 @@ pub fn exit_code(result: Result<ExitCode, Failure>) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// A flag that Ctrl-C sets, instead of ending the program.
+/// A flag that Ctrl-C, SIGTERM and SIGHUP set, instead of ending the program.
 ///
 /// # Errors
 ///

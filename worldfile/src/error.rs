@@ -1,6 +1,8 @@
 //! Why there is no world, or no tour.
 
+use crate::files::{Disk, Files, MAX_TEXT_BYTES};
 use crate::findings::{Finding, Findings, Severity};
+use std::io;
 use std::path::Path;
 
 /// A world file or a tour that cannot be read or is invalid: errors alone, in the order of the file.
@@ -41,7 +43,8 @@ impl WorldError {
 /// The name of a file in messages, and its text; `kind`: `world file` or `tour`.
 pub(crate) fn read_text(kind: &str, path: &Path) -> Result<(String, String), WorldError> {
     let name = path.display().to_string();
-    match std::fs::read_to_string(path) {
+    let not_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text file");
+    match Disk.read(path, MAX_TEXT_BYTES).and_then(|bytes| String::from_utf8(bytes).map_err(not_text)) {
         Ok(text) => Ok((name, text)),
         Err(error) => {
             let what = format!("cannot read the {kind} `{name}`: {error}");

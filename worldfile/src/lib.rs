@@ -35,6 +35,6 @@ pub mod shipped;
 mod tour;
 
 pub use error::WorldError;
-pub use files::{Disk, Files};
+pub use files::{Disk, Files, MAX_TEXT_BYTES};
 pub use findings::{Finding, Findings, Severity, SourceText};
 pub use tour::TourSpec;

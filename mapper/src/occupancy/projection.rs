@@ -48,7 +48,7 @@ pub struct ProjectedScan {
     pub directions: Vec<Vector2<f64>>,
     /// The result of each beam.
     pub returns: Vec<BeamReturn>,
-    /// Whether the last beam is a neighbour of the first.
+    /// Whether the last of three or more beams is a neighbor of the first.
     pub is_full_turn: bool,
     /// The angle between neighbouring beams, rad; positive.
     pub spacing_rad: f64,
@@ -77,7 +77,8 @@ impl ProjectedScan {
         }
         self.rotation = laser.rotation;
         self.origin = Point2::from(laser.translation.vector);
-        self.is_full_turn = scan.is_full_turn();
+        // Two beams enclose no area, whatever the angle between them.
+        self.is_full_turn = scan.is_full_turn() && scan.ranges_m.len() > 2;
         self.spacing_rad = scan.angle_increment_rad.abs();
         self.directions.clear();
         self.directions.extend(self.in_laser.iter().map(|direction| laser.rotation * direction));

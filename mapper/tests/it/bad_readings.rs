@@ -302,3 +302,39 @@ proptest! {
         }
     }
 }
+
+/// An angle that a driver may send.
+fn any_angle() -> impl Strategy<Value = f64> {
+    let special =
+        [0.0, TAU, -TAU, PI, -PI, TAU / 3.0, TAU / 4.0, 1e-300, 1e-9, f64::MIN_POSITIVE, 1e300, f64::NAN];
+    prop_oneof![prop::sample::select(special.to_vec()), -10.0..10.0]
+}
+
+fn any_range() -> impl Strategy<Value = f32> {
+    let special =
+        [0.0, -0.0, -1.0, 0.1, 5.0, 1e-30, 1e30, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+    prop_oneof![prop::sample::select(special.to_vec()), 0.0f32..6.0]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    #[test]
+    fn few_beams_at_any_angle_never_make_it_panic(
+        occupancy in prop::sample::select(vec![OccupancyChoice::steady(), OccupancyChoice::naive()]),
+        angle_min_rad in any_angle(),
+        angle_increment_rad in any_angle(),
+        limits_m in prop::sample::select(vec![[0.0, 5.0], [0.1, 1e6], [0.0, 1e300], [4.9, 5.0]]),
+        scans in prop::collection::vec(prop::collection::vec(any_range(), 0..=5), 1..4),
+    ) {
+        let mut mapper = learned(occupancy);
+        for (number, ranges_m) in scans.into_iter().enumerate() {
+            let mut reading = reading(10.0 + number as f64);
+            let [range_min_m, range_max_m] = limits_m;
+            reading.scan = Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m };
+            let before = mapper.readings();
+            let is_taken = mapper.update(&reading).is_ok();
+            prop_assert_eq!(mapper.readings(), before + usize::from(is_taken));
+        }
+    }
+}

@@ -134,8 +134,8 @@ fn duration_s(text: &str) -> Result<f64, String> {
 fn speed(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         _ if text == "max" => Ok(f64::INFINITY),
-        Ok(factor) if factor > 0.0 && factor.is_finite() => Ok(factor),
-        _ => Err("must be a factor above 0, or max".into()),
+        Ok(factor) if (0.001..=1e6).contains(&factor) => Ok(factor),
+        _ => Err("must be a factor from 0.001 to 1000000, or max".into()),
     }
 }
 
@@ -163,7 +163,7 @@ mod tests {
     fn speeds_are_factors() {
         assert_eq!(speed("2"), Ok(2.0));
         assert_eq!(speed("max"), Ok(f64::INFINITY));
-        for wrong in ["", "0", "-1", "nan", "inf", "fast"] {
+        for wrong in ["", "0", "-1", "nan", "inf", "fast", "1e-21", "0.0009", "1e7"] {
             assert!(speed(wrong).is_err(), "{wrong}");
         }
     }

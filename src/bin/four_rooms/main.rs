@@ -26,6 +26,9 @@ use viewer::scene::Scene;
 use viewer::show::Show;
 use viewer::view::{Measured, View};
 
+/// The longest time for which a run that keeps to real time does not look for Ctrl-C.
+const NAP: Duration = Duration::from_millis(50);
+
 fn main() -> ExitCode {
     let args = Args::parse();
     if args.list_worlds {
@@ -94,7 +97,10 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
         }
         if speed.is_finite() {
             let due = Duration::from_secs_f64(reading.time() / speed);
-            std::thread::sleep(due.saturating_sub(start.elapsed()));
+            // In short naps: an interrupted run ends soon.
+            while start.elapsed() < due && !is_interrupted.load(Ordering::Relaxed) {
+                std::thread::sleep(due.saturating_sub(start.elapsed()).min(NAP));
+            }
         }
         Ok(ControlFlow::Continue(()))
     })?;

@@ -8,7 +8,7 @@ mod tests;
 use std::path::Path;
 use viewer::scene::Scene;
 use worldfile::floor_plan::FloorPlan;
-use worldfile::{Disk, Files, Findings, Severity, ros_map, shipped};
+use worldfile::{Disk, Files, Findings, MAX_TEXT_BYTES, Severity, ros_map, shipped};
 
 /// The result for one file.
 #[derive(Clone, Debug, Default)]
@@ -47,7 +47,7 @@ pub(crate) fn inspect(name: &str) -> Inspection {
         (Some(text), _) => world_file(&format!("{name}.toml"), text, &shipped::pictures()),
         (None, _) if is_of_stage(path) => stage_file(path),
         (None, Some("yaml" | "yml")) => ros_file(path),
-        (None, _) => match std::fs::read(path) {
+        (None, _) => match Disk.read(path, MAX_TEXT_BYTES) {
             Ok(bytes) => match String::from_utf8(bytes) {
                 Ok(text) => world_file(name, &text, &Disk),
                 Err(_) => invalid(format!("error: cannot read `{name}`: it is not a text file")),
