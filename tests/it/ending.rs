@@ -33,10 +33,41 @@ pub(crate) fn wait_for_recording(recording: &Path) {
 
 #[test]
 fn ctrl_c_ends_a_run_in_order() {
+    ends_in_order(Signal::SIGINT);
+}
+
+/// As `docker stop` and systemd do it.
+#[test]
+fn a_request_to_terminate_ends_a_run_in_order() {
+    ends_in_order(Signal::SIGTERM);
+}
+
+#[test]
+fn a_closed_terminal_ends_a_run_in_order() {
+    ends_in_order(Signal::SIGHUP);
+}
+
+/// Even a run so slow that it is asleep nearly all the time ends soon.
+#[test]
+fn ctrl_c_ends_a_slow_run() {
+    let run = Run::new();
+    let child = run.starts("--duration 1h --speed 0.001");
+    let has_begun = (0..1200).any(|_| {
+        std::thread::sleep(Duration::from_millis(50));
+        run.out("four_rooms.rrd").exists()
+    });
+    assert!(has_begun, "no recording");
+    send(Signal::SIGINT, &child);
+    let ended = Ended::from(child.wait_with_output().unwrap());
+    assert_eq!(ended.code, Some(130), "{ended:?}");
+    assert!(run.summary().number("/simulated_s") < 0.5);
+}
+
+fn ends_in_order(signal: Signal) {
     let run = Run::new();
     let child = starts(&run);
     wait_for_recording(&run.out("four_rooms.rrd"));
-    send(Signal::SIGINT, &child);
+    send(signal, &child);
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{ended:?}");
 

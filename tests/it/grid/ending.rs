@@ -40,11 +40,11 @@ fn ctrl_c_keeps_the_finished_trials() {
 }
 
 #[test]
-fn ctrl_c_closes_the_recording_even_before_the_first_trial_is_finished() {
+fn a_signal_closes_the_recording_even_before_the_first_trial_is_finished() {
     let run = Run::grid();
     let child = run.starts("--trials 1 --steps 100000000 --rrd trial.rrd --estimator paper");
     wait_for_recording(&run.path("trial.rrd"));
-    send(Signal::SIGINT, &child);
+    send(Signal::SIGTERM, &child);
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{ended:?}");
     insta::assert_snapshot!(ended.stderr, @"interrupted before the first trial was finished: no report");
