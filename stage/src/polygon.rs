@@ -161,7 +161,7 @@ fn rim(corners: &[Point2<f64>]) -> Cover {
 /// Whether a rectangle along the inside of side `own` lies in the polygon: its inner side does, and no other
 /// side enters it, though they may touch it.
 fn is_inside(corners: &[Point2<f64>], own: usize, rectangle: &Rectangle) -> bool {
-    let core = Rectangle { half_m: rectangle.half_m.add_scalar(-SAME), ..*rectangle };
+    let core = Rectangle { half_m: rectangle.half_m.add_scalar(-SAME).abs(), ..*rectangle };
     let enters = |(a, b): (Point2<f64>, Point2<f64>)| {
         // The range is in lengths of the side.
         core.ray_m(&a, &(b - a)).is_some_and(|share| share < 1.0)
