@@ -42,7 +42,7 @@ const ROWS: [Row; 19] = [
     ("longest time since a cell was seen", "/age/max_s", 1.0, 0, " s", Largest),
     ("collisions while the robot moved", "/collisions", 1.0, 0, "", Largest),
     ("goals reached", "/goals/reached", 1.0, 0, "", Smallest),
-    ("goals approached (nearest reachable point)", "/goals/nearest", 1.0, 0, "", Largest),
+    ("goals approached (nearest reachable point)", "/goals/approached", 1.0, 0, "", Largest),
     ("goals given up", "/goals/given_up", 1.0, 0, "", Largest),
     ("times real time, without recording", "/real_time_factor", 1.0, 0, "", Smallest),
 ];
@@ -74,13 +74,7 @@ fn main() -> anyhow::Result<()> {
 
 /// The mean over the runs that have a value, and the worst of them in brackets.
 fn entry((_, key, factor, decimals, unit, worst): &Row, runs: &[Value]) -> String {
-    let value = |run: &Value| {
-        let number = run.pointer(key)?.as_f64()?;
-        // The report counts approached goals as reached.
-        let approached =
-            if *key == "/goals/reached" { run.pointer("/goals/nearest")?.as_f64()? } else { 0.0 };
-        Some((number - approached) * factor)
-    };
+    let value = |run: &Value| Some(run.pointer(key)?.as_f64()? * factor);
     let values: Vec<f64> = runs.iter().filter_map(value).collect();
     if values.is_empty() {
         return "–".to_owned();

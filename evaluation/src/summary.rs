@@ -187,10 +187,9 @@ impl fmt::Display for RunResults {
                 ),
             ));
         }
-        let all = goals.reached + goals.given_up;
+        let GoalCount { reached, approached, given_up } = goals;
+        let all = reached + approached + given_up;
         if all > 0 {
-            let (reached, approached, given_up) =
-                (goals.reached - goals.nearest, goals.nearest, goals.given_up);
             lines.push((
                 "goals",
                 format!("{all}: {reached} reached, {approached} approached, {given_up} given up"),

@@ -63,10 +63,8 @@ impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
                 self.goals.given_up += 1;
                 self.log(Level::Trouble, "goal given up: no path leads nearer to it".into());
             }
-            Some(outcome) => {
-                self.goals.reached += 1;
-                self.goals.nearest += u32::from(outcome == Outcome::Nearest);
-            }
+            Some(Outcome::Reached) => self.goals.reached += 1,
+            Some(Outcome::Nearest) => self.goals.approached += 1,
             None => {}
         }
         let mut travel = TravelTimes { controller: &mut self.controller };

@@ -57,10 +57,10 @@ pub trait Pilot {
 /// The number of goals by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct GoalCount {
-    /// Goals that were reached, or approached as near as the robot can get.
+    /// Goals that were reached.
     pub reached: u32,
-    /// The part of `reached` that was only approached.
-    pub nearest: u32,
+    /// Goals that are blocked or hidden: the robot reached the nearest point that can be reached.
+    pub approached: u32,
     /// Goals that were given up, because the robot made no progress.
     pub given_up: u32,
 }
