@@ -131,7 +131,7 @@ fn check_sensors(sources: &mut Sources<'_>, robot: &StageRobot) {
             );
             sources.warning(robot.at, what, help);
         }
-        let is_range_valid = (0.01..=1000.0).contains(&sensor.range_max_m);
+        let is_range_valid = (0.01..=1000.0).contains(&sensor.range_m[1]);
         if !is_range_valid || sensor.fov_rad < MIN_FOV_RAD || sensor.noise_std_m > 1.0 {
             let help = "it sees over 1° or more, up to 0.01 to 1000 m, with a noise of at most 1 m";
             sources.error(sensor.at, format!("a {kind} of `{name}` is out of range"), help);

@@ -183,10 +183,8 @@ pub struct StageSensor {
     pub beams: usize,
     /// The angle of the field of view, which is the cone of a sonar, rad.
     pub fov_rad: f64,
-    /// Nearer things are not measured, m.
-    pub range_min_m: f64,
-    /// Farther things are not measured, m.
-    pub range_max_m: f64,
+    /// The least and the greatest range, m; what is nearer or farther is not measured.
+    pub range_m: [f64; 2],
     /// The time between two measurements, ms.
     pub interval_ms: u32,
     /// Standard deviation of a range, m.

@@ -3,7 +3,7 @@
 use super::StageWorld;
 use super::check::check;
 use super::sources::Sources;
-use super::to_toml::point;
+use super::to_toml::short;
 use nalgebra::Point2;
 use sim::physics::FleetSpec;
 use std::path::Path;
@@ -18,7 +18,8 @@ pub(super) fn load(sources: &mut Sources<'_>, path: &Path, world: &StageWorld) -
     }
     let low = world.map_origin();
     if low != Point2::origin() {
-        let what = format!("[0, 0] of the world that runs is {} of this file", point(&low));
+        let (x, y) = (short(low.x), short(low.y));
+        let what = format!("[0, 0] of the world that runs is [{x}, {y}] of this file");
         let help = "it is the lower left corner of all that is there; headings are as in the file";
         sources.add_file(Severity::Note, what, help);
     }

@@ -128,8 +128,9 @@ fn right_angled(corners: &[Point2<f64>]) -> Option<Cover> {
 fn rim(corners: &[Point2<f64>]) -> Cover {
     let count = corners.len();
     let mut cover = Cover { rectangles: Vec::new(), off_m: 0.0 };
-    for (i, (a, b)) in sides(corners).enumerate() {
-        let (before, after) = (corners[(i + count - 1) % count], corners[(i + 2) % count]);
+    for i in 0..count {
+        let (before, a) = (corners[(i + count - 1) % count], corners[i]);
+        let (b, after) = (corners[(i + 1) % count], corners[(i + 2) % count]);
         let (length_m, along) = ((b - a).norm(), (b - a).normalize());
         let inwards = Vector2::new(-along.y, along.x);
         // Where the corner is sharper than a right angle, a rectangle would stick out.
@@ -141,14 +142,15 @@ fn rim(corners: &[Point2<f64>]) -> Cover {
         let mut thickness_m = RIM_M;
         for _ in 0..8 {
             let (from_m, to_m) = (cut_a * thickness_m, length_m - cut_b * thickness_m);
-            let middle = a + along * ((from_m + to_m) / 2.0) + inwards * (thickness_m / 2.0);
-            let turn = UnitComplex::from_cos_sin_unchecked(along.x, along.y);
-            let rectangle = Rectangle {
-                pose: Isometry2::from_parts(middle.into(), turn),
-                half_m: Vector2::new(to_m - from_m, thickness_m) / 2.0,
-            };
-            if from_m < to_m && is_inside(corners, i, &rectangle) {
-                cover.rectangles.push(rectangle);
+            let inner =
+                [a + along * from_m + inwards * thickness_m, a + along * to_m + inwards * thickness_m];
+            if from_m < to_m && is_inside(corners, i, &inner) {
+                let middle = a + along * ((from_m + to_m) / 2.0) + inwards * (thickness_m / 2.0);
+                let turn = UnitComplex::from_cos_sin_unchecked(along.x, along.y);
+                cover.rectangles.push(Rectangle {
+                    pose: Isometry2::from_parts(middle.into(), turn),
+                    half_m: Vector2::new(to_m - from_m, thickness_m) / 2.0,
+                });
                 cover.off_m = cover.off_m.max(from_m.max(length_m - to_m));
                 break;
             }
@@ -158,16 +160,32 @@ fn rim(corners: &[Point2<f64>]) -> Cover {
     cover
 }
 
-/// Whether a rectangle along the inside of side `own` lies in the polygon: its inner side does, and no other
-/// side enters it, though they may touch it.
-fn is_inside(corners: &[Point2<f64>], own: usize, rectangle: &Rectangle) -> bool {
-    let core = Rectangle { half_m: rectangle.half_m.add_scalar(-SAME), ..*rectangle };
-    let enters = |(a, b): (Point2<f64>, Point2<f64>)| {
-        // The range is in lengths of the side.
-        core.ray_m(&a, &(b - a)).is_some_and(|share| share < 1.0)
-    };
-    let inner = rectangle.pose * Point2::new(0.0, rectangle.half_m.y);
-    contains(corners, &inner) && !sides(corners).enumerate().any(|(i, side)| i != own && enters(side))
+/// Whether the segment lies in the polygon and no corner but the ends of side `own` lies between
+/// the segment and that side.
+fn is_inside(corners: &[Point2<f64>], own: usize, inner: &[Point2<f64>; 2]) -> bool {
+    let (a, b) = (corners[own], corners[(own + 1) % corners.len()]);
+    let along = (b - a).normalize();
+    let thickness_m = along.perp(&(inner[0] - a));
+    let (from_m, to_m) = (along.dot(&(inner[0] - a)), along.dot(&(inner[1] - a)));
+    // Other sides may touch the rectangle, but not enter it: cut each to the strip and look.
+    let enters = sides(corners).enumerate().filter(|(i, _)| *i != own).any(|(_, (p, q))| {
+        let local = |point: Point2<f64>| Vector2::new(along.dot(&(point - a)), along.perp(&(point - a)));
+        let (p, q) = (local(p), local(q));
+        let (mut low, mut high) = (0.0_f64, 1.0_f64);
+        for (axis, least, most) in [(0, from_m + SAME, to_m - SAME), (1, SAME, thickness_m - SAME)] {
+            let step = q[axis] - p[axis];
+            if step.abs() < 1e-15 {
+                if p[axis] <= least || p[axis] >= most {
+                    return false;
+                }
+                continue;
+            }
+            let (s, t) = ((least - p[axis]) / step, (most - p[axis]) / step);
+            (low, high) = (low.max(s.min(t)), high.min(s.max(t)));
+        }
+        low < high
+    });
+    !enters && contains(corners, &nalgebra::center(&inner[0], &inner[1]))
 }
 
 #[cfg(test)]

@@ -1,12 +1,11 @@
 //! The sensors of a robot.
 
-use super::StageRobot;
-use super::StageSensor;
 use super::builder::{Builder, Pose};
 use super::drive::INVERSE_ROOT_3;
 use super::heights::Beam;
 use super::lexer::Place;
 use super::tree::Entity;
+use super::{StageRobot, StageSensor};
 use nalgebra::Isometry2;
 use std::f64::consts::{PI, TAU};
 
@@ -67,9 +66,8 @@ impl Builder<'_, '_> {
             let size_m = self.size_m(part, [0.02; 3]);
             let range_m = self.lengths_m(part, "range", 2);
             let range_m = range_m.map_or(DEFAULT_SENSOR_RANGE_M, |range_m| [range_m[0], range_m[1]]);
-            let samples = self.number(part, "samples", 1.0..=MAX_SAMPLES).unwrap_or(1.0);
-            let fov_rad = self.fov_rad(part).unwrap_or(DEFAULT_SENSOR_FOV_RAD);
-            let sensor = self.sensor(part, mount.flat, samples, fov_rad, range_m, interval_ms)?;
+            let sensor =
+                self.sensor(part, mount.flat, (1.0, DEFAULT_SENSOR_FOV_RAD), range_m, interval_ms)?;
             Some((sensor, mount.z_m + size_m[2] / 2.0))
         });
         let sensors: Vec<(StageSensor, f64)> = sensors.collect();
@@ -87,27 +85,27 @@ impl Builder<'_, '_> {
         let [min_m, max_m] = DEFAULT_LASER_RANGE_M;
         let min_m = self.length_m(laser, "range_min").unwrap_or(min_m);
         let max_m = self.length_m(laser, "range_max").unwrap_or(max_m);
-        let samples = self.number(laser, "samples", 1.0..=MAX_SAMPLES).unwrap_or(DEFAULT_LASER_SAMPLES);
-        let fov_rad = self.fov_rad(laser).unwrap_or(PI);
-        Some((self.sensor(laser, at.flat, samples, fov_rad, [min_m, max_m], interval_ms)?, at.z_m))
+        let defaults = (DEFAULT_LASER_SAMPLES, PI);
+        Some((self.sensor(laser, at.flat, defaults, [min_m, max_m], interval_ms)?, at.z_m))
     }
 
+    /// A laser or a sonar, with defaults for its samples and its field of view (rad).
     fn sensor(
         &mut self,
         entity: &Entity,
         mount: Isometry2<f64>,
-        samples: f64,
-        mut fov_rad: f64,
+        (samples, fov_rad): (f64, f64),
         [range_min_m, range_max_m]: [f64; 2],
         interval_ms: u32,
     ) -> Option<StageSensor> {
+        let mut beams = self.number(entity, "samples", 1.0..=MAX_SAMPLES).unwrap_or(samples) as usize;
+        let mut fov_rad = self.fov_rad(entity).unwrap_or(fov_rad);
         let (noise_std_m, at) = (self.noise_std_m(entity), entity.place);
         if !(0.0 <= range_min_m && range_min_m < range_max_m) {
             let help = "the least range must be 0 or more, and smaller than the greatest";
             self.sources.error(at, "a laser sees nothing", help);
             return None;
         }
-        let mut beams = samples as usize;
         if beams < 2 {
             fov_rad = fov_rad.clamp(CONE_RAD[0], CONE_RAD[1]);
         } else if fov_rad > TAU - 1e-6 {
@@ -117,17 +115,8 @@ impl Builder<'_, '_> {
             (beams, fov_rad) = ((beams - 1).max(2), fov_rad.min(TAU));
         }
         let place = self.sources.name(at);
-        Some(StageSensor {
-            place,
-            mount,
-            beams,
-            fov_rad,
-            range_min_m,
-            range_max_m,
-            interval_ms,
-            noise_std_m,
-            at,
-        })
+        let range_m = [range_min_m, range_max_m];
+        Some(StageSensor { place, mount, beams, fov_rad, range_m, interval_ms, noise_std_m, at })
     }
 
     fn fiducial(&mut self, finder: &Entity, mount: Isometry2<f64>) -> Option<StageSensor> {
@@ -151,18 +140,8 @@ impl Builder<'_, '_> {
             self.sources.error(at, "a fiducial finder finds nothing", help);
             return None;
         }
-        let (place, range_min_m, noise_std_m) = (self.sources.name(at), 0.0, 0.0);
-        Some(StageSensor {
-            place,
-            mount,
-            beams: 1,
-            fov_rad,
-            range_min_m,
-            range_max_m,
-            interval_ms,
-            noise_std_m,
-            at,
-        })
+        let (place, range_m) = (self.sources.name(at), [0.0, range_max_m]);
+        Some(StageSensor { place, mount, beams: 1, fov_rad, range_m, interval_ms, noise_std_m: 0.0, at })
     }
 
     /// The tag of a model; 0 is none.

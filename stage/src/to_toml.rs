@@ -44,40 +44,35 @@ impl StageWorld {
         let mut text = format!(
             "# Made from {files}. Lengths in metres, angles in degrees.\n# [0, 0] here is {low} there.\nname = {name}\n"
         );
-        let mut table = |header: &str, keys: Keys| {
+        let mut table = |header: &str, place: &str, keys: Keys| {
             let lines = keys.into_iter().map(|(key, value)| format!("{key} = {value}\n"));
-            text.extend([format!("\n{header}\n")].into_iter().chain(lines));
+            let comment = if place.is_empty() { "" } else { "  # " };
+            text.extend([format!("\n{header}{comment}{place}\n")].into_iter().chain(lines));
         };
         let size_m = map.size_m.into();
-        table("[map]", vec![("size_m", point(&size_m)), ("cell_m", number(map.cell_m))]);
-        table("[physics]", vec![("step_s", number(self.step_s))]);
+        table("[map]", "", vec![("size_m", point(&size_m)), ("cell_m", number(map.cell_m))]);
+        table("[physics]", "", vec![("step_s", number(self.step_s))]);
         for wall in &self.walls {
             for rectangle in &wall.rectangles {
                 match wall.tag {
-                    Some(tag) => {
-                        table(&format!("[[obstacle]]  # {}", wall.place), map.tagged(wall, rectangle, tag));
-                    }
-                    None => table(&format!("[[wall]]  # {}", wall.place), map.wall(rectangle)),
+                    Some(tag) => table("[[obstacle]]", &wall.place, map.tagged(wall, rectangle, tag)),
+                    None => table("[[wall]]", &wall.place, map.wall(rectangle)),
                 }
             }
         }
         for robot in &self.robots {
             let place = &robot.place;
-            table(&format!("[[robot]]  # {place}"), map.robot(robot));
-            table(&format!("[robot.drive]  # {place}"), drive(robot));
+            table("[[robot]]", place, map.robot(robot));
+            table("[robot.drive]", place, drive(robot));
+            let OdometryError { distance_gain, turn_gain, .. } = robot.odometry;
             if robot.odometry != OdometryError::default() {
-                let OdometryError { distance_gain, turn_gain, .. } = robot.odometry;
                 let keys = vec![("distance_gain", number(distance_gain)), ("turn_gain", number(turn_gain))];
-                table(&format!("[robot.odometry]  # {place}"), keys);
+                table("[robot.odometry]", place, keys);
             }
             if robot.lasers.is_empty() {
-                let keys = vec![
-                    ("beams", Value::from(180)),
-                    ("fov_deg", number(180.0)),
-                    ("range_max_m", number(8.0)),
-                    ("rate_hz", number(10.0)),
-                ];
-                table(&format!("[robot.laser]  # {place}: none there"), keys);
+                let mut keys = vec![("beams", Value::from(180)), ("fov_deg", number(180.0))];
+                keys.extend([("range_max_m", number(8.0)), ("rate_hz", number(10.0))]);
+                table("[robot.laser]", &format!("{place}: none there"), keys);
             }
             for (kind, sensor) in robot.sensors() {
                 let header = match kind {
@@ -86,9 +81,9 @@ impl StageWorld {
                     "sonar" => "[[robot.sonar]]",
                     _ => "[robot.fiducial]",
                 };
-                table(&format!("{header}  # {}", sensor.place), self::sensor(kind, sensor, robot.radius_m()));
+                table(header, &sensor.place, self::sensor(kind, sensor, robot.radius_m()));
             }
-            table(&format!("[robot.behaviour]  # {place}"), behavior(robot));
+            table("[robot.behaviour]", place, behavior(robot));
         }
         text
     }
@@ -201,8 +196,8 @@ fn sensor(kind: &str, sensor: &StageSensor, radius_m: f64) -> Keys {
     let mut keys = vec![
         ("beams", Value::from(sensor.beams as i64)),
         (angle, degrees(sensor.fov_rad)),
-        ("range_min_m", number(sensor.range_min_m)),
-        ("range_max_m", number(sensor.range_max_m)),
+        ("range_min_m", number(sensor.range_m[0])),
+        ("range_max_m", number(sensor.range_m[1])),
         ("rate_hz", number(1000.0 / f64::from(sensor.interval_ms))),
         ("mount_m", point(&mount_m.into())),
         ("mount_deg", heading(&sensor.mount)),
@@ -240,7 +235,7 @@ fn heading(pose: &Isometry2<f64>) -> Value {
     degrees(heading_rad(pose))
 }
 
-pub(super) fn point(point: &Point2<f64>) -> Value {
+fn point(point: &Point2<f64>) -> Value {
     Value::from(vec![short(point.x), short(point.y)])
 }
 

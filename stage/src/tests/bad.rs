@@ -220,7 +220,7 @@ fn endless_growth_is_cut_short() {
 }
 
 #[test]
-fn old_accents_do_no_harm() {
+fn latin_1_files_are_read() {
     let mut files = Table::new();
     files.insert("a.world".into(), b"# Andr\xe9\nmodel( name \"caf\xe9\" )".to_vec());
     let (world, _) = read(Path::new("a.world"), &files);

@@ -35,7 +35,7 @@ fn the_example_says_what_is_in_it() {
     assert_eq!(r1.odometry.distance_gain, 0.02);
     assert_eq!((r0.outline.len(), r0.sonars.len()), (4, 3));
     let [laser] = r0.lasers.as_slice() else { panic!() };
-    assert_eq!((laser.beams, laser.interval_ms, laser.range_max_m), (361, 100, 6.0));
+    assert_eq!((laser.beams, laser.interval_ms, laser.range_m[1]), (361, 100, 6.0));
     assert!((laser.mount.translation.vector.x - 0.1).abs() < 1e-12);
     assert!((laser.noise_std_m - 0.01 / 3.0_f64.sqrt()).abs() < 1e-12);
     insta::assert_snapshot!(findings);

@@ -99,11 +99,11 @@ fn lasers_old_and_new() {
     let (world, findings) = one(text);
     let world = world.unwrap();
     let [old, first, second] = world.robots[0].lasers.as_slice() else { panic!() };
-    assert_eq!((old.beams, old.range_min_m, old.range_max_m, old.interval_ms), (271, 0.2, 4.0, 40));
+    assert_eq!((old.beams, old.range_m, old.interval_ms), (271, [0.2, 4.0], 40));
     assert!((old.mount.rotation.angle().abs() - std::f64::consts::PI).abs() < 1e-12);
     assert!((first.mount.translation.vector - nalgebra::Vector2::new(0.06, 0.1)).norm() < 1e-12);
     // Stage's own sensor: 0.1 rad, 5 m.
-    assert_eq!((first.beams, first.fov_rad, first.range_max_m), (5, 0.1, 5.0));
+    assert_eq!((first.beams, first.fov_rad, first.range_m[1]), (5, 0.1, 5.0));
     // Stage's nine are 45° apart, the first and the last of them the same.
     assert_eq!((second.beams, second.fov_rad), (8, std::f64::consts::TAU));
     // A step that both 40 and 100 ms are multiples of.
@@ -119,20 +119,20 @@ fn single_rays_are_sonars_and_count_for_the_step() {
     let [sonar] = world.robots[0].sonars.as_slice() else { panic!() };
     assert!((sonar.fov_rad - 20.0_f64.to_radians()).abs() < 1e-12);
     assert!((sonar.mount.rotation.angle() - FRAC_PI_2).abs() < 1e-12);
-    assert_eq!((sonar.range_min_m, sonar.range_max_m, sonar.interval_ms), (0.2, 3.0, 40));
+    assert_eq!((sonar.range_m, sonar.interval_ms), ([0.2, 3.0], 40));
     // The laser that it is given scans every 100 ms.
     assert!((world.step_s - 0.02).abs() < 1e-12 && world.robots[0].lasers.is_empty());
 }
 
 #[test]
-fn tags_and_those_who_find_them() {
+fn tags_and_fiducial_finders() {
     let text = "position( name \"a\" pose [0 0 0 0] size [0.4 0.4 0.4] fiducial_return 7
           fiducial( pose [0.1 0 0 90] range_max 6 range_max_id 3 fov 90 update_interval 200 ) laser( ) )
         model( name \"post\" pose [3 0 0 45] size [0.2 0.2 1] fiducial_return 12 )";
     let (world, findings) = one(text);
     let world = world.unwrap_or_else(|| panic!("{findings}"));
     let finder = world.robots[0].fiducial.as_ref().unwrap();
-    assert_eq!((finder.range_max_m, finder.fov_rad, finder.interval_ms), (3.0, FRAC_PI_2, 200));
+    assert_eq!((finder.range_m[1], finder.fov_rad, finder.interval_ms), (3.0, FRAC_PI_2, 200));
     assert_eq!((world.robots[0].tag, world.walls[0].tag), (Some(7), Some(12)));
     assert!(findings.iter().any(|finding| finding.what.contains("from 3 to 6 m, but not which")));
     // In the fleet that it becomes, others find them.
@@ -180,8 +180,8 @@ fn sensors_sense_in_steps_of_stage() {
     let intervals_ms =
         world.unwrap().robots.into_iter().flat_map(|robot| robot.lasers).map(|l| l.interval_ms);
     assert_eq!(intervals_ms.collect::<Vec<_>>(), [60, 90, 120]);
-    let told = findings.iter().filter(|finding| finding.what.ends_with("Stage's step, which is 30 ms"));
-    assert_eq!(told.count(), 2);
+    let warnings = findings.iter().filter(|finding| finding.what.ends_with("Stage's step, which is 30 ms"));
+    assert_eq!(warnings.count(), 2);
 }
 
 #[test]
@@ -221,7 +221,7 @@ fn long_turned_walls_are_as_thick_as_their_shorter_side() {
 }
 
 #[test]
-fn what_is_nowhere_is_left_out() {
+fn models_that_neither_collide_nor_are_seen_are_left_out() {
     assert!(good("model( obstacle_return 0 ranger_return -1 )").walls.is_empty());
     let (world, findings) = one("model( obstacle_return 0 )");
     assert_eq!((world.unwrap().walls.len(), findings.warnings()), (1, 1));
