@@ -29,7 +29,7 @@ use viewer::view::{Measured, View};
 fn main() -> ExitCode {
     let args = Args::parse();
     if args.list_worlds {
-        list(&worlds::SHIPPED, 18, |name| worlds::load(name).map(|world| world.spec.description));
+        list(&worlds::SHIPPED, 18, |name| worlds::load(name).map(|world| world.spec.description.clone()));
         return ExitCode::SUCCESS;
     }
     exit_code(run(&args).map(|ended| match ended {
