@@ -2,8 +2,9 @@
 
 use super::claim::Claim;
 use super::metric::{Measure, Metric};
-use super::run::{Run, StrategyResult};
-use super::wording::{conditions, difference, p_value, value};
+use super::run::{Run, conditions};
+use super::strategy::StrategyResult;
+use super::wording::{difference, p_value, value};
 use super::{ONE_BY_ONE, REFERENCE, Report};
 use tabled::Table;
 use tabled::settings::object::Columns;
