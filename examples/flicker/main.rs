@@ -72,7 +72,7 @@ impl Bench {
         House::new(self.thickness_m, self.turn_deg, self.noise_std_m, self.beams, seed)
     }
 
-    /// The default settings, told of the laser's noise.
+    /// The default settings with the noise of the laser.
     fn settings(self, occupancy: OccupancyChoice) -> MapperSettings {
         let range_noise_std_m = self.noise_std_m.max(SurfaceGridSettings::default().range_noise_std_m);
         let steady = SurfaceGridSettings { range_noise_std_m, ..SurfaceGridSettings::default() };
@@ -113,8 +113,8 @@ fn row(bench: Bench, occupancy: OccupancyChoice) -> anyhow::Result<String> {
     let (house, readings) = bench.tour(1);
     let (changes, repeated) = false_changes(&house, &readings, &settings)?;
     let mut row = format!("| {} | {} | {changes} | {repeated} |", bench.name, occupancy.name());
-    for place in things::BOXES {
-        let (half_s, most_s) = cleared_after(bench.house(2), &settings, place)?;
+    for corner in things::BOXES {
+        let (half_s, most_s) = cleared_after(bench.house(2), &settings, corner)?;
         write!(row, " {half_s:.1}, {most_s:.1} |")?;
     }
     let mut latency = latencies(bench.house(3), &settings)?;

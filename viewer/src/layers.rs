@@ -27,7 +27,7 @@ const FREE: u8 = 2;
 const BLOCKED: u8 = 3;
 /// The class of the lowest value on the scale of a layer.
 const FIRST: u8 = 4;
-/// The number of classes of a scale: neighbors look the same.
+/// The number of classes of a scale: neighbors are alike to the eye.
 const STEPS: u8 = 64;
 
 /// The scale of a layer: from values to positions on the color bar, 0 to 1.

@@ -176,8 +176,8 @@ impl FakeRun {
         }
     }
 
-    /// Calls `look` with the run as it is now.
-    pub(crate) fn with_view<T>(&mut self, look: impl FnOnce(&View) -> T) -> T {
+    /// Calls `use_view` with the run as it is now.
+    pub(crate) fn with_view<T>(&mut self, use_view: impl FnOnce(&View) -> T) -> T {
         let features = Features::of(&mut self.mapper);
         let goal = self.curious.waypoints[self.curious.next % self.curious.waypoints.len()];
         let wave = |phase: f64| 1.0 + libm::sin(self.time_s() / 60.0 + phase);
@@ -191,7 +191,7 @@ impl FakeRun {
         let seen =
             (0..self.mapper.frame().len()).step_by(7).filter(|&cell| self.mapper.was_ever_seen(cell)).count();
         let coverage = 7.0 * seen as f64 / self.mapper.frame().len() as f64;
-        look(&View {
+        use_view(&View {
             time: self.time_s(),
             step: self.step,
             features,

@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_trail_keeps_the_way_and_not_the_waiting() {
+    fn a_trail_drops_points_while_the_robot_stands() {
         let mut trail = Trail::default();
         for step in 0..100 {
             trail.push(Point2::new(f64::from(step) * 0.01, 0.0));

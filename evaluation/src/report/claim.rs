@@ -96,7 +96,7 @@ impl Claim {
         })
     }
 
-    /// The verdict and its parts in words, on two lines.
+    /// The verdict and its parts in words, on three lines.
     pub fn sentence(&self) -> String {
         let speed = |error: &Comparison| match error {
             error if is_faster(error) => "faster than",
@@ -110,7 +110,7 @@ impl Claim {
             _ => "as good as",
         };
         format!(
-            "The paper's claim {}: curious learns rates {} recency\nand {} poisson, and its map is {map} that of recency.",
+            "The paper's claim {}: curious learns rates {} recency\nand {} poisson, and its map is {map}\nthat of recency.",
             if self.verdict == Verdict::NotShown { "is not shown" } else { self.verdict.name() },
             speed(&self.faster_than_recency),
             speed(&self.faster_than_poisson),

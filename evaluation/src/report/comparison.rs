@@ -1,8 +1,8 @@
 //! The comparison of two strategies, paired by trial or by world.
 
 use super::metric::Measure;
-use super::run::{StrategyResult, Unit};
 use super::statistics::{Quantiles, holm, mean};
+use super::strategy::{StrategyResult, Unit};
 use super::wording::{p_value, value};
 use serde::Serialize;
 

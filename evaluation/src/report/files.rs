@@ -4,7 +4,8 @@
 use super::Report;
 use super::claim::Claim;
 use super::metric::{Measure, Metric, Trial};
-use super::run::{Run, StrategyResult};
+use super::run::Run;
+use super::strategy::StrategyResult;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};

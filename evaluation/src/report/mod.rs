@@ -12,14 +12,16 @@ mod files;
 mod metric;
 mod run;
 mod statistics;
+mod strategy;
 mod table;
 mod wording;
 
 pub use claim::{Claim, Verdict};
 pub use comparison::Comparison;
 pub use metric::{Measure, Metric, Sample, Trial};
-pub use run::{Run, StrategyResult};
+pub use run::Run;
 pub use statistics::Estimate;
+pub use strategy::StrategyResult;
 
 use crate::drawing::PictureError;
 use crate::output::{make_folder, write_file};

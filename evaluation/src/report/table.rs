@@ -2,8 +2,9 @@
 
 use super::claim::Claim;
 use super::metric::{Measure, Metric};
-use super::run::{Run, StrategyResult};
-use super::wording::{conditions, difference, p_value, value};
+use super::run::{Run, conditions};
+use super::strategy::StrategyResult;
+use super::wording::{difference, p_value, value};
 use super::{ONE_BY_ONE, REFERENCE, Report};
 use tabled::Table;
 use tabled::settings::object::Columns;
@@ -52,17 +53,18 @@ pub(super) fn table(report: &Report) -> String {
     let is_short = report.runs.iter().any(|run| run.worlds > ONE_BY_ONE);
     let mut text = String::new();
     for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
-        let parts = [
-            Some(format!("{}\n{}\n", run.world, conditions(run, &report.settings))),
-            Some(format!("{}\n", values(&run.strategies))),
-            differences(run),
-            false_events(run),
-            winner(run),
-            Claim::of(run).map(|claim| claim.sentence()),
-            Some(String::new()),
+        let conclusions = [false_events(run), winner(run), Claim::of(run).map(|claim| claim.sentence())];
+        let paragraphs = [
+            format!("{}\n{}", run.world, conditions(run, &report.settings)),
+            values(&run.strategies).to_string(),
+            differences(run).unwrap_or_default(),
+            conclusions.into_iter().flatten().collect::<Vec<_>>().join("\n"),
         ];
-        let lines = parts.iter().flatten().flat_map(|part| part.split('\n'));
-        text.extend(lines.flat_map(|line| [line.trim_end(), "\n"]));
+        for line in
+            paragraphs.iter().filter(|text| !text.is_empty()).flat_map(|text| text.lines().chain([""]))
+        {
+            text.extend([line.trim_end(), "\n"]);
+        }
     }
     text.push_str(HOW_TO_READ);
     if is_short {
@@ -148,7 +150,7 @@ fn differences(run: &Run) -> Option<String> {
     let over = if run.worlds > 1 { "worlds" } else { "seeds" };
     Some(format!(
         "Paired differences over {over}, {} minus the other: mean ± half of its\n\
-         95 % interval, p-value of the t test\n{}\n",
+         95 % interval, p-value of the t test\n{}",
         first.name,
         aligned(rows)
     ))

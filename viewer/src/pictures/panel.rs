@@ -182,7 +182,8 @@ impl Panel {
     pub(super) fn write(&self, area: &Area, at: (i32, i32), anchor: HPos, line: &str) -> Result<(), String> {
         let style = text(LETTERS * self.scale).pos(Pos::new(anchor, VPos::Center));
         // The library puts the middle of a letter a quarter of its height too high.
-        area.draw_text(line, &style, (at.0, at.1 + self.px(LETTERS) / 4)).map_err(why)
+        let text = Text::new(line.to_owned(), (at.0, at.1 + self.px(LETTERS) / 4), style);
+        area.draw(&text).map_err(why)
     }
 
     /// Width and height of a line of text, in pixels to draw with.

@@ -110,9 +110,16 @@ fn names(panel: &Panel, chart: &Chart, scene: &Scene) -> Result<(), String> {
     for (name, outline, is_light) in obstacles.chain(robots) {
         let [low, high] = span(&outline).map(|corner| plot.map_coordinate(&pair(&corner)));
         let [width, height] = panel.text_size(&pixels, name)?;
-        let has_room = is_light && high.0 - low.0 > width && low.1 - high.1 > height;
-        let y = if has_room { (low.1 + high.1) / 2 } else { low.1 + height / 2 + panel.px(2) };
-        panel.write(&pixels, ((low.0 + high.0) / 2, y), HPos::Center, name)?;
+        // A name may be a little wider than its obstacle.
+        let has_room = is_light && 5 * (high.0 - low.0) > 4 * width && low.1 - high.1 > height;
+        let (x, mut y) = ((low.0 + high.0) / 2, (low.1 + high.1) / 2);
+        if !has_room {
+            // A light ground, because there may be a wall.
+            y = low.1 + height / 2 + panel.px(2);
+            let plate = [(x - width / 2, y - height / 2), (x + width / 2, y + height / 2)];
+            pixels.draw(&Rectangle::new(plate, WHITE.mix(0.75).filled())).map_err(why)?;
+        }
+        panel.write(&pixels, (x, y), HPos::Center, name)?;
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ struct Drawn {
 
 const GOALS: [Point2<f64>; 1] = [Point2::new(3.0, 4.0)];
 
-/// A made-up run, drawn into a folder.
+/// A simulated run, drawn into a folder.
 fn drawn(ticks: usize) -> Drawn {
     let folder = tempfile::tempdir().unwrap();
     let mut run = FakeRun::new();
@@ -151,8 +151,8 @@ fn a_folder_that_cannot_be_written_is_named() {
 }
 
 #[test]
-#[ignore = "draws pictures to look at"]
-fn look() {
+#[ignore = "draws pictures for inspection"]
+fn pictures_for_inspection() {
     let start = std::time::Instant::now();
     let folder = drawn(6000).folder.keep();
     println!("{} in {:?}", folder.display(), start.elapsed());

@@ -46,32 +46,19 @@ pub(super) struct Entity<T, F, C> {
     components: fn(Vec<T>) -> C,
     due: f64,
     last: Vec<T>,
-    times_ns: Vec<i64>,
-    steps: Vec<i64>,
-    /// The number of items of each row.
-    lengths: Vec<usize>,
-    items: Vec<T>,
+    /// Step, time in nanoseconds, and items of every row.
+    rows: Vec<(i64, i64, Vec<T>)>,
 }
 
 impl<T, F, C> Entity<T, F, C> {
     pub(super) fn new(
         path: String,
-        kind: Kind,
-        period: f64,
+        (kind, period): (Kind, f64),
         items_of: F,
         components: fn(Vec<T>) -> C,
     ) -> Self {
-        let (due, last, items) = (f64::NEG_INFINITY, Vec::new(), Vec::new());
-        let (times_ns, steps, lengths) = (Vec::new(), Vec::new(), Vec::new());
-        Self { path, kind, period, items_of, components, due, last, times_ns, steps, lengths, items }
-    }
-
-    fn append(&mut self, view: &View, items: impl IntoIterator<Item = T>) {
-        let before = self.items.len();
-        self.items.extend(items);
-        self.times_ns.push((view.time * 1e9).round() as i64);
-        self.steps.push(view.step as i64);
-        self.lengths.push(self.items.len() - before);
+        let (due, last, rows) = (f64::NEG_INFINITY, Vec::new(), Vec::new());
+        Self { path, kind, period, items_of, components, due, last, rows }
     }
 }
 
@@ -91,27 +78,31 @@ where
         if self.kind == Kind::State || !items.is_empty() {
             self.due = view.time + self.period;
         }
-        match self.kind {
-            Kind::State if items != self.last => {
+        let rows = match self.kind {
+            Kind::State if items == self.last => Vec::new(),
+            Kind::State => {
                 self.last.clone_from(&items);
-                self.append(view, items);
+                vec![items]
             }
-            Kind::State => {}
-            Kind::Events => items.into_iter().for_each(|item| self.append(view, [item])),
-        }
+            Kind::Events => items.into_iter().map(|item| vec![item]).collect(),
+        };
+        let (step, time_ns) = (view.step as i64, (view.time * 1e9).round() as i64);
+        self.rows.extend(rows.into_iter().map(|items| (step, time_ns, items)));
     }
 
     fn flush(&mut self, stream: &RecordingStream, unit: TimeUnit) -> RecordingStreamResult<()> {
-        if self.lengths.is_empty() {
+        let rows = std::mem::take(&mut self.rows);
+        if rows.is_empty() {
             return Ok(());
         }
-        let times_ns = std::mem::take(&mut self.times_ns);
-        let mut times = vec![TimeColumn::new_sequence(STEP, std::mem::take(&mut self.steps))];
+        let steps: Vec<i64> = rows.iter().map(|row| row.0).collect();
+        let times_ns: Vec<i64> = rows.iter().map(|row| row.1).collect();
+        let lengths: Vec<usize> = rows.iter().map(|row| row.2.len()).collect();
+        let mut times = vec![TimeColumn::new_sequence(STEP, steps)];
         if unit == TimeUnit::Second {
             times.push(TimeColumn::new_duration_nanos(SIM_TIME, times_ns));
         }
-        let lengths = std::mem::take(&mut self.lengths);
-        let components = (self.components)(std::mem::take(&mut self.items));
+        let components = (self.components)(rows.into_iter().flat_map(|row| row.2).collect());
         let columns = components.as_serialized_batches().into_iter();
         let columns = columns.map(|batch| batch.partitioned(lengths.iter().copied()));
         stream.send_columns(self.path.as_str(), times, columns.collect::<Result<Vec<_>, _>>()?)

@@ -17,7 +17,7 @@ fn to(file: &Path) -> Result<Recorder, RecordingError> {
     Recorder::new(Some(file), &[], FakeRun::new().scene)
 }
 
-/// Records `ticks` of a made-up run into a file.
+/// Records `ticks` of a simulated run into a file.
 fn record(file: &Path, ticks: u64) -> FakeRun {
     record_run(FakeRun::new(), file, ticks)
 }
@@ -61,7 +61,7 @@ fn rows<C: Component + Clone>(
 }
 
 #[test]
-fn everything_that_a_newcomer_looks_for_is_there() {
+fn every_entity_is_there() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
     record(&file, 300);
@@ -232,7 +232,7 @@ fn a_minute_is_small() {
 }
 
 #[test]
-fn a_killed_run_leaves_what_was_handed_on() {
+fn a_killed_run_leaves_what_was_sent() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
     let mut run = FakeRun::new();
@@ -275,7 +275,7 @@ fn a_file_that_cannot_be_made_is_one_clear_error() {
     }
 }
 
-/// A disk with room for so many bytes.
+/// A disk with room for a number of bytes.
 #[derive(Clone)]
 struct SmallDisk(Arc<Mutex<usize>>);
 
@@ -292,7 +292,7 @@ impl Write for SmallDisk {
 }
 
 #[test]
-fn a_disk_that_fills_up_is_told_while_it_goes_on_and_at_the_end() {
+fn a_full_disk_is_reported_during_the_run_and_at_the_end() {
     let mut run = FakeRun::new();
     run.step();
     let mut record = |room: usize| {
@@ -340,9 +340,9 @@ fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
 }
 
 #[test]
-#[ignore = "writes a recording to look at, and says what it cost"]
-fn look() {
-    let file = std::env::temp_dir().join("look.rrd");
+#[ignore = "writes a recording for inspection, and prints its size and time"]
+fn recording_for_inspection() {
+    let file = std::env::temp_dir().join("inspection.rrd");
     let start = Instant::now();
     record(&file, std::env::var("TICKS").map_or(12_000, |ticks| ticks.parse().unwrap()));
     let bytes = std::fs::metadata(&file).unwrap().len();

@@ -92,7 +92,7 @@ pub struct Obstacle {
     pub name: String,
     /// The outline at the start, m; empty if the obstacle appears later.
     pub outline: Outline,
-    /// Outlines at other times, as far as the world file gives them: the swing of a door, the path of a block.
+    /// Outlines at other times that the world file gives: the swing of a door, the path of a block.
     pub reach: Vec<Outline>,
 }
 

@@ -6,8 +6,7 @@ mod pen;
 mod plan;
 
 use super::metric::Metric;
-use super::run::Run;
-use super::wording::conditions;
+use super::run::{Run, conditions};
 use super::{ONE_BY_ONE, Report};
 use crate::drawing::{Canvas, PictureError, ink, why};
 use crate::output::write_file;

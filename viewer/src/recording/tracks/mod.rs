@@ -75,14 +75,14 @@ impl Tracks<'_> {
     fn add<T, C>(
         &mut self,
         path: impl Into<String>,
-        (kind, period): (Kind, f64),
+        when: (Kind, f64),
         items_of: impl FnMut(&View) -> Vec<T> + Send + 'static,
         components: fn(Vec<T>) -> C,
     ) where
         T: Clone + PartialEq + Send + 'static,
         C: AsComponents + 'static,
     {
-        self.tracks.push(Box::new(Entity::new(path.into(), kind, period, items_of, components)));
+        self.tracks.push(Box::new(Entity::new(path.into(), when, items_of, components)));
     }
 }
 

@@ -120,12 +120,13 @@ fn the_keys_are_those_of_the_schema() {
         let headings: Vec<&str> =
             GOOD.iter().filter(|(_, other, _)| other == table).map(|(heading, _, _)| *heading).collect();
         let rows = rows();
-        let told = rows.iter().filter(|row| headings.contains(&row.heading)).flat_map(|row| row.keys.clone());
-        let told: BTreeSet<&str> = told.collect();
+        let documented =
+            rows.iter().filter(|row| headings.contains(&row.heading)).flat_map(|row| row.keys.clone());
+        let documented: BTreeSet<&str> = documented.collect();
         let error = parse(&world(headings[0], "no_such_key = 1")).unwrap_err();
         let (_, known) = error.split_once("the keys here are: ").unwrap_or_else(|| panic!("{error}"));
         let known: BTreeSet<&str> = known.trim().split(", ").collect();
-        assert_eq!(told, known, "the table `{table}`");
+        assert_eq!(documented, known, "the table `{table}`");
     }
     assert!(rows().iter().all(|row| GOOD.iter().any(|(heading, _, _)| *heading == row.heading)));
 }
