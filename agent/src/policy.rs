@@ -140,16 +140,19 @@ interfaces::chosen_by_name!(Policy, "strategy", Policy::built_in());
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde::Deserialize;
+    use serde::de::value::{Error, MapDeserializer};
 
     #[test]
     fn names_are_read_back() {
-        #[derive(serde::Deserialize)]
+        #[derive(Deserialize)]
         struct File {
             strategy: Policy,
         }
         for policy in Policy::built_in() {
             assert_eq!(policy.name().parse::<Policy>().unwrap(), *policy);
-            let file: File = toml::from_str(&format!("strategy = '{policy}'")).unwrap();
+            let keys = MapDeserializer::<_, Error>::new([("strategy", policy.name())].into_iter());
+            let file = File::deserialize(keys).unwrap();
             assert_eq!(file.strategy, *policy);
         }
         assert_eq!(Policy::default().name(), "curious");

@@ -91,45 +91,62 @@ impl AgentSettings {
 mod tests {
     use super::*;
     use interfaces::Cell;
+    use serde::Deserialize;
+    use serde::de::value::{Error, MapDeserializer};
 
-    fn message(text: &str) -> String {
-        match toml::from_str::<AgentSettings>(text) {
-            Ok(settings) => settings.check().map_or_else(|error| error.to_string(), |()| "fine".into()),
-            Err(error) => error.message().to_string(),
-        }
+    /// What is invalid in the default settings after a change.
+    fn message(change: impl FnOnce(&mut AgentSettings)) -> String {
+        let mut settings = AgentSettings::default();
+        change(&mut settings);
+        settings.check().map_or_else(|error| error.to_string(), |()| "fine".into())
+    }
+
+    /// What is wrong with settings that have one key.
+    fn unreadable(key: &str, value: &str) -> String {
+        let keys = MapDeserializer::<_, Error>::new([(key, value)].into_iter());
+        AgentSettings::deserialize(keys).unwrap_err().to_string()
     }
 
     #[test]
     fn invalid_settings_are_refused() {
-        assert_eq!(message(""), "fine");
-        assert_eq!(message("patch_cells = 10\nreward = 'changes-and-discoveries'"), "fine");
-        assert_eq!(message("patch_cells = 0"), "agent setting `patch_cells` must be from 1 to 1000, not 0");
+        assert_eq!(message(|_| {}), "fine");
+        let change = |settings: &mut AgentSettings| {
+            (settings.patch_cells, settings.reward) = (10, Reward::ChangesAndDiscoveries);
+        };
+        assert_eq!(message(change), "fine");
         assert_eq!(
-            message("curious.tilings = 0"),
+            message(|settings| settings.patch_cells = 0),
+            "agent setting `patch_cells` must be from 1 to 1000, not 0"
+        );
+        assert_eq!(
+            message(|settings| settings.curious.tilings = 0),
             "agent setting `curious.tilings` must be from 1 to 1000, not 0"
         );
-        for (key, value) in [("tile_p", "-0.5"), ("tile_r", "inf"), ("temperature", "0.0"), ("tile_r", "nan")]
-        {
+        type Field = fn(&mut CuriousSettings) -> &mut f64;
+        let fields: [(&str, f64, Field); 4] = [
+            ("tile_p", -0.5, |curious| &mut curious.tile_p),
+            ("tile_r", f64::INFINITY, |curious| &mut curious.tile_r),
+            ("temperature", 0.0, |curious| &mut curious.temperature),
+            ("tile_r", f64::NAN, |curious| &mut curious.tile_r),
+        ];
+        for (key, value, field) in fields {
             assert_eq!(
-                message(&format!("curious.{key} = {value}")),
-                format!(
-                    "agent setting `curious.{key}` must be from 1e-9 to 1e9, not {}",
-                    value.parse::<f64>().unwrap()
-                )
+                message(|settings| *field(&mut settings.curious) = value),
+                format!("agent setting `curious.{key}` must be from 1e-9 to 1e9, not {value}")
             );
         }
-        for value in ["0", "1.1", "NaN"] {
+        for value in [0.0, 1.1, f64::NAN] {
             assert_eq!(
-                message(&format!("curious.learning_rate = {}", value.to_lowercase())),
+                message(|settings| settings.curious.learning_rate = value),
                 format!("agent setting `curious.learning_rate` must be above 0, and at most 1, not {value}")
             );
         }
         assert_eq!(
-            message("patches = 3"),
+            unreadable("patches", "3"),
             "unknown field `patches`, expected one of `patch_cells`, `sensor_radius_m`, `reward`, `curious`"
         );
         assert_eq!(
-            message("reward = 'joy'"),
+            unreadable("reward", "joy"),
             "unknown variant `joy`, expected `changes` or `changes-and-discoveries`"
         );
     }

@@ -94,33 +94,41 @@ impl Settings {
 mod tests {
     use super::*;
     use crate::{DiffDrive, DiffDriveSettings};
+    use serde::de::value::{Error, MapDeserializer};
 
     #[test]
     fn errors_name_the_setting() {
-        let message = |text: &str| toml::from_str::<Settings>(text).unwrap().check().unwrap_err().to_string();
+        let message = |change: fn(&mut Settings)| {
+            let mut settings = Settings::default();
+            change(&mut settings);
+            settings.check().unwrap_err().to_string()
+        };
         assert_eq!(
-            message("inflation.inflation_m = 0.01"),
+            message(|settings| settings.inflation.inflation_m = 0.01),
             "controller setting `inflation.inflation_m` must be at least footprint_padding_m, not 0.01"
         );
         assert_eq!(
-            message("inflation.footprint_padding_m = nan"),
+            message(|settings| settings.inflation.footprint_padding_m = f64::NAN),
             "controller setting `inflation.footprint_padding_m` must be 0 or more, not NaN"
         );
         assert_eq!(
-            message("inflation.inflation_cost = 0"),
+            message(|settings| settings.inflation.inflation_cost = 0),
             "controller setting `inflation.inflation_cost` must be from 1 to 9, not 0"
         );
         assert_eq!(
-            message("navigation.goal_timeout_s = inf\nnavigation.movement_time_allowance_s = 1"),
+            message(|settings| {
+                settings.navigation.goal_timeout_s = f64::INFINITY;
+                settings.navigation.movement_time_allowance_s = 1.0;
+            }),
             "controller setting `navigation.goal_timeout_s` must be more than movement_time_allowance_s, not inf"
         );
-        let drive = |text: &str| DiffDrive::new(toml::from_str(text).unwrap()).unwrap_err().to_string();
+        let drive = |settings| DiffDrive::new(settings).unwrap_err().to_string();
         assert_eq!(
-            drive("radius_m = -0.2"),
+            drive(DiffDriveSettings { radius_m: -0.2, ..Default::default() }),
             "differential drive setting `radius_m` must be a positive number, not -0.2"
         );
         assert_eq!(
-            drive("tolerance_m = 0.4"),
+            drive(DiffDriveSettings { tolerance_m: 0.4, ..Default::default() }),
             "differential drive setting `tolerance_m` must be less than twice radius_m, not 0.4"
         );
     }
@@ -129,8 +137,14 @@ mod tests {
     fn defaults_are_valid_and_unknown_keys_are_refused() {
         assert_eq!(Settings::default().check(), Ok(()));
         assert!(DiffDrive::new(DiffDriveSettings::default()).is_ok());
-        assert_eq!(toml::from_str::<Settings>("").unwrap(), Settings::default());
-        assert!(toml::from_str::<Settings>("inflation.margin = 0.1").is_err());
-        assert!(toml::from_str::<DiffDriveSettings>("speed = 1").is_err());
+        let keys = |key: &'static str| {
+            MapDeserializer::<_, Error>::new((!key.is_empty()).then_some((key, 0.1)).into_iter())
+        };
+        assert_eq!(Settings::deserialize(keys("")).unwrap(), Settings::default());
+        let unknown = "unknown field `margin`";
+        let error = InflationSettings::deserialize(keys("margin")).unwrap_err().to_string();
+        assert!(error.starts_with(unknown), "{error}");
+        assert!(Settings::deserialize(keys("margin")).unwrap_err().to_string().starts_with(unknown));
+        assert!(DiffDriveSettings::deserialize(keys("margin")).unwrap_err().to_string().starts_with(unknown));
     }
 }
