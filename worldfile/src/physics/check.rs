@@ -136,11 +136,17 @@ fn wall(table: &Table<'_>, size: &Point2<f64>) -> Option<Rectangle> {
 /// Notes boxes that can be pushed and overlap something else at the start: the physics would throw them apart.
 fn boxes_apart(obstacles: &[(&Table<'_>, ObstacleSpec)]) {
     let is_pushed = |obstacle: &ObstacleSpec| matches!(obstacle.motion, Motion::Pushed(_));
+    let starts: Vec<Rectangle> = obstacles.iter().map(|(_, obstacle)| obstacle.start()).collect();
     for (i, (table, second)) in obstacles.iter().enumerate() {
-        let overlaps = |(_, first): &&(&Table<'_>, ObstacleSpec)| {
-            (is_pushed(first) || is_pushed(second)) && first.start().overlaps(&second.start())
+        let overlaps = |&j: &usize| {
+            let (a, b) = (&starts[i], &starts[j]);
+            let apart = a.pose.translation.vector - b.pose.translation.vector;
+            // Circles first: nearly all are far apart.
+            apart.norm_squared() <= 2.0 * (a.half_m.norm_squared() + b.half_m.norm_squared())
+                && (is_pushed(&obstacles[j].1) || is_pushed(second))
+                && b.overlaps(a)
         };
-        let Some((other, first)) = obstacles[..i].iter().find(overlaps) else { continue };
+        let Some((other, first)) = (0..i).find(overlaps).map(|j| &obstacles[j]) else { continue };
         let what = format!("the obstacles `{}` and `{}` overlap", first.name, second.name);
         let others = [(other.at("name"), "and this one")];
         let help = "a box that can be pushed may touch other things, but not overlap them";

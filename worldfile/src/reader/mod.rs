@@ -250,9 +250,18 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The tables of a list, as in `[[wall]]`; none if it is not given.
+    /// The tables of a list, as in `[[wall]]`; none if it is not given. A longer list than [`most_tables`] is an
+    /// error, and none of it is read.
     pub(crate) fn tables(&self, key: &'static str, keys: &'static str) -> Vec<Table<'a>> {
         let items = self.get(key).and_then(|value| value.items()).unwrap_or_default();
+        let most = most_tables(key);
+        if let Some(first) = items.get(most) {
+            let what = format!("this file has {} tables `[[{}]]`", items.len(), self.path(key));
+            let help =
+                format!("{most} are the most; walls can be drawn in the picture of a `[[floor_plan]]`");
+            self.file.error::<()>(&what, (first.found.span(), "one too many"), &[], &help);
+            return Vec::new();
+        }
         items.into_iter().filter_map(|item| item.table(keys)).collect()
     }
 
@@ -266,6 +275,11 @@ impl<'a> Table<'a> {
         }
         Some(name.to_owned())
     }
+}
+
+/// The maximum number of tables in a list. What can move is compared with everything else.
+fn most_tables(key: &str) -> usize {
+    if key == "wall" { 100_000 } else { 10_000 }
 }
 
 /// Whether a list of keys has this key.

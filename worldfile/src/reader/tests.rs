@@ -104,6 +104,12 @@ fn of_many_errors_the_first_are_shown_and_the_rest_are_counted() {
     }
 }
 
+#[test]
+fn a_file_with_too_many_things_is_refused_before_they_are_compared() {
+    let boxes = "[[obstacle]]\nname = \"b\"\nkind = \"box\"\n".repeat(10_001);
+    assert_eq!(firsts(&room(&boxes)), ["this file has 10001 tables `[[obstacle]]`"]);
+}
+
 /// Has every error that a value can have.
 const ALL_WRONG: &str = r#"name = ""
 wall = [{ from_m = [0.0, 0.0], to_m = [20.0, 0.0], thickness_m = -1.0 }]
