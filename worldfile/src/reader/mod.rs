@@ -265,13 +265,19 @@ impl<'a> Table<'a> {
         items.into_iter().filter_map(|item| item.table(keys)).collect()
     }
 
-    /// The name in the table; it must not be empty.
+    /// The name in the table: printable, and not empty.
     pub(crate) fn name(&self) -> Option<String> {
         let name = self.needed("name")?.text()?;
         if name.trim().is_empty() {
             let what = format!("`{}` is empty", self.path("name"));
             let help = "give it a name, as in `name = \"curious\"`";
             return self.file.error(&what, (self.at("name"), "empty"), &[], help);
+        }
+        // They would forge lines of a report, or reach the terminal.
+        if name.chars().any(char::is_control) {
+            let what = format!("`{}` has a control character", self.path("name"));
+            let help = "a name is one line of printable text";
+            return self.file.error(&what, (self.at("name"), "not printable"), &[], help);
         }
         Some(name.to_owned())
     }

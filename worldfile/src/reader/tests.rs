@@ -105,6 +105,14 @@ fn of_many_errors_the_first_are_shown_and_the_rest_are_counted() {
 }
 
 #[test]
+fn a_name_with_control_characters_is_refused() {
+    let robot = robot("a\\u001b[2Jb\\nc", "pose_m = [1.0, 1.0]");
+    assert_eq!(firsts(&room(&robot)), ["`robot.name` has a control character"]);
+    let map = room("").replace("\"room\"", "\"a\\tb\"");
+    assert_eq!(firsts(&map), ["`name` has a control character"]);
+}
+
+#[test]
 fn a_file_with_too_many_things_is_refused_before_they_are_compared() {
     let boxes = "[[obstacle]]\nname = \"b\"\nkind = \"box\"\n".repeat(10_001);
     assert_eq!(firsts(&room(&boxes)), ["this file has 10001 tables `[[obstacle]]`"]);
