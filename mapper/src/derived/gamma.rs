@@ -3,13 +3,13 @@
 /// From this shape on the cube root of a gamma variable is normal, to 1e-4 of the quantile (Wilson &
 /// Hilferty).
 const NORMAL_FROM: f64 = 100.0;
-/// The largest number of rounds; most quantiles take ten.
+/// The largest number of rounds; most quantiles take three.
 const MAX_ROUNDS: usize = 100;
 /// A quantile is found when it moves by less than this share of itself.
 const FOUND: f64 = 1e-12;
 
-/// The `probability` quantile of a gamma distribution of mean 1: Newton's method in the logarithm, within
-/// bounds that close in.
+/// The `probability` quantile of a gamma distribution of mean 1: Newton's method in the logarithm, within bounds
+/// that close in.
 pub(super) fn quantile(shape: f64, probability: f64) -> f64 {
     if shape >= NORMAL_FROM {
         let ninth = 1.0 / (9.0 * shape);
@@ -19,24 +19,38 @@ pub(super) fn quantile(shape: f64, probability: f64) -> f64 {
     let of_shape = libm::lgamma(shape);
     // No requested quantile lies beyond these bounds.
     let (mut low, mut high) = (-(40.0 / shape).min(700.0), libm::log(60.0 * (1.0 + shape)));
-    let mut log = libm::log(shape);
+    let mut log = first_guess(shape, of_shape, probability).clamp(low, high);
     for _ in 0..MAX_ROUNDS {
         let x = libm::exp(log);
         let density = libm::exp(shape * log - x - of_shape);
-        let above = lower(shape, x, density) - probability;
-        if above < 0.0 {
+        let below = lower(shape, x, density);
+        if below < probability {
             low = log
         } else {
             high = log
         }
-        let next = log - above / density;
+        // Newton's method for the logarithm of the probability: almost straight where x is small.
+        let next = log - below / density * libm::log(below / probability);
         let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (next - log).abs() < FOUND {
+        let is_found = (next - log).abs() < FOUND;
+        log = next;
+        if is_found {
             break;
         }
-        log = next;
     }
     libm::exp(log) / shape
+}
+
+/// The logarithm of a value near the quantile: from the first term of the power series where that is small, else by
+/// the rule of Wilson and Hilferty.
+fn first_guess(shape: f64, of_shape: f64, probability: f64) -> f64 {
+    let small = (libm::log(probability * shape) + of_shape) / shape;
+    if small < libm::log(0.2 * (shape + 1.0)) {
+        return small;
+    }
+    let ninth = 1.0 / (9.0 * shape);
+    let root = 1.0 - ninth + normal_quantile(probability) * libm::sqrt(ninth);
+    libm::log(shape) + 3.0 * libm::log(root.max(0.1))
 }
 
 /// The quantile of a normal distribution of variance 1 around 0, by halving.
