@@ -47,7 +47,7 @@ pub trait Travel {
     fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>);
 }
 
-/// Straight lines through everything, one metre per unit of time: for users without a planner.
+/// Straight lines through everything, one meter per unit of time: for users without a planner.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StraightLineTravel;
 

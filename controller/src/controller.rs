@@ -10,7 +10,7 @@ use nalgebra::Point2;
 /// The state of a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// There was no goal yet, or the goal was cancelled.
+    /// There was no goal yet, or the goal was canceled.
     Idle,
     /// The robot drives to its goal.
     Travelling,
@@ -150,7 +150,7 @@ impl<D: Drive> Controller<D> {
         }
     }
 
-    /// The last goal; `None` before the first, and after it was cancelled.
+    /// The last goal; `None` before the first, and after it was canceled.
     pub fn goal(&self) -> Option<&Point2<f64>> {
         match &self.state {
             State::Idle => None,

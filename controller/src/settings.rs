@@ -31,7 +31,7 @@ pub struct NavigationSettings {
     pub movement_time_allowance_s: f64,
     /// A robot that stays within this distance has not moved on, m.
     pub required_movement_radius_m: f64,
-    /// The number of recoveries within a metre before the goal is given up.
+    /// The number of recoveries within a meter before the goal is given up.
     pub max_recoveries: u32,
     /// A goal is given up after this time in any case, s.
     pub goal_timeout_s: f64,

@@ -127,7 +127,7 @@ pub(crate) fn all(steps: u64) -> anyhow::Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// The cycle rates of cells between unlike neighbours.
+/// The cycle rates of cells between unlike neighbors.
 const MIXED_RATES: [f64; 3] = [0.005, 0.01, 0.02];
 
 /// Cells alone, between cells 10 times faster, and between cells 10 times slower, seen 10 of 40 steps.

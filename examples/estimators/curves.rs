@@ -13,7 +13,7 @@ const COLUMNS: usize = 3;
 const FROM: f64 = 0.0004;
 const TO: f64 = 0.5;
 
-/// Okabe and Ito's colours, which colour-blind readers can tell apart.
+/// Okabe and Ito's colors, which color-blind readers can tell apart.
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 0, 0),
     RGBColor(153, 153, 153),

@@ -125,7 +125,7 @@ pub(crate) fn latencies(mut house: House, settings: &MapperSettings) -> anyhow::
     Ok(found)
 }
 
-/// Back and forth over four metres.
+/// Back and forth over four meters.
 fn disc_at(house: &House, time_s: f64) -> Point2<f64> {
     let along_m = (DISC_MPS * (time_s - 20.0)).rem_euclid(8.0);
     house.turned(Point2::new(1.0 + along_m.min(8.0 - along_m), DISC_PATH_M))

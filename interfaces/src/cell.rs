@@ -1,6 +1,6 @@
 use nalgebra::Point2;
 
-/// A cell by column (`x`, to the right) and row (`y`, upwards). Signed, so that the neighbour of
+/// A cell by column (`x`, to the right) and row (`y`, upwards). Signed, so that the neighbor of
 /// a border cell is a cell outside the grid and never wraps into another row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Cell {

@@ -20,7 +20,7 @@ impl Scan {
         self.angle_min_rad + index as f64 * self.angle_increment_rad
     }
 
-    /// Whether the beams close a full turn, so that the last is a neighbour of the first: up to a
+    /// Whether the beams close a full turn, so that the last is a neighbor of the first: up to a
     /// thousandth of the angle between beams, more than the rounding of an angle in 32 bits adds up to.
     pub fn is_full_turn(&self) -> bool {
         let sweep_rad = self.angle_increment_rad.abs() * self.ranges_m.len() as f64;

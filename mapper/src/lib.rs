@@ -71,7 +71,7 @@ pub enum ReadingError {
         /// The time of the last accepted reading.
         last: f64,
     },
-    /// A pose is not a number, or farther away than a million metres.
+    /// A pose is not a number, or farther away than a million meters.
     #[error("the pose of the reading at {time} is not a place on the map's plane")]
     Pose {
         /// The time of the refused reading.

@@ -32,7 +32,7 @@ impl Pose {
 /// becomes an error, and the key counts as left out.
 pub(super) struct Builder<'a, 'b> {
     pub(super) sources: &'a mut Sources<'b>,
-    /// Metres per unit of length.
+    /// Meters per unit of length.
     pub(super) length_m: f64,
     /// Radians per unit of angle.
     pub(super) angle_rad: f64,

@@ -1,7 +1,7 @@
 //! World files of the simulator Stage.
 //!
 //! [`read`] takes a `.world` file and all that it includes, writes out its definitions, and gives a
-//! [`StageWorld`]: the walls, the floor plans and the robots, in metres and radians, in Stage's own
+//! [`StageWorld`]: the walls, the floor plans and the robots, in meters and radians, in Stage's own
 //! coordinates. [`load`] makes a fleet of it that runs, [`StageWorld::to_toml`] a world file of ours.
 //!
 //! Nothing is dropped in silence. What is not valid is an error; what Stage has and this simulator

@@ -18,7 +18,7 @@ pub struct TourSpec {
 }
 
 impl TourSpec {
-    /// Reads a tour file: TOML with `waypoints_m`, a list of `[x, y]` in metres, and `repeat`
+    /// Reads a tour file: TOML with `waypoints_m`, a list of `[x, y]` in meters, and `repeat`
     /// (`false` by default: the run ends with the last waypoint).
     ///
     /// # Errors

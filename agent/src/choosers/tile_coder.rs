@@ -41,7 +41,7 @@ impl TileCoder {
         sum / self.tilings.len().max(1) as f64
     }
 
-    /// For every (p, r) of `trajectory`, moves each weight that holds it towards `target`:
+    /// For every (p, r) of `trajectory`, moves each weight that holds it toward `target`:
     /// w ← w (1 − λ) + target λ.
     pub fn learn(&mut self, trajectory: &[Features], target: f64, learning_rate: f64) {
         for tiling in &mut self.tilings {

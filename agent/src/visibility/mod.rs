@@ -2,7 +2,7 @@
 //!
 //! A strategy that looks ahead asks for the view from every point that it might go to. Views are therefore
 //! kept, and computed again only where a wall appeared or disappeared. A fine grid under a sensor of long
-//! range is cut into regions of several cells, since neighbouring cells have the same view.
+//! range is cut into regions of several cells, since neighboring cells have the same view.
 
 mod history;
 mod regions;
@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(visibility.seen_from(0).len(), 25 * 20, "up to the wall, the wall included");
     }
 
-    /// Whether the line from the centre of `from` to that of `to` passes through the inside of the
+    /// Whether the line from the center of `from` to that of `to` passes through the inside of the
     /// unit square around `cell`: cut by the square's sides, some of it is left.
     fn crosses(from: Cell, to: Cell, cell: Cell) -> bool {
         let (mut enter, mut leave) = (0.0f64, 1.0f64);

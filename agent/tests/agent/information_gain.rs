@@ -117,7 +117,7 @@ fn a_fine_grid_is_weighed_too() {
     let frame = GridFrame::new(Point2::origin(), 0.05, 240, 120).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
     for look in 0..20 {
-        // A box of half a metre that comes and goes in the left half.
+        // A box of half a meter that comes and goes in the left half.
         let is_blocked =
             |cell: Cell| look % 2 == 1 && (40..50).contains(&cell.x) && (40..50).contains(&cell.y);
         let cells = (0..frame.len()).map(|index| frame.cell(index)).map(|cell| (cell, is_blocked(cell)));

@@ -6,7 +6,7 @@ use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 use std::f64::consts::TAU;
 
-/// Local exploration (paper, section 2): a step towards the centroid of the last change, or a random step
+/// Local exploration (paper, section 2): a step toward the centroid of the last change, or a random step
 /// where nothing changed. Counts the steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LocalExploration {
@@ -58,7 +58,7 @@ pub(crate) fn random_step(
     let is_traversable = |target: &Point2<f64>| costmap.line_cost(cell(here), cell(target)).is_some();
     let targets: Vec<_> = (0..body.directions).map(step).filter(is_traversable).collect();
     let draw: u32 = rng.random_range(0..body.directions.max(1));
-    // The first traversable direction from a random one on would favour those after a gap.
+    // The first traversable direction from a random one on would favor those after a gap.
     let index = u64::from(draw) * targets.len() as u64 / u64::from(body.directions.max(1));
     targets.get(index as usize).copied().unwrap_or(*here)
 }

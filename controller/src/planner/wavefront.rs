@@ -73,7 +73,7 @@ impl Wavefront {
     }
 
     /// Spreads a wave from `source` until the cost of `target` is final (returns whether it is), or, without
-    /// a target, over all cells that can be reached. The path cost is the cost of a path *towards* the
+    /// a target, over all cells that can be reached. The path cost is the cost of a path *toward* the
     /// source: the sum of the length of each move times the cost of the cell that it enters.
     ///
     /// Waves since the last [`clear`](Self::clear) stay: start a wave only where no other wave was. Nothing

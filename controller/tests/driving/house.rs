@@ -98,7 +98,7 @@ pub(crate) struct House {
     pub(crate) map: Grid<CellState>,
     /// How often the robot drove into something, in substeps.
     pub(crate) contacts: u32,
-    /// The least gap to anything that the robot drove towards, m.
+    /// The least gap to anything that the robot drove toward, m.
     pub(crate) nearest_m: f64,
     twist: Twist,
     walls: Vec<Rectangle>,

@@ -48,9 +48,9 @@ pub struct ProjectedScan {
     pub directions: Vec<Vector2<f64>>,
     /// The result of each beam.
     pub returns: Vec<BeamReturn>,
-    /// Whether the last beam is a neighbour of the first.
+    /// Whether the last beam is a neighbor of the first.
     pub is_full_turn: bool,
-    /// The angle between neighbouring beams, rad; positive.
+    /// The angle between neighboring beams, rad; positive.
     pub spacing_rad: f64,
     rotation: UnitComplex<f64>,
     angle_min_rad: f64,
@@ -113,7 +113,7 @@ impl ProjectedScan {
         }
     }
 
-    /// The two neighbouring beams that enclose the direction towards `point`, or `None` outside
+    /// The two neighboring beams that enclose the direction toward `point`, or `None` outside
     /// of the field of view.
     pub fn enclosing(&self, point: &Point2<f64>) -> Option<(usize, usize)> {
         let beams = self.len();

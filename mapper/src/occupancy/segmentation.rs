@@ -69,7 +69,7 @@ impl Segmentation {
         }
     }
 
-    /// The normal of the surface at a hit, towards the sensor. Where the surface turns a corner,
+    /// The normal of the surface at a hit, toward the sensor. Where the surface turns a corner,
     /// the normal of the straighter side: a normal across the corner would point out of the body.
     pub(super) fn normal(&self, beam: usize, end: &Point2<f64>, scan: &ProjectedScan) -> Vector2<f64> {
         let range_m = scan.returns[beam].clear_m();

@@ -127,7 +127,7 @@ fn nine_of_ten_intervals_of_mass_0_9_hold_the_truth() {
     }
 }
 
-/// Cells side by side that change each for itself: with their neighbours the estimates scatter less, but no
+/// Cells side by side that change each for itself: with their neighbors the estimates scatter less, but no
 /// interval gets narrower for it.
 #[test]
 fn neighbours_move_an_estimate_and_make_it_no_surer() {
@@ -147,7 +147,7 @@ fn neighbours_move_an_estimate_and_make_it_no_surer() {
     assert!((near[1] / alone[1] - 1.0).abs() < 0.15, "widths {} and {}", near[1], alone[1]);
 }
 
-/// A block that comes towards the robot hides the cell that it enters next: the cell is never seen getting
+/// A block that comes toward the robot hides the cell that it enters next: the cell is never seen getting
 /// blocked, only found blocked. Free for 20 steps, blocked for 5, hidden in the last 5 of the 20.
 #[test]
 fn a_cell_that_is_hidden_before_it_gets_blocked_still_has_its_rate() {

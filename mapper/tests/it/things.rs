@@ -10,7 +10,7 @@ const PERIOD_S: f64 = 0.1;
 /// When things come and go.
 const MOMENT_S: f64 = 30.0;
 
-/// Half a metre of slow circling in the lower left room.
+/// Half a meter of slow circling in the lower left room.
 fn circle(house: &House, time_s: f64) -> Isometry2<f64> {
     let angle = 0.1 * time_s;
     let at = house.turned(Point2::new(3.0 + 0.8 * angle.cos(), 2.0 + 0.8 * angle.sin()));

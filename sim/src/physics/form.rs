@@ -6,7 +6,7 @@ use nalgebra::{Isometry2, Point2};
 pub enum Form {
     /// A disc.
     Disc {
-        /// The centre, m.
+        /// The center, m.
         center: Point2<f64>,
         /// The radius, m.
         radius_m: f64,

@@ -15,7 +15,7 @@ pub enum Body {
     Robot(usize),
 }
 
-/// The beginning of a contact between a robot and another body. The two have to separate by a millimetre
+/// The beginning of a contact between a robot and another body. The two have to separate by a millimeter
 /// before the next contact counts. When two robots touch, each of them has a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {

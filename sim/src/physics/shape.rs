@@ -12,7 +12,7 @@ pub const TOUCH_M: f64 = 1e-6;
 /// A rectangle at any pose: a wall or a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
-    /// The centre, and the direction of the first side, m and rad.
+    /// The center, and the direction of the first side, m and rad.
     pub pose: Isometry2<f64>,
     /// Half the length of each side, m.
     pub half_m: Vector2<f64>,
@@ -28,7 +28,7 @@ impl Rectangle {
         }
     }
 
-    /// The rectangle of `thickness_m` whose centre line runs from `from` to `to` (m).
+    /// The rectangle of `thickness_m` whose center line runs from `from` to `to` (m).
     pub fn along(from: Point2<f64>, to: Point2<f64>, thickness_m: f64) -> Self {
         let (along, middle) = (to - from, nalgebra::center(&from, &to));
         let length_m = along.norm();
@@ -38,7 +38,7 @@ impl Rectangle {
         Self { pose: Isometry2::from_parts(middle.into(), turn), half_m }
     }
 
-    /// The rectangle with the centre `center` and sides of `size` (m), rotated by `heading_rad`.
+    /// The rectangle with the center `center` and sides of `size` (m), rotated by `heading_rad`.
     pub fn around(center: Point2<f64>, size: Vector2<f64>, heading_rad: f64) -> Self {
         Self { pose: Isometry2::from_parts(center.into(), rotation(heading_rad)), half_m: size / 2.0 }
     }

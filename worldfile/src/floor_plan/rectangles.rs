@@ -2,7 +2,7 @@
 //!
 //! First the blocked pixels are parted into rectangles: equal runs in rows above each other make
 //! one. A run is as long as it can be, so each of these can only grow upwards and downwards; it
-//! does, over its neighbours, as far as all its columns are blocked. Rectangles that have become
+//! does, over its neighbors, as far as all its columns are blocked. Rectangles that have become
 //! the same are one. All in time proportional to the pixels (times a logarithm), and in memory
 //! proportional to the outline.
 

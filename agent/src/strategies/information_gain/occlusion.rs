@@ -6,7 +6,7 @@ use mapper::Mapper;
 /// A cell that changed is hidden while a cell between it and the robot is blocked. And a thing that enters the
 /// cell from the side of the robot comes out of its own shadow: the robot never sees the cell free and then
 /// blocked, finds both changes too late, and estimates too low a rate. Of the events of a cell with k changing
-/// neighbours, such a neighbour takes 2 / k: for the event, and for the time that is counted without it.
+/// neighbors, such a neighbor takes 2 / k: for the event, and for the time that is counted without it.
 #[derive(Clone, Debug)]
 pub(super) struct Occlusion<'a> {
     clusters: &'a Clusters,

@@ -11,7 +11,7 @@ const MAY_BE_CLOSED: f64 = 10.0;
 ///
 /// The planner knows no path past an obstacle that stood in a door when it was last seen, and a robot that
 /// never goes there never sees the door free. From a cell that changed, is mapped as blocked and is out of
-/// view, paths therefore continue from cell to cell, at a metre per unit of time.
+/// view, paths therefore continue from cell to cell, at a meter per unit of time.
 pub(super) fn times(situation: &Situation) -> Vec<f64> {
     let (mapper, frame) = (situation.mapper, situation.mapper.frame());
     let states = mapper.states().cells();

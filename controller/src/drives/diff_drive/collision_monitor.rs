@@ -48,7 +48,7 @@ struct Obstacle {
 
 /// Predicts whether the robot can still stop in time. A speed is safe if the robot, which holds it until it
 /// can react and then brakes along the same arc, keeps its distance from all sensed points and all blocked
-/// cells, even if dynamic obstacles move straight towards it. From an obstacle that is already too near the
+/// cells, even if dynamic obstacles move straight toward it. From an obstacle that is already too near the
 /// robot may only move away.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CollisionMonitor {

@@ -81,7 +81,7 @@ impl CellMap {
         let mut again = 0;
         let mut block_start = start;
         for block in self.observed[start..end].chunks_mut(BLOCK) {
-            // No early exit: the comparison of a whole block vectorises.
+            // No early exit: the comparison of a whole block vectorizes.
             if block.len() == BLOCK && block.iter().fold(true, |all, &last| all & (last == now - 1)) {
                 block.fill(now);
                 again += BLOCK as u32;

@@ -178,7 +178,7 @@ proptest! {
             if frame.contains(cell) && off < frame.resolution_m() / 2.0 - 1e-9 {
                 prop_assert!(visited.contains(&cell), "{:?} at {} is missing", cell, point);
             }
-            // Within a step of a border the neighbours count as touched too.
+            // Within a step of a border the neighbors count as touched too.
             let near = Vector2::repeat(1.5e-3 * frame.resolution_m());
             for corner in [point - near, point + near] {
                 touched.extend([(corner.x, point.y), (point.x, corner.y), (corner.x, corner.y)].map(|(x, y)| {

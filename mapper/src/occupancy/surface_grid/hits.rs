@@ -187,7 +187,7 @@ impl SurfaceGrid {
         }
     }
 
-    /// Moves the remembered surface point towards a hit.
+    /// Moves the remembered surface point toward a hit.
     fn remember(&mut self, index: usize, point: Point2<f64>, cells: &CellMap) {
         let surface = &mut self.surfaces[index];
         let at = point - cells.frame().origin();

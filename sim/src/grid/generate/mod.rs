@@ -79,7 +79,7 @@ impl PathKind {
 
 impl GridSpec {
     /// A random world, called `generated-` and the seed: an outer wall, inner walls with openings,
-    /// free-standing walls, blocks whose paths keep apart, the robot in the centre. All free cells
+    /// free-standing walls, blocks whose paths keep apart, the robot in the center. All free cells
     /// are connected. The same settings and seed give the same world, on every machine.
     pub fn generate(settings: &GenerateSettings, seed: u64) -> Self {
         let mut rng = RandomStream::new(seed, Purpose::WorldGenerator);

@@ -1,6 +1,6 @@
-//! The exact sensor of a grid world: line of sight between the centres of cells.
+//! The exact sensor of a grid world: line of sight between the centers of cells.
 //!
-//! A cell is in line of sight when the segment from the centre of the robot's cell to the centre of the cell
+//! A cell is in line of sight when the segment from the center of the robot's cell to the center of the cell
 //! passes through the inside of no other blocked cell. A segment may pass exactly through the corner at which
 //! four cells meet, unless both cells beside the corner are blocked. Line of sight is symmetric.
 //!

@@ -1,6 +1,6 @@
 use crate::physics::spec::RobotSpec;
 
-/// Steering towards a heading, 1/s.
+/// Steering toward a heading, 1/s.
 pub(super) const HEADING_GAIN: f64 = 3.0;
 /// The slowest approach to an end, m/s: with a speed in proportion to the distance the robot would never
 /// arrive.

@@ -11,7 +11,7 @@ const ARRIVED_M: f64 = 0.01;
 const WALL_SLACK_M: f64 = 0.1;
 /// Free space kept on the open side, m.
 const SIDE_MARGIN_M: f64 = 0.05;
-/// Steering towards the distance of the wall, rad per m, and its bound, rad.
+/// Steering toward the distance of the wall, rad per m, and its bound, rad.
 const LATERAL_GAIN: f64 = 2.0;
 const MAX_LEAN_RAD: f64 = 0.25;
 
@@ -22,7 +22,7 @@ const MAX_LEAN_RAD: f64 = 0.25;
 pub(in crate::physics) struct WallPatrol {
     spec: PatrolSpec,
     legs: Legs,
-    /// Whether the robot drives towards `to`; otherwise towards `from`.
+    /// Whether the robot drives toward `to`; otherwise toward `from`.
     outbound: bool,
 }
 

@@ -17,7 +17,7 @@ const CURVE_SHARE: f64 = 0.15;
 const CURVE_SCANS: Range<f64> = 10.0..50.0;
 
 /// Drives without a goal: ahead in long random curves. Where something comes too near ahead, the robot turns
-/// in place towards the side with more space, until the way is free.
+/// in place toward the side with more space, until the way is free.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Wander {
     spec: WanderSpec,

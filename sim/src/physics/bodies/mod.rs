@@ -123,7 +123,7 @@ impl Bodies {
             .friction(0.0)
             .user_data(pack(Body::Robot(self.robots.len())));
         let collider = match spec.mass_kg {
-            // The wheels turn the robot about its centre, wherever the centroid of its outline is.
+            // The wheels turn the robot about its center, wherever the centroid of its outline is.
             _ if !is_round => collider.density(0.0),
             Some(mass_kg) => collider.mass(mass_kg as f32),
             None => collider,
@@ -202,11 +202,11 @@ fn prediction_m(spec: &FleetSpec) -> Option<f32> {
         robot.drive.fastest_mps() * spec.step_s + turn_m
     });
     let farthest_m = motions_m.fold(if has_movers { MAX_MOVER_M } else { 0.0 }, f64::max);
-    // Twice: two bodies may move towards each other.
+    // Twice: two bodies may move toward each other.
     Some((2.0 * farthest_m) as f32)
 }
 
-/// The mass of a disc about the centre of a robot.
+/// The mass of a disc about the center of a robot.
 fn disc_mass(spec: &RobotSpec) -> rapier::MassProperties {
     let square_m2 = spec.radius_m * spec.radius_m;
     let mass_kg = spec.mass_kg.unwrap_or(std::f64::consts::PI * square_m2);

@@ -13,7 +13,7 @@ pub(in crate::physics) struct Blockers {
 }
 
 struct Thing {
-    /// Centre and radius of a circle around the body, m.
+    /// Center and radius of a circle around the body, m.
     center: Point2<f64>,
     radius_m: f64,
     form: Form,

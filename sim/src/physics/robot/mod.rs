@@ -91,7 +91,7 @@ impl Robot {
         values
     }
 
-    /// The centre, m.
+    /// The center, m.
     pub(super) fn at(&self) -> Point2<f64> {
         self.pose.translation.vector.into()
     }

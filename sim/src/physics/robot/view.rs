@@ -14,7 +14,7 @@ pub struct RobotView<'a> {
     pub name: &'a str,
     /// The true pose.
     pub pose: Isometry2<f64>,
-    /// The radius of the body, m. For a body with corners: the radius of the circle about its centre that
+    /// The radius of the body, m. For a body with corners: the radius of the circle about its center that
     /// contains the body.
     pub radius_m: f64,
     /// The corners of the body in its own frame, counter-clockwise, m. None: the body is round.

@@ -147,11 +147,11 @@ impl DriveLimits {
 /// The errors of odometry; all zero is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OdometryError {
-    /// Error of the distance per metre travelled.
+    /// Error of the distance per meter traveled.
     pub distance_gain: f64,
     /// Error of the heading per radian turned.
     pub turn_gain: f64,
-    /// Error of the heading per metre travelled, rad/m.
+    /// Error of the heading per meter traveled, rad/m.
     pub turn_radpm: f64,
     /// Standard deviation of the distance after 1 m, m; it grows with the square root of the distance.
     pub distance_noise_m: f64,

@@ -44,7 +44,7 @@ fn free_cells_and_the_sides_of_blocked_ones_can_be_seen() {
     --------
     --------
     ");
-    // The wall on the right of the block has lost its last free neighbour, and the block's old cell
+    // The wall on the right of the block has lost its last free neighbor, and the block's old cell
     // is free.
     world.act(&Step::Stay);
     insta::assert_snapshot!(can_be_seen(&world), @r"

@@ -1,4 +1,4 @@
-//! Many robots, each with a behaviour of its own.
+//! Many robots, each with a behavior of its own.
 
 use super::*;
 use interfaces::LaserReading;

@@ -77,7 +77,7 @@ fn lasers_see_the_pixels() {
             seen.clone_from(&reading.scan.ranges_m);
             Twist::STOP
         });
-        // Back, right, ahead (the pillar), left: metres from [1.125, 1.625].
+        // Back, right, ahead (the pillar), left: meters from [1.125, 1.625].
         let expected = [0.375, 0.375, 0.625, 0.625];
         assert!(seen.iter().zip(expected).all(|(range, right)| (range - right).abs() < 1e-5), "{seen:?}");
     }

@@ -62,7 +62,7 @@ fn robots_side_by_side_in_a_corridor_get_along() {
     for (step_s, body) in [0.1, 0.05, 0.02].into_iter().flat_map(|step_s| bodies.map(|body| (step_s, body))) {
         let corridor = format!("{WALL}[[wall]]\nmin_m = [0.0, 0.93]\nmax_m = [20.0, 1.03]\n");
         let robots = robot("a", body, 20.0, [1.0, 0.31]) + &robot("b", body, 0.5, [1.0, 0.72]);
-        // Each turns towards the other.
+        // Each turns toward the other.
         let way_m = way_m(hall(step_s, &(corridor + &robots)), |robot| if robot == 0 { 0.5 } else { -0.5 });
         assert!(way_m > 2.0, "{way_m} m at steps of {step_s} s, {body}");
     }

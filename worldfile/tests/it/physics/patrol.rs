@@ -136,7 +136,7 @@ proptest! {
         text = text.replace("rate_hz = 10.0\nnoise_std_m = 0.0", &format!("rate_hz = 10.0\nnoise_std_m = {noise}"));
         let Ok(spec) = worldfile::physics::parse_world("test.toml", &text) else { return Err(TestCaseError::reject("overlap")) };
         let mut world = PhysicsWorld::new(&spec, 0);
-        // It may pass beside at a few millimetres, or stand so from the start: it must not touch.
+        // It may pass beside at a few millimeters, or stand so from the start: it must not touch.
         let least_m = bodies_apart_m(&world).min(0.001) - 1e-6;
         drive(&mut world, Twist::STOP, 60.0, |world| assert!(bodies_apart_m(world) > least_m));
         prop_assert_eq!(world.contacts(), []);
