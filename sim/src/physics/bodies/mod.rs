@@ -19,7 +19,7 @@ use nalgebra::{Isometry2, Translation2, Vector2};
 use rapier2d::prelude as rapier;
 use serde::{Deserialize, Serialize};
 
-/// The largest motion of the surface of an obstacle in a step, m, with a margin.
+/// The maximum motion of the surface of an obstacle in a step, m, with a margin.
 const MAX_MOVER_M: f64 = 0.125;
 /// The largest motion of a corner in a step that contacts are predicted for, m: a longer motion is not straight.
 const MAX_TURN_M: f64 = 0.25;
@@ -101,20 +101,20 @@ impl Bodies {
         values
     }
 
-    /// Adds a body that stands still.
+    /// Adds a body that does not move.
     pub(super) fn add_box(&mut self, body: Body, shape: &Rectangle) -> Handle {
         let collider = cuboid(body, shape).position(to_rapier(&shape.pose));
         Handle(self.world.insert_collider(collider, None))
     }
 
-    /// Removes such a body.
+    /// Removes a body that was added by `add_box`.
     pub(super) fn remove_box(&mut self, handle: Handle) {
         self.world.remove_collider(handle.0);
     }
 
     /// Adds a robot; robots are numbered in the order in which they are added.
     pub(super) fn add_robot(&mut self, spec: &RobotSpec, step_s: f64) {
-        // Friction 0: a round robot slides along a wall, as one with a bumper ring does.
+        // Friction 0: a round robot slides along a wall, like a robot with a bumper ring.
         let corners = spec.corners.iter().map(|corner| rapier::Vector::new(corner.x as f32, corner.y as f32));
         let is_round = spec.corners.is_empty();
         let hull = if is_round { None } else { rapier::ColliderBuilder::convex_polyline(corners.collect()) };
@@ -123,7 +123,7 @@ impl Bodies {
             .friction(0.0)
             .user_data(pack(Body::Robot(self.robots.len())));
         let collider = match spec.mass_kg {
-            // The wheels turn the robot about its center, wherever the centroid of its outline is.
+            // The drive turns the robot about its center, even if the centroid of its outline is elsewhere.
             _ if !is_round => collider.density(0.0),
             Some(mass_kg) => collider.mass(mass_kg as f32),
             None => collider,
@@ -153,7 +153,7 @@ impl Bodies {
         body.set_angvel(own_velocity.turn_radps as f32, true);
     }
 
-    /// Lets one step pass.
+    /// Simulates one step.
     pub(super) fn step(&mut self) {
         for (body, was) in &mut self.free {
             *was = *self.world.bodies[*body].position();
