@@ -1,5 +1,5 @@
-//! The parts of a world that stay the same for a whole run, as plain data, and the trait of a world that can
-//! be shown.
+//! The parts of a world that are constant during a run, as plain data, and the trait of a world that can be
+//! displayed.
 
 mod grid;
 mod physics;
@@ -16,7 +16,7 @@ pub type Outline = Vec<Point2<f64>>;
 pub enum TimeUnit {
     /// Seconds of simulated time.
     Second,
-    /// Steps of a grid world, with nothing in between.
+    /// Steps of a grid world.
     Step,
 }
 
@@ -29,12 +29,12 @@ impl TimeUnit {
         }
     }
 
-    /// The unit as a word, for titles.
+    /// The unit as a plural word, for titles.
     pub fn plural(self) -> &'static str {
         self.choose("seconds", "steps")
     }
 
-    /// The unit after a number.
+    /// The symbol of the unit, for use after a number.
     pub fn symbol(self) -> &'static str {
         self.choose("s", "steps")
     }
