@@ -1,4 +1,4 @@
-//! A world of Stage has heights, this one has none: warnings where they matter.
+//! Stage worlds have heights, this simulator has none: warnings where heights matter.
 
 use super::lexer::Place;
 use super::sources::Sources;

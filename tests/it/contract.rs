@@ -6,7 +6,7 @@ use sim::grid::{GenerateSettings, GridSpec, GridWorld};
 use sim::physics::PhysicsWorld;
 use std::fmt::Debug;
 
-/// How a world is told what to do.
+/// How commands are given to a world.
 struct Words<C> {
     /// Commands that make sense; they are given over and over.
     sane: Vec<C>,
@@ -46,7 +46,7 @@ where
     assert!(readings.iter().all(is_finite));
     assert!(readings.iter().any(|reading| reading.pose() != readings[0].pose()), "nothing moves");
 
-    // The same seed and commands give the same readings, however often the robot looks.
+    // The same seed and commands give the same readings, however often the robot senses.
     assert_eq!(life(1, 1), readings);
     assert_eq!(life(1, 3), readings, "looking changes what comes");
 

@@ -1,4 +1,4 @@
-//! The dummy waits while the curious robot stands in its way, and the map tells so.
+//! The dummy robot waits while the curious robot is in its way, and the map shows it.
 
 use interfaces::{CellState, Twist};
 use mapper::{Mapper, MapperSettings};
@@ -40,7 +40,7 @@ fn it_waits_and_goes_on() {
         let dummy = world.robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
         way.push((reading.time_s, dummy.x));
         if reading.time_s < STANDS_UNTIL_S {
-            // The front of the dummy's body, which the robot looks at.
+            // The front of the dummy's body, which the robot observes.
             let front = Point2::new(dummy.x + 0.18, dummy.y);
             seen_waiting.push(belief.mapper.states().get(belief.mapper.frame().cell_at(&front)).copied());
         }

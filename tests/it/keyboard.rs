@@ -45,7 +45,7 @@ fn starts(run: &Run) {
     assert!(is_there, "it does not start");
 }
 
-/// The hash of a robot that stands for as long.
+/// The hash of a robot that stands still for the same time.
 fn stands(simulated_s: f64) -> String {
     let run = Run::new();
     run.write("stay.toml", "waypoints_m = [[2.0, 2.0]]\nrepeat = true\n");

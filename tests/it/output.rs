@@ -1,4 +1,4 @@
-//! Everything that a run leaves behind is there, and tells the same story.
+//! All output files of a run exist, and agree with each other.
 
 use crate::recording::Recording;
 use crate::run::Run;

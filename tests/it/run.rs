@@ -17,7 +17,7 @@ pub(crate) struct Run {
     program: &'static str,
 }
 
-/// How a run ended, and what it said.
+/// The exit status of a run, and its output.
 #[derive(Debug)]
 pub(crate) struct Ended {
     pub(crate) code: Option<i32>,

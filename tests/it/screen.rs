@@ -57,7 +57,7 @@ fn help_names_every_choice() {
     assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
 }
 
-/// A port where nobody listens.
+/// A port on which no program listens.
 fn free_port() -> u16 {
     TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }

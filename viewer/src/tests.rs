@@ -38,7 +38,7 @@ impl Driver {
     }
 }
 
-/// The run so far.
+/// The state of the run.
 pub(crate) struct FakeRun {
     pub(crate) scene: Scene,
     pub(crate) has_agent: bool,
@@ -176,7 +176,7 @@ impl FakeRun {
         }
     }
 
-    /// Calls `use_view` with the run as it is now.
+    /// Calls `use_view` with the present state of the run.
     pub(crate) fn with_view<T>(&mut self, use_view: impl FnOnce(&View) -> T) -> T {
         let features = Features::of(&mut self.mapper);
         let goal = self.curious.waypoints[self.curious.next % self.curious.waypoints.len()];

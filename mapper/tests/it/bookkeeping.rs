@@ -22,7 +22,7 @@ struct Glance {
     size: (i32, i32),
     /// Bit i: the cell at place i changes before this reading.
     changes: u32,
-    /// Whether somebody asks for the features after it.
+    /// Whether the features are computed after it.
     asks: bool,
 }
 

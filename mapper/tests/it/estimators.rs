@@ -1,4 +1,4 @@
-//! What must hold of estimates whatever was seen, and how `two-state-gaps` deals with what is no Markov chain.
+//! Properties of estimates for any observations, and how `two-state-gaps` treats cells that are not Markov chains.
 
 use interfaces::{Cell, CellReading, GridFrame};
 use mapper::{EstimatorChoice, Mapper, MapperSettings, TwoState, TwoStateGaps};
@@ -43,7 +43,7 @@ fn cycle_rate([block, free]: [f64; 2]) -> f64 {
     block * free / (block + free)
 }
 
-/// A stream of looks at three cells: which of them are seen, and which are blocked.
+/// A stream of observations of three cells: which of them are seen, and which are blocked.
 fn streams() -> impl Strategy<Value = Vec<[(bool, bool); 3]>> {
     prop::collection::vec(prop::array::uniform3((prop::bool::weighted(0.7), any::<bool>())), 2..120)
 }

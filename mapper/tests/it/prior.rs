@@ -5,7 +5,7 @@ use crate::observed::{assert_sound, changes};
 use interfaces::{CellState, Event, Grid};
 use mapper::{Mapper, MapperSettings, OccupancyChoice};
 
-/// A house as it was, with a box that is gone by now and without one that has come.
+/// A prior map of a house: with a box that has been removed since, and without a box that has appeared since.
 fn prior(house: &House) -> Grid<CellState> {
     let cells = (0..house.frame.len()).map(|index| house.truth(index, 0.0)).collect();
     Grid::from_cells(house.frame, cells).unwrap()

@@ -17,7 +17,7 @@ fn circle(house: &House, time_s: f64) -> Isometry2<f64> {
     interfaces::pose(at.x, at.y, angle)
 }
 
-/// Scans the house up to `until_s`, and tells after every scan.
+/// Scans the house up to `until_s`, and calls the closure after every scan.
 fn watch(house: &mut House, until_s: f64, mut after: impl FnMut(f64, &Mapper, &House)) {
     let mut mapper = Mapper::new(&MapperSettings::default(), house.frame).unwrap();
     for scan in 0..(until_s / PERIOD_S) as u32 {
@@ -123,7 +123,7 @@ fn cells_are_free_again_behind_a_disc_that_passes_along_a_wall() {
     }
 }
 
-/// One scan of nonsense among good ones, for a mapper that is told of spurious returns.
+/// One nonsense scan among good ones, for a mapper that is configured for spurious returns.
 #[test]
 fn a_single_scan_of_noise_changes_nothing() {
     let mut house = House::new(0.1, 0.0, 0.0, 360, 2);

@@ -1,4 +1,4 @@
-//! A static place never changes, however long one looks.
+//! A static environment never changes in the map, however long it is observed.
 
 use crate::house::House;
 use crate::observed::{Observed, assert_sound, changes};

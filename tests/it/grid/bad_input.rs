@@ -11,7 +11,7 @@ fn refused(arguments: &str) -> String {
     refuses(&Run::grid(), arguments, &[])
 }
 
-/// What is said to the shipped world with a mistake in it.
+/// The messages for a shipped world with a mistake in it.
 #[track_caller]
 fn refused_world(right: &str, wrong: &str) -> String {
     assert!(WORLD.contains(right), "{right} is not in the world");

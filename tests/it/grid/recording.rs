@@ -1,4 +1,4 @@
-//! `--rrd` shows the first trial as it was.
+//! `--rrd` records the first trial as it was.
 
 use super::{ran, rows};
 use crate::recording::Recording;

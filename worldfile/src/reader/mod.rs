@@ -1,9 +1,9 @@
 //! Reads a TOML file table by table and reports everything that is invalid at once.
 //!
-//! The tables and values of a file are asked for by key, with their type and range. What is invalid is noted, and
-//! the answer is `None`: the caller goes on with the rest, so that one error does not hide another, and judges
-//! nothing by what it does not have, so that one error causes no other. A table is opened with the list of its
-//! keys, since an unknown key may be the misspelling of one that then seems to be missing.
+//! The caller asks for tables and values by key, with their type and range. If one is invalid, the error is
+//! recorded and the answer is `None`. The caller continues with the rest, so that one error does not hide another,
+//! and does not judge anything by a missing value, so that one error does not cause another. A table is opened with
+//! the list of its keys: an unknown key may be a misspelling of a key that then seems to be missing.
 
 mod spelling;
 #[cfg(test)]
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 pub(crate) use value::{Value, extent};
 
-/// The number of errors that are shown; further ones are only counted.
+/// The number of errors that are shown; further errors are only counted.
 const MOST_SHOWN: usize = 20;
 
 /// The kinds of files: two kinds of worlds, and tours.
@@ -44,11 +44,11 @@ struct FileError {
     help: String,
 }
 
-/// Reads a file: `build` makes what it describes from its root table, which has the keys `keys`.
+/// Reads a file: `build` makes the result from the root table, which has the keys `keys`.
 ///
 /// # Errors
 ///
-/// When the text is not TOML, describes a world of the other kind, or anything was noted as invalid.
+/// When the text is not TOML, describes a world of the other kind, or anything was recorded as invalid.
 pub(crate) fn read<T>(
     name: &str,
     text: &str,

@@ -143,7 +143,7 @@ pub(super) fn busy() -> FleetSpec {
     house(places.map(robot).to_vec(), things)
 }
 
-/// Robots that look at nothing and drive in wild curves.
+/// Robots that ignore their sensors and drive in wild curves.
 pub(super) fn reckless(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
     let phase = reading.time_s * (0.3 + 0.1 * robot.index as f64);
     Twist { linear_mps: 0.5 * libm::cos(phase * 0.7), angular_radps: 1.5 * libm::sin(phase) }

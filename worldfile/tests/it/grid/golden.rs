@@ -32,7 +32,7 @@ fn hash(spec: &GridSpec) -> String {
     format!("{:016x}", hash.0)
 }
 
-/// The same on every machine, and as long as nobody means to change it.
+/// The same on every machine, until it is changed on purpose.
 #[test]
 fn shipped_worlds_run_as_they_always_did() {
     let mut hashes = String::new();

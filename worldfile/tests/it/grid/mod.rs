@@ -31,7 +31,7 @@ fn block(name: &str, dwell: u32, course: &str, path: &str) -> String {
     format!("[[block]]\nname = \"{name}\"\ndwell = {dwell}\ncourse = \"{course}\"\npath = {path}\n")
 }
 
-/// A way of so many steps that depends on nothing but its number.
+/// A sequence of this number of steps that depends only on its number.
 fn way(number: u64) -> impl Iterator<Item = Step> {
     // Knuth's MMIX generator; its high bits are good enough to wander about.
     let mut state = number;

@@ -1,4 +1,4 @@
-//! Drives of every kind, and what they are told.
+//! Drives of every kind, and their commands.
 
 use super::fleet::{house, robot};
 use super::*;
@@ -172,7 +172,7 @@ fn lasers_look_each_at_its_rate_and_from_its_place() {
     assert_eq!(times.iter().map(Vec::len).collect::<Vec<_>>(), [20, 40, 4]);
     let robot = fleet.robots().next().unwrap();
     let readings: Vec<&LaserReading> = robot.lasers().flatten().collect();
-    // Of four beams over a full turn the third looks straight ahead: to the left of the robot.
+    // Of four beams over a full turn, the third points straight ahead: to the left of the robot.
     let ranges_m = &readings[1].scan.ranges_m;
     assert!(((readings[1].pose * readings[1].mount).translation.x - 3.1).abs() < 1e-6);
     let main = &readings[0].scan.ranges_m;
@@ -183,7 +183,7 @@ fn lasers_look_each_at_its_rate_and_from_its_place() {
     let mut alone = Fleet::new(&with(laser), 7);
     alone.run_until(2.0, &mut Say(Command::STOP));
     assert_eq!(alone.robots().next().unwrap().reading, robot.reading);
-    // And a snapshot knows them all.
+    // A snapshot contains them all, too.
     let snapshot = fleet.snapshot();
     let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();
     for fleet in [&mut fleet, &mut again] {

@@ -1,4 +1,4 @@
-//! Whoever is in the way of each other is parted, and goes on.
+//! Bodies that are in each other's way are separated, and continue.
 
 use super::things::pushed;
 use super::*;
@@ -15,7 +15,7 @@ fn hall(step_s: f64, things: &str) -> Fleet {
     )
 }
 
-/// A quick robot that looks along x.
+/// A fast robot with its heading along x.
 fn robot(name: &str, body: &str, mass_kg: f64, at: [f64; 2]) -> String {
     format!(
         "[[robot]]\nname = \"{name}\"\n{body}\nmass_kg = {mass_kg:?}\npose_m = {at:?}\nbehaviour = {{ kind = \"driven\" }}\n\
@@ -24,7 +24,7 @@ fn robot(name: &str, body: &str, mass_kg: f64, at: [f64; 2]) -> String {
     )
 }
 
-/// How far along x the first robot comes in 4 s, driving at 1 m/s and turning as it is told.
+/// The distance along x that the first robot covers in 4 s, driving at 1 m/s and turning at the commanded rate.
 fn way_m(mut fleet: Fleet, turn: impl Fn(usize) -> f64) -> f64 {
     let x = |fleet: &Fleet| fleet.robots().next().unwrap().pose.translation.x;
     let from = x(&fleet);

@@ -41,7 +41,7 @@ fn four_rooms_but(replacements: &[(&str, &str)], more: &str) -> WorldSpec {
     parse(&format!("{text}\n{more}"))
 }
 
-/// Lets the world go on under one command for some seconds, with a look at every reading.
+/// Simulates the world under one command for some seconds, with a call at every reading.
 fn drive(world: &mut PhysicsWorld, twist: Twist, seconds: f64, mut see: impl FnMut(&PhysicsWorld)) {
     for _ in 0..(seconds * 10.0).round() as usize {
         world.act(&twist);

@@ -1,4 +1,4 @@
-//! Random worlds: nothing leaves its place, whatever stands in it.
+//! Random worlds: no body leaves its place, whatever its surroundings.
 
 use super::*;
 use interfaces::LaserReading;
@@ -116,7 +116,7 @@ fn passes(fleet: &Fleet, from: &Point2<f64>, to: &Point2<f64>) -> bool {
     fleet.spec().walls.iter().any(|wall| wall.segment_distance_m(from, to) <= 0.0)
 }
 
-/// How deep the bodies of two kinds lay in each other at most, m, and where.
+/// The maximum depth by which the bodies of two kinds penetrated each other, m, and where.
 #[derive(Debug, Default)]
 struct Deepest(BTreeMap<(&'static str, &'static str), (f64, String)>);
 
@@ -153,7 +153,7 @@ impl Deepest {
         }
     }
 
-    /// Half a centimeter, and what rounding adds, whatever meets whatever at whatever speed.
+    /// Half a centimeter plus rounding, for all bodies at all speeds.
     fn check(&self) {
         for ((a, b), (depth_m, place)) in &self.0 {
             assert!(*depth_m < 0.0051, "{a} is {depth_m} m deep in {b}: {place}");
