@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 const STANDS_UNTIL_S: f64 = 30.0;
 const END_S: f64 = 60.0;
 
-/// Stands for a while, and goes.
+/// A robot that stands still for a while, and then drives away.
 struct Visitor;
 
 impl Pilot for Visitor {
@@ -22,7 +22,7 @@ impl Pilot for Visitor {
     }
 }
 
-/// The shipped house, with the curious robot in the middle of the dummy's way, facing down.
+/// The shipped house, with the curious robot in the middle of the dummy robot's path, pointing down.
 fn world() -> PhysicsWorld {
     let (name, text) = curious::worlds::SHIPPED[0];
     let text = text.replacen("pose_m = [2.0, 2.0]", "pose_m = [9.5, 11.5]", 1);

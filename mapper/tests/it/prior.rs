@@ -61,7 +61,7 @@ fn changes_are_found_against_it_and_nothing_else() {
     }
     assert_eq!(went, 64, "all of the box that went");
     assert!(came >= 8, "the near sides of the box that came: {came}");
-    // Nobody watched these changes happen.
+    // These changes were not in view.
     for index in mapper.changed() {
         let seen = mapper.statistics(index);
         assert_eq!((seen.block_events + seen.free_events, seen.events()), (0, 1), "{seen:?}");
