@@ -1,5 +1,5 @@
-//! What the tests share: a simulated run of four rooms, a robot that drives a tour, another that goes back and
-//! forth, and scans from a few lines of geometry. No physics, no agent.
+//! Shared parts of the tests: a simulated run of four rooms, a robot that drives a tour, another that drives back
+//! and forth, and scans from a simple geometry. No physics, no agent.
 
 use crate::scene::{Obstacle, Outline, Robot, RobotState, Scene, Sight, TimeUnit};
 use crate::view::{Measured, View};
@@ -116,7 +116,7 @@ impl FakeRun {
         }
     }
 
-    /// Lets a tenth of a second pass.
+    /// Simulates a tenth of a second.
     pub(crate) fn step(&mut self) {
         self.messages.clear();
         if self.curious.step() {

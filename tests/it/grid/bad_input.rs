@@ -1,5 +1,5 @@
-//! Bad input is one message that says where, what is wrong and what would be right; the exit code
-//! is 2, and nothing is written.
+//! Invalid input leads to one message with the place, what is invalid and what would be valid. The exit code is 2,
+//! and nothing is written.
 
 use crate::bad_input::refuses;
 use crate::run::Run;

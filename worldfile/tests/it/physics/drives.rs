@@ -5,7 +5,7 @@ use super::*;
 use interfaces::{LaserReading, pose, wrap_rad};
 use nalgebra::Isometry2;
 
-/// A controller that always says the same.
+/// A controller that always gives the same command.
 struct Say(Command);
 
 impl Controller for Say {
@@ -133,7 +133,7 @@ fn a_car_drives_the_circle_of_its_wheels() {
         let off_m: f64 = (now(&fleet).0.translation.vector - middle.coords).norm() - radius_m;
         assert!(off_m.abs() < 2e-3, "{off_m}");
     }
-    // It cannot turn in place.
+    // This robot cannot turn in place.
     let mut fleet = alone("kind = \"car\"\nwheelbase_m = 0.4");
     fleet.run_until(2.0, &mut Say(Command::Velocity(Velocity { turn_radps: 1.0, ..Velocity::STOP })));
     assert!((now(&fleet).0.rotation.angle()).abs() < 1e-9);
@@ -179,7 +179,7 @@ fn lasers_look_each_at_its_rate_and_from_its_place() {
     assert!((main[45 + 22] - ranges_m[2]).abs() < 0.2, "{main:?} {ranges_m:?}");
     let missing = readings[2].scan.ranges_m.iter().filter(|range_m| range_m.is_nan()).count();
     assert!((5..30).contains(&missing), "{missing}");
-    // The other lasers change nothing that the first one sees.
+    // The other lasers do not change the readings of the first one.
     let mut alone = Fleet::new(&with(laser), 7);
     alone.run_until(2.0, &mut Say(Command::STOP));
     assert_eq!(alone.robots().next().unwrap().reading, robot.reading);

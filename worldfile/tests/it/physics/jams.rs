@@ -4,7 +4,7 @@ use super::things::pushed;
 use super::*;
 use interfaces::LaserReading;
 
-/// A hall of 20 m × 4 m, and what is in it.
+/// A hall of 20 m × 4 m, with further parts.
 fn hall(step_s: f64, things: &str) -> Fleet {
     let text = format!(
         "name = \"hall\"\n[map]\nsize_m = [20.0, 4.0]\ncell_m = 0.1\n[physics]\nstep_s = {step_s:?}\n{things}"

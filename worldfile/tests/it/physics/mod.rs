@@ -1,4 +1,4 @@
-//! The physics world as a whole.
+//! Tests of the physics world as a whole.
 
 mod contacts;
 mod contract;
@@ -49,7 +49,7 @@ fn drive(world: &mut PhysicsWorld, twist: Twist, seconds: f64, mut see: impl FnM
     }
 }
 
-/// How far the closest pair of the robots' bodies is apart, m.
+/// The smallest distance between the bodies of two robots, m.
 fn bodies_apart_m(world: &PhysicsWorld) -> f64 {
     let robots: Vec<RobotView<'_>> = world.robots().collect();
     let pairs = (0..robots.len()).flat_map(|b| (0..b).map(move |a| (a, b)));

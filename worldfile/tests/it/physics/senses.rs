@@ -92,7 +92,7 @@ fn a_flat_touch_presses_every_bumper_along_it_until_they_part() {
     assert_eq!(pressed(&fleet), [true; 3]);
     assert_eq!(fleet.contacts().len(), 1);
     assert_eq!(fleet.robots().next().unwrap().touching, [fleet.contacts()[0].with]);
-    // At rest against the wall it still feels it.
+    // At rest against the wall the bumper still detects the contact.
     fleet.run_until(4.0, &mut drive(0.0));
     assert_eq!(pressed(&fleet), [true; 3]);
     assert_eq!(fleet.contacts(), []);
