@@ -25,7 +25,7 @@ pub struct ThingReport {
     pub in_view_s: Option<f64>,
     /// The time at which the first cell of the thing was correct in the map, s.
     pub noticed_s: Option<f64>,
-    /// The time when nine tenths of the cells that were shown in the first three seconds were correct.
+    /// The time at which nine tenths of the cells that were shown in the first three seconds were correct, s.
     pub right_s: Option<f64>,
 }
 

@@ -62,14 +62,14 @@ pub enum Repeat {
     Once,
 }
 
-/// Driving along a wall, back and forth (paper, section 5).
+/// Settings of a patrol along a wall, back and forth (paper, section 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatrolSpec {
     /// One end of the path of the center of the robot, m.
     pub from: Point2<f64>,
-    /// The other end, m.
+    /// The other end of the path of the center of the robot, m.
     pub to: Point2<f64>,
-    /// The speed on the legs, m/s.
+    /// The linear speed on the legs, m/s.
     pub speed_mps: f64,
     /// Whether the wall is on the left from `from` to `to`.
     pub wall_on_left: bool,
@@ -80,7 +80,7 @@ pub struct PatrolSpec {
 }
 
 impl PatrolSpec {
-    /// The least distance between the wall and the body of the robot, m.
+    /// The minimum distance between the wall and the body of the robot, m.
     pub const WALL_RELIEF_M: f64 = 0.05;
 }
 
