@@ -32,7 +32,7 @@ pub struct AgentSettings {
     pub patch_cells: usize,
     /// The range of the sensor, m. Used by strategies that compute visibility.
     pub sensor_radius_m: f64,
-    /// What counts as a map update.
+    /// The events that count as map updates.
     pub reward: Reward,
     /// Settings of the paper's chooser.
     pub curious: CuriousSettings,

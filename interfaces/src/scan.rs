@@ -50,7 +50,7 @@ impl Scan {
     }
 }
 
-/// Why a scan was refused.
+/// The error for a scan that is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ScanError {
     /// An angle is NaN or infinite.

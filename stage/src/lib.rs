@@ -211,7 +211,7 @@ impl StageRobot {
         lasers.chain(sonars).chain(self.fiducial.iter().map(|sensor| ("fiducial finder", sensor)))
     }
 
-    /// What it covers here, where it starts.
+    /// The area that the robot covers in this simulator at its start.
     fn form(&self) -> Form {
         Form::new(&self.outline, self.radius_m(), &self.pose)
     }

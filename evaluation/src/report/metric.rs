@@ -53,9 +53,9 @@ metrics! {
     changing_share => ChangingShare,
     /// Brier score of the two-state model for swept cells out of view.
     brier => Brier,
-    /// The same of the state last seen.
+    /// Brier score of the state that was last seen, for swept cells out of view.
     brier_last_seen => BrierLastSeen,
-    /// The same of the average state.
+    /// Brier score of the share of the time in view during which the cell was blocked, for swept cells out of view.
     brier_mean => BrierMean,
 }
 

@@ -30,7 +30,7 @@ impl RrdFile {
         Self::with_output(path, Box::new(file)).map_err(failed)
     }
 
-    /// As [`RrdFile::create`], into `output`; `path` is only for errors.
+    /// Like [`RrdFile::create`], with an `output`; `path` is used only in errors.
     pub(super) fn with_output(path: &Path, output: Output) -> Result<Self, String> {
         let version = rerun::build_info().version;
         let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, output);

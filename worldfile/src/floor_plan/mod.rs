@@ -77,7 +77,7 @@ pub struct Segment {
 /// A picture of walls with its size and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorPlan {
-    /// Which pixels are blocked; several plans may share them.
+    /// The blocked pixels; several plans may share them.
     pub bitmap: Arc<Bitmap>,
     /// The width and the height of a pixel, m.
     pub pixel_m: Vector2<f64>,

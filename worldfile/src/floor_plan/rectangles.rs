@@ -10,9 +10,9 @@ use super::bitmap::Bitmap;
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PixelRectangle {
-    /// Its lower left corner: column and row.
+    /// The lower left corner: column and row.
     pub min: [u32; 2],
-    /// Its upper right corner.
+    /// The upper right corner: column and row.
     pub max: [u32; 2],
 }
 

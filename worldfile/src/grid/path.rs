@@ -123,7 +123,7 @@ impl Path<'_> {
         self.table.error(&what, self.mark(points - 1, "ends here"), &[self.mark(0, "begins here")], help)
     }
 
-    /// Notes a path through a wall.
+    /// Records a path through a wall.
     fn is_free(&self, cell: Cell, mark: Mark<'_>, others: &[Mark<'_>]) -> Option<()> {
         if self.drawing.walls.get(cell) == Some(&false) {
             return Some(());

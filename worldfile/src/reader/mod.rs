@@ -69,7 +69,7 @@ pub(crate) fn read<T>(
 }
 
 impl File<'_> {
-    /// Notes an error at `mark`, with `others` that explain it and `help` that says what would be valid.
+    /// Records an error at `mark`; `others` are places that explain it, and `help` states what is valid.
     pub(crate) fn error<T>(&self, what: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> Option<T> {
         let owned = |(span, label): &Mark<'_>| (span.clone(), (*label).to_owned());
         self.errors.borrow_mut().push(FileError {
@@ -142,13 +142,13 @@ impl File<'_> {
 /// A table of the file.
 pub(crate) struct Table<'a> {
     pub(crate) file: &'a File<'a>,
-    /// As in `robot.laser`; empty for the root.
+    /// The path of the table, for example `robot.laser`; empty for the root.
     path: String,
-    /// Its keys, separated by `, `.
+    /// The valid keys, separated by `, `.
     keys: &'static str,
-    /// `None`: it is left out.
+    /// The value of the table; `None` if it is left out.
     entries: Option<&'a DeTable<'a>>,
-    /// Its place in the file; of a table with a header, the header.
+    /// The place in the file; for a table with a header, the place of the header.
     pub(crate) span: Range<usize>,
     is_sound: bool,
     /// The keys that unknown keys seem to mean: they are not missing as well.
@@ -156,7 +156,7 @@ pub(crate) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Notes every unknown key.
+    /// Records every unknown key.
     fn open(
         file: &'a File<'a>,
         path: String,
@@ -186,7 +186,7 @@ impl<'a> Table<'a> {
         self.is_sound.then_some(value)
     }
 
-    /// Notes an error about the meaning of the table, unless it could be due to an unknown key.
+    /// Records an error about the meaning of the table, unless the error could be due to an unknown key.
     pub(crate) fn error<T>(&self, what: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> Option<T> {
         self.sound(())?;
         self.file.error(what, mark, others, help)
