@@ -1,4 +1,4 @@
-//! What it costs to read floor plans: `cargo bench -p benches --bench floor_plan`.
+//! The time to read floor plans: `cargo bench -p benches --bench floor_plan`.
 
 use divan::{Bencher, black_box};
 use image::{DynamicImage, GrayImage, ImageFormat, Luma};
@@ -14,8 +14,8 @@ fn main() {
     divan::main();
 }
 
-/// A picture of 1000 × 1000 pixels: the shipped ones repeated, rooms of 20 × 20 pixels with doors,
-/// and walls of which every pixel of the surface is rough.
+/// A picture of 1000 × 1000 pixels: a shipped picture, repeated (rooms of 20 × 20 pixels with doors), and walls
+/// with a rough surface at every pixel.
 fn picture(kind: &str) -> Vec<u8> {
     let shipped = |bytes: &[u8]| Bitmap::decode_dark(bytes, 0.5).unwrap_or_else(|error| panic!("{error}"));
     let is_dark: Box<dyn Fn(u32, u32) -> bool> = match kind {
@@ -51,8 +51,8 @@ fn plan_of_1000_by_1000(bencher: Bencher<'_, '_>, kind: &str) {
     });
 }
 
-/// From a world file with such a picture, in pixels of 5 cm, to a fleet of one robot whose laser of
-/// 10 m knows what can be seen from where.
+/// From a world file with such a picture, in pixels of 5 cm, to a fleet of one robot whose laser has a range of 10
+/// m, with its potentially visible set.
 #[divan::bench(args = ["office", "rooms", "cave"], sample_count = 3)]
 fn fleet_of_1000_by_1000(bencher: Bencher<'_, '_>, kind: &str) {
     let bytes = picture(kind);

@@ -1,5 +1,5 @@
-//! How long the next goal takes on a house of 12 × 12 m in cells of 0.05 m, all of it seen, with
-//! 2000 cells that ever changed: once per goal, so every few seconds of a robot's life.
+//! The time to select a goal in a completely seen house of 12 × 12 m in cells of 0.05 m, with 2000 cells that ever
+//! changed. A goal is selected every few seconds of simulated time.
 
 use agent::{Agent, AgentSettings, Features, Policy, StraightLineTravel};
 use interfaces::{Cell, CellReading, GridFrame, Purpose, RandomStream};
@@ -12,7 +12,7 @@ fn main() {
 
 const SIDE: i32 = 240;
 
-/// Rooms of 4 × 4 m that were seen one after the other; things come and go in one of them.
+/// Rooms of 4 × 4 m that were observed one after the other; obstacles appear and disappear in one of them.
 fn house() -> Mapper {
     let frame = GridFrame::new(Point2::origin(), 0.05, SIDE as usize, SIDE as usize).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
@@ -36,7 +36,7 @@ fn next_goal(bencher: divan::Bencher, strategy: &str) {
     let policy: Policy = strategy.parse().unwrap();
     let mut agent = Agent::new(&settings, &policy, RandomStream::new(0, Purpose::Agent)).unwrap();
     let (features, pose) = (Features::of(&mut mapper), Isometry2::identity());
-    // A trajectory of 5 s at 10 Hz, learned from in the same call.
+    // A trajectory of 5 s at 10 Hz; the same call learns from it.
     bencher.bench_local(|| {
         for _ in 0..50 {
             agent.watch(features, &[]);

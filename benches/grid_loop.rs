@@ -1,12 +1,12 @@
-//! What a step costs in a grid world: `cargo bench -p benches --bench grid_loop`.
+//! The time of a step in a grid world: `cargo bench -p benches --bench grid_loop`.
 //!
-//! Every bench takes 20,000 steps and tells how many there are in a second. [`whole`] is the loop as
-//! the program runs it, without metrics: sense, map, features, choose, plan, act. The other two leave
-//! out the choice of goals ([`known_goals`]), and planning and following too ([`known_way`]), by doing
-//! again what was done before; so the differences are what each part costs.
+//! Every benchmark simulates 20,000 steps and reports the steps per second. [`whole`] is the loop as the program
+//! runs it, without metrics: sense, map, features, choose, plan, act. The other two replay recorded decisions:
+//! [`known_goals`] does not choose goals, [`known_way`] in addition does not plan and follow paths. The differences
+//! are the times of these parts.
 //!
-//! Two things must hold: `whole` in the world of 25 × 25 cells makes 300,000 steps per second or more,
-//! and `known_way`, which is all but deciding, takes at most three times as long with 200 × 200 cells.
+//! Two conditions must hold: `whole` in the world of 25 × 25 cells runs at 300,000 steps per second or more, and
+//! `known_way` (everything except decisions) needs at most three times as long with 200 × 200 cells.
 
 use agent::{Agent, AgentSettings, Travel};
 use controller::{CellDrive, Controller};
@@ -21,7 +21,7 @@ use std::ops::ControlFlow;
 const STEPS: usize = 20_000;
 const SEED: u64 = 1;
 
-/// The paper's world and random ones, all seen with radius 4, and how goals are chosen.
+/// The paper's world and random worlds, all with a sensor range of 4 cells, and how goals are chosen.
 const RUNS: [(&str, &str); 6] = [
     ("two_blocks", "recency"),
     ("two_blocks", "curious"),
@@ -41,7 +41,7 @@ fn world(name: &str) -> GridSpec {
         "200 x 200" => 200,
         shipped => return worldfile::shipped::load_grid(shipped).expect("a shipped world is valid"),
     };
-    // The larger, the more rooms.
+    // Larger worlds have more rooms.
     let rooms = (side / 12u32).pow(2);
     let settings = GenerateSettings {
         width: [side; 2],
@@ -93,7 +93,7 @@ fn agent(policy: &str) -> Agent {
     Agent::new(&AgentSettings::default(), &policy, rng).expect("defaults make sense")
 }
 
-/// An agent, and what it decided.
+/// An agent, and its recorded decisions.
 struct Remembering {
     agent: Agent,
     visits: Vec<Destination>,
@@ -115,7 +115,7 @@ impl GoalSelector for Remembering {
     }
 }
 
-/// Decides what was decided before.
+/// Repeats recorded decisions.
 struct Repeating(std::vec::IntoIter<Destination>);
 
 impl GoalSelector for Repeating {
@@ -128,7 +128,7 @@ impl GoalSelector for Repeating {
     }
 }
 
-/// Remembers every command of a pilot.
+/// Records every command of a pilot.
 struct Followed<P> {
     pilot: P,
     way: Vec<Step>,
@@ -144,7 +144,7 @@ impl<P: Pilot<Command = Step>> Pilot for Followed<P> {
     }
 }
 
-/// Gives commands that were given before.
+/// Repeats recorded commands.
 struct Way(std::vec::IntoIter<Step>);
 
 impl Pilot for Way {
@@ -162,13 +162,13 @@ fn bench<P: Pilot<Command = Step>>(bencher: Bencher<'_, '_>, spec: &GridSpec, pi
         .bench_local_values(Run::run);
 }
 
-/// The whole loop.
+/// The complete loop.
 #[divan::bench(args = RUNS, sample_count = 20, sample_size = 1)]
 fn whole(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     bench(bencher, &world(name), || autonomous(agent(policy)));
 }
 
-/// All but the choice of goals.
+/// The loop without the choice of goals.
 #[divan::bench(args = RUNS, sample_count = 20, sample_size = 1)]
 fn known_goals(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     let spec = world(name);
@@ -181,7 +181,7 @@ fn known_goals(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     bench(bencher, &spec, again);
 }
 
-/// All but the choice of goals, planning and following.
+/// The loop without the choice of goals, planning and path following.
 #[divan::bench(args = RUNS, sample_count = 20, sample_size = 1)]
 fn known_way(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     let spec = world(name);

@@ -1,4 +1,4 @@
-//! What a step of a grid world costs: `cargo bench -p benches --bench grid_world`.
+//! The time of a step of a grid world: `cargo bench -p benches --bench grid_world`.
 
 use divan::{Bencher, black_box};
 use interfaces::{Step, World};
@@ -7,16 +7,16 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sim::grid::{GenerateSettings, GridSpec, GridWorld};
 
-/// Cells per side and the sensor's radius.
+/// The number of cells per side, and the range of the sensor.
 const SIZES: [(u32, u32); 4] = [(25, 4), (25, 8), (200, 4), (200, 8)];
-/// The steps of a walk, over and over.
+/// The steps of a walk, repeated.
 const STEPS: usize = 4096;
 
 fn main() {
     divan::main();
 }
 
-/// A random world of `side` × `side` cells; the larger, the more walls.
+/// A random world of `side` × `side` cells; larger worlds have more walls.
 fn world(side: u32, radius: u32) -> GridWorld {
     let rooms = (side / 12).pow(2);
     let settings = GenerateSettings {
@@ -31,7 +31,7 @@ fn world(side: u32, radius: u32) -> GridWorld {
     GridWorld::new(&GridSpec::generate(&settings, 1), 1)
 }
 
-/// A way that goes on in one direction for a while.
+/// A walk that continues in one direction for a while.
 fn walk() -> Vec<Step> {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let mut way = Vec::with_capacity(STEPS);
@@ -43,7 +43,7 @@ fn walk() -> Vec<Step> {
     way
 }
 
-/// A thousand steps without a look.
+/// A thousand steps without sensing.
 #[divan::bench(args = SIZES)]
 fn act_1000(bencher: Bencher<'_, '_>, (side, radius): (u32, u32)) {
     let (mut world, mut way) = (world(side, radius), walk().into_iter().cycle());
@@ -54,7 +54,7 @@ fn act_1000(bencher: Bencher<'_, '_>, (side, radius): (u32, u32)) {
     });
 }
 
-/// A thousand steps, each with a look.
+/// A thousand steps with sensing.
 #[divan::bench(args = SIZES)]
 fn act_and_sense_1000(bencher: Bencher<'_, '_>, (side, radius): (u32, u32)) {
     let (mut world, mut way) = (world(side, radius), walk().into_iter().cycle());
@@ -66,7 +66,7 @@ fn act_and_sense_1000(bencher: Bencher<'_, '_>, (side, radius): (u32, u32)) {
     });
 }
 
-/// Making a world: what a sensor of this radius sees is worked out for every cell.
+/// Making a world: for every cell, the view of a sensor with this range is computed.
 #[divan::bench(args = [4, 8, 100])]
 fn new(bencher: Bencher<'_, '_>, radius: u32) {
     let spec = world(25, radius).spec().clone();

@@ -1,6 +1,6 @@
-//! One mapper update from exact cells, and the features: the mapper's part of a step in a grid world of
-//! 25 × 25 cells that sees four cells far, where two blocks have changed 24 cells. Most of
-//! the time goes to `observe_states` in `mapper/src/change/cell_map/observing.rs`.
+//! One mapper update from exact cells, and the features: the mapper's part of a step in a grid world of 25 × 25
+//! cells with a sensor range of four cells, in which two blocks have changed 24 cells. Most of the time is spent in
+//! `observe_states` in `mapper/src/change/cell_map/observing.rs`.
 
 #[allow(dead_code)] // the bench needs one habit only
 #[path = "../examples/estimators/robots.rs"]
@@ -15,16 +15,16 @@ use rand_chacha::rand_core::SeedableRng;
 use robots::{Habit, Robot};
 use sim::grid::{GridSpec, GridWorld};
 
-/// Steps of one round; the next repeats them later.
+/// The number of steps in a round; the next round repeats them at later times.
 const STEPS: usize = 5000;
-/// Updates that are measured as one.
+/// The number of updates that are measured together.
 const BATCH: usize = 100;
 
 fn main() {
     divan::main();
 }
 
-/// What a robot sees that follows what moves.
+/// The readings of a robot that follows moving blocks.
 fn readings() -> (GridSpec, Vec<CellReading>) {
     let world = include_str!("../worlds/two_blocks.toml");
     let spec = worldfile::grid::parse("two_blocks.toml", world).unwrap();

@@ -1,8 +1,7 @@
-//! One mapper update with everything on: projection, footprint, occupancy, change statistics and
-//! the features. The model `naive` walks every beam cell by cell; its time on the same scans is the reference for
-//! `steady`: compare the two within one run, since machines differ. `steady` takes about a fifth
-//! of the time. A part of the difference is that `naive` flickers, and the features cost time in proportion to
-//! the cells that ever changed.
+//! One mapper update with all parts: projection, footprint, occupancy, change statistics and features. The model
+//! `naive` follows every beam cell by cell; its time on the same scans is the reference for `steady`. Compare the
+//! two within one run, since machines differ: `steady` takes about a fifth of the time. A part of the difference is
+//! that `naive` flickers, and the time of the features is proportional to the number of cells that ever changed.
 
 #[path = "../mapper/tests/house/mod.rs"]
 mod house;
@@ -12,7 +11,7 @@ use house::House;
 use interfaces::LaserReading;
 use mapper::{Mapper, MapperSettings, OccupancyChoice};
 
-/// Scans of one round; the next repeats them later.
+/// The number of scans in a round; the next round repeats them at later times.
 const SCANS: u32 = 2000;
 const PERIOD_S: f64 = 0.1;
 

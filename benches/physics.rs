@@ -1,4 +1,4 @@
-//! What a tick of the shipped worlds costs, and a step of fleets: `cargo bench -p benches --bench physics`.
+//! The time of a tick of the shipped worlds, and of a step of fleets: `cargo bench -p benches --bench physics`.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -22,7 +22,7 @@ fn world(name: &str) -> PhysicsWorld {
     }
 }
 
-/// A tick without a look: two physics steps, the dummy's scan and mind, the truth.
+/// A tick without sensing: two physics steps, scan and behavior of the dummy robot, the ground truth.
 #[divan::bench(args = WORLDS)]
 fn act(bencher: Bencher<'_, '_>, name: &str) {
     let mut world = world(name);
@@ -35,7 +35,7 @@ fn act(bencher: Bencher<'_, '_>, name: &str) {
 fn sense(bencher: Bencher<'_, '_>, name: &str) {
     let spec = world(name).spec().clone();
     let new = || PhysicsWorld::new(&spec, 0);
-    // A look is kept until time goes on, so every sample has a world of its own.
+    // A reading is kept until time advances; every sample therefore has a separate world.
     bencher.with_inputs(new).bench_local_refs(|world| black_box(world.sense()));
 }
 
@@ -77,7 +77,7 @@ fn fleet(robots: usize) -> FleetSpec {
 #[divan::bench(args = [1, 10, 100])]
 fn tick_of_a_fleet(bencher: Bencher<'_, '_>, robots: usize) {
     let mut fleet = Fleet::new(&fleet(robots), 0);
-    // Away from where they started.
+    // The robots have left their starts.
     fleet.run_until(20.0, &mut ());
     bencher.counter(ItemsCount::new(robots * BEAMS)).bench_local(|| {
         fleet.step(&mut ());
@@ -85,7 +85,7 @@ fn tick_of_a_fleet(bencher: Bencher<'_, '_>, robots: usize) {
     });
 }
 
-/// A fleet as bytes and back.
+/// Writing a fleet as bytes, and reading it.
 #[divan::bench]
 fn snapshot_of_100(bencher: Bencher<'_, '_>) {
     let fleet = Fleet::new(&fleet(100), 0);

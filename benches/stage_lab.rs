@@ -1,4 +1,4 @@
-//! What it costs to read a world of Stage: `cargo bench -p benches --bench stage_lab`.
+//! The time to read a Stage world: `cargo bench -p benches --bench stage_lab`.
 
 use divan::{Bencher, black_box};
 use sim::physics::{Fleet, FleetSpec};

@@ -1,8 +1,8 @@
-//! What a tick costs, in the shipped four rooms with the parts that the program runs with.
+//! The time of a tick in the shipped four rooms, with the parts that the program uses.
 //!
-//! A tick is 0.1 s of simulated time: 0.1 s over the time of [`tick`] is the real-time factor of
-//! the robot alone, without metrics and recording; 200 µs are 500 times real time. 60 s over the
-//! time of [`explore_60_s`] is the same with what a start costs, and with metrics or without.
+//! A tick is 0.1 s of simulated time: 0.1 s divided by the time of [`tick`] is the real-time factor of the robot
+//! alone, without metrics and recording; 200 µs are 500 times real time. 60 s divided by the time of
+//! [`explore_60_s`] is the real-time factor including the start, with or without metrics.
 //!
 //! Run it by `cargo bench -p benches --bench tick`.
 
@@ -64,7 +64,7 @@ impl Run {
     }
 }
 
-/// One tick, on average over 500 simulated seconds, of a robot that has explored for 300.
+/// One tick, averaged over 500 simulated seconds, of a robot that has explored for 300 s.
 #[divan::bench(sample_count = 10, sample_size = 500)]
 fn tick(bencher: divan::Bencher) {
     let mut run = Run::new();
@@ -83,7 +83,7 @@ fn explore_60_s(bencher: divan::Bencher, with_metrics: bool) {
     bencher.with_inputs(prepared).bench_local_values(|(mut run, observer)| run.explore(60.0, observer));
 }
 
-/// The hash over every map and statistic, as at the end of every run.
+/// The hash of every map and statistic, as at the end of every run.
 #[divan::bench(sample_count = 20)]
 fn hash_of_the_map(bencher: divan::Bencher) {
     let mut run = Run::new();

@@ -1,4 +1,4 @@
-//! What planning and driving cost in a house of 12×12 m, four rooms, in cells of 0.05 m.
+//! The time of planning and driving in a house of 12×12 m with four rooms, in cells of 0.05 m.
 
 use controller::{
     Controller, Costmap, DIAGONAL, DiffDrive, DiffDriveSettings, Inflation, InflationSettings, Moves, Path,
@@ -36,7 +36,7 @@ fn inflated() -> Inflation {
     Inflation::new(&InflationSettings::default(), RADIUS_M, &house())
 }
 
-/// The front of a robot that has gone on by a cell: 8 cells block, 8 free.
+/// The front of a robot that has moved by one cell: 8 cells become blocked, 8 free.
 fn passing_by(map: &Grid<CellState>) -> [Vec<Transition>; 2] {
     let cells = |x: i32| (150..158).map(move |y| Cell::new(x, y));
     let block = cells(180).map(|cell| (cell, CellState::Free, CellState::Blocked));
@@ -65,7 +65,7 @@ fn heap_dijkstra_full_field(bencher: Bencher) {
     bencher.bench_local(|| dijkstra(inflation.costmap(), black_box(Cell::new(40, 40))));
 }
 
-/// The textbook's algorithm, to compare with.
+/// Dijkstra's algorithm as in textbooks, for comparison.
 fn dijkstra(map: &Costmap, source: Cell) -> Vec<u32> {
     let frame = *map.frame();
     let mut costs = vec![u32::MAX; frame.len()];
@@ -131,7 +131,7 @@ fn inflation_of_a_new_map(bencher: Bencher) {
     });
 }
 
-/// A tick on the way: a scan of 720 beams 0.4 m beside a wall, nothing to plan.
+/// A tick on the way: a scan of 720 beams 0.4 m from a wall; nothing to plan.
 #[divan::bench]
 fn drive_tick(bencher: Bencher) {
     let map = house();

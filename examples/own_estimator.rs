@@ -10,7 +10,7 @@ use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::trials::{Experiment, TrialStrategy};
 use mapper::{CellStatistics, Estimator, EstimatorChoice, MapperSettings};
 
-/// Half of all events per time in view: a cycle has one block event and one free event.
+/// Half of all events, divided by the time in view: a cycle has one block event and one free event.
 #[derive(Debug)]
 struct HalfOfEvents;
 

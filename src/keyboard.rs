@@ -7,13 +7,13 @@ use robot::{Belief, Pilot};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-/// Why the keyboard cannot be used.
+/// The error for a keyboard that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum KeyboardError {
     /// The standard input is not a terminal.
     #[error("--drive keyboard needs a terminal to read keys from; use --drive agent or --drive tour here")]
     NoTerminal,
-    /// The terminal does not give its keys.
+    /// The keys of the terminal cannot be read.
     #[error("cannot read keys from this terminal: {0}")]
     Terminal(#[from] std::io::Error),
 }
@@ -22,7 +22,7 @@ pub enum KeyboardError {
 /// longer than the delay before a held key repeats.
 const HOLD: Duration = Duration::from_millis(600);
 
-/// Drives as the keys say: arrows or WASD, space to stop, Q or Esc to end the run.
+/// Drives with arrows or WASD; space stops, Q or Esc ends the run.
 ///
 /// The terminal is in raw mode until the value is dropped.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ pub struct Keyboard {
 }
 
 impl Keyboard {
-    /// Takes the keys of the terminal; `max` is the maximum speed of the robot.
+    /// Reads the keys of the terminal; `max` is the maximum speed of the robot.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! What the programs share: arguments and exit codes, worlds, progress, and the keyboard pilot.
+//! Code that the programs share: arguments and exit codes, worlds, progress, and the keyboard pilot.
 
 pub mod keyboard;
 pub mod program;

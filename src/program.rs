@@ -1,4 +1,4 @@
-//! What the command-line programs share: exit codes, Ctrl-C, the list of worlds, parsers of arguments.
+//! Code that the command-line programs share: exit codes, Ctrl-C, the list of worlds, parsers of arguments.
 
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The exit code of a run that Ctrl-C or another signal has ended.
 pub const INTERRUPTED: u8 = 130;
 
-/// Why a program has no result.
+/// The reason why a program has no result.
 #[derive(Debug)]
 pub enum Failure {
     /// An argument or an input file is invalid: exit code 2.

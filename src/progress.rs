@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 const LINE_EVERY: Duration = Duration::from_secs(5);
 /// The wall time before the first message on simulated time.
 const FIRST: Duration = Duration::from_millis(500);
-/// The rate at which the bar is drawn, at most.
+/// The maximum rate at which the bar is drawn.
 const BAR_HZ: u8 = 10;
 
-/// What a run shows of its progress.
+/// The kind of progress of a run.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Silent,
@@ -21,7 +21,7 @@ enum Kind {
     Lines,
 }
 
-/// The progress of one run in simulated time, or of many trials, from any thread.
+/// The progress of one run in simulated time, or of many trials, which may run on any thread.
 pub struct Progress {
     bar: ProgressBar,
     kind: Kind,
@@ -42,7 +42,7 @@ impl Progress {
         let template = "{pos} of {len} trials {wide_bar} {percent:>3} %  {eta} left";
         let progress = Self::new(trials as u64, template, LINE_EVERY, is_quiet, false);
         if progress.kind == Kind::Bar {
-            progress.bar.enable_steady_tick(Duration::from_millis(200)); // the clock goes on during long trials
+            progress.bar.enable_steady_tick(Duration::from_millis(200)); // The clock advances during long trials.
         }
         progress
     }
@@ -61,7 +61,7 @@ impl Progress {
         Self { bar, kind, start, next: Mutex::new(start + first) }
     }
 
-    /// Whether a message is due. If so, the next one is due `wait` later.
+    /// Whether a message is due. If it is, the next message is due after `wait`.
     fn is_due(&self, wait: Duration) -> bool {
         let Ok(mut next) = self.next.lock() else { return false };
         let is_due = Instant::now() >= *next;

@@ -1,4 +1,4 @@
-//! The world to run: a shipped one, a world file, or a file of Stage.
+//! The world to run: a shipped world, a world file, or a Stage file.
 
 use sim::physics::WorldSpec;
 use std::path::Path;
@@ -6,19 +6,19 @@ use worldfile::{Disk, Severity};
 
 pub use worldfile::shipped::{GRID as SHIPPED_GRID, LoadError, PHYSICS as SHIPPED, TOUR, load_grid};
 
-/// Why there is no world.
+/// The error for a name that does not lead to a world.
 #[derive(Debug, thiserror::Error)]
 pub enum WorldError {
-    /// Not a world, or not one of this kind.
+    /// The file is not a world, or not a world of this kind.
     #[error(transparent)]
     Load(#[from] LoadError),
-    /// The file of Stage is not a world: all that is invalid in it.
+    /// The Stage file is invalid: all of its errors.
     #[error("{0}")]
     Stage(String),
-    /// A world of Stage in which no robot could explore.
+    /// A Stage world in which no robot can explore.
     #[error("`{name}` has no robot that could explore: it takes a `position` model")]
     NoRobot {
-        /// As given.
+        /// The name as given.
         name: String,
     },
 }
@@ -28,16 +28,16 @@ pub enum WorldError {
 pub struct Loaded {
     /// The world.
     pub spec: WorldSpec,
-    /// What it will do otherwise than its file asks, one message each.
+    /// Differences between the world and its file, one message each.
     pub warnings: Vec<String>,
 }
 
-/// The world that `name` stands for: a shipped one by its name, else a file by its path, one of ours or of Stage's
-/// (`.world`).
+/// The world with the name `name`: a shipped world, or otherwise the file with this path, either a world file or a
+/// Stage file (`.world`).
 ///
 /// # Errors
 ///
-/// When there is no such file either, or it is not a world of this kind.
+/// When there is no such world or file, or when it is not a world of this kind.
 pub fn load(name: &str) -> Result<Loaded, WorldError> {
     let path = Path::new(name);
     if path.extension().is_some_and(|ending| ending == "world") && path.exists() {

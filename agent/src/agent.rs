@@ -10,16 +10,16 @@ use mapper::Mapper;
 use nalgebra::Isometry2;
 use std::f64::consts::LN_10;
 
-/// Decides where to look next (section 4).
+/// Selects the next goal of the robot (section 4).
 ///
-/// [`Agent::watch`] takes every reading; [`Agent::next_goal`] is called when the controller is done with the
-/// last goal. The same seed, readings and calls give the same goals, bit for bit.
+/// Call [`Agent::watch`] with every reading, and [`Agent::next_goal`] when the controller has finished the last
+/// goal. The same seed, readings and calls give the same goals, bit for bit.
 #[derive(Debug)]
 pub struct Agent {
     strategies: Vec<Box<dyn Strategy>>,
     chooser: Box<dyn Chooser>,
     goals: GoalSampler,
-    /// The time to each cell, for strategies that ask for it.
+    /// The travel time to each cell, for strategies that need it.
     travel: Vec<f64>,
     reward: Reward,
     rng: RandomStream,
@@ -32,7 +32,7 @@ pub struct Agent {
     /// The rate information when the present goal was sampled.
     information: f64,
     features: Features,
-    /// The number of goals that each strategy sampled.
+    /// The number of goals that were selected by each strategy.
     goal_counts: Vec<usize>,
     last_reward: f64,
 }
@@ -53,8 +53,8 @@ impl Agent {
         Self::with(settings, strategies, chooser, rng)
     }
 
-    /// An agent of any strategies under any chooser. Where the chooser gives an index beyond the last
-    /// strategy, the agent uses the last.
+    /// An agent with these strategies and this chooser. If the chooser returns an index beyond the last strategy,
+    /// the agent uses the last strategy.
     ///
     /// # Errors
     ///
@@ -87,8 +87,8 @@ impl Agent {
         })
     }
 
-    /// Takes one reading: the features after it, and the cells that changed their state in it. Readings before
-    /// the first goal belong to no strategy.
+    /// Processes one reading: the features after the reading, and the cells that changed their state in it.
+    /// Readings before the first goal belong to no strategy.
     pub fn watch(&mut self, features: Features, transitions: &[Transition]) {
         self.features = features;
         if self.current.is_some() {
@@ -97,8 +97,9 @@ impl Agent {
         }
     }
 
-    /// Ends the trajectory to the last goal, learns from it, chooses a strategy and samples the next goal: a
-    /// cell that [can be a goal](Mapper::is_candidate), or, if there is no such cell, the cell of the robot.
+    /// Ends the trajectory to the last goal, learns from the trajectory, chooses a strategy and samples the next
+    /// goal: a cell that [can be a goal](Mapper::is_candidate). If there is no such cell, the goal is the cell of
+    /// the robot.
     pub fn next_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, travel: &mut impl Travel) -> Goal {
         self.learn(mapper);
         self.travel.clear();
@@ -114,11 +115,11 @@ impl Agent {
 
     fn learn(&mut self, mapper: &Mapper) {
         let before = std::mem::replace(&mut self.information, rate_information(mapper));
-        // A trajectory without a reading teaches nothing.
+        // There is nothing to learn from a trajectory without a reading.
         let Some(strategy) = self.current.filter(|_| !self.trajectory.is_empty()) else { return };
         let length = self.trajectory.len() as f64;
         self.last_reward = self.updates as f64 / length;
-        // A first sighting that proved wrong reduces the information.
+        // The information falls when a first observation proves to be wrong.
         let progress = (self.information - before).max(0.0) / length;
         let (features, reward) = (&self.trajectory[..], self.last_reward);
         self.chooser.learn(&Trajectory { strategy, features, reward, progress });
@@ -131,18 +132,18 @@ impl Agent {
         self.strategies.iter().map(|strategy| strategy.name())
     }
 
-    /// The index of the strategy that sampled the present goal; `None` before the first.
+    /// The index of the strategy that selected the present goal; `None` before the first goal.
     pub fn current(&self) -> Option<usize> {
         self.current
     }
 
-    /// The expected reward per reading of a strategy at `features`, in the unit of the chooser; `None` from a
-    /// chooser without values, and for an index without a strategy.
+    /// The expected reward per reading of a strategy at `features`, in the unit of the chooser; `None` if the
+    /// chooser has no values, or if no strategy has this index.
     pub fn value(&self, strategy: usize, features: Features) -> Option<f64> {
         self.chooser.value(strategy, features)
     }
 
-    /// The share of the goals that each strategy sampled, by index; all 0 before the first goal.
+    /// The share of the goals that were selected by each strategy, by index; all 0 before the first goal.
     pub fn shares(&self) -> impl ExactSizeIterator<Item = f64> {
         let goals: usize = self.goal_counts.iter().sum();
         self.goal_counts.iter().map(move |&count| count as f64 / goals.max(1) as f64)
@@ -154,12 +155,12 @@ impl Agent {
     }
 }
 
-/// How well the rates of change are known: Σ over the cells that changed in view of ln 10 − 1/√n, where n is
+/// How well the rates of change are known: the sum of ln 10 − 1/√n over the cells that changed in view, where n is
 /// the number of changes of the cell in view.
 ///
-/// After n events of a Poisson process the logarithm of its rate is known to about 1/√n; without an event the
-/// error counts as ln 10, as in the metric of the rates. The first event of a cell is therefore worth most,
-/// and each further event less.
+/// After n events of a Poisson process the standard deviation of the logarithm of its rate is about 1/√n. Without
+/// an event the error counts as ln 10, as in the metric of the rates. The first event of a cell therefore adds most
+/// information, and each further event adds less.
 fn rate_information(mapper: &Mapper) -> f64 {
     let of_cell = |cell| {
         let seen = mapper.statistics(cell);
@@ -190,7 +191,7 @@ mod tests {
         let ln_10 = std::f64::consts::LN_10;
         let expected = [0.0, ln_10 - 1.0, ln_10 - 0.5f64.sqrt(), ln_10 - 3f64.sqrt() / 3.0, ln_10 - 0.5];
         assert!(known.iter().zip(expected).all(|(known, expected)| (known - expected).abs() < 1e-12));
-        // A change found after a gap gives no rate.
+        // A change that was found after a gap gives no rate.
         let away =
             CellReading { time: 5.0, pose: Isometry2::identity(), cells: vec![(Cell::new(0, 0), false)] };
         mapper.update(&away).unwrap();

@@ -1,10 +1,11 @@
-//! From the weights of a strategy to a goal.
+//! Selects a goal by the weights of a strategy.
 //!
-//! The map is cut into square patches of `patch_cells` × `patch_cells` cells, from its lower left corner on;
-//! those at the right and upper border can be smaller. The weight of a patch is the mean over its candidates,
-//! not over all its cells: a patch is not worth less for being mostly wall. A patch is drawn in proportion to
-//! its weight, and the goal is uniform over the candidates of the patch. Where no candidate has a weight, the
-//! goal is uniform over all candidates; where there is no candidate, the goal is the cell of the robot.
+//! The map is divided into square patches of `patch_cells` × `patch_cells` cells, from its lower left corner on;
+//! patches at the right and upper border can be smaller. The weight of a patch is the mean over its candidates, not
+//! over all its cells: a patch that consists mostly of wall does not weigh less. A patch is drawn with a
+//! probability proportional to its weight, and the goal is uniform over the candidates of the patch. If no
+//! candidate has a weight, the goal is uniform over all candidates; if there is no candidate, the goal is the cell
+//! of the robot.
 
 use crate::sampling::proportional;
 use crate::situation::Situation;
@@ -14,24 +15,24 @@ use interfaces::{Cell, RandomStream};
 use mapper::Mapper;
 use rand::RngExt;
 
-/// Larger weights count as this: far above any time in seconds, and so far below the largest number that no
-/// sum over a map overflows.
+/// The limit of weights: larger weights count as this value. The limit is far above any time in seconds, and small
+/// enough that no sum over a map overflows.
 const MAX_WEIGHT: f64 = 1e200;
 
-/// Where to go next, and what to do there.
+/// A goal, and what to do there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
-    /// Where to go.
+    /// The cell of the goal.
     pub cell: Cell,
-    /// What to do there.
+    /// What to do at the goal.
     pub stay: Stay,
 }
 
-/// Samples goals; keeps its buffers from goal to goal.
+/// Samples goals; reuses its buffers.
 #[derive(Clone, Debug)]
 pub(crate) struct GoalSampler {
     patch_cells: usize,
-    /// One per cell, as written by the strategy.
+    /// One weight per cell, as written by the strategy.
     weights: Vec<f64>,
     /// Row-major, like the cells.
     patches: Vec<Patch>,
@@ -51,12 +52,12 @@ impl Patch {
 }
 
 impl GoalSampler {
-    /// A sampler over patches of `patch_cells` cells in a row, at least one.
+    /// A sampler with patches of `patch_cells` × `patch_cells` cells; at least one cell.
     pub(crate) fn new(patch_cells: usize) -> Self {
         Self { patch_cells, weights: Vec::new(), patches: Vec::new() }
     }
 
-    /// A goal by the weights of `strategy`.
+    /// Selects a goal by the weights of `strategy`.
     pub(crate) fn sample(
         &mut self,
         strategy: &mut dyn Strategy,
@@ -78,11 +79,12 @@ impl GoalSampler {
         Goal { cell, stay: strategy.stay(cell) }
     }
 
-    /// The candidate of the largest weight, uniform over several; `None` where no weight is above zero.
+    /// The candidate with the largest weight, a random one of several equal ones; `None` if no weight is above
+    /// zero.
     fn best(&self, mapper: &Mapper, rng: &mut RandomStream) -> Option<Cell> {
         let (mut best, mut largest, mut ties) = (None, 0.0, 0);
         for (index, &weight) in self.weights.iter().enumerate() {
-            // A weight that is not a number is not larger than any.
+            // A comparison with NaN is false: a weight that is NaN is never selected.
             if weight >= largest && weight > 0.0 && mapper.is_candidate(index) {
                 ties = if weight > largest { 1 } else { ties + 1 };
                 if weight > largest || rng.random_range(0..ties) == 0 {
@@ -93,7 +95,7 @@ impl GoalSampler {
         best.map(|index| mapper.frame().cell(index))
     }
 
-    /// A candidate by the weights of the patches; `None` where there is no candidate.
+    /// A candidate drawn by the weights of the patches; `None` if there is no candidate.
     fn draw(&self, mapper: &Mapper, rng: &mut RandomStream) -> Option<Cell> {
         let drawn = proportional(self.patches.iter().map(Patch::mean), rng);
         let patches = drawn.map_or(0..self.patches.len(), |patch| patch..patch + 1);

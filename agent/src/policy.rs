@@ -5,10 +5,10 @@ use interfaces::RandomStream;
 use std::num::NonZeroUsize;
 use std::sync::{Arc, LazyLock};
 
-/// The strategies of an agent, and the chooser among them.
+/// The strategies of an agent, and the chooser that selects among them.
 pub type Parts = (Vec<Box<dyn Strategy>>, Box<dyn Chooser>);
 
-/// How an agent decides where to go: a name, and a way to make its strategies and its chooser.
+/// A policy: how an agent selects goals. A policy has a name, and makes its strategies and its chooser.
 ///
 /// [`Policy::built_in`] lists the policies of this crate. A policy of any other crate is made with
 /// [`Policy::new`] or [`Policy::single`], and runs wherever a built-in one does:
@@ -35,8 +35,8 @@ pub type Parts = (Vec<Box<dyn Strategy>>, Box<dyn Chooser>);
 /// let east = Policy::single("east", "what lies in the east", |_| East);
 /// ```
 ///
-/// Two policies are equal if they have the same name; serde, `Display` and `FromStr` use the name, and
-/// only a built-in policy can be found by it.
+/// Two policies are equal if they have the same name. Serde, `Display` and `FromStr` use the name; only built-in
+/// policies can be read.
 #[derive(Clone)]
 pub struct Policy {
     name: &'static str,
@@ -86,9 +86,9 @@ fn progress(settings: &AgentSettings, _: &mut RandomStream) -> Parts {
 }
 
 impl Policy {
-    /// A policy of any strategies and any chooser. `build` is called once for every run; a part that draws
-    /// random numbers when it is made draws from the agent's stream. `name` is the name on the command line
-    /// and in files, `description` completes "goes to ...".
+    /// A policy with any strategies and any chooser. `build` is called once per run; strategies and choosers that
+    /// need random numbers at construction draw them from the agent's stream. `name` is the name on the command
+    /// line and in files; `description` completes the sentence "goes to ...".
     pub fn new(
         name: &'static str,
         description: &'static str,
@@ -97,7 +97,7 @@ impl Policy {
         Self { name, description, build: Arc::new(build) }
     }
 
-    /// A policy of one strategy, which should have the same name.
+    /// A policy with one strategy. The strategy should have the same name as the policy.
     pub fn single<S: Strategy + 'static>(
         name: &'static str,
         description: &'static str,
@@ -118,7 +118,7 @@ impl Policy {
         self.name
     }
 
-    /// Where the robot goes, in one line for a list.
+    /// The description in lists: where the robot goes, in one line.
     pub fn description(&self) -> &'static str {
         self.description
     }

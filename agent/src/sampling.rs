@@ -1,8 +1,8 @@
 use interfaces::RandomStream;
 use rand::RngExt;
 
-/// Draws an index with probability in proportion to its weight; `None` if no weight is above zero. The
-/// weights are finite and not negative, and their sum is finite.
+/// Draws an index with a probability proportional to its weight; `None` if no weight is above zero. The weights
+/// must be finite and not negative, and their sum must be finite.
 pub(crate) fn proportional(
     weights: impl Iterator<Item = f64> + Clone,
     rng: &mut RandomStream,
@@ -14,7 +14,7 @@ pub(crate) fn proportional(
     let mut left = rng.random::<f64>() * total;
     let mut drawn = None;
     for (index, weight) in weights.enumerate().filter(|&(_, weight)| weight > 0.0) {
-        // Where rounding leaves a remainder after the last weight, the last index is drawn.
+        // If rounding leaves a remainder after the last weight, the last index is drawn.
         drawn = Some(index);
         if left < weight {
             break;
@@ -24,7 +24,7 @@ pub(crate) fn proportional(
     drawn
 }
 
-/// A number from the gamma distribution of `shape` (above 0) and scale 1 (Marsaglia and Tsang 2000).
+/// A random number from the gamma distribution with `shape` (above 0) and scale 1 (Marsaglia and Tsang 2000).
 pub(crate) fn gamma(shape: f64, rng: &mut RandomStream) -> f64 {
     if shape < 1.0 {
         let boost = libm::pow(1.0 - rng.random::<f64>(), 1.0 / shape);
@@ -42,7 +42,7 @@ pub(crate) fn gamma(shape: f64, rng: &mut RandomStream) -> f64 {
     }
 }
 
-/// A number from the standard normal distribution (Box and Muller 1958).
+/// A random number from the standard normal distribution (Box and Muller 1958).
 fn normal(rng: &mut RandomStream) -> f64 {
     let (radius, angle) = (1.0 - rng.random::<f64>(), rng.random::<f64>());
     (-2.0 * libm::log(radius)).sqrt() * libm::cos(std::f64::consts::TAU * angle)

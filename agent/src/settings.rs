@@ -1,18 +1,18 @@
 use interfaces::{CellState, SettingsCheck, SettingsError, Transition};
 
-/// What counts as a map update when a trajectory is rewarded.
+/// The events that count as map updates in the reward of a trajectory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reward {
     /// Changes of a known cell: free to blocked, blocked to free.
     #[default]
     Changes,
-    /// First sightings too. With a laser there are thousands at once, far above the temperature.
+    /// First observations as well. A laser has thousands of them in one scan, far more than the temperature.
     ChangesAndDiscoveries,
 }
 
 impl Reward {
-    /// The number of transitions that count.
+    /// The number of transitions that count as map updates.
     pub(crate) fn count(self, transitions: &[Transition]) -> usize {
         let counts = |transition: &&Transition| match self {
             Self::Changes => transition.event().is_some(),
@@ -28,11 +28,11 @@ impl Reward {
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AgentSettings {
-    /// The side of the square patches that goal weights are averaged over, in cells.
+    /// The side of a square patch, in cells. Weights of goals are averaged over a patch.
     pub patch_cells: usize,
-    /// The range of the sensor, m, for the strategies that use visibility.
+    /// The range of the sensor, m. Used by strategies that compute visibility.
     pub sensor_radius_m: f64,
-    /// What counts as a map update.
+    /// The events that count as map updates.
     pub reward: Reward,
     /// Settings of the paper's chooser.
     pub curious: CuriousSettings,
@@ -55,14 +55,13 @@ impl Default for AgentSettings {
 pub struct CuriousSettings {
     /// The number of tilings.
     pub tilings: usize,
-    /// The size of a tile in p, in cells expected to have changed.
+    /// The size of a tile in p, in expected changed cells.
     pub tile_p: f64,
-    /// The size of a tile in r, in seconds, or in steps of a grid world.
+    /// The size of a tile in r, s (steps in a grid world).
     pub tile_r: f64,
-    /// λ: the share of a tile's weight that one visit replaces by the reward.
+    /// λ: the share of a tile's weight that one visit replaces by the reward, from 0 to 1.
     pub learning_rate: f64,
-    /// τ: the difference in value, in map updates per reading, that makes one strategy e times as
-    /// likely as another.
+    /// τ, in map updates per reading: a strategy whose value is larger by τ is chosen e times as often.
     pub temperature: f64,
 }
 

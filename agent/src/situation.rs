@@ -3,18 +3,18 @@ use interfaces::Cell;
 use mapper::Mapper;
 use nalgebra::Isometry2;
 
-/// The inputs of strategies and choosers when a goal is due.
+/// The inputs of strategies and choosers when a goal must be selected.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Situation<'a> {
-    /// The map and the statistics of its changes.
+    /// The map and the change statistics.
     pub mapper: &'a Mapper,
     /// The estimated pose of the robot in the frame of the map, m and rad.
     pub pose: &'a Isometry2<f64>,
-    /// The features (p, r) of the last reading.
+    /// The features (p, r) after the latest reading.
     pub features: Features,
-    /// The time from the robot to each cell, in row-major order, in the unit of the readings' times; ∞ where
-    /// no path is known. Empty unless a strategy [asks for it](crate::Strategy::needs_travel).
+    /// The travel time from the robot to each cell, in row-major order, in the time unit of the readings; ∞ where
+    /// no path is known. Empty unless a strategy [needs travel times](crate::Strategy::needs_travel).
     pub travel: &'a [f64],
 }
 
@@ -24,30 +24,32 @@ impl<'a> Situation<'a> {
         Self { mapper, pose, features, travel: &[] }
     }
 
-    /// The same situation with the time to each cell.
+    /// The same situation with the travel time to each cell.
     pub fn with_travel(self, travel: &'a [f64]) -> Self {
         Self { travel, ..self }
     }
 
-    /// The time from the robot to the cell of an index; ∞ where no path is known, or no times were asked for.
+    /// The travel time from the robot to a cell, by index; ∞ if no path is known, or if travel times were not
+    /// computed.
     pub fn travel_to(&self, index: usize) -> f64 {
         self.travel.get(index).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// The cell of the robot; outside of the grid if the robot is.
+    /// The cell of the robot; outside of the grid if the robot is outside.
     pub fn cell(&self) -> Cell {
         self.mapper.frame().cell_at(&self.pose.translation.vector.into())
     }
 }
 
-/// The time that the robot takes to each cell. Computed once per goal, for strategies that ask for it.
+/// Computes the travel time to each cell. Called once per goal, for strategies that need travel times.
 pub trait Travel {
-    /// Writes the time from the robot to each cell, in row-major order and in the unit of the readings'
-    /// times; ∞ where no path is known.
+    /// Writes the travel time from the robot to each cell, in row-major order, in the time unit of the readings; ∞
+    /// where no path is known.
     fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>);
 }
 
-/// Straight lines through everything, one metre per unit of time: for users without a planner.
+/// Travel times along straight lines through everything, at one meter per unit of time: for users without a
+/// planner.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StraightLineTravel;
 

@@ -10,31 +10,31 @@ use nalgebra::Point2;
 /// The state of a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// There was no goal yet, or the goal was cancelled.
+    /// There was no goal yet, or the goal was canceled.
     Idle,
-    /// The robot drives to its goal.
+    /// The robot drives to the goal.
     Travelling,
-    /// The robot explores around its goal, or watches there.
+    /// The robot explores around the goal, or observes at the goal.
     Exploring,
-    /// The goal is done; the robot rests until the next one.
+    /// The goal is finished; the robot stops until the next goal.
     Finished(Outcome),
 }
 
-/// How a goal ended.
+/// The outcome of a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// The robot reached the goal.
     Reached,
     /// The goal is blocked or hidden; the robot reached the nearest point that can be reached.
     Nearest,
-    /// The robot was stuck for too long.
+    /// The goal was given up, because the robot was stuck for too long.
     GivenUp,
 }
 
-/// Takes a goal, drives the robot there and explores around it (paper, section 2).
+/// Drives the robot to a goal and explores around it (paper, section 2).
 ///
-/// [`drive`](Self::drive) is called once per tick and never fails. The [`Drive`] defines what a command is.
-/// All random numbers come from the stream given at construction.
+/// [`drive`](Self::drive) is called once per tick and returns no error. The [`Drive`] defines the type of the
+/// commands. All random numbers come from the stream given at construction.
 #[derive(Clone, Debug)]
 pub struct Controller<D: Drive> {
     settings: Settings,
@@ -72,15 +72,15 @@ enum State {
     Finished(Done),
 }
 
-/// What to do at the goal.
+/// What the robot does at the goal.
 #[derive(Clone, Copy, Debug)]
 enum AtGoal {
     Explore,
-    /// Stand still for this time.
+    /// Stop for this duration, s (steps in a grid world).
     Watch(f64),
 }
 
-/// A goal, and how the navigation to it ended.
+/// A goal, and the outcome of the navigation to it.
 #[derive(Clone, Copy, Debug)]
 struct Done {
     goal: Point2<f64>,
@@ -99,19 +99,19 @@ impl<D: Drive> Controller<D> {
         Ok(Self { settings, drive, rng, surroundings: None, state, path, last_change: None })
     }
 
-    /// Sets a goal in the frame of the map, m: to drive there, then to explore around it. Replaces any other
-    /// goal. A goal outside of the map counts as the nearest point in the map.
+    /// Sets a goal in the frame of the map, m: the robot drives there, then explores around it. Replaces any other
+    /// goal. A goal outside of the map is replaced by the nearest point in the map.
     pub fn set_goal(&mut self, goal: Point2<f64>) {
         self.start(goal, AtGoal::Explore);
     }
 
-    /// As [`set_goal`](Self::set_goal), without local exploration: for a tour.
+    /// Sets a goal as [`set_goal`](Self::set_goal) does, but without local exploration: for a tour.
     pub fn go_to(&mut self, goal: Point2<f64>) {
         self.watch_at(goal, 0.0);
     }
 
-    /// As [`set_goal`](Self::set_goal), but with a stop of `duration` at the goal (s; steps in a grid world)
-    /// instead of local exploration. A duration that is not a number counts as 0.
+    /// Sets a goal as [`set_goal`](Self::set_goal) does, but with a stop of `duration` at the goal (s; steps in a
+    /// grid world) instead of local exploration. A duration that is NaN counts as 0.
     pub fn watch_at(&mut self, goal: Point2<f64>, duration: f64) {
         self.start(goal, AtGoal::Watch(duration.max(0.0)));
     }
@@ -121,15 +121,15 @@ impl<D: Drive> Controller<D> {
         self.path.clear();
     }
 
-    /// Cancels the goal; the robot rests.
+    /// Cancels the goal; the robot stops.
     pub fn cancel(&mut self) {
         self.state = State::Idle;
         self.path.clear();
     }
 
-    /// Writes the time from the robot to each cell at full speed, in row-major order, s (steps in a grid
-    /// world); ∞ where no path is known. Call it after [`drive`](Self::drive), which applies the changes of
-    /// the map. The time is that of a wave over the whole map.
+    /// Writes the travel time from the robot to each cell at full speed, in row-major order, s (steps in a grid
+    /// world); ∞ where no path is known. Call it after [`drive`](Self::drive), which applies the changes of the
+    /// map. The computing time is that of one wave over the whole map.
     pub fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>) {
         let body = self.drive.body();
         times.clear();
@@ -140,7 +140,7 @@ impl<D: Drive> Controller<D> {
         }
     }
 
-    /// The state since the last tick.
+    /// The state after the last tick.
     pub fn status(&self) -> Status {
         match self.state {
             State::Idle => Status::Idle,
@@ -150,7 +150,7 @@ impl<D: Drive> Controller<D> {
         }
     }
 
-    /// The last goal; `None` before the first, and after it was cancelled.
+    /// The last goal; `None` before the first goal, and after the goal was canceled.
     pub fn goal(&self) -> Option<&Point2<f64>> {
         match &self.state {
             State::Idle => None,
@@ -162,13 +162,13 @@ impl<D: Drive> Controller<D> {
         }
     }
 
-    /// The present path, from where it was planned to its end, m; empty without a path.
+    /// The present path, from the position where it was planned to its end, m; empty without a path.
     pub fn path(&self) -> &[Point2<f64>] {
         self.path.points()
     }
 
-    /// One tick: the next command. May be called again with the same situation, but without its
-    /// transitions, after a new goal was set: no tick is lost then.
+    /// Returns the command for this tick. After a new goal was set, the method may be called again in the same
+    /// tick, with the same situation but without its transitions; the robot then starts without delay.
     pub fn drive(&mut self, situation: &Situation) -> D::Command {
         if let Some(change) = situation.change() {
             self.last_change = Some((change, situation.time));
@@ -191,7 +191,8 @@ impl<D: Drive> Controller<D> {
         command
     }
 
-    /// Applies the changes of the map; reads the whole map at the first tick, and where its frame differs.
+    /// Applies the changes of the map. Reads the whole map at the first tick, and when the frame of the map has
+    /// changed.
     fn update_surroundings(&mut self, situation: &Situation) -> Surroundings {
         let map = situation.map;
         let known = self.surroundings.take().filter(|known| known.planner.costmap().frame() == map.frame());

@@ -5,18 +5,18 @@ use nalgebra::Point2;
 /// The time for which a cell counts as dynamic after a change in or beside it, s.
 const MEMORY_S: f64 = 10.0;
 
-/// Separates dynamic obstacles from walls: a sensed point is dynamic where the map changed lately, or where
-/// the map has nothing that the point could belong to.
+/// Distinguishes dynamic obstacles from walls: a sensed point is dynamic if the map changed there recently, or if
+/// the map has nothing at the point that it could belong to.
 ///
 /// The time of an update is proportional to the number of changes; a query reads the cells around a point.
 #[derive(Clone, Debug)]
 pub struct DynamicObstacleFilter {
-    /// When each cell, or a cell that touches it, last changed.
+    /// For each cell the time of the last change in the cell or in a cell that touches it.
     changed_at: Grid<f64>,
 }
 
 impl DynamicObstacleFilter {
-    /// A filter before any change.
+    /// A filter without any change yet.
     pub fn new<T>(map: &Grid<T>) -> Self {
         Self { changed_at: map.map(|_| f64::NEG_INFINITY) }
     }
@@ -41,7 +41,7 @@ impl DynamicObstacleFilter {
     }
 }
 
-/// A cell and the eight that touch it.
+/// A cell and its eight neighbors.
 fn around(cell: Cell) -> impl Iterator<Item = Cell> {
     std::iter::once(cell).chain(cell.neighbours8())
 }

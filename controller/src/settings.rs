@@ -2,38 +2,38 @@ use crate::planner::{InflationSettings, MAX_COST};
 use interfaces::{SettingsCheck, SettingsError};
 use serde::{Deserialize, Serialize};
 
-/// How the controller reaches goals, and when it gives up. Times are seconds, or steps in a grid world.
+/// Settings of the controller. Times are seconds, or steps in a grid world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// The distance of paths from obstacles.
+    /// Settings of the distance between paths and obstacles.
     pub inflation: InflationSettings,
-    /// When to replan, to wait and to give up.
+    /// Settings of navigation: when to replan, to wait and to give up.
     pub navigation: NavigationSettings,
-    /// Local exploration at the goal.
+    /// Settings of local exploration at the goal.
     pub exploration: ExplorationSettings,
 }
 
-/// When to replan, to wait and to give up.
+/// Settings of navigation: when to replan, to wait and to give up.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct NavigationSettings {
-    /// The shortest time from a plan to the next one where a change blocks the path, s.
+    /// The minimum time between a plan and the next one if a change blocks the path, s.
     pub replan_blocked_s: f64,
-    /// The shortest time from a plan to the next one for any other reason, s.
+    /// The minimum time between a plan and the next one for any other reason, s.
     pub replan_s: f64,
-    /// A robot farther from its path than this replans, m.
+    /// The robot replans if it is farther from its path than this, m.
     pub off_path_m: f64,
-    /// The time to wait when the path to the goal is blocked, s. Longer than a slow robot takes to pass a
-    /// door.
+    /// The time that the robot waits if the path to the goal is blocked, s. Longer than a slow robot needs to pass
+    /// a door.
     pub wait_s: f64,
-    /// A robot that has not moved on for this time is stuck, s.
+    /// The movement time allowance, s: the robot is stuck if it makes no progress for this time.
     pub movement_time_allowance_s: f64,
-    /// A robot that stays within this distance has not moved on, m.
+    /// The required movement radius, m: the robot makes no progress while it stays within this distance.
     pub required_movement_radius_m: f64,
-    /// The number of recoveries within a metre before the goal is given up.
+    /// The maximum number of recoveries within a meter; after that the goal is given up.
     pub max_recoveries: u32,
-    /// A goal is given up after this time in any case, s.
+    /// The maximum time for a goal, s; after that the goal is given up in any case.
     pub goal_timeout_s: f64,
 }
 
@@ -52,13 +52,13 @@ impl Default for NavigationSettings {
     }
 }
 
-/// Local exploration at the goal (paper, section 2).
+/// Settings of local exploration at the goal (paper, section 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ExplorationSettings {
     /// The maximum number of steps, random ones included.
     pub max_steps: u32,
-    /// The maximum number of random steps in a row. The controller of the paper makes fewer than 2.
+    /// The maximum number of consecutive random steps. In the paper fewer than 2.
     pub max_random_steps: u32,
 }
 

@@ -6,14 +6,14 @@ use nalgebra::{Isometry2, Point2};
 pub struct Situation<'a> {
     /// The time, s; steps in a grid world.
     pub time: f64,
-    /// The pose of the robot in the frame of the map.
+    /// The pose of the robot in the frame of the map, m and rad.
     pub pose: &'a Isometry2<f64>,
     /// The map after the update of this tick.
     pub map: &'a Grid<CellState>,
-    /// All changes of state in this update, first sightings included.
+    /// All changes of state in this update, including first observations.
     pub transitions: &'a [Transition],
-    /// Where the beams of this tick's reading hit, in the frame of the map, m. Empty for a sensor that
-    /// measures no more than the map holds.
+    /// The end points of the beams of this tick's reading that hit something, in the frame of the map, m. Empty if
+    /// the sensor measures nothing but the states of cells.
     pub points: &'a [Point2<f64>],
 }
 
@@ -23,7 +23,7 @@ impl Situation<'_> {
         self.pose.translation.vector.into()
     }
 
-    /// The centroid of the cells that changed in this update (paper, section 2); first sightings are no
+    /// The centroid of the cells that changed in this update, m (paper, section 2); first observations are no
     /// changes. `None` without a change.
     pub fn change(&self) -> Option<Point2<f64>> {
         let changed = self.transitions.iter().filter(|transition| transition.event().is_some());

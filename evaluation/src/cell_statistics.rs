@@ -1,4 +1,4 @@
-//! `cell_statistics.csv`: what was learned of every cell.
+//! `cell_statistics.csv`: what was learned about every cell.
 
 use crate::output::{OutputError, write_file};
 use interfaces::CellState;
@@ -6,10 +6,10 @@ use mapper::Mapper;
 use std::io;
 use std::path::Path;
 
-/// The probability that the credible interval of a rate holds.
+/// The probability with which the credible interval contains the rate.
 const CREDIBLE_MASS: f64 = 0.9;
 
-/// One row: a cell that was ever seen. Times are in seconds.
+/// One row: a cell that was seen at least once. Times are in seconds.
 #[derive(serde::Serialize)]
 struct Row {
     x_m: f64,
@@ -36,7 +36,7 @@ struct Row {
     recency_s: f64,
 }
 
-/// Writes a CSV file with a row for every cell that was ever seen, row by row from the lower left.
+/// Writes a CSV file with one row for every cell that was seen at least once, row by row from the lower left.
 ///
 /// # Errors
 ///

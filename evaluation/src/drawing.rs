@@ -9,7 +9,7 @@ use plotters::prelude::*;
 use plotters::style::{TextStyle, register_font};
 use std::path::Path;
 
-/// Why a picture could not be made.
+/// The error for a picture that could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
     /// The file cannot be written.
@@ -20,24 +20,24 @@ pub enum PictureError {
     Draw {
         /// The picture.
         name: String,
-        /// What the plotting library says.
+        /// The message of the plotting library.
         why: String,
     },
 }
 
-/// A part of a picture to draw on.
+/// A part of a picture that can be drawn on.
 pub type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 
-/// Pictures are drawn this many times larger, and made smaller at the end: slanted lines and
-/// letters get smooth edges.
+/// Pictures are drawn larger by this factor and reduced at the end, so that slanted lines and letters have smooth
+/// edges.
 const OVERSAMPLING: u32 = 2;
 
-/// A length in pixels of the finished picture, in pixels to draw with.
+/// Converts a length in pixels of the finished picture to pixels of the larger drawing.
 pub const fn px(length: u32) -> i32 {
     (length * OVERSAMPLING) as i32
 }
 
-/// Text of a height in pixels of the finished picture.
+/// The style of text with a height in pixels of the finished picture.
 pub fn text(height: u32) -> TextStyle<'static> {
     (FONT, px(height)).into_font().color(&INK)
 }
@@ -47,17 +47,17 @@ pub const INK: RGBColor = ink(palette::INK);
 /// The name of the font.
 pub const FONT: &str = "sans-serif";
 
-/// The plotting library's color.
+/// Converts a color to the type of the plotting library.
 pub const fn ink([red, green, blue]: Rgb) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
-/// Makes an error of the plotting library a sentence.
+/// Converts an error of the plotting library to a sentence.
 pub fn why(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
-/// Makes text possible on machines that have no fonts at all.
+/// Registers a font, so that text can be drawn on machines without any fonts.
 ///
 /// # Errors
 ///
@@ -74,7 +74,7 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// A white picture of `size`, width and height in pixels, with what `draw` puts on it.
+    /// A white picture of `size` (width and height in pixels) on which `draw` has drawn.
     ///
     /// # Errors
     ///
@@ -110,7 +110,7 @@ impl Canvas {
     }
 }
 
-/// The mean of every square of pixels.
+/// Reduces the picture: every square of pixels becomes its mean.
 fn shrink(pixels: &[u8], width: usize) -> Vec<u8> {
     let by = OVERSAMPLING as usize;
     let stride = 3 * width;

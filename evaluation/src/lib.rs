@@ -1,6 +1,6 @@
-//! How good a robot is: metrics over the ground truth of a simulated world, trials, statistics and reports.
+//! The quality of a robot: metrics over the ground truth of a simulated world, trials, statistics and reports.
 //!
-//! This crate does not know the command line, and no recording or screen.
+//! This crate must not know the command line, recordings or screens.
 
 pub mod cell_statistics;
 pub mod drawing;

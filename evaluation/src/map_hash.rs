@@ -1,10 +1,9 @@
-//! The hash over everything that a mapper has learned.
+//! The hash of everything that a mapper has learned.
 
 use mapper::Mapper;
 use xxhash_rust::xxh3::Xxh3;
 
-/// A hash over the state and the statistics of every cell: two runs with equal hashes learned the same, bit
-/// for bit.
+/// A hash of the state and the statistics of every cell. Two runs with equal hashes learned the same, bit for bit.
 pub fn map_hash(mapper: &Mapper) -> String {
     let mut hash = Xxh3::new();
     for index in 0..mapper.frame().len() {

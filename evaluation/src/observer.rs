@@ -8,7 +8,7 @@ use nalgebra::Point2;
 use robot::{Belief, Level, Message, Pilot};
 use sim::physics::{Body, PhysicsWorld};
 
-/// Coverage and quality take a pass over the map: once in this many readings.
+/// Coverage and quality need a pass over the map: they are computed once in this many readings.
 const SCORE_EVERY: usize = 100;
 /// The accuracy on changing cells is sampled once in this many readings.
 const SAMPLE_EVERY: usize = 10;
@@ -16,7 +16,7 @@ const SAMPLE_EVERY: usize = 10;
 /// The measurements of a run so far.
 #[derive(Debug, Default)]
 pub struct Observer {
-    /// The delays of the map behind the changes that a beam has shown.
+    /// The delays between changes that a beam has shown and the map.
     pub latency: Latency,
     /// The detection of the things that appeared or disappeared.
     pub things: Things,
@@ -24,7 +24,7 @@ pub struct Observer {
     pub changing: ChangingAccuracy,
     /// Coverage and map quality over time.
     pub curve: Vec<CurvePoint>,
-    /// The goals of the curious robot, m.
+    /// The positions of the goals of the curious robot, m.
     pub goals: Vec<Point2<f64>>,
     /// The messages of the last tick.
     pub messages: Vec<Message>,
@@ -44,7 +44,7 @@ impl Observer {
         self.collect_messages(world, pilot);
     }
 
-    /// The last coverage and map quality.
+    /// The latest coverage and map quality.
     pub fn scores(&self) -> Option<MapScores> {
         self.curve.last().map(|point| point.scores)
     }

@@ -1,16 +1,16 @@
-//! Output: lines for the user, and files that are complete or absent.
+//! Output: lines for the user, and files that are either complete or absent.
 
 use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Prints a line. A closed pipe, as behind `| head`, is ignored: the run goes on.
+/// Prints a line. A closed pipe (for example `| head`) is ignored: the run continues.
 pub fn say(mut to: impl Write, what: impl Display) {
     let _ = writeln!(to, "{what}");
 }
 
-/// A file or folder that could not be written.
+/// The error for a file or folder that cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write {}: {why}", path.display())]
 pub struct OutputError {
@@ -28,11 +28,11 @@ impl OutputError {
 }
 
 /// Writes a file under a temporary name in the same folder, and renames the complete file. An older file stays
-/// until then, and no incomplete file ever has the name.
+/// until then, and a file with the final name is always complete.
 ///
 /// # Errors
 ///
-/// When the file cannot be written. No temporary file stays.
+/// When the file cannot be written. No temporary file is left.
 pub fn write_file(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -51,11 +51,11 @@ pub fn write_file(
     })
 }
 
-/// Makes a folder, and those above it, unless it exists.
+/// Makes a folder, and its parent folders, unless it exists.
 ///
 /// # Errors
 ///
-/// When it cannot be made.
+/// When the folder cannot be made.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(path).map_err(|why| OutputError::new(path, why))
 }

@@ -34,7 +34,7 @@ pub const SWEPT: Rgb = [246, 228, 238];
 pub const FREE: Rgb = [255, 255, 255];
 /// A blocked cell of a map.
 pub const BLOCKED: Rgb = [32, 36, 44];
-/// A blocked cell where the map shows something else than the occupancy.
+/// A blocked cell in maps that show another quantity than the occupancy.
 pub const BLOCKED_FAINT: Rgb = [158, 160, 165];
 /// A cell of a map that was never seen.
 pub const UNKNOWN: Rgb = [211, 219, 232];
@@ -79,7 +79,7 @@ pub fn thing(index: usize) -> Rgb {
     THINGS[index % THINGS.len()]
 }
 
-/// The same hue, bright enough for a dark background.
+/// A color of the same hue, bright enough for a dark background.
 pub fn on_dark(color: Rgb) -> Rgb {
     let brightest = color.into_iter().max().unwrap_or(0);
     let lift = |part: u8| part + (255 - part) / 5 * (190_u8.saturating_sub(brightest) / 20).min(4);

@@ -1,5 +1,5 @@
-//! A run in a physics world, as a library call: the settings of the robot, its parts, and the loop with the
-//! observer in it.
+//! A run in a physics world as a library call: the settings of the robot, its parts, and the loop with the
+//! observer.
 
 use crate::map_hash::map_hash;
 use crate::metrics::{age, map_scores, rate_scores};
@@ -14,16 +14,17 @@ use serde::Serialize;
 use sim::physics::{DriveKind, PhysicsWorld, WorldSpec};
 use std::ops::ControlFlow;
 
-/// The side of the patches in which goals are weighed, m.
+/// The side of the patches over which goal weights are averaged, m.
 const PATCH_M: f64 = 0.5;
-/// The time for which something can hide a cell without interrupting the view of the cell, s: the time in
-/// which a slow robot and its shadow pass. Without it, only the changes that are seen from the right side
-/// would count, one in five.
+/// The time for which a body can hide a cell without interrupting the view of the cell, s: the time in which a slow
+/// robot and its shadow pass. Without this time, only changes that are seen from the right side would count, one in
+/// five.
 const HIDING_S: f64 = 8.0;
-/// The steps of local exploration. The paper's 42 suit a block that moves one cell per step; here a step is
-/// a robot's diameter, and following the dummy for longer leaves other rooms unseen.
+/// The maximum number of steps of local exploration. The paper's 42 steps suit a block that moves one cell per
+/// step. Here a step is a robot's diameter, and if the robot follows the dummy robot for longer, other rooms stay
+/// unseen.
 const LOCAL_STEPS: u32 = 15;
-/// The mapper takes no larger range noise.
+/// The maximum range noise that the mapper accepts, m.
 const MAX_NOISE_M: f64 = 0.5;
 
 /// All settings of a robot in a physics world.
@@ -39,7 +40,7 @@ pub struct PhysicsSettings {
     pub drive: DiffDriveSettings,
 }
 
-/// A driven robot that no controller can drive.
+/// The error for a driven robot that the controller cannot drive.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the driven robot `{robot}` has a drive of `kind = \"{drive}\"`, but the controller supports only \
@@ -48,7 +49,7 @@ pub struct PhysicsSettings {
 pub struct UnsupportedDrive {
     /// The name of the robot.
     pub robot: String,
-    /// The drive, as in the world file.
+    /// The kind of the drive, as in the world file.
     pub drive: &'static str,
 }
 
@@ -75,8 +76,8 @@ impl PhysicsSettings {
             sensor_radius_m: robot.laser.range_max_m,
             ..AgentSettings::default()
         };
-        // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many cells
-        // wide, and each of its moves changes as many.
+        // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many cells wide, and
+        // each of its moves changes about as many cells.
         agent.curious.temperature *= (2.0 * robot.radius_m / cell_m).max(1.0);
         let mut controller = controller::Settings::default();
         controller.exploration.max_steps = LOCAL_STEPS;
@@ -131,7 +132,7 @@ pub struct PhysicsTrial<P> {
 }
 
 impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
-    /// A run before its start. `prior` is the map that the robot knows at the start.
+    /// A run that has not started. `prior` is the map that the robot knows at the start.
     ///
     /// # Errors
     ///

@@ -17,7 +17,7 @@ pub struct CurvePoint {
     pub scores: MapScores,
 }
 
-/// `summary.json`.
+/// The content of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// The version of the program.
@@ -38,13 +38,13 @@ pub struct Summary {
     pub estimator: &'static str,
     /// The occupancy model.
     pub occupancy: &'static str,
-    /// Why the run ended: `duration`, `tour`, `person` or `interrupted`.
+    /// The reason for the end of the run: `duration`, `tour`, `person` or `interrupted`.
     pub ended_by: &'static str,
     /// The simulated time, s.
     pub simulated_s: f64,
     /// The wall time, s.
     pub wall_s: f64,
-    /// Simulated time over wall time.
+    /// Simulated time divided by wall time.
     pub real_time_factor: f64,
     /// The results.
     #[serde(flatten)]
@@ -57,31 +57,31 @@ pub struct RunResults {
     /// Coverage and map quality at the end.
     #[serde(flatten)]
     pub map: MapScores,
-    /// The accuracy on swept cells over the run; `null` where there was nothing to count.
+    /// The accuracy on swept cells over the run; `null` if there were no such cells.
     #[serde(flatten)]
     pub changing: ChangingScores,
     /// The estimated rates compared with the true rates.
     #[serde(flatten)]
     pub rates: RateScores,
-    /// The time since the cells were seen, at the end.
+    /// The time since cells were last seen, at the end.
     pub age: Age,
-    /// How soon the map followed block events that a beam had shown.
+    /// The delays between block events that a beam has shown and the map.
     pub block_latency: Delays,
-    /// The same for free events.
+    /// The delays between free events that a beam has shown and the map.
     pub free_latency: Delays,
-    /// The contacts of the curious robot that began while it moved.
+    /// The number of contacts of the curious robot that began while it moved.
     pub collisions: usize,
-    /// The contacts that began while the curious robot stood still.
+    /// The number of contacts of the curious robot that began while it stood still.
     pub contacts_while_standing: usize,
     /// The goals by outcome.
     pub goals: GoalCount,
-    /// The share of the goals that each strategy chose.
+    /// For each strategy, the share of the goals that it selected.
     pub strategy_share: BTreeMap<String, f64>,
-    /// The things that appeared or disappeared.
+    /// The detection of the things that appeared or disappeared.
     pub things: Vec<ThingReport>,
     /// Coverage and map quality over time.
     pub curve: Vec<CurvePoint>,
-    /// The hash over all that was learned, see [`crate::map_hash`].
+    /// The hash of everything that was learned, see [`crate::map_hash`].
     pub map_hash: String,
     /// The area in which the map changes most often.
     pub liveliest: Option<Liveliest>,
@@ -92,11 +92,11 @@ pub struct RunResults {
 pub struct Liveliest {
     /// The lower left corner of the smallest box around the cells with more than one event, m.
     pub low_m: [f64; 2],
-    /// The upper right corner, m.
+    /// The upper right corner of this box, m.
     pub high_m: [f64; 2],
-    /// The number of these cells.
+    /// The number of cells with more than one event.
     pub cells: usize,
-    /// The median interval of these cells, s.
+    /// The median cycle time of these cells, s.
     pub median_interval_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Block worlds: things that stand for a fixed time and move on, seen by a robot that moves.
+//! Block worlds: blocks that stay on a cell for a fixed time and move on, observed by a robot that moves.
 
 use crate::robots::{Habit, Robot};
 use crate::score::{MASS, Mean, log_error};
@@ -9,9 +9,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sim::grid::{GenerateSettings, GridGroundTruth, GridSpec, GridWorld};
 
-/// The first seed. The constants of the estimators were chosen on worlds below it.
+/// The first seed. The constants of the estimators were chosen on worlds with lower seeds.
 const FIRST_SEED: u64 = 1000;
-/// Seeds per shipped world.
+/// The number of seeds per shipped world.
 const SHIPPED_SEEDS: u64 = 5;
 const SHIPPED: [(&str, &str); 5] = [
     ("two_blocks.toml", include_str!("../../worlds/two_blocks.toml")),
@@ -20,12 +20,12 @@ const SHIPPED: [(&str, &str); 5] = [
     ("one_fast_block.toml", include_str!("../../worlds/one_fast_block.toml")),
     ("open_hall.toml", include_str!("../../worlds/open_hall.toml")),
 ];
-/// The chances per step that a block which is due moves, and that the robot's action happens.
+/// The probabilities per step that a due move of a block happens, and that an action of the robot happens.
 const CHANCES: (f64, f64) = (0.7, 0.9);
 
-/// Cells in view for less than this share of the time are seen sparsely.
+/// Cells that are in view for less than this share of the time count as sparsely observed.
 const SPARSE: f64 = 0.05;
-/// Every so many steps predictions are judged, in the second half of a life.
+/// Predictions are evaluated once in this number of steps, in the second half of a run.
 const JUDGED_EVERY: u64 = 97;
 
 /// Worlds of one kind.
@@ -47,7 +47,7 @@ impl Set {
         }
     }
 
-    /// Every world with the seed of what happens in it.
+    /// Every world, with the seed of its random streams.
     fn worlds(self, count: u64) -> anyhow::Result<Vec<(GridSpec, u64)>> {
         let generated = |seed| GridSpec::generate(&GenerateSettings::default(), seed);
         let seeds = FIRST_SEED..FIRST_SEED + count;
@@ -69,25 +69,26 @@ impl Set {
     }
 }
 
-/// What one estimator reached.
+/// The scores of one estimator.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Score {
-    /// The log error per habit of the robot, averaged per thing, over the things of a world, over worlds.
+    /// The log error for each habit of the robot, averaged per block, then over the blocks of a world, then over
+    /// worlds.
     pub(crate) log_error: [Mean; Habit::ALL.len()],
     pub(crate) bias: Mean,
-    /// The log error of cells that were in view for long, and of the others.
+    /// The log error of cells that were in view for long, and of the other cells.
     pub(crate) dense: Mean,
     pub(crate) sparse: Mean,
-    /// The rate of cells that no thing ever touches.
+    /// The estimated rate of cells that no block ever touches.
     pub(crate) false_rate: Mean,
-    /// The share of changing cells whose credible interval holds the truth.
+    /// The share of the changing cells whose credible interval contains the true rate.
     pub(crate) covered: Mean,
-    /// The square error of P(blocked now) of cells out of view.
+    /// The squared error of P(blocked now) for cells out of view.
     pub(crate) brier: Mean,
 }
 
 impl Score {
-    /// Judges one life at its end.
+    /// Evaluates one run at its end.
     fn add_life(&mut self, habit: usize, mapper: &Mapper, truth: &GridGroundTruth) {
         let [mut things, mut bias] = [Mean::default(); 2];
         for thing in truth.moving_things().iter() {
@@ -117,7 +118,7 @@ impl Score {
         }
     }
 
-    /// Judges what is believed now of the cells out of view.
+    /// Evaluates the present predictions for the cells out of view.
     fn add_predictions(&mut self, mapper: &Mapper, truth: &GridGroundTruth) {
         for index in out_of_view(mapper, truth) {
             self.brier.add(square_error(mapper.blocked_probability(index), truth.is_blocked(index)));
@@ -125,12 +126,12 @@ impl Score {
     }
 }
 
-/// Predictions that need no rates.
+/// The scores of predictions that need no rates.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Naive {
-    /// A cell is as it was last seen.
+    /// Prediction: the cell has the state that was last seen.
     pub(crate) last_seen: Mean,
-    /// It is blocked with the share of the time in view that it was blocked.
+    /// Prediction: the probability is the share of the time in view during which the cell was blocked.
     pub(crate) always_mean: Mean,
 }
 
@@ -158,19 +159,19 @@ fn square_error(probability: f64, is_blocked: bool) -> f64 {
     (probability - f64::from(u8::from(is_blocked))).powi(2)
 }
 
-/// What all estimators reached in worlds of one kind.
+/// The scores of all estimators in worlds of one kind.
 pub(crate) struct Judged {
     pub(crate) worlds: usize,
     pub(crate) steps: u64,
-    /// In the order of [`EstimatorChoice::all`].
+    /// The scores, in the order of [`EstimatorChoice::all`].
     pub(crate) scores: Vec<Score>,
     pub(crate) naive: Naive,
-    /// Block and free events in view, of all changing cells.
+    /// The number of block events and of free events in view, over all changing cells.
     pub(crate) events: [u64; 2],
 }
 
 impl Judged {
-    /// Lets a robot live in a world, and every estimator learn from what it sees.
+    /// Runs a robot in a world; every estimator receives the same observations.
     fn live(&mut self, (spec, seed): &(GridSpec, u64), habit: usize) -> anyhow::Result<()> {
         let mut rng = ChaCha8Rng::seed_from_u64(*seed);
         rng.set_stream(1);
@@ -203,7 +204,7 @@ impl Judged {
     }
 }
 
-/// Judges all estimators with every robot, in so many random worlds, or in those that ship.
+/// Evaluates all estimators with every robot, in `count` random worlds, or in the shipped worlds.
 pub(crate) fn judge(set: Set, count: u64, steps: u64) -> anyhow::Result<Judged> {
     let worlds = set.worlds(count)?;
     let mut judged = Judged {

@@ -1,4 +1,4 @@
-//! Cells that are two-state Markov chains: the truth is known.
+//! Cells that are two-state Markov chains, so that the true rates are known.
 
 use crate::information::Information;
 use crate::patterns::{Looker, Pattern};
@@ -9,7 +9,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
-/// The probabilities to leave a state from one step to the next.
+/// The probabilities of leaving a state from one step to the next.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chain {
     pub(crate) block: f64,
@@ -17,7 +17,7 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
-    /// A chain with so many cycles per step, blocked for such a share of the time.
+    /// A chain with this number of cycles per step that is blocked for this share of the time.
     fn new(cycle_rate: f64, share_blocked: f64) -> Self {
         Self { block: cycle_rate / (1.0 - share_blocked), free: cycle_rate / share_blocked }
     }
@@ -34,34 +34,34 @@ impl Chain {
 /// Cycle rates over three decades, per step, and shares of the time that cells are blocked.
 const RATES: [f64; 10] = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4];
 pub(crate) const SHARES: [f64; 2] = [0.5, 0.1];
-/// Chains that leave a state faster than this alternate rather than wait.
+/// Chains that leave a state with a higher probability than this alternate, and are left out.
 const FASTEST: f64 = 0.9;
 const CELLS: usize = 100;
-/// Cells lie so far apart that none tells of another.
+/// Cells are this far apart, so that no cell gives information about another.
 const APART: usize = 4;
 
-/// What one estimator reached with one kind of chain.
+/// The scores of one estimator for one kind of chain.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Score {
-    /// Mean of estimate / truth − 1.
+    /// The mean of estimate / truth − 1.
     pub(crate) bias: f64,
     pub(crate) rms: f64,
     pub(crate) log_error: f64,
-    /// Share of the cells whose credible interval holds the truth.
+    /// The share of the cells whose credible interval contains the true rate.
     pub(crate) covered: f64,
 }
 
-/// What came out for one kind of chain under one pattern of looks.
+/// The results for one kind of chain under one pattern of observations.
 pub(crate) struct Outcome {
     pub(crate) pattern: Pattern,
     pub(crate) share_blocked: f64,
     pub(crate) rate: f64,
-    /// The relative standard deviation that an estimator without bias has at least.
+    /// The minimum relative standard deviation of an estimator without bias.
     pub(crate) least: f64,
     pub(crate) scores: Vec<Score>,
 }
 
-/// Cells follow `chains` in turn, `apart` from each other; those of the first are judged.
+/// The cells follow `chains` in turn, `apart` cells from each other; the cells of the first chain are evaluated.
 fn run(chains: &[Chain], pattern: Pattern, apart: usize, steps: u64) -> anyhow::Result<Outcome> {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let frame = GridFrame::new(Point2::origin(), 1.0, CELLS * apart, 1);
@@ -113,7 +113,7 @@ fn run(chains: &[Chain], pattern: Pattern, apart: usize, steps: u64) -> anyhow::
     })
 }
 
-/// Every kind of chain under every pattern.
+/// The results for every kind of chain under every pattern.
 pub(crate) fn all(steps: u64) -> anyhow::Result<Vec<Outcome>> {
     let mut outcomes = Vec::new();
     for pattern in Pattern::ALL {
@@ -127,10 +127,11 @@ pub(crate) fn all(steps: u64) -> anyhow::Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// The cycle rates of cells between unlike neighbours.
+/// The cycle rates of cells between neighbors with other rates.
 const MIXED_RATES: [f64; 3] = [0.005, 0.01, 0.02];
 
-/// Cells alone, between cells 10 times faster, and between cells 10 times slower, seen 10 of 40 steps.
+/// Cells alone, between cells with rates 10 times higher, and between cells with rates 10 times lower, observed in
+/// 10 of 40 steps.
 pub(crate) fn unlike_neighbours(steps: u64) -> anyhow::Result<Vec<[Outcome; 3]>> {
     let outcome = |rate: f64, factor: f64| {
         let apart = if factor == 1.0 { APART } else { 1 };

@@ -1,4 +1,4 @@
-//! Errors over rates, a panel for every pattern of looks.
+//! Errors over rates, one panel for every pattern of observations.
 
 use crate::chains::{Outcome, SHARES};
 use crate::patterns::Pattern;
@@ -7,13 +7,13 @@ use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
 const SIZE: (u32, u32) = (900, 620);
-/// Panels in a row.
+/// The number of panels in a row.
 const COLUMNS: usize = 3;
-/// The rates shown, per step.
+/// The lowest rate that is shown, per step.
 const FROM: f64 = 0.0004;
 const TO: f64 = 0.5;
 
-/// Okabe and Ito's colours, which colour-blind readers can tell apart.
+/// Okabe and Ito's colors, which color-blind readers can tell apart.
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 0, 0),
     RGBColor(153, 153, 153),
@@ -25,7 +25,7 @@ const COLOURS: [RGBColor; 6] = [
 
 /// Draws the log error of every estimator over the true rate, for cells that are blocked half of the time.
 pub(crate) fn draw(outcomes: &[Outcome], path: &str) -> anyhow::Result<()> {
-    // The text stays text in the drawing; the font only measures it.
+    // In the drawing, text stays text; the font is used only to measure text.
     register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
         .map_err(|_| anyhow::anyhow!("the font is damaged"))?;
     let area = SVGBackend::new(path, SIZE).into_drawing_area();

@@ -1,9 +1,10 @@
-//! What a pattern of looks can tell at most: the Fisher information of the exact likelihood.
+//! The maximum information of a pattern of observations: the Fisher information of the exact likelihood.
 
 use crate::chains::Chain;
 use std::collections::BTreeMap;
 
-/// The looks at one kind of chain: how often it was seen again after so many steps in each state.
+/// The observations of one kind of chain: for each number of steps and each state, how often a cell was observed
+/// again after that time.
 pub(crate) struct Information {
     chain: Chain,
     looks: BTreeMap<(bool, u64), u64>,
@@ -14,12 +15,12 @@ impl Information {
         Self { chain, looks: BTreeMap::new() }
     }
 
-    /// A cell that was blocked or free was seen again after so many steps.
+    /// Adds an observation of a cell `steps` steps after it was blocked or free.
     pub(crate) fn add(&mut self, before: bool, steps: u64) {
         *self.looks.entry((before, steps)).or_default() += 1;
     }
 
-    /// The least relative standard deviation of the cycle rate of one of `cells` cells.
+    /// The minimum relative standard deviation of the cycle rate of one of `cells` cells.
     pub(crate) fn least_deviation(&self, cells: f64) -> f64 {
         let mut matrix = [[0.0; 2]; 2];
         let logs = [self.chain.block.ln(), self.chain.free.ln()];

@@ -1,5 +1,5 @@
-//! How right the estimators of rates are, all on the same streams of observations: in block worlds, and on
-//! simulated two-state chains. Writes `docs/estimators/tables.md` and `docs/estimators/chains.svg`.
+//! The accuracy of the rate estimators, all on the same streams of observations: in block worlds, and on simulated
+//! two-state chains. Writes `docs/estimators/tables.md` and `docs/estimators/chains.svg`.
 //!
 //! ```text
 //! cargo run --release --example estimators              60 block worlds of 20,000 steps

@@ -1,11 +1,11 @@
-//! When a cell is looked at.
+//! The times at which a cell is observed.
 
-/// When a cell is looked at.
+/// A pattern of observation times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Pattern {
-    /// For the first so many of every so many steps.
+    /// In the first n steps of every m steps.
     Of(u64, u64),
-    /// Every so many steps, and on until nothing changed for so many steps.
+    /// Every `every` steps, until nothing has changed for `calm` steps.
     Stays { every: u64, calm: u64 },
 }
 
@@ -28,17 +28,17 @@ impl Pattern {
     }
 }
 
-/// Who looks at one cell.
+/// The observer of one cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Looker {
-    /// When the cell was last seen, and whether it was blocked.
+    /// The step of the last observation, and whether the cell was blocked.
     seen: Option<(u64, bool)>,
-    /// Steps without a change at the end of this visit.
+    /// The number of steps without a change at the end of this visit.
     calm: u64,
 }
 
 impl Looker {
-    /// Whether the cell is looked at in a step; `shift` moves the pattern in time.
+    /// Whether the cell is observed in a step; `shift` moves the pattern in time.
     pub(crate) fn looks(&self, pattern: Pattern, step: u64, shift: u64) -> bool {
         match pattern {
             Pattern::Of(view, every) => (step + shift) % every < view,
@@ -49,7 +49,7 @@ impl Looker {
         }
     }
 
-    /// The cell is seen. Tells how long ago it was seen before, and whether it was blocked then.
+    /// Observes the cell. Returns the time since the last observation, and whether the cell was blocked then.
     pub(crate) fn see(&mut self, step: u64, blocked: bool) -> Option<(u64, bool)> {
         let before = self.seen.replace((step, blocked));
         let is_calm = before == step.checked_sub(1).map(|last| (last, blocked));

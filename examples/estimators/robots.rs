@@ -1,4 +1,4 @@
-//! Robots that look at a grid world in different ways, whatever a mapper makes of it.
+//! Robots that observe a grid world in different ways; their paths do not depend on a map.
 
 use interfaces::{Cell, CellReading, Grid, Step};
 use rand::RngExt;
@@ -9,11 +9,11 @@ use std::collections::VecDeque;
 /// What a robot does at its goals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Habit {
-    /// Goes on to the next goal.
+    /// Continues to the next goal.
     Passes,
     /// Stays until nothing changed in view for some steps.
     Stays,
-    /// Goes to the middle of what changed in the last step, as the paper's local exploration.
+    /// Goes to the centroid of what changed in the last step, as in the paper's local exploration.
     Follows,
 }
 
@@ -29,26 +29,26 @@ impl Habit {
     }
 }
 
-/// Calm steps after which one that stays goes on, and the most that it stays.
+/// The number of steps without a change after which a robot that stays continues, and the maximum stay.
 const PATIENCE: u32 = 10;
 const STAY: u32 = 300;
-/// Steps of following at most, and random ones in a row: those of the controller.
+/// The maximum number of steps of following, and of consecutive random steps: the values of the controller.
 const FOLLOWING: u32 = 42;
 const RANDOM_STEPS: u32 = 1;
-/// Steps without getting nearer after which a goal is given up.
+/// The number of steps without progress after which a goal is given up.
 const STUCK: u32 = 20;
 
-/// A robot on its way from random goal to random goal.
+/// A robot that goes from one random goal to the next.
 pub(crate) struct Robot {
     habit: Habit,
     walls: Grid<bool>,
     rng: ChaCha8Rng,
-    /// Steps to the goal from every cell; none from walls.
+    /// The number of steps to the goal from every cell; `None` for walls.
     distance: Vec<Option<u32>>,
     goal: usize,
-    /// Steps in a row in which something was in the way.
+    /// The number of consecutive steps in which something blocked the way.
     stuck: u32,
-    /// Steps at the goal, and calm or random ones in a row among them.
+    /// The number of steps at the goal, and of consecutive calm or random steps among them.
     at_goal: u32,
     calm: u32,
     seen: Vec<Option<bool>>,
@@ -96,7 +96,7 @@ impl Robot {
                 self.stuck = 0;
                 return nearer;
             }
-            // Something is in the way: around it.
+            // Something blocks the way: go around it.
             self.stuck += 1;
             self.measure();
             return Step::Stay;
@@ -115,7 +115,7 @@ impl Robot {
         }
     }
 
-    /// A step to the middle of what changed; a random one where nothing did.
+    /// A step toward the centroid of what changed; a random step if nothing changed.
     fn follow(&mut self, here: Cell, changed: &[Cell]) -> Step {
         let is_open = |step: &&Step| self.is_open(step.target(here));
         let open: Vec<Step> = Step::ALL[1..].iter().filter(is_open).copied().collect();
@@ -135,12 +135,12 @@ impl Robot {
         best.filter(|step| far(step) < far(&Step::Stay)).unwrap_or(Step::Stay)
     }
 
-    /// Whether nothing is known to stand in the cell.
+    /// Whether the cell is not known to be blocked.
     fn is_open(&self, cell: Cell) -> bool {
         self.walls.frame().index(cell).is_some_and(|index| self.seen[index] != Some(true))
     }
 
-    /// Draws a goal, and measures the way to it from everywhere.
+    /// Draws a goal, and computes the distance to it from every cell.
     fn choose(&mut self) {
         let frame = *self.walls.frame();
         self.goal = loop {
@@ -153,7 +153,7 @@ impl Robot {
         (self.stuck, self.at_goal, self.calm) = (0, 0, 0);
     }
 
-    /// Measures the way to the goal from everywhere, around what is known to stand there.
+    /// Computes the distance to the goal from every cell, around cells that are known to be blocked.
     fn measure(&mut self) {
         let frame = *self.walls.frame();
         self.distance.fill(None);

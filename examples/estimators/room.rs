@@ -1,5 +1,5 @@
-//! The physics world: the dummy robot goes back and forth in its room, and a laser that stands there looks on
-//! in visits.
+//! The physics world: the dummy robot drives back and forth in its room, and a laser at rest in the same room
+//! observes it in visits.
 
 use crate::score::{MASS, Mean, log_error};
 use interfaces::{GroundTruth, TrueState};
@@ -11,18 +11,18 @@ use rand_chacha::rand_core::SeedableRng;
 use sim::physics::PhysicsWorld;
 
 const HOUSE: &str = include_str!("../../worlds/four_rooms.toml");
-/// Where the curious robot starts in the file, and where it looks on from.
+/// The start of the curious robot in the world file; the laser stands there.
 const START: &str = "pose_m = [2.0, 2.0]";
 const PLACE: &str = "pose_m = [9.2, 9.3]";
-/// As in `four_rooms`: what passes may hide a cell for so long, s.
+/// As in `four_rooms`: the time for which a passing body may hide a cell, s.
 const HIDING_S: f64 = 8.0;
 const SCANS: u32 = 18_000;
 
-/// Scans that a visit lasts, and scans to the next on average. Times to the next are random: regular visits
-/// would find the dummy robot at the same few places over and over.
+/// The number of scans of a visit, and the mean number of scans from one visit to the next. The times between
+/// visits are random: regular visits would observe the dummy robot at the same few places again and again.
 pub(crate) const VISITS: [(u32, u32); 4] = [(1, 1), (300, 1200), (100, 1000), (30, 300)];
 
-/// What one estimator reached.
+/// The scores of one estimator.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Score {
     pub(crate) log_error: Mean,
@@ -51,7 +51,7 @@ pub(crate) fn judge() -> anyhow::Result<Vec<Vec<Score>>> {
                 next = scan + if of > seen { rng.random_range(0..=2 * (of - seen)) } else { 0 };
             }
             if scan < next {
-                reading.scan.ranges_m.fill(f32::NAN); // it looks elsewhere
+                reading.scan.ranges_m.fill(f32::NAN); // The laser does not observe in this scan.
             }
             for mapper in &mut mappers {
                 mapper.update(&reading)?;

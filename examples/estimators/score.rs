@@ -1,12 +1,12 @@
-//! How far off an estimate is.
+//! The error of an estimate.
 
-/// Errors are cut at a factor of ten either way.
+/// Errors are limited to a factor of ten in both directions.
 const MOST: f64 = std::f64::consts::LN_10;
 
-/// The mass of the credible intervals that are tried.
+/// The probability of the credible intervals that are evaluated.
 pub(crate) const MASS: f64 = 0.9;
 
-/// |ln(estimate / truth)|, cut; no estimate counts as the cut.
+/// |ln(estimate / truth)|, limited; a missing estimate counts as the limit.
 pub(crate) fn log_error(estimate: f64, truth: f64) -> f64 {
     if estimate > 0.0 { (estimate / truth).ln().abs().min(MOST) } else { MOST }
 }
@@ -24,7 +24,7 @@ impl Mean {
         self.count += 1;
     }
 
-    /// Adds the mean of another, if it has one.
+    /// Adds the mean of another `Mean`, if it has one.
     pub(crate) fn add_mean(&mut self, other: &Self) {
         if other.count > 0 {
             self.add(other.mean());
@@ -36,7 +36,7 @@ impl Mean {
         self.add(f64::from(u8::from(holds)));
     }
 
-    /// NaN of nothing.
+    /// The mean; NaN without values.
     pub(crate) fn mean(&self) -> f64 {
         self.sum / f64::from(self.count)
     }

@@ -1,4 +1,4 @@
-//! What came out, as Markdown.
+//! The results as Markdown tables.
 
 use crate::blocks::{Judged, Set};
 use crate::chains::Outcome;
@@ -9,7 +9,7 @@ use crate::score::{MASS, Mean};
 use mapper::EstimatorChoice;
 use std::fmt::Write as _;
 
-/// A pattern of looks identifies a rate if no estimator without bias need be off by more, relatively.
+/// A pattern of observations identifies a rate if the minimum relative standard deviation is at most this value.
 const IDENTIFIED: f64 = 0.1;
 
 /// The name of a row.
@@ -17,7 +17,7 @@ fn name(estimator: &EstimatorChoice) -> String {
     format!("`{}`", estimator.name())
 }
 
-/// A figure, and a dash for none.
+/// A number, or a dash for a missing one.
 fn figure(value: f64, digits: usize) -> String {
     if value.is_nan() { "–".to_owned() } else { format!("{value:.digits$}") }
 }
@@ -88,11 +88,11 @@ pub(crate) fn room(scores: &[Vec<room::Score>]) -> String {
     text
 }
 
-/// What one estimator reached with all kinds of chains under one pattern of looks.
+/// The scores of one estimator for all kinds of chains under one pattern of observations.
 #[derive(Default)]
 struct Row {
     identified: u32,
-    /// The largest there, with its sign.
+    /// The largest bias among the identified rates, with its sign.
     bias: f64,
     /// Root mean square error over the least possible.
     over_least: Mean,

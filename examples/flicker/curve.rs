@@ -1,4 +1,4 @@
-//! The price of calm: the same house under more and more patience.
+//! False changes against latency: the same house with increasing numbers of misses until a cell is cleared.
 
 use crate::things::{BOXES, cleared_after};
 use crate::{TURNED, false_changes};
@@ -6,18 +6,18 @@ use mapper::OccupancyChoice;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
-/// Misses in a row that a surface takes before it is cleared.
+/// The numbers of consecutive misses after which a surface is cleared.
 const MISSES: [u8; 11] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20];
 const SEEDS: u64 = 5;
 
-/// A logarithm has no zero: fewer changes than this are drawn here.
+/// A logarithmic axis has no zero: smaller numbers of changes are drawn here.
 const FLOOR: f64 = 0.1;
 
 /// One setting, averaged over the seeds.
 pub(crate) struct Point {
     pub(crate) misses_to_free: u8,
     pub(crate) false_changes: f64,
-    /// For a box in the open.
+    /// For a box in the open, s.
     pub(crate) half_cleared_s: f64,
 }
 
@@ -41,9 +41,9 @@ pub(crate) fn sweep() -> anyhow::Result<Vec<Point>> {
     Ok(points)
 }
 
-/// Draws false changes over the time that a removed box takes.
+/// Draws the false changes over the time until a removed box is cleared.
 pub(crate) fn draw(points: &[Point], path: &str) -> anyhow::Result<()> {
-    // The text stays text in the drawing; the font only measures it.
+    // In the drawing, text stays text; the font is used only to measure text.
     register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
         .map_err(|_| anyhow::anyhow!("the font is damaged"))?;
     let most = |of: fn(&Point) -> f64| points.iter().map(of).fold(0.0, f64::max);

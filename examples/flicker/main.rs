@@ -1,13 +1,13 @@
-//! The flicker study: how often does a static wall look as if it changed, and what does it cost to
-//! prevent that? Prints the table of `docs/flicker.md` and draws `docs/flicker.svg`.
+//! The flicker study: how often does a static wall change in the map, and what does it cost to prevent this? Prints
+//! the table of `docs/flicker.md` and draws `docs/flicker.svg`.
 //!
 //! ```text
 //! cargo run --release --example flicker
 //! ```
 //!
-//! Every house is toured for ten minutes (6000 scans) with nothing moving: each change that the map
-//! reports is false. Then things come and go in the same house: a box that is taken away, and a disc
-//! that drives by. One without the other says nothing: a map that never changes never flickers.
+//! Every house is toured for ten minutes (6000 scans) while nothing moves: each change in the map is false. Then
+//! things appear, disappear and move in the same house: a box is removed, and a disc drives past. Both parts are
+//! needed: a map that never changes never flickers.
 
 mod curve;
 #[path = "../../mapper/tests/house/mod.rs"]
@@ -36,7 +36,7 @@ struct Bench {
     beams: usize,
 }
 
-/// Walls 0.1 m thick, turned by 10°, 1 cm of range noise: the one to judge by.
+/// Walls 0.1 m thick, turned by 10°, 1 cm of range noise: the reference.
 const TURNED: Bench = Bench {
     name: "R: thick, turned by 10°",
     thickness_m: 0.1,
@@ -79,7 +79,7 @@ impl Bench {
         MapperSettings { occupancy, steady, ..MapperSettings::default() }
     }
 
-    /// Ten minutes of looking at nothing that moves.
+    /// Ten minutes of observation while nothing moves.
     fn tour(self, seed: u64) -> (House, Vec<LaserReading>) {
         let mut house = self.house(seed);
         let time_s = |scan: u32| f64::from(scan) * PERIOD_S;
@@ -89,8 +89,8 @@ impl Bench {
     }
 }
 
-/// The changes of known cells that a mapper reports of a static house, and how many of them were not
-/// the first of their cell.
+/// The number of changes of known cells that a mapper reports in a static house, and how many of them were not the
+/// first change of their cell.
 fn false_changes(
     house: &House,
     readings: &[LaserReading],

@@ -1,4 +1,4 @@
-//! What is not static: a box that is taken away, and a disc that drives by.
+//! The things that are not static: a box that is removed, and a disc that drives past.
 
 use crate::PERIOD_S;
 use crate::house::{CELL_M, House, Thing, rectangle};
@@ -9,7 +9,7 @@ use nalgebra::{Isometry2, Point2};
 /// The lower left corners of the two boxes, m: one in the open, one beside a wall.
 pub(crate) const BOXES: [(f64, f64); 2] = [(1.5, 3.0), (0.1, 1.0)];
 const BOX_M: f64 = 0.4;
-/// When the box goes, s.
+/// The time at which the box is removed, s.
 const GOES_S: f64 = 30.0;
 /// The disc: its radius, speed, and the height of its path above the lower wall.
 const DISC_M: f64 = 0.2;
@@ -23,8 +23,8 @@ fn pose(house: &House, time_s: f64) -> Isometry2<f64> {
     interfaces::pose(at.x, at.y, angle)
 }
 
-/// How long after a box went half and nine tenths of its cells are free, s; ∞ if they never are
-/// within 20 s.
+/// The time from the removal of a box until half and nine tenths of its cells are free, s; ∞ if this takes more
+/// than 20 s.
 pub(crate) fn cleared_after(
     mut house: House,
     settings: &MapperSettings,
@@ -62,7 +62,7 @@ pub(crate) fn cleared_after(
 pub(crate) struct Latencies {
     pub(crate) block_s: Vec<f64>,
     pub(crate) free_s: Vec<f64>,
-    /// Changes that a beam showed and that were over before the map noticed.
+    /// The number of changes that a beam showed and that were over before the map changed.
     missed: usize,
 }
 
@@ -72,8 +72,8 @@ impl Latencies {
     }
 }
 
-/// Measures a disc that drives back and forth along the lower wall. Cells that it covers in part are
-/// neither right nor wrong.
+/// Measures the latencies for a disc that drives back and forth along the lower wall. Cells that the disc covers
+/// only partly are neither correct nor incorrect.
 pub(crate) fn latencies(mut house: House, settings: &MapperSettings) -> anyhow::Result<Latencies> {
     let mut mapper = Mapper::new(settings, house.frame)?;
     let path: Vec<usize> = (0..house.frame.len())
@@ -103,7 +103,7 @@ pub(crate) fn latencies(mut house: House, settings: &MapperSettings) -> anyhow::
                 (CellState::Free, CellState::Blocked) => ended[index],
                 (CellState::Blocked, CellState::Free) => crossed[index],
                 _ => {
-                    // Over, or half over, before the map noticed.
+                    // The change was over, completely or partly, before the map changed.
                     if !shown_s[index].is_nan() && truth == was {
                         found.missed += 1;
                         shown_s[index] = f64::NAN;
@@ -125,7 +125,7 @@ pub(crate) fn latencies(mut house: House, settings: &MapperSettings) -> anyhow::
     Ok(found)
 }
 
-/// Back and forth over four metres.
+/// Back and forth over four meters.
 fn disc_at(house: &House, time_s: f64) -> Point2<f64> {
     let along_m = (DISC_MPS * (time_s - 20.0)).rem_euclid(8.0);
     house.turned(Point2::new(1.0 + along_m.min(8.0 - along_m), DISC_PATH_M))
@@ -143,7 +143,7 @@ fn disc_truth(middle: Point2<f64>, disc: Point2<f64>) -> CellState {
     }
 }
 
-/// The cells that beams ended in, and those that beams crossed.
+/// The cells in which beams ended, and the cells that beams crossed.
 fn touched(house: &House, reading: &interfaces::LaserReading) -> (Vec<bool>, Vec<bool>) {
     let (mut ended, mut crossed) = (vec![false; house.frame.len()], vec![false; house.frame.len()]);
     for (beam, &range_m) in reading.scan.ranges_m.iter().enumerate() {
@@ -164,7 +164,7 @@ fn touched(house: &House, reading: &interfaces::LaserReading) -> (Vec<bool>, Vec
     (ended, crossed)
 }
 
-/// The middle value; 0 of none.
+/// The median; 0 without values.
 pub(crate) fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)

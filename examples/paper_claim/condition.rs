@@ -1,4 +1,4 @@
-//! The conditions: each differs from the paper's in one setting.
+//! The conditions: each differs from the paper's condition in one setting.
 
 use agent::{AgentSettings, Reward};
 use controller::CellDrive;
@@ -12,10 +12,10 @@ use std::sync::atomic::AtomicBool;
 /// The name of the condition from which the others differ in one setting.
 pub(crate) const BASE: &str = "the paper's";
 
-/// The strategies that the claim is about, and two baselines.
+/// The strategies of the claim, and two baselines.
 const STRATEGIES: [&str; 5] = ["curious", "recency", "poisson", "random", "coin"];
 
-/// Everything that can be changed.
+/// All settings that conditions can change.
 #[derive(Clone, Debug)]
 pub(crate) struct Condition {
     pub(crate) name: String,
@@ -23,9 +23,9 @@ pub(crate) struct Condition {
     steps: u64,
     estimator: EstimatorChoice,
     reward: Reward,
-    /// The probability of a move.
+    /// The probability of a move of a block or of the robot.
     chance: f64,
-    /// The bound on local exploration.
+    /// The maximum number of steps of local exploration.
     max_steps: u32,
 }
 

@@ -10,13 +10,13 @@ const ROW: i32 = 22;
 const LEFT: i32 = 330;
 const WIDTH: u32 = 1100;
 const TOP: i32 = 74;
-/// The two panels: what they show, how far they reach to either side (larger differences end at their
-/// edge), and where they have a tick. Differences to recency are ten times smaller.
+/// The two panels: their titles, their ranges to both sides (larger differences end at the edge), and the positions
+/// of their ticks. Differences to recency are ten times smaller.
 const PANELS: [(&str, f64, f64); 2] = [("against recency", 0.12, 0.1), ("against poisson", 1.2, 1.0)];
 const PANEL: i32 = 340;
 const GAP: i32 = 30;
 
-/// One row per condition and kind of world: the generated worlds as one, and the paper's.
+/// One row per condition and kind of world: all generated worlds together, and the paper's world.
 pub(crate) fn draw(findings: &[Finding], path: &Path) -> anyhow::Result<()> {
     register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
         .map_err(|_| anyhow::anyhow!("the font is damaged"))?;
@@ -95,7 +95,7 @@ fn whisker(
     Ok(())
 }
 
-/// Where a difference lies in a panel.
+/// The position of a difference in a panel.
 fn x(panel: usize, difference: f64) -> i32 {
     let (_, reach, _) = PANELS[panel];
     let part = (difference.clamp(-reach, reach) / reach + 1.0) / 2.0;

@@ -24,9 +24,9 @@ const SEEDS: u64 = 50;
 /// The results of one condition.
 struct Finding {
     condition: Condition,
-    /// In each shipped world.
+    /// The runs in the shipped worlds.
     shipped: Report,
-    /// Over all generated worlds.
+    /// The run over all generated worlds.
     generated: Report,
 }
 

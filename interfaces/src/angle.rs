@@ -9,12 +9,12 @@ pub fn rotation(angle_rad: f64) -> UnitComplex<f64> {
     UnitComplex::from_cos_sin_unchecked(cos, sin)
 }
 
-/// The pose at `(x_m, y_m)` that looks along `heading_rad`.
+/// The pose at `(x_m, y_m)` with the heading `heading_rad`.
 pub fn pose(x_m: f64, y_m: f64, heading_rad: f64) -> Isometry2<f64> {
     Isometry2::from_parts(Translation2::new(x_m, y_m), rotation(heading_rad))
 }
 
-/// The direction a pose looks along, in (−π, π].
+/// The heading of a pose, in (−π, π].
 pub fn heading_rad(pose: &Isometry2<f64>) -> f64 {
     libm::atan2(pose.rotation.im, pose.rotation.re)
 }
@@ -27,8 +27,9 @@ pub fn wrap_rad(angle_rad: f64) -> f64 {
 /// The largest error of [`approximate_atan2`], rad.
 pub const APPROXIMATE_ATAN2_ERROR_RAD: f64 = 1.2e-5;
 
-/// The direction of the vector (x, y) in [−π, π], rad, within [`APPROXIMATE_ATAN2_ERROR_RAD`]; 0 for the zero
-/// vector. Abramowitz & Stegun (1964), 4.4.49. Use it as a first guess where the exact function takes too long.
+/// The direction of the vector (x, y) in [−π, π], rad, with an error of at most [`APPROXIMATE_ATAN2_ERROR_RAD`]; 0
+/// for the zero vector. Abramowitz & Stegun (1964), 4.4.49. Use it as a first estimate where the exact function
+/// takes too long.
 #[inline]
 pub fn approximate_atan2(y: f64, x: f64) -> f64 {
     let (along, across) = (x.abs(), y.abs());

@@ -1,10 +1,10 @@
-/// A name that no built-in part has.
+/// The error for a name that no built-in part has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no {kind} is called `{name}`; there are {}", known.join(", "))]
 pub struct UnknownName {
     /// The kind of the part, as in "strategy".
     pub kind: &'static str,
-    /// The name that was asked for.
+    /// The unknown name.
     pub name: String,
     /// The names of the built-in parts of this kind.
     pub known: Vec<&'static str>,
@@ -12,14 +12,14 @@ pub struct UnknownName {
 
 /// Implements the traits of a part that users choose by its name.
 ///
-/// The type `$part` has a method `name(&self) -> &'static str`; `$all` are its built-in values; `$kind` is its name in
-/// messages. Two values are equal if they have the same name. `Debug`, `Display`, `FromStr` and serde use the name;
-/// only built-in values can be read.
+/// The type `$part` needs a method `name(&self) -> &'static str`. `$all` is the list of the built-in values of this
+/// type; `$kind` is the name of the type in messages. Two values are equal if they have the same name. `Debug`,
+/// `Display`, `FromStr` and serde use the name; only built-in values can be read.
 #[macro_export]
 macro_rules! chosen_by_name {
     ($part:ty, $kind:literal, $all:expr) => {
         impl $part {
-            /// The built-in value of a name.
+            /// The built-in value with this name.
             pub fn named(name: &str) -> Option<Self> {
                 name.parse().ok()
             }

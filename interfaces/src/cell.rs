@@ -1,7 +1,7 @@
 use nalgebra::Point2;
 
-/// A cell by column (`x`, to the right) and row (`y`, upwards). Signed, so that the neighbour of
-/// a border cell is a cell outside the grid and never wraps into another row.
+/// A cell, given by its column (`x`, to the right) and its row (`y`, upward). The numbers are signed: the neighbor
+/// of a border cell is a cell outside the grid, and never a cell of another row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Cell {
     /// Column, counted from the left.
@@ -30,7 +30,7 @@ impl Cell {
             .map(|(dx, dy)| Self::new(self.x + dx, self.y + dy))
     }
 
-    /// The cell nearest to the mean of `cells`; `None` for no cells.
+    /// The cell that contains the mean of the positions of `cells`; `None` for no cells.
     pub fn centroid(cells: impl IntoIterator<Item = Self>) -> Option<Self> {
         let (mut sum, mut count) = (Point2::new(0.0, 0.0), 0.0);
         for cell in cells {

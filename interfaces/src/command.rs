@@ -1,23 +1,23 @@
 use crate::Cell;
 
-/// The velocity of a diff-drive robot in its own frame, as ROS `geometry_msgs/Twist`.
+/// The velocity of a differential-drive robot in the frame of the robot, as ROS `geometry_msgs/Twist`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Twist {
-    /// Forwards, m/s.
+    /// Linear velocity, positive forward, m/s.
     pub linear_mps: f64,
-    /// Counter-clockwise, rad/s.
+    /// Angular velocity, positive counter-clockwise, rad/s.
     pub angular_radps: f64,
 }
 
 impl Twist {
-    /// Standing still.
+    /// Zero velocity.
     pub const STOP: Self = Self { linear_mps: 0.0, angular_radps: 0.0 };
 }
 
 /// The action of a robot in a grid world: stay, or move to one of the four cells that share a side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Step {
-    /// Stay where it is.
+    /// Stay in the same cell.
     #[default]
     Stay,
     /// One column to the right.
@@ -31,7 +31,7 @@ pub enum Step {
 }
 
 impl Step {
-    /// Every action; the moves in the order of [`Cell::neighbours4`].
+    /// Every action: stay, then the moves in the order of [`Cell::neighbours4`].
     pub const ALL: [Self; 5] = [Self::Stay, Self::Right, Self::Up, Self::Left, Self::Down];
 
     /// The cell that the action leads to from `cell`.
@@ -46,8 +46,7 @@ impl Step {
         }
     }
 
-    /// The action that leads from one cell to another; `None` unless they are the same or share a
-    /// side.
+    /// The action that leads from one cell to another; `None` unless the two cells are the same or share a side.
     #[inline]
     pub fn between(from: Cell, to: Cell) -> Option<Self> {
         Self::ALL.into_iter().find(|step| step.target(from) == to)

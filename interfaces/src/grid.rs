@@ -11,9 +11,9 @@ pub struct GridFrame {
 }
 
 impl GridFrame {
-    /// A frame of `width` × `height` cells with sides of `resolution_m`, whose lower left corner
-    /// lies at `origin` (m). `None` unless every figure is finite, the resolution positive, and
-    /// the grid has between one and 2²⁸ cells.
+    /// A frame of `width` × `height` cells with sides of `resolution_m` (m), whose lower left corner is at `origin`
+    /// (m). `None` unless every number is finite, the resolution is positive, and the grid has between one and 2²⁸
+    /// cells.
     pub fn new(origin: Point2<f64>, resolution_m: f64, width: usize, height: usize) -> Option<Self> {
         let cells = width.checked_mul(height)?;
         let finite = origin.x.is_finite() && origin.y.is_finite() && resolution_m.is_finite();
@@ -25,8 +25,8 @@ impl GridFrame {
         })
     }
 
-    /// The frame that covers the rectangle from `origin` of `width_m` × `height_m`; `None` as in
-    /// [`GridFrame::new`].
+    /// The frame that covers the rectangle of `width_m` × `height_m` (m) whose lower left corner is `origin` (m).
+    /// `None` under the same conditions as for [`GridFrame::new`].
     pub fn covering(origin: Point2<f64>, width_m: f64, height_m: f64, resolution_m: f64) -> Option<Self> {
         // A millionth of a cell of slack: 12 m in cells of 0.05 m are 240 cells, not 241.
         let cells = |length_m: f64| (length_m / resolution_m - 1e-6).ceil() as usize;
@@ -64,15 +64,15 @@ impl GridFrame {
         self.width * self.height
     }
 
-    /// The cell that holds `point` (m), also outside of the grid. A cell owns its lower and left
-    /// border.
+    /// The cell that contains `point` (m); the cell can be outside of the grid. A point on a border belongs to the
+    /// cell to the right and above.
     #[inline]
     pub fn cell_at(&self, point: &Point2<f64>) -> Cell {
         let at = (point - self.origin) / self.resolution_m;
         Cell::new(floor(at.x), floor(at.y))
     }
 
-    /// The middle of a cell, m, also outside of the grid.
+    /// The center of a cell, m; the cell can be outside of the grid.
     #[inline]
     pub fn center(&self, cell: Cell) -> Point2<f64> {
         Point2::new(
@@ -107,8 +107,8 @@ impl GridFrame {
     }
 }
 
-/// The floor of a number, cut to the range of `i32`. The portable instruction set has no rounding
-/// instruction, and this is called for every beam.
+/// The largest whole number that is not above a number, limited to the range of `i32`. The portable instruction set
+/// has no rounding instruction, and this function is called for every beam.
 #[inline]
 fn floor(x: f64) -> i32 {
     let toward_zero = x as i32;
@@ -130,7 +130,7 @@ impl<T: Clone> Grid<T> {
 }
 
 impl<T> Grid<T> {
-    /// A grid of `cells` in row-major order; `None` if there are not as many as the frame has.
+    /// A grid of `cells` in row-major order; `None` if the number of cells is not that of the frame.
     pub fn from_cells(frame: GridFrame, cells: Vec<T>) -> Option<Self> {
         (cells.len() == frame.len()).then_some(Self { frame, cells })
     }
@@ -147,7 +147,7 @@ impl<T> Grid<T> {
         &self.cells
     }
 
-    /// The values in row-major order, to write.
+    /// The mutable values in row-major order, row 0 at the lowest y.
     #[inline]
     pub fn cells_mut(&mut self) -> &mut [T] {
         &mut self.cells
@@ -159,13 +159,13 @@ impl<T> Grid<T> {
         Some(&self.cells[self.frame.index(cell)?])
     }
 
-    /// The value of a cell, to write; `None` outside of the grid.
+    /// The mutable value of a cell; `None` outside of the grid.
     #[inline]
     pub fn get_mut(&mut self, cell: Cell) -> Option<&mut T> {
         Some(&mut self.cells[self.frame.index(cell)?])
     }
 
-    /// The same grid with every value turned into another.
+    /// A grid of the same frame, with `f` applied to every value.
     pub fn map<U>(&self, f: impl FnMut(&T) -> U) -> Grid<U> {
         Grid { frame: self.frame, cells: self.cells.iter().map(f).collect() }
     }

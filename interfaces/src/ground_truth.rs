@@ -4,12 +4,12 @@ use std::borrow::Cow;
 /// The true state of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TrueState {
-    /// No solid overlaps the cell. Touching the border of the cell is not overlapping.
+    /// No solid body overlaps the cell. A body that only touches the border of the cell does not overlap the cell.
     #[default]
     Free,
-    /// Solids cover a part of the cell. Metrics leave out such a cell.
+    /// Solid bodies cover a part of the cell. Metrics leave out such a cell.
     PartlyCovered,
-    /// Solids cover the whole cell.
+    /// Solid bodies cover the whole cell.
     Blocked,
 }
 
@@ -26,11 +26,11 @@ pub struct TrueChange {
     pub after: TrueState,
 }
 
-/// What is true in a simulated world, cell by cell: the reference of every metric. No localizer, mapper,
-/// agent or controller may read it.
+/// The true state of a simulated world, cell by cell: the reference of every metric. No localizer, mapper, agent or
+/// controller may read it.
 ///
-/// Cells are addressed by their index in row-major order of [`GroundTruth::frame`]. The robot that explores
-/// is not part of the ground truth: its own body covers no cell.
+/// Cells are addressed by their index in row-major order of [`GroundTruth::frame`]. The body of the robot that
+/// explores is not part of the ground truth and covers no cell.
 pub trait GroundTruth {
     /// The position and the size of the grid of cells.
     fn frame(&self) -> &GridFrame;
@@ -41,14 +41,14 @@ pub trait GroundTruth {
     /// The state of a cell now.
     fn state(&self, index: usize) -> TrueState;
 
-    /// Whether a cell can be seen now: it is free, or it is blocked and shares a side with a cell that is
-    /// not blocked; and no wall separates it from the start of the robot.
+    /// Whether the robot could see a cell now: the cell is free, or is blocked and shares a side with a cell that
+    /// is not blocked; and no wall separates the cell from the start of the robot.
     fn can_be_seen(&self, index: usize) -> bool;
 
     /// The number of times that a cell has become blocked so far.
     fn block_events(&self, index: usize) -> u32;
 
-    /// The true cycle rate of a cell so far: block events per unit of time; 0 at the start.
+    /// The true cycle rate of a cell so far: block events per unit of time; 0 at time 0.
     fn cycle_rate(&self, index: usize) -> f64 {
         let elapsed = self.elapsed();
         if elapsed > 0.0 { f64::from(self.block_events(index)) / elapsed } else { 0.0 }
@@ -62,10 +62,11 @@ pub trait GroundTruth {
         (0..self.frame().len()).filter(|&index| self.is_swept(index)).collect()
     }
 
-    /// The swept cells of every moving thing, sorted by index. In a physics world a cell belongs to the
-    /// first thing that touched it; in a grid world it belongs to every block whose path contains it.
+    /// For every moving thing, the cells that the thing has swept, sorted by index. In a physics world a cell
+    /// belongs to the first thing that touched the cell; in a grid world, to every block whose path contains the
+    /// cell.
     fn moving_things(&self) -> Cow<'_, [Vec<usize>]>;
 
-    /// The changes since the last command, in the order in which they happened.
+    /// The changes since the last command, in order of time.
     fn changes(&self) -> &[TrueChange];
 }

@@ -11,8 +11,7 @@ use rand_chacha::rand_core::SeedableRng;
 use std::convert::Infallible;
 use std::ops::Range;
 
-/// What the numbers of a [`RandomStream`] are used for. Indices count robots, doors and blocks in the
-/// order of the world file.
+/// The purpose of a [`RandomStream`]. Indices count robots, doors and blocks in the order of the world file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Purpose {
     /// Physics world: range noise of the lasers of a robot. Stream `index`.
@@ -44,7 +43,7 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// The number of the ChaCha stream.
+    /// The number of the ChaCha stream of this purpose.
     pub fn stream_number(self) -> u64 {
         match self {
             Self::LaserNoise(index) => index as u64,
@@ -69,7 +68,7 @@ impl Purpose {
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct RandomStream {
     rng: ChaCha8Rng,
-    /// The polar method makes normal numbers in pairs: the second one, until it is asked for.
+    /// The polar method makes normal numbers in pairs: the second number of the last pair, until it is used.
     spare_normal: Option<f64>,
 }
 
@@ -104,7 +103,8 @@ impl RandomStream {
         }
     }
 
-    /// A Bernoulli draw: true with `probability`. Draws nothing where `probability` is 1 or more.
+    /// A Bernoulli draw: true with `probability`. If `probability` is 1 or more, the result is true and no number
+    /// is drawn.
     #[inline]
     pub fn bernoulli(&mut self, probability: f64) -> bool {
         probability >= 1.0 || self.unit() < probability

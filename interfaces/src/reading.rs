@@ -1,7 +1,7 @@
 use crate::{Cell, Scan, Twist};
 use nalgebra::Isometry2;
 
-/// The content that every reading has, in every world.
+/// What every reading contains, in every world.
 pub trait Reading {
     /// The time of the reading: seconds, or steps in a grid world.
     fn time(&self) -> f64;
@@ -9,11 +9,11 @@ pub trait Reading {
     /// The estimated pose of the robot in the frame of the map, m and rad.
     fn pose(&self) -> &Isometry2<f64>;
 
-    /// What a map can learn from the reading.
+    /// The observation from which a map is updated.
     fn observation(&self) -> Observation<'_>;
 }
 
-/// What a map can learn from a reading.
+/// The observation from which a map is updated.
 #[derive(Clone, Copy, Debug)]
 pub enum Observation<'a> {
     /// The ranges of a laser: evidence from which the states of cells are inferred.
@@ -22,20 +22,20 @@ pub enum Observation<'a> {
     Cells(&'a CellReading),
 }
 
-/// A laser scan with the pose of the same instant.
+/// A laser scan, and the pose of the robot at the same time.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct LaserReading {
-    /// The time of scan and pose, s.
+    /// The time of the scan and of the pose, s.
     pub time_s: f64,
-    /// The robot's pose in the map's frame, by odometry.
+    /// The pose of the robot in the frame of the map, by odometry, m and rad.
     #[serde(with = "crate::serde_pose")]
     pub pose: Isometry2<f64>,
-    /// The robot's velocity, by odometry.
+    /// The velocity of the robot, by odometry, m/s and rad/s.
     pub twist: Twist,
-    /// The laser's pose in the robot's frame.
+    /// The pose of the laser in the frame of the robot, m and rad.
     #[serde(with = "crate::serde_pose")]
     pub mount: Isometry2<f64>,
-    /// The scan, in the laser's frame.
+    /// The scan, in the frame of the laser.
     pub scan: Scan,
 }
 
@@ -58,9 +58,9 @@ impl Reading for LaserReading {
 pub struct CellReading {
     /// The time of the reading, in steps.
     pub time: f64,
-    /// The pose of the robot in the frame of the map.
+    /// The pose of the robot in the frame of the map, m and rad.
     pub pose: Isometry2<f64>,
-    /// The cells in view, each with whether it is blocked. Cells outside of the map are ignored.
+    /// The cells in view, and for each cell whether it is blocked. Cells outside of the map are ignored.
     pub cells: Vec<(Cell, bool)>,
 }
 

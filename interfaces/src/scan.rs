@@ -1,16 +1,16 @@
-/// One sweep of a planar laser, as ROS `sensor_msgs/LaserScan`, with the meaning of REP-117.
+/// One scan of a planar laser, as ROS `sensor_msgs/LaserScan`, with the meaning of REP-117.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Scan {
     /// The direction of the first beam in the laser's frame, rad.
     pub angle_min_rad: f64,
-    /// The angle from one beam to the next, rad; beam `i` looks along
-    /// `angle_min_rad + i * angle_increment_rad`.
+    /// The angle between consecutive beams, rad; the direction of beam `i` is `angle_min_rad + i *
+    /// angle_increment_rad`.
     pub angle_increment_rad: f64,
-    /// Ranges below this are not measurements, m.
+    /// The minimum range, m: smaller ranges are not measurements.
     pub range_min_m: f64,
-    /// The laser sees no farther than this, m.
+    /// The maximum range of the laser, m.
     pub range_max_m: f64,
-    /// One range per beam, m: +∞ no return, −∞ too close, NaN invalid.
+    /// One range per beam, m: +∞ no return, −∞ too close, NaN invalid measurement.
     pub ranges_m: Vec<f32>,
 }
 
@@ -20,20 +20,20 @@ impl Scan {
         self.angle_min_rad + index as f64 * self.angle_increment_rad
     }
 
-    /// Whether the beams close a full turn, so that the last is a neighbour of the first: up to a
-    /// thousandth of the angle between beams, more than the rounding of an angle in 32 bits adds up to.
+    /// Whether the beams cover a full turn, so that the last beam is a neighbor of the first. The tolerance is a
+    /// thousandth of the angle between beams, more than the accumulated rounding of an angle in 32 bits.
     pub fn is_full_turn(&self) -> bool {
         let sweep_rad = self.angle_increment_rad.abs() * self.ranges_m.len() as f64;
         (sweep_rad - std::f64::consts::TAU).abs() < 1e-3 * self.angle_increment_rad.abs()
     }
 
-    /// Checks the figures that every beam shares. Single ranges are never an error: REP-117 says
-    /// what each value means.
+    /// Checks the parameters of the scan: the angles, the number of beams and the range limits. Single ranges are
+    /// never an error: REP-117 defines the meaning of each value.
     ///
     /// # Errors
     ///
-    /// When an angle is not finite, the beams sweep more than one turn, or the range limits are
-    /// not `0 <= range_min_m < range_max_m`, finite.
+    /// When an angle is not finite, when the beams cover more than one turn, or when the range limits do not
+    /// satisfy `0 <= range_min_m < range_max_m` or are not finite.
     pub fn check(&self) -> Result<(), ScanError> {
         let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ref ranges_m } = *self;
         if !angle_min_rad.is_finite() || !angle_increment_rad.is_finite() {
@@ -50,31 +50,31 @@ impl Scan {
     }
 }
 
-/// Why a scan was refused.
+/// The error for a scan that is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ScanError {
     /// An angle is NaN or infinite.
     #[error("scan angles must be finite: angle_min {angle_min_rad}, angle_increment {angle_increment_rad}")]
     Angle {
-        /// As in the scan.
+        /// The direction of the first beam, rad.
         angle_min_rad: f64,
-        /// As in the scan.
+        /// The angle between consecutive beams, rad.
         angle_increment_rad: f64,
     },
-    /// The beams coincide, or sweep more than one turn.
+    /// All beams have the same direction, or the beams cover more than one turn.
     #[error("{beams} beams {angle_increment_rad} rad apart do not make a sweep of at most one turn")]
     Sweep {
         /// The number of ranges.
         beams: usize,
-        /// As in the scan.
+        /// The angle between consecutive beams, rad.
         angle_increment_rad: f64,
     },
-    /// The range limits are not `0 <= min < max`, finite.
+    /// The range limits do not satisfy `0 <= min < max`, or are not finite.
     #[error("range limits must hold 0 <= range_min < range_max, finite: {range_min_m} m, {range_max_m} m")]
     Limits {
-        /// As in the scan.
+        /// The minimum range of the scan, m.
         range_min_m: f64,
-        /// As in the scan.
+        /// The maximum range of the scan, m.
         range_max_m: f64,
     },
 }

@@ -1,38 +1,39 @@
 use std::ops::RangeInclusive;
 
-/// A setting whose value is out of range, or contradicts another setting.
+/// The error for a setting whose value is out of range or contradicts another setting.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{part} setting `{key}` must be {expected}, not {found}")]
 pub struct SettingsError {
-    /// The part of the robot that the setting belongs to, as in "mapper".
+    /// The part of the robot that the setting belongs to, for example "mapper".
     pub part: &'static str,
-    /// The name of the setting, with the name of its table, as in "curious.temperature".
+    /// The name of the setting, with the name of its table, for example "curious.temperature".
     pub key: &'static str,
-    /// The values that are valid, as in "from 1 to 100".
+    /// The valid values, for example "from 1 to 100".
     pub expected: &'static str,
     /// The value that was found.
     pub found: String,
 }
 
-/// Checks the settings of a part of the robot. Every method refuses a value that is not finite, or not as described.
+/// Checks the settings of a part of the robot. Every method returns an error if the value is not finite or does not
+/// satisfy the condition.
 #[derive(Clone, Copy, Debug)]
 pub struct SettingsCheck {
-    /// [`SettingsError::part`].
+    /// The name of the part in errors, see [`SettingsError::part`].
     pub part: &'static str,
 }
 
 impl SettingsCheck {
-    /// A value above 0.
+    /// Accepts a value above 0.
     pub fn positive(self, key: &'static str, value: f64) -> Result<(), SettingsError> {
         self.valid(key, value, "a positive number", value > 0.0)
     }
 
-    /// A value of 0 or more.
+    /// Accepts a value of 0 or more.
     pub fn not_negative(self, key: &'static str, value: f64) -> Result<(), SettingsError> {
         self.valid(key, value, "0 or more", value >= 0.0)
     }
 
-    /// A value in `range`, which `expected` describes.
+    /// Accepts a value in `range`; `expected` describes the range.
     pub fn within(
         self,
         key: &'static str,
@@ -44,7 +45,7 @@ impl SettingsCheck {
         self.valid(key, value, expected, range.contains(&value))
     }
 
-    /// A value that is `expected`, as `is_valid` states.
+    /// Accepts a value if `is_valid`; `expected` describes the valid values.
     pub fn valid(
         self,
         key: &'static str,

@@ -6,35 +6,35 @@ pub enum CellState {
     /// Never observed.
     #[default]
     Unknown,
-    /// No solid is in the cell.
+    /// No solid body is in the cell.
     Free,
-    /// A solid is in the cell.
+    /// A solid body is in the cell.
     Blocked,
 }
 
 /// A change of a known cell (paper, section 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Event {
-    /// Free to blocked.
+    /// From free to blocked.
     Block,
-    /// Blocked to free.
+    /// From blocked to free.
     Free,
 }
 
-/// A change of the state of a cell in an update: a first sighting, a change of a known cell, or the correction of a
-/// first sighting (the cell becomes unknown again, before it takes its true state).
+/// A change of the state of a cell in an update: a first observation, a change of a known cell, or the correction
+/// of a first observation (the cell becomes unknown again, and then takes its true state).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Transition {
-    /// The cell.
+    /// The cell that changed.
     pub cell: Cell,
-    /// The state before.
+    /// The state before the change.
     pub before: CellState,
-    /// The state after.
+    /// The state after the change.
     pub after: CellState,
 }
 
 impl Transition {
-    /// The change of a known cell; `None` for a first sighting or its correction.
+    /// The change of a known cell; `None` for a first observation or its correction.
     pub fn event(&self) -> Option<Event> {
         match (self.before, self.after) {
             (CellState::Free, CellState::Blocked) => Some(Event::Block),

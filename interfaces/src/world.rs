@@ -1,14 +1,14 @@
-/// A world with one robot. Neither method can fail.
+/// A world with one robot. Neither method returns an error.
 pub trait World {
     /// A reading of the sensors of the robot.
     type Reading;
     /// A command to the robot.
     type Command;
 
-    /// The present reading. No time passes.
+    /// The reading of the sensors at the present time. No time passes.
     fn sense(&mut self) -> Self::Reading;
 
-    /// Executes `command` until the next reading is due. A command that is not a number stops the robot; one beyond
-    /// its bounds is cut to them.
+    /// Executes `command` until the next reading is due. A command that contains NaN stops the robot; a command
+    /// beyond the limits of the drive is limited to them.
     fn act(&mut self, command: &Self::Command);
 }

@@ -1,15 +1,15 @@
-//! Laser → projected scan → occupancy grid → change statistics per cell → maps of rate, interval,
-//! change probability and recency (paper, section 3).
+//! Scan → projected scan → occupancy grid → change statistics per cell → maps of rate, cycle time, change
+//! probability and recency (paper, section 3).
 //!
-//! [`Mapper::update`] takes one reading; all other methods read the result. The work per reading
-//! is in proportion to the cells that the reading observes and the cells that ever changed, not to
-//! the size of the map.
+//! [`Mapper::update`] processes one reading; all other methods return results. The work per reading is proportional
+//! to the number of cells that the reading observes and of cells that ever changed, not to the size of the map.
 //!
-//! This crate knows readings and grids. It must not know worlds, simulators, goals, strategies, robots that drive,
-//! recordings or files.
+//! This crate knows readings and grids. It must not know worlds, simulators, goals, strategies, drives, recordings
+//! or files.
 //!
 //! - `occupancy`: from scans to the states of cells. A new model implements [`OccupancyModel`].
-//! - `change`: the change statistics of cells, and the estimators of rates. A new one implements [`Estimator`].
+//! - `change`: the change statistics of cells, and the estimators of rates. A new estimator implements
+//!   [`Estimator`].
 //! - `derived`: the maps that follow from both.
 
 mod change;
@@ -40,10 +40,10 @@ pub struct MapperSettings {
     pub estimator: EstimatorChoice,
     /// The occupancy model.
     pub occupancy: OccupancyChoice,
-    /// A time without an observation up to this does not interrupt the view of a cell, s (steps in a
-    /// grid world). A thing that moves hides the cells that it is about to enter: where a sensor has to look
-    /// past things, a gap as long as the passage of a thing is part of the view. By default a cell is
-    /// in view only between consecutive readings, as in the paper.
+    /// The maximum gap, s (steps in a grid world): a cell stays in view during a time without an observation if
+    /// this time is at most `max_gap`. A moving thing hides the cells that it is about to enter. Where a sensor
+    /// must look past moving things, set `max_gap` to the duration of such an occlusion. By default a cell is in
+    /// view only between consecutive readings, as in the paper.
     pub max_gap: f64,
     /// Settings of the occupancy model `steady`.
     pub steady: SurfaceGridSettings,
@@ -57,13 +57,13 @@ impl MapperSettings {
     }
 }
 
-/// Why a reading was refused. The maps stay as they were.
+/// The error for a reading that the mapper refuses. The maps stay as they were.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReadingError {
     /// The parameters of the scan are invalid.
     #[error(transparent)]
     Scan(#[from] ScanError),
-    /// The time is not a number, or lies before that of the last reading.
+    /// The time is NaN, or before the time of the last reading.
     #[error("a reading at {time} follows one at {last}: time must not go backwards")]
     Time {
         /// The time of the refused reading.
@@ -71,7 +71,7 @@ pub enum ReadingError {
         /// The time of the last accepted reading.
         last: f64,
     },
-    /// A pose is not a number, or farther away than a million metres.
+    /// A pose contains a number that is not finite, or its position is farther away than a million meters.
     #[error("the pose of the reading at {time} is not a place on the map's plane")]
     Pose {
         /// The time of the refused reading.
@@ -79,7 +79,7 @@ pub enum ReadingError {
     },
 }
 
-/// Refuses an invalid pose: a number that is not finite, a rotation that is none, a position beyond every map.
+/// Refuses an invalid pose: a number that is not finite, an invalid rotation, a position beyond every map.
 fn check_pose(pose: &Isometry2<f64>, time: f64) -> Result<(), ReadingError> {
     let is_near = [pose.translation.x, pose.translation.y].iter().all(|at| at.abs() <= FARTHEST_M);
     let is_rotation = (pose.rotation.norm_sqr() - 1.0).abs() < 1e-3;
@@ -98,7 +98,7 @@ pub struct Mapper {
 }
 
 impl Mapper {
-    /// A mapper of unknown cells.
+    /// A mapper whose cells are all unknown.
     ///
     /// # Errors
     ///
@@ -120,7 +120,7 @@ impl Mapper {
         Ok(Self { cells, occupancy, expected_changes, scan: ProjectedScan::default(), points: Vec::new() })
     }
 
-    /// Learns from one reading.
+    /// Updates the maps with one reading.
     ///
     /// # Errors
     ///
@@ -166,7 +166,7 @@ impl Mapper {
         &self.cells.transitions
     }
 
-    /// The end points of the hits of the last laser scan in the frame of the map, m.
+    /// The end points of the beams of the last laser scan that hit something, in the frame of the map, m.
     pub fn points(&self) -> &[Point2<f64>] {
         &self.points
     }
@@ -203,8 +203,8 @@ impl Mapper {
         self.cells.is_seen_now(index)
     }
 
-    /// Whether the cell can be a goal: the cell is free, or shares a side with a free cell. The inside of
-    /// a wall never is a candidate.
+    /// Whether the cell can be a goal: the cell is free, or shares a side with a free cell. The inside of a wall
+    /// never can be a goal.
     #[inline]
     pub fn is_candidate(&self, index: usize) -> bool {
         self.cells.candidates[index]

@@ -13,7 +13,7 @@ pub struct Destination {
     pub stay: Stay,
 }
 
-/// Selects goals: the agent, a tour, or a reference that knows the ground truth.
+/// Selects goals. Implemented by the agent, by a tour, and by a reference that knows the ground truth.
 pub trait GoalSelector {
     /// The next goal; `None` when no goal is left. Called when the controller has finished a goal. `travel`
     /// gives the travel time to every cell.
@@ -25,7 +25,7 @@ pub trait GoalSelector {
     /// The reason for the last goal, in a few words.
     fn reason(&self) -> String;
 
-    /// The strategies, for a selector that has strategies.
+    /// The strategies, if the selector has any.
     fn strategies(&self, _features: Features) -> Vec<StrategyState> {
         Vec::new()
     }
@@ -42,7 +42,7 @@ pub struct Autonomous<G, D: Drive> {
 }
 
 impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
-    /// A pilot without a goal yet.
+    /// A pilot that has no goal yet.
     pub fn new(selector: G, controller: Controller<D>) -> Self {
         Self { selector, controller, goals: GoalCount::default(), messages: Vec::new(), is_done: false }
     }
@@ -94,7 +94,7 @@ impl<G: GoalSelector, D: Drive> Pilot for Autonomous<G, D> {
             Status::Finished(outcome) => self.start_next(belief, Some(outcome)),
             _ => return command,
         }
-        // Drive to the new goal at once: no tick is lost. The controller already has the transitions.
+        // Drive to the new goal in the same tick. The controller already has the transitions of this reading.
         self.controller.drive(&Situation { transitions: &[], ..situation })
     }
 
@@ -133,7 +133,7 @@ fn situation<'a>(mapper: &'a Mapper, pose: &'a Isometry2<f64>) -> Situation<'a> 
     }
 }
 
-/// Travel times along the paths that a controller would plan.
+/// The travel times along the paths that the controller would plan.
 struct TravelTimes<'a, D: Drive> {
     controller: &'a mut Controller<D>,
 }

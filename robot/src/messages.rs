@@ -1,4 +1,4 @@
-/// How important a [`Message`] is.
+/// The importance of a [`Message`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
     /// A decision of the robot.
@@ -9,10 +9,10 @@ pub enum Level {
     Trouble,
 }
 
-/// A line of the log.
+/// A message of the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
-    /// How important the message is.
+    /// The importance of the message.
     pub level: Level,
     /// One sentence.
     pub text: String,

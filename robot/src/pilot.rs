@@ -4,20 +4,20 @@ use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use serde::Serialize;
 
-/// What the robot knows when it decides.
+/// What the robot knows when it decides: the inputs of a pilot.
 #[derive(Clone, Copy, Debug)]
 pub struct Belief<'a> {
     /// The pose that the robot uses, in the frame of the map, m and rad.
     pub pose: &'a Isometry2<f64>,
     /// The features by which the agent chooses a strategy.
     pub features: Features,
-    /// The map and the change statistics, with the last reading included.
+    /// The map and the change statistics, with the latest reading included.
     pub mapper: &'a Mapper,
 }
 
 /// Decides the next command of the robot.
 pub trait Pilot {
-    /// The command that the world executes.
+    /// The type of the commands that the world executes.
     type Command;
 
     /// The command until the next reading.
@@ -28,7 +28,7 @@ pub trait Pilot {
         &[]
     }
 
-    /// The goal position, m.
+    /// The position of the goal, m; `None` without a goal.
     fn goal(&self) -> Option<Point2<f64>> {
         None
     }
@@ -48,7 +48,8 @@ pub trait Pilot {
         Vec::new()
     }
 
-    /// Whether the pilot has ended the run: after the last waypoint of a tour, or when a user quits.
+    /// Whether the pilot has ended the run: a tour ends after its last waypoint, a user can end the run at any
+    /// time.
     fn is_done(&self) -> bool {
         false
     }
@@ -70,11 +71,11 @@ pub struct GoalCount {
 pub struct StrategyState {
     /// The name on the command line.
     pub name: String,
-    /// The learned value V(p, r) (paper, section 4): expected map updates per observation. `None` where
+    /// The learned value V(p, r) (paper, section 4): the expected number of map updates per observation. `None` if
     /// the agent does not learn.
     pub value: Option<f64>,
-    /// The share of the goals so far that this strategy chose.
+    /// The share of goals so far that were selected by this strategy, from 0 to 1.
     pub share: f64,
-    /// Whether this strategy chose the present goal.
+    /// Whether this strategy selected the present goal.
     pub is_current: bool,
 }

@@ -11,7 +11,7 @@ use nalgebra::{Isometry2, Point2};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
-/// No length, speed or angle may be larger.
+/// The maximum absolute value of lengths, speeds and angles.
 const MAX_NUMBER: f64 = 1e5;
 
 /// A pose on the floor and the height above it.
@@ -28,11 +28,11 @@ impl Pose {
     }
 }
 
-/// Makes walls and robots of entities, whose keys it reads in the units of the file. A value that is not valid
-/// becomes an error, and the key counts as left out.
+/// Makes walls and robots from entities, and reads their keys in the units of the file. If a value is invalid, an
+/// error is added and the key counts as missing.
 pub(super) struct Builder<'a, 'b> {
     pub(super) sources: &'a mut Sources<'b>,
-    /// Metres per unit of length.
+    /// Meters per unit of length.
     pub(super) length_m: f64,
     /// Radians per unit of angle.
     pub(super) angle_rad: f64,

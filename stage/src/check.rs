@@ -19,7 +19,8 @@ const MAX_MAP_M: f64 = 1000.0;
 /// The sides of a wall, m; upright ones may be of any length.
 const SIDE_M: RangeInclusive<f64> = 0.001..=100.0;
 
-/// Adds an error for everything that the physics cannot do, and a warning for what it does otherwise.
+/// Adds an error for everything that the physics cannot simulate, and a warning for everything that it simulates
+/// differently.
 pub(super) fn check(sources: &mut Sources<'_>, world: &StageWorld) {
     let pieces: usize = world.walls.iter().map(|wall| wall.rectangles.len()).sum();
     if pieces > MAX_PIECES {

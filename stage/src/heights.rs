@@ -1,4 +1,4 @@
-//! A world of Stage has heights, this one has none: warnings where they matter.
+//! Stage worlds have heights, this simulator has none: warnings where heights matter.
 
 use super::lexer::Place;
 use super::sources::Sources;
@@ -13,7 +13,7 @@ pub(super) struct Solid {
     /// The robot that it is a part of.
     pub(super) robot: Option<usize>,
     pub(super) place: Place,
-    /// Its lowest and highest point, m.
+    /// The lowest and the highest point of the body, m.
     pub(super) z_m: [f64; 2],
 }
 

@@ -1,4 +1,4 @@
-//! What Stage has and this simulator has not, so that it can be named.
+//! The parts of Stage that this simulator does not have, so that messages can name them.
 
 /// Kinds of entities that are left out, and why.
 const KINDS: [(&str, &str); 9] = [
@@ -16,8 +16,9 @@ const KINDS: [(&str, &str); 9] = [
     ("wifi", "there is no radio here"),
 ];
 
-/// Keys and kinds of entities that only say how Stage draws or runs a world, or that are about what is not here:
-/// rays and contacts are on no grid here, nothing sees colors, nothing slides, in Stage neither.
+/// Keys and kinds of entities that only affect how Stage draws or runs a world, or that concern something else
+/// which does not exist here: rays and contacts use no grid, nothing sees colors, and nothing slides (nor does it
+/// in Stage).
 const NO_EFFECT: &str = "window blinkenlight lightindicator color_rgba trail_length trail_interval say wheel \
     gui_nose gui_grid gui_outline gui_boundary gui_move gui_movemask gui_interval gui_disable show_clock \
     show_clock_interval threads speedup paused interval_real event_queue debug test resolution map_resolution \

@@ -1,12 +1,12 @@
 //! World files of the simulator Stage.
 //!
-//! [`read`] takes a `.world` file and all that it includes, writes out its definitions, and gives a
-//! [`StageWorld`]: the walls, the floor plans and the robots, in metres and radians, in Stage's own
-//! coordinates. [`load`] makes a fleet of it that runs, [`StageWorld::to_toml`] a world file of ours.
+//! [`read`] reads a `.world` file with all included files, expands its definitions, and returns a [`StageWorld`]:
+//! the walls, the floor plans and the robots, in meters and radians, in the coordinates of the Stage file. [`load`]
+//! makes a fleet from it; [`StageWorld::to_toml`] writes a world file of this project.
 //!
-//! Nothing is dropped in silence. What is not valid is an error; what Stage has and this simulator
-//! has not, or does otherwise, is a warning; both name the file and the line. What changes nothing
-//! but how Stage draws or runs a world is in one note per file.
+//! Nothing is ignored without a message. An invalid part is an error. A part that Stage supports and this simulator
+//! does not support, or simulates differently, is a warning. Both have the file and the line. Parts that only
+//! affect how Stage draws or runs a world are listed in one note per file.
 //!
 //! # What is read
 //!
@@ -30,9 +30,9 @@
 //! | `fiducial_return` | the tag of a robot, or of a box that stands about its pose |
 //! | `color`, `mass`, `ctrl` | kept in [`StageRobot`] |
 //!
-//! Everything else (windows, cameras, blob finders, bumpers, grippers, energy, …) is named in a
-//! warning. So are bumpers: those of Stage are short beams that may lie anywhere, ours are the parts
-//! of a ring around the robot, and feel touches.
+//! Everything else (windows, cameras, blob finders, bumpers, grippers, energy, …) is listed in a warning. Bumpers
+//! are left out since those of Stage are short beams at any place, and those of this simulator are parts of a ring
+//! around the robot that detect contacts.
 
 mod body;
 mod builder;
@@ -66,37 +66,37 @@ use worldfile::Files;
 use worldfile::Findings;
 use worldfile::floor_plan::FloorPlan;
 
-/// A world as a Stage file describes it.
+/// A world as described by a Stage file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageWorld {
-    /// `name`, or else the name of the file.
+    /// The value of `name`, or the name of the file.
     pub name: String,
-    /// The file and all that it includes, in the order in which they were read.
+    /// The file and all included files, in the order in which they were read.
     pub files: Vec<String>,
     /// A physics step that is short enough for every robot and sensor, s.
     pub step_s: f64,
-    /// After how long Stage would stop, s.
+    /// The simulated time after which Stage would stop, s.
     pub quit_time_s: Option<f64>,
-    /// Everything that stands still.
+    /// The models that do not move.
     pub walls: Vec<StageWall>,
-    /// Everything that drives.
+    /// The models that drive.
     pub robots: Vec<StageRobot>,
 }
 
-/// A model that stands still.
+/// A model that does not move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageWall {
-    /// Its name, generated as in Stage where the file gives none.
+    /// The name of the model. If the file has no name, it is generated as in Stage.
     pub name: String,
-    /// Its color in Stage.
+    /// The color of the model in Stage.
     pub color: Option<String>,
-    /// Its place in the file, as in `cave.world:12`.
+    /// The place in the file, for example `cave.world:12`.
     pub place: String,
-    /// Its pixels, if it is a bitmap.
+    /// The pixels, if the model is a bitmap.
     pub plan: Option<FloorPlan>,
-    /// Its pieces, those of the plan included.
+    /// The pieces of the model, including those of the plan.
     pub rectangles: Vec<Rectangle>,
-    /// The tag that fiducial finders find; a wall with a tag is one rectangle.
+    /// The tag that fiducial finders detect; a wall with a tag is one rectangle.
     pub tag: Option<u32>,
     at: Place,
 }
@@ -104,66 +104,66 @@ pub struct StageWall {
 /// A model that drives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageRobot {
-    /// Its name, generated as in Stage where the file gives none.
+    /// The name of the robot. If the file has no name, it is generated as in Stage.
     pub name: String,
-    /// Its color in Stage.
+    /// The color of the robot in Stage.
     pub color: Option<String>,
-    /// Its place in the file, as in `cave.world:12`.
+    /// The place in the file, for example `cave.world:12`.
     pub place: String,
-    /// Its pose at the start: that of the point that it turns about.
+    /// The pose at the start, m and rad: the pose of the point that the robot turns about.
     pub pose: Isometry2<f64>,
-    /// The polygons of its body, in its own frame, m.
+    /// The polygons of the body, in the frame of the robot, m.
     pub footprint: Vec<Vec<Point2<f64>>>,
-    /// The corners of the convex outline that it has here, counter-clockwise, in its own frame, m;
-    /// none: it is a disc.
+    /// The corners of the convex outline that the robot has in this simulator, counter-clockwise, in the frame of
+    /// the robot, m. Empty if the robot is a disc.
     pub outline: Vec<Point2<f64>>,
-    /// How it drives.
+    /// The kind of the drive.
     pub drive: Drive,
-    /// The bounds of its velocity.
+    /// The bounds of the velocity, m/s and rad/s.
     pub velocity: Bounds,
-    /// The bounds of its acceleration; `None`: it reaches every velocity at once.
+    /// The bounds of the acceleration, m/s² and rad/s²; `None` if the robot reaches every velocity at once.
     pub acceleration: Option<Bounds>,
-    /// How its odometry errs.
+    /// The errors of the odometry.
     pub odometry: OdometryError,
-    /// Its lasers.
+    /// The lasers of the robot.
     pub lasers: Vec<StageSensor>,
-    /// Its sonars, which are single rays in Stage.
+    /// The sonars of the robot. In Stage a sonar is a single ray.
     pub sonars: Vec<StageSensor>,
-    /// Its fiducial finder.
+    /// The fiducial finder; `None` if there is none.
     pub fiducial: Option<StageSensor>,
-    /// Its own tag.
+    /// The tag of the robot itself.
     pub tag: Option<u32>,
-    /// Its mass, kg.
+    /// The mass, kg.
     pub mass_kg: Option<f64>,
     /// The controllers that Stage would load.
     pub controllers: Vec<String>,
     at: Place,
-    /// The places of its keys.
+    /// The places of the keys of the robot in the file.
     keys: BTreeMap<String, Place>,
 }
 
-/// How a robot drives.
+/// The kind of a drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
-    /// Two wheels.
+    /// Two driven wheels.
     Differential,
-    /// In every direction at once.
+    /// Drives in every direction and turns at the same time.
     Omni,
-    /// With steered front wheels.
+    /// Steered front wheels.
     Car {
-        /// From the rear axle to the front axle, m.
+        /// The distance between the axles, m.
         wheelbase_m: f64,
     },
 }
 
-/// From the least to the most, per axis; m/s and rad/s, or m/s² and rad/s².
+/// Bounds per axis, each from the minimum to the maximum; m/s and rad/s, or m/s² and rad/s².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Forwards.
+    /// Forward.
     pub x: [f64; 2],
     /// To the left.
     pub y: [f64; 2],
-    /// Counter-clockwise.
+    /// Counter-clockwise rotation.
     pub turn: [f64; 2],
 }
 
@@ -175,19 +175,19 @@ fn fastest([least, most]: [f64; 2]) -> f64 {
 /// A laser, a sonar or a fiducial finder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageSensor {
-    /// Its place in the file, as in `sick.inc:3`.
+    /// The place in the file, for example `sick.inc:3`.
     pub place: String,
-    /// Its pose on the robot.
+    /// The pose of the sensor in the frame of the robot, m and rad.
     pub mount: Isometry2<f64>,
     /// The number of beams of a laser; 1 for other sensors.
     pub beams: usize,
-    /// The angle of the field of view, which is the cone of a sonar, rad.
+    /// The angle of the field of view, rad; for a sonar, the angle of the cone.
     pub fov_rad: f64,
-    /// The least and the greatest range, m; what is nearer or farther is not measured.
+    /// The minimum and the maximum range, m; nearer or farther surfaces are not measured.
     pub range_m: [f64; 2],
     /// The time between two measurements, ms.
     pub interval_ms: u32,
-    /// Standard deviation of a range, m.
+    /// The standard deviation of a range, m.
     pub noise_std_m: f64,
     at: Place,
 }
@@ -211,7 +211,7 @@ impl StageRobot {
         lasers.chain(sonars).chain(self.fiducial.iter().map(|sensor| ("fiducial finder", sensor)))
     }
 
-    /// What it covers here, where it starts.
+    /// The area that the robot covers in this simulator at its start.
     fn form(&self) -> Form {
         Form::new(&self.outline, self.radius_m(), &self.pose)
     }
@@ -229,18 +229,18 @@ impl StageRobot {
     }
 }
 
-/// Reads a `.world` file. Without a world there are errors among the findings.
+/// Reads a `.world` file. If no world is returned, there are errors among the findings.
 pub fn read(path: &Path, files: &dyn Files) -> (Option<StageWorld>, Findings) {
     let (world, sources) = open(path, files);
     (world, sources.findings)
 }
 
-/// Reads a `.world` file and makes a fleet of it, whose robots obey commands, but for those that
-/// wander. Without a fleet there are errors among the findings.
+/// Reads a `.world` file and makes a fleet from it. Its robots execute commands, except those that wander. If no
+/// fleet is returned, there are errors among the findings.
 ///
-/// The fleet has coordinates of its own: the world is moved, not turned, so that the lower left corner of
-/// all that is there is [0, 0]. What is at p in the file is at p − [`StageWorld::map_origin`] in the fleet;
-/// a note among the findings says by how much.
+/// The fleet has its own coordinates: the world is moved, but not rotated, so that its lower left corner is [0, 0].
+/// The point p of the file is at p − [`StageWorld::map_origin`] in the fleet; a note among the findings has this
+/// offset.
 pub fn load(path: &Path, files: &dyn Files) -> (Option<FleetSpec>, Findings) {
     let (world, mut sources) = open(path, files);
     let spec = world.and_then(|world| load::load(&mut sources, path, &world));

@@ -21,10 +21,10 @@ pub(super) struct Placed {
     pub(super) color: Option<String>,
     /// Whether robots bump into it or lasers see it.
     pub(super) is_solid: bool,
-    /// Its tag, and the place of the tag in the file.
+    /// The tag of the model, and the place of the tag in the file.
     pub(super) tag: Option<(u32, Place)>,
     pub(super) at: Pose,
-    /// What the poses of its parts are relative to: its pose, on top of it if they are stacked.
+    /// The reference of the poses of its parts: the pose of the model, on top of it if parts are stacked.
     pub(super) top: Pose,
     pub(super) body: Body,
 }

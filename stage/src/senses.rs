@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 /// A sensor of Stage, where the file says nothing.
 const DEFAULT_SENSOR_RANGE_M: [f64; 2] = [0.0, 5.0];
 const DEFAULT_SENSOR_FOV_RAD: f64 = 0.1;
-/// The same for an old laser.
+/// The defaults of a `laser` of older Stage files.
 const DEFAULT_LASER_RANGE_M: [f64; 2] = [0.0, 8.0];
 const DEFAULT_LASER_SAMPLES: f64 = 180.0;
 /// The time between two updates of a model of Stage, ms.

@@ -13,7 +13,7 @@ const MAX_BYTES: u64 = 8 << 20;
 const MAX_ERRORS: usize = 100;
 /// The maximum depth of includes in each other.
 const MAX_DEPTH: usize = 32;
-/// Of a name without effect that is in more lines, only the first are given.
+/// For a name without effect that occurs in several lines, the number of lines that are listed.
 const MAX_LINES: usize = 3;
 
 /// All texts read so far, and the findings about them.

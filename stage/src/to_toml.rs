@@ -1,4 +1,4 @@
-//! A Stage world written as a world file of ours.
+//! A Stage world written as a world file of this project.
 
 use super::polygon::bounds;
 use super::{Bounds, Drive, StageRobot, StageSensor, StageWall, StageWorld, fastest};

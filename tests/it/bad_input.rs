@@ -1,5 +1,5 @@
-//! Bad input is one message that says where, what is wrong and what would be right; the exit code
-//! is 2, and nothing is written.
+//! Invalid input leads to one message with the place, what is invalid and what would be valid. The exit code is 2,
+//! and nothing is written.
 
 use crate::run::Run;
 
@@ -7,7 +7,7 @@ const WORLD: &str = include_str!("../../worlds/four_rooms.toml");
 const MAP: &str = "image: gone.pgm\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\nnegate: 0\n\
                    occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
-/// What `four_rooms` says to `arguments`, with a file `name` to read.
+/// The output of `four_rooms` for `arguments`, with an input file `name`.
 #[track_caller]
 fn refused_file(name: &str, text: &str, arguments: &str) -> String {
     let run = Run::new();
@@ -20,7 +20,7 @@ fn refused(arguments: &str) -> String {
     refuses(&Run::new(), arguments, &[])
 }
 
-/// What the program says to `arguments`. It must end with 2 and leave nothing but `files`.
+/// The output of the program for `arguments`. The exit code must be 2, and no files but `files` may remain.
 #[track_caller]
 pub(crate) fn refuses(run: &Run, arguments: &str, files: &[&str]) -> String {
     let ended = run.ends(arguments);

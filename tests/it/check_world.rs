@@ -1,4 +1,4 @@
-//! `check_world` says what is in files of every kind, draws them, and tells what is wrong.
+//! `check_world` describes files of every kind, draws them, and reports what is invalid.
 
 use std::path::Path;
 use std::process::{Command, Output};

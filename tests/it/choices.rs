@@ -39,7 +39,7 @@ fn every_strategy_explores_in_its_own_way() {
 fn every_estimator_estimates_in_its_own_way() {
     let mut errors = BTreeSet::new();
     for estimator in EstimatorChoice::all().iter().map(EstimatorChoice::name) {
-        // A tour does not depend on rates, so that all of them see the same.
+        // A tour does not depend on rates, so that all runs have the same observations.
         let arguments = format!("--duration 8m --drive tour --strategy curious --estimator {estimator}");
         let summary = Run::quiet(&arguments).summary();
         assert_eq!(summary.text("/estimator"), estimator);
@@ -57,7 +57,7 @@ fn the_seed_decides_and_nothing_else_does() {
     assert_ne!(hash("--duration 60 --seed 8"), reference);
     assert_ne!(hash("--duration 61 --seed 7"), reference);
 
-    // Neither a recording, nor words, nor the pace.
+    // Neither a recording, nor messages, nor the speed.
     let run = Run::new();
     run.goes_well("--duration 60 --seed 7");
     assert_eq!(run.summary().hash(), reference);

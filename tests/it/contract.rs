@@ -1,4 +1,4 @@
-//! What holds in every world that a robot can live in.
+//! Properties of every world that a robot can run in.
 
 use curious::worlds;
 use interfaces::{Reading, Step, Twist, World};
@@ -6,18 +6,18 @@ use sim::grid::{GenerateSettings, GridSpec, GridWorld};
 use sim::physics::PhysicsWorld;
 use std::fmt::Debug;
 
-/// How a world is told what to do.
+/// How commands are given to a world.
 struct Words<C> {
-    /// Commands that make sense; they are given over and over.
+    /// Valid commands; they are repeated.
     sane: Vec<C>,
-    /// Commands that do not, each with the one that the robot must take it for.
+    /// Invalid commands, each with the valid command that replaces it.
     absurd: Vec<(C, C)>,
 }
 
 /// Ticks of a trial.
 const TICKS: usize = 200;
 
-/// Puts a world to the proof; `make` makes one from a seed.
+/// Tests a world; `make` makes a world from a seed.
 fn keeps_the_contract<W>(make: impl Fn(u64) -> W, words: &Words<W::Command>)
 where
     W: World<Reading: Reading + Debug + PartialEq>,
@@ -37,7 +37,7 @@ where
     };
     let readings = life(1, 1);
 
-    // Time begins at zero and goes forward, in equal steps.
+    // Time begins at zero and increases in equal steps.
     let times: Vec<f64> = readings.iter().map(Reading::time).collect();
     assert_eq!(times[0], 0.0);
     let period = times[1];
@@ -46,11 +46,11 @@ where
     assert!(readings.iter().all(is_finite));
     assert!(readings.iter().any(|reading| reading.pose() != readings[0].pose()), "nothing moves");
 
-    // The same seed and commands give the same readings, however often the robot looks.
+    // The same seed and commands give the same readings, however often the robot senses.
     assert_eq!(life(1, 1), readings);
     assert_eq!(life(1, 3), readings, "looking changes what comes");
 
-    // An absurd command is as good as the sane one that it is taken for, again and again.
+    // An invalid command has the same effect as the valid command that replaces it, repeatedly.
     for (absurd, taken_for) in &words.absurd {
         let (mut world, mut twin) = (make(1), make(1));
         for tick in 0..TICKS {
@@ -71,7 +71,7 @@ fn is_finite(reading: &impl Reading) -> bool {
     figures.iter().all(|figure| figure.is_finite())
 }
 
-/// Twists, to a robot that can do no more than 100 m/s and 100 rad/s.
+/// Twists, for a robot with limits of 100 m/s and 100 rad/s.
 fn twists() -> Words<Twist> {
     let twist = |linear_mps, angular_radps| Twist { linear_mps, angular_radps };
     let (nan, inf) = (f64::NAN, f64::INFINITY);
@@ -97,7 +97,7 @@ fn physics_worlds() {
     }
 }
 
-/// Steps, long enough in one direction to meet a wall. None of them is absurd.
+/// Steps, long enough in one direction to meet a wall. All of them are valid.
 fn steps() -> Words<Step> {
     let sane = Step::ALL.into_iter().flat_map(|step| std::iter::repeat_n(step, 7)).collect();
     Words { sane, absurd: Vec::new() }

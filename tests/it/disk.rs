@@ -1,5 +1,5 @@
-//! Output that cannot be written is one clear error, in both programs: the exit code is 1, and no
-//! half-written file stays.
+//! Output that cannot be written leads to one clear error, in both programs. The exit code is 1, and no incomplete
+//! file remains.
 
 use crate::run::{Ended, Run, names};
 
@@ -86,7 +86,7 @@ fn a_recording_outside_the_output_folder() {
     assert!((recording.end_s() - 30.0).abs() < 1e-6);
 }
 
-/// As when a disk fills up during the run: here a named pipe whose reader closes the pipe after a while.
+/// Simulates a disk that becomes full during the run: a named pipe whose reader closes the pipe after a while.
 #[test]
 #[cfg(unix)]
 fn a_recording_that_cannot_go_on_costs_no_trial() {

@@ -1,4 +1,4 @@
-//! The dummy waits while the curious robot stands in its way, and the map tells so.
+//! The dummy robot waits while the curious robot is in its way, and the map shows it.
 
 use interfaces::{CellState, Twist};
 use mapper::{Mapper, MapperSettings};
@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 const STANDS_UNTIL_S: f64 = 30.0;
 const END_S: f64 = 60.0;
 
-/// Stands for a while, and goes.
+/// A robot that stands still for a while, and then drives away.
 struct Visitor;
 
 impl Pilot for Visitor {
@@ -22,7 +22,7 @@ impl Pilot for Visitor {
     }
 }
 
-/// The shipped house, with the curious robot in the middle of the dummy's way, facing down.
+/// The shipped house, with the curious robot in the middle of the dummy robot's path, pointing down.
 fn world() -> PhysicsWorld {
     let (name, text) = curious::worlds::SHIPPED[0];
     let text = text.replacen("pose_m = [2.0, 2.0]", "pose_m = [9.5, 11.5]", 1);
@@ -40,7 +40,7 @@ fn it_waits_and_goes_on() {
         let dummy = world.robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
         way.push((reading.time_s, dummy.x));
         if reading.time_s < STANDS_UNTIL_S {
-            // The front of the dummy's body, which the robot looks at.
+            // The front of the dummy's body, which the robot observes.
             let front = Point2::new(dummy.x + 0.18, dummy.y);
             seen_waiting.push(belief.mapper.states().get(belief.mapper.frame().cell_at(&front)).copied());
         }

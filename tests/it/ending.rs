@@ -1,4 +1,4 @@
-//! A run that is ended from outside: in order by Ctrl-C, out of order by a kill.
+//! A run that is ended from outside: normally by Ctrl-C, abnormally by a kill.
 #![cfg(unix)]
 
 use crate::recording::Recording;
@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::Child;
 use std::time::Duration;
 
-/// Runs at this many times real time, so that it is under way for long enough.
+/// The speed of the runs, times real time: low enough that a run lasts long enough for the test.
 const SPEED: f64 = 20.0;
 
 fn starts(run: &Run) -> Child {
@@ -22,7 +22,7 @@ pub(crate) fn send(signal: Signal, child: &Child) {
     kill(Pid::from_raw(child.id() as i32), signal).unwrap();
 }
 
-/// Waits until the recording has begun, for a minute at most.
+/// Waits until the recording has begun, at most for a minute.
 pub(crate) fn wait_for_recording(recording: &Path) {
     let has_begun = (0..1200).any(|_| {
         std::thread::sleep(Duration::from_millis(50));
@@ -75,7 +75,7 @@ fn ends_in_order(signal: Signal) {
     assert_eq!(summary.text("/ended_by"), "interrupted");
     let simulated_s = summary.number("/simulated_s");
     assert!(simulated_s > 0.0 && simulated_s < 3600.0, "{simulated_s}");
-    // A paced run is not faster than its pace.
+    // A run with a set speed must not be faster.
     assert!(
         summary.number("/real_time_factor") < 1.05 * SPEED + 1.0,
         "{}",

@@ -1,4 +1,4 @@
-//! The naive map, in which every beam counts, shows what the steady one removes: walls that flicker.
+//! The map of `naive` shows what `steady` removes: walls that flicker.
 
 use crate::run::Run;
 

@@ -1,4 +1,4 @@
-//! A person at the keyboard.
+//! A user who drives with the keyboard.
 #![cfg(target_os = "linux")]
 
 use crate::run::Run;
@@ -36,7 +36,7 @@ fn without_a_key_it_stands_and_ctrl_c_is_a_key() {
     assert_eq!(summary.hash(), stands(summary.number("/simulated_s")), "it moved by itself");
 }
 
-/// Waits until the program has taken over the keys: its folder comes next.
+/// Waits until the program reads the keys: it creates its folder next.
 fn starts(run: &Run) {
     let is_there = (0..600).any(|_| {
         wait(50);
@@ -45,7 +45,7 @@ fn starts(run: &Run) {
     assert!(is_there, "it does not start");
 }
 
-/// The hash of a robot that stands for as long.
+/// The hash of a robot that stands still for the same time.
 fn stands(simulated_s: f64) -> String {
     let run = Run::new();
     run.write("stay.toml", "waypoints_m = [[2.0, 2.0]]\nrepeat = true\n");

@@ -1,6 +1,5 @@
-//! The whole system: the programs are run as a user runs them, and what they say, how they end and
-//! what they leave behind must hold. One module per thing that must hold; those of `grid_world` are in
-//! `grid`.
+//! Tests of the whole system: the programs are run as a user runs them, and their output, exit codes and files are
+//! checked. One module per topic; those of `grid_world` are in `grid`.
 
 mod recording;
 mod run;

@@ -1,10 +1,10 @@
-//! Everything that a run leaves behind is there, and tells the same story.
+//! All output files of a run exist, and agree with each other.
 
 use crate::recording::Recording;
 use crate::run::Run;
 use std::sync::LazyLock;
 
-/// Without any option but for the time: four simulated minutes.
+/// No option except the duration: four simulated minutes.
 static RUN: LazyLock<Run> = LazyLock::new(|| {
     let run = Run::new();
     run.goes_well("--duration 4m");
@@ -64,7 +64,7 @@ fn the_summary_says_what_was_run_and_how_it_went() {
 
     let curve = summary.curve();
     assert_eq!(curve.len(), 25);
-    // What can be seen is a little more or less wherever the dummy stands.
+    // The number of cells that can be seen depends a little on the position of the dummy robot.
     assert!(curve.windows(2).all(|pair| pair[0][0] < pair[1][0] && pair[0][1] <= pair[1][1] + 0.002));
     assert_eq!(curve[24][1..], [summary.number("/coverage"), summary.number("/map_quality")]);
 }
@@ -82,9 +82,9 @@ fn the_recording_agrees_with_the_summary() {
         assert!(entities.contains(&format!("/world/maps/{part}/cells")), "{part} in {entities:?}");
     }
     assert!((recording.end_s() - 240.0).abs() < 1e-6, "{}", recording.end_s());
-    assert_eq!(recording.times("/", "step").last(), Some(&2401)); // 240 s at 10 Hz, and the first
+    assert_eq!(recording.times("/", "step").last(), Some(&2401)); // 240 s at 10 Hz, and the first reading
 
-    // The dummy moves at every tick but for where it turns and what it waits for.
+    // The dummy robot moves at every tick, except where it turns and while it waits.
     assert!(recording.times("/world/robots/dummy/body", "sim_time").len() > 2000);
     for (index, name) in [(1, "coverage"), (2, "map_quality")] {
         let curve = recording.curve(&format!("/curves/scores/{name}"));
@@ -127,7 +127,7 @@ fn map_and_table_tell_the_same_of_every_cell() {
         let (column, row) = (x as usize, SIDE - 1 - y as usize);
         assert_eq!(drawn, states[row * SIDE + column], "column {column}, row {row}");
     }
-    // The table against the summary.
+    // The table must agree with the summary.
     let summary = RUN.summary();
     let returning = cells.iter().filter(|cell| cell.events().iter().sum::<u32>() > 1 && cell.rate_hz > 0.0);
     assert_eq!(returning.count() as f64, summary.number("/liveliest/cells"));

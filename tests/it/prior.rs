@@ -1,4 +1,4 @@
-//! A map that a run leaves can be where the next one starts.
+//! A map that one run has written can be the start of the next run.
 
 use crate::run::Run;
 
@@ -13,7 +13,7 @@ fn a_known_map_is_right_from_the_start() {
     let again: serde_json::Value = serde_json::from_slice(&again).unwrap();
     let first = &again["curve"][0];
     assert!(first["map_quality"].as_f64().unwrap() > 0.98, "{first}");
-    // Known is not seen.
+    // A known cell does not count as seen.
     assert!(first["coverage"].as_f64().unwrap() < 0.5, "{first}");
     assert_eq!(again["false_change_events"], 0);
 }

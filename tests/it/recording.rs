@@ -20,13 +20,13 @@ impl Recording {
         Self(store)
     }
 
-    /// The paths of all that was logged, without what the SDK adds.
+    /// The paths of all logged entities, without those that the SDK adds.
     pub(crate) fn entities(&self) -> Vec<String> {
         let paths = self.0.all_entities_sorted();
         paths.iter().map(|path| path.to_string()).filter(|path| !path.starts_with("/__")).collect()
     }
 
-    /// Every time on a timeline that `entity` was logged at, in order; those of all entities for `/`.
+    /// All times on a timeline at which `entity` was logged, in order; for `/`, the times of all entities.
     pub(crate) fn times(&self, entity: &str, timeline: &str) -> Vec<i64> {
         let entity = EntityPath::parse_forgiving(entity);
         let mut times = Vec::new();
@@ -64,14 +64,14 @@ impl Recording {
         points.iter().map(|(step, values)| (*step, values[0].0.0)).collect()
     }
 
-    /// Where a robot is, whenever it has moved: step and place, m.
+    /// The positions of a robot, whenever it has moved: step and position, m.
     pub(crate) fn places(&self, entity: &str) -> Vec<(i64, [f32; 2])> {
         let component = Transform3D::descriptor_translation().component;
         let places = self.rows::<Translation3D>(entity, "step", component);
         places.iter().map(|(step, places)| (*step, [places[0].x(), places[0].y()])).collect()
     }
 
-    /// The corners of a thing, whenever they have changed: step and places, m.
+    /// The corners of a thing, whenever they have changed: step and positions, m.
     pub(crate) fn outlines(&self, entity: &str) -> Vec<(i64, Vec<[f32; 2]>)> {
         let strips = self.rows::<LineStrip2D>(entity, "step", LineStrips2D::descriptor_strips().component);
         let corners = |strip: &LineStrip2D| strip.0.iter().map(|corner| [corner.x(), corner.y()]).collect();
@@ -95,7 +95,7 @@ impl Recording {
         let mut rows = Vec::new();
         for chunk in self.0.iter_physical_chunks().filter(|chunk| chunk.entity_path() == &entity) {
             if chunk.is_static() {
-                continue; // how it looks
+                continue; // the style
             }
             let times = chunk.timelines().values().find(|column| column.name() == timeline).unwrap();
             let items = chunk.iter_component::<C>(component).map(|items| items.as_slice().to_vec());

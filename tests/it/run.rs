@@ -1,4 +1,4 @@
-//! One run of a program, in a folder of its own.
+//! One run of a program, in a separate folder.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -10,14 +10,14 @@ const FOUR_ROOMS: &str = env!("CARGO_BIN_EXE_four_rooms");
 /// The program for the grid worlds.
 const GRID_WORLD: &str = env!("CARGO_BIN_EXE_grid_world");
 
-/// A folder to run a program in. Everything that comes out goes to `out` in it, unless the arguments
-/// say otherwise.
+/// A folder in which a program runs. All output goes to the subfolder `out`, unless the arguments name another
+/// folder.
 pub(crate) struct Run {
     folder: TempDir,
     program: &'static str,
 }
 
-/// How a run ended, and what it said.
+/// The exit status of a run, and its output.
 #[derive(Debug)]
 pub(crate) struct Ended {
     pub(crate) code: Option<i32>,
@@ -33,17 +33,17 @@ impl From<Output> for Ended {
 }
 
 impl Run {
-    /// Of `four_rooms`.
+    /// A run of `four_rooms`.
     pub(crate) fn new() -> Self {
         Self { folder: tempfile::tempdir().unwrap(), program: FOUR_ROOMS }
     }
 
-    /// Of `grid_world`.
+    /// A run of `grid_world`.
     pub(crate) fn grid() -> Self {
         Self { folder: tempfile::tempdir().unwrap(), program: GRID_WORLD }
     }
 
-    /// A finished run of `four_rooms` without a recording, which has to go well; arguments are separated by spaces.
+    /// A finished run of `four_rooms` without a recording, which must succeed; arguments are separated by spaces.
     pub(crate) fn quiet(arguments: &str) -> Self {
         let run = Self::new();
         run.goes_well(&format!("--quiet --no-rrd {arguments}"));
@@ -54,7 +54,7 @@ impl Run {
         self.folder.path().join(name)
     }
 
-    /// A file in the output folder.
+    /// The path of a file in the output folder.
     pub(crate) fn out(&self, name: &str) -> PathBuf {
         self.path("out").join(name)
     }
@@ -63,7 +63,7 @@ impl Run {
         std::fs::write(self.path(name), text).unwrap();
     }
 
-    /// The program, ready to run.
+    /// The program with its arguments, not started yet.
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(self.program);
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
@@ -92,7 +92,7 @@ impl Run {
         Summary(serde_json::from_slice(&std::fs::read(self.out("summary.json")).unwrap()).unwrap())
     }
 
-    /// The names of what lies in the run's folder, sorted.
+    /// The names of the files in the folder of the run, sorted.
     pub(crate) fn names(&self) -> Vec<String> {
         names(self.folder.path())
     }
@@ -104,7 +104,7 @@ impl Run {
     }
 }
 
-/// The names of what lies in a folder, sorted.
+/// The names of the files in a folder, sorted.
 pub(crate) fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap();
     let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
@@ -112,7 +112,7 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// What the tests read of a row of cell_statistics.csv.
+/// The columns of a row of cell_statistics.csv that the tests read.
 #[derive(serde::Deserialize)]
 pub(crate) struct CellRow {
     pub(crate) x_m: f64,
@@ -130,14 +130,14 @@ pub(crate) struct CellRow {
 }
 
 impl CellRow {
-    /// How often something came, and how often it went, in view or found later.
+    /// The numbers of block events and of free events, in view or after a gap.
     pub(crate) fn events(&self) -> [u32; 2] {
         let (blocked, freed) = (self.block_events, self.free_events);
         [blocked + self.block_events_after_gap, freed + self.free_events_after_gap]
     }
 }
 
-/// summary.json.
+/// The content of summary.json.
 #[derive(Clone, Debug)]
 pub(crate) struct Summary(Value);
 

@@ -1,4 +1,4 @@
-//! What the program says, and to whom.
+//! The output of the program on standard output and standard error.
 
 use crate::recording::Recording;
 use crate::run::Run;
@@ -57,7 +57,7 @@ fn help_names_every_choice() {
     assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
 }
 
-/// A port where nobody listens.
+/// A port on which no program listens.
 fn free_port() -> u16 {
     TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
@@ -92,7 +92,7 @@ fn a_terminal_shows_a_bar_that_goes_away() {
     assert!(!after.contains("█"), "{after:?}");
 }
 
-/// As behind `| head`: both ends of the pipe are there, and then one is not.
+/// Like `| head`: both ends of the pipe exist, and then one is closed.
 #[test]
 fn a_run_goes_on_when_nobody_listens() {
     let run = Run::new();

@@ -1,4 +1,4 @@
-//! What the robot must achieve in the shipped four rooms in twenty minutes, whatever the seed.
+//! The targets that the robot must reach in the shipped four rooms in twenty minutes, with any seed.
 
 use crate::run::Run;
 

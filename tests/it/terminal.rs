@@ -10,20 +10,20 @@ use std::time::Duration;
 
 const SIZE: Winsize = Winsize { ws_row: 24, ws_col: 80, ws_xpixel: 0, ws_ypixel: 0 };
 
-/// Runs the program while `person` presses keys; standard error comes on standard output.
+/// Runs the program while `person` presses keys; standard error is joined with standard output.
 pub(crate) fn run(run: &Run, arguments: &str, person: impl FnOnce(&mut Keys)) -> Ended {
     let terminal = openpty(&SIZE, None).unwrap();
     let mut command = run.command(arguments);
     let screen = || Stdio::from(terminal.slave.try_clone().unwrap());
     command.stdin(screen()).stdout(screen()).stderr(screen());
     let mut child = command.spawn().unwrap();
-    // Only the program holds the terminal now: when the program ends, reading ends.
+    // Now only the program holds the terminal: reading ends when the program ends.
     drop((command, terminal.slave));
     let mut keys = Keys(File::from(terminal.master));
     let mut screen = keys.0.try_clone().unwrap();
     let reader = std::thread::spawn(move || {
         let mut bytes = Vec::new();
-        // Linux ends the output of a closed terminal with an error.
+        // On Linux, reading a closed terminal ends with an error.
         _ = screen.read_to_end(&mut bytes);
         bytes
     });

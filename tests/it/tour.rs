@@ -1,4 +1,4 @@
-//! A scripted tour: the paper's Figure 5 comes of it.
+//! A scripted tour reproduces the paper's Figure 5.
 
 use crate::run::Run;
 
@@ -10,7 +10,7 @@ fn the_shipped_tour_finds_high_rates_on_the_dummys_way_and_none_on_walls() {
     assert!(summary.number("/coverage") > 0.99);
     assert_eq!(summary.number("/collisions"), 0.0);
 
-    // The dummy goes between (7.2, 11.5) and (11.2, 11.5) and is 0.2 m in radius.
+    // The dummy robot drives between (7.2, 11.5) and (11.2, 11.5); its radius is 0.2 m.
     let (mut way, mut changing_on_way, mut elsewhere) = (0, 0, 0);
     let mut rates_hz = Vec::new();
     for cell in run.cells() {
@@ -29,7 +29,7 @@ fn the_shipped_tour_finds_high_rates_on_the_dummys_way_and_none_on_walls() {
     assert!(way > 400, "{way}");
     assert!(changing_on_way as f64 > 0.95 * way as f64, "{changing_on_way} of {way} cells on the way change");
     assert_eq!(elsewhere, 0, "cells change where nothing moves");
-    // Back and forth over 4 m at 0.3 m/s takes about 30 s with the turns, and passes twice.
+    // Back and forth over 4 m at 0.3 m/s takes about 30 s including the turns, with two passages.
     rates_hz.sort_by(f64::total_cmp);
     let median_hz = rates_hz[rates_hz.len() / 2];
     assert!((0.04..0.1).contains(&median_hz), "{median_hz} Hz");

@@ -1,4 +1,4 @@
-//! The other worlds that ship.
+//! The other shipped worlds.
 
 use crate::run::Run;
 
@@ -14,14 +14,14 @@ fn things_that_come_and_go_are_noticed() {
         assert!(time_s("in_view_s") >= time_s("happened_s"), "{thing}");
         assert!(time_s("noticed_s") >= time_s("in_view_s"), "{thing}");
         assert!(time_s("noticed_s") <= time_s("in_view_s") + 3.0, "{thing}");
-        // All of it may be right only when the robot comes by again.
+        // Some cells may become right only when the robot returns.
         assert!(time_s("right_s") >= time_s("noticed_s"), "{thing}");
     }
     assert!(summary.number("/map_quality") > 0.99);
 }
 
-/// How many depends on the way that the robot takes: here it is the middle one of three lives that
-/// counts. `mapper/examples/flicker` measures the same on a fixed way.
+/// The number depends on the path of the robot: the median of three runs counts. `examples/flicker` measures the
+/// same on a fixed path.
 #[test]
 fn walls_that_stand_askew_and_a_noisy_laser_make_few_false_changes() {
     let mut false_changes = [0, 1, 2].map(|seed| {

@@ -1,5 +1,5 @@
-//! The layers of a map as they are shown: every cell has a class, and every class has a color and a meaning.
-//! The recording and the pictures share them, so that a color means the same in both.
+//! The layers of a map for display: every cell has a class, and every class has a color and a meaning. The
+//! recording and the pictures use the same layers, so that a color has the same meaning in both.
 
 use crate::scene::TimeUnit;
 use evaluation::palette::{self, Rgb};
@@ -11,11 +11,11 @@ use mapper::Mapper;
 pub enum Layer {
     /// Unknown, free or blocked.
     Occupancy,
-    /// Mean time of a cycle, T of equation 1.
+    /// The cycle time T of equation 1 (mean duration of blocked → free → blocked), s or steps.
     Interval,
-    /// Probability of a change since the cell was last seen, equation 2.
+    /// The probability of a change since the cell was last seen (equation 2).
     ChangeProbability,
-    /// Time since the cell was last seen.
+    /// The time since the cell was last seen, s or steps.
     Recency,
 }
 
@@ -27,7 +27,7 @@ const FREE: u8 = 2;
 const BLOCKED: u8 = 3;
 /// The class of the lowest value on the scale of a layer.
 const FIRST: u8 = 4;
-/// The number of classes of a scale: neighbors are alike to the eye.
+/// The number of classes of a scale: enough that the eye does not distinguish neighboring classes.
 const STEPS: u8 = 64;
 
 /// The scale of a layer: from values to positions on the color bar, 0 to 1.
@@ -37,7 +37,7 @@ pub struct Scale {
     pub low: f64,
     /// The value at the upper end.
     pub high: f64,
-    /// Whether equal ratios, instead of equal differences, are equally long.
+    /// Whether the scale is logarithmic.
     pub is_log: bool,
     /// The values that are marked.
     pub ticks: &'static [f64],
@@ -92,7 +92,7 @@ impl Layer {
     pub fn scale(self, unit: TimeUnit) -> Option<Scale> {
         let (low, high, ticks): (_, _, &[f64]) = match (self, unit) {
             (Self::Occupancy, _) => return None,
-            // A door, a robot passing, a chair: two decades around half a minute.
+            // Typical causes are a door, a passing robot, a chair: two decades around half a minute.
             (Self::Interval, TimeUnit::Second) => (5.0, 500.0, &[5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]),
             // From a block that moves in every step to a block that stands for hundreds of steps.
             (Self::Interval, TimeUnit::Step) => (5.0, 2000.0, &[5.0, 20.0, 50.0, 200.0, 500.0, 2000.0]),
@@ -141,7 +141,7 @@ impl Layer {
             (_, FREE) => palette::FREE,
             (Self::Occupancy, BLOCKED) => palette::BLOCKED,
             (_, BLOCKED) => palette::BLOCKED_FAINT,
-            // Short intervals are dark, as much as white allows the long ones to be seen.
+            // Short cycle times are dark, and long ones light, but dark enough to be seen on white.
             (Self::Interval, _) => gradient(colorous::INFERNO, 0.12 + 0.78 * position),
             (Self::ChangeProbability, _) => gradient(colorous::CIVIDIS, 1.0 - position),
             (Self::Recency | Self::Occupancy, _) => gradient(colorous::VIRIDIS, 1.0 - position),

@@ -25,7 +25,7 @@ pub(crate) fn entries<const N: usize>(entries: [(bool, Mark, &str); N]) -> Legen
     entries.into_iter().filter(|entry| entry.0).map(|(_, mark, text)| (mark, text.to_owned())).collect()
 }
 
-/// The entries for what is seen of the run on its map of the occupancy.
+/// The entries for what the map of the occupancy shows of the run.
 pub(crate) fn of_run(scene: &Scene, view: &View) -> Legend {
     let has_plan = !view.strategies.is_empty() || view.goal.is_some();
     entries([

@@ -1,8 +1,8 @@
-//! What a person sees of a run: the scene of a world, the layers of a map, pictures, a moving picture, and
-//! the Rerun recording.
+//! The display of a run: the scene of a world, the layers of a map, pictures, a moving picture, and the Rerun
+//! recording.
 //!
-//! This is the only crate that knows Rerun. It reads the state of a run and changes nothing: no result
-//! depends on whether anything is shown. It does not know arguments, files of worlds, or how a run is made.
+//! This is the only crate that knows Rerun. It reads the state of a run and changes nothing: no result depends on
+//! the display. The crate must not know command lines, world files, or how a run is made.
 
 pub mod layers;
 mod legend;

@@ -3,11 +3,11 @@
 use interfaces::{Cell, GridFrame, LaserReading};
 use nalgebra::Point2;
 
-/// The largest distance between the drawn and the measured outline, m.
+/// The maximum distance between the drawn and the measured outline, m.
 const TOLERANCE_M: f64 = 0.04;
 
-/// The field of view of a scan in the frame of the map, m: through the end of every beam, and through the
-/// laser unless the beams cover a full turn. Closed: the last point is the first.
+/// The field of view of a scan in the frame of the map, m: a line through the end of every beam, and through the
+/// laser unless the beams cover a full turn. Closed: the last point equals the first.
 pub(crate) fn field_of_view(reading: &LaserReading) -> Vec<Point2<f64>> {
     let scan = &reading.scan;
     let laser = reading.pose * reading.mount;

@@ -17,7 +17,7 @@ pub struct Show {
     film: Option<Film>,
 }
 
-/// Why a run can no longer be shown.
+/// The error for a run that can no longer be shown.
 #[derive(Debug, thiserror::Error)]
 pub enum ShowError {
     /// The recording cannot continue.

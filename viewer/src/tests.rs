@@ -1,5 +1,5 @@
-//! What the tests share: a simulated run of four rooms, a robot that drives a tour, another that goes back and
-//! forth, and scans from a few lines of geometry. No physics, no agent.
+//! Shared parts of the tests: a simulated run of four rooms, a robot that drives a tour, another that drives back
+//! and forth, and scans from a simple geometry. No physics, no agent.
 
 use crate::scene::{Obstacle, Outline, Robot, RobotState, Scene, Sight, TimeUnit};
 use crate::view::{Measured, View};
@@ -38,7 +38,7 @@ impl Driver {
     }
 }
 
-/// The run so far.
+/// The state of the run.
 pub(crate) struct FakeRun {
     pub(crate) scene: Scene,
     pub(crate) has_agent: bool,
@@ -116,7 +116,7 @@ impl FakeRun {
         }
     }
 
-    /// Lets a tenth of a second pass.
+    /// Simulates a tenth of a second.
     pub(crate) fn step(&mut self) {
         self.messages.clear();
         if self.curious.step() {
@@ -176,7 +176,7 @@ impl FakeRun {
         }
     }
 
-    /// Calls `use_view` with the run as it is now.
+    /// Calls `use_view` with the present state of the run.
     pub(crate) fn with_view<T>(&mut self, use_view: impl FnOnce(&View) -> T) -> T {
         let features = Features::of(&mut self.mapper);
         let goal = self.curious.waypoints[self.curious.next % self.curious.waypoints.len()];

@@ -23,7 +23,8 @@ const SCORE_CELLS: usize = 10_000;
 pub struct Recorded {
     /// The trial, the same as without a recording; `None` if it was canceled.
     pub trial: Option<Trial>,
-    /// Why a part of the trial is not in the recording, if so. The trial has continued.
+    /// Why a part of the trial is not in the recording; `None` if the recording is complete. The trial has
+    /// continued.
     pub problem: Option<RecordingError>,
 }
 

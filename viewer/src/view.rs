@@ -1,4 +1,4 @@
-//! A run at one instant, as plain data: the input of the recording and of the moving picture.
+//! The state of a run at one time, as plain data: the input of the recording and of the moving picture.
 
 use crate::scene::{Outline, RobotState, Sight, Visible};
 use agent::Features;
@@ -8,13 +8,13 @@ use mapper::Mapper;
 use nalgebra::Point2;
 use robot::{Belief, Message, Pilot, StrategyState};
 
-/// A run at one instant.
+/// The state of a run at one time.
 pub struct View<'a> {
-    /// Simulated time, in the unit of the scene.
+    /// The simulated time, in the unit of the scene.
     pub time: f64,
-    /// The number of readings so far; the time where time is counted in steps.
+    /// The number of readings so far; in a grid world equal to the time.
     pub step: u64,
-    /// The map and the statistics of its changes.
+    /// The map and the change statistics.
     pub mapper: &'a Mapper,
     /// The features by which the agent chooses a strategy.
     pub features: Features,
@@ -24,27 +24,27 @@ pub struct View<'a> {
     pub obstacles: Vec<Option<Outline>>,
     /// The planned path of the curious robot, m; empty without a plan.
     pub path: &'a [Point2<f64>],
-    /// The goal of the curious robot, m.
+    /// The position of the goal of the curious robot, m; `None` without a goal.
     pub goal: Option<Point2<f64>>,
     /// The strategies of the agent, in an order that never changes; empty without an agent.
     pub strategies: Vec<StrategyState>,
-    /// What was measured against the ground truth.
+    /// The measurements against the ground truth.
     pub measured: Measured<'a>,
 }
 
-/// What the observer of a run adds to what the robot knows.
+/// The measurements that an observer adds to the state of the robot.
 #[derive(Clone, Copy, Default)]
 pub struct Measured<'a> {
-    /// Coverage and quality of the map; `None` where they were not measured.
+    /// Coverage and quality of the map; `None` if they were not measured.
     pub scores: Option<MapScores>,
-    /// Errors of the rates of change; `None` where they were not measured.
+    /// The errors of the rates of change; `None` if they were not measured.
     pub rate_errors: Option<RateErrors>,
-    /// Messages since the last view.
+    /// The messages since the last view.
     pub messages: &'a [Message],
 }
 
 impl<'a> View<'a> {
-    /// The run in `world` after `pilot` has decided on `reading`.
+    /// The state of the run in `world` after `pilot` has decided on `reading`.
     pub fn new<W: Visible<Reading: Reading>>(
         world: &'a W,
         reading: &'a W::Reading,
@@ -67,24 +67,25 @@ impl<'a> View<'a> {
         }
     }
 
-    /// What the curious robot sees.
+    /// The field of view of the curious robot.
     pub fn sight(&self) -> Option<Sight<'a>> {
         self.robots.iter().find_map(|robot| robot.sight)
     }
 }
 
-/// The positions of a robot since the start. Positions nearer than a few centimeters to the last one are
-/// dropped, so that a robot which stands still costs nothing.
+/// The positions of a robot since the start. Positions nearer than a few centimeters to the last one are dropped,
+/// so that a robot at rest needs no memory.
 #[derive(Clone, Debug, Default)]
 pub struct Trail {
     points: Vec<Point2<f64>>,
 }
 
-/// The distance between two points of a trail, m: half a cell of the shipped worlds.
+/// The minimum distance between two points of a trail, m: half a cell of the shipped worlds.
 const TRAIL_SPACING_M: f64 = 0.025;
 
 impl Trail {
-    /// Appends the position of the robot now, m. Returns whether the robot has moved far enough to keep it.
+    /// Appends the present position of the robot, m. Returns whether the robot has moved far enough for the
+    /// position to be kept.
     pub fn push(&mut self, position: Point2<f64>) -> bool {
         let keep = self.points.last().is_none_or(|last| (position - last).norm() >= TRAIL_SPACING_M);
         if keep {

@@ -1,5 +1,5 @@
-//! One number for a minute in a world where everything moves, to compare builds and machines:
-//! `cargo run -p worldfile --example golden -- [THREADS]`.
+//! One number for a minute in a world in which everything moves, to compare builds and machines: `cargo run -p
+//! worldfile --example golden -- [THREADS]`.
 
 use interfaces::{LaserReading, Twist};
 use sim::physics::{Fleet, RobotView};

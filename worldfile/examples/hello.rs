@@ -1,5 +1,5 @@
-//! A place, two robots, a controller: `cargo run -p worldfile --example hello`.
-//! Explained line by line in the documentation of the crate `sim`.
+//! A world, two robots, a controller: `cargo run -p worldfile --example hello`. `worldfile/hello.md` explains it
+//! line by line.
 
 use interfaces::{LaserReading, Twist};
 use sim::physics::{Fleet, RobotView};

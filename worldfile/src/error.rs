@@ -1,15 +1,15 @@
-//! Why there is no world, or no tour.
+//! The error for a world or a tour that cannot be read.
 
 use crate::files::{Disk, Files, MAX_TEXT_BYTES};
 use crate::findings::{Finding, Findings, Severity};
 use std::io;
 use std::path::Path;
 
-/// A world file or a tour that cannot be read or is invalid: errors alone, in the order of the file.
+/// The errors of a world file or a tour that cannot be read or is invalid, in the order of the file.
 ///
-/// Its `Display` is all messages. Each has several lines, without color, that name the file, the line, the key,
-/// what is invalid and what would be valid; the second and further ones begin with `error: `, the first one is
-/// printed after `error: `.
+/// `Display` prints all messages. Each message has several lines, without color, with the file, the line, the key,
+/// what is invalid, and a valid value. The second and further messages begin with `error: `; the first one is
+/// intended to be printed after `error: `.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", findings.error_text())]
 pub struct WorldError {
@@ -29,7 +29,8 @@ impl WorldError {
         &self.findings
     }
 
-    /// The errors, one message each; at least one. Of more than 20 errors, the last message counts the rest.
+    /// The errors, one message each; at least one. The first 20 errors are shown; the last message then has the
+    /// number of further errors.
     pub fn messages(&self) -> &[String] {
         &self.messages
     }
@@ -40,7 +41,7 @@ impl WorldError {
     }
 }
 
-/// The name of a file in messages, and its text; `kind`: `world file` or `tour`.
+/// The kind, the name in messages, and the text of a file; `kind` is `world file` or `tour`.
 pub(crate) fn read_text(kind: &str, path: &Path) -> Result<(String, String), WorldError> {
     let name = path.display().to_string();
     let not_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text file");

@@ -1,4 +1,4 @@
-//! Where readers get their files from: the disk, or a table in memory.
+//! The source of files for readers: the disk, or a table in memory.
 
 use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind, Read, Result};
@@ -9,24 +9,24 @@ pub const MAX_TEXT_BYTES: u64 = 16 << 20;
 
 /// Something that files can be read from.
 ///
-/// Readers take this instead of opening files, so that worlds can ship inside of a program and
-/// tests need no disk.
+/// Readers use this trait instead of opening files, so that worlds can be part of the program, and tests need no
+/// disk.
 pub trait Files {
-    /// All of the file at `path`.
+    /// The complete content of the file at `path`.
     ///
     /// # Errors
     ///
-    /// When there is no such file, it cannot be read, or it has more than `most_bytes`.
+    /// When the file does not exist, cannot be read, or has more than `most_bytes` bytes.
     fn read(&self, path: &Path, most_bytes: u64) -> Result<Vec<u8>>;
 }
 
-/// The files of this machine.
+/// The files on the disk of this machine.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Disk;
 
 impl Files for Disk {
     fn read(&self, path: &Path, most_bytes: u64) -> Result<Vec<u8>> {
-        // A pipe or a terminal would let a reader wait for ever.
+        // A reader could wait forever for a pipe or a terminal.
         if !std::fs::metadata(path)?.is_file() {
             return Err(Error::other("it is not a regular file"));
         }

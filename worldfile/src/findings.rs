@@ -1,4 +1,4 @@
-//! What a reader reports about a file: all errors, warnings and notes at once, each with its place.
+//! The findings of a reader about a file: all errors, warnings and notes at once, each with its place.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use std::collections::BTreeSet;
@@ -9,37 +9,37 @@ use std::path::Path;
 
 /// The number of findings of each severity that are kept; further ones are only counted.
 const MOST_KEPT: usize = 100;
-/// The number of warnings with the same help that are kept, which leaves room for others.
+/// The number of warnings with the same help that are kept, so that other warnings have room.
 const MOST_ALIKE: usize = 10;
-/// Of a longer line only the part around the place is shown, in bytes.
+/// If a line is longer, only the part around the place is shown, bytes.
 const LONG_LINE: usize = 4000;
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
-/// How bad a finding is.
+/// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// Information; nothing is invalid.
     Note,
-    /// The world can be made, but a part of the file is ignored or has a slightly different meaning.
+    /// The world can be made, but a part of the file is ignored or replaced.
     Warning,
     /// The world cannot be made.
     Error,
 }
 
-/// One thing that is invalid in a file, or that the reader does otherwise than the file asks.
+/// A part of a file that is invalid, or that the reader ignores or replaces.
 ///
-/// Its `Display` is a message of several lines, without color, that names the file and the line.
+/// `Display` prints a message of several lines, without color, with the file and the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// How bad it is.
+    /// The severity of the finding.
     pub severity: Severity,
-    /// The file.
+    /// The name of the file.
     pub file: String,
-    /// The line, from 1 on; 0 stands for the file as a whole.
+    /// The line, counted from 1; 0 means the whole file.
     pub line: usize,
     /// What is invalid.
     pub what: String,
-    /// What would be valid, or what is done instead.
+    /// A valid value, or what is done instead.
     pub help: String,
     message: String,
 }
@@ -87,9 +87,9 @@ impl Severity {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Findings {
     kept: Vec<Finding>,
-    /// The number of each severity, from notes to errors, kept or not.
+    /// The number of findings of each severity, from notes to errors, whether kept or not.
     counts: [usize; 3],
-    /// A hash of each finding, kept or not: none is counted twice.
+    /// The hash of each finding, whether kept or not: no finding is counted twice.
     made: BTreeSet<u64>,
 }
 
@@ -99,23 +99,23 @@ impl Findings {
         Self { counts: [0, 0, kept.len() + more], kept, made: BTreeSet::new() }
     }
 
-    /// The findings that were kept: the first hundred of each severity, and of warnings with the same
-    /// help the first ten.
+    /// The findings that were kept: the first hundred of each severity, and the first ten warnings with the same
+    /// help.
     pub fn iter(&self) -> impl Iterator<Item = &Finding> {
         self.kept.iter()
     }
 
-    /// The number of errors, kept or not.
+    /// The number of errors, whether kept or not.
     pub fn errors(&self) -> usize {
         self.counts[Severity::Error as usize]
     }
 
-    /// The number of warnings, kept or not.
+    /// The number of warnings, whether kept or not.
     pub fn warnings(&self) -> usize {
         self.counts[Severity::Warning as usize]
     }
 
-    /// The messages of one severity; the last one counts those that were not kept, if there are any.
+    /// The messages of one severity. If not all findings were kept, the last message has the number of the others.
     pub fn messages(&self, severity: Severity) -> Vec<String> {
         let kept = self.iter().filter(|finding| finding.severity == severity);
         let mut messages: Vec<String> = kept.map(ToString::to_string).collect();
@@ -132,8 +132,8 @@ impl Findings {
         self.messages(Severity::Error).join("\n\n").trim_start_matches("error: ").to_owned()
     }
 
-    /// Adds a finding about a place in a text. The same finding on the same line, as in a
-    /// definition that is used often, is made once.
+    /// Adds a finding about a place in a text. A finding that is repeated on the same line, as in a definition that
+    /// is used often, is added once.
     pub fn add(&mut self, severity: Severity, source: &SourceText, what: &str, mark: Mark<'_>, help: &str) {
         let new = Finding::new(severity, &source.name, source.line_number(mark.0.start), what, help);
         self.keep(new, |_| source.report(severity, what, &mark, &[], help));
@@ -222,7 +222,7 @@ impl SourceText {
         self.line_starts[line - 1]..end
     }
 
-    /// An error at `mark`, with `others` that explain it and `help` that says what would be valid.
+    /// An error at `mark`; `others` are places that explain it, and `help` states what is valid.
     pub(crate) fn error(&self, what: &str, mark: &Mark<'_>, others: &[Mark<'_>], help: &str) -> Finding {
         let message = self.report(Severity::Error, what, mark, others, help);
         Finding {

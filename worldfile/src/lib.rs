@@ -1,10 +1,10 @@
 //! World files: from texts and pictures to the specs of the crate `sim`.
 //!
-//! [`physics`] and [`grid`] read the two kinds of world files (TOML), [`floor_plan`] makes walls of pictures and of
-//! maps of ROS, [`shipped`] has the worlds that ship with the program. Whatever is invalid in a file is reported at
-//! once, with its line and with what would be valid.
+//! [`physics`] and [`grid`] read the two kinds of world files (TOML), [`floor_plan`] converts pictures and ROS maps
+//! to walls, and [`shipped`] has the worlds that are part of the program. All errors of a file are reported at
+//! once, with the line and a valid value.
 //!
-//! This crate does not know how a world runs, and nothing of robots that learn.
+//! This crate must not know how a world is simulated, or how robots learn.
 //!
 //! ```
 //! use interfaces::{Twist, World};

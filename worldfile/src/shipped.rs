@@ -1,4 +1,4 @@
-//! The worlds that ship with the program, so that it runs from any folder.
+//! The worlds that are part of the program, so that it runs from any folder.
 
 use crate::{Files, WorldError, grid, physics};
 use sim::grid::GridSpec;
@@ -36,7 +36,7 @@ const PICTURES: [(&str, &[u8]); 2] = [
     ("cave.png", include_bytes!("../../worlds/cave.png")),
 ];
 
-/// The text of the shipped world of either kind that is called `name`.
+/// The text of the shipped world (of either kind) with the name `name`.
 pub fn text(name: &str) -> Option<&'static str> {
     let mut shipped = PHYSICS.iter().chain(&GRID);
     shipped.find(|(shipped, _)| *shipped == name).map(|(_, text)| *text)
@@ -48,13 +48,13 @@ pub fn pictures() -> impl Files {
     pictures.collect::<BTreeMap<_, _>>()
 }
 
-/// Why there is no world.
+/// The error for a name that does not lead to a world.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// Neither a shipped world nor a file.
     #[error("there is no world `{name}`: it is neither a file nor one of those that ship ({shipped})")]
     Unknown {
-        /// As given.
+        /// The name as given.
         name: String,
         /// The names of the shipped worlds.
         shipped: String,
@@ -62,32 +62,32 @@ pub enum LoadError {
     /// A shipped world, but not one for this program.
     #[error("`{name}` is a {kind} world: it is for the program {program}")]
     OtherKind {
-        /// As given.
+        /// The name as given.
         name: String,
-        /// What kind of world it is.
+        /// The kind of the world.
         kind: &'static str,
-        /// The program that runs it.
+        /// The program that runs worlds of this kind.
         program: &'static str,
     },
     /// The file is not a world.
     #[error(transparent)]
     World(#[from] WorldError),
-    /// A map alone.
+    /// The file is a map without a world.
     #[error(
         "`{name}` is a map, without robots: a world file can have it as its walls, by `[[floor_plan]]` and \
          `map = \"{name}\"`"
     )]
     Map {
-        /// As given.
+        /// The name as given.
         name: String,
     },
 }
 
-/// The physics world that `name` stands for: a shipped one by its name, else a file by its path.
+/// The physics world with the name `name`: a shipped world, or otherwise the file with this path.
 ///
 /// # Errors
 ///
-/// When there is no such file either, or it is not a world of this kind.
+/// When there is no such world or file, or when it is not a world of this kind.
 pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
     if GRID.iter().any(|(grid, _)| *grid == name) {
         return Err(LoadError::OtherKind { name: name.to_owned(), kind: "grid", program: "grid_world" });
@@ -99,11 +99,11 @@ pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
     find(name, &PHYSICS, parse, |path| physics::load_world(path))
 }
 
-/// The grid world that `name` stands for, as [`load`].
+/// The grid world with the name `name`: a shipped world, or otherwise the file with this path.
 ///
 /// # Errors
 ///
-/// As [`load`].
+/// The errors of [`load`].
 pub fn load_grid(name: &str) -> Result<GridSpec, LoadError> {
     if PHYSICS.iter().any(|(physics, _)| *physics == name) {
         return Err(LoadError::OtherKind { name: name.to_owned(), kind: "physics", program: "four_rooms" });

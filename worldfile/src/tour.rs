@@ -1,14 +1,14 @@
-//! Tours: waypoints to drive to, as a file gives them.
+//! Tours: waypoints, as read from a file.
 
 use crate::error::{WorldError, read_text};
 use crate::reader::{self, Kind, Table};
 use nalgebra::Point2;
 use std::path::Path;
 
-/// No waypoint is farther from the origin along an axis, m.
+/// The maximum coordinate of a waypoint along each axis, m.
 const MAX_M: f64 = 1e6;
 
-/// Waypoints to drive to.
+/// The waypoints of a tour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TourSpec {
     /// The waypoints, m; at least one.
@@ -18,18 +18,18 @@ pub struct TourSpec {
 }
 
 impl TourSpec {
-    /// Reads a tour file: TOML with `waypoints_m`, a list of `[x, y]` in metres, and `repeat`
+    /// Reads a tour file: TOML with `waypoints_m`, a list of `[x, y]` in meters, and `repeat`
     /// (`false` by default: the run ends with the last waypoint).
     ///
     /// # Errors
     ///
-    /// When the file cannot be read, or as in [`TourSpec::parse`].
+    /// When the file cannot be read, and the errors of [`TourSpec::parse`].
     pub fn load(path: &Path) -> Result<Self, WorldError> {
         let (name, text) = read_text("tour", path)?;
         Self::parse(&name, &text)
     }
 
-    /// Checks the text of a tour file; `name` is what messages call the file.
+    /// Checks the text of a tour file; `name` is the name of the file in messages.
     ///
     /// # Errors
     ///

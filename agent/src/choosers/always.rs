@@ -2,7 +2,7 @@ use super::Chooser;
 use crate::situation::Situation;
 use interfaces::RandomStream;
 
-/// Always the strategy of one index.
+/// Always chooses the strategy with this index.
 #[derive(Clone, Copy, Debug)]
 pub struct Always(pub usize);
 

@@ -3,7 +3,7 @@ use crate::situation::Situation;
 use interfaces::RandomStream;
 use rand::RngExt;
 
-/// A fair coin, or die, over this number of strategies: the baseline of the learners.
+/// Chooses among this number of strategies at random, all with the same probability: the baseline for learners.
 #[derive(Clone, Copy, Debug)]
 pub struct Coin(pub std::num::NonZeroUsize);
 

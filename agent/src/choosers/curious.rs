@@ -6,19 +6,18 @@ use crate::settings::CuriousSettings;
 use crate::situation::Situation;
 use interfaces::RandomStream;
 
-/// The paper's learner (section 4): one value function over (p, r) per strategy, learned from
-/// rewards, and a choice with probability ∝ exp(V/τ). All values start at 0, so the first choice
-/// is uniform.
+/// The paper's learner (section 4): every strategy has a value function over (p, r) that is learned from rewards,
+/// and is chosen with a probability ∝ exp(V/τ). All values start at 0, so that the first choice is uniform.
 #[derive(Clone, Debug)]
 pub struct Curious {
     learning_rate: f64,
     temperature: f64,
-    /// One per strategy.
+    /// One value function per strategy.
     values: Vec<TileCoder>,
 }
 
 impl Curious {
-    /// A learner before any trajectory. Draws the offsets of the tilings.
+    /// A learner that has learned nothing. The offsets of the tilings are drawn at random.
     pub fn new(settings: &CuriousSettings, strategies: usize, rng: &mut RandomStream) -> Self {
         Self {
             learning_rate: settings.learning_rate,
@@ -27,7 +26,7 @@ impl Curious {
         }
     }
 
-    /// The probability of each strategy at `features`.
+    /// The probability with which each strategy is chosen at `features`.
     pub fn probabilities(&self, features: Features) -> Vec<f64> {
         let values: Vec<f64> = self.values.iter().map(|coder| coder.value(features)).collect();
         softmax(&values, self.temperature)
@@ -50,8 +49,8 @@ impl Chooser for Curious {
     }
 }
 
-/// Probabilities ∝ exp(value/temperature). Subtracting the largest value changes nothing but that
-/// no exponential overflows, and that at least one is 1.
+/// Probabilities ∝ exp(value/temperature). The largest value is subtracted first. This does not change the result;
+/// it prevents overflow, and at least one exponential is 1.
 fn softmax(values: &[f64], temperature: f64) -> Vec<f64> {
     let max = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let odds: Vec<f64> = values.iter().map(|value| libm::exp((value - max) / temperature)).collect();
@@ -66,8 +65,8 @@ mod tests {
     use mapper::{Mapper, MapperSettings};
     use nalgebra::{Isometry2, Point2};
 
-    /// Plays `rounds` rounds of a bandit in which a strategy always earns `rewards[strategy]`;
-    /// gives how often each was chosen.
+    /// Runs `rounds` rounds of a bandit in which each strategy always earns `rewards[strategy]`. Returns how often
+    /// each strategy was chosen.
     fn bandit(curious: &mut Curious, features: Features, rewards: &[f64], rounds: usize) -> Vec<f64> {
         let frame = GridFrame::new(Point2::origin(), 1.0, 1, 1).unwrap();
         let mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();

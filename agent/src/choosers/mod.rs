@@ -14,31 +14,31 @@ use crate::features::Features;
 use crate::situation::Situation;
 use interfaces::RandomStream;
 
-/// The result of following a strategy to one goal.
+/// The result of one goal: the data from which a chooser learns.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Trajectory<'a> {
-    /// The index of the strategy.
+    /// The index of the strategy that selected the goal.
     pub strategy: usize,
-    /// The features after each reading, at least one; T of section 4.
+    /// The features after each reading; at least one reading. T of section 4.
     pub features: &'a [Features],
-    /// Map updates per reading, R of section 4; finite, not negative.
+    /// The number of map updates per reading, R of section 4; finite, 0 or more.
     pub reward: f64,
-    /// The progress in learning per reading: the expected fall of the error of the logarithms of the rates of
-    /// change, summed over the cells. Finite, not negative.
+    /// The progress in learning per reading: the expected decrease of the error of the logarithms of the rates,
+    /// summed over the cells. Finite, 0 or more.
     pub progress: f64,
 }
 
-/// Selects the strategy that samples the next goal. Strategies are given by index in the list of the agent.
+/// Selects the strategy that selects the next goal. A strategy is identified by its index in the agent's list.
 pub trait Chooser: std::fmt::Debug + Send {
-    /// The index of the next strategy.
+    /// The index of the strategy for the next goal.
     fn choose(&mut self, situation: &Situation, rng: &mut RandomStream) -> usize;
 
-    /// Learns from the result of the last choice.
+    /// Learns from the result of the last choice. Does nothing by default.
     fn learn(&mut self, _: &Trajectory) {}
 
-    /// The expected reward per reading of the strategy at `features` (map updates, or progress); `None` from a
-    /// chooser without values.
+    /// The expected reward per reading of the strategy at `features` (map updates, or progress); `None` if the
+    /// chooser has no values.
     fn value(&self, _strategy: usize, _features: Features) -> Option<f64> {
         None
     }

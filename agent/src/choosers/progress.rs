@@ -4,38 +4,39 @@ use crate::sampling::gamma;
 use crate::situation::Situation;
 use interfaces::RandomStream;
 
-/// The number of readings after which an observation of a strategy counts half.
+/// The number of readings after which the weight of an observation of a strategy is one half.
 const MEMORY: f64 = 5000.0;
 
-/// The number of readings after which an observation of the mean progress counts half.
+/// The number of readings after which the weight of an observation of the mean progress is one half.
 const MEAN_MEMORY: f64 = 500.0;
 
-/// The pseudocount of every strategy: readings at the mean progress.
+/// The pseudocount of every strategy: a number of readings with the mean progress.
 const PRIOR_READINGS: f64 = 100.0;
 
-/// The number of readings with as much information on a strategy as one event of a Poisson process has on its
-/// rate. Progress comes in bursts: the result of one trajectory is mostly random.
+/// The number of readings that hold as much information about a strategy as one event of a Poisson process about
+/// its rate. Progress comes in bursts: the result of one trajectory is mostly random.
 const READINGS_PER_EVENT: f64 = 5.0;
 
 /// Learns which strategy makes most progress in learning, by Thompson sampling.
 ///
-/// The reward is [`Trajectory::progress`]. All strategies make less progress the more is known, so that a
-/// strategy that was good early would seem better than one that is good now. Each trajectory is therefore
-/// divided by the *mean progress*, the recent progress per reading of all strategies; the quotient is the
-/// efficiency of the strategy. Efficiencies change slowly, so that they can be estimated. An efficiency is
-/// drawn for each strategy from its posterior (a gamma distribution, as for the rate of a Poisson process),
-/// and the strategy of the largest draw is chosen.
+/// The reward is [`Trajectory::progress`]. All strategies make less progress when more is known, so that a strategy
+/// that was used early would seem better than a strategy that is used now. The progress of each trajectory is
+/// therefore divided by the *mean progress*, the recent progress per reading of all strategies; the quotient is the
+/// efficiency of the strategy. Efficiencies change slowly and can be estimated. The chooser draws an efficiency for
+/// each strategy from its posterior (a gamma distribution, as for the rate of a Poisson process) and chooses the
+/// strategy with the largest draw.
 ///
-/// Without the division, the better strategies were found less often. Map updates as the reward selected the
-/// strategies that follow a block longest, which learn no more. `docs/strategies.md` lists what else was tried.
+/// Without the division, the chooser found the better strategies less often. With map updates as the reward, the
+/// chooser preferred the strategies that follow a block longest, although they learn no more. `docs/strategies.md`
+/// lists other variants.
 #[derive(Clone, Debug)]
 pub struct Progress {
     mean: Account,
-    /// One per strategy; the gain is in multiples of the mean.
+    /// One account per strategy; the gain is in multiples of the mean progress.
     strategies: Vec<Account>,
 }
 
-/// The gain and its number of readings, discounted.
+/// The gain and the number of its readings, discounted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Account {
     gained: f64,
@@ -60,12 +61,12 @@ impl Account {
 }
 
 impl Progress {
-    /// A learner before any trajectory.
+    /// A learner that has learned nothing.
     pub fn new(strategies: usize) -> Self {
         Self { mean: Account::default(), strategies: vec![Account::default(); strategies] }
     }
 
-    /// The expected progress of each strategy, in multiples of the mean.
+    /// The expected progress of each strategy, in multiples of the mean progress.
     pub fn efficiencies(&self) -> impl ExactSizeIterator<Item = f64> {
         self.strategies.iter().map(|of| (of.gained + PRIOR_READINGS) / (of.readings + PRIOR_READINGS))
     }
@@ -90,7 +91,7 @@ impl Chooser for Progress {
         self.mean.fade(readings, MEAN_MEMORY);
         self.mean.add(gained, readings);
         let mean = self.mean.per_reading();
-        // Without progress no strategy is better than the others.
+        // Without any progress, no strategy is better than the others.
         if mean < f64::MIN_POSITIVE {
             return;
         }
@@ -114,8 +115,8 @@ mod tests {
     use proptest::prelude::*;
     use rand::RngExt;
 
-    /// Plays `rounds` of ten readings; a strategy earns up to twice its mean of `progress`, at random. Returns
-    /// how often each was chosen.
+    /// Runs `rounds` rounds of ten readings; a strategy earns a random value up to twice its mean of `progress`.
+    /// Returns how often each strategy was chosen.
     fn bandit(
         chooser: &mut Progress,
         progress: impl Fn(usize) -> Vec<f64>,

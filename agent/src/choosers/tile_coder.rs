@@ -4,9 +4,9 @@ use interfaces::RandomStream;
 use rand::RngExt;
 use std::collections::BTreeMap;
 
-/// A value function over the features (p, r): several grids of tiles (tilings) with random offsets, and one
-/// weight per tile (section 4). Tiles are kept by column and row: two tiles never share a weight. The weight of
-/// a tile is 0 before it is learned.
+/// A value function over the features (p, r): several grids of tiles (tilings) with random offsets, and one weight
+/// per tile (section 4). Tiles are stored by column and row: two tiles never share a weight. The weight of a tile
+/// is 0 until something is learned for the tile.
 #[derive(Clone, Debug)]
 pub struct TileCoder {
     /// The size of a tile in p and r.
@@ -22,32 +22,33 @@ struct Tiling {
 }
 
 impl TileCoder {
-    /// A tile coder of value 0 with random offsets. Draws two numbers per tiling.
+    /// A tile coder with value 0 everywhere and random offsets. Draws two numbers per tiling.
     pub fn new(settings: &CuriousSettings, rng: &mut RandomStream) -> Self {
         let offsets: Vec<_> = (0..settings.tilings).map(|_| [rng.random(), rng.random()]).collect();
         Self::with_offsets([settings.tile_p, settings.tile_r], &offsets)
     }
 
-    /// A tile coder of value 0 with tiles of size `tile` in p and r, and one tiling per offset, in tiles.
+    /// A tile coder with value 0 everywhere, with tiles of size `tile` in p and r, and one tiling per offset (in
+    /// tiles).
     pub fn with_offsets(tile: [f64; 2], offsets: &[[f64; 2]]) -> Self {
         let tiling = |&offset| Tiling { offset, weights: BTreeMap::new() };
         Self { tile, tilings: offsets.iter().map(tiling).collect() }
     }
 
-    /// V(p, r): the mean of the weights of the tiles that hold the features, one per tiling.
+    /// V(p, r): the mean over the tilings of the weight of the tile that contains the features.
     pub fn value(&self, features: Features) -> f64 {
         let weight = |tiling: &Tiling| tiling.weights.get(&tile(tiling.offset, self.tile, features)).copied();
         let sum: f64 = self.tilings.iter().filter_map(weight).sum();
         sum / self.tilings.len().max(1) as f64
     }
 
-    /// For every (p, r) of `trajectory`, moves each weight that holds it towards `target`:
+    /// For every (p, r) of `trajectory`, moves the weight of each tile that contains (p, r) toward `target`:
     /// w ← w (1 − λ) + target λ.
     pub fn learn(&mut self, trajectory: &[Features], target: f64, learning_rate: f64) {
         for tiling in &mut self.tilings {
             let (offset, size) = (tiling.offset, self.tile);
             let tile = |features: &Features| tile(offset, size, *features);
-            // Features move slowly: most of the time the next pair lies in the same tile.
+            // The features change slowly: consecutive pairs are mostly in the same tile.
             for visit in trajectory.chunk_by(|a, b| tile(a) == tile(b)) {
                 let weight = tiling.weights.entry(tile(&visit[0])).or_insert(0.0);
                 for _ in visit {
@@ -58,7 +59,8 @@ impl TileCoder {
     }
 }
 
-/// The tile of the features. The casts saturate, and NaN falls into tile 0: all features have a tile.
+/// The tile that contains the features. The casts saturate, and NaN is in tile 0: every pair of features has a
+/// tile.
 fn tile(offset: [f64; 2], size: [f64; 2], features: Features) -> (i64, i64) {
     let axis = |offset: f64, size: f64, feature: f64| (feature / size + offset).floor() as i64;
     (axis(offset[0], size[0], features.p), axis(offset[1], size[1], features.r))

@@ -4,26 +4,27 @@ use crate::situation::Situation;
 use crate::visibility::ViewHistory;
 use interfaces::{Cell, CellState};
 
-/// The stop at a goal, in the unit of the readings' times. It is part of the time of a visit: without it, the
-/// next cell would always be worth more than the next room.
+/// The duration of the stop at a goal, in the time unit of the readings. The stop is part of the time of a visit:
+/// without it, the next cell would always be worth more than the next room.
 const WATCH: f64 = 1.0;
 
-/// A cell that stayed unknown after this number of visits from which it should have been in view cannot be
-/// seen. More than one: a map may need several sightings, and an obstacle may have been in the way.
+/// The maximum number of visits for a cell that stays unknown although it should have been in view: after these
+/// visits the cell counts as impossible to see. The number is above one: a map may need several observations, and
+/// an obstacle may have been in between.
 const MAX_VISITS: u8 = 3;
 
-/// Goes where most unknown cells come into view per time to get there (frontiers after Yamauchi 1997, their
-/// worth after González-Baños and Latombe 2002).
+/// Goes to the cell from which most unknown cells come into view per time to get there (frontiers: Yamauchi 1997;
+/// the value of a goal: González-Baños and Latombe 2002).
 ///
-/// When no cell is left to find, the robot goes to the cell that was not seen for longest, per time to get
-/// there; the strategy therefore stays useful in an environment that changes.
+/// When no unknown cell is left that can be seen, the robot goes to the cell with the longest time since it was
+/// last seen, per time to get there. The strategy therefore also works in an environment that changes.
 #[derive(Clone, Debug)]
 pub struct Frontier {
     history: ViewHistory,
 }
 
 impl Frontier {
-    /// For a robot that sees as far as `settings.sensor_radius_m`.
+    /// The strategy of a robot whose sensor has the range `settings.sensor_radius_m`.
     pub fn new(settings: &AgentSettings) -> Self {
         Self { history: ViewHistory::new(settings.sensor_radius_m) }
     }
@@ -45,7 +46,7 @@ impl Strategy for Frontier {
             }
         }
         self.history.weigh(situation, &regions, &hidden, WATCH, weights);
-        // The cells left to find may be unreachable.
+        // The cells that are still unknown may be unreachable.
         if weights.iter().all(|&weight| weight == 0.0) {
             for (cell, weight) in weights.iter_mut().enumerate().filter(|(cell, _)| !is_unknown(*cell)) {
                 *weight = mapper.recency(cell) / (situation.travel_to(cell) + WATCH);

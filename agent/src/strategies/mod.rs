@@ -1,3 +1,7 @@
+//! To add a strategy: write a file in this folder, add its `mod` line here, and add a line to `BUILT_IN` in `policy.rs`.
+//!
+//! A row in the README's table of strategies is needed as well; a test compares the table with `BUILT_IN`.
+
 mod frontier;
 mod information_gain;
 mod optimal_revisiting;
@@ -15,48 +19,50 @@ pub use recency::Recency;
 use crate::situation::Situation;
 use interfaces::Cell;
 
-/// How a goal is selected by the weights.
+/// How the agent selects the goal by the weights of a strategy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pick {
-    /// A square patch in proportion to its mean weight, then any candidate in it (section 3).
+    /// Draw a square patch with a probability proportional to its mean weight, then any candidate in the patch
+    /// (section 3).
     Patch,
-    /// The candidate of the largest weight, uniform over several. Where no weight is above zero, as
-    /// [`Pick::Patch`].
+    /// Take the candidate with the largest weight, or a random one of several equal ones. If no weight is above
+    /// zero, select as with [`Pick::Patch`].
     Best,
 }
 
-/// What to do at the goal.
+/// What the robot does at the goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stay {
-    /// Explore around it, following what changes (section 2).
+    /// Explore around the goal and follow what changes (section 2).
     Explore,
-    /// Stop there and watch for this time, in the unit of the readings' times; 0 goes on at once.
+    /// Stop at the goal and observe for this duration, in the time unit of the readings. With 0, the next goal
+    /// follows at once.
     Watch(f64),
 }
 
-/// Weighs where the robot should look next.
+/// Gives each cell a weight: how much a visit of the cell is worth.
 pub trait Strategy: std::fmt::Debug + Send {
     /// The name in tables, files and recordings.
     fn name(&self) -> &'static str;
 
-    /// Writes the worth of a visit of each candidate into `weights`: one weight per cell in row-major order,
-    /// all zero at first, in any unit. Only the proportions between candidates count; the weights of other
-    /// cells are ignored. A weight that is negative or not a number counts as zero.
+    /// Writes the value of a visit of each candidate into `weights`: one weight per cell, in row-major order, in
+    /// any unit. All weights are zero at first. Only the ratios between the weights of candidates matter; the
+    /// weights of other cells are ignored. A weight that is negative or NaN counts as zero.
     ///
-    /// Called once per goal, so a pass over the map is affordable.
+    /// The method is called once per goal, so that a pass over the whole map is affordable.
     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]);
 
-    /// How the goal is selected by these weights.
+    /// How the agent selects the goal by these weights.
     fn pick(&self) -> Pick {
         Pick::Patch
     }
 
-    /// Whether the strategy needs [`Situation::travel`]. By default if it picks the best cell.
+    /// Whether the strategy needs [`Situation::travel`]. By default this is true for [`Pick::Best`].
     fn needs_travel(&self) -> bool {
         self.pick() == Pick::Best
     }
 
-    /// What to do at the goal that was selected by the last weights.
+    /// What the robot does at the goal that was selected by the last weights.
     fn stay(&mut self, _goal: Cell) -> Stay {
         Stay::Explore
     }

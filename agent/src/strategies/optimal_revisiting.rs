@@ -4,43 +4,46 @@ use crate::situation::Situation;
 use crate::visibility::ViewHistory;
 use interfaces::{Cell, CellState};
 
-/// The stop at a goal, in the unit of the readings' times. It is part of the time of a visit.
+/// The duration of the stop at a goal, in the time unit of the readings. The stop is part of the time of a visit.
 const WATCH: f64 = 8.0;
 
-/// The number of events assumed for a cell that never changed: a half, as in the Jeffreys posterior of a
+/// The number of events that is assumed for a cell that never changed: one half, as in the Jeffreys posterior of a
 /// Poisson rate.
 const UNSEEN_EVENTS: f64 = 0.5;
 
-/// Goes where the next visit is due. Every cell has its own best interval between visits, by its rates of
-/// change; a visit is worth how far the cells in view are beyond that interval, per time to get there.
+/// Revisits every cell at the interval that is best for its rates of change.
 ///
-/// A cell that leaves its state at rate α and returns at rate β, and was last seen a time t ago, is worth
-/// U = π [(1 − e^(−st)) / s − t e^(−st)] with s = α + β and π = α / s, the share of time in the other state.
-/// That is the marginal value by which optimal schedules revisit changing web pages (Cho and Garcia-Molina
-/// 2003; Azar et al. 2018), here for a page that changes back: the share of time in which the map is wrong
-/// grows by U with a little more time between visits.
+/// Each cell has a best interval between visits. The longer the time since the last observation exceeds this
+/// interval, the more the cell is worth. The value of a goal is the sum over the cells in view from there, per time
+/// to get there.
 ///
-/// The rate of a cell that never changed is not known. Such a cell is worth as much as a cell with half an
-/// event in the time for which it was observed, times the share of cells that ever changed. Without this the
-/// robot would stay with the first moving thing. An unknown cell is certainly wrong, and worth t.
+/// A cell that leaves its state at rate α and returns at rate β, and was last seen a time t ago, is worth U = π [(1
+/// − e^(−st)) / s − t e^(−st)] with s = α + β and π = α / s, the share of time in the other state. U is the
+/// marginal value by which optimal schedules revisit changing web pages (Cho and Garcia-Molina 2003; Azar et al.
+/// 2018), here for a page that changes back: if the time between visits becomes a little longer, the share of time
+/// in which the map is wrong grows in proportion to U.
+///
+/// The rate of a cell that never changed is not known. Such a cell is worth as much as a cell with half an event in
+/// its observation time, times the share of cells that ever changed. Without this term the robot would stay with
+/// the first moving thing. The map is certainly wrong for an unknown cell; its value is t.
 #[derive(Clone, Debug)]
 pub struct OptimalRevisiting {
     history: ViewHistory,
 }
 
 impl OptimalRevisiting {
-    /// For a robot that sees as far as `settings.sensor_radius_m`.
+    /// The strategy of a robot whose sensor has the range `settings.sensor_radius_m`.
     pub fn new(settings: &AgentSettings) -> Self {
         Self { history: ViewHistory::new(settings.sensor_radius_m) }
     }
 }
 
-/// U of a cell with the rates at which it leaves and returns to the state in which it was last seen, `elapsed`
-/// ago.
+/// U of a cell that was last seen a time `elapsed` ago. `leave` is the rate at which the cell leaves the state in
+/// which it was last seen, `back` the rate at which it returns.
 fn worth(leave: f64, back: f64, elapsed: f64) -> f64 {
     let sum = leave + back;
     let x = sum * elapsed;
-    // 1 − e^(−x) − x e^(−x); the first terms of its series where these would cancel.
+    // 1 − e^(−x) − x e^(−x). For small x the terms cancel, and the beginning of the series is used.
     let curve = if x < 1e-4 { x * x * (0.5 - x / 3.0) } else { -libm::expm1(-x) - x * libm::exp(-x) };
     leave / sum * (curve / sum)
 }

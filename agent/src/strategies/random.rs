@@ -1,7 +1,7 @@
 use super::Strategy;
 use crate::situation::Situation;
 
-/// Goes anywhere: the baseline that the paper lacks.
+/// Goes to any cell: a baseline that the paper does not have.
 #[derive(Clone, Copy, Debug)]
 pub struct Random;
 
@@ -10,7 +10,7 @@ impl Strategy for Random {
         "random"
     }
 
-    /// Leaves every weight at zero, which makes the goal uniform over the candidates. Equal weights
-    /// would make it uniform over the patches, and so prefer cells in patches of few candidates.
+    /// Leaves every weight at zero, so that the goal is uniform over the candidates. Equal weights would make the
+    /// goal uniform over the patches, and would prefer cells in patches with few candidates.
     fn weigh(&mut self, _: &Situation, _: &mut [f64]) {}
 }

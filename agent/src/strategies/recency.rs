@@ -1,8 +1,8 @@
 use super::Strategy;
 use crate::situation::Situation;
 
-/// Goes to the cells that were not seen for longest: t_now − t_last (section 3, after Thrun). The robot
-/// zig-zags through the whole environment, which keeps the map complete.
+/// Goes to cells with the longest time since they were last seen: t_now − t_last (section 3, after Thrun). The
+/// robot zigzags through the whole environment, so that the map stays complete.
 #[derive(Clone, Copy, Debug)]
 pub struct Recency;
 

@@ -3,35 +3,35 @@ use crate::Situation;
 use interfaces::{Cell, GridFrame};
 use mapper::Mapper;
 
-/// Visibility, and which cells should have been in view from the goals so far: for strategies that go where
-/// many cells come into view.
+/// Visibility, and for each cell the visits from which it should have been in view. For strategies that select a
+/// goal by the number of cells that come into view.
 ///
-/// The history is needed because an obstacle that hides a cell need not be on the map: without it the robot
-/// would go again and again to see a cell that cannot be seen.
+/// The history is needed because an obstacle that hides a cell is not always on the map. Without the history the
+/// robot would return again and again to see a cell that cannot be seen.
 #[derive(Clone, Debug)]
 pub(crate) struct ViewHistory {
     visibility: Visibility,
     frame: Option<GridFrame>,
     visits: Vec<Visits>,
-    /// The index of the last goal's cell, until the visit is over.
+    /// The index of the cell of the last goal, until the visit is over.
     goal: Option<usize>,
 }
 
-/// The visits from which a cell should have been in view, whether it was seen or not.
+/// The visits from which a cell should have been in view, whether or not it was seen.
 #[derive(Clone, Copy, Debug, Default)]
 struct Visits {
     count: u8,
-    /// When the last visit was over.
+    /// The end time of the last visit.
     time: f64,
 }
 
 impl ViewHistory {
-    /// For a robot that sees as far as `radius_m`.
+    /// For a robot whose sensor has the range `radius_m`.
     pub(crate) fn new(radius_m: f64) -> Self {
         Self { visibility: Visibility::new(radius_m), frame: None, visits: Vec::new(), goal: None }
     }
 
-    /// Applies the present map and the visit of the last goal, which is over; returns the regions of the map.
+    /// Applies the present map, and the finished visit of the last goal. Returns the regions of the map.
     pub(crate) fn update(&mut self, mapper: &Mapper) -> Regions {
         let (regions, frame) = (self.visibility.update(mapper), *mapper.frame());
         if self.frame != Some(frame) {
@@ -61,14 +61,14 @@ impl ViewHistory {
         self.visits[cell].count
     }
 
-    /// The time since the cell was last seen, or should have been.
+    /// The time since the cell was last seen or should have been seen.
     #[inline]
     pub(crate) fn elapsed(&self, mapper: &Mapper, cell: usize) -> f64 {
         mapper.recency(cell).min(mapper.time() - self.visits[cell].time)
     }
 
-    /// Weighs each candidate by the worth of the regions in view from there, per time to get there and to stop
-    /// there for `watch`; `worth` has one value per region.
+    /// Writes the weight of each candidate: the sum of `worth` (one value per region) over the regions in view from
+    /// there, divided by the time to get there and to stop for `watch`.
     pub(crate) fn weigh(
         &mut self,
         situation: &Situation,
@@ -78,7 +78,7 @@ impl ViewHistory {
         weights: &mut [f64],
     ) {
         for region in 0..regions.count() {
-            let mut in_view = None; // not computed for regions where the robot cannot be
+            let mut in_view = None; // Not computed for regions that the robot cannot enter.
             for cell in regions.cells(region) {
                 let time = situation.travel_to(cell) + watch;
                 if time < f64::INFINITY && situation.mapper.is_candidate(cell) {

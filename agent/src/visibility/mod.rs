@@ -1,8 +1,8 @@
-//! Which cells are visible from where, according to the map.
+//! Which cells are visible from which cells, according to the map.
 //!
-//! A strategy that looks ahead asks for the view from every point that it might go to. Views are therefore
-//! kept, and computed again only where a wall appeared or disappeared. A fine grid under a sensor of long
-//! range is cut into regions of several cells, since neighbouring cells have the same view.
+//! A strategy that looks ahead needs the view from every possible goal. Views are therefore stored, and computed
+//! again only where a wall appeared or disappeared. If the grid is fine and the range of the sensor is long, the
+//! map is divided into regions of several cells, since neighboring cells have the same view.
 
 mod history;
 mod regions;
@@ -17,24 +17,24 @@ use shadow_casting::cast;
 
 /// The view from every region, within the radius of the robot's sensor.
 ///
-/// A cell hides what lies behind it if it is blocked and never changed: a cell that changed is likely to
-/// change again, and unknown cells count as transparent.
+/// A cell hides what lies behind it if it is blocked and never changed. A cell that changed is likely to change
+/// again and counts as transparent; unknown cells count as transparent, too.
 #[derive(Clone, Debug)]
 pub(crate) struct Visibility {
     radius_m: f64,
     regions: Option<Regions>,
     opaque: Vec<bool>,
-    /// The regions in view from each; `None` until asked for.
+    /// For each region the regions in view; `None` until they are needed.
     views: Vec<Option<Vec<u32>>>,
 }
 
 impl Visibility {
-    /// For a robot that sees as far as `radius_m`, before any map.
+    /// For a robot whose sensor has the range `radius_m`, before any map.
     pub(crate) fn new(radius_m: f64) -> Self {
         Self { radius_m, regions: None, opaque: Vec::new(), views: Vec::new() }
     }
 
-    /// Applies the present map, and returns its regions. To be called before the views are asked for; one
+    /// Applies the present map and returns its regions. Call it before views are computed. One pass over the map.
     /// pass over the map.
     pub(crate) fn update(&mut self, mapper: &Mapper) -> Regions {
         let regions = Regions::new(*mapper.frame(), self.radius_m);
@@ -55,7 +55,7 @@ impl Visibility {
             }
         }
         for (region, &walls) in walls.iter().enumerate() {
-            // As many cells as a wall across the region has.
+            // The number of cells of a wall across the region.
             let is_opaque = walls as usize >= regions.side;
             if is_opaque != self.opaque[region] {
                 self.opaque[region] = is_opaque;
@@ -65,13 +65,13 @@ impl Visibility {
         regions
     }
 
-    /// The regions in view from a region, in order, itself included.
+    /// The regions in view from a region, in order, including the region itself.
     pub(crate) fn seen_from(&mut self, region: usize) -> &[u32] {
         let Self { regions: Some(regions), opaque, views, radius_m } = self else { return &[] };
         views[region].get_or_insert_with(|| cast(regions, opaque, region, regions.reach(*radius_m)))
     }
 
-    /// Drops the views that may hold a region.
+    /// Drops the stored views that may contain a region.
     fn drop_views_of(&mut self, regions: &Regions, region: usize) {
         let reach = regions.reach(self.radius_m) as usize;
         let (column, row) = (region % regions.columns, region / regions.columns);
@@ -107,7 +107,7 @@ mod tests {
         mapper.update(&CellReading { time, pose: Isometry2::identity(), cells }).unwrap();
     }
 
-    /// What is seen from a cell: `o` in view, `-` not.
+    /// The view from a cell: `o` in view, `-` not in view.
     fn drawn(visibility: &mut Visibility, mapper: &Mapper, from: Cell) -> Vec<String> {
         let regions = visibility.update(mapper);
         let frame = mapper.frame();
@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(visibility.seen_from(0).len(), 25 * 20, "up to the wall, the wall included");
     }
 
-    /// Whether the line from the centre of `from` to that of `to` passes through the inside of the
+    /// Whether the line from the center of `from` to that of `to` passes through the inside of the
     /// unit square around `cell`: cut by the square's sides, some of it is left.
     fn crosses(from: Cell, to: Cell, cell: Cell) -> bool {
         let (mut enter, mut leave) = (0.0f64, 1.0f64);

@@ -1,10 +1,10 @@
 use interfaces::{Cell, GridFrame};
 
-/// The largest number of regions that a view reaches: more would take long and differ little.
+/// The maximum number of regions from the sensor to the end of its range: more would take long and change little.
 const REACH_REGIONS: f64 = 40.0;
 
-/// The map cut into square regions of `side` × `side` cells, from its lower left corner on; those at the right
-/// and upper border can be smaller. A region has an index in row-major order, as a cell has.
+/// The map divided into square regions of `side` × `side` cells, from its lower left corner on; regions at the
+/// right and upper border can be smaller. A region has an index in row-major order, like a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Regions {
     frame: GridFrame,
@@ -14,10 +14,10 @@ pub(crate) struct Regions {
 }
 
 impl Regions {
-    /// Regions for a sensor that sees as far as `radius_m`.
+    /// The regions for a sensor with the range `radius_m`.
     pub(super) fn new(frame: GridFrame, radius_m: f64) -> Self {
         let reach_cells = radius_m / frame.resolution_m();
-        // At least one, and at most the whole map; the cast of a number too large is the largest.
+        // At least one cell, and at most the whole map. The cast saturates.
         let side = ((reach_cells / REACH_REGIONS).ceil() as usize).max(1);
         Self::with_side(frame, side.min(frame.width().max(frame.height())))
     }
@@ -44,7 +44,7 @@ impl Regions {
         self.side == 1
     }
 
-    /// The region of a cell; `None` outside of the map.
+    /// The index of the region of a cell; `None` outside of the map.
     pub(crate) fn at_cell(&self, cell: Cell) -> Option<usize> {
         self.frame.index(cell).map(|index| self.of(index))
     }
@@ -64,7 +64,7 @@ impl Regions {
         inside.then(|| row as usize * self.columns + column as usize)
     }
 
-    /// The number of regions in `radius_m`.
+    /// The length `radius_m` in regions.
     pub(super) fn reach(&self, radius_m: f64) -> f64 {
         radius_m / (self.frame.resolution_m() * self.side as f64)
     }

@@ -10,7 +10,7 @@ impl Slope {
     }
 }
 
-/// A row of a quadrant, `depth` away from the origin, as far as it is in view between two slopes.
+/// The part of a row of a quadrant, `depth` away from the origin, that is in view between two slopes.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     depth: i32,
@@ -31,7 +31,7 @@ impl Row {
         !middle.is_below(self.start) && !self.end.is_below(middle)
     }
 
-    /// The slopes between which a region of this row hides what lies behind.
+    /// The slopes between which a region of this row hides what lies behind it.
     fn shadow(&self, column: i32) -> (Slope, Slope) {
         let (left, right, near, far) =
             (2 * column - 1, 2 * column + 1, 2 * self.depth - 1, 2 * self.depth + 1);
@@ -39,9 +39,9 @@ impl Row {
     }
 }
 
-/// The regions in view from `origin` within `reach` regions, sorted. Shadow casting by rows: a region is in
-/// view unless the straight line between the centers passes through the inside of an opaque region. If a
-/// region sees another, the other sees it too.
+/// The regions in view from `origin` within `reach` regions, sorted. Shadow casting by rows: a region is in view
+/// unless the straight line between the centers passes through the inside of an opaque region. Visibility is
+/// symmetric.
 pub(super) fn cast(regions: &Regions, opaque: &[bool], origin: usize, reach: f64) -> Vec<u32> {
     let (x, y) = ((origin % regions.columns) as i32, (origin / regions.columns) as i32);
     let mut seen = vec![origin as u32];
@@ -59,7 +59,7 @@ pub(super) fn cast(regions: &Regions, opaque: &[bool], origin: usize, reach: f64
             if f64::from(depth) > reach {
                 continue;
             }
-            // Within a quadrant no region hides the center of another in its row.
+            // Within a quadrant, no region hides the center of another region in the same row.
             for column in row.columns() {
                 let region = at(depth, column);
                 let is_near = f64::from(depth * depth + column * column) <= reach * reach;

@@ -1,4 +1,4 @@
-//! What holds for an agent of every kind, in a small place that changes.
+//! Properties of every agent, in a small environment that changes.
 
 use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng};
 use agent::{
@@ -22,8 +22,8 @@ const HOUSE: [&str; 9] = [
     "##############",
 ];
 
-/// What a robot in `cell` sees of the house at `time`: a square of 7 × 7 cells, walls or not.
-/// A block goes along the lower wall, one cell in 3 steps.
+/// What a robot in `cell` observes at `time`: a square of 7 × 7 cells, also through walls. A block moves along the
+/// lower wall, one cell in 3 steps.
 fn look(time: f64, cell: Cell) -> CellReading {
     let block = Cell::new(1 + (time / 3.0) as i32 % 12, 1);
     let mut seen = reading(time, &HOUSE);
@@ -35,8 +35,8 @@ fn look(time: f64, cell: Cell) -> CellReading {
     seen
 }
 
-/// Lets a robot that flies one cell per step live for 1500 steps; a goal lasts until it is reached
-/// and 5 steps more. Gives all goals, and calls `check` after each.
+/// Runs a robot that flies one cell per step for 1500 steps. A goal lasts until it is reached, and 5 more steps.
+/// Returns all goals, and calls `check` after each.
 fn live(agent: &mut Agent, mut check: impl FnMut(&Agent, &Mapper, Cell)) -> Vec<Cell> {
     let mut mapper = empty(14, 9);
     let (mut cell, mut goal, mut left) = (Cell::new(3, 6), None, 0);
@@ -76,7 +76,7 @@ fn the_same_seed_gives_the_same_life_and_another_seed_another() {
     for choice in names() {
         let life = |seed| live(&mut agent(choice, seed), |_, _, _| ());
         assert_eq!(life(1), life(1), "{choice}");
-        // Who goes to the best cell leaves little to chance.
+        // The strategies that go to the best cell use few random numbers.
         let is_best = ["frontier", "optimal-revisiting", "information-gain"].contains(&choice);
         assert!(is_best || life(1) != life(2), "{choice}");
     }
@@ -154,10 +154,10 @@ fn the_first_choice_and_the_coin_are_fair() {
     assert!(agent.shares().all(|share| (0.436..=0.564).contains(&share)));
 }
 
-/// What a chooser was taught: strategy, features, reward.
+/// What a chooser received: strategy, features, reward.
 type Lessons = Arc<Mutex<Vec<(usize, Vec<Features>, f64)>>>;
 
-/// Takes turns, and notes what it is taught.
+/// Chooses the strategies in turn, and records what it receives.
 #[derive(Debug, Default)]
 struct Pupil {
     chosen: usize,
@@ -192,7 +192,7 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
         let goal = |agent: &mut Agent| {
             agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
         };
-        agent.watch(at(9.0), &[found; 50]); // before the first goal: nobody's merit
+        agent.watch(at(9.0), &[found; 50]); // Before the first goal: the reward belongs to no strategy.
         goal(&mut agent);
         agent.watch(at(1.0), &[block, found]);
         agent.watch(at(2.0), &[]);
@@ -200,7 +200,7 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
         agent.watch(at(4.0), &[]);
         goal(&mut agent);
         assert_eq!(agent.last_reward(), first);
-        goal(&mut agent); // no reading since: nothing to learn
+        goal(&mut agent); // No reading since then: nothing to learn.
         agent.watch(at(5.0), &[block, free]);
         goal(&mut agent);
         assert_eq!(agent.last_reward(), second);
@@ -211,7 +211,7 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
     }
 }
 
-/// Notes the progress that it is told of.
+/// Records the progress that it receives.
 #[derive(Debug, Default)]
 struct Listener(Arc<Mutex<Vec<f64>>>);
 

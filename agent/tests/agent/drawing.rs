@@ -5,7 +5,7 @@ use interfaces::{Cell, CellReading, CellState, GridFrame, Purpose, RandomStream}
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
 
-/// What a sensor sees at `time`.
+/// What a sensor observes at `time`.
 pub(crate) fn reading(time: f64, drawing: &[&str]) -> CellReading {
     let row = |(y, line): (usize, &&str)| {
         let cell = |(x, letter)| match letter {
@@ -24,7 +24,7 @@ pub(crate) fn empty(width: usize, height: usize) -> Mapper {
     Mapper::new(&MapperSettings::default(), frame).unwrap()
 }
 
-/// The map that the drawings leave, seen one after the other at their times.
+/// The map after the drawings were observed one after the other, each at its time.
 pub(crate) fn map(sightings: &[(f64, &[&str])]) -> Mapper {
     let drawing = sightings[0].1;
     let mut mapper = empty(drawing[0].len(), drawing.len());
@@ -42,7 +42,7 @@ pub(crate) fn weigh(mut strategy: impl Strategy, mapper: &Mapper) -> Vec<Vec<f64
     weights.chunks(mapper.frame().width()).rev().map(<[f64]>::to_vec).collect()
 }
 
-/// What makes a goal: a free cell of the map, or one that touches a free cell by a side.
+/// Whether a cell can be a goal: a free cell of the map, or a cell that shares a side with a free cell.
 pub(crate) fn can_be_a_goal(mapper: &Mapper, cell: Cell) -> bool {
     let is_free = |cell| mapper.states().get(cell) == Some(&CellState::Free);
     mapper.frame().contains(cell) && (is_free(cell) || cell.neighbours4().into_iter().any(is_free))
@@ -62,7 +62,7 @@ pub(crate) fn agent(policy: &str, seed: u64) -> Agent {
     Agent::new(&AgentSettings::default(), &policy.parse().unwrap(), rng(seed)).unwrap()
 }
 
-/// The settings of a robot that sees so far.
+/// The settings for a sensor with this range.
 pub(crate) fn seeing(sensor_radius_m: f64) -> AgentSettings {
     AgentSettings { sensor_radius_m, ..Default::default() }
 }

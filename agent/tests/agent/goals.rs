@@ -1,4 +1,4 @@
-//! Which goals come out of which weights.
+//! Which goals follow from which weights.
 
 use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng, weigh};
 use agent::{
@@ -10,7 +10,7 @@ use nalgebra::Isometry2;
 use proptest::prelude::*;
 use proptest::strategy::Strategy as _;
 
-/// The weights it was made with.
+/// A strategy with constant weights.
 #[derive(Clone, Debug)]
 struct Given(Vec<f64>);
 
@@ -29,8 +29,8 @@ fn agent_of(strategy: impl Strategy + 'static, patch_cells: usize, seed: u64) ->
     Agent::with(&settings, vec![Box::new(strategy)], Box::new(Always(0)), rng(seed)).unwrap()
 }
 
-/// The probability of each cell by the definition: patches in proportion to the mean weight of
-/// their goals, uniform within; all alike where there are no weights.
+/// The probability of each cell by the definition: patches in proportion to the mean weight of their goals, uniform
+/// within a patch; uniform over all goals if there are no weights.
 fn probabilities(mapper: &Mapper, weights: &[f64], patch_cells: i32) -> Vec<f64> {
     let frame = mapper.frame();
     let goals: Vec<Cell> =
@@ -51,7 +51,7 @@ fn probabilities(mapper: &Mapper, weights: &[f64], patch_cells: i32) -> Vec<f64>
     probabilities
 }
 
-/// Samples goals and compares how often each cell came with how often it should have.
+/// Samples goals, and compares how often each cell was selected with how often it should be.
 #[track_caller]
 fn assert_frequencies(agent: &mut Agent, mapper: &Mapper, probabilities: &[f64]) {
     let draws = 40_000;
@@ -116,8 +116,8 @@ fn recency_and_poisson_are_sampled_by_their_weights() {
 fn without_any_weight_every_candidate_is_as_likely() {
     let mapper = map(&[(0.0, ROOM)]);
     let uniform = probabilities(&mapper, &vec![0.0; mapper.frame().len()], 5);
-    // Nothing ever changed, and everything was seen just now: only information gain still hopes for something,
-    // and progress sometimes asks it.
+    // Nothing ever changed, and everything was seen just now: only information gain still expects a gain, and
+    // progress sometimes chooses information gain.
     let hopes = |choice| matches!(choice, "information-gain" | "progress");
     for choice in names().filter(|&name| !hopes(name)) {
         assert_frequencies(&mut agent(choice, 3), &mapper, &uniform);
@@ -238,7 +238,7 @@ proptest! {
 
 #[test]
 fn readings_at_one_instant_leave_only_numbers() {
-    // Changes without any time between them: rates of any size, and none of them seen for long.
+    // Changes without any time between them: arbitrary rates, and no observation for long.
     let mut mapper = map(&[(0.0, &["..."]), (0.0, &[".#."]), (0.0, &["..."]), (0.0, &[".#."])]);
     mapper.update(&reading(1e300, &[".  "])).unwrap();
     for choice in names() {

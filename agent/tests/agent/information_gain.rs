@@ -1,4 +1,4 @@
-//! The strategy that goes where a look teaches most, on maps drawn by hand.
+//! The strategy that goes where an observation is worth most, on maps drawn by hand.
 
 use crate::drawing::{map, reading, seeing};
 use agent::{InformationGain, Situation, Stay, Strategy};
@@ -7,7 +7,7 @@ use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
 use proptest::prelude::*;
 
-/// The weights for a robot that takes these times to get to the cells.
+/// The weights for a robot with these travel times to the cells.
 fn weigh(strategy: &mut InformationGain, mapper: &Mapper, travel: &[f64]) -> Vec<f64> {
     let mut weights = vec![0.0; mapper.frame().len()];
     let pose = Isometry2::identity();
@@ -16,8 +16,8 @@ fn weigh(strategy: &mut InformationGain, mapper: &Mapper, travel: &[f64]) -> Vec
     weights
 }
 
-/// Two rooms, the right one seen for `right` looks, and a cell in each that changes every other look: it is
-/// seen `left` times in the left room, and `right` times in the right one.
+/// Two rooms, each with a cell that changes at every other reading. The cell in the left room is observed in `left`
+/// readings, the cell in the right room in `right` readings.
 fn rooms(left: u32, right: u32) -> Mapper {
     let (still, moved) = (["...#...", "...#...", "...#..."], ["...#...", ".#.#.#.", "...#..."]);
     let cut = |rows: [&'static str; 3], is_left: bool, is_right: bool| -> Vec<String> {
@@ -94,7 +94,7 @@ fn a_door_that_was_closed_when_last_seen_is_tried_again() {
 
 #[test]
 fn what_a_visit_did_not_show_is_worth_less_from_there() {
-    // The last cell is never seen, whatever the map says.
+    // The last cell is never seen, although the map says that it can be seen.
     let mut mapper = map(&[(0.0, &["..... "])]);
     let mut strategy = InformationGain::new(&seeing(9.0));
     let travel = [0.0, 3.0, 3.0, 3.0, 3.0, 3.0];
@@ -117,7 +117,7 @@ fn a_fine_grid_is_weighed_too() {
     let frame = GridFrame::new(Point2::origin(), 0.05, 240, 120).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
     for look in 0..20 {
-        // A box of half a metre that comes and goes in the left half.
+        // A box of half a meter that appears and disappears in the left half.
         let is_blocked =
             |cell: Cell| look % 2 == 1 && (40..50).contains(&cell.x) && (40..50).contains(&cell.y);
         let cells = (0..frame.len()).map(|index| frame.cell(index)).map(|cell| (cell, is_blocked(cell)));

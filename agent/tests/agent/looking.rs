@@ -1,4 +1,4 @@
-//! Strategies that go where much comes into view, on maps drawn by hand.
+//! Strategies that go where many cells come into view, on maps drawn by hand.
 
 use crate::drawing::{map, reading, seeing};
 use agent::{Frontier, OptimalRevisiting, Situation, Stay, Strategy};
@@ -7,7 +7,7 @@ use mapper::Mapper;
 use nalgebra::Isometry2;
 use proptest::prelude::*;
 
-/// The weights for a robot that takes these times to get to the cells.
+/// The weights for a robot with these travel times to the cells.
 fn weigh(strategy: &mut impl Strategy, mapper: &Mapper, travel: &[f64]) -> Vec<f64> {
     let mut weights = vec![0.0; mapper.frame().len()];
     let pose = Isometry2::identity();
@@ -23,8 +23,8 @@ fn assert_near(weights: &[f64], expected: &[f64]) {
     assert!(weights.iter().zip(expected).all(is_near), "{weights:?} are not {expected:?}");
 }
 
-/// ∫ of P(changed since) from 0 to t, in small steps: the time for which a cell seen so long ago is
-/// expected to have been wrong on the map.
+/// ∫ of P(changed since) from 0 to t, in small steps: the expected time for which the map was wrong in a cell that
+/// was last seen a time t ago.
 fn time_wrong(leave: f64, back: f64, t: f64) -> f64 {
     let steps = 20_000;
     let chance = |tau: f64| leave / (leave + back) * (1.0 - f64::exp(-(leave + back) * tau));
@@ -32,7 +32,7 @@ fn time_wrong(leave: f64, back: f64, t: f64) -> f64 {
         / f64::from(steps)
 }
 
-/// By how much the time wrong per look falls short of going on at the present rate: t p(t) − ∫ p.
+/// By how much the wrong time per observation falls short of continuing at the present rate: t p(t) − ∫ p.
 fn due(leave: f64, back: f64, t: f64) -> f64 {
     let chance = leave / (leave + back) * (1.0 - f64::exp(-(leave + back) * t));
     t * chance - time_wrong(leave, back, t)
@@ -80,7 +80,7 @@ fn what_three_visits_did_not_show_is_given_up() {
         assert_near(&weigh(&mut frontier, &mapper, &travel), &unknown);
         assert_eq!(frontier.stay(Cell::new(3 + visit % 2, 0)), Stay::Watch(1.0));
     }
-    // The oldest of the known cells instead.
+    // The known cells that were not seen for longest, instead.
     assert_near(&weigh(&mut frontier, &mapper, &travel), &[0.0, 5.0 / 2.0, 5.0 / 3.0, 5.0 / 4.0, 0.0]);
 }
 
@@ -94,14 +94,14 @@ fn middle_changes() -> Mapper {
 fn revisiting_is_worth_how_far_a_look_is_due_per_time() {
     let mapper = middle_changes();
     let (block, free) = mapper.transition_rates(1).unwrap();
-    // A cell of three changed: one and a half of four, by the rule of the half event.
+    // One of three cells changed: one and a half of four, by the rule of the half event.
     let share = 1.5 / 4.0;
     let never = 0.5 / (8.0 + 1.0);
     let worth = [0.0, due(block, free, 3.0), share * due(never, never, 3.0)];
-    // Who sees only the own cell.
+    // A robot that sees only its own cell.
     let weights = weigh(&mut OptimalRevisiting::new(&seeing(0.5)), &mapper, &[0.0, 1.0, 2.0]);
     assert_near(&weights, &[0.0, worth[1] / 9.0, worth[2] / 10.0]);
-    // Who sees all, the middle cell being no wall.
+    // A robot that sees all cells; the middle cell is no wall.
     let all = worth[1] + worth[2];
     let weights = weigh(&mut OptimalRevisiting::new(&seeing(9.0)), &mapper, &[0.0, 1.0, f64::INFINITY]);
     assert_near(&weights, &[all / 8.0, all / 9.0, 0.0]);
@@ -122,7 +122,7 @@ fn a_blocked_cell_is_left_at_its_own_rate() {
 fn the_unknown_is_wrong_for_certain() {
     let mapper = map(&[(0.0, &["..  "]), (7.0, &[".   "])]);
     let weights = weigh(&mut OptimalRevisiting::new(&seeing(0.5)), &mapper, &[0.0, 1.0, 2.0, 3.0]);
-    // Never seen for 7 s; the last cell touches nothing that is known to be free.
+    // Not seen for 7 s; the last cell shares no side with a known free cell.
     assert_near(&weights[2..], &[7.0 / 10.0, 0.0]);
 }
 
@@ -132,7 +132,7 @@ fn a_look_in_vain_is_a_look() {
     let (mut revisiting, travel) = (OptimalRevisiting::new(&seeing(9.0)), [0.0, 1.0, 2.0]);
     assert!(weigh(&mut revisiting, &mapper, &travel)[0] > 0.0);
     assert_eq!(revisiting.stay(Cell::new(0, 0)), Stay::Watch(8.0));
-    // Something hid the others all the time.
+    // Something hid the other cells all the time.
     assert_eq!(weigh(&mut revisiting, &mapper, &travel), [0.0; 3]);
     mapper.update(&reading(15.0, &[".  "])).unwrap();
     let (block, free) = mapper.transition_rates(1).unwrap();

@@ -1,4 +1,4 @@
-//! The agent as its users see it.
+//! Tests of the agent through its public interface.
 
 mod contract;
 mod drawing;

@@ -1,8 +1,8 @@
-//! Which crate may use which.
+//! Which crate may depend on which.
 
 use crate::workspace::{needs, packages};
 
-/// Every crate, and the crates of the workspace that it may use.
+/// Every crate, and the crates of the workspace that it may depend on.
 const ALLOWED: &[(&str, &[&str])] = &[
     ("interfaces", &[]),
     ("sim", &["interfaces"]),
@@ -36,7 +36,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Packages that only these crates may name as a dependency.
+/// Packages that only these crates may have as a dependency.
 const RESERVED: &[(&str, &[&str])] = &[("rerun", &["viewer", "curious"]), ("rapier2d", &["sim"])];
 
 /// Crates that must build without Rerun.

@@ -19,14 +19,14 @@ pub(crate) struct Import {
 /// A module.
 #[derive(Debug, Default)]
 pub(crate) struct Module {
-    /// The name with those of all modules around, from the crate on.
+    /// The name, with the names of all containing modules, beginning with the crate.
     pub(crate) path: Names,
     pub(crate) parent: Option<usize>,
     pub(crate) children: BTreeMap<String, usize>,
-    /// The names of all types, functions, constants and so on that are defined here.
+    /// The names of all items (types, functions, constants and so on) that are defined here.
     pub(crate) items: BTreeSet<String>,
     pub(crate) imports: BTreeSet<Import>,
-    /// All paths in its code.
+    /// All paths in the code of the module.
     pub(crate) references: BTreeSet<Names>,
 }
 
@@ -57,7 +57,7 @@ impl Modules {
         modules
     }
 
-    /// Adds a module and all that are in it. `folder` is where its files are.
+    /// Adds a module and all modules in it. `folder` is the folder of its files.
     fn add(&mut self, path: Names, parent: Option<usize>, items: &[Item], folder: &Path) -> usize {
         let index = self.modules.len();
         self.modules.push(Module { path: path.clone(), parent, ..Module::default() });

@@ -13,7 +13,7 @@ pub(crate) struct References {
     pub(crate) paths: BTreeSet<Names>,
 }
 
-/// Whether something is built for tests only.
+/// Whether an item is built only for tests.
 pub(crate) fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| match &attribute.meta {
         Meta::List(list) if list.path.is_ident("cfg") => {
@@ -54,7 +54,7 @@ impl References {
     fn tokens(&mut self, tokens: TokenStream) {
         let mut path = Names::new();
         let mut colons = 0;
-        // After `.` stands a field or a method, after `'` the name of a lifetime.
+        // A field or a method follows `.`, the name of a lifetime follows `'`.
         let mut is_other = false;
         for token in tokens {
             match token {

@@ -26,7 +26,7 @@ pub(crate) struct Edge {
     pub(crate) path: String,
 }
 
-/// What stands before `::`, which is a module or a type, or at the end of a path.
+/// The part before `::`, which is a module or a type, or the end of a path.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Position {
     Before,

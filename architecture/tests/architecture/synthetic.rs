@@ -1,4 +1,4 @@
-//! The tests themselves are tested, on small crates with and without a circle.
+//! Tests of these tests, on small crates with and without a circle.
 
 use crate::circle::circles;
 use crate::modules::Modules;

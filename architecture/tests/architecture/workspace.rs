@@ -1,4 +1,4 @@
-//! What cargo says about the workspace.
+//! The information of cargo about the workspace.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

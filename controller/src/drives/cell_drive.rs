@@ -3,8 +3,8 @@ use crate::planner::{InflationSettings, Moves, Path};
 use crate::settings::{NavigationSettings, Settings};
 use interfaces::Step;
 
-/// The robot of a grid world: as large as its cell, and each step it stays or moves to one of the four cells
-/// that share a side. Cells are 1 m wide, and a step of time lasts 1 s.
+/// The drive of a grid world: the robot is as large as its cell, and at each step it stays or moves to one of the
+/// four cells that share a side. Cells are 1 m wide, and a step lasts 1 s.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellDrive;
 

@@ -1,4 +1,4 @@
-//! The drives: what planning must know of a robot, and how a path becomes the commands of its world.
+//! The drives: the properties of a robot that planning needs, and the conversion of a path into commands.
 
 mod cell_drive;
 mod diff_drive;
@@ -10,7 +10,7 @@ use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::planner::{Costmap, Moves, Path};
 use crate::situation::Situation;
 
-/// What planning must know of a robot.
+/// The properties of a robot that planning needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// The radius of the footprint, m; 0 where a robot is as large as its cell.
@@ -19,15 +19,15 @@ pub struct Body {
     pub moves: Moves,
     /// The speed along a path, m/s.
     pub speed_mps: f64,
-    /// The distance to a point at which the robot has arrived there, m.
+    /// The robot has arrived at a point if it is nearer than this, m.
     pub tolerance_m: f64,
     /// The length of a step of local exploration, m: the diameter of the robot, or a cell.
     pub step_m: f64,
     /// The number of directions of a random step.
     pub directions: u32,
-    /// The shortest time of a step of local exploration, s: to stay is a step, too.
+    /// The minimum duration of a step of local exploration, s: to stay in place is a step, too.
     pub step_s: f64,
-    /// The longest time of a step of local exploration, s.
+    /// The maximum duration of a step of local exploration, s.
     pub step_limit_s: f64,
 }
 
@@ -38,20 +38,21 @@ pub struct Scene<'a> {
     pub situation: &'a Situation<'a>,
     /// The inflated map.
     pub costmap: &'a Costmap,
-    /// Which obstacles may move.
+    /// The filter that states which obstacles may move.
     pub dynamic: &'a DynamicObstacleFilter,
 }
 
-/// Turns paths into the commands of one kind of robot: its known transition model (paper, section 2).
+/// Converts paths into the commands of one kind of robot: the known transition model of the robot (paper, section
+/// 2).
 pub trait Drive {
     /// A command of this kind of robot.
     type Command;
 
-    /// What planning must know of the robot.
+    /// The properties of the robot that planning needs.
     fn body(&self) -> Body;
 
-    /// The next command along `path`, whose end is not reached yet. The robot stands still rather than
-    /// drive into a sensed obstacle.
+    /// The next command along `path`; the robot has not reached the end of the path yet. If the way is blocked by a
+    /// sensed obstacle, the robot stops.
     fn follow(&mut self, scene: &Scene, path: &Path) -> Self::Command;
 
     /// The command to stay at the present position.

@@ -6,8 +6,8 @@ use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 use std::f64::consts::TAU;
 
-/// Local exploration (paper, section 2): a step towards the centroid of the last change, or a random step
-/// where nothing changed. Counts the steps.
+/// Local exploration (paper, section 2): each step goes toward the centroid of the last change, or in a random
+/// direction if nothing changed. Counts the steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LocalExploration {
     steps: u32,
@@ -15,8 +15,8 @@ pub(crate) struct LocalExploration {
 }
 
 impl LocalExploration {
-    /// The target of the next step; `None` after enough steps. `change` is the centroid of the last change,
-    /// `random` the target of a random step.
+    /// The target of the next step; `None` after the maximum number of steps. `change` is the centroid of the last
+    /// change, `random` the target of a random step.
     pub(crate) fn next(
         &mut self,
         settings: &ExplorationSettings,
@@ -42,7 +42,7 @@ impl LocalExploration {
     }
 }
 
-/// The point one step away in a random traversable direction; `here` where there is none. Always draws one
+/// The point one step away in a random traversable direction; `here` if there is none. Always draws one random
 /// number.
 pub(crate) fn random_step(
     body: &Body,
@@ -58,7 +58,7 @@ pub(crate) fn random_step(
     let is_traversable = |target: &Point2<f64>| costmap.line_cost(cell(here), cell(target)).is_some();
     let targets: Vec<_> = (0..body.directions).map(step).filter(is_traversable).collect();
     let draw: u32 = rng.random_range(0..body.directions.max(1));
-    // The first traversable direction from a random one on would favour those after a gap.
+    // The first traversable direction from a random one on would favor those after a gap.
     let index = u64::from(draw) * targets.len() as u64 / u64::from(body.directions.max(1));
     targets.get(index as usize).copied().unwrap_or(*here)
 }

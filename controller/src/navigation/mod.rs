@@ -1,4 +1,4 @@
-//! What a goal needs beyond a plan: replanning, waiting, recovery, and local exploration at the goal.
+//! Navigation to a goal, in addition to planning: replanning, waiting, recovery, and local exploration at the goal.
 
 mod local_exploration;
 mod task;

@@ -10,7 +10,7 @@ const SAME_POSITION_M: f64 = 1.0;
 /// A path that ends this much farther from the goal than an earlier path is worse, m.
 const WORSE_M: f64 = 0.1;
 
-/// What the controller derives from the map.
+/// What the controller computes from the map.
 #[derive(Clone, Debug)]
 pub(crate) struct Surroundings {
     pub(crate) planner: Planner,
@@ -34,7 +34,7 @@ impl Tick<'_> {
 /// The progress of a navigation task.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Progress<Command> {
-    /// On the path, with the next command.
+    /// The robot is on its path; the next command.
     Underway(Command),
     /// The robot is at the end of its path.
     Arrived(PlanEnd),
@@ -47,7 +47,7 @@ pub(crate) enum Progress<Command> {
 pub(crate) struct NavigationTask {
     goal: Point2<f64>,
     start: Point2<f64>,
-    /// The task ends at this distance from the start, m.
+    /// The task ends when the robot is this far from its start, m.
     max_distance_m: f64,
     timeout_s: f64,
     began_s: f64,
@@ -56,7 +56,7 @@ pub(crate) struct NavigationTask {
     /// The shortest distance from the end of a path to the goal, m.
     best_distance_m: f64,
     waits_until_s: Option<f64>,
-    /// The position where the robot last moved on, and the time.
+    /// The position at which progress was last detected, and the time.
     anchor: (Point2<f64>, f64),
     recoveries: u32,
     recovery_at: Point2<f64>,
@@ -64,8 +64,8 @@ pub(crate) struct NavigationTask {
 }
 
 impl NavigationTask {
-    /// A task from the present position to `goal`, or until the robot has come `max_distance_m`, given up
-    /// after `timeout_s`.
+    /// A task that drives from the present position to `goal`, or until the robot is `max_distance_m` from its
+    /// start. The task is given up after `timeout_s`.
     pub(crate) fn new(situation: &Situation, goal: Point2<f64>, max_distance_m: f64, timeout_s: f64) -> Self {
         let (position, time) = (situation.position(), situation.time);
         Self {
@@ -129,15 +129,15 @@ impl NavigationTask {
             }
             self.recovering_since_s = None;
             self.anchor = (position, situation.time);
-            // A recovery leaves the path: plan from where it ended.
+            // A recovery moves the robot off its path: plan from the new position.
             self.planned_at_s = f64::NEG_INFINITY;
             self.plan = None;
         }
         Progress::Underway(drive.follow(&scene, path))
     }
 
-    /// Whether the robot waits for the path to become free. When the wait is over, the robot drives as near
-    /// to the goal as it can.
+    /// Whether the robot waits for the path to become free. When the wait is over, the robot drives as near to the
+    /// goal as possible.
     fn waits(&mut self, situation: &Situation) -> bool {
         let waits = self.waits_until_s.is_some_and(|until_s| situation.time < until_s);
         if !waits && self.waits_until_s.take().is_some() {
@@ -170,7 +170,7 @@ impl NavigationTask {
         }
     }
 
-    /// Checks the progress, and starts a recovery if the robot is stuck; false after too many recoveries.
+    /// Checks the progress, and starts a recovery if the robot is stuck. Returns false after too many recoveries.
     fn keeps_trying(&mut self, settings: &NavigationSettings, situation: &Situation) -> bool {
         let position = situation.position();
         if (position - self.anchor.0).norm() > settings.required_movement_radius_m {

@@ -1,6 +1,6 @@
 use interfaces::{Cell, GridFrame};
 
-/// The cost of a cell that the center of the robot must not enter.
+/// The cost of a cell that the center of the robot must not enter. (A special value, not a low cost.)
 pub const LETHAL: u8 = 0;
 /// The cost of a cell far from every obstacle.
 pub const FREE: u8 = 1;
@@ -21,20 +21,20 @@ pub enum Moves {
     Eight,
 }
 
-/// The cost of every cell: [`LETHAL`], or the cost of a move into the cell per length. A border of lethal
-/// cells surrounds the grid, so that a search need not test where the grid ends.
+/// The cost of every cell: [`LETHAL`], or the cost per length of a move into the cell. A border of lethal cells
+/// surrounds the grid, so that a search need not check for the end of the grid.
 #[derive(Clone, Debug)]
 pub struct Costmap {
     frame: GridFrame,
     /// The number of slots in a row: the cells of the grid, and one border cell at each end.
     stride: usize,
     costs: Vec<u8>,
-    /// Whether the eight cells around have the same cost; never true in the border.
+    /// For each slot whether its eight neighbors have the same cost; never true in the border.
     uniform: Vec<bool>,
 }
 
 impl Costmap {
-    /// A map of the cells of `frame`, all lethal.
+    /// A costmap of `frame` in which all cells are lethal.
     pub fn lethal(frame: GridFrame) -> Self {
         let stride = frame.width() + 2;
         let slots = stride * (frame.height() + 2);
@@ -46,7 +46,7 @@ impl Costmap {
         &self.frame
     }
 
-    /// The cost of a move into `cell` per length; [`LETHAL`] outside of the grid.
+    /// The cost per length of a move into `cell`; [`LETHAL`] outside of the grid.
     pub fn cost(&self, cell: Cell) -> u8 {
         if self.frame.contains(cell) { self.costs[self.slot(cell)] } else { LETHAL }
     }
@@ -72,7 +72,7 @@ impl Costmap {
         }
     }
 
-    /// Sets the costs of all cells, in row-major order as in a grid.
+    /// Sets the costs of all cells, in row-major order.
     pub fn set_costs(&mut self, costs: impl IntoIterator<Item = u8>) {
         let frame = self.frame;
         for (index, cost) in costs.into_iter().take(frame.len()).enumerate() {
@@ -91,8 +91,8 @@ impl Costmap {
         cost != LETHAL && row(slot) && row(slot - self.stride) && row(slot + self.stride)
     }
 
-    /// The cost of the straight line of cells from `from` (not counted) to `to`, with diagonal moves where
-    /// they are allowed; `None` if the line touches a lethal cell. Over free cells no path is cheaper.
+    /// The cost of the straight line of cells from `from` (not counted) to `to`, with diagonal moves where they are
+    /// allowed; `None` if the line touches a lethal cell. Over free cells no path has a lower cost.
     pub fn line_cost(&self, from: Cell, to: Cell) -> Option<u32> {
         let mut cost = 0;
         let mut last = from;
@@ -126,8 +126,8 @@ impl Costmap {
     }
 }
 
-/// The cells of the straight line from `from` (not included) to `to` (Bresenham). Each touches the cell
-/// before at a side or a corner.
+/// The cells of the straight line from `from` (not included) to `to` (Bresenham). Each cell shares a side or a
+/// corner with the cell before.
 pub(super) fn line(from: Cell, to: Cell) -> impl Iterator<Item = Cell> {
     let (dx, dy) = ((to.x - from.x).abs(), (to.y - from.y).abs());
     let (step_x, step_y) = ((to.x - from.x).signum(), (to.y - from.y).signum());

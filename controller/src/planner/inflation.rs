@@ -2,15 +2,15 @@ use super::costmap::{Costmap, FREE, LETHAL, MAX_COST};
 use interfaces::{Cell, CellState, Grid, Transition};
 use serde::{Deserialize, Serialize};
 
-/// The distance that paths keep from obstacles.
+/// Settings of the distance between paths and obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InflationSettings {
-    /// A cell is lethal where its center is nearer to a blocked cell than the radius of the robot plus this,
-    /// m. Room for half a cell of rounding and for the error of path following.
+    /// A cell is lethal if its center is nearer to a blocked cell than the radius of the robot plus this padding,
+    /// m. The padding covers half a cell of rounding and the error of path following.
     pub footprint_padding_m: f64,
-    /// A cell costs more where its center is nearer to a blocked cell than the radius of the robot plus
-    /// this, m. Paths then lead through the middle of doors, and not along walls.
+    /// A cell has a higher cost if its center is nearer to a blocked cell than the radius of the robot plus this,
+    /// m. Paths then lead through the middle of doors, and not along walls.
     pub inflation_m: f64,
     /// The cost of such a cell, relative to a free cell, from 1 to [`MAX_COST`].
     pub inflation_cost: u8,
@@ -22,7 +22,7 @@ impl Default for InflationSettings {
     }
 }
 
-/// A cell near a blocked cell, relative to it.
+/// A cell near a blocked cell, by its offset.
 #[derive(Clone, Copy, Debug)]
 struct Near {
     dx: i32,
@@ -33,9 +33,9 @@ struct Near {
 /// The number of blocked cells near a cell.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
-    /// So near that the cell is lethal.
+    /// The number of blocked cells that are near enough to make the cell lethal.
     lethal: u32,
-    /// So near that the cell costs more.
+    /// The number of blocked cells that are near enough to raise the cost.
     inflated: u32,
 }
 
@@ -49,11 +49,12 @@ impl Count {
     }
 }
 
-/// Turns the map into a costmap for the center of a round robot: lethal where the robot would touch
-/// something blocked, more costly near it. Cells outside of the grid count as blocked, unknown cells as free.
+/// Converts the map into a costmap for the center of a round robot: a cell is lethal if the robot would touch a
+/// blocked cell there, and has a higher cost near blocked cells. Cells outside of the grid count as blocked,
+/// unknown cells as free.
 ///
-/// The blocked cells around each cell are counted, so that the cost of an update is proportional to the
-/// number of cells that became blocked or free.
+/// The blocked cells around each cell are counted, so that the time of an update is proportional to the number of
+/// cells that became blocked or free.
 #[derive(Clone, Debug)]
 pub struct Inflation {
     costmap: Costmap,
@@ -63,8 +64,8 @@ pub struct Inflation {
 }
 
 impl Inflation {
-    /// Inflates `map` for a robot of `radius_m`. With a radius and distances of 0 only the blocked cells
-    /// are lethal. The time is proportional to the size of the map.
+    /// Inflates `map` for a robot with radius `radius_m`. If the radius and the distances are 0, only the blocked
+    /// cells are lethal. The time is proportional to the size of the map.
     pub fn new(settings: &InflationSettings, radius_m: f64, map: &Grid<CellState>) -> Self {
         let frame = *map.frame();
         let cells_of = |distance_m: f64| (radius_m + distance_m) / frame.resolution_m();
@@ -94,8 +95,8 @@ impl Inflation {
         &self.costmap
     }
 
-    /// Applies the changes of the map. Calls `blocked` with every cell that becomes lethal, and `cleared`
-    /// with every cell that ceases to be lethal. The transitions must be all since the last update.
+    /// Applies the changes of the map. Calls `blocked` with every cell that becomes lethal, and `cleared` with
+    /// every cell that is no longer lethal. The transitions must be all changes since the last update.
     pub fn update(
         &mut self,
         transitions: &[Transition],
@@ -120,8 +121,8 @@ impl Inflation {
         }
     }
 
-    /// Adds `change` to the count of blocked cells of every cell around `center`; calls `changed` with the
-    /// new cost of each cell whose cost may be another.
+    /// Adds `change` to the count of blocked cells of every cell around `center`; calls `changed` with the new cost
+    /// of each cell whose cost may have changed.
     fn count_around(&mut self, center: Cell, change: i32, mut changed: impl FnMut(&mut Costmap, Cell, u8)) {
         let frame = *self.costmap.frame();
         for near in &self.stencil {
@@ -184,7 +185,7 @@ mod tests {
                     gap_m = gap_m.min(side(at.x - blocked.x).hypot(side(at.y - blocked.y)));
                 }
             }
-            // The distances of the test never lie on a boundary but by rounding.
+            // Only rounding can put a distance of the test on a boundary.
             if gap_m < RADIUS_M + settings.footprint_padding_m - 1e-9 {
                 LETHAL
             } else if gap_m < RADIUS_M + settings.inflation_m - 1e-9 {
@@ -223,7 +224,7 @@ mod tests {
                 let (mut blocked_cells, mut cleared_cells) = (Vec::new(), Vec::new());
                 inflation.update(&transitions, |cell| blocked_cells.push(cell), |cell| cleared_cells.push(cell));
                 prop_assert_eq!(costs(&inflation), brute_force(&settings, &map));
-                // Every cell that became lethal or ceased to be is reported.
+                // Every cell that became lethal, or is no longer lethal, must be reported.
                 for (index, was) in free.iter_mut().enumerate() {
                     let (cell, is) = (frame.cell(index), inflation.costmap().is_traversable(frame.cell(index)));
                     prop_assert!(is || !*was || blocked_cells.contains(&cell));

@@ -15,18 +15,18 @@ use interfaces::{Cell, CellState, Grid, Transition};
 use nalgebra::Point2;
 use path::corners;
 
-/// Where a plan ends.
+/// The end of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanEnd {
     /// Whether the path leads to the goal itself.
     pub is_goal: bool,
     /// The distance from the goal's cell to the cell where the path ends, m.
     pub distance_to_goal_m: f64,
-    /// Whether no path leads to a traversable cell that is nearer to the goal.
+    /// Whether a traversable cell nearer to the goal exists that no path leads to.
     pub is_cut_off: bool,
 }
 
-/// Plans paths over the inflated map, and detects changes of the map that concern the last plan.
+/// Plans paths on the inflated map, and detects changes of the map that affect the last plan.
 #[derive(Clone, Debug)]
 pub struct Planner {
     inflation: Inflation,
@@ -34,7 +34,7 @@ pub struct Planner {
     moves: Moves,
     /// The distance from a lethal cell within which the robot looks for a traversable one, cells.
     exit_reach: i32,
-    /// The cells of the last path, and the same as a set.
+    /// The cells of the last path, as a list and as a set.
     on_path: Vec<Cell>,
     is_on_path: Grid<bool>,
     goal: Cell,
@@ -91,20 +91,21 @@ impl Planner {
         self.path_blocked
     }
 
-    /// Whether a cell has become traversable that may bring the robot nearer to the goal than the last path.
+    /// Whether a cell has become traversable that may bring the robot nearer to the goal than the end of the last
+    /// path.
     pub fn goal_cleared(&self) -> bool {
         self.goal_cleared
     }
 
     /// Plans from `from` to `goal` and writes the path into `path`.
     ///
-    /// A lethal or unreachable goal is replaced by the reachable cell whose center is nearest to the center
-    /// of the goal's cell (of equally near cells the lowest, then leftmost). A goal outside of the map counts
-    /// as the nearest point in the map. A robot in a lethal cell first drives straight to the nearest
-    /// traversable cell with no blocked cell between.
+    /// A lethal or unreachable goal is replaced by the reachable cell whose center is nearest to the center of the
+    /// goal's cell (of equally near cells the lowest, then the leftmost). A goal outside of the map is replaced by
+    /// the nearest point in the map. A robot in a lethal cell first drives straight to the nearest traversable cell
+    /// that no blocked cell separates from the robot.
     ///
-    /// `None`, and no path, if the robot is not on the map or there is no such traversable cell. The time is
-    /// bounded by a few waves over the map.
+    /// Returns `None`, without a path, if the robot is outside of the map or there is no such traversable cell. The
+    /// time is bounded by that of a few waves over the map.
     pub fn plan(
         &mut self,
         map: &Grid<CellState>,
@@ -142,8 +143,8 @@ impl Planner {
         self.end
     }
 
-    /// Writes the length of the path from `from` to each reachable cell, in row-major order, m; cells of
-    /// higher cost count as longer. Leaves other cells as they are. The last plan is dropped.
+    /// Writes the length of the path from `from` to each reachable cell, in row-major order, m; cells of higher
+    /// cost count as longer. The values of other cells are not changed. The last plan is discarded.
     pub fn lengths_m(&mut self, map: &Grid<CellState>, from: &Point2<f64>, lengths_m: &mut [f64]) {
         self.reset();
         let frame = *self.costmap().frame();
@@ -157,7 +158,7 @@ impl Planner {
         }
     }
 
-    /// The traversable cell nearest to the robot with no blocked cell between.
+    /// The nearest traversable cell that no blocked cell separates from the robot.
     fn exit(&self, map: &Grid<CellState>, robot: Cell) -> Option<Cell> {
         if self.costmap().is_traversable(robot) {
             return Some(robot);
@@ -368,7 +369,7 @@ mod tests {
             assert_eq!(planner.plan(&map, &from, &goal, &mut path), None);
             assert!(path.points().is_empty());
         }
-        // A goal that is nowhere is taken for a cell at the border.
+        // A goal without a position in the map is replaced by a cell at the border.
         for goal in [Point2::new(f64::NAN, f64::INFINITY), Point2::new(1e300, -1e300)] {
             assert!(planner.plan(&map, &Point2::new(0.5, 0.5), &goal, &mut path).is_some());
         }

@@ -1,7 +1,7 @@
 use interfaces::Cell;
 use nalgebra::{Point2, Vector2};
 
-/// A path of straight lines between points, and how far along it the robot is.
+/// A path of straight lines between points, and the position of the robot on it.
 #[derive(Clone, Debug, Default)]
 pub struct Path {
     points: Vec<Point2<f64>>,
@@ -12,17 +12,17 @@ pub struct Path {
 }
 
 impl Path {
-    /// The points from where the path was planned to its end, m; empty without a path.
+    /// The points of the path, from the position where it was planned to its end, m; empty without a path.
     pub fn points(&self) -> &[Point2<f64>] {
         &self.points
     }
 
-    /// The points ahead of the robot, the end last.
+    /// The points ahead of the robot, up to the end, m.
     pub fn ahead(&self) -> &[Point2<f64>] {
         self.points.get(self.leg + 1..).unwrap_or(&[])
     }
 
-    /// The end of the path; `None` without a path.
+    /// The end of the path, m; `None` without a path.
     pub fn end(&self) -> Option<&Point2<f64>> {
         self.points.last()
     }
@@ -74,8 +74,8 @@ impl Path {
         }
     }
 
-    /// Advances to the leg that `position` is nearest to, never back. Returns the distance of the position
-    /// from that leg, m; infinite without a path.
+    /// Advances to the leg (line between two points) that is nearest to `position`, never backward. Returns the
+    /// distance of the position from that leg, m; infinite without a path.
     pub(crate) fn advance(&mut self, position: &Point2<f64>) -> f64 {
         let Some(mut off_m) = self.distance_m(self.leg, position) else {
             return self.end().map_or(f64::INFINITY, |end| (end - position).norm());
@@ -87,7 +87,7 @@ impl Path {
         off_m
     }
 
-    /// The point `ahead_m` along the path from the point of the path nearest to `position`, at most the end.
+    /// The point that is `ahead_m` farther along the path than the point nearest to `position`, at most the end.
     pub(crate) fn lookahead_point(&self, position: &Point2<f64>, ahead_m: f64) -> Option<Point2<f64>> {
         let (Some(from), Some(to)) = (self.points.get(self.leg), self.points.get(self.leg + 1)) else {
             return self.end().copied();

@@ -3,7 +3,7 @@ use interfaces::{Cell, GridFrame};
 
 /// The path cost of a cell that no wave has reached.
 const UNREACHED: u32 = u32::MAX;
-/// A power of two above the largest cost of a move: more buckets are never in use at the same time.
+/// A power of two above the largest cost of a move: the number of buckets that are in use at the same time.
 const BUCKETS: usize = (DIAGONAL as usize * MAX_COST as usize + 1).next_power_of_two();
 
 /// The directions of a move: four straight ones, then four diagonals.
@@ -30,17 +30,18 @@ struct Entry {
 /// along a row before those along a column), as in jump point search (Harabor & Grastien 2011). A cell in
 /// free space is then offered a cost once, not eight times.
 ///
-/// Buffers are reused. The cost of [`clear`](Self::clear) is proportional to what the last waves covered.
+/// Buffers are reused. The time of [`clear`](Self::clear) is proportional to the number of cells that the last
+/// waves covered.
 #[derive(Clone, Debug)]
 pub struct Wavefront {
     moves: Moves,
     frame: GridFrame,
-    /// The difference of slots that each direction makes.
+    /// The difference between slot indices for each direction.
     steps: [isize; 8],
     /// The path cost of every slot of the [`Costmap`].
     costs: Vec<u32>,
-    /// Slots to expand, by path cost modulo the number of buckets. A slot that found a lower cost since
-    /// stays in its old bucket, and is skipped there.
+    /// Slots to expand, by path cost modulo the number of buckets. If a lower cost was found for a slot later, the
+    /// slot is skipped in its old bucket.
     buckets: [Vec<Entry>; BUCKETS],
     /// The number of slots in all buckets.
     waiting: usize,
@@ -73,7 +74,7 @@ impl Wavefront {
     }
 
     /// Spreads a wave from `source` until the cost of `target` is final (returns whether it is), or, without
-    /// a target, over all cells that can be reached. The path cost is the cost of a path *towards* the
+    /// a target, over all cells that can be reached. The path cost is the cost of a path *toward* the
     /// source: the sum of the length of each move times the cost of the cell that it enters.
     ///
     /// Waves since the last [`clear`](Self::clear) stay: start a wave only where no other wave was. Nothing
@@ -117,7 +118,7 @@ impl Wavefront {
         found
     }
 
-    /// Expands a slot amid equal cell costs that was reached along `direction`.
+    /// Expands a slot among equal cell costs that was reached along `direction`.
     fn expand(&mut self, slot: usize, direction: usize, cost: u32, cell_cost: u32) {
         let straight = cost + cell_cost * STRAIGHT;
         if let Some(parts) = direction.checked_sub(4).map(|diagonal| PARTS[diagonal]) {
@@ -151,7 +152,7 @@ impl Wavefront {
         }
     }
 
-    /// Offers a path cost to the traversable slot that lies in `direction`.
+    /// Offers a path cost to the slot in `direction`, if the slot is traversable.
     fn offer(&mut self, from: usize, direction: usize, cost: u32) {
         let slot = from.wrapping_add_signed(self.steps[direction]);
         if cost < self.costs[slot] {
@@ -203,7 +204,7 @@ mod tests {
     use std::cmp::Reverse;
     use std::collections::BinaryHeap;
 
-    /// Dijkstra as in the textbook, without anything clever: the oracle.
+    /// Dijkstra's algorithm without optimizations, as the reference.
     fn dijkstra(map: &Costmap, source: Cell, moves: Moves) -> Vec<Option<u32>> {
         let frame = map.frame();
         let mut costs = vec![None; frame.len()];
@@ -265,7 +266,7 @@ mod tests {
         #[test]
         fn a_wave_that_stops_early_is_exact_up_to_its_target((map, source, target) in random_map()) {
             let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
-            // The traces of an earlier wave must not show.
+            // The data of an earlier wave must not affect the result.
             wave.spread(&map, target, Some(source));
             wave.clear();
             prop_assert!(all_costs(&wave, map.frame()).iter().all(Option::is_none));

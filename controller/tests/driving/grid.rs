@@ -1,4 +1,4 @@
-//! The same controller in a world of cells, where a command is one move to a neighbour.
+//! The same controller in a world of cells, where a command is one move to a neighbor.
 
 use controller::{CellDrive, Controller, Outcome, Situation, Status};
 use interfaces::{Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Step, Transition, pose};

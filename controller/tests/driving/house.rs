@@ -1,5 +1,5 @@
-//! A small kinematic world: walls drawn in ASCII, boxes that move, a diff-drive robot with bounded
-//! accelerations, a laser with exact rays, and a map that lags behind as a real one does.
+//! A small kinematic world: walls drawn in ASCII, boxes that move, a differential-drive robot with bounded
+//! accelerations, a laser with exact rays, and a map that lags behind as a real map does.
 
 use controller::{Controller, DiffDrive, DiffDriveSettings, Settings, Situation, Status};
 use interfaces::{
@@ -8,14 +8,14 @@ use interfaces::{
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::TAU;
 
-/// The side of what one character stands for, m: five cells.
+/// The side of one character of the drawing, m: five cells.
 pub(crate) const CHARACTER_M: f64 = 0.25;
 const CELL_M: f64 = 0.05;
 const TICK_S: f64 = 0.1;
 const SUBSTEPS: u32 = 10;
 pub(crate) const RADIUS_M: f64 = 0.2;
 
-/// An upright rectangle.
+/// An axis-aligned rectangle.
 #[derive(Clone, Copy, Debug)]
 struct Rectangle {
     low: Point2<f64>,
@@ -32,7 +32,7 @@ impl Rectangle {
         out(to.x, self.low.x, self.high.x).hypot(out(to.y, self.low.y, self.high.y))
     }
 
-    /// Where a ray enters, m; infinite if it misses.
+    /// The range at which a ray enters the rectangle, m; infinite if the ray misses.
     fn range_m(&self, from: &Point2<f64>, direction: &Vector2<f64>) -> f64 {
         let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
         for axis in 0..2 {
@@ -44,7 +44,7 @@ impl Rectangle {
     }
 }
 
-/// A square box that goes back and forth.
+/// A square box that moves back and forth.
 #[derive(Clone, Debug)]
 pub(crate) struct Mover {
     pub(crate) half_m: f64,
@@ -52,7 +52,7 @@ pub(crate) struct Mover {
     pub(crate) speed_mps: f64,
     pub(crate) appears_s: f64,
     pub(crate) goes_s: f64,
-    /// It stops while the robot is this near in its way, m; 0 for one that does not care.
+    /// The box stops while the robot is nearer than this in its way, m; 0 for a box that never stops.
     pub(crate) yields_m: f64,
     pub(crate) at: Point2<f64>,
     pub(crate) heads_for: usize,
@@ -96,9 +96,9 @@ pub(crate) struct House {
     pub(crate) pose: Isometry2<f64>,
     pub(crate) movers: Vec<Mover>,
     pub(crate) map: Grid<CellState>,
-    /// How often the robot drove into something, in substeps.
+    /// The number of substeps in which the robot drove into something.
     pub(crate) contacts: u32,
-    /// The least gap to anything that the robot drove towards, m.
+    /// The least gap to anything that the robot drove toward, m.
     pub(crate) nearest_m: f64,
     twist: Twist,
     walls: Vec<Rectangle>,
@@ -111,7 +111,7 @@ pub(crate) struct House {
 }
 
 impl House {
-    /// `#` is a wall, `R` the robot, which looks to the right.
+    /// `#` is a wall, `R` the robot, which points to the right.
     pub(crate) fn new(rows: &[&str]) -> Self {
         let side = (CHARACTER_M / CELL_M).round() as usize;
         let frame =
@@ -220,7 +220,7 @@ impl House {
         }
     }
 
-    /// Obeys a command for a tick.
+    /// Executes a command for a tick.
     pub(crate) fn act(&mut self, command: Twist) {
         let step_s = TICK_S / f64::from(SUBSTEPS);
         for _ in 0..SUBSTEPS {
@@ -237,8 +237,8 @@ impl House {
             if self.twist.linear_mps != 0.0 {
                 for body in self.bodies().collect::<Vec<_>>() {
                     let gap_m = body.distance_m(&at) - RADIUS_M;
-                    // A box that cares for nothing may run the robot over. That is no contact of
-                    // the robot's, as long as it does not drive on into the box.
+                    // A box that never stops may hit the robot. This does not count as a contact of the robot,
+                    // unless the robot drives on into the box.
                     if gap_m < body.distance_m(&from) - RADIUS_M {
                         self.nearest_m = self.nearest_m.min(gap_m);
                         self.contacts += u32::from(gap_m < 0.0);

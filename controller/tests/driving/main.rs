@@ -1,4 +1,4 @@
-//! The controller in a closed loop: it gets everywhere, touches nothing, and always comes to an end.
+//! The controller in a closed loop: it reaches every goal, touches nothing, and always finishes.
 
 mod grid;
 mod house;
@@ -70,7 +70,7 @@ fn it_gets_everywhere_and_touches_nothing() {
         controller.go_to(goal);
         match house.run(&mut controller, 60.0) {
             Outcome::Reached => assert!((house.position() - goal).norm() <= 0.1),
-            // Nowhere in this house is farther from the middle of a room or a door.
+            // No point in this house is farther from the center of a room or a door.
             Outcome::Nearest => assert!((house.position() - goal).norm() <= 0.9),
             Outcome::GivenUp => panic!("gave up {goal} at {}", house.position()),
         }
@@ -94,7 +94,7 @@ fn it_goes_around_what_appears_on_its_path() {
         house.movers = vec![Mover { appears_s, ..Mover::new([place, place], 0.2, 0.3) }];
         controller.go_to(House::at(22, 7));
         let outcome = house.run(&mut controller, 60.0);
-        // In the door the box leaves too little room on either side.
+        // In the door, the box leaves too little room on both sides.
         assert_eq!(outcome == Outcome::Reached, along != 14, "a box at {place}");
         assert_untouched(&house);
     }
@@ -158,7 +158,7 @@ fn goals_in_walls_outside_and_behind_walls_end_as_near_as_can_be() {
 
 #[test]
 fn a_trapped_robot_comes_to_an_end() {
-    // No room even to stand in by the map; and a cage with some room.
+    // By the map there is no room for the robot to stand; and a cage with some room.
     for rows in [["#####", "##R##", "#####"], ["#####", "#.R.#", "#####"]] {
         let (mut house, mut controller) = (House::new(&rows), controller(Settings::default()));
         controller.set_goal(House::at(0, 0));
@@ -174,7 +174,7 @@ fn a_trapped_robot_comes_to_an_end() {
 
 #[test]
 fn a_robot_shut_in_gets_out_when_it_can() {
-    // A box appears so near that the robot's own cell closes.
+    // A box appears so near that the cell of the robot becomes lethal.
     let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
     let place = house.position() + nalgebra::Vector2::new(0.45, 0.1);
     house.movers = vec![Mover::new([place, place], 0.2, 0.3)];

@@ -31,7 +31,7 @@ impl Beams<'_> {
                 let origin = Point2::from(self.laser.translation.vector);
                 match event {
                     Event::Block => {
-                        // A millimetre behind the surface: a surface on a border belongs to the solid cell.
+                        // A millimeter behind the surface: a surface on a border belongs to the solid cell.
                         let end = origin + along * Vector2::new(f64::from(range_m) + 1e-3, 0.0);
                         range_m.is_finite() && self.frame.cell_at(&end) == cell
                     }

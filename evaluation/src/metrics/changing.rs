@@ -4,33 +4,35 @@ use interfaces::{CellState, GroundTruth, TrueState};
 use mapper::Mapper;
 use serde::Serialize;
 
-/// The accuracy of the map on swept cells, sampled over a part of a run: such cells are few, and at a single
-/// instant all of them can be correct or incorrect.
+/// The accuracy of the map on swept cells, sampled over a part of a run. A single sample would not be enough: swept
+/// cells are few, and all of them can be correct or incorrect at the same time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ChangingAccuracy {
-    /// Of truly free and of truly blocked cells; unknown is incorrect.
+    /// Accuracy on truly free and on truly blocked cells; an unknown cell counts as incorrect.
     all: [Mean; 2],
-    /// The same of known cells that can be seen, out of view and in view.
+    /// The same accuracies for known cells that can be seen: out of view, and in view.
     known: [[Mean; 2]; 2],
 }
 
-/// Balanced accuracies: the mean of the accuracy on truly free and on truly blocked cells.
+/// Balanced accuracies: the mean of the accuracy on truly free cells and the accuracy on truly blocked cells.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ChangingScores {
-    /// Of all swept cells; unknown is incorrect. Only one of the two accuracies where the other has no
-    /// cells; `None` without cells.
+    /// The accuracy on all swept cells; an unknown cell counts as incorrect. If there are only free or only blocked
+    /// cells, the accuracy on these; `None` without cells.
     #[serde(skip)]
     pub all: Option<f64>,
-    /// Of the known cells in view that can be seen; `None` unless there are free and blocked ones.
+    /// The accuracy on known cells that can be seen and are in view (seen by the robot now); `None` unless there
+    /// are free and blocked ones.
     #[serde(rename = "map_quality_changing")]
     pub in_view: Option<f64>,
-    /// The same out of view.
+    /// The accuracy on known cells that can be seen and are out of view (not seen by the robot now); `None` unless
+    /// there are free and blocked ones.
     #[serde(rename = "map_quality_changing_out_of_view")]
     pub out_of_view: Option<f64>,
 }
 
 impl ChangingAccuracy {
-    /// Counts the swept cells as they are now. Partly covered cells are left out.
+    /// Samples the swept cells now. Partly covered cells are ignored.
     pub fn sample(&mut self, mapper: &Mapper, truth: &impl GroundTruth) {
         for &index in truth.swept().iter() {
             let (mapped, true_state) = (mapper.states().cells()[index], truth.state(index));
@@ -53,7 +55,7 @@ impl ChangingAccuracy {
     }
 }
 
-/// How well the state of swept cells out of view is predicted, sampled over a part of a run.
+/// The quality of the prediction of the state of swept cells out of view, sampled over a part of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Prediction {
     model: Mean,
@@ -61,15 +63,15 @@ pub struct Prediction {
     average: Mean,
 }
 
-/// Brier scores: the mean square of the predicted probability of "blocked now" minus the truth; lower is
-/// better. `None` where all swept cells were always in view.
+/// Brier scores: the mean of (predicted probability of "blocked now" − truth)²; lower is better. `None` if all
+/// swept cells were always in view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrierScores {
-    /// Of the two-state model, [`Mapper::blocked_probability`].
+    /// The Brier score of the two-state model, [`Mapper::blocked_probability`].
     pub model: Option<f64>,
-    /// Of the state last seen; 0.5 for a cell never seen.
+    /// The Brier score of the state that was last seen; 0.5 for a cell that was never seen.
     pub last_seen: Option<f64>,
-    /// Of the share of its time in view that the cell was blocked.
+    /// The Brier score of the share of the time in view during which the cell was blocked.
     pub average: Option<f64>,
 }
 

@@ -5,31 +5,31 @@ use nalgebra::Isometry2;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The delays of one kind of change: how soon the map follows a true change that a beam has shown.
+/// The delays of one kind of change: the time until the map follows a true change that a beam has shown.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Delays {
     /// The number of changes that a beam showed while the map had the old state.
     pub shown: usize,
-    /// The share of these that the map never followed before the cell changed back. Changes that are still
+    /// The share of these changes that the map did not follow before the cell changed back. Changes that are still
     /// open at the end of the run are not counted.
     pub never_noticed: f64,
     /// The median time from the first beam that shows the change to the change of the map, s.
     pub median_s: Option<f64>,
-    /// The time within which 95 % were followed, s.
+    /// The time within which the map followed 95 % of these changes, s.
     pub p95_s: Option<f64>,
 }
 
-/// A true change of a cell, from the end of the old state on.
+/// A true change of a cell. It begins with the end of the old state.
 #[derive(Clone, Copy, Debug)]
 struct Open {
     event: Event,
-    /// Whether the new state was reached: a cell that is only ever partly covered does not count.
+    /// Whether the new state was reached. A cell that becomes only partly covered does not count.
     is_complete: bool,
     /// Whether the new state is ending again: a beam now shows the end of the new state.
     is_ending: bool,
-    /// When a beam first showed it, s.
+    /// The time at which a beam first showed the change, s.
     shown_s: Option<f64>,
-    /// When the map had it, s.
+    /// The time at which the map had the new state, s.
     noticed_s: Option<f64>,
 }
 
@@ -44,8 +44,8 @@ pub struct Latency {
 const EVENTS: [Event; 2] = [Event::Block, Event::Free];
 
 impl Latency {
-    /// Measures one tick: the true changes since the last tick, what `reading` shows from the true pose of
-    /// the `laser`, and the state of the map now.
+    /// Measures one tick: the true changes since the last tick, what `reading` shows from the true pose of the
+    /// `laser`, and the present state of the map.
     pub fn observe(
         &mut self,
         truth: &impl GroundTruth,
@@ -58,7 +58,7 @@ impl Latency {
             let Some(index) = frame.index(change.cell) else { continue };
             let mapped = mapper.states().cells()[index];
             match (change.before, change.after) {
-                // Something arrives; the cell can be partly covered at first.
+                // A body arrives; the cell can be partly covered at first.
                 (TrueState::Free, _) => {
                     self.close(index);
                     let is_complete = change.after == TrueState::Blocked;
@@ -91,7 +91,7 @@ impl Latency {
                 open.noticed_s = Some(reading.time_s);
             }
         }
-        // A free event that the map has followed is finished; a block event must still become complete.
+        // A free event is finished when the map has followed it; a block event must also become complete.
         let done = |open: &Open| open.noticed_s.is_some() && open.event == Event::Free;
         let noticed: Vec<usize> = self.open.iter().filter(|(_, open)| done(open)).map(|(&i, _)| i).collect();
         noticed.into_iter().for_each(|index| self.close(index));

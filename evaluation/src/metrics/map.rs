@@ -3,7 +3,7 @@ use interfaces::{CellState, GroundTruth, TrueState};
 use mapper::Mapper;
 use serde::Serialize;
 
-/// Whether the map gives the true state; `None` where the cell is partly covered.
+/// Whether the state in the map is the true state; `None` if the cell is partly covered.
 pub(super) fn is_correct(mapped: CellState, truth: TrueState) -> Option<bool> {
     match truth {
         TrueState::Free => Some(mapped == CellState::Free),
@@ -12,13 +12,13 @@ pub(super) fn is_correct(mapped: CellState, truth: TrueState) -> Option<bool> {
     }
 }
 
-/// How good the map is. Both shares are 0 in a world without cells that can be seen.
+/// The quality of the map. Both shares are 0 in a world without cells that can be seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MapScores {
-    /// The share of the cells that can be seen that were seen.
+    /// The share of the cells that can be seen that have been seen.
     pub coverage: f64,
-    /// The share of the cells that can be seen whose mapped state is the true state now; unknown is
-    /// incorrect.
+    /// The share of the cells that can be seen whose state in the map is the true state now; an unknown cell counts
+    /// as incorrect.
     pub map_quality: f64,
 }
 
@@ -38,16 +38,16 @@ pub fn map_scores(mapper: &Mapper, truth: &impl GroundTruth) -> MapScores {
     MapScores { coverage: share(seen), map_quality: share(correct) }
 }
 
-/// The time since the cells that can be seen were seen.
+/// The time since cells were last seen, over the cells that can be seen.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Age {
     /// The mean, s (steps in a grid world).
     pub mean_s: f64,
-    /// The maximum.
+    /// The maximum, s (steps in a grid world).
     pub max_s: f64,
 }
 
-/// How old the map is now.
+/// The age of the map now: the time since its cells were last seen.
 pub fn age(mapper: &Mapper, truth: &impl GroundTruth) -> Age {
     let (mut ages, mut max_s) = (Mean::default(), 0.0_f64);
     for index in visible_cells(truth) {

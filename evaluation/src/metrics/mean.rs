@@ -15,12 +15,12 @@ impl Mean {
         self.add(f64::from(u8::from(is_true)));
     }
 
-    /// Adds the mean of another as one value; nothing if the other is empty.
+    /// Adds the mean of another `Mean` as one value; adds nothing if the other has no values.
     pub(super) fn add_mean(&mut self, other: &Self) {
         other.get().into_iter().for_each(|mean| self.add(mean));
     }
 
-    /// `None` without values.
+    /// The mean; `None` without values.
     pub(super) fn get(&self) -> Option<f64> {
         (self.count > 0).then(|| self.sum / self.count as f64)
     }

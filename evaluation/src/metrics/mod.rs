@@ -1,7 +1,8 @@
-//! The metrics: how good the map and the learned rates are, compared with the ground truth of a simulated
-//! world. Each metric is defined once, over [`interfaces::GroundTruth`]. The robot never sees any of this.
+//! The metrics: the quality of the map and of the learned rates, compared with the ground truth of a simulated
+//! world. Each metric is defined once, over [`interfaces::GroundTruth`]. The robot has no access to metrics.
 //!
-//! A cell that solids cover only in part is neither correct nor incorrect, and is left out at that moment.
+//! A cell that solid bodies cover only partly is neither correct nor incorrect, and is ignored as long as it is
+//! partly covered.
 
 mod beams;
 mod changing;

@@ -3,35 +3,36 @@ use interfaces::GroundTruth;
 use mapper::Mapper;
 use serde::Serialize;
 
-/// The log error is limited to this factor, in both directions.
+/// The log error is limited to the logarithm of this factor, for too high and too low estimates.
 const MAX_FACTOR: f64 = 10.0;
-/// A cell counts for [`RateScores::rate_error`] when it was in view for this many true cycles.
+/// A cell counts for [`RateScores::rate_error`] if it was in view for at least this many true cycles.
 const MIN_CYCLES: f64 = 3.0;
 
 /// The estimated rates of change compared with the true rates so far.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct RateScores {
-    /// Mean of |estimate − truth| / truth over the cells that truly changed and were in view for at least
-    /// three true cycles; `None` without such cells.
+    /// The rate error: the mean of |estimate − truth| / truth over the cells that truly changed and were in view
+    /// for at least three true cycles; `None` without such cells.
     pub rate_error: Option<f64>,
-    /// The number of these cells.
+    /// The number of cells in [`RateScores::rate_error`].
     pub rate_error_cells: usize,
-    /// The same mean over all cells that truly changed; no estimate counts as 0.
+    /// The mean of |estimate − truth| / truth over all cells that truly changed; a missing estimate counts as 0.
     pub rate_error_all: Option<f64>,
-    /// The log error of the rates, see [`mean_log_error`].
+    /// The log error of the rates, averaged per moving thing and then over the things; see [`mean_log_error`].
     pub log_error: Option<f64>,
-    /// How well the rates separate changing cells from static ones: the area under the ROC curve. Cells
-    /// within one cell of the border of the swept area are left out.
+    /// How well the estimated rates separate changing cells from static cells: the area under the ROC curve (1:
+    /// completely, 0.5: not better than chance). Cells within one cell of the border of the swept area are left
+    /// out.
     pub rate_auc: Option<f64>,
-    /// The number of observed cells that no moving thing ever touched.
+    /// The number of static cells that were observed. No moving thing ever touched a static cell.
     pub static_cells: usize,
-    /// The number of change events on these cells.
+    /// The number of false change events: changes of static cells in the map.
     pub false_change_events: u64,
-    /// The mean estimated cycle rate over these cells, per unit of time (Hz in a physics world).
+    /// The mean estimated cycle rate of static cells, per unit of time (Hz in a physics world).
     pub false_rate_hz: f64,
 }
 
-/// The two errors of the rates that a recording shows; NaN before anything changed.
+/// The two errors of the rates that a recording shows; NaN before the first true change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateErrors {
     /// See [`RateScores::rate_error_all`].
@@ -82,10 +83,10 @@ pub fn log_error(estimate: f64, truth: f64) -> f64 {
     if estimate > 0.0 { libm::log(estimate / truth).abs().min(limit) } else { limit }
 }
 
-/// The log error of the rates, the primary metric: the mean of [`log_error`] over the cells of each moving
-/// thing that truly changed, then the mean over the things. `None` before anything changed.
+/// The log error of the rates, the primary metric: for each moving thing, the mean of [`log_error`] over its cells
+/// that truly changed; then the mean over the things. `None` before the first true change.
 ///
-/// Over- and underestimates weigh the same, no error is unbounded, and a long path counts as much as a short
+/// Too high and too low estimates count equally, no error is unbounded, and a long path counts as much as a short
 /// one.
 pub fn mean_log_error(mapper: &Mapper, truth: &impl GroundTruth) -> Option<f64> {
     let mut things = Mean::default();
@@ -102,9 +103,9 @@ pub fn mean_log_error(mapper: &Mapper, truth: &impl GroundTruth) -> Option<f64> 
     things.get()
 }
 
-/// How well the estimated rates separate the cells that truly changed from static cells: the area under the
-/// ROC curve. Only observed cells count. Cells within one cell of the border of the swept area are left out.
-/// `None` without cells of both classes.
+/// How well the estimated rates separate the cells that truly changed from static cells: the area under the ROC
+/// curve. Only observed cells count. Cells within one cell of the border of the swept area are left out. `None`
+/// unless there are cells of both classes.
 fn rate_auc(mapper: &Mapper, truth: &impl GroundTruth) -> Option<f64> {
     let frame = truth.frame();
     let (mut changing, mut static_) = (Vec::new(), Vec::new());
@@ -121,7 +122,8 @@ fn rate_auc(mapper: &Mapper, truth: &impl GroundTruth) -> Option<f64> {
     area_under_roc(&changing, &static_)
 }
 
-/// The probability that a positive is above a negative, ties counting half (Mann and Whitney, 1947).
+/// The probability that a positive value is above a negative value; equal values count one half (Mann and Whitney,
+/// 1947).
 fn area_under_roc(positives: &[f64], negatives: &[f64]) -> Option<f64> {
     if positives.is_empty() || negatives.is_empty() {
         return None;

@@ -139,7 +139,7 @@ fn things_count_alike_however_many_cells_they_have() {
         show(&world, &mut mapper, |cell| cell.x < 4);
         world.act(&Step::Stay);
     }
-    // All is known of the fast block's three cells, nothing of the slow one's two.
+    // The fast block's three cells are completely known, the slow block's two cells are unknown.
     let scores = rate_scores(&mapper, world.truth());
     assert!((scores.log_error.unwrap() - 10.0_f64.ln() / 2.0).abs() < 0.02, "{scores:?}");
     assert!((scores.rate_error_all.unwrap() - 2.0 / 5.0).abs() < 0.02, "{scores:?}");

@@ -5,26 +5,27 @@ use nalgebra::Isometry2;
 use serde::Serialize;
 use sim::physics::ObstacleEvent;
 
-/// Cells that a beam shows at most this long after the first one count for [`ThingReport::right_s`], s: the
+/// A cell counts for [`ThingReport::right_s`] if a beam shows it at most this long after the first cell, s: the
 /// side that the robot sees first.
 const SHOWN_TOGETHER_S: f64 = 3.0;
 /// The share of the shown cells that must be correct in the map.
 const RIGHT_SHARE: f64 = 0.9;
 
-/// The detection of a thing that appeared or disappeared. Times are simulated, s; `None`: not yet.
+/// The detection of a thing that appeared or disappeared. Times are simulated, s; `None` before the event has
+/// happened.
 #[derive(Clone, Debug, Serialize)]
 pub struct ThingReport {
-    /// The name in the world file.
+    /// The name of the thing in the world file.
     pub name: String,
     /// Whether the thing appeared; `false`: it disappeared.
     pub appeared: bool,
-    /// The time of the event.
+    /// The time of the event, s.
     pub happened_s: f64,
-    /// The time when a beam first showed the event.
+    /// The time at which a beam first showed the event, s.
     pub in_view_s: Option<f64>,
-    /// The time when the first cell of the thing was correct in the map.
+    /// The time at which the first cell of the thing was correct in the map, s.
     pub noticed_s: Option<f64>,
-    /// The time when nine tenths of the cells that were shown in the first three seconds were correct.
+    /// The time at which nine tenths of the cells that were shown in the first three seconds were correct, s.
     pub right_s: Option<f64>,
 }
 
@@ -42,7 +43,7 @@ struct ThingCell {
     correct_s: Option<f64>,
 }
 
-/// Measures how soon every thing that appears or disappears is detected.
+/// Measures how soon each thing that appears or disappears is detected.
 #[derive(Clone, Debug, Default)]
 pub struct Things {
     things: Vec<Thing>,
@@ -51,7 +52,7 @@ pub struct Things {
 }
 
 impl Things {
-    /// Measures one tick, as [`super::Latency::observe`]. `events` are all events so far.
+    /// Measures one tick, like [`super::Latency::observe`]. `events` are all events since the start.
     pub fn observe(
         &mut self,
         events: &[ObstacleEvent],

@@ -5,16 +5,16 @@ use crate::metrics::log_error;
 /// The tail of a Poisson distribution that is left out.
 const TAIL: f64 = 1e-6;
 
-/// How well the cycle rate of a cell is known.
+/// The knowledge of the cycle rate of a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knowledge {
-    /// Its true cycle rate, per unit of time; above 0.
+    /// The true cycle rate, per unit of time; above 0.
     pub(super) truth: f64,
-    /// The estimate; 0 for none.
+    /// The estimated cycle rate; 0 without an estimate.
     pub(super) estimate: f64,
-    /// The events, of both kinds, that the estimate comes from.
+    /// The number of events, of both kinds, from which the estimate is computed.
     pub(super) events: f64,
-    /// The time that the cell was in view.
+    /// The time for which the cell was in view.
     pub(super) watched: f64,
 }
 
@@ -24,12 +24,12 @@ impl Knowledge {
         log_error(self.estimate, self.truth)
     }
 
-    /// By how much the log error is expected to fall when the cell is in view for `duration` more. Below
-    /// 0 where the estimate happens to be correct.
+    /// The expected decrease of the log error if the cell is in view for `duration` more. Negative if the estimate
+    /// happens to be correct.
     ///
-    /// A cell of rate λ shows a Poisson number of events of mean 2 λ · duration, and the estimate after
-    /// them is half of all events per time in view. The time in view so far is the one for which this
-    /// is the present estimate, whatever estimator made it.
+    /// A cell with rate λ has a Poisson number of events with mean 2 λ · duration, and the new estimate is half of
+    /// all events per time in view. The time in view so far is chosen so that it gives the present estimate,
+    /// whatever the estimator.
     pub(super) fn expected_fall(&self, duration: f64) -> f64 {
         let (events, watched) = if self.estimate > 0.0 {
             let events = self.events.max(1.0);

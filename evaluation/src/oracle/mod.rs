@@ -1,4 +1,4 @@
-//! The oracle: a goal selector that knows the true rates, the reference for strategies.
+//! The oracle: a goal selector that knows the true rates, as a reference for strategies.
 
 mod expectation;
 #[cfg(test)]
@@ -12,20 +12,20 @@ use nalgebra::Point2;
 use robot::{Belief, Destination, GoalSelector};
 use sim::grid::{GridGroundTruth, GridSpec};
 
-/// The durations of a stay that the oracle considers, steps.
+/// The durations of a stop that the oracle considers, steps.
 const STAYS: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 
-/// The minimum trust in a cell, so that a cell is tried again when all others are worse.
+/// The minimum trust in a cell, so that a cell is visited again if all others are worse.
 const LEAST_TRUST: f64 = 0.01;
 
-/// Goes to the cell from which the log error of the rates is expected to fall most per step, travel included,
+/// Goes to the cell from which the log error of the rates is expected to decrease most per step, travel included,
 /// and stays for the best duration. The oracle knows the walls and the true rates so far, but not the future
 /// positions of the blocks: it is greedy, not optimal.
 ///
-/// Every moving thing weighs the same, and every cell of its path, as in the log error. The expectation
-/// considers the walls alone, but a block can hide cells, also the cell that it is about to enter. Therefore the
-/// oracle learns the share of its expectation that comes true at each cell. Without this trust it would stay
-/// forever at the first such cell.
+/// All moving things have the same weight, and all cells of the path of a thing have the same weight, as in the log
+/// error. The expectation takes only the walls into account, but a block can hide cells, including the cell that it
+/// will enter next. The oracle therefore learns for each cell which share of the expectation comes true (the
+/// trust). Without trust the oracle would stay forever at the first such cell.
 #[derive(Clone, Debug)]
 pub struct Oracle {
     /// The cells in view from every cell.
@@ -34,7 +34,7 @@ pub struct Oracle {
     rates: Vec<f64>,
     /// The weight of every cell in the log error.
     weights: Vec<f64>,
-    /// The share of the expectation that came true, per cell.
+    /// For each cell the share of the expectation that came true.
     trust: Vec<f64>,
     last: Option<Expected>,
 }
@@ -45,7 +45,7 @@ struct Expected {
     cell: usize,
     stay: f64,
     fall: f64,
-    /// The error of the cells in view at the time.
+    /// The error of the cells in view when the goal was selected.
     error: f64,
 }
 
@@ -62,7 +62,7 @@ impl Oracle {
         }
     }
 
-    /// Takes the true rates so far; called at every step.
+    /// Updates the true rates; called at every step.
     pub fn learn(&mut self, truth: &GridGroundTruth) {
         for &cell in truth.swept().iter() {
             self.rates[cell] = truth.cycle_rate(cell);
@@ -90,7 +90,7 @@ impl Oracle {
         }
     }
 
-    /// The best cell and duration by the travel times; `None` if nothing is expected anywhere.
+    /// The best cell and duration, given the travel times; `None` if no decrease is expected anywhere.
     fn best(&self, mapper: &Mapper, times: &[f64]) -> Option<Expected> {
         // The expected fall of the error of each cell, for each stay.
         let falls: Vec<Option<[f64; STAYS.len()]>> = (0..self.rates.len())
@@ -142,7 +142,7 @@ impl GoalSelector for Oracle {
             Some(best) => {
                 Destination { position: frame.center(frame.cell(best.cell)), stay: Stay::Watch(best.stay) }
             }
-            // Nothing has moved yet, or everything is known: wait a step.
+            // Nothing has moved yet, or everything is known: wait for one step.
             None => {
                 Destination { position: Point2::from(belief.pose.translation.vector), stay: Stay::Watch(1.0) }
             }

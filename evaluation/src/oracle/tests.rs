@@ -7,7 +7,7 @@ use mapper::{EstimatorChoice, MapperSettings};
 use nalgebra::Isometry2;
 use sim::grid::{GenerateSettings, GridWorld};
 
-/// Two rooms; something moves in the right one.
+/// Two rooms; a block moves in the right one.
 const ROOMS: &str = r##"
 name = "rooms"
 sensor_radius = 4

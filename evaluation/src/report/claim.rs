@@ -6,25 +6,25 @@ use super::metric::{Measure, Metric};
 use super::run::Run;
 use super::wording::{difference, p_value, value};
 
-/// A map quality that is lower by at most this is as good.
+/// A map whose quality is lower by at most this value counts as equally good.
 const QUALITY_MARGIN: f64 = 0.005;
 
-/// The claim in one run. All differences are curious − the other.
+/// The verdict on the claim in one run. All differences are curious − the other strategy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
     /// The world, or `all worlds (N)`.
     pub world: String,
     /// The estimator.
     pub estimator: String,
-    /// Log error of the rates over the run, against recency.
+    /// The difference to recency in the log error of the rates, over the run.
     pub faster_than_recency: Comparison,
-    /// Log error of the rates over the run, against poisson.
+    /// The difference to poisson in the log error of the rates, over the run.
     pub faster_than_poisson: Comparison,
-    /// Relative error of the rates over the run, against recency; not part of the verdict.
+    /// The difference to recency in the relative error of the rates, over the run; not part of the verdict.
     pub rate_error_to_recency: Comparison,
-    /// Relative error of the rates over the run, against poisson; not part of the verdict.
+    /// The difference to poisson in the relative error of the rates, over the run; not part of the verdict.
     pub rate_error_to_poisson: Comparison,
-    /// Map quality at the end, against recency.
+    /// The difference to recency in the map quality at the end.
     pub quality_like_recency: Comparison,
     /// Whether the claim holds.
     pub verdict: Verdict,
@@ -32,21 +32,22 @@ pub struct Claim {
 
 /// Whether the claim holds.
 ///
-/// All its parts must hold at once, so testing each at 5 % needs no correction.
+/// All parts of the claim must hold at the same time, so that a test of each part at 5 % needs no correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The log error over the run is significantly smaller than that of recency and of poisson,
-    /// and the map is as good.
+    /// The log error over the run is significantly smaller than that of recency and that of poisson, and the map is
+    /// as good.
     Holds,
-    /// It is not significantly smaller than both, nor larger than either, and the map is as good.
+    /// The log error is neither significantly smaller than both nor significantly larger than either, and the map
+    /// is as good.
     NotShown,
-    /// It is significantly larger than that of recency or of poisson, or the map is worse:
-    /// significantly, and by more than 0.005.
+    /// The log error is significantly larger than that of recency or that of poisson, or the map is worse
+    /// (significantly, and by more than 0.005).
     Fails,
 }
 
 impl Verdict {
-    /// In a word or two.
+    /// The verdict in one or two words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -69,7 +70,7 @@ fn is_worse_map(quality: &Comparison) -> bool {
 }
 
 impl Claim {
-    /// The verdict in one run; `None` unless `curious`, `recency` and `poisson` are in it.
+    /// The verdict of one run; `None` unless the run has `curious`, `recency` and `poisson`.
     pub fn of(run: &Run) -> Option<Self> {
         let against = |other, measure| run.comparison("curious", other, measure);
         let faster_than_recency = against("recency", Measure::PRIMARY)?;
@@ -96,7 +97,7 @@ impl Claim {
         })
     }
 
-    /// The verdict and its parts in words, on three lines.
+    /// The verdict and its parts as text of three lines.
     pub fn sentence(&self) -> String {
         let speed = |error: &Comparison| match error {
             error if is_faster(error) => "faster than",
@@ -117,7 +118,7 @@ impl Claim {
         )
     }
 
-    /// The head of a Markdown table of claims, two lines.
+    /// The two head lines of a Markdown table of claims.
     pub fn markdown_head() -> &'static str {
         "| world | estimator | verdict | log error to recency | log error to poisson \
          | rate error to recency | rate error to poisson | map quality to recency |\n\

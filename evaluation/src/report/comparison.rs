@@ -6,8 +6,8 @@ use super::strategy::{StrategyResult, Unit};
 use super::wording::{p_value, value};
 use serde::Serialize;
 
-/// The difference between two strategies in one measure: paired by seed within a world, by world in the run over
-/// all worlds.
+/// The difference between two strategies in one measure. Within a world, trials with the same seed are pairs; in
+/// the run over all worlds, results in the same world are pairs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     /// The first strategy.
@@ -21,17 +21,18 @@ pub struct Comparison {
     pub pairs: usize,
     /// The mean of a − b, in the unit of the metric.
     pub mean_difference: f64,
-    /// The lower end of its 95 % confidence interval; NaN for a single pair.
+    /// The lower end of the 95 % confidence interval of the difference; NaN for a single pair.
     pub low: f64,
-    /// The upper end.
+    /// The upper end of the 95 % confidence interval of the difference; NaN for a single pair.
     pub high: f64,
-    /// Of the paired t test, two-sided; NaN for a single pair, 1 where nothing differs.
+    /// The p-value of the two-sided paired t test; NaN for a single pair, 1 if nothing differs.
     pub p_value: f64,
-    /// The p-value after Holm's correction for all pairs of strategies compared in this measure in this run.
+    /// The p-value after Holm's correction for all pairs of strategies that are compared in this measure in this
+    /// run.
     pub p_holm: f64,
-    /// The mean of a over that of b.
+    /// The mean of a divided by the mean of b.
     pub ratio: f64,
-    /// Cohen's d of pairs: the mean difference in standard deviations of the differences.
+    /// Cohen's d of pairs: the mean difference divided by the standard deviation of the differences.
     pub effect_size: f64,
 }
 

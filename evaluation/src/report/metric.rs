@@ -53,9 +53,9 @@ metrics! {
     changing_share => ChangingShare,
     /// Brier score of the two-state model for swept cells out of view.
     brier => Brier,
-    /// The same of the state last seen.
+    /// Brier score of the state that was last seen, for swept cells out of view.
     brier_last_seen => BrierLastSeen,
-    /// The same of the average state.
+    /// Brier score of the share of the time in view during which the cell was blocked, for swept cells out of view.
     brier_mean => BrierMean,
 }
 
@@ -68,15 +68,15 @@ pub struct Trial {
     pub estimator: String,
     /// The name of the strategy.
     pub strategy: String,
-    /// The seed of all random streams. Trials of different strategies with the same seed are a pair.
+    /// The seed of all random streams. Trials of different strategies with the same seed are paired.
     pub seed: u64,
     /// The samples in order of time: at the same steps in all trials of a report, the last at the end.
     pub samples: Vec<Sample>,
-    /// The share of the goals that each strategy of the agent chose, in the order of the chooser.
+    /// For each strategy of the agent, in the order of the chooser, the share of the goals that it selected.
     pub strategy_share: Vec<(String, f64)>,
     /// The number of change events on static cells.
     pub false_change_events: u64,
-    /// The hash over all that was learned, see [`crate::map_hash`].
+    /// The hash of everything that was learned, see [`crate::map_hash`].
     pub map_hash: String,
 }
 
@@ -85,8 +85,8 @@ pub struct Trial {
 pub enum Measure {
     /// The value of a metric in the last sample.
     Final(Metric),
-    /// The area under the curve of a metric divided by the length of the run: the mean over the run, in the
-    /// unit of the metric.
+    /// The area under the curve of a metric divided by the length of the run, that is, the mean over the run, in
+    /// the unit of the metric.
     Area(Metric),
 }
 
@@ -116,8 +116,8 @@ impl Measure {
 
 /// The area under the curve through `values` at `steps` (increasing), divided by its length.
 ///
-/// Before the first step the first value holds, so that a curve that begins at step 1 gives a mean over the whole
-/// run. Segments with NaN are left out of area and length; NaN without any value.
+/// Before the first step, the first value is used, so that a curve that begins at step 1 gives a mean over the
+/// whole run. Segments with NaN are left out of area and length. The result is NaN if there is no value.
 pub(super) fn area(steps: &[u64], values: &[f64]) -> f64 {
     let (Some(&first_step), Some(&first)) = (steps.first(), values.first()) else { return f64::NAN };
     let (mut area, mut length) = (0.0, 0.0);

@@ -30,9 +30,9 @@ use sim::grid::GridSpec;
 use statistics::Quantiles;
 use std::path::{Path, PathBuf};
 
-/// The table and the figures show single worlds up to this number of worlds.
+/// Up to this number of worlds, the table and the figures show single worlds.
 const ONE_BY_ONE: usize = 8;
-/// A strategy that knows the ground truth: it is shown beside the others, but it cannot win.
+/// A strategy that knows the ground truth: it is listed with the others, but cannot be the best one.
 const REFERENCE: &str = "oracle";
 
 /// The settings of an experiment.
@@ -50,8 +50,8 @@ pub struct ReportSettings {
     pub sensor_radius: u32,
     /// Whether the experiment was interrupted before all trials were finished.
     pub interrupted: bool,
-    /// The names of the worlds in the order of the report; other worlds come last, by name. The same holds
-    /// for estimators and strategies.
+    /// The names of the worlds, in the order of the report; other worlds come last, sorted by name. Estimators and
+    /// strategies are ordered in the same way.
     #[serde(skip)]
     pub worlds: Vec<String>,
     /// The names of the estimators in their order.
@@ -62,7 +62,7 @@ pub struct ReportSettings {
     pub strategies: Vec<String>,
 }
 
-/// The results of an experiment; serialized, they are `report.json`.
+/// The results of an experiment. Serialized, they are the content of `report.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// The settings of the experiment.
@@ -119,8 +119,8 @@ impl Report {
         table::table(self)
     }
 
-    /// Writes `report.json`, `trials.csv` and the figures into `folder`, which is made unless it
-    /// exists. Returns the files.
+    /// Writes `report.json`, `trials.csv` and the figures into `folder`, which is made unless it exists. Returns
+    /// the paths of the files.
     ///
     /// `figure3` shows the first run; the other figures are `figure3-<world>-<estimator>`, without the estimator
     /// if there is only one. With more than eight worlds, only the first world and all worlds together are drawn.

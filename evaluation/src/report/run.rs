@@ -14,7 +14,7 @@ pub struct Run {
     pub world: String,
     /// The number of worlds: 1, except in the run over all worlds.
     pub worlds: usize,
-    /// The estimator's name.
+    /// The name of the estimator.
     pub estimator: String,
     /// The strategies, in the order of the experiment.
     pub strategies: Vec<StrategyResult>,
@@ -34,12 +34,12 @@ impl Run {
         Self { world, worlds, estimator: estimator.into(), strategies, comparisons }
     }
 
-    /// The strategy of a name.
+    /// The strategy with a name; `None` if the run does not have it.
     pub fn strategy(&self, name: &str) -> Option<&StrategyResult> {
         self.strategies.iter().find(|strategy| strategy.name == name)
     }
 
-    /// The difference a − b between two strategies; `None` where there is no pair of trials.
+    /// The difference a − b between two strategies; `None` if there is no pair of trials.
     pub fn comparison(&self, a: &str, b: &str, measure: Measure) -> Option<Comparison> {
         let mut same = self.comparisons.iter().filter(|comparison| comparison.measure == measure);
         same.find_map(|comparison| match (comparison.a.as_str(), comparison.b.as_str()) {

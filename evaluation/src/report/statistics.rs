@@ -7,11 +7,11 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 pub struct Estimate {
     /// The number of values.
     pub count: usize,
-    /// Their mean; NaN if there are none.
+    /// The mean of the values; NaN without values.
     pub mean: f64,
-    /// The lower end of the interval; NaN for fewer than two values.
+    /// The lower end of the 95 % confidence interval; NaN for fewer than two values.
     pub low: f64,
-    /// The upper end.
+    /// The upper end of the 95 % confidence interval; NaN for fewer than two values.
     pub high: f64,
 }
 

@@ -6,13 +6,13 @@ use super::statistics::{Estimate, Quantiles, mean};
 /// The results of one strategy.
 #[derive(Clone, Debug)]
 pub struct StrategyResult {
-    /// The strategy's name.
+    /// The name of the strategy.
     pub name: String,
-    /// The number of its trials.
+    /// The number of trials of the strategy.
     pub trials: usize,
     /// The seeds of the trials and the hashes of the maps; empty in the run over all worlds.
     pub map_hashes: Vec<(u64, String)>,
-    /// The mean share of the goals that each strategy of the agent chose.
+    /// For each strategy of the agent, the mean share of the goals that it selected.
     pub strategy_share: Vec<(String, f64)>,
     /// The number of change events on static cells, in all trials.
     pub false_change_events: u64,
@@ -99,12 +99,14 @@ impl StrategyResult {
         }
     }
 
-    /// Mean and 95 % interval over the trials (over all worlds: over the worlds) at every sample.
+    /// The mean and its 95 % confidence interval at every sample, over the trials (in the run over all worlds: over
+    /// the worlds).
     pub fn curve(&self, metric: Metric) -> &[Estimate] {
         &self.curves[metric as usize]
     }
 
-    /// The mean over the trials (over all worlds: over the worlds); NaN where it is undefined in all of them.
+    /// The mean over the trials (in the run over all worlds: over the worlds); NaN if the measure is undefined in
+    /// all of them.
     pub fn value(&self, measure: Measure) -> f64 {
         match measure {
             Measure::Final(metric) => self.curve(metric).last().map_or(f64::NAN, |last| last.mean),

@@ -1,7 +1,7 @@
 //! Trials in grid worlds: every strategy with every estimator in every world, repeated with other seeds.
 //!
-//! Trials with the same world and seed are paired: the random streams of the world do not depend on the
-//! robot. A trial depends only on its own settings, so any number of threads gives the same results.
+//! Trials with the same world and seed are paired: the random streams of the world do not depend on the robot. A
+//! trial depends only on its own settings, so that the results are the same with any number of threads.
 
 mod run;
 mod strategy;
@@ -28,11 +28,11 @@ pub struct Experiment {
     pub strategies: Vec<TrialStrategy>,
     /// The number of trials of each combination.
     pub trials: u64,
-    /// The seed of the first trial; the others count up from it.
+    /// The seed of the first trial; each further trial has the next seed.
     pub seed: u64,
     /// The length of each trial, in steps; at least one.
     pub steps: u64,
-    /// The settings of the mapper; the estimator in it is not used.
+    /// The settings of the mapper; the estimator in these settings is not used.
     pub mapper: MapperSettings,
     /// The settings of the agent.
     pub agent: AgentSettings,
@@ -41,8 +41,8 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// All trials. Trials that are compared with each other are neighbors, so that the trials that are
-    /// finished at an interruption can be compared.
+    /// All trials. Trials that are compared with each other are consecutive, so that after an interruption the
+    /// finished trials can be compared.
     pub fn jobs(&self) -> Vec<TrialSettings<'_>> {
         let mut jobs = Vec::new();
         for trial in 0..self.trials {
@@ -57,9 +57,8 @@ impl Experiment {
         jobs
     }
 
-    /// Runs trials on the threads of the present rayon pool. The results are in the order of `jobs`.
-    /// `observe` is called with every finished trial, from any thread. When `is_canceled` is set, trials that
-    /// have not ended are left out.
+    /// Runs trials on the threads of the present rayon pool. The results are in the order of `jobs`. `observe` is
+    /// called with every finished trial, from any thread. If `is_canceled` is set, unfinished trials are left out.
     ///
     /// # Errors
     ///

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 
 /// The number of samples of a trial.
 const SAMPLES: u64 = 80;
-/// The swept cells are compared once in this many steps, and at every sample.
+/// The swept cells are compared once in this number of steps, and at every sample.
 const COMPARE_EVERY: u64 = 10;
 
 /// Everything that determines a trial.
@@ -37,11 +37,11 @@ pub struct TrialStep<'a> {
     pub world: &'a GridWorld,
     /// The reading of this step.
     pub reading: &'a CellReading,
-    /// What the robot knows.
+    /// What the robot knows: the inputs of the pilot.
     pub belief: &'a Belief<'a>,
     /// The pilot.
     pub pilot: &'a mut dyn Pilot<Command = Step>,
-    /// The sample of this step, if there is one.
+    /// The sample at this step; `None` for most steps.
     pub sample: Option<&'a Sample>,
 }
 

@@ -1,16 +1,16 @@
 use agent::Policy;
 
-/// How the robot of a trial chooses its goals.
+/// How the robot of a trial selects its goals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TrialStrategy {
-    /// By what it knows.
+    /// By an agent with this policy.
     Agent(Policy),
-    /// By the truth: the reference that no robot can be.
+    /// By the oracle, which knows the true rates: a reference, not possible for a robot.
     Oracle,
 }
 
 impl TrialStrategy {
-    /// Every one.
+    /// All strategies.
     pub fn all() -> impl Iterator<Item = Self> {
         Policy::built_in().iter().cloned().map(Self::Agent).chain([Self::Oracle])
     }
@@ -23,7 +23,7 @@ impl TrialStrategy {
         }
     }
 
-    /// Where the robot goes, in one line for a list.
+    /// The description in lists: where the robot goes, in one line.
     pub fn description(&self) -> &'static str {
         match self {
             Self::Agent(policy) => policy.description(),

@@ -1,18 +1,19 @@
 use super::CellStatistics;
 use std::ops::Add;
 
-/// Exposure of a cell: per state (free, blocked) the events that ended the state, and the time in the state,
-/// counted in steps of the readings. The two divided are the probability per step of leaving the state.
+/// The exposure of a cell: for each state (free, blocked) the number of events that ended the state, and the time
+/// in the state, counted in steps of the readings. Events divided by steps are the probability per step of leaving
+/// the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Exposure {
-    /// Events that ended a stay in free, and in blocked.
+    /// The number of events that ended a free stay, and a blocked stay.
     pub events: [f64; 2],
-    /// Steps that began in free, and in blocked.
+    /// The number of steps that began free, and blocked.
     pub steps: [f64; 2],
 }
 
 impl Exposure {
-    /// The exposure in view. The statistics count the step of a change for the state after it.
+    /// The exposure in view. In the statistics, the step of a change counts for the state after the change.
     pub fn in_view(seen: &CellStatistics) -> Self {
         let (block, free) = (f64::from(seen.block_events), f64::from(seen.free_events));
         let steps = |watched: f64, own: f64, other: f64| (watched / seen.period + own - other).max(own);
@@ -22,7 +23,7 @@ impl Exposure {
         }
     }
 
-    /// The exposure with the information of the gaps.
+    /// The exposure with the same information as the gaps.
     pub fn of_gaps(seen: &CellStatistics) -> Self {
         let worth = &seen.gap_worth;
         Self {
@@ -31,18 +32,18 @@ impl Exposure {
         }
     }
 
-    /// The same number of events and of steps in both states.
+    /// An exposure with the same numbers of events and steps for both states.
     pub fn uniform(events: f64, steps: f64) -> Self {
         Self { events: [events; 2], steps: [steps; 2] }
     }
 
-    /// The exposure times a factor per state.
+    /// The exposure multiplied by one factor per state.
     pub fn scaled(self, factors: [f64; 2]) -> Self {
         let times = |of: [f64; 2]| [of[0] * factors[0], of[1] * factors[1]];
         Self { events: times(self.events), steps: times(self.steps) }
     }
 
-    /// Events per step, per state.
+    /// Events per step, for each state.
     pub fn leave(self) -> [f64; 2] {
         [0, 1].map(|state| self.events[state] / self.steps[state])
     }

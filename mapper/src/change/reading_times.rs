@@ -1,8 +1,8 @@
 //! The times of all readings.
 
-/// A reading by its number. Number 0 stands for "never", and its time, 0, is when a cell that was
-/// never observed counts as last seen. Number 1 stands for the prior map, also at time 0; no cell counts
-/// as last seen in reading 1, so that no first reading follows without a gap.
+/// The number of a reading. Number 0 means "never"; its time is 0, and a cell that was never observed counts as
+/// last seen then. Number 1 is the prior map, also at time 0. No cell counts as last seen in reading 1, so that the
+/// first reading of a cell always follows a gap.
 pub type ReadingIndex = u32;
 pub(super) const NEVER: ReadingIndex = 0;
 pub(super) const PRIOR: ReadingIndex = 1;
@@ -18,7 +18,7 @@ impl Default for ReadingTimes {
 }
 
 impl ReadingTimes {
-    /// Starts the next reading.
+    /// Begins the next reading.
     pub(super) fn push(&mut self, time: f64) {
         self.0.push(time);
     }
@@ -35,7 +35,7 @@ impl ReadingTimes {
         (self.0.len() - 1) as ReadingIndex
     }
 
-    /// The mean time from one reading to the next, up to `until`; 0 before the second.
+    /// The mean time between consecutive readings, up to `until`; 0 before the second reading.
     pub(super) fn period(&self, until: ReadingIndex) -> f64 {
         let first = PRIOR + 1;
         if until <= first {

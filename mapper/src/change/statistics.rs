@@ -1,16 +1,16 @@
-/// What was observed of one cell (paper, section 3). Times are in the unit of the readings: seconds,
-/// or steps in a grid world.
+/// The observations of one cell (paper, section 3). Times are in the time unit of the readings: seconds, or steps
+/// in a grid world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct CellStatistics {
     /// The time of the first observation, t_init.
     pub first_seen: f64,
     /// The time of the last observation, t_last.
     pub last_seen: f64,
-    /// The mean time from one reading to the next, whichever cells they observed, up to the last observation of
-    /// the cell; 0 before the second reading.
+    /// The mean time between consecutive readings (of any cells), up to the last observation of the cell; 0 before
+    /// the second reading.
     pub period: f64,
-    /// The time between these two in which the cell was not in view, t_not obs. A cell is in view
-    /// between two consecutive readings that both observed the cell.
+    /// The time between `first_seen` and `last_seen` in which the cell was not in view, t_not obs. A cell is in
+    /// view between two consecutive readings that both observed the cell.
     pub unobserved: f64,
     /// The time in view while the cell was free.
     pub watched_free: f64,
@@ -28,21 +28,21 @@ pub struct CellStatistics {
     pub gaps_from_free: u32,
     /// Gaps in the view that began while the cell was blocked.
     pub gaps_from_blocked: u32,
-    /// The information in the gaps, if the estimator has a [model of gaps](crate::GapModel).
+    /// The information in the gaps, if the estimator has a [model of gaps](crate::GapModel); otherwise 0.
     pub gap_worth: GapWorth,
 }
 
-/// The information in the gaps of a cell, as the observation in view with the same information. All 0 where the
-/// estimator has no model of gaps.
+/// The information in the gaps of a cell, expressed as an observation in view with the same information. All fields
+/// are 0 if the estimator has no model of gaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct GapWorth {
     /// Time in view while free.
     pub watched_free: f64,
     /// Time in view while blocked.
     pub watched_blocked: f64,
-    /// Changes from free to blocked. Negative where the gaps indicate a lower rate than the rest.
+    /// Changes from free to blocked. Negative if the gaps indicate a lower rate than the other observations.
     pub block_events: f64,
-    /// Changes from blocked to free, likewise.
+    /// Changes from blocked to free. Negative if the gaps indicate a lower rate than the other observations.
     pub free_events: f64,
 }
 

@@ -5,43 +5,43 @@ use interfaces::CellState;
 
 /// The rates at which a cell leaves its states, per unit of time.
 ///
-/// Where rates are small beside the pace of the readings this is the continuous-time chain. A chain
-/// that takes one step per reading fits both: a block that stays for two steps leaves with
-/// probability ½ per step, which no continuous chain that is observed once per step does.
+/// If the rates are small compared with the rate of the readings, this is a continuous-time chain. The chain in
+/// steps of the readings also describes faster changes: a block that stays for two steps leaves with probability ½
+/// per step, which is not possible for a continuous-time chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransitionRates {
-    /// Free → blocked, α.
+    /// The rate α of free → blocked, per unit of time.
     pub block: f64,
-    /// Blocked → free, β.
+    /// The rate β of blocked → free, per unit of time.
     pub free: f64,
     /// The time of one step; 0 for a chain in continuous time.
     pub period: f64,
 }
 
 impl TransitionRates {
-    /// The rates of a given cycle rate, shared between the states by the time that the cell was observed in each:
-    /// one cycle takes 1/α free and 1/β blocked.
+    /// The rates for a given cycle rate: the cycle is divided between the states in proportion to the time that the
+    /// cell was observed in each. One cycle takes 1/α free and 1/β blocked.
     pub fn shared(seen: &CellStatistics, cycle_rate: f64) -> Self {
-        // Half a reading more for either state, so that no state has a share of 0.
+        // Half a reading is added to each state, so that no state has a share of 0.
         let (free, blocked) =
             (seen.watched_free + 0.5 * seen.period, seen.watched_blocked + 0.5 * seen.period);
         let rate = |own: f64| cycle_rate * ((free + blocked) / own);
         Self { block: rate(free), free: rate(blocked), period: seen.period }
     }
 
-    /// Mean time of a cycle, 1/α + 1/β.
+    /// The cycle time, 1/α + 1/β.
     pub fn interval(self) -> f64 {
         1.0 / self.block + 1.0 / self.free
     }
 
-    /// The same with positive, finite rates, and at most one event per step.
+    /// The same rates, limited to positive, finite values and to at most one event per step.
     pub(crate) fn bounded(self) -> Self {
         let most = (1.0 / self.period).min(f64::MAX);
         let bounded = |rate: f64| if rate > 0.0 { rate.min(most) } else { f64::MIN_POSITIVE };
         Self { block: bounded(self.block), free: bounded(self.free), ..self }
     }
 
-    /// The probability that the cell is blocked `elapsed` after an observation of `state`.
+    /// The probability that the cell is blocked at a time `elapsed` after an observation of `state`.
     pub(crate) fn blocked_probability(self, state: CellState, elapsed: f64) -> f64 {
         let share = self.block / (self.block + self.free);
         let seen = f64::from(u8::from(state == CellState::Blocked));
@@ -55,12 +55,12 @@ impl TransitionRates {
     }
 }
 
-/// The transition probabilities from one reading to the next.
+/// The transition probabilities of a cell from one reading to the next.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Step {
-    /// Free → blocked.
+    /// The probability of free → blocked per step.
     pub block: f64,
-    /// Blocked → free.
+    /// The probability of blocked → free per step.
     pub free: f64,
 }
 
@@ -69,7 +69,7 @@ pub struct Step {
 pub(crate) struct Prediction {
     /// The probability that the cell is blocked.
     pub(crate) blocked: f64,
-    /// The derivatives of that probability by the log-odds of leaving free, and of leaving blocked.
+    /// The derivatives of this probability with respect to the log-odds of leaving free, and of leaving blocked.
     pub(crate) slope: [f64; 2],
 }
 
@@ -77,11 +77,11 @@ pub(crate) struct Prediction {
 const ONE_STEP: f64 = 1.5;
 
 impl Step {
-    /// The share of the initial state that is left after some steps: λ^steps with λ = 1 − block − free.
+    /// The remaining influence of the initial state after some steps: λ^steps with λ = 1 − block − free.
     ///
-    /// A cell that changes at nearly every step alternates, and λ is below 0. Nothing keeps such a beat for long,
-    /// and gaps of even lengths alone could not distinguish alternating from standing still: after more than one
-    /// step nothing is left.
+    /// If a cell changes at nearly every step, it alternates, and λ is below 0. Such an alternation is never
+    /// regular for long, and gaps of even lengths alone could not distinguish it from standing still. After more
+    /// than one step, the influence therefore counts as 0.
     pub(crate) fn memory(self, steps: f64) -> f64 {
         let lost = self.block + self.free;
         if lost < 1.0 {

@@ -1,9 +1,9 @@
 use super::gamma;
 use crate::change::Belief;
 
-/// The interval that holds the cycle rate with probability `mass`, with equal probabilities below and above, by
-/// the posterior of the two-state chain in steps of `period`. Assumes that the rate is gamma distributed, which
-/// holds where only one of the two probabilities is uncertain.
+/// The interval that contains the cycle rate with probability `mass`, with equal probabilities below and above the
+/// interval, by the posterior of the two-state chain in steps of `period`. Assumes that the rate is gamma
+/// distributed, which is true if only one of the two probabilities is uncertain.
 pub(super) fn of_cycle_rate(Belief { exposure: all, mixed }: Belief, period: f64, mass: f64) -> (f64, f64) {
     let [block, free] = all.leave().map(|leave| leave.clamp(f64::MIN_POSITIVE, 1.0));
     let information = [(0, block), (1, free)]
@@ -18,7 +18,7 @@ pub(super) fn of_cycle_rate(Belief { exposure: all, mixed }: Belief, period: f64
         + slopes[1] * slopes[1] * information[0])
         / determinant;
     let rate = block * free / (block + free) / period;
-    // Bounds between certain knowledge and no knowledge.
+    // Limits between certain knowledge and no knowledge.
     let shape = (1.0 / variance).clamp(0.05, 1e12);
     let mass = mass.clamp(0.0, 1.0);
     let quantile = |probability: f64| (rate * gamma::quantile(shape, probability)).min(0.5 / period);

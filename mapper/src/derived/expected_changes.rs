@@ -1,20 +1,20 @@
 //! The running sum of the change probabilities of all cells.
 //!
-//! The rate of a cell stays constant while the cell is out of view, so the probability that the cell did not
-//! change shrinks by the same factor in every step of the same length: one product per cell and
-//! reading, where the definition takes an exponential.
+//! The rate of a cell stays constant while the cell is out of view. The probability that the cell did not change is
+//! therefore multiplied by the same factor in every step of the same length: one product per cell and reading,
+//! instead of one exponential.
 
 use super::change_probability;
 use crate::change::CellMap;
 
-/// Steps that differ by less than this share are equal. The error of the probability of a cell stays
-/// below: the longer since the last observation, the smaller the probability.
+/// Steps that differ by less than this share count as equal. The error of the probability of a cell stays below
+/// this share: the longer the time since the last observation, the smaller the probability.
 const SAME_STEP: f64 = 1e-11;
-/// Less than this is 0: products of ever smaller numbers take long.
+/// Values below this count as 0: operations on very small numbers are slow.
 const NOTHING: f64 = 1e-30;
-/// Steps after which everything is computed anew, so that rounding errors do not add up.
+/// The number of steps after which everything is computed anew, so that rounding errors do not accumulate.
 const RENEWAL: u32 = 1 << 14;
-/// Sums that run side by side, since one addition has to wait for the one before.
+/// The number of sums that are computed side by side, since each addition has to wait for the one before.
 const LANES: usize = 4;
 
 /// The cells that ever changed, in the order of [`CellMap::changed`].
@@ -22,23 +22,23 @@ const LANES: usize = 4;
 pub(crate) struct ExpectedChanges {
     /// The probability that the cell did not change since the last observation; 1 in view.
     survival: Vec<f64>,
-    /// The factor by which the survival shrinks in a step; 1 in view.
+    /// The factor by which the survival is multiplied in a step; 1 in view.
     factor: Vec<f64>,
     rate: Vec<f64>,
     last_seen: Vec<f64>,
     is_in_view: Vec<bool>,
     /// The cells in view at the last sum, and those that came into view since.
     in_view: Vec<usize>,
-    /// The time of the last sum, and its distance from the one before.
+    /// The time of the last sum, and the step from the sum before.
     time: f64,
     step: f64,
-    /// Whether the factors are for `step`.
+    /// Whether the factors belong to `step`.
     has_factors: bool,
     age: u32,
 }
 
 impl ExpectedChanges {
-    /// Notes the cells that a reading brought into view, or found changed for the first time.
+    /// Records the cells that a reading brought into view, or found changed for the first time.
     pub(crate) fn note(&mut self, cells: &CellMap) {
         // Cells that changed for the first time come first: one of them may also have returned into view.
         let (before, after) = (self.survival.len(), cells.changed.len());
@@ -92,7 +92,7 @@ impl ExpectedChanges {
         1.0 - change_probability(self.step, rate)
     }
 
-    /// Lets the time pass for the cells out of view.
+    /// Advances the time of the cells out of view.
     fn pass_to(&mut self, now: f64) {
         let step = now - self.time;
         if step == 0.0 {
@@ -108,7 +108,7 @@ impl ExpectedChanges {
             }
             return;
         }
-        // Factors are worth their cost once a step repeats.
+        // The factors are computed only when a step repeats.
         (self.step, self.has_factors, self.age) = (step, is_same, 0);
         for slot in 0..self.survival.len() {
             if self.is_in_view[slot] {

@@ -64,7 +64,7 @@ fn normal_quantile(probability: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The regularised lower incomplete gamma function γ(shape, x)/Γ(shape), as a power series. `scale` is
+/// The regularized lower incomplete gamma function γ(shape, x)/Γ(shape), as a power series. `scale` is
 /// x^shape e^−x / Γ(shape).
 fn lower(shape: f64, x: f64, scale: f64) -> f64 {
     let (mut term, mut sum, mut n) = (1.0 / shape, 1.0 / shape, shape);

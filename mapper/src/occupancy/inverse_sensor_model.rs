@@ -1,8 +1,8 @@
 //! The inverse sensor model: the evidence of a beam about the cells of the map.
 //!
-//! A grid of log-odds takes a constant of evidence for the cell of the hit, and another for each cell that the beam
-//! crosses ([`HIT_LOG_ODDS`], [`MISS_LOG_ODDS`]). A grid of surfaces asks where in the cell the surface is:
-//! [`hit_point`] is the point inside the body to which a hit belongs, and [`passes`] says whether a scan
+//! A log-odds grid adds constant evidence to the cell of the hit and to each cell that the beam crosses
+//! ([`HIT_LOG_ODDS`], [`MISS_LOG_ODDS`]). A surface grid uses the position of the surface within the cell:
+//! [`hit_point`] is the point inside the body to which a hit belongs, and [`passes`] states whether a scan
 //! contradicts a surface.
 
 use super::projection::ProjectedScan;
@@ -15,14 +15,14 @@ pub(super) const HIT_LOG_ODDS: f32 = 0.85;
 /// Evidence of a beam for a cell that the beam crosses, in log-odds: p = 0.4.
 pub(super) const MISS_LOG_ODDS: f32 = -0.4;
 
-/// Range noise stays within this number of standard deviations. At three, one hit in 700 would not, and a
-/// wall takes a hundred hits per scan.
+/// Range noise is assumed to be within this number of standard deviations. With three, one hit in 700 would be
+/// outside, and a wall takes a hundred hits per scan.
 pub(super) const NOISE_STDS: f64 = 4.0;
 
-/// The point to which a hit belongs: `depth_m` behind the surface along its normal; at the edge of
-/// the visible surface, equally far inward along the surface too, since the body may end
-/// right behind the edge. Where a neighboring beam sees that point (the normal led out of a
-/// corner), half as deep along the beam.
+/// The point to which a hit belongs: `depth_m` behind the surface along its normal. At the edge of the visible
+/// surface, the point is also equally far inward along the surface, since the body may end right behind the edge.
+/// If a neighboring beam passes through that point (the normal led out of a corner), the point is half as deep
+/// along the beam.
 pub(super) fn hit_point(
     beam: usize,
     end: &Point2<f64>,
@@ -50,8 +50,8 @@ pub(super) fn hit_point(
 }
 
 /// Whether a scan passes through a surface at `point`: both beams that enclose the point go at least `margin_m`
-/// beyond. Where the beams are farther apart than `max_gap_m` at the point, a thin obstacle can stand between them:
-/// then one of them must go through the point, within `reach_m`.
+/// beyond the point. Where the beams are farther apart than `max_gap_m`, a thin obstacle can be between them: then
+/// one of the beams must pass the point within `reach_m`.
 pub(super) fn passes(
     scan: &ProjectedScan,
     point: &Point2<f64>,

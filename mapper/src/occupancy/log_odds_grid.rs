@@ -1,6 +1,6 @@
-//! The textbook occupancy grid (`naive`), for comparison: every beam adds evidence to every
-//! cell it crosses, and a cell flips at even odds. Cells on a wall that grazing beams cross are
-//! hit and missed in turn, and flicker: the wall noise of figure 5 of the paper.
+//! The textbook occupancy grid (`naive`), for comparison: every beam adds evidence to every cell that it crosses,
+//! and a cell changes its state at even odds. Cells of a wall that grazing beams cross are hit and missed in turn,
+//! and flicker: the wall noise of figure 5 of the paper.
 
 use super::OccupancyModel;
 use super::footprint::cells_along;

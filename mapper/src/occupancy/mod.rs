@@ -4,8 +4,9 @@
 //! that beams passed, the [`inverse_sensor_model`] that turns beams into evidence about cells, and an
 //! [`OccupancyModel`] that accumulates evidence until a cell changes its state.
 //!
-//! To add a model: write a file with an [`OccupancyModel`], and add a constructor to [`OccupancyChoice`] and its list. A model in a
-//! crate of its own goes into [`MapperSettings::occupancy`] with [`OccupancyChoice::new`].
+//! To add a model: write a file with a type that implements [`OccupancyModel`], add a constructor to
+//! [`OccupancyChoice`], and add the constructor to [`OccupancyChoice::all`]. A model of another crate is set in
+//! [`MapperSettings::occupancy`] with [`OccupancyChoice::new`].
 
 mod footprint;
 mod inverse_sensor_model;
@@ -27,11 +28,11 @@ pub use surface_grid::SurfaceGridSettings;
 
 /// Accumulates evidence about the cells of one map, and decides when a cell changes its state.
 pub trait OccupancyModel: CloneModel + fmt::Debug + Send + Sync {
-    /// Learns from a laser scan: writes the observed cells and the changed states to `cells`.
+    /// Processes a laser scan: writes the observed cells and the changed states to `cells`.
     fn update(&mut self, scan: &ProjectedScan, cells: &mut CellMap);
 
-    /// Learns from the states of cells, as a sensor without error observes them; true means blocked. By default the
-    /// states go into the map as they are.
+    /// Processes states of cells from a sensor without error; true means blocked. By default the states are written
+    /// to the map as they are.
     fn update_cells(&mut self, states: &[(Cell, bool)], cells: &mut CellMap) {
         cells.observe_states(states);
     }
@@ -39,7 +40,7 @@ pub trait OccupancyModel: CloneModel + fmt::Debug + Send + Sync {
 
 /// Clones a boxed model; implemented for every model that is `Clone`.
 pub trait CloneModel {
-    /// A copy in a box.
+    /// A boxed copy.
     fn clone_box(&self) -> Box<dyn OccupancyModel>;
 }
 
@@ -67,8 +68,8 @@ pub struct OccupancyChoice {
 interfaces::chosen_by_name!(OccupancyChoice, "occupancy model", OccupancyChoice::all());
 
 impl OccupancyChoice {
-    /// A model of the user. `build` makes the model for a map that holds the prior. The name is that in files and
-    /// reports.
+    /// A model of another crate. `build` makes the model for a map that holds the prior. `name` is the name in
+    /// files and reports.
     pub fn new(
         name: &'static str,
         build: impl Fn(&MapperSettings, &mut CellMap) -> Box<dyn OccupancyModel> + Send + Sync + 'static,
@@ -76,19 +77,20 @@ impl OccupancyChoice {
         Self { name, build: Arc::new(build) }
     }
 
-    /// Every built-in model.
+    /// All built-in models.
     pub fn all() -> Vec<Self> {
         vec![Self::steady(), Self::naive()]
     }
 
-    /// `steady`: surfaces are remembered to a fraction of a cell, and a cell is cleared only by beams that
-    /// pass through its surface, so that static walls never change.
+    /// `steady`: stores the position of surfaces within cells, and clears a cell only by beams that pass through
+    /// its surface. Static walls then rarely change: 0 to 30 false changes on a tour of a static world, more where
+    /// things move (`docs/flicker.md`, README).
     pub fn steady() -> Self {
         Self::new("steady", |settings, cells| Box::new(SurfaceGrid::new(settings.steady.clone(), cells)))
     }
 
-    /// `naive`: every beam counts on every cell that the beam crosses, and a cell flips at even odds. Walls flicker,
-    /// as in figure 5 of the paper.
+    /// `naive`: every beam adds evidence to every cell that it crosses, and a cell changes its state at even odds.
+    /// Walls flicker, as in figure 5 of the paper.
     pub fn naive() -> Self {
         Self::new("naive", |_, cells| Box::new(LogOddsGrid::new(cells)))
     }

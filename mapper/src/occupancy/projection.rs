@@ -4,7 +4,7 @@ use interfaces::{APPROXIMATE_ATAN2_ERROR_RAD, LaserReading, Scan, approximate_at
 use nalgebra::{Point2, UnitComplex, Vector2};
 use std::f64::consts::TAU;
 
-/// The largest range and the largest map, m: beyond, coordinates lose their digits.
+/// The limit of ranges and of coordinates in the map, m: beyond, coordinates lose precision.
 pub(crate) const FARTHEST_M: f64 = 1e6;
 
 /// The result of one beam.
@@ -12,14 +12,14 @@ pub(crate) const FARTHEST_M: f64 = 1e6;
 pub enum BeamReturn {
     /// A surface at this range, m.
     Hit(f64),
-    /// Nothing up to this range, m.
+    /// No surface up to this range, m.
     Clear(f64),
-    /// No information: invalid, too close, or out of the limits of the sensor.
+    /// No information: the range is invalid, too close, or out of the limits of the sensor.
     Nothing,
 }
 
 impl BeamReturn {
-    /// The range up to which the beam certainly passed, m.
+    /// The range up to which the beam was certainly free, m.
     pub fn clear_m(self) -> f64 {
         match self {
             Self::Hit(range_m) | Self::Clear(range_m) => range_m,
@@ -44,24 +44,24 @@ impl BeamReturn {
 pub struct ProjectedScan {
     /// The start of all beams, m.
     pub origin: Point2<f64>,
-    /// Unit vectors along the beams.
+    /// Unit vectors in the direction of each beam.
     pub directions: Vec<Vector2<f64>>,
     /// The result of each beam.
     pub returns: Vec<BeamReturn>,
     /// Whether the last of three or more beams is a neighbor of the first.
     pub is_full_turn: bool,
-    /// The angle between neighbouring beams, rad; positive.
+    /// The angle between neighboring beams, rad; positive.
     pub spacing_rad: f64,
     rotation: UnitComplex<f64>,
     angle_min_rad: f64,
     /// The angle from one beam to the next, counter-clockwise, rad.
     pub increment_rad: f64,
-    /// The directions of the beams in the frame of the laser, kept from scan to scan.
+    /// The directions of the beams in the frame of the laser, reused for the next scan.
     in_laser: Vec<Vector2<f64>>,
 }
 
 impl ProjectedScan {
-    /// Replaces the scan by that of `reading`.
+    /// Replaces the scan by the scan of `reading`.
     pub(crate) fn project(&mut self, reading: &LaserReading) {
         let scan = &reading.scan;
         let laser = reading.pose * reading.mount;
@@ -97,7 +97,7 @@ impl ProjectedScan {
         self.origin + self.directions[beam] * range_m
     }
 
-    /// The end point of a beam that hit something, m.
+    /// The end point of a beam that hit something, m; `None` for other beams.
     pub fn hit(&self, beam: usize) -> Option<Point2<f64>> {
         match self.returns[beam] {
             BeamReturn::Hit(range_m) => Some(self.point(beam, range_m)),
@@ -105,7 +105,7 @@ impl ProjectedScan {
         }
     }
 
-    /// The beam after this one; `None` after the last of a scan that does not close.
+    /// The next beam; `None` after the last beam of a scan that is not a full turn.
     pub fn next(&self, beam: usize) -> Option<usize> {
         match beam + 1 {
             next if next < self.len() => Some(next),
@@ -114,7 +114,7 @@ impl ProjectedScan {
         }
     }
 
-    /// The two neighbouring beams that enclose the direction towards `point`, or `None` outside
+    /// The two neighboring beams that enclose the direction toward `point`, or `None` outside
     /// of the field of view.
     pub fn enclosing(&self, point: &Point2<f64>) -> Option<(usize, usize)> {
         let beams = self.len();
@@ -125,10 +125,10 @@ impl ProjectedScan {
         let sweep = if self.increment_rad < 0.0 { -1.0 } else { 1.0 };
         let turn_rad = sweep * (approximate_atan2(toward.y, toward.x) - self.angle_min_rad);
         let turn_rad = turn_rad - TAU * (turn_rad / TAU).floor();
-        // Just before the first beam means at the first beam: the approximate angle can fall short.
+        // Just before the first beam counts as on the first beam: the approximate angle can be a little too small.
         let turn_rad = if turn_rad > TAU - APPROXIMATE_ATAN2_ERROR_RAD { 0.0 } else { turn_rad };
         let guess = ((turn_rad / self.spacing_rad) as usize).min(beams);
-        // The exact cross products correct the guess.
+        // The exact cross products correct the approximate result.
         let off = 1 + ((APPROXIMATE_ATAN2_ERROR_RAD / self.spacing_rad) as usize).min(beams - 1);
         let lies_after = |beam: usize| sweep * self.in_laser[beam].perp(&toward) >= 0.0;
         (guess + beams.saturating_sub(off)..=guess + beams + off).find_map(|candidate| {
@@ -188,7 +188,7 @@ mod tests {
     }
 
     proptest::proptest! {
-        /// The oracle is the exact angle, for scans of any number of beams, either way round.
+        /// The reference is the exact angle, for scans with any number of beams, in both directions.
         #[test]
         fn enclosing_beams_enclose(beams in 3usize..2000, share in 0.1f64..=1.0, start in -PI..PI,
                                    clockwise: bool, bearing in -PI..PI, distance_m in 0.01f64..30.0) {

@@ -3,8 +3,8 @@
 use super::projection::ProjectedScan;
 use nalgebra::{Point2, Vector2};
 
-/// The direction of a surface is that of chords about this long, m, so that range noise
-/// does not turn the direction.
+/// The direction of a surface is computed from chords of about this length, m, so that range noise does not affect
+/// it.
 const CHORD_M: f64 = 0.075;
 /// A surface whose two sides meet at more than 25° turns a corner.
 const CORNER_COS: f64 = 0.9;
@@ -12,17 +12,18 @@ const CORNER_COS: f64 = 0.9;
 /// The end points of one scan, joined to surfaces.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Segmentation {
-    /// Per beam the end point of its hit, m.
+    /// For each beam the end point of its hit, m.
     pub(super) ends: Vec<Option<Point2<f64>>>,
-    /// Per beam whether the next beam hit the same surface.
+    /// For each beam whether the next beam hit the same surface.
     pub(super) joined: Vec<bool>,
-    /// Per beam the first and the last beam of its surface. A surface behind the seam of a full
-    /// turn counts as two.
+    /// For each beam the first and the last beam of its surface. A surface across the seam of a full turn counts as
+    /// two surfaces.
     surfaces: Vec<(usize, usize)>,
 }
 
 impl Segmentation {
-    /// Finds the end points, and the neighbors on one surface: those nearer to each other than `join_m`.
+    /// Finds the end points, and the neighboring beams on one surface: those whose end points are nearer to each
+    /// other than `join_m`.
     pub(super) fn segment(&mut self, scan: &ProjectedScan, join_m: f64) {
         self.ends.clear();
         self.ends.extend((0..scan.len()).map(|beam| scan.hit(beam)));
@@ -69,13 +70,13 @@ impl Segmentation {
         }
     }
 
-    /// The normal of the surface at a hit, towards the sensor. Where the surface turns a corner,
-    /// the normal of the straighter side: a normal across the corner would point out of the body.
+    /// The normal of the surface at a hit, toward the sensor. At a corner of the surface, the normal of the
+    /// straighter side: a normal across the corner would point out of the body.
     pub(super) fn normal(&self, beam: usize, end: &Point2<f64>, scan: &ProjectedScan) -> Vector2<f64> {
         let range_m = scan.returns[beam].clear_m();
         let step = 1 + ((CHORD_M / (range_m * scan.spacing_rad)) as u32 as usize).min(scan.len());
         let (first, last) = self.surfaces[beam];
-        // A beam to either side on the same surface, and the chords to their end points, m.
+        // One beam to each side on the same surface, and the chords to their end points, m.
         let (before, after) = (beam.saturating_sub(step).max(first), (beam + step).min(last));
         let chord = |to: usize| self.ends[to].map_or_else(Vector2::zeros, |to| to - end);
         let (back, ahead) = (chord(before), chord(after));

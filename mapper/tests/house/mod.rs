@@ -1,5 +1,5 @@
-//! A small house of four rooms with a laser in it, cast ray by ray against every wall: slow, and
-//! as simple as can be. It knows nothing of the simulator.
+//! A small house of four rooms with a laser; rays are cast one by one against every wall: slow, and as simple as
+//! possible. It does not use the simulator.
 #![allow(dead_code)] // every test file takes what it needs
 
 use interfaces::{CellState, GridFrame, LaserReading, Scan, Twist};
@@ -11,8 +11,7 @@ use std::f64::consts::TAU;
 
 pub(crate) const CELL_M: f64 = 0.05;
 
-/// A thing with a convex outline, counter-clockwise, that stands in the house from `from_s` until
-/// before `until_s`.
+/// A thing with a convex outline, counter-clockwise, that is in the house from `from_s` until before `until_s`.
 #[derive(Clone)]
 pub(crate) struct Thing {
     pub(crate) corners: Vec<Point2<f64>>,
@@ -21,7 +20,7 @@ pub(crate) struct Thing {
 }
 
 impl Thing {
-    /// Stands all the time.
+    /// A thing that is present at all times.
     pub(crate) fn always(corners: Vec<Point2<f64>>) -> Self {
         Self { corners, from_s: f64::NEG_INFINITY, until_s: f64::INFINITY }
     }
@@ -50,7 +49,7 @@ pub(crate) fn rectangle(x0: f64, y0: f64, x1: f64, y1: f64) -> Vec<Point2<f64>> 
 /// Outer walls, and a cross of inner walls with a door of 1 m in each arm.
 pub(crate) fn walls(thickness_m: f64) -> Vec<Vec<Point2<f64>>> {
     let (t, s) = (thickness_m, 12.0);
-    // The inner walls lie on cell borders whatever their thickness.
+    // The inner walls are on cell borders for any thickness.
     let (a, b) = (6.0 - (t / 2.0 / CELL_M).floor() * CELL_M, 6.0 + (t / 2.0 / CELL_M).ceil() * CELL_M);
     vec![
         rectangle(0.0, 0.0, s, t),
@@ -68,7 +67,7 @@ pub(crate) fn walls(thickness_m: f64) -> Vec<Vec<Point2<f64>>> {
 }
 
 impl House {
-    /// The house with walls of `thickness_m`, turned about its middle, in a grid that holds it.
+    /// The house with walls of `thickness_m`, rotated about its center, in a grid that contains it.
     pub(crate) fn new(thickness_m: f64, turn_deg: f64, noise_std_m: f64, beams: usize, seed: u64) -> Self {
         let margin = if turn_deg == 0.0 { 0.0 } else { 2.0 };
         let size = 12.0 + 2.0 * margin;
@@ -86,7 +85,7 @@ impl House {
         house
     }
 
-    /// Adds a thing given in the unturned house.
+    /// Adds a thing, given in the house before rotation.
     pub(crate) fn add(&mut self, mut thing: Thing) {
         for corner in &mut thing.corners {
             *corner = self.turned(*corner);
@@ -94,8 +93,8 @@ impl House {
         self.things.push(thing);
     }
 
-    /// What a perfect map says of a cell: [`CellState::Unknown`] where things cover a part of it. Walls
-    /// and things are thicker than the points looked at are apart.
+    /// The state of a cell in a perfect map: [`CellState::Unknown`] if things cover a part of it. Walls and things
+    /// are thicker than the distance between the sampled points.
     pub(crate) fn truth(&self, index: usize, time_s: f64) -> CellState {
         let middle = self.frame.center(self.frame.cell(index));
         let steps = [-0.499, -0.25, 0.0, 0.25, 0.499].map(|step| step * CELL_M);
@@ -107,7 +106,7 @@ impl House {
         }
     }
 
-    /// Whether a point lies inside of something that stands at `time_s`.
+    /// Whether a point is inside of something that is present at `time_s`.
     fn is_solid(&self, point: Point2<f64>, time_s: f64) -> bool {
         self.things.iter().filter(|thing| thing.stands(time_s)).any(|thing| {
             let corners = &thing.corners;
@@ -118,13 +117,13 @@ impl House {
         })
     }
 
-    /// The point of the turned house that belongs to one of the unturned house.
+    /// The point of the rotated house that corresponds to a point of the house before rotation.
     pub(crate) fn turned(&self, point: Point2<f64>) -> Point2<f64> {
         let middle = Point2::new(6.0, 6.0);
         middle + interfaces::rotation(self.turn_rad) * (point - middle)
     }
 
-    /// A round trip through the four rooms at 0.3 m/s, given in the unturned house.
+    /// A round trip through the four rooms at 0.3 m/s, given in the house before rotation.
     pub(crate) fn tour(&self, time_s: f64) -> Isometry2<f64> {
         let stops = [
             (3.0, 3.0),
@@ -159,7 +158,7 @@ impl House {
         unreachable!("the tour has no end")
     }
 
-    /// The reading at a pose, with discs (middle, radius) that move.
+    /// The reading at a pose, with moving discs (center, radius).
     pub(crate) fn reading(
         &mut self,
         time_s: f64,

@@ -1,4 +1,4 @@
-//! What a broken sensor can send: refused with the maps as they were, or taken for what it means.
+//! Readings of a broken sensor: they are refused without a change of the maps, or used with their defined meaning.
 
 use crate::house::{House, Thing, rectangle};
 use crate::observed::{Observed, assert_sound};
@@ -38,7 +38,7 @@ fn edited(edit: impl FnOnce(&mut LaserReading)) -> LaserReading {
     reading
 }
 
-/// A mapper that has seen the room.
+/// A mapper that has observed the room.
 fn learned(occupancy: OccupancyChoice) -> Mapper {
     let mut mapper = mapper(occupancy);
     for scan in 0..20 {
@@ -47,7 +47,7 @@ fn learned(occupancy: OccupancyChoice) -> Mapper {
     mapper
 }
 
-/// The whole state of the mapper, also what is never shown.
+/// The complete state of the mapper, including internal values.
 fn inside(mapper: &Mapper) -> String {
     format!("{mapper:?}")
 }
@@ -102,7 +102,7 @@ fn nonsense_is_refused_and_changes_nothing() {
     }
 }
 
-/// The cells that a beam along +x from (2, 2) shows, as a picture: from the sensor to the border.
+/// The cells that a beam along +x from (2, 2) changes, drawn from the sensor to the border.
 fn along_first_beam(range_m: f32) -> String {
     let mut mapper = mapper(OccupancyChoice::steady());
     for scan in 0..30 {
@@ -138,10 +138,10 @@ fn a_reading_may_repeat_the_last_time() {
     assert_sound(&mapper);
 }
 
-/// What is odd about a reading.
+/// The unusual property of a reading.
 type Edit = Box<dyn Fn(&mut LaserReading)>;
 
-/// Scans that are odd but lawful.
+/// Scans that are unusual but valid.
 #[test]
 fn odd_scans_are_taken() {
     let far = 1e5;
@@ -196,7 +196,7 @@ fn odd_scans_are_taken() {
     }
 }
 
-/// Seen from beside the grid, the map fills as if the grid were larger.
+/// With the sensor outside of the grid, the map is filled as if the grid were larger.
 #[test]
 fn a_laser_outside_of_the_grid_sees_into_it() {
     let mut house = House::new(0.1, 0.0, 0.0, 360, 1);
@@ -239,7 +239,7 @@ fn settings_that_contradict_are_refused() {
     );
 }
 
-/// Every setting at its limits, in a house where a box comes and goes.
+/// Every setting at its limits, in a house where a box appears and disappears.
 #[test]
 fn lawful_settings_are_lived_with() {
     let edits: [fn(&mut SurfaceGridSettings); 9] = [
@@ -277,7 +277,7 @@ fn lawful_settings_are_lived_with() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Any bits in the ranges, from any pose: taken, and the same twice.
+    /// Any bits as ranges, from any pose: accepted, with the same result twice.
     #[test]
     fn any_ranges_are_taken(
         scans in prop::collection::vec(

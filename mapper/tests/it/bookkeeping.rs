@@ -1,4 +1,4 @@
-//! Change statistics and features against a book that keeps every reading and recomputes everything
+//! Change statistics and features, compared with a reference that stores every reading and recomputes everything
 //! from the definitions each time.
 
 use crate::observed::{assert_sound, features};
@@ -14,7 +14,7 @@ fn frame() -> GridFrame {
     GridFrame::new(Point2::origin(), 1.0, WIDTH as usize, HEIGHT as usize).unwrap()
 }
 
-/// One reading: a window of cells, of which some changed since they were last seen.
+/// One reading: a window of cells, some of which changed since they were last seen.
 #[derive(Clone, Debug)]
 struct Glance {
     wait: f64,
@@ -22,7 +22,7 @@ struct Glance {
     size: (i32, i32),
     /// Bit i: the cell at place i changes before this reading.
     changes: u32,
-    /// Whether somebody asks for the features after it.
+    /// Whether the features are computed after it.
     asks: bool,
 }
 
@@ -36,14 +36,14 @@ fn glances() -> impl Strategy<Value = Vec<Glance>> {
     prop::collection::vec(glance, 1..60)
 }
 
-/// All that was ever seen of a cell: the reading's number, its time, and whether the cell was blocked.
+/// All observations of a cell: the number of the reading, its time, and whether the cell was blocked.
 type Sightings = Vec<(usize, f64, bool)>;
 
 struct Book {
     sightings: Vec<Sightings>,
-    /// Cells known before the first reading were seen "at time 0", long before it.
+    /// Cells that are known before the first reading were seen "at time 0", long before it.
     prior: Vec<CellState>,
-    /// Gaps up to this do not count.
+    /// Gaps up to this length do not count.
     max_gap: f64,
     /// The times of the readings.
     times: Vec<f64>,
@@ -98,8 +98,8 @@ impl Book {
         seen
     }
 
-    /// Cycles per unit of time by the definitions of the estimators; none of those that weigh gaps, which
-    /// have tests of their own.
+    /// Cycles per unit of time by the definitions of the estimators. Estimators that weigh gaps are left out; they
+    /// have separate tests.
     fn rate(&self, index: usize, estimator: &str) -> Option<f64> {
         let seen = self.statistics(index);
         let (block, free) = (f64::from(seen.block_events), f64::from(seen.free_events));
@@ -123,7 +123,7 @@ impl Book {
             }
             _ => return None,
         };
-        // 0/0: events, but no time in which they could be counted.
+        // 0/0: events, but no time in view.
         Some(if interval > 1e-9 { 1.0 / interval } else { 0.0 })
     }
 
@@ -231,7 +231,8 @@ proptest! {
         }
     }
 
-    /// Times that stand still, crawl or leap, and cells that are said to be both: figures stay figures.
+    /// Times that stay equal, advance slowly or jump, and contradicting states of cells: all results must be valid
+    /// numbers.
     #[test]
     fn no_stream_makes_a_rate_that_is_not_a_number(
         readings in prop::collection::vec(

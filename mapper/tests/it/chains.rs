@@ -1,4 +1,4 @@
-//! The estimators on cells that are simulated two-state Markov chains: the truth is known.
+//! The estimators on cells that are simulated two-state Markov chains, so that the true rates are known.
 
 use interfaces::{Cell, CellReading, GridFrame};
 use mapper::{EstimatorChoice, Mapper, MapperSettings};
@@ -7,8 +7,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Exp};
 
-/// A cell that gets blocked `block_hz` times per second while free, and free `free_hz` times per
-/// second while blocked.
+/// A cell that becomes blocked at the rate `block_hz` (1/s) while free, and free at the rate `free_hz` (1/s) while
+/// blocked.
 #[derive(Clone, Copy)]
 struct Chain {
     block_hz: f64,
@@ -24,7 +24,7 @@ impl Chain {
         self.free_hz / (self.block_hz + self.free_hz)
     }
 
-    /// The probability that a free cell is blocked `gap_s` later (the forward equation's solution).
+    /// The probability that a free cell is blocked `gap_s` later (solution of the forward equation).
     fn blocked_after(self, gap_s: f64) -> f64 {
         let sum_hz = self.block_hz + self.free_hz;
         self.block_hz / sum_hz * (1.0 - (-sum_hz * gap_s).exp())
@@ -35,8 +35,8 @@ const SAMPLE_S: f64 = 0.1;
 const CELLS: usize = 8;
 const READINGS: usize = 150_000;
 
-/// The mean rate over some cells that follow `chain`, each of which is looked at whenever
-/// `looks(reading, blocked now, reading in which it was last seen blocked)` says so.
+/// The mean rate over cells that follow `chain`. Each cell is observed whenever `looks(reading, blocked now,
+/// reading in which it was last seen blocked)` is true.
 fn estimates(chain: Chain, looks: impl Fn(usize, bool, usize) -> bool) -> impl Fn(&str) -> f64 {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let frame = GridFrame::new(Point2::origin(), 1.0, CELLS, 1).unwrap();
@@ -89,8 +89,8 @@ fn in_full_view_every_estimator_finds_the_rate() {
     }
 }
 
-/// In view for 10 of 40 readings: the changes found after a gap are counted by `paper-all`, but not
-/// the time in which they can have happened. The bias follows from the chain.
+/// In view for 10 of 40 readings: `paper-all` counts the changes found after a gap, but not the time in which they
+/// can have happened. The bias follows from the chain.
 #[test]
 fn in_short_visits_counting_changes_after_gaps_biases() {
     let rate = estimates(FAST, |reading, _, _| reading % 40 < 10);
@@ -100,7 +100,7 @@ fn in_short_visits_counting_changes_after_gaps_biases() {
     let (view_s, gap_s) = (9.0 * SAMPLE_S, 31.0 * SAMPLE_S);
     let after_gap = FAST.share_free() * FAST.blocked_after(gap_s) / view_s;
     assert_within(rate("paper-all"), FAST.cycle_rate() + after_gap, 0.05);
-    // iMac does not know of gaps at all: a state is left by chance at every observation.
+    // iMac has no model of gaps: at every observation, a state is left with a constant probability.
     let leave = |in_view: f64, after_gap: f64| (9.0 * in_view + after_gap) / 10.0;
     let blocked = |elapsed_s: f64| FAST.blocked_after(elapsed_s) / (1.0 - FAST.share_free());
     let [enter, exit] = [1.0 - FAST.share_free(), FAST.share_free()]
@@ -108,7 +108,7 @@ fn in_short_visits_counting_changes_after_gaps_biases() {
     assert_within(rate("imac"), 1.0 / (1.0 / enter + 1.0 / exit) / SAMPLE_S, 0.05);
 }
 
-/// Glances apart from each other: nothing happens in view, and only the gaps tell.
+/// Single observations: nothing happens in view, and only the gaps contain information.
 #[test]
 fn single_glances_tell_the_rate_by_their_gaps() {
     let chain = Chain { block_hz: 0.02, free_hz: 0.05 };
@@ -116,7 +116,7 @@ fn single_glances_tell_the_rate_by_their_gaps() {
     assert_within(rate("two-state-gaps"), chain.cycle_rate(), 0.05);
     assert_eq!(rate("paper"), 0.0);
     assert_eq!(rate("two-state"), 0.0);
-    // A change and the change back between two glances are no change: too few changes are seen.
+    // A change and the reverse change between two observations are not seen: too few changes are counted.
     let (share, gap_s) = (chain.share_free(), 50.0 * SAMPLE_S);
     let changed = 2.0 * share * chain.blocked_after(gap_s);
     let poisson = -(1.0 - changed).ln() / gap_s / 2.0;
@@ -124,9 +124,8 @@ fn single_glances_tell_the_rate_by_their_gaps() {
     assert!(poisson < 0.9 * chain.cycle_rate());
 }
 
-/// A robot that looks on while the cell is blocked and for 5 s after, as one that follows a moving
-/// thing does: the paper's rate is that of the moments it looks at; conditioned on the state, it is
-/// right.
+/// A robot that observes a cell while it is blocked and for 5 s after, like a robot that follows a moving thing:
+/// the paper's rate is the rate during these times; the rate conditioned on the state is correct.
 #[test]
 fn looking_where_things_happen_biases_the_paper_and_not_two_state() {
     let chain = Chain { block_hz: 0.005, free_hz: 0.1 };

@@ -1,4 +1,4 @@
-//! What must hold of estimates whatever was seen, and how `two-state-gaps` deals with what is no Markov chain.
+//! Properties of estimates for any observations, and how `two-state-gaps` treats cells that are not Markov chains.
 
 use interfaces::{Cell, CellReading, GridFrame};
 use mapper::{EstimatorChoice, Mapper, MapperSettings, TwoState, TwoStateGaps};
@@ -15,14 +15,14 @@ fn mapper(estimator: impl Into<EstimatorChoice>, cells: usize) -> Mapper {
     Mapper::new(&MapperSettings { estimator, ..MapperSettings::default() }, frame).unwrap()
 }
 
-/// Shows a mapper the states of some cells, given with their columns.
+/// Gives a mapper the states of some cells, each with its column.
 fn show(mapper: &mut Mapper, time: f64, cells: impl IntoIterator<Item = (usize, bool)>) {
     let cells = cells.into_iter().map(|(x, blocked)| (Cell::new(x as i32, 0), blocked)).collect();
     mapper.update(&CellReading { time, pose: interfaces::pose(0.0, 0.0, 0.0), cells }).unwrap();
 }
 
-/// Chains that leave their states with `leave` (free, blocked) per step, `apart` columns from each other, all seen
-/// whenever `looks` says so.
+/// Chains that leave their states with the probabilities `leave` (free, blocked) per step, `apart` columns from
+/// each other, all observed whenever `looks` is true.
 fn chains(count: usize, apart: usize, steps: u32, leave: [f64; 2], looks: fn(u32) -> bool) -> Mapper {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let share_blocked = leave[0] / (leave[0] + leave[1]);
@@ -43,7 +43,7 @@ fn cycle_rate([block, free]: [f64; 2]) -> f64 {
     block * free / (block + free)
 }
 
-/// A stream of looks at three cells: which of them are seen, and which are blocked.
+/// A stream of observations of three cells: which of them are seen, and which are blocked.
 fn streams() -> impl Strategy<Value = Vec<[(bool, bool); 3]>> {
     prop::collection::vec(prop::array::uniform3((prop::bool::weighted(0.7), any::<bool>())), 2..120)
 }
@@ -65,7 +65,7 @@ fn assert_near(found: f64, expected: f64) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// A cycle is blocked → free → blocked as much as free → blocked → free.
+    /// A cycle blocked → free → blocked counts the same as free → blocked → free.
     #[test]
     fn free_and_blocked_are_alike(stream in streams()) {
         for estimator in &EstimatorChoice::all() {
@@ -89,7 +89,7 @@ proptest! {
         }
     }
 
-    /// A cell has a rate above 0 only if it was seen in both states, and its interval then holds the rate.
+    /// A cell has a rate above 0 only if it was seen in both states, and its interval then contains the rate.
     #[test]
     fn only_what_changed_has_a_rate(stream in streams()) {
         for estimator in &EstimatorChoice::all() {
@@ -127,8 +127,8 @@ fn nine_of_ten_intervals_of_mass_0_9_hold_the_truth() {
     }
 }
 
-/// Cells side by side that change each for itself: with their neighbours the estimates scatter less, but no
-/// interval gets narrower for it.
+/// Neighboring cells that change independently: with neighbors the estimates scatter less, but no interval becomes
+/// narrower.
 #[test]
 fn neighbours_move_an_estimate_and_make_it_no_surer() {
     const CELLS: usize = 100;
@@ -147,8 +147,8 @@ fn neighbours_move_an_estimate_and_make_it_no_surer() {
     assert!((near[1] / alone[1] - 1.0).abs() < 0.15, "widths {} and {}", near[1], alone[1]);
 }
 
-/// A block that comes towards the robot hides the cell that it enters next: the cell is never seen getting
-/// blocked, only found blocked. Free for 20 steps, blocked for 5, hidden in the last 5 of the 20.
+/// A block that comes toward the robot hides the cell that it enters next: the cell is never seen becoming blocked,
+/// only found blocked. Free for 20 steps, blocked for 5, hidden in the last 5 of the 20.
 #[test]
 fn a_cell_that_is_hidden_before_it_gets_blocked_still_has_its_rate() {
     let rate = |estimator: EstimatorChoice| {
@@ -164,8 +164,8 @@ fn a_cell_that_is_hidden_before_it_gets_blocked_still_has_its_rate() {
     assert!(in_view < 0.1, "{in_view}: it counts only what it sees happen");
 }
 
-/// Stays by the clock, seen for 30 of about 130 steps at any phase: after 20 steps out of view nothing is left
-/// of the stay, where a Markov chain would have more than a third left.
+/// Stays of equal length, seen for 30 of about 130 steps at any phase: after 20 steps out of view the stay has
+/// certainly ended, while a Markov chain would have more than a third left.
 #[test]
 fn stays_by_the_clock_are_no_chain() {
     const CELLS: usize = 20;

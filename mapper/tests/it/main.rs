@@ -1,4 +1,4 @@
-//! What must hold of the mapper as its users see it.
+//! Tests of the mapper through its public interface.
 
 #[path = "../house/mod.rs"]
 mod house;

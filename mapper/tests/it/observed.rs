@@ -1,10 +1,10 @@
-//! Everything that can be read of a mapper, to compare.
+//! All public results of a mapper, for comparison.
 
 use interfaces::{Cell, CellState, Transition};
 use mapper::{CellStatistics, Mapper};
 use nalgebra::Point2;
 
-/// One cell as its readers see it.
+/// The public results for one cell.
 #[derive(Debug, PartialEq)]
 pub(crate) struct ObservedCell {
     state: CellState,
@@ -20,7 +20,7 @@ pub(crate) fn features(mapper: &mut Mapper) -> [f64; 2] {
     [mapper.sum_change_probability(), mapper.max_recency()]
 }
 
-/// A mapper as its readers see it; figures are compared bit by bit.
+/// The public results of a mapper; numbers are compared bit by bit.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Observed {
     cells: Vec<ObservedCell>,
@@ -34,7 +34,7 @@ pub(crate) struct Observed {
 
 impl Observed {
     pub(crate) fn of(mapper: &Mapper) -> Self {
-        // Quantiles take long; a part of the cells tells as much.
+        // Quantiles take long to compute; a part of the cells is enough.
         let interval = |index: usize| match index % 17 {
             0 => mapper.credible_interval(index, 0.9),
             _ => (0.0, 0.0),
@@ -78,7 +78,7 @@ pub(crate) fn changes(mapper: &Mapper) -> impl Iterator<Item = Cell> {
         .map(|transition| transition.cell)
 }
 
-/// Every figure of every cell makes sense: no NaN, no infinite rate, no negative time.
+/// Every number of every cell is valid: no NaN, no infinite rate, no negative time.
 pub(crate) fn assert_sound(mapper: &Mapper) {
     for index in 0..mapper.frame().len() {
         let seen = mapper.statistics(index);

@@ -5,7 +5,7 @@ use crate::observed::{assert_sound, changes};
 use interfaces::{CellState, Event, Grid};
 use mapper::{Mapper, MapperSettings, OccupancyChoice};
 
-/// A house as it was, with a box that is gone by now and without one that has come.
+/// A prior map of a house: with a box that has been removed since, and without a box that has appeared since.
 fn prior(house: &House) -> Grid<CellState> {
     let cells = (0..house.frame.len()).map(|index| house.truth(index, 0.0)).collect();
     Grid::from_cells(house.frame, cells).unwrap()
@@ -61,7 +61,7 @@ fn changes_are_found_against_it_and_nothing_else() {
     }
     assert_eq!(went, 64, "all of the box that went");
     assert!(came >= 8, "the near sides of the box that came: {came}");
-    // Nobody watched these changes happen.
+    // These changes were not in view.
     for index in mapper.changed() {
         let seen = mapper.statistics(index);
         assert_eq!((seen.block_events + seen.free_events, seen.events()), (0, 1), "{seen:?}");

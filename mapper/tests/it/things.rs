@@ -1,4 +1,4 @@
-//! Things that come, go, and pass by.
+//! Things that appear, disappear, and move past.
 
 use crate::house::{House, Thing, rectangle};
 use crate::observed::changes;
@@ -7,17 +7,17 @@ use mapper::{Mapper, MapperSettings, SurfaceGridSettings};
 use nalgebra::{Isometry2, Point2};
 
 const PERIOD_S: f64 = 0.1;
-/// When things come and go.
+/// The times at which things appear and disappear.
 const MOMENT_S: f64 = 30.0;
 
-/// Half a metre of slow circling in the lower left room.
+/// Half a meter of slow circling in the lower left room.
 fn circle(house: &House, time_s: f64) -> Isometry2<f64> {
     let angle = 0.1 * time_s;
     let at = house.turned(Point2::new(3.0 + 0.8 * angle.cos(), 2.0 + 0.8 * angle.sin()));
     interfaces::pose(at.x, at.y, angle)
 }
 
-/// Scans the house up to `until_s`, and tells after every scan.
+/// Scans the house up to `until_s`, and calls the closure after every scan.
 fn watch(house: &mut House, until_s: f64, mut after: impl FnMut(f64, &Mapper, &House)) {
     let mut mapper = Mapper::new(&MapperSettings::default(), house.frame).unwrap();
     for scan in 0..(until_s / PERIOD_S) as u32 {
@@ -28,7 +28,7 @@ fn watch(house: &mut House, until_s: f64, mut after: impl FnMut(f64, &Mapper, &H
     }
 }
 
-/// The houses that things stand in: as the grid lies, and turned with noise.
+/// The houses for the things: aligned with the grid, and rotated with noise.
 fn houses() -> [House; 2] {
     [House::new(0.1, 0.0, 0.0, 360, 2), House::new(0.1, 10.0, 0.01, 360, 2)]
 }
@@ -100,7 +100,7 @@ fn cells_are_free_again_behind_a_disc_that_passes_along_a_wall() {
             if scan % 10 != 0 || time_s < 25.0 {
                 continue;
             }
-            // Where the disc was until 2 s ago.
+            // The places where the disc was until 2 s ago.
             let mut blocked = Vec::new();
             for index in 0..house.frame.len() {
                 let middle = house.frame.center(house.frame.cell(index));
@@ -123,7 +123,7 @@ fn cells_are_free_again_behind_a_disc_that_passes_along_a_wall() {
     }
 }
 
-/// One scan of nonsense among good ones, for a mapper that is told of spurious returns.
+/// One nonsense scan among good ones, for a mapper that is configured for spurious returns.
 #[test]
 fn a_single_scan_of_noise_changes_nothing() {
     let mut house = House::new(0.1, 0.0, 0.0, 360, 2);

@@ -1,4 +1,4 @@
-//! A static place never changes, however long one looks.
+//! A static environment never changes in the map, however long it is observed.
 
 use crate::house::House;
 use crate::observed::{Observed, assert_sound, changes};
@@ -13,7 +13,7 @@ fn tour(house: &mut House) -> Vec<LaserReading> {
     (0..SCANS).map(|scan| house.reading(time_s(scan), house.tour(time_s(scan)), &[])).collect()
 }
 
-/// The mapper after all readings, and how many changes of known cells it reported.
+/// The mapper after all readings, and the number of changes of known cells that it reported.
 fn learn(house: &House, readings: &[LaserReading], occupancy: OccupancyChoice) -> (Mapper, usize) {
     let settings = MapperSettings { occupancy, ..MapperSettings::default() };
     let mut mapper = Mapper::new(&settings, house.frame).unwrap();
@@ -59,7 +59,7 @@ fn turned_walls_and_noise_make_hardly_any_change() {
     }
 }
 
-/// Every cell that the map knows is as it really is, and it knows all that can be seen.
+/// Every known cell has its true state, and every cell that can be seen is known.
 #[test]
 fn the_map_is_the_true_grid() {
     let house = House::new(0.1, 0.0, 0.0, 360, 1);

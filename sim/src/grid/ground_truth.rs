@@ -3,18 +3,17 @@ use interfaces::{Cell, GridFrame, GroundTruth, TrueChange, TrueState};
 use std::borrow::Cow;
 
 /// The ground truth of a grid world.
+/// A step ends when the robot and all blocks have moved. A change is a difference between the ends of two steps: if
+/// one block leaves a cell and another block enters it in the same step, the cell does not change. The robot does
+/// not block any cell.
 ///
-/// A step ends when the robot and all blocks have moved. A change is a difference between the ends of two
-/// steps: where one block leaves a cell and another block enters the cell in the same step, nothing has changed.
-/// The robot blocks no cell.
-///
-/// The cost of a step is in proportion to the number of blocks that move.
+/// The computing time of a step is proportional to the number of blocks that move.
 #[derive(Clone, Debug)]
 pub struct GridGroundTruth {
     frame: GridFrame,
     time: u64,
     cells: Vec<CellTruth>,
-    /// Cells that are connected with the start of the robot, past blocks but not walls.
+    /// The cells that are connected with the start of the robot. Walls separate cells, blocks do not.
     reachable: Vec<bool>,
     swept: Vec<usize>,
     things: Vec<Vec<usize>>,
@@ -29,7 +28,7 @@ struct CellTruth {
     is_swept: bool,
     block_events: u32,
     free_events: u32,
-    /// How long the cell was blocked before it took its present state, steps.
+    /// The time for which the cell was blocked before it took its present state, steps.
     blocked_before: u64,
     /// The time at which the cell took its present state, steps.
     since: u64,
@@ -67,15 +66,14 @@ impl GridGroundTruth {
         self.cells[index].free_events
     }
 
-    /// How long a cell was blocked so far, steps.
+    /// The time for which a cell was blocked so far, steps.
     pub fn blocked_time(&self, index: usize) -> f64 {
         let cell = &self.cells[index];
         let now = if cell.is_blocked { self.time - cell.since } else { 0 };
         (cell.blocked_before + now) as f64
     }
 
-    /// Takes over a step, in which the blocks `moved` from cell to cell. `is_blocked` gives the present state of a
-    /// cell.
+    /// Applies a step in which blocks `moved` from cell to cell. `is_blocked` returns the present state of a cell.
     pub(super) fn update(&mut self, moved: &[(Cell, Cell)], is_blocked: impl Fn(Cell) -> bool) {
         self.time += 1;
         self.changes.clear();

@@ -1,11 +1,12 @@
 //! The grid world: cells, blocks that move, a robot with an exact sensor (paper, section 5, figure 3).
 //!
-//! [`GridSpec`] describes a world or makes a random one, [`GridWorld`] simulates it, a
-//! step at a time. [`GridGroundTruth`] is for metrics.
+//! [`GridSpec`] describes a world or generates a random one; [`GridWorld`] simulates it step by step.
+//! [`GridGroundTruth`] is for metrics.
 //!
-//! In every step the robot acts first: it stays, or moves to a free cell that shares a side with its own. Then the
-//! blocks move, in the order of the spec. A block that has stood for its dwell moves to the next cell of its path; it
-//! waits while the robot or another block is there. The spec can give both a probability below 1.
+//! In every step the robot acts first: it stays, or moves to a free cell that shares a side with its cell. Then the
+//! blocks move, in the order of the spec. A block that has stayed on its cell for its dwell moves to the next cell
+//! of its path; the block waits while the robot or another block is there. The spec can give moves of blocks and
+//! actions of the robot a probability below 1.
 //!
 //! ```
 //! use interfaces::{Step, World};

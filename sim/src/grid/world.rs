@@ -77,9 +77,9 @@ impl World for GridWorld {
     type Reading = CellReading;
     type Command = Step;
 
-    /// Every cell of the map within the radius of the sensor and in line of sight: the cell of the robot, then the
-    /// others by direction counter-clockwise from the right and from near to far. The heading is always 0. No
-    /// reading is random.
+    /// The states of all cells of the map that are within the range of the sensor and in line of sight: first the
+    /// cell of the robot, then the others by direction, counter-clockwise from the right, and from near to far. The
+    /// heading is always 0. Readings have no randomness.
     fn sense(&mut self) -> CellReading {
         let center = self.spec.frame().center(self.robot);
         CellReading {

@@ -2,22 +2,22 @@ use interfaces::Twist;
 use nalgebra::Isometry2;
 use serde::{Deserialize, Serialize};
 
-/// A velocity in a robot's own frame.
+/// A velocity in the frame of the robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Velocity {
-    /// Forwards, m/s.
+    /// Linear velocity forward, m/s.
     pub forward_mps: f64,
-    /// To the left, m/s; only an omni drive has any.
+    /// Linear velocity to the left, m/s; 0 unless the drive is an omni drive.
     pub left_mps: f64,
-    /// Counter-clockwise, rad/s.
+    /// Angular velocity, counter-clockwise, rad/s.
     pub turn_radps: f64,
 }
 
 impl Velocity {
-    /// Standing still.
+    /// Zero velocity.
     pub const STOP: Self = Self { forward_mps: 0.0, left_mps: 0.0, turn_radps: 0.0 };
 
-    /// The same without the velocity to the left.
+    /// The same velocity without the component to the left.
     pub fn twist(&self) -> Twist {
         Twist { linear_mps: self.forward_mps, angular_radps: self.turn_radps }
     }
@@ -29,32 +29,32 @@ impl From<Twist> for Velocity {
     }
 }
 
-/// An acceleration in a robot's own frame.
+/// An acceleration in the frame of the robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Acceleration {
-    /// Forwards, m/s².
+    /// Linear acceleration forward, m/s².
     pub forward_mps2: f64,
-    /// To the left, m/s²; only an omni drive has any.
+    /// Linear acceleration to the left, m/s²; 0 unless the drive is an omni drive.
     pub left_mps2: f64,
-    /// Counter-clockwise, rad/s².
+    /// Angular acceleration, counter-clockwise, rad/s².
     pub turn_radps2: f64,
 }
 
-/// A command to a robot. It holds until the next command. The bounds of the velocity and the acceleration of
-/// the robot hold for every command. A command that is not a number stops the robot.
+/// A command to a robot. The command is valid until the next command. Every command is limited to the maximum
+/// velocity and acceleration of the robot. A command that contains NaN stops the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub enum Command {
-    /// To move at this velocity.
+    /// Move at this velocity.
     Velocity(Velocity),
-    /// To change its velocity at this rate.
+    /// Change the velocity at this rate.
     Acceleration(Acceleration),
-    /// To drive straight to this pose by odometry, and to stop there to within 0.01 m and 0.01 rad, without
-    /// regard to obstacles. A car stops within 0.05 m, with any heading.
+    /// Drive straight to this pose by odometry, and stop there with an error of at most 0.01 m and 0.01 rad.
+    /// Obstacles are ignored. A car stops within 0.05 m, with any heading.
     GoTo(#[serde(with = "interfaces::serde_pose")] Isometry2<f64>),
 }
 
 impl Command {
-    /// To stand still.
+    /// Stop.
     pub const STOP: Self = Self::Velocity(Velocity::STOP);
 }
 

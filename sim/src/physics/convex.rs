@@ -1,9 +1,9 @@
-//! Convex bodies by their corners, counter-clockwise, m.
+//! Convex bodies, given by their corners, counter-clockwise, m.
 
 use nalgebra::{Point2, Vector2};
 
-/// The gap between two convex bodies, m, across the side that separates them best: at most their distance, and
-/// negative if they overlap.
+/// The gap between two convex bodies, m, measured across the side that separates them best: at most their distance,
+/// and negative if they overlap.
 pub fn gap_m(a: &[Point2<f64>], b: &[Point2<f64>]) -> f64 {
     beyond_m(a, b).max(beyond_m(b, a))
 }

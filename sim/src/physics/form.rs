@@ -6,12 +6,12 @@ use nalgebra::{Isometry2, Point2, Vector2};
 pub enum Form {
     /// A disc.
     Disc {
-        /// The centre, m.
+        /// The center, m.
         center: Point2<f64>,
         /// The radius, m.
         radius_m: f64,
     },
-    /// A convex body by its corners, counter-clockwise, m.
+    /// A convex body, given by its corners, counter-clockwise, m.
     Convex(Vec<Point2<f64>>),
 }
 
@@ -33,7 +33,7 @@ impl Form {
         }
     }
 
-    /// The distance to a point, m; negative inside.
+    /// The distance to a point, m; negative if the point is inside.
     pub fn gap_m_to(&self, point: &Point2<f64>) -> f64 {
         match self {
             Self::Disc { center, radius_m } => (point - center).norm() - radius_m,

@@ -1,9 +1,9 @@
-//! The physics world: a house with robots that have bodies and lasers (paper, section 5).
+//! The physics world: a building and robots with bodies and lasers (paper, section 5).
 //!
-//! [`FleetSpec`] describes a world with any number of robots, and [`Fleet`] simulates it.
-//! [`WorldSpec`] and [`PhysicsWorld`] are the same for a world in which one robot is driven, with the
-//! [`PhysicsGroundTruth`] of every cell, for metrics. Bodies and contacts are those of rapier; rays are our
-//! own, exact to the geometry.
+//! [`FleetSpec`] describes a world with any number of robots, and [`Fleet`] simulates it. [`WorldSpec`] and
+//! [`PhysicsWorld`] are the same for a world in which exactly one robot is driven, with the [`PhysicsGroundTruth`]
+//! of every cell, for metrics. Bodies and contacts are simulated by rapier. The ray casting is part of this crate,
+//! and exact for the given geometry.
 
 mod behaviors;
 mod bodies;

@@ -1,4 +1,4 @@
-//! What happens in a world, and what there is to show of it.
+//! What happens in a world, and the values that a viewer shows.
 
 use interfaces::Cell;
 use nalgebra::Point2;
@@ -15,11 +15,11 @@ pub enum Body {
     Robot(usize),
 }
 
-/// The beginning of a contact between a robot and another body. The two have to separate by a millimetre
-/// before the next contact counts. When two robots touch, each of them has a contact.
+/// The beginning of a contact between a robot and another body. The two bodies must separate by a millimeter before
+/// the next contact is counted. If two robots touch each other, there is one contact for each of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// The time, s.
+    /// The time at which the contact began, s.
     pub time_s: f64,
     /// The index of the robot.
     pub robot: usize,
@@ -27,16 +27,16 @@ pub struct Contact {
     pub with: Body,
     /// The position of the contact, m.
     pub at: Point2<f64>,
-    /// Whether the robot itself moved: a collision. `false`: the robot stood still, and something hit it.
+    /// Whether the robot itself moved: a collision. `false` if the robot stood still and the other body hit it.
     pub moving: bool,
     /// The impulse of the first step of the contact, N·s.
     pub impulse_ns: f64,
 }
 
-/// The arrival or removal of an obstacle.
+/// The appearance or disappearance of an obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObstacleEvent {
-    /// The time at which it really happened, s.
+    /// The time at which the obstacle really appeared or disappeared, s.
     pub time_s: f64,
     /// The index of the obstacle.
     pub obstacle: usize,

@@ -1,25 +1,25 @@
-//! Rectangles, and how points, segments and poses lie to each other.
+//! Rectangles, and geometric relations between points, segments and poses.
 
 use super::convex::gap_m;
 pub use super::convex::point_segment_m;
 use interfaces::rotation;
 use nalgebra::{Isometry2, Point2, Rotation2, Translation2, UnitComplex, Vector2};
 
-/// Bodies that overlap by less than this only touch, m. The value is far above rounding, and far below anything
-/// that a laser or a map can resolve.
+/// Bodies whose overlap is smaller than this only touch, m. The value is far above rounding errors, and far below
+/// the resolution of a laser or a map.
 pub const TOUCH_M: f64 = 1e-6;
 
 /// A rectangle at any pose: a wall or a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
-    /// The centre, and the direction of the first side, m and rad.
+    /// The center, and the direction of the first side, m and rad.
     pub pose: Isometry2<f64>,
     /// Half the length of each side, m.
     pub half_m: Vector2<f64>,
 }
 
 impl Rectangle {
-    /// The upright rectangle between two opposite corners (m).
+    /// The axis-aligned rectangle between two opposite corners (m).
     pub fn between(min: Point2<f64>, max: Point2<f64>) -> Self {
         let middle = nalgebra::center(&min, &max);
         Self {
@@ -28,17 +28,17 @@ impl Rectangle {
         }
     }
 
-    /// The rectangle of `thickness_m` whose centre line runs from `from` to `to` (m).
+    /// The rectangle of `thickness_m` whose center line runs from `from` to `to` (m).
     pub fn along(from: Point2<f64>, to: Point2<f64>, thickness_m: f64) -> Self {
         let (along, middle) = (to - from, nalgebra::center(&from, &to));
         let length_m = along.norm();
-        // Not by way of an angle: an upright wall stays exactly upright.
+        // Without computing an angle: a vertical wall stays exactly vertical.
         let turn = UnitComplex::from_cos_sin_unchecked(along.x / length_m, along.y / length_m);
         let half_m = Vector2::new(length_m, thickness_m) / 2.0;
         Self { pose: Isometry2::from_parts(middle.into(), turn), half_m }
     }
 
-    /// The rectangle with the centre `center` and sides of `size` (m), rotated by `heading_rad`.
+    /// The rectangle with the center `center` and sides of `size` (m), rotated by `heading_rad`.
     pub fn around(center: Point2<f64>, size: Vector2<f64>, heading_rad: f64) -> Self {
         Self { pose: Isometry2::from_parts(center.into(), rotation(heading_rad)), half_m: size / 2.0 }
     }
@@ -56,8 +56,8 @@ impl Rectangle {
         Vector2::new(outside(local.x, self.half_m.x), outside(local.y, self.half_m.y)).norm()
     }
 
-    /// The range at which a ray from `origin` along the unit vector `direction` hits the rectangle, m; 0 from inside,
-    /// `None` for a miss.
+    /// The range at which a ray from `origin` (m) in the direction of the unit vector `direction` hits the
+    /// rectangle, m; 0 if the origin is inside, `None` if the ray misses.
     pub fn ray_m(&self, origin: &Point2<f64>, direction: &Vector2<f64>) -> Option<f64> {
         let from = self.pose.inverse_transform_point(origin);
         let along = self.pose.inverse_transform_vector(direction);
@@ -76,7 +76,8 @@ impl Rectangle {
         (enter_m <= leave_m).then_some(enter_m)
     }
 
-    /// The distance of the segment from `a` to `b` (m) from the rectangle, m; 0 if the segment enters.
+    /// The distance of the segment from `a` to `b` (m) from the rectangle, m; 0 if the segment enters the
+    /// rectangle.
     pub fn segment_distance_m(&self, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
         let corners = self.corners();
         let sides = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
@@ -87,7 +88,7 @@ impl Rectangle {
         corners.iter().fold(ends, |least, corner| least.min(point_segment_m(corner, a, b)))
     }
 
-    /// Whether two rectangles overlap by more than a touch.
+    /// Whether two rectangles overlap by more than [`TOUCH_M`].
     pub fn overlaps(&self, other: &Self) -> bool {
         gap_m(&self.corners(), &other.corners()) < -TOUCH_M
     }
@@ -102,7 +103,7 @@ impl Rectangle {
         Self { pose: turned(&self.pose, turn, middle), half_m: self.half_m }
     }
 
-    /// The corners of the upright box around the rectangle, m.
+    /// The lower left and the upper right corner of the axis-aligned box around the rectangle, m.
     pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
         let turn = Rotation2::from(self.pose.rotation).into_inner().abs();
         let (middle, reach) = (Point2::from(self.pose.translation.vector), turn * self.half_m);

@@ -1,7 +1,7 @@
 //! The state of a fleet as bytes: a header, the values that change, and a checksum.
 //!
-//! The spec of a fleet is not in a snapshot. Every part of a fleet lists its changing values once, as
-//! [`Values`]; serde and postcard write them and read them back in the same order.
+//! A snapshot does not contain the spec of the fleet. Every part of a fleet lists its changing values once, as
+//! [`Values`]; serde and postcard write them and read them in the same order.
 
 use nalgebra::Isometry2;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 /// The first eight bytes of a snapshot: the kind of data, and the version of the format.
 const MAGIC: u64 = u64::from_le_bytes(*b"fleet\0\0\x04");
 
-/// Why bytes are not a snapshot of a fleet.
+/// The error for bytes that are not a snapshot of the fleet.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SnapshotError {
-    /// The bytes begin with something else, or come from another version.
+    /// The bytes do not begin like a snapshot, or come from another version.
     #[error("these bytes are not a snapshot of a fleet, or they come from another version")]
     Unknown,
-    /// Some bytes are missing or have changed.
+    /// Bytes are missing, or were changed.
     #[error("the snapshot is damaged")]
     Damaged,
     /// The snapshot belongs to a fleet with other walls, robots or settings.
@@ -80,7 +80,7 @@ pub(super) fn pose(pose: &mut Isometry2<f64>) -> Box<dyn Value + '_> {
 pub(super) fn write(spec: u64, values: Values<'_>) -> Vec<u8> {
     let mut bytes = [MAGIC.to_le_bytes(), spec.to_le_bytes()].concat();
     if values.into_iter().try_for_each(|value| value.write(&mut bytes)).is_err() {
-        // No value of a fleet refuses to be written. If one did, the snapshot would be refused when read.
+        // All values of a fleet can be written. If one could not, the snapshot would be refused when read.
         bytes.clear();
     }
     bytes.extend(fingerprint(&bytes).to_le_bytes());
@@ -108,7 +108,7 @@ pub(super) fn read(bytes: &mut &[u8], values: Values<'_>) -> Result<(), Snapshot
     values.into_iter().try_for_each(|mut value| value.read(bytes)).map_err(|_| SnapshotError::Damaged)
 }
 
-/// FNV-1a, word by word. It detects damage, not malice.
+/// FNV-1a, word by word. It detects damage, but not intentional changes.
 pub(super) fn fingerprint(bytes: &[u8]) -> u64 {
     let mix = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0100_0000_01b3).rotate_left(29);
     let words = bytes.chunks(8).map(|chunk| {

@@ -18,8 +18,8 @@ pub struct PhysicsWorld {
 }
 
 impl PhysicsWorld {
-    /// The world of `spec` at its start. `seed` seeds all random streams: sensor noise, odometry noise, and the
-    /// decisions of robots and doors, each in a stream of its own.
+    /// The world of `spec` at its start. All random streams are seeded by `seed`: sensor noise, odometry noise, and
+    /// the decisions of robots and doors, each with a separate stream.
     pub fn new(spec: &WorldSpec, seed: u64) -> Self {
         let fleet = Fleet::new(spec.fleet(), seed);
         let start = fleet.robot(spec.driven_index()).at();
@@ -57,12 +57,12 @@ impl PhysicsWorld {
         &self.fleet.robot(self.spec.driven_index()).pose
     }
 
-    /// All contacts of the driven robot since the start, by the time of their beginning.
+    /// All contacts of the driven robot since the start, in the order of their beginning.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
     }
 
-    /// All arrivals and removals of obstacles since the start, in order.
+    /// All appearances and disappearances of obstacles since the start, in order of time.
     pub fn obstacle_events(&self) -> &[ObstacleEvent] {
         &self.obstacle_events
     }
@@ -122,8 +122,8 @@ impl World for PhysicsWorld {
     type Reading = LaserReading;
     type Command = Twist;
 
-    /// The scan of the main laser of the driven robot, with the pose by odometry at the same instant. The other
-    /// sensors of the robot measure at most as often. Two calls at the same time give the same reading.
+    /// The scan of the main laser of the driven robot, and the pose by odometry at the same time. The other sensors
+    /// of the robot measure at most as often. Two calls at the same time return the same reading.
     fn sense(&mut self) -> LaserReading {
         let robot = self.fleet.look(self.spec.driven_index());
         robot.reading().expect("the main laser scanner has just measured").clone()

@@ -64,7 +64,7 @@ pub(crate) struct Args {
     #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Mapper")]
     pub(crate) estimator: EstimatorChoice,
 
-    /// The occupancy model: steady (static walls never change) or naive (every beam counts, as in the paper)
+    /// The occupancy model: steady (static walls rarely change) or naive (every beam counts, as in the paper)
     #[arg(long, default_value = "steady", value_parser = one_of(OccupancyChoice::all(), OccupancyChoice::name), help_heading = "Mapper")]
     pub(crate) occupancy: OccupancyChoice,
 

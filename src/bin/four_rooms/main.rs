@@ -41,7 +41,7 @@ fn main() -> ExitCode {
     }))
 }
 
-/// Why a run ended.
+/// The reason for the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ended {
     Duration,

@@ -96,8 +96,8 @@ fn distinct<T: PartialEq>(values: Vec<T>) -> Vec<T> {
     distinct
 }
 
-/// Runs the trials, the first one with a recording if `--rrd` is given. A failure of the recording is
-/// returned beside the trials: no trial is lost.
+/// Runs the trials; the first trial is recorded if `--rrd` is given. A failure of the recording is returned
+/// together with the trials, so that no trial is lost.
 fn trials(
     args: &Args,
     experiment: &Experiment,

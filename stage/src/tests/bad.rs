@@ -1,4 +1,4 @@
-//! What is wrong, what is missing here, and that all of it is said.
+//! Invalid and unsupported parts of files, and that all of them are reported.
 
 use super::{Table, good, one, picture, read};
 use crate::load;

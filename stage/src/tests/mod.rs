@@ -13,7 +13,7 @@ use worldfile::Findings;
 
 type Table = BTreeMap<PathBuf, Vec<u8>>;
 
-/// The shipped example and all that it names.
+/// The shipped example and all included files.
 fn lab_files() -> Table {
     let files: [(&str, &[u8]); 4] = [
         ("lab.world", include_bytes!("../../../worlds/stage/lab.world")),

@@ -1,5 +1,5 @@
-//! Bad input is one message that says where, what is wrong and what would be right; the exit code
-//! is 2, and nothing is written.
+//! Invalid input leads to one message with the place, what is invalid and what would be valid. The exit code is 2,
+//! and nothing is written.
 
 use crate::bad_input::refuses;
 use crate::run::Run;
@@ -11,7 +11,7 @@ fn refused(arguments: &str) -> String {
     refuses(&Run::grid(), arguments, &[])
 }
 
-/// What is said to the shipped world with a mistake in it.
+/// The messages for a shipped world with a mistake in it.
 #[track_caller]
 fn refused_world(right: &str, wrong: &str) -> String {
     assert!(WORLD.contains(right), "{right} is not in the world");

@@ -11,7 +11,7 @@ fn every_strategy_explores_a_grid_world() {
     let chosen: Vec<String> = names.iter().map(|name| format!("--strategy {name}")).collect();
     let run = ran(&format!("--steps 3000 --trials 1 --estimator two-state {}", chosen.join(" ")));
     let results = results(&run);
-    // In the order in which they were asked for.
+    // In the order of the arguments.
     let text = std::fs::read_to_string(run.out("report.json")).unwrap();
     let places: Vec<_> = names.iter().map(|name| text.find(&format!("\"{name}\": {{")).unwrap()).collect();
     assert!(places.is_sorted(), "{places:?}");
@@ -28,7 +28,7 @@ fn every_strategy_explores_a_grid_world() {
 #[test]
 fn a_grid_world_has_the_strategies_of_a_physics_world_and_the_oracle() {
     let (in_physics, in_grid) = (values(&Run::new(), "--strategy"), values(&Run::grid(), "--strategy"));
-    // The oracle needs a truth that only a grid world has.
+    // The oracle needs the ground truth of a grid world.
     assert_eq!(in_grid, [in_physics, vec!["oracle".to_owned()]].concat());
 }
 
@@ -36,7 +36,7 @@ fn a_grid_world_has_the_strategies_of_a_physics_world_and_the_oracle() {
 fn every_estimator_estimates_in_its_own_way() {
     let names = values(&Run::grid(), "--estimator");
     let chosen: Vec<String> = names.iter().map(|name| format!("--estimator {name}")).collect();
-    // What random goals show does not depend on rates, so that all of them see the same.
+    // Random goals do not depend on rates, so that all runs have the same observations.
     let run = ran(&format!("--steps 3000 --trials 1 --strategy random {}", chosen.join(" ")));
     let results = results(&run);
     assert_eq!(results.iter().map(|result| result.estimator.clone()).collect::<Vec<_>>(), names);

@@ -1,4 +1,4 @@
-//! Ctrl-C keeps what is finished.
+//! Ctrl-C keeps the finished trials.
 #![cfg(unix)]
 
 use super::{report, rows};
@@ -50,7 +50,7 @@ fn a_signal_closes_the_recording_even_before_the_first_trial_is_finished() {
     insta::assert_snapshot!(ended.stderr, @"interrupted before the first trial was finished: no report");
     assert_eq!(names(&run.path("out")), [""; 0]);
 
-    // Whether it came to its own end first does not matter.
+    // It does not matter whether the program ended by itself first.
     let recording = Recording::read(&run.path("trial.rrd"));
     let last = *recording.times("/", "step").last().unwrap();
     assert!((1..=20_000).contains(&last), "{last}");

@@ -1,4 +1,4 @@
-//! What a run leaves behind, in its shortest form: the default, with fewer steps.
+//! The output files of a run with default options, but fewer steps.
 
 use crate::run::{Run, names};
 
@@ -11,7 +11,7 @@ fn the_output_folder_is_complete() {
     for file in ["figure3.png", "figure3.svg", "report.json", "trials.csv"] {
         assert!(written.iter().any(|name| name == file), "{file} is not in {written:?}");
     }
-    // And the figure of the other of two estimators.
+    // In addition the figure of the second estimator.
     assert_eq!(written.len(), 6, "{written:?}");
     let last = ended.stdout.lines().last().unwrap();
     assert!(last.starts_with("written to out: report.json, trials.csv, figure3.svg, figure3.png"), "{last}");

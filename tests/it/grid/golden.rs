@@ -1,5 +1,5 @@
-//! The same worlds, strategies and estimators learn the same on every machine, to the last bit. A
-//! change of what is learned shows here, meant or not.
+//! The same worlds, strategies and estimators give the same results on every machine, bit for bit. This test
+//! detects every change of the results, whether intended or not.
 
 use super::{ran, results};
 

@@ -15,7 +15,7 @@ mod worlds;
 use crate::run::Run;
 use serde_json::Value;
 
-/// A finished, silent run; arguments are separated by spaces.
+/// A finished run without output on the screen; arguments are separated by spaces.
 fn ran(arguments: &str) -> Run {
     let run = Run::grid();
     run.goes_well(&format!("--quiet {arguments}"));
@@ -27,7 +27,7 @@ fn report(run: &Run) -> Value {
     serde_json::from_slice(&std::fs::read(run.out("report.json")).unwrap()).unwrap()
 }
 
-/// What one strategy with one estimator came to in one world.
+/// The result of one strategy with one estimator in one world.
 struct Result {
     world: String,
     estimator: String,
@@ -37,14 +37,14 @@ struct Result {
 }
 
 impl Result {
-    /// The hash of what was learned, by seed.
+    /// The hash of everything that was learned, by seed.
     fn hashes(&self) -> Vec<(String, String)> {
         let hashes = self.entry["map_hashes"].as_object().unwrap().iter();
         hashes.map(|(seed, hash)| (seed.clone(), hash.as_str().unwrap().to_owned())).collect()
     }
 }
 
-/// All results, but those over all worlds.
+/// All results, except those over all worlds.
 fn results(run: &Run) -> Vec<Result> {
     let report = report(run);
     let mut results = Vec::new();

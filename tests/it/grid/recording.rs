@@ -1,11 +1,11 @@
-//! `--rrd` shows the first trial as it was.
+//! `--rrd` records the first trial as it was.
 
 use super::{ran, rows};
 use crate::recording::Recording;
 use curious::worlds::load_grid;
 use interfaces::Cell;
 
-/// The cell that holds a place.
+/// The cell that contains a position.
 fn cell([x, y]: [f32; 2]) -> Cell {
     Cell::new(x.floor() as i32, y.floor() as i32)
 }
@@ -23,7 +23,7 @@ fn a_recording_agrees_with_its_world_and_its_trial() {
     assert_eq!(recording.timelines(), ["step"]);
     assert_eq!(recording.times("/", "step").last(), Some(&3000));
 
-    // The robot goes from cell to cell, through no wall.
+    // The robot moves from cell to cell, and never through a wall.
     let robot = recording.places("/world/robots/robot/body");
     assert_eq!((robot[0].0, cell(robot[0].1)), (0, world.start));
     assert!(robot.len() > 500, "{} moves", robot.len());
@@ -32,7 +32,7 @@ fn a_recording_agrees_with_its_world_and_its_trial() {
         assert!(pair[0].0 < pair[1].0 && is_a_step(cell(pair[0].1), cell(pair[1].1)), "{pair:?}");
     }
 
-    // So do the blocks, on their paths, and never faster than they may.
+    // The blocks also move on their paths, and never faster than their dwell allows.
     for block in &world.blocks {
         let outlines = recording.outlines(&format!("/world/obstacles/{}", escaped(&block.name)));
         let ways: Vec<(i64, Cell)> =
@@ -46,7 +46,7 @@ fn a_recording_agrees_with_its_world_and_its_trial() {
         }
     }
 
-    // What is seen moves with the robot, and the maps are there.
+    // The field of view moves with the robot, and the maps exist.
     let entities = recording.entities();
     for part in ["occupancy", "interval", "change_probability", "recency"] {
         assert!(recording.times(&format!("/world/maps/{part}/cells"), "step").len() > 10, "{part}");
@@ -55,7 +55,7 @@ fn a_recording_agrees_with_its_world_and_its_trial() {
     assert_eq!(recording.times("/world/field_of_view", "step").len(), robot.len());
     assert!(!entities.iter().any(|path| path.contains("field_of_view/outline")), "{entities:?}");
 
-    // The curves end where the first trial's do.
+    // The curves end at the values of the first trial.
     let last = rows(&run).into_iter().find(|row| {
         (row.world.as_str(), row.strategy.as_str(), row.seed, row.step) == ("open hall", "curious", 6, 3000)
     });
@@ -73,7 +73,7 @@ fn a_recording_agrees_with_its_world_and_its_trial() {
         assert!((recorded - value).abs() < 1e-12, "{recorded} and {value}");
     }
 
-    // Every goal is a line that names who chose it.
+    // For every goal there is a line with the strategy that chose it.
     let log = recording.log();
     assert!(log.len() > 20, "{log:?}");
     assert!(log.iter().any(|(_, line)| line.starts_with("recency ")), "{log:?}");

@@ -1,4 +1,4 @@
-//! `report.json` has what it promises, and says the same as `trials.csv`.
+//! `report.json` is complete, and agrees with `trials.csv`.
 
 use super::{Row, ran, report, rows};
 use crate::run::Run;
@@ -19,7 +19,7 @@ fn keys(value: &Value) -> Vec<&str> {
     value.as_object().unwrap().keys().map(String::as_str).collect()
 }
 
-/// A number, or what is not one.
+/// A number, or a value that is not a number.
 fn number(value: &Value) -> f64 {
     match value {
         Value::Null => f64::NAN,

@@ -1,4 +1,4 @@
-//! The seed decides, and nothing else does.
+//! The results depend on the seed, and on nothing else.
 
 use super::{hash, ran};
 use crate::run::{Run, names};
@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 const ARGUMENTS: &str =
     "--steps 800 --trials 2 --world two_blocks --generate 2 --strategy curious --strategy coin";
 
-/// Everything that a run leaves, but the arguments in the report.
+/// All output files of a run; in the report the arguments are left out.
 fn files(run: &Run) -> Vec<(String, Vec<u8>)> {
     let content = |name: String| {
         let bytes = std::fs::read(run.out(&name)).unwrap();
@@ -60,7 +60,7 @@ fn seeds_count_up_from_the_first() {
     assert_eq!(three[0].hashes().len(), 3);
 }
 
-/// What is done in the same run does not matter to a trial.
+/// A trial does not depend on the other trials of the run.
 #[test]
 fn a_trial_does_not_depend_on_the_others() {
     let alone = hash("--steps 800 --trials 1 --seed 2 --estimator paper --strategy poisson");

@@ -1,4 +1,4 @@
-//! What the program says, and to whom.
+//! The output of the program on standard output and standard error.
 
 use crate::run::Run;
 
@@ -59,7 +59,7 @@ fn a_terminal_shows_a_bar_that_goes_away() {
     assert!(!after.contains(" of 10 trials"), "{after:?}");
 }
 
-/// As behind `| head`.
+/// Like `| head`.
 #[test]
 fn a_run_goes_on_when_nobody_listens() {
     let run = Run::grid();

@@ -1,4 +1,4 @@
-//! What stands still never changes in the map, wherever.
+//! Static cells never change in the map, in any world.
 
 use super::{ran, results};
 

@@ -1,4 +1,4 @@
-//! Where trials take place: shipped worlds, files, and worlds that are made.
+//! The worlds of trials: shipped worlds, files, and generated worlds.
 
 use super::{hash, ran, results};
 use crate::run::{Run, names};
@@ -34,7 +34,7 @@ fn a_saved_world_is_the_one_that_was_made() {
     }
     assert_eq!(hashes.len(), 3);
     assert_eq!(names(&run.path("out")).iter().filter(|name| name.ends_with(".toml")).count(), 3);
-    // Nobody asked for them.
+    // Nothing asked for them.
     assert!(
         names(&ran(&format!("{ONE} --generate 2")).path("out")).iter().all(|name| !name.ends_with(".toml"))
     );
@@ -47,7 +47,7 @@ fn the_sensor_radius_and_chance_of_the_world_can_be_changed() {
         hashes.insert(hash(&format!("{ONE} {change}")));
     }
     assert_eq!(hashes.len(), 5);
-    // As the world has it, and as is meant by default.
+    // The probability in the world file, and the default.
     assert!(hashes.contains(&hash(&format!("{ONE} --sensor-radius 4"))));
     assert!(hashes.contains(&hash(&format!("{ONE} --stochastic 0.8"))));
     assert_eq!(super::report(&ran(&format!("{ONE} --sensor-radius 7")))["sensor_radius"], 7);

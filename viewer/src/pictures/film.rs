@@ -1,4 +1,4 @@
-//! A moving picture of a run: the map with the robots, and beside it how often its cells change.
+//! A moving picture of a run: the map with the robots on the left, and how often its cells change on the right.
 
 use super::panel::{Chart, Panel, pair};
 use super::trajectory::line;
@@ -26,7 +26,7 @@ const TRAIL: usize = 500;
 /// The color index of a pixel that is as in the frame before.
 const SAME: u8 = 255;
 
-/// A moving picture so far.
+/// The frames so far of a moving picture.
 pub struct Film {
     scene: Scene,
     duration: f64,
@@ -38,14 +38,14 @@ pub struct Film {
 }
 
 impl Film {
-    /// A film of a run in `scene`; `duration` in the unit of time of the scene.
+    /// A moving picture of a run in `scene`; `duration` is in the unit of time of the scene.
     pub fn new(scene: Scene, duration: f64) -> Self {
         let panels = [false, true].map(|has_bar| Panel::of_film(&scene.frame, scene.unit, has_bar));
         Self { scene, duration, panels, colors: Colors::new(), frames: Vec::new(), last: Vec::new() }
     }
 
-    /// Adds the run as it is now, with the trails of the robots. Frames are dense at the start, when most of the
-    /// map is new, and rare at the end.
+    /// Adds the present state of the run, with the trails of the robots. Frames are frequent at the start, when
+    /// most of the map is new, and rare at the end.
     ///
     /// # Errors
     ///
@@ -65,7 +65,7 @@ impl Film {
         Ok(())
     }
 
-    /// Writes the film as a GIF file that repeats without end.
+    /// Writes a GIF file that repeats forever.
     ///
     /// # Errors
     ///

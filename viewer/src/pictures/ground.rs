@@ -8,7 +8,7 @@ use evaluation::palette::{self, Rgb};
 use nalgebra::Point2;
 use plotters::prelude::*;
 
-/// Draws everything that is no robot.
+/// Draws everything except the robots.
 pub(super) fn draw(chart: &Chart, scene: &Scene) -> Result<(), String> {
     let swept = scene.obstacles.iter().flat_map(|obstacle| &obstacle.reach);
     swept.into_iter().try_for_each(|outline| fill(chart, outline, palette::SWEPT))?;

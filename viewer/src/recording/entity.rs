@@ -1,6 +1,6 @@
-//! An entity of the recording.
+//! An entity of the recording. To add an entity, see `tracks/`.
 //!
-//! One call of the SDK per row costs some tens of microseconds. Rows are therefore collected here and sent as
+//! One call of the SDK per row takes some tens of microseconds. Rows are therefore collected here and sent as
 //! columns, many ticks at once.
 
 use crate::scene::TimeUnit;
@@ -12,24 +12,24 @@ pub(super) const SIM_TIME: &str = "sim_time";
 /// The timeline of readings, or of steps.
 pub(super) const STEP: &str = "step";
 
-/// The timeline that a viewer opens with.
+/// The timeline that is active when a viewer opens.
 pub(super) fn timeline(unit: TimeUnit) -> &'static str {
     unit.choose(SIM_TIME, STEP)
 }
 
 /// An entity that changes during a run.
 pub(super) trait Track: Send {
-    /// Appends the rows of `view` if they are due or the last.
+    /// Appends the rows of `view` if they are due, or if the view is the last one.
     fn push(&mut self, view: &View, is_last: bool);
 
-    /// Sends the rows. Where time is counted in steps, there is no other timeline.
+    /// Sends the rows. If time is counted in steps, the timeline of steps is the only one.
     fn flush(&mut self, stream: &RecordingStream, unit: TimeUnit) -> RecordingStreamResult<()>;
 }
 
 /// How the items of a view become rows.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Kind {
-    /// A row has all items, and is logged when they have changed. A row without items clears the entity.
+    /// A row has all items, and is logged when the items have changed. A row without items clears the entity.
     State,
     /// Every item is a row.
     Events,
@@ -69,12 +69,12 @@ where
     C: AsComponents,
 {
     fn push(&mut self, view: &View, is_last: bool) {
-        // Half a millisecond of slack: 0.1 added ten times is not 1.
+        // Half a millisecond of tolerance: 0.1 added ten times is not exactly 1.
         if view.time < self.due - 5e-4 && !is_last {
             return;
         }
         let items = (self.items_of)(view);
-        // An event that has not happened yet is not waited for.
+        // The period of events begins with an event: a view without events does not start a new period.
         if self.kind == Kind::State || !items.is_empty() {
             self.due = view.time + self.period;
         }

@@ -7,12 +7,12 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// An `.rrd` file under its final name from the start, so that a viewer can follow it and a killed run leaves
-/// a readable file.
+/// An `.rrd` file with its final name from the start, so that a viewer can follow it, and a killed run leaves a
+/// readable file.
 ///
-/// The file sink of the SDK reports a failed write to its logger only, and drops everything after it. This
-/// sink keeps the first error for [`RrdFile::check`]. Every message is passed to the operating system at
-/// once, without a buffer.
+/// The file sink of the SDK reports a failed write only to its logger, and drops everything after it. This sink
+/// keeps the first error for [`RrdFile::check`]. Every message is passed to the operating system at once, without a
+/// buffer.
 pub(super) struct RrdFile {
     path: PathBuf,
     encoder: Encoder<Output>,
@@ -30,7 +30,7 @@ impl RrdFile {
         Self::with_output(path, Box::new(file)).map_err(failed)
     }
 
-    /// As [`RrdFile::create`], into `output`; `path` is only for errors.
+    /// Like [`RrdFile::create`], with an `output`; `path` is used only in errors.
     pub(super) fn with_output(path: &Path, output: Output) -> Result<Self, String> {
         let version = rerun::build_info().version;
         let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, output);

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// A viewer that shows the run while it goes on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Live {
-    /// The viewer on this machine; it is started unless it runs already.
+    /// The viewer on this machine; it is started unless it already runs.
     Spawn,
     /// A running viewer at an address: `rerun+http://HOST:PORT/proxy`, or `HOST:PORT` for short.
     Connect(String),
@@ -26,13 +26,13 @@ impl Live {
     ///
     /// # Errors
     ///
-    /// When the address is invalid. No viewer has to run there yet.
+    /// When the address is invalid. Whether a viewer runs there is not checked yet.
     pub fn at(address: &str) -> Result<Self, LiveError> {
         parse(address).map(|_| Self::Connect(address.into()))
     }
 }
 
-/// Why a viewer cannot show the run.
+/// The error for a viewer that cannot show the run.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct LiveError(String);
@@ -43,19 +43,19 @@ impl LiveError {
     }
 }
 
-/// How long a running viewer may take to answer.
+/// The maximum time until a running viewer answers.
 const ANSWER_TIMEOUT: Duration = Duration::from_millis(1500);
-/// How long a viewer may take to start: the first start on a slow disk takes several seconds.
+/// The maximum time until a viewer has started: the first start from a slow disk takes several seconds.
 const START_TIMEOUT: Duration = Duration::from_secs(20);
-/// How long a viewer may accept nothing before it counts as lost.
+/// If a viewer accepts nothing for this time, the connection counts as lost.
 const STALL_TIMEOUT: Duration = Duration::from_secs(5);
 /// The number of messages that may wait for a viewer.
 const QUEUE: usize = 256;
 /// The program of the viewer.
 const PROGRAM: &str = "rerun";
 
-/// The connection to one viewer. A viewer that goes away, or accepts nothing, is lost: it never delays a run
-/// by more than [`STALL_TIMEOUT`].
+/// The connection to one viewer. A viewer that was closed, or that accepts nothing, counts as lost: it never delays
+/// a run by more than [`STALL_TIMEOUT`].
 pub(super) struct LiveFeed {
     address: String,
     state: State,

@@ -1,10 +1,10 @@
 //! The Rerun recording of a run, in a file and in a live viewer.
 //!
-//! [`Recorder::log`] is called at every tick and decides what to log how often. The rows are sent every
-//! second, so that a killed run loses no more than one second.
+//! [`Recorder::log`] is called at every tick and decides how often each entity is logged. The rows are sent every
+//! second, so that a killed run loses at most one second.
 //!
-//! A new entity is a function in `tracks/` and a line in its list; for data that [`View`] does not have yet,
-//! also a field there and its source.
+//! To add an entity: write a function in `tracks/`, and add a line to `start` in `tracks/mod.rs`. For data that
+//! [`View`] does not have yet, also add a field to [`View`] and set it.
 
 mod entity;
 mod file;
@@ -24,7 +24,7 @@ use sinks::Sinks;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Why a recording cannot be made, or cannot continue.
+/// The error for a recording that cannot be made, or cannot continue.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file cannot be written.
@@ -45,9 +45,9 @@ pub enum RecordingError {
 
 /// The name of this program in the viewer, which keeps its settings under that name.
 const APPLICATION: &str = "curious";
-/// How long rows may wait before they are sent, in wall time.
+/// The maximum time that rows wait before they are sent, in wall time.
 const FLUSH_FILE: Duration = Duration::from_secs(1);
-/// The same while a viewer watches.
+/// The maximum time that rows wait before they are sent while a live viewer is connected, in wall time.
 const FLUSH_LIVE: Duration = Duration::from_millis(50);
 
 impl From<RecordingStreamError> for RecordingError {
@@ -61,17 +61,17 @@ pub struct Recorder {
     stream: RecordingStream,
     sinks: Sinks,
     scene: Scene,
-    /// Made at the first view, which shows what there is to log.
+    /// Made at the first view, which shows what can be logged.
     tracks: Option<Vec<Box<dyn Track>>>,
     flushed: Instant,
-    /// In the unit of the scene.
+    /// The time of the last flush, in the unit of the scene.
     flushed_at: f64,
     live_problem: Option<String>,
 }
 
 impl Recorder {
-    /// Opens the `.rrd` file, over an older one, and the viewers that show the run while it goes on. A viewer that cannot be reached does not stop a recording with a file:
-    /// see [`Recorder::live_problem`].
+    /// Opens the `.rrd` file (an older file is overwritten) and the viewers that show the run live. A viewer that
+    /// cannot be reached does not stop a recording with a file: see [`Recorder::live_problem`].
     ///
     /// # Errors
     ///
@@ -81,7 +81,7 @@ impl Recorder {
         let (sinks, live_problem) = Sinks::open(file, live)?;
         let (_, info, properties, ..) =
             RecordingStreamBuilder::new(APPLICATION).recording_name(scene.title.clone()).into_args();
-        // Rows are sent in columns: there is nothing to batch.
+        // Rows are sent in columns: the SDK has nothing to batch.
         let batching = Some(ChunkBatcherConfig::NEVER);
         let stream =
             RecordingStream::new(info, properties, batching, Default::default(), Box::new(sinks.clone()))?;
@@ -89,7 +89,7 @@ impl Recorder {
         Ok(Self { stream, sinks, scene, tracks: None, flushed, flushed_at: 0.0, live_problem })
     }
 
-    /// Records the run as it is now. The last view has every map, and closes the recording.
+    /// Records the present state of the run. The last view has every map, and closes the recording.
     ///
     /// # Errors
     ///
@@ -117,12 +117,12 @@ impl Recorder {
         Ok(())
     }
 
-    /// Why a viewer does not show the run, or no longer shows it. The file is not affected.
+    /// Why a viewer does not show the run, or shows it no longer. The file is not affected.
     pub fn live_problem(&self) -> Option<String> {
         self.live_problem.clone().or_else(|| self.sinks.live_problem())
     }
 
-    /// Sends what waits.
+    /// Sends the rows that wait.
     fn flush(&mut self) -> Result<(), RecordingError> {
         self.flushed = Instant::now();
         let (stream, unit) = (&self.stream, self.scene.unit);

@@ -1,5 +1,5 @@
-//! The parts of a world that stay the same for a whole run, as plain data, and the trait of a world that can
-//! be shown.
+//! The parts of a world that are constant during a run, as plain data, and the trait of a world that can be
+//! displayed.
 
 mod grid;
 mod physics;
@@ -16,7 +16,7 @@ pub type Outline = Vec<Point2<f64>>;
 pub enum TimeUnit {
     /// Seconds of simulated time.
     Second,
-    /// Steps of a grid world, with nothing in between.
+    /// Steps of a grid world.
     Step,
 }
 
@@ -29,12 +29,12 @@ impl TimeUnit {
         }
     }
 
-    /// The unit as a word, for titles.
+    /// The unit as a plural word, for titles.
     pub fn plural(self) -> &'static str {
         self.choose("seconds", "steps")
     }
 
-    /// The unit after a number.
+    /// The symbol of the unit, for use after a number.
     pub fn symbol(self) -> &'static str {
         self.choose("s", "steps")
     }
@@ -85,19 +85,19 @@ pub(crate) fn span(outline: &[Point2<f64>]) -> [Point2<f64>; 2] {
     outline.iter().fold([first; 2], |[low, high], corner| [low.inf(corner), high.sup(corner)])
 }
 
-/// Something that is neither a wall nor a robot.
+/// An object that is neither a wall nor a robot.
 #[derive(Clone, Debug)]
 pub struct Obstacle {
-    /// The name in the world file.
+    /// The name of the obstacle in the world file.
     pub name: String,
     /// The outline at the start, m; empty if the obstacle appears later.
     pub outline: Outline,
-    /// Outlines at other times that the world file gives: the swing of a door, the path of a block.
+    /// The outlines at other times that follow from the world file: the swing of a door, the path of a block.
     pub reach: Vec<Outline>,
 }
 
 impl Obstacle {
-    /// Whether the obstacle has the same pose during the whole run, as furniture does.
+    /// Whether the pose of the obstacle is constant during the whole run, like that of furniture.
     pub fn is_fixed(&self) -> bool {
         self.reach.is_empty()
     }
@@ -111,7 +111,7 @@ impl Obstacle {
 /// A robot at its start.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// The name in the world file.
+    /// The name of the robot in the world file.
     pub name: String,
     /// The pose in the frame of the world, m and rad.
     pub pose: Isometry2<f64>,
@@ -119,9 +119,9 @@ pub struct Robot {
     pub radius_m: f64,
     /// The corners of the body in the frame of the robot, m; empty for a round body.
     pub corners: Outline,
-    /// What the range sensors of the robot cover.
+    /// The areas that the range sensors of the robot cover.
     pub sectors: Vec<Sector>,
-    /// Whether the robot obeys commands: the curious robot, and not a part of its surroundings.
+    /// Whether the robot executes commands: the curious robot, and not a part of its surroundings.
     pub is_driven: bool,
 }
 
@@ -132,49 +132,49 @@ impl Robot {
     }
 }
 
-/// What a laser scanner or a sonar covers.
+/// The area that a laser scanner or a sonar covers.
 #[derive(Clone, Copy, Debug)]
 pub struct Sector {
-    /// The pose of the sensor in the frame of the robot.
+    /// The pose of the sensor in the frame of the robot, m and rad.
     pub mount: Isometry2<f64>,
-    /// The angle, half of it on either side of the direction of the sensor, rad.
+    /// The angle of the area, symmetrical to the direction of the sensor, rad.
     pub angle_rad: f64,
     /// The range, m.
     pub range_m: f64,
 }
 
-/// A robot at one instant.
+/// The state of a robot at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct RobotState<'a> {
     /// The pose in the frame of the world, m and rad. A robot in a grid world has no heading.
     pub pose: Isometry2<f64>,
-    /// What the curious robot sees; `None` for every other robot.
+    /// The field of view of the curious robot; `None` for every other robot.
     pub sight: Option<Sight<'a>>,
 }
 
-/// What a robot sees.
+/// The field of view of a robot.
 #[derive(Clone, Copy, Debug)]
 pub enum Sight<'a> {
-    /// The last scan of a laser.
+    /// The latest scan of a laser.
     Laser(&'a LaserReading),
-    /// Cells.
+    /// The cells that a robot in a grid world sees.
     Cells {
-        /// The cells that are seen now.
+        /// The cells that are in view now.
         reading: &'a CellReading,
         /// The range of the sensor, cells.
         radius: u32,
     },
 }
 
-/// A world that can be shown while a robot explores it.
+/// A world that can be displayed while a robot explores it.
 pub trait Visible: World {
     /// The unit of time of the world.
     const UNIT: TimeUnit;
 
-    /// The robots now, in the order of [`Scene::robots`].
+    /// The present states of the robots, in the order of [`Scene::robots`].
     fn robots<'a>(&'a self, reading: &'a Self::Reading) -> Vec<RobotState<'a>>;
 
-    /// The outlines of the obstacles now, m, in the order of [`Scene::obstacles`]; `None` for an obstacle
-    /// that is absent.
+    /// The present outlines of the obstacles, m, in the order of [`Scene::obstacles`]; `None` for an obstacle that
+    /// is absent.
     fn obstacles(&self) -> Vec<Option<Outline>>;
 }

@@ -1,12 +1,12 @@
-//! How fast the simulator is with many robots.
+//! The speed of the simulator with many robots.
 //!
 //! ```text
 //! cargo run --release -p worldfile --example fleet -- --robots 10 --seconds 60
 //! ```
 //!
-//! Four rooms of 12 × 12 m (`--tiles 4`: 4 × 4 of these), walls of 0.05 m. Robot 1 drives a circle,
-//! the others wander; each has a radius of 0.15 m and a laser of 360 beams (`--rays`) over 360°,
-//! 10 m, at 10 Hz. Physics goes at 20 Hz, as in the shipped worlds. See docs/performance.md.
+//! Four rooms of 12 × 12 m (`--tiles 4`: 4 × 4 of these), walls of 0.05 m. Robot 1 drives in a circle, the others
+//! wander; each has a radius of 0.15 m and a laser with 360 beams (`--rays`) over 360°, with a range of 10 m, at 10
+//! Hz. The physics runs at 20 Hz, as in the shipped worlds. See docs/performance.md.
 
 mod place;
 mod usage;
@@ -17,33 +17,33 @@ use sim::physics::Fleet;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// How fast the simulator is with many robots.
+/// The speed of the simulator with many robots.
 #[derive(Parser)]
 struct Args {
-    /// How many robots there are
+    /// The number of robots
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     robots: u32,
-    /// How long they drive, in simulated seconds
+    /// The simulated time, s
     #[arg(long, default_value_t = 60.0)]
     seconds: f64,
-    /// Beams of each laser
+    /// The number of beams of each laser
     #[arg(long, default_value_t = 360, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     rays: u32,
-    /// Houses along each side
+    /// The number of houses along each side
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
     tiles: u32,
-    /// Starts all chance
+    /// The seed of all random streams
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Threads that the lasers are shared out to
+    /// The number of threads that simulate lasers
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
     threads: u32,
-    /// Prints one line of JSON
+    /// Print one line of JSON
     #[arg(long)]
     json: bool,
 }
 
-/// Whoever waits longer than this is told how far it is.
+/// Progress is reported if a run takes longer than this.
 const SILENCE: Duration = Duration::from_secs(2);
 
 fn main() -> ExitCode {
@@ -58,7 +58,7 @@ fn main() -> ExitCode {
         eprintln!("{error}");
         return ExitCode::from(2);
     }
-    // Each is compared with each other: that takes a while.
+    // Each robot is compared with each other robot: this takes a while.
     if args.robots > 10_000 {
         eprintln!("placing {} robots", args.robots);
     }
@@ -116,7 +116,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Lets the robots drive for some simulated seconds.
+/// Simulates the robots for some seconds.
 fn run(fleet: &mut Fleet, seconds: f64) {
     let mut told = Instant::now();
     // As many steps as `run_until` the end would take.

@@ -1,4 +1,4 @@
-//! The place of the bench: four rooms of 12 × 12 m as often as asked for, and robots all over it.
+//! The world of the benchmark: four rooms of 12 × 12 m, repeated, with robots everywhere.
 
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -13,11 +13,12 @@ const HOUSE_M: f64 = 12.0;
 /// The thickness of its walls, m.
 const WALL_M: f64 = 0.05;
 const RADIUS_M: f64 = 0.15;
-/// Robots start this far from each other and from walls, middle to middle and to surface, m.
+/// The minimum distance at the start between the centers of two robots, and between a center and a wall, m.
 const APART_M: f64 = 2.0 * RADIUS_M + 0.02;
 const OFF_WALL_M: f64 = RADIUS_M + 0.02;
 
-/// So many robots find a place in one house, in some 20,000 draws. A million draws find places for 900.
+/// The number of robots for which there is room in one house, with about 20,000 draws. With a million draws there
+/// is room for 900.
 const ROOM: usize = 800;
 
 /// Where the doors of 1 m are, as in the shipped four rooms.
@@ -26,7 +27,7 @@ const GAPS_M: [(f64, f64); 3] = [(WALL_M, 2.5), (3.5, 8.5), (9.5, HOUSE_M - WALL
 /// A rectangle by its lower left and upper right corner, m.
 type Wall = [f64; 4];
 
-/// What is asked for.
+/// The settings of the world.
 #[derive(Clone, Copy)]
 pub(crate) struct Wish {
     pub(crate) robots: usize,
@@ -35,7 +36,7 @@ pub(crate) struct Wish {
     pub(crate) seed: u64,
 }
 
-/// Whether there is room for so many robots; else how many tiles there must be.
+/// Whether there is room for this number of robots; otherwise the number of tiles that is needed.
 pub(crate) fn has_room(wish: &Wish) -> Result<(), String> {
     let room = |tiles: usize| ROOM * tiles * tiles;
     let mut tiles = wish.tiles;
@@ -48,11 +49,11 @@ pub(crate) fn has_room(wish: &Wish) -> Result<(), String> {
     Err(format!("there is room for about {} robots; use --tiles {tiles}", room(wish.tiles)))
 }
 
-/// The world of the place.
+/// The world of the benchmark. There must be room for the robots.
 ///
 /// # Errors
 ///
-/// When a wish is out of the range of its key. There must be room.
+/// When a setting is out of the range of its key.
 pub(crate) fn place(wish: &Wish) -> Result<FleetSpec, WorldError> {
     worldfile::physics::parse_fleet("fleet", &text(wish))
 }
@@ -105,7 +106,7 @@ fn house() -> Vec<Wall> {
     walls
 }
 
-/// Where the robots start: robot by robot, the first place drawn that is free.
+/// The starts of the robots: for each robot, the first free place that is drawn.
 fn starts(wish: &Wish) -> Vec<[f64; 3]> {
     let mut stream = ChaCha8Rng::seed_from_u64(wish.seed);
     let mut draw = |most: f64| (stream.next_u64() >> 11) as f64 * 2.0_f64.powi(-53) * most;
@@ -119,7 +120,7 @@ fn starts(wish: &Wish) -> Vec<[f64; 3]> {
         })
     };
     let mut starts: Vec<[f64; 3]> = Vec::new();
-    // Who stands in which square: only those in the squares around can be too near.
+    // The robots in each square: only those in the squares around can be too near.
     let mut squares: HashMap<(i32, i32), Vec<usize>> = HashMap::new();
     let square = |x: f64, y: f64| ((x / APART_M) as i32, (y / APART_M) as i32);
     while starts.len() < wish.robots {

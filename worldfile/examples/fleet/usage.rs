@@ -1,5 +1,4 @@
-/// The most memory that this program has had, MiB; `None` where the system does not tell as Linux
-/// does.
+/// The maximum memory that this program has used, MiB; `None` if the system does not report it as Linux does.
 pub(crate) fn peak_mib() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -7,8 +6,8 @@ pub(crate) fn peak_mib() -> Option<f64> {
     Some(kib / 1024.0)
 }
 
-/// The time that all threads of this program have spent on a processor, s; `None` where the system
-/// does not tell as Linux does. Unlike the clock on the wall it does not count other programs.
+/// The processor time of all threads of this program, s; `None` if the system does not report it as Linux does.
+/// Unlike the wall time, it does not include other programs.
 pub(crate) fn cpu_s() -> Option<f64> {
     let mut nanoseconds = 0.0;
     for thread in std::fs::read_dir("/proc/self/task").ok()? {

@@ -1,7 +1,7 @@
 use super::picture::{Pixel, Raster};
 use super::{MAX_CORNERS, PlanError};
 
-/// Which pixels of a picture are blocked.
+/// The blocked pixels of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bitmap {
     width: u32,
@@ -11,12 +11,12 @@ pub struct Bitmap {
 }
 
 impl Bitmap {
-    /// The bitmap of the given rows, the topmost first; `#` is blocked. Rows are as long as the
-    /// longest one.
+    /// The bitmap of the given rows, the top row first; `#` is blocked. Shorter rows are extended to the longest
+    /// one.
     ///
     /// # Errors
     ///
-    /// When it is empty or has too many corners.
+    /// When the bitmap is empty or has too many corners.
     pub fn from_ascii(rows: &str) -> Result<Self, PlanError> {
         let rows: Vec<&[u8]> = rows.lines().map(str::as_bytes).collect();
         let width = rows.iter().map(|row| row.len()).max().unwrap_or(0);
@@ -25,11 +25,12 @@ impl Bitmap {
         Self::new(width as u32, rows.len() as u32, blocked)
     }
 
-    /// Decodes a PNG, PBM, PGM or PPM picture. `is_blocked` decides over each pixel.
+    /// Decodes a PNG, PBM, PGM or PPM picture. `is_blocked` decides for each pixel.
     ///
     /// # Errors
     ///
-    /// When the picture is of another kind, too large by its header, damaged, empty, or noise.
+    /// When the picture has another format, is too large by its header, is damaged or empty, or contains only
+    /// noise.
     pub fn decode(bytes: &[u8], is_blocked: impl Fn(Pixel) -> bool) -> Result<Self, PlanError> {
         let raster = Raster::decode(bytes)?;
         let (width, height) = (raster.width, raster.height);
@@ -41,12 +42,12 @@ impl Bitmap {
         Self::new(width, height, blocked)
     }
 
-    /// The same by brightness alone: darker than `blocked_below` (0 black, 1 white) is blocked.
-    /// Where the picture is transparent, white shines through.
+    /// Decodes a picture by brightness: pixels darker than `blocked_below` (0 black, 1 white) are blocked.
+    /// Transparent pixels are seen on a white background.
     ///
     /// # Errors
     ///
-    /// As [`Bitmap::decode`].
+    /// The errors of [`Bitmap::decode`].
     pub fn decode_dark(bytes: &[u8], blocked_below: f64) -> Result<Self, PlanError> {
         Self::decode(bytes, |pixel| pixel.on_white() < blocked_below)
     }
@@ -55,7 +56,7 @@ impl Bitmap {
     ///
     /// # Errors
     ///
-    /// When it is empty or has too many corners.
+    /// When the bitmap is empty or has too many corners.
     pub fn new(width: u32, height: u32, blocked: Vec<bool>) -> Result<Self, PlanError> {
         if width == 0 || height == 0 || blocked.len() != width as usize * height as usize {
             return Err(PlanError::Empty);
@@ -65,24 +66,24 @@ impl Bitmap {
         if corners > MAX_CORNERS { Err(PlanError::TooManyCorners { corners }) } else { Ok(bitmap) }
     }
 
-    /// Pixels per row.
+    /// The number of pixels per row.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// The number of rows.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Whether the pixel in column `x` and row `y`, counted from the lower left one, is blocked;
-    /// beyond the picture nothing is.
+    /// Whether the pixel in column `x` and row `y`, counted from the lower left pixel, is blocked; pixels outside
+    /// of the picture are free.
     pub fn is_blocked(&self, x: u32, y: u32) -> bool {
         x < self.width && y < self.height && self.row(y)[x as usize]
     }
 
-    /// The least box of pixels that holds all blocked ones, as its lower left and upper right
-    /// corner; `None` if none is blocked.
+    /// The smallest box of pixels that contains all blocked pixels: its lower left and upper right corner; `None`
+    /// if no pixel is blocked.
     pub fn blocked_bounds(&self) -> Option<([u32; 2], [u32; 2])> {
         let rows = (0..self.height).filter_map(|y| {
             let first = self.row(y).iter().position(|blocked| *blocked)?;

@@ -1,8 +1,8 @@
 //! Floor plans: pictures whose dark pixels are walls.
 //!
-//! A [`Bitmap`] knows which pixels are blocked. It is read from a PNG or PGM picture, alone or by
-//! way of a ROS `map.yaml` ([`crate::ros_map`]), and a [`FloorPlan`] gives it a size and a place. From there
-//! come two descriptions of the same walls, both exact on the borders of pixels:
+//! A [`Bitmap`] has the blocked pixels of a picture. It is read from a PNG or PGM picture, either alone or through
+//! a ROS `map.yaml` ([`crate::ros_map`]). A [`FloorPlan`] adds a size and a place. From these come two descriptions
+//! of the same walls, both exact on the borders of pixels:
 //!
 //! - [`FloorPlan::outline`]: the segments between blocked and free, for rays. Of a plan with right
 //!   angles these are as many as it has corners.
@@ -28,27 +28,27 @@ use nalgebra::{Isometry2, Point2, Vector2};
 use sim::physics::Rectangle;
 use std::sync::Arc;
 
-/// More corners than this make a picture no floor plan: this is a million pieces of wall.
+/// The maximum number of corners of a floor plan: a million pieces of wall.
 pub const MAX_CORNERS: usize = 1 << 20;
 
-/// Why a picture is no floor plan.
+/// The error for a picture that is not a floor plan.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// Neither PNG nor PBM, PGM, PPM or PAM, by its first bytes.
     #[error("this is neither a PNG nor a PGM picture")]
     Format,
-    /// The header tells of more pixels than are allowed; nothing was decoded.
+    /// The header has more pixels than are allowed; nothing was decoded.
     #[error("{width} × {height} pixels are too many: at most {MAX_PIXELS}")]
     TooManyPixels {
-        /// Pixels per row.
+        /// The number of pixels per row.
         width: u32,
-        /// Rows.
+        /// The number of rows.
         height: u32,
     },
-    /// The header tells of more bytes of pixels than are allowed; nothing was decoded.
+    /// The header has more bytes of pixels than are allowed; nothing was decoded.
     #[error("its pixels take {bytes} bytes, which are too many: at most {MAX_DECODED_BYTES}")]
     TooManyBytes {
-        /// The bytes that its pixels take in memory.
+        /// The number of bytes that the pixels need in memory.
         bytes: u64,
     },
     /// The picture has no pixels.
@@ -57,36 +57,36 @@ pub enum PlanError {
     /// The picture is damaged.
     #[error("it cannot be decoded: {0}")]
     Damaged(String),
-    /// The blocked pixels have too many corners, as in a picture of noise.
+    /// The blocked pixels have too many corners, for example in a picture of noise.
     #[error("its blocked pixels have {corners} corners, which are too many: at most {MAX_CORNERS}")]
     TooManyCorners {
-        /// The corners.
+        /// The number of corners.
         corners: usize,
     },
 }
 
-/// A piece of a wall's surface.
+/// A straight piece of the surface of a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// Where it starts, m. The wall is on the left on the way from here.
+    /// The start of the segment, m. The wall is on the left of the direction from start to end.
     pub from: Point2<f64>,
-    /// Where it ends, m.
+    /// The end of the segment, m.
     pub to: Point2<f64>,
 }
 
-/// A picture of walls with a size and a place.
+/// A picture of walls with its size and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorPlan {
-    /// Which pixels are blocked; several plans may share them.
+    /// The blocked pixels; several plans may share them.
     pub bitmap: Arc<Bitmap>,
-    /// The width and height of a pixel, m.
+    /// The width and the height of a pixel, m.
     pub pixel_m: Vector2<f64>,
-    /// The lower left corner of the picture, and the direction of its rows.
+    /// The lower left corner of the picture, m, and the direction of its rows, rad.
     pub origin: Isometry2<f64>,
 }
 
 impl FloorPlan {
-    /// The width and height of the picture, m.
+    /// The width and the height of the picture, m.
     pub fn size_m(&self) -> Vector2<f64> {
         Vector2::new(f64::from(self.bitmap.width()), f64::from(self.bitmap.height()))
             .component_mul(&self.pixel_m)

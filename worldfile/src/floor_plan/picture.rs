@@ -1,4 +1,4 @@
-//! Pictures as grey values, decoded only when their header is sensible.
+//! Pictures as gray values, decoded only if the size in their header is acceptable.
 
 use super::PlanError;
 use image::codecs::png::PngDecoder;
@@ -6,15 +6,15 @@ use image::codecs::pnm::PnmDecoder;
 use image::{ColorType, ImageDecoder, Limits};
 use std::io::Cursor;
 
-/// A file with more bytes than this is refused.
+/// The maximum size of a file, bytes.
 pub const MAX_FILE_BYTES: u64 = 1 << 28;
-/// More pixels than this are refused: 400 m × 400 m in pixels of 5 cm.
+/// The maximum number of pixels: 400 m × 400 m in pixels of 5 cm.
 pub const MAX_PIXELS: u64 = 1 << 26;
-/// Pixels that take more bytes than this are refused.
+/// The maximum memory of the pixels, bytes.
 pub const MAX_DECODED_BYTES: u64 = 1 << 28;
 
-/// A pixel. All values are from 0 (dark, transparent) to 1 (bright, opaque); a grey pixel has
-/// three equal colours.
+/// A pixel. All values are from 0 (dark, transparent) to 1 (bright, opaque); a gray pixel has
+/// three equal colors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// Red.
@@ -28,7 +28,7 @@ pub struct Pixel {
 }
 
 impl Pixel {
-    /// The mean of the colours, without regard to transparency.
+    /// The mean of the colors, without regard to transparency.
     pub fn brightness(&self) -> f64 {
         (self.red + self.green + self.blue) / 3.0
     }
@@ -43,7 +43,7 @@ impl Pixel {
 pub(crate) struct Raster {
     pub(crate) width: u32,
     pub(crate) height: u32,
-    /// Colours, and perhaps opacity, of a pixel.
+    /// Colors, and perhaps opacity, of a pixel.
     channels: usize,
     /// Whether a value takes two bytes.
     is_wide: bool,

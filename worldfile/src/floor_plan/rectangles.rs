@@ -1,19 +1,18 @@
 //! From blocked pixels to solid rectangles.
 //!
-//! First the blocked pixels are parted into rectangles: equal runs in rows above each other make
-//! one. A run is as long as it can be, so each of these can only grow upwards and downwards; it
-//! does, over its neighbours, as far as all its columns are blocked. Rectangles that have become
-//! the same are one. All in time proportional to the pixels (times a logarithm), and in memory
-//! proportional to the outline.
+//! First the blocked pixels are divided into rectangles: equal runs in consecutive rows form one rectangle. A run
+//! is as long as possible, so that each rectangle can only grow upward and downward; it then grows over its
+//! neighbors as far as all its columns are blocked. Rectangles that have become equal are merged. The time is
+//! proportional to the number of pixels (times a logarithm), the memory to the length of the outline.
 
 use super::bitmap::Bitmap;
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PixelRectangle {
-    /// Its lower left corner: column and row.
+    /// The lower left corner: column and row.
     pub min: [u32; 2],
-    /// Its upper right corner.
+    /// The upper right corner: column and row.
     pub max: [u32; 2],
 }
 

@@ -60,7 +60,7 @@ fn block(table: &Table<'_>, drawing: Option<&Drawing>) -> Option<BlockSpec> {
     table.sound(BlockSpec { name: name?, dwell: dwell?, stood: stood?, course: course?, path: path? })
 }
 
-/// Notes a block that starts on the cell of another one or of the robot.
+/// Records a block that starts on the cell of another block or of the robot.
 fn apart(table: &Table<'_>, block: &BlockSpec, others: &[(&Table<'_>, BlockSpec)], drawing: &Drawing) {
     let start = block.path[0];
     if start == drawing.start {

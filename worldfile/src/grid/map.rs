@@ -5,9 +5,9 @@ use interfaces::{Cell, Grid, GridFrame};
 use nalgebra::Point2;
 use std::ops::Range;
 
-/// More cells than this are refused before anything is allocated for them.
+/// The maximum number of cells; larger maps are refused before memory is allocated.
 const MAX_CELLS: usize = 4_000_000;
-/// The least number of rows and of columns: a cell with a wall around it.
+/// The minimum number of rows and of columns: one cell with a wall around it.
 const MIN_SIDE: usize = 3;
 
 /// The content of the drawing.

@@ -10,7 +10,7 @@
 //! | `name` | required | not empty |
 //! | `description` | `""` | |
 //! | `sensor_radius` | required | 1 to 100 cells |
-//! | `map` | required | rows of equal length, the top row first: `#` wall, `.` free, `R` where the robot starts (free; without one it starts in the centre, column width / 2 and row height / 2, rounded down); 3 × 3 to 4 million cells |
+//! | `map` | required | rows of equal length, the top row first: `#` wall, `.` free, `R` where the robot starts (free; without one it starts in the center, column width / 2 and row height / 2, rounded down); 3 × 3 to 4 million cells |
 //! | `transitions.block_chance` | 1 | above 0, at most 1: the probability per step that a block which is due moves |
 //! | `transitions.robot_chance` | 1 | above 0, at most 1: the probability that the robot's action happens |
 //! | `block.name` | required | unique |
@@ -37,19 +37,19 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// When the file cannot be read, or as in [`parse`].
+/// When the file cannot be read, and the errors of [`parse`].
 pub fn load(path: impl AsRef<Path>) -> Result<GridSpec, WorldError> {
     let (name, text) = read_text("world file", path.as_ref())?;
     parse(&name, &text)
 }
 
-/// Checks the text of a world file; `file_name` is what messages call the file.
+/// Checks the text of a world file; `file_name` is the name of the file in messages.
 ///
 /// # Errors
 ///
-/// When the text is no TOML, a key is unknown or missing, a value out of range, or the things
-/// in the world contradict each other. The messages say where, and what would be valid: of everything
-/// that is invalid, as far as one error does not hide another.
+/// When the text is not TOML, a key is unknown or missing, a value is out of range, or parts of the world
+/// contradict each other. The messages state the place and a valid value, for everything that is invalid, unless
+/// one error hides another.
 pub fn parse(file_name: &str, text: &str) -> Result<GridSpec, WorldError> {
     reader::read(file_name, text, Kind::Grid, check::KEYS, check::world)
 }

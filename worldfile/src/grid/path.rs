@@ -6,7 +6,7 @@ use crate::reader::{Table, Value};
 use interfaces::Cell;
 use sim::grid::Course;
 
-/// Longer paths are refused before anything is allocated for them.
+/// The maximum length of a path; longer paths are refused before memory is allocated.
 const MAX_CELLS: usize = 1_000_000;
 
 /// Every cell of the path of the block `name`, in order; none if there is no map.
@@ -123,7 +123,7 @@ impl Path<'_> {
         self.table.error(&what, self.mark(points - 1, "ends here"), &[self.mark(0, "begins here")], help)
     }
 
-    /// Notes a path through a wall.
+    /// Records a path through a wall.
     fn is_free(&self, cell: Cell, mark: Mark<'_>, others: &[Mark<'_>]) -> Option<()> {
         if self.drawing.walls.get(cell) == Some(&false) {
             return Some(());

@@ -4,7 +4,7 @@ use interfaces::Cell;
 use sim::grid::{Course, GridSpec};
 use std::fmt::Write;
 
-/// The text of a world file that describes `spec`: [`super::parse`] makes the same of it.
+/// The text of a world file that describes `spec`: [`super::parse`] reads the same spec from it.
 pub fn to_toml(spec: &GridSpec) -> String {
     let mut text = String::new();
     write(spec, &mut text).expect("a String takes all that is written");

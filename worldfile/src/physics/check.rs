@@ -14,7 +14,7 @@ use sim::physics::{DrivenError, FleetSpec, Motion, ObstacleSpec, Rectangle, Robo
 /// The keys of a world file.
 pub(super) const KEYS: &str = "name, description, map, physics, wall, floor_plan, obstacle, robot";
 
-/// More cells than this are refused before anything is allocated for them.
+/// The maximum number of cells; more cells are refused before memory is allocated.
 const MAX_CELLS: f64 = 4e6;
 
 /// The fleet that a world file describes, any number of its robots driven.
@@ -133,7 +133,7 @@ fn wall(table: &Table<'_>, size: &Point2<f64>) -> Option<Rectangle> {
     table.sound(wall)
 }
 
-/// Notes boxes that can be pushed and overlap something else at the start: the physics would throw them apart.
+/// Records boxes that can be pushed and overlap something else at the start: the physics would throw them apart.
 fn boxes_apart(obstacles: &[(&Table<'_>, ObstacleSpec)]) {
     let is_pushed = |obstacle: &ObstacleSpec| matches!(obstacle.motion, Motion::Pushed(_));
     let starts: Vec<Rectangle> = obstacles.iter().map(|(_, obstacle)| obstacle.start()).collect();
@@ -154,7 +154,7 @@ fn boxes_apart(obstacles: &[(&Table<'_>, ObstacleSpec)]) {
     }
 }
 
-/// Notes robots that overlap at the start.
+/// Records robots that overlap at the start.
 fn apart(robots: &[(&Table<'_>, RobotSpec)]) {
     for (i, (table, second)) in robots.iter().enumerate() {
         let distances_m = |first: &RobotSpec| {

@@ -6,13 +6,13 @@ use sim::physics::convex;
 
 const MOST_CORNERS: usize = 32;
 
-/// What a robot's body covers.
+/// The area of a robot's body.
 pub(super) struct Footprint {
-    /// The radius of the circle about its middle that holds it, m.
+    /// The radius of the circle about its center that contains the body, m.
     pub(super) radius_m: f64,
-    /// The radius of the circle about its middle that it holds, m.
+    /// The radius of the circle about its center that is contained in the body, m.
     pub(super) inner_m: f64,
-    /// The corners, counter-clockwise, m; none: it is a circle.
+    /// The corners, counter-clockwise, m; empty for a circle.
     pub(super) corners: Vec<Point2<f64>>,
 }
 

@@ -24,23 +24,24 @@ use sim::physics::{FleetSpec, WorldSpec};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Checks the text of a world file, in which any number of robots can be driven, or none; `name` is the name of the
-/// file in messages. There are no pictures beside it.
+/// Checks the text of a world file in which any number of robots can be driven, including none; `name` is the name
+/// of the file in messages. The world must not use pictures.
 ///
 /// # Errors
 ///
-/// When the text is no TOML, a key is unknown or missing, a value out of range, or the things in the world
-/// contradict each other. The messages say where, and what would be valid: of everything that is invalid, as far as
-/// one error does not hide another.
+/// When the text is not TOML, a key is unknown or missing, a value is out of range, or parts of the world
+/// contradict each other. The messages state the place and a valid value, for everything that is invalid, unless
+/// one error hides another.
 pub fn parse_fleet(name: &str, text: &str) -> Result<FleetSpec, WorldError> {
     parse_fleet_with(name, text, &no_files())
 }
 
-/// As [`parse_fleet`], with the pictures of its floor plans, which are looked for in the folder of the path `name`.
+/// Checks the text of a world file as [`parse_fleet`] does, with floor plans. Their pictures are read from the
+/// folder of the path `name`.
 ///
 /// # Errors
 ///
-/// As [`parse_fleet`], and when a picture cannot be read.
+/// The errors of [`parse_fleet`], and when a picture cannot be read.
 pub fn parse_fleet_with(name: &str, text: &str, files: &dyn Files) -> Result<FleetSpec, WorldError> {
     reader::read(name, text, Kind::Physics, check::KEYS, |root| check::fleet(root, files))
 }
@@ -49,26 +50,28 @@ pub fn parse_fleet_with(name: &str, text: &str, files: &dyn Files) -> Result<Fle
 ///
 /// # Errors
 ///
-/// When the file cannot be read, or as in [`parse_world`].
+/// When the file cannot be read, and the errors of [`parse_world`].
 pub fn load_world(path: impl AsRef<Path>) -> Result<WorldSpec, WorldError> {
     let (name, text) = read_text("world file", path.as_ref())?;
     parse_world_with(&name, &text, &Disk)
 }
 
-/// Checks the text of a world file; `name` is what messages call the file.
+/// Checks the text of a world file in which exactly one robot is driven; `name` is the name of the file in
+/// messages.
 ///
 /// # Errors
 ///
-/// As [`parse_fleet`], and when not exactly one robot is driven.
+/// The errors of [`parse_fleet`], and when the number of driven robots is not one.
 pub fn parse_world(name: &str, text: &str) -> Result<WorldSpec, WorldError> {
     parse_world_with(name, text, &no_files())
 }
 
-/// As [`parse_world`], with the pictures of its floor plans, which are looked for in the folder of the path `name`.
+/// Checks the text of a world file as [`parse_world`] does, with floor plans. Their pictures are read from the
+/// folder of the path `name`.
 ///
 /// # Errors
 ///
-/// As [`parse_world`], and when a picture cannot be read.
+/// The errors of [`parse_world`], and when a picture cannot be read.
 pub fn parse_world_with(name: &str, text: &str, files: &dyn Files) -> Result<WorldSpec, WorldError> {
     reader::read(name, text, Kind::Physics, check::KEYS, |root| {
         check::fleet(root, files).and_then(|fleet| check::world(root, fleet))

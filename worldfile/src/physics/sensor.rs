@@ -5,18 +5,18 @@ use interfaces::pose;
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{BumperSpec, FiducialSpec, LaserSpec, SonarSpec};
 
-/// Sensors stick out of the circle about their robot by this at most, m.
+/// The maximum distance by which a sensor may be outside of the circle around its robot, m.
 pub const MOST_OUT_M: f64 = 1.0;
-/// More lasers on one robot than this are refused.
+/// The maximum number of lasers of a robot.
 const MOST_LASERS: usize = 100;
-/// More sonars on one robot than this are refused.
+/// The maximum number of sonars of a robot.
 const MOST_SONARS: usize = 100;
 
 const LASER_KEYS: &str =
     "beams, fov_deg, range_min_m, range_max_m, rate_hz, mount_m, mount_deg, noise_std_m, dropout";
 const SONAR_KEYS: &str = "cone_deg, range_min_m, range_max_m, rate_hz, mount_m, mount_deg, noise_std_m";
 
-/// What the sensors of a robot must fit: the physics step (s) and the radius of its body (m).
+/// The properties of a robot to which its sensors must fit: the physics step (s) and the radius of the body (m).
 #[derive(Clone, Copy)]
 pub(super) struct Carrier {
     pub(super) step_s: f64,

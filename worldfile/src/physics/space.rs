@@ -6,7 +6,7 @@ use sim::physics::Rectangle;
 use sim::physics::shape::TOUCH_M;
 use std::ops::Range;
 
-/// The latest time that a file can name, s: some thirty years.
+/// The maximum time in a file, s: about thirty years.
 pub(super) const MAX_TIME_S: f64 = 1e9;
 
 /// Something solid, and its place in the file.
@@ -50,7 +50,7 @@ pub(super) fn upright(table: &Table<'_>, size: &Point2<f64>) -> Option<Rectangle
     Some(Rectangle::between(low, high))
 }
 
-/// Notes a shape that reaches out of the map.
+/// Records an error for a shape that is partly outside of the map.
 pub(super) fn inside(
     file: &File<'_>,
     what: &str,

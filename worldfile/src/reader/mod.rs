@@ -1,9 +1,9 @@
 //! Reads a TOML file table by table and reports everything that is invalid at once.
 //!
-//! The tables and values of a file are asked for by key, with their type and range. What is invalid is noted, and
-//! the answer is `None`: the caller goes on with the rest, so that one error does not hide another, and judges
-//! nothing by what it does not have, so that one error causes no other. A table is opened with the list of its
-//! keys, since an unknown key may be the misspelling of one that then seems to be missing.
+//! The caller asks for tables and values by key, with their type and range. If one is invalid, the error is
+//! recorded and the answer is `None`. The caller continues with the rest, so that one error does not hide another,
+//! and does not judge anything by a missing value, so that one error does not cause another. A table is opened with
+//! the list of its keys: an unknown key may be a misspelling of a key that then seems to be missing.
 
 mod spelling;
 #[cfg(test)]
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 pub(crate) use value::{Value, extent};
 
-/// The number of errors that are shown; further ones are only counted.
+/// The number of errors that are shown; further errors are only counted.
 const MOST_SHOWN: usize = 20;
 
 /// The kinds of files: two kinds of worlds, and tours.
@@ -44,11 +44,11 @@ struct FileError {
     help: String,
 }
 
-/// Reads a file: `build` makes what it describes from its root table, which has the keys `keys`.
+/// Reads a file: `build` makes the result from the root table, which has the keys `keys`.
 ///
 /// # Errors
 ///
-/// When the text is not TOML, describes a world of the other kind, or anything was noted as invalid.
+/// When the text is not TOML, describes a world of the other kind, or anything was recorded as invalid.
 pub(crate) fn read<T>(
     name: &str,
     text: &str,
@@ -69,7 +69,7 @@ pub(crate) fn read<T>(
 }
 
 impl File<'_> {
-    /// Notes an error at `mark`, with `others` that explain it and `help` that says what would be valid.
+    /// Records an error at `mark`; `others` are places that explain it, and `help` states what is valid.
     pub(crate) fn error<T>(&self, what: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> Option<T> {
         let owned = |(span, label): &Mark<'_>| (span.clone(), (*label).to_owned());
         self.errors.borrow_mut().push(FileError {
@@ -142,13 +142,13 @@ impl File<'_> {
 /// A table of the file.
 pub(crate) struct Table<'a> {
     pub(crate) file: &'a File<'a>,
-    /// As in `robot.laser`; empty for the root.
+    /// The path of the table, for example `robot.laser`; empty for the root.
     path: String,
-    /// Its keys, separated by `, `.
+    /// The valid keys, separated by `, `.
     keys: &'static str,
-    /// `None`: it is left out.
+    /// The value of the table; `None` if it is left out.
     entries: Option<&'a DeTable<'a>>,
-    /// Its place in the file; of a table with a header, the header.
+    /// The place in the file; for a table with a header, the place of the header.
     pub(crate) span: Range<usize>,
     is_sound: bool,
     /// The keys that unknown keys seem to mean: they are not missing as well.
@@ -156,7 +156,7 @@ pub(crate) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Notes every unknown key.
+    /// Records every unknown key.
     fn open(
         file: &'a File<'a>,
         path: String,
@@ -186,7 +186,7 @@ impl<'a> Table<'a> {
         self.is_sound.then_some(value)
     }
 
-    /// Notes an error about the meaning of the table, unless it could be due to an unknown key.
+    /// Records an error about the meaning of the table, unless the error could be due to an unknown key.
     pub(crate) fn error<T>(&self, what: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> Option<T> {
         self.sound(())?;
         self.file.error(what, mark, others, help)

@@ -34,7 +34,7 @@ pub(crate) struct Value<'t, 'a> {
 }
 
 impl<'t, 'a> Value<'t, 'a> {
-    /// Its place in the file.
+    /// The place of the value in the file.
     pub(crate) fn span(&self) -> Range<usize> {
         self.found.span()
     }
@@ -45,7 +45,7 @@ impl<'t, 'a> Value<'t, 'a> {
         self.error(&what, &label, &format!("it must be {expected}"))
     }
 
-    /// Notes an error about the value, as in `robot.laser.beams` **is 0, which is out of range**.
+    /// Records an error about the value, for example `robot.laser.beams` **is 0, which is out of range**.
     pub(crate) fn invalid<T>(&self, is: &str, label: &str, help: &str) -> Option<T> {
         self.error(&format!("`{}` {is}", self.table.path(self.key)), label, help)
     }

@@ -1,4 +1,4 @@
-//! Occupancy maps as the `map_server` of ROS keeps them: a gray picture and a YAML file.
+//! Occupancy maps in the format of the ROS `map_server`: a gray picture and a YAML file.
 //!
 //! | key | meaning |
 //! |---|---|
@@ -13,7 +13,7 @@
 //! p = (255 − v)/255 for a pixel of brightness v, or v/255 with `negate`. In the mode `raw` the
 //! pixel is p in percent, and above 100 unknown; in `scale` a transparent pixel is unknown.
 //!
-//! ROS ignores other keys. Here they are a warning: a misspelled key would change the map.
+//! ROS ignores other keys. Here they cause a warning, since a misspelled key would change the map.
 
 mod read;
 #[cfg(test)]
@@ -36,13 +36,13 @@ use std::sync::Arc;
 pub struct RosMap {
     /// The state of every pixel, in a frame whose lower left corner is the origin.
     pub cells: Grid<CellState>,
-    /// The pose of that frame in the world.
+    /// The pose of this frame in the world, m and rad.
     pub origin: Isometry2<f64>,
 }
 
 impl RosMap {
-    /// The state of the map at the center of every cell of `frame`; unknown beyond the border of the map. The
-    /// cells of the map may have another size and another orientation.
+    /// The state of the map at the center of every cell of `frame`; unknown outside of the map. The cells of the
+    /// map may have another size and another orientation.
     pub fn onto(&self, frame: &GridFrame) -> Grid<CellState> {
         let to_map = self.origin.inverse();
         let states = (0..frame.len()).map(|index| {
@@ -55,8 +55,8 @@ impl RosMap {
     }
 }
 
-/// Reads a `map.yaml` and the picture that it names as a floor plan, in which unknown pixels are free, with a note
-/// that counts them. Without a plan there are errors among the findings.
+/// Reads a `map.yaml` and its picture as a floor plan. Unknown pixels become free; a note counts them. If no plan
+/// is returned, there are errors among the findings.
 pub fn read_floor_plan(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<FloorPlan> {
     let map = read(yaml, files, findings)?;
     let states = map.cells.cells();

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
-/// A longer YAML file is refused.
+/// The maximum length of a YAML file.
 const MAX_YAML_BYTES: u64 = 1 << 20;
 
 const EXAMPLE: &str = "a map has e.g. `image: map.pgm`, `resolution: 0.05`, `origin: [-6.0, -6.0, 0.0]`, \

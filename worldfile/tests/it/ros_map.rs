@@ -1,4 +1,4 @@
-//! Maps as ROS keeps them: read, written, resampled.
+//! ROS maps: read, written, resampled.
 
 use interfaces::{Cell, CellState, Grid, GridFrame};
 use nalgebra::Point2;
@@ -93,7 +93,7 @@ fn thresholds_are_strict() {
     // 153/255 is 0.6 to the last bit: neither more nor less.
     let yaml = YAML.replace("0.65", "0.6").replace("0.196", "0.6");
     assert_eq!(states(&yaml, &[101, 102, 103]), "# .");
-    // With the customary threshold, what was saved as unknown is free.
+    // With the usual threshold, a cell that was saved as unknown would be free.
     assert_eq!(states(&YAML.replace("0.196", "0.25"), &[205]), ".");
 }
 

@@ -1,4 +1,4 @@
-//! The probability that a cell without a change changes at all, and the gain of watching it.
+//! The probability that a cell without an observed change changes at all, and the gain of observing the cell.
 //!
 //! Most cells never change, so the distribution of the rate of a cell has a spike at zero: the cell changes
 //! with probability θ before it is observed, and with θ S / (θ S + 1 − θ) after an observation without an event,
@@ -10,33 +10,37 @@ use super::rates::{BINS, Distribution, Gains, RATES, Rates};
 use interfaces::CellState;
 use mapper::Mapper;
 
-/// θ far from all changed cells, and its weight in cells.
+/// θ far from all cells that changed, and the weight of this prior, in cells.
 const FAR: [f64; 2] = [0.05, 100.0];
-/// The same beside the middle of a cluster.
+/// θ beside the middle of a cluster, and the weight of this prior, in cells.
 const MIDDLE: [f64; 2] = [0.05, 10.0];
-/// θ beside the end of a cluster. Not learned: the changed cells are those where the assumption was right.
+/// θ beside the end of a cluster. θ is not learned here: the cells that changed are those where the assumption was
+/// right.
 const END: f64 = 0.5;
 /// θ of a cell that has been blocked since it was first seen: nearly all such cells are walls.
 const BLOCKED: f64 = 0.003;
 
-/// The number of cells in which an undiscovered moving thing could have been seen: an observation without an
-/// event far from all clusters counts that often.
+/// The number of cells in which an undiscovered moving thing could have been seen: an observation without an event,
+/// far from all clusters, counts this many times.
 const PATH_IN_VIEW: f64 = 5.0;
-/// A moving thing leaves its present cell this many times faster than it returns: the length of its path.
+/// The length of the path of a moving thing: the thing leaves its present cell this many times faster than it
+/// returns.
 const PATH: f64 = 10.0;
-/// The worth of an unknown cell relative to a free one: more, since there may be others behind it.
+/// The value of an unknown cell relative to a free cell. The value is above 1, since further unknown cells may be
+/// behind it.
 const UNKNOWN: f64 = 1.5;
-/// The share of the cells beside a cluster that change at its rate, if they change; the others at any rate.
+/// The share of the cells beside a cluster that change at the rate of the cluster, if they change; the rate of the
+/// others is arbitrary.
 const SAME_RATE: f64 = 0.8;
 /// The weight of the uniform distribution of the rates, in cells.
 const FLAT: f64 = 2.0;
 
-/// What was learned of cells in general.
+/// What was learned about all cells together.
 #[derive(Clone, Debug)]
 pub(super) struct Change {
     far: f64,
     middle: f64,
-    /// The distribution of the rates of cells that change.
+    /// The distribution of the rates of the cells that change.
     distribution: Distribution,
 }
 
@@ -63,14 +67,15 @@ impl Change {
         Self { far: FAR[0], middle: MIDDLE[0], distribution: [1.0 / RATES as f64; RATES] }
     }
 
-    /// The distribution of the rates of a cell that changes, given the rate of its cluster or the one beside it.
+    /// The distribution of the rates of a cell that changes, given the rate of its own cluster or of the cluster
+    /// beside it.
     pub(super) fn distribution(&self, rates: &Rates, cluster_rate: Option<f64>) -> Distribution {
         let Some(cluster_rate) = cluster_rate else { return self.distribution };
         let around = rates.around(cluster_rate);
         std::array::from_fn(|rate| SAME_RATE * around[rate] + (1.0 - SAME_RATE) * self.distribution[rate])
     }
 
-    /// Learns the distribution of the rates from those of all cells that changed.
+    /// Learns the distribution of the rates from the rates of all cells that changed.
     pub(super) fn learn_rates<'a>(&mut self, changed: impl Iterator<Item = &'a Distribution>) {
         let mut sums = [FLAT / RATES as f64; RATES];
         for distribution in changed {
@@ -80,8 +85,8 @@ impl Change {
         self.distribution = sums.map(|sum| sum / total);
     }
 
-    /// Calls `take` with each cell that never changed and can be worth a visit, and the gains of watching it;
-    /// learns how likely such cells are to change. A pass over the map.
+    /// Calls `take` with each cell that never changed and can be worth a visit, and with the gains of observing it.
+    /// Learns how likely such cells are to change. One pass over the map.
     pub(super) fn gains_of_unchanged(
         &mut self,
         mapper: &Mapper,
@@ -142,7 +147,7 @@ impl Change {
     }
 }
 
-/// The time for which the cell may have shown no event: a gap with the same state at both ends counts as seen.
+/// The time in which the cell showed no event. A gap with the same state at both ends counts as seen.
 fn since_first_seen(mapper: &Mapper, cell: usize) -> f64 {
     let seen = mapper.statistics(cell);
     seen.last_seen - seen.first_seen

@@ -1,5 +1,5 @@
-//! Clusters of cells that changed, mostly the path of one moving thing. The cells beside a cluster are more
-//! likely to change, too.
+//! Clusters of cells that changed. A cluster is mostly the path of one moving thing. Cells beside a cluster are
+//! more likely to change, too.
 
 use interfaces::GridFrame;
 use mapper::Mapper;
@@ -14,11 +14,11 @@ const NONE: u32 = u32::MAX;
 /// The position of a cell relative to the cells that changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Position {
-    /// No cell beside the cell ever changed.
+    /// No cell beside this cell ever changed.
     Far,
-    /// A cell beside it changed that lies between others: a path that goes on past this cell.
+    /// A cell beside this cell changed, and that cell lies between other changed cells: the path goes on elsewhere.
     Middle,
-    /// A cell beside it changed that has at most one other beside it: the end of a path, as far as known.
+    /// A cell beside this cell changed, and that cell has at most one changed neighbor: the known end of a path.
     End,
 }
 
@@ -29,12 +29,12 @@ pub(super) struct Clusters {
     of: Vec<u32>,
     /// The number of changed cells beside each changed cell.
     degrees: Vec<u8>,
-    /// The mean cycles per unit of time in view of each cluster.
+    /// The mean number of cycles per unit of time in view, for each cluster.
     rates: Vec<f64>,
 }
 
 impl Clusters {
-    /// The clusters of a map. A pass over the changed cells, with vectors as large as the map.
+    /// The clusters of a map. One pass over the changed cells; the vectors are as large as the map.
     pub(super) fn new(mapper: &Mapper) -> Self {
         let frame = mapper.frame();
         let mut clusters =
@@ -87,8 +87,8 @@ impl Clusters {
         self.rates.get(self.of[cell] as usize).copied()
     }
 
-    /// The position of a cell relative to the other changed cells, and the lowest rate of the clusters beside it
-    /// (∞ far from all).
+    /// The position of a cell relative to the cells that changed, and the lowest rate of the clusters beside it (∞
+    /// far from all clusters).
     pub(super) fn position(&self, frame: &GridFrame, cell: usize) -> (Position, f64) {
         let (mut position, mut rate) = (Position::Far, f64::INFINITY);
         for near in frame.beside(cell).filter(|&near| self.has(near)) {

@@ -21,19 +21,19 @@ use rates::{Gains, Rates, WATCHES};
 use runs::Runs;
 use view_reliability::ViewReliability;
 
-/// The longest watch before the next decision, in the unit of the readings' times. New observations often make
-/// another region better.
+/// The maximum duration of an observation before the next decision, in the time unit of the readings. New
+/// observations often make another region better.
 const LONGEST_WATCH: f64 = 5.0;
-/// The time that every visit takes besides the travel and the watch.
+/// The time that every visit takes in addition to travel and observation.
 const OVERHEAD: f64 = 1.0;
-/// The factor of the worth of a region beside a cluster, where the robot may stand in the way of a moving thing.
+/// The factor on the value of a region beside a cluster, where the robot may block the path of a moving thing.
 const IN_THE_WAY: f64 = 0.5;
-/// On the way to a region nearer than this, the cells in view stay in view.
+/// If a region is nearer than this, the cells in view stay in view on the way there.
 const STILL_IN_VIEW: f64 = 3.0;
 
-/// Goes where a visit reduces the error of the rates most, per time to get there and to watch.
+/// Goes to the region where a visit reduces the error of the rates most, per time to get there and to observe.
 ///
-/// The error of a cell's rate r is |ln(r̂ / r)|, at most ln 10, and ln 10 without an estimate r̂. The worth of a
+/// The error of a cell's rate r is |ln(r̂ / r)|, at most ln 10, and ln 10 without an estimate r̂. The value of a
 /// region is
 ///
 /// ```text
@@ -42,20 +42,23 @@ const STILL_IN_VIEW: f64 = 3.0;
 ///                                              travel time + d + 1
 /// ```
 ///
-/// with v(c) the share of the cell that is really seen from there. The robot leaves a region when the rest of
-/// what it can learn there is worth less, per time, than the travel to another region: it does not spend time on
-/// cells that never change, nor follow moving things. Three estimates enter:
+/// with v(c) the share of the cell that is really seen from the region, and d the duration of the observation
+/// ("watch"). The robot leaves a region when the rest of what can be learned there is worth less, per time, than
+/// the travel to another region. The robot therefore does not spend time on cells that never change, and does not
+/// follow moving things. Three estimates are used:
 ///
-/// - *Whether a cell changes.* The distribution of the rate has a spike at zero. The share of cells that change
-///   is learned from those seen so far, and is larger beside the end of a cluster; a cell that was watched for
+/// - *Whether a cell changes.* The distribution of the rate has a spike at zero. The share of cells that change is
+///   learned from the cells seen so far, and is larger beside the end of a cluster; a cell that was observed for
 ///   long without an event is probably static (empirical Bayes).
-/// - *The gain of a watch.* After n cycles of variance V the error is √(2 V / π) / n. With fewer than three
-///   cycles the error is averaged over the rates that the cell may have. An uninterrupted watch has less variance
-///   than one in pieces, which keeps the robot where it is.
-/// - *What is really seen.* A moving thing hides the cells behind it. A cell that things enter out of their own
-///   shadow is better not watched from there: its events are missed, but its time counts.
+/// - *The gain of an observation.* After n cycles with variance V the error is √(2 V / π) / n. With fewer than
+///   three cycles the error is averaged over the rates that the cell may have. An uninterrupted observation has
+///   less variance than the same time in pieces, so that it is better to stay.
+/// - *What is really seen.* A moving thing hides the cells behind it. Some cells should not be observed from a
+///   region at all: cells that things enter from their own shadow. The events of such a cell are missed, but its
+///   time counts.
 ///
-/// The files of this folder describe each estimate. All times are in the unit of the readings' times; all
+/// Each file of this folder describes one estimate. All times are in the time unit of the readings. All constants
+/// were set on worlds that are not among those of the reported results.
 /// constants were set on other worlds than those of the reported results.
 #[derive(Clone, Debug)]
 pub struct InformationGain {
@@ -67,17 +70,17 @@ pub struct InformationGain {
     plan: Option<Plan>,
 }
 
-/// The plan behind the last weights, for the goal that is selected by them.
+/// The plan for the goal that is selected by the last weights.
 #[derive(Clone, Debug)]
 struct Plan {
     regions: Regions,
-    /// The best watch from each region.
+    /// The best duration of the observation from each region.
     watches: Vec<f64>,
-    /// The time that each region was in view so far.
+    /// The time that each region has been in view so far.
     watched: Vec<f64>,
 }
 
-/// The gain of each watch of each region, summed over its cells.
+/// For each region the gain of each duration, summed over the cells of the region.
 type RegionGains = Vec<[f32; WATCHES.len()]>;
 
 fn add(sums: &mut [f32; WATCHES.len()], gains: &Gains) {
@@ -85,7 +88,7 @@ fn add(sums: &mut [f32; WATCHES.len()], gains: &Gains) {
 }
 
 impl InformationGain {
-    /// For a robot that sees as far as `settings.sensor_radius_m`.
+    /// The strategy of a robot whose sensor has the range `settings.sensor_radius_m`.
     pub fn new(settings: &AgentSettings) -> Self {
         Self {
             visibility: Visibility::new(settings.sensor_radius_m),
@@ -97,7 +100,7 @@ impl InformationGain {
         }
     }
 
-    /// The gains of a new watch, and of one that continues without a gap.
+    /// The gains of a new observation, and of one that continues without a gap.
     fn gains(&mut self, mapper: &Mapper, clusters: &Clusters, regions: &Regions) -> [RegionGains; 2] {
         let mut anew = vec![[0.0; WATCHES.len()]; regions.count()];
         let mut continued = anew.clone();
@@ -119,7 +122,8 @@ impl InformationGain {
         [anew, continued]
     }
 
-    /// The gain of each watch from a region, over the regions in view as far as they will be seen.
+    /// The gain of each duration of an observation from a region: the sum over the regions in view, weighted by the
+    /// share that is really seen.
     fn in_view(
         &mut self,
         region: usize,
@@ -152,7 +156,7 @@ impl Strategy for InformationGain {
         let clusters = Clusters::new(mapper);
         let [anew, continued] = self.gains(mapper, &clusters, &regions);
         let travel = travel_times::times(situation);
-        // A thing that covers many cells does not hide as a thing that covers one cell.
+        // Occlusion is modeled for things of one cell; a thing that covers many cells hides others in another way.
         let occlusion = regions.are_cells().then(|| Occlusion::new(mapper, &clusters));
         let mut watches = vec![0.0; regions.count()];
         for (region, chosen) in watches.iter_mut().enumerate() {

@@ -1,12 +1,13 @@
 use super::clusters::Clusters;
 use mapper::Mapper;
 
-/// Occlusion by moving things, in a grid of cells as large as the things.
+/// Occlusion by moving things, in a grid whose cells are as large as the things.
 ///
-/// A cell that changed is hidden while a cell between it and the robot is blocked. And a thing that enters the
-/// cell from the side of the robot comes out of its own shadow: the robot never sees the cell free and then
-/// blocked, finds both changes too late, and estimates too low a rate. Of the events of a cell with k changing
-/// neighbours, such a neighbour takes 2 / k: for the event, and for the time that is counted without it.
+/// A cell that changed is hidden while a cell between it and the robot is blocked. In addition, a thing that enters
+/// the cell from the side of the robot comes out of its own shadow: the robot does not see the cell free and then
+/// blocked, finds both changes too late, and estimates too low a rate. If a cell with k changing neighbors is
+/// entered from such a neighbor, the visible share of the events falls by 2 / k: once for the event, and once for
+/// the time that is counted without the event.
 #[derive(Clone, Debug)]
 pub(super) struct Occlusion<'a> {
     clusters: &'a Clusters,
@@ -24,8 +25,8 @@ impl<'a> Occlusion<'a> {
         Self { clusters, mapper, blocked }
     }
 
-    /// The share of the events of a changed cell that is seen from another, from 1 down to −1: negative where
-    /// watching misleads.
+    /// The share of the events of a changed cell that is seen from another cell, from 1 down to −1. A negative
+    /// share means that an observation from there makes the estimate worse.
     pub(super) fn visible_share(&self, from: usize, to: usize) -> f64 {
         let frame = self.mapper.frame();
         let (start, end) = (frame.cell(from), frame.cell(to));
@@ -34,7 +35,7 @@ impl<'a> Occlusion<'a> {
         if length <= 1 {
             return 1.0;
         }
-        // To the nearest cell, halves away from the robot.
+        // Rounded to the nearest cell; halves are rounded away from the robot.
         let part = |d: i32, step: i32| d.signum() * ((2 * d.abs() * step + length) / (2 * length));
         let index = |x: i32, y: i32| (start.y + y) as usize * frame.width() + (start.x + x) as usize;
         let mut share = 1.0;

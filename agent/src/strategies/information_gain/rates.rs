@@ -1,4 +1,4 @@
-//! The expected fall of the error of a cell's rate when the cell is watched.
+//! The expected decrease of the error of a cell's rate when the cell is observed.
 //!
 //! The error of an estimate r̂ of a rate r is |ln(r̂ / r)|, at most ln 10, and ln 10 without an estimate:
 //! over- and underestimates weigh the same. Rates are cycles per unit of time: blocked, free and blocked
@@ -9,64 +9,65 @@
 
 use std::f64::consts::LN_10;
 
-/// The considered durations of a watch, in the unit of the readings' times.
+/// The durations of an observation that are considered, in the time unit of the readings.
 pub(super) const WATCHES: [f64; 8] = [1.0, 4.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0];
 /// The expected gain of each of [`WATCHES`], in units of the error.
 pub(super) type Gains = [f64; WATCHES.len()];
 
-/// The number of different rates.
+/// The number of discrete rates.
 pub(super) const RATES: usize = 14;
 /// The probability of each rate.
 pub(super) type Distribution = [f64; RATES];
-/// The fastest rate, and the ratio of each to the one before: from 3 to 8000 units of time per cycle.
+/// The highest rate, and the ratio of each rate to the one before: from 3 to 8000 units of time per cycle.
 const FASTEST: f64 = 0.3;
 const RATIO: f64 = 0.55;
 
-/// φ: the largest variance of the number of cycles in one watch.
+/// φ: the maximum variance of the number of cycles in one uninterrupted observation.
 const MOST_VARIANCE: f64 = 0.5;
-/// The smallest assumed variance of the number of cycles in the present run.
+/// The minimum variance that is assumed for the number of cycles in the present uninterrupted observation.
 const LEAST_VARIANCE: f64 = 0.02;
 /// The square of the mean deviation of a normal variable over its variance, 2 / π.
 const MEAN_OF_NORMAL: f64 = std::f64::consts::FRAC_2_PI;
-/// From this number of cycles on the rate counts as known; below it only its distribution is.
+/// From this number of cycles on the rate counts as known; below this number, only the distribution of the rate is
+/// known.
 const KNOWN_CYCLES: f64 = 3.0;
 /// The pseudocounts of a rate: half a cycle in ten units of time.
 const PRIOR_CYCLES: f64 = 0.5;
 const PRIOR_TIME: f64 = 10.0;
-/// The bins of observation times have width 1 up to here, then grow by [`BIN_RATIO`].
+/// Bins of observation times have width 1 up to this number; then their widths grow by the factor [`BIN_RATIO`].
 const FINE_BINS: usize = 16;
 const BIN_RATIO: f64 = 1.15;
 pub(super) const BINS: usize = 64;
 
-/// The observation of a cell that changed.
+/// What was observed of a cell that changed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watched {
-    /// Half the events in view.
+    /// Half the number of events in view.
     pub(super) cycles: f64,
     /// The time in view.
     pub(super) time: f64,
-    /// The rate by the estimator in use; 0 without one.
+    /// The rate by the estimator in use; 0 without an estimate.
     pub(super) estimate: f64,
-    /// The time in view without interruption up to now.
+    /// The time in view without interruption until now.
     pub(super) run: f64,
-    /// The variance of the number of cycles in earlier runs.
+    /// The variance of the number of cycles in earlier uninterrupted observations.
     pub(super) past_variance: f64,
 }
 
 impl Watched {
-    /// The rate with pseudocounts; never zero.
+    /// The rate with pseudocounts; above zero.
     pub(super) fn rate(&self) -> f64 {
         (self.cycles + PRIOR_CYCLES) / (self.time + PRIOR_TIME)
     }
 }
 
-/// The variance of the number of cycles in an uninterrupted watch of `cycles`.
+/// The variance of the number of cycles in an uninterrupted observation of `cycles` cycles.
 pub(super) fn variance(cycles: f64) -> f64 {
     cycles / (1.0 + cycles / MOST_VARIANCE)
 }
 
-/// The expectation for a cell that changed: the distribution of its rate, and the gains of a new watch and of one
-/// that continues without a gap.
+/// The expectation for a cell that changed: the distribution of its rate, and the gains of a new observation and of
+/// one that continues without a gap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expected {
     pub(super) distribution: Distribution,
@@ -74,14 +75,14 @@ pub(super) struct Expected {
     pub(super) continued: Gains,
 }
 
-/// Tables over rates and observation times.
+/// Tables over discrete rates and observation times.
 #[derive(Clone, Debug)]
 pub(super) struct Rates {
     rates: Distribution,
     logs: Distribution,
-    /// The probability of no event at each rate, for each observation time.
+    /// The probability of no event, for each observation time and each rate.
     silence: Vec<Distribution>,
-    /// The gain of each watch of a cell without an event, at each rate.
+    /// The gain of each duration for a cell without an event, at each rate.
     first: [Gains; RATES],
 }
 
@@ -111,8 +112,8 @@ impl Rates {
         ((fine + step.round()) as usize).min(BINS - 1)
     }
 
-    /// For a cell that changes, with this distribution of the rate: the probability of no event in the observation
-    /// time of a bin, and the gains of watching the cell, times that probability.
+    /// For a cell that changes and whose rate has this distribution: the probability of no event in the observation
+    /// time of the bin, and the gains of an observation of the cell, times that probability.
     pub(super) fn silent(&self, distribution: &Distribution, bin: usize) -> (f64, Gains) {
         let (mut silent, mut gains) = (0.0, Gains::default());
         for ((probability, silence), first) in distribution.iter().zip(&self.silence[bin]).zip(&self.first) {
@@ -123,7 +124,7 @@ impl Rates {
         (silent, gains)
     }
 
-    /// A distribution around a rate, on a scale of logarithms; each rate is about twice the next.
+    /// A distribution around a rate, on a logarithmic scale; each discrete rate is about twice the next.
     pub(super) fn around(&self, rate: f64) -> Distribution {
         const SPREAD: f64 = 0.6;
         let middle = libm::log(rate);
@@ -131,7 +132,7 @@ impl Rates {
         normalised(self.logs.map(|log| libm::exp(-0.5 * distance(log) * distance(log))))
     }
 
-    /// The expectation for a cell that changed, with the distribution `prior` before it was observed.
+    /// The expectation for a cell that changed. `prior` is the distribution of its rate before it was observed.
     pub(super) fn of_changed(&self, seen: &Watched, prior: &Distribution) -> Expected {
         if seen.cycles >= KNOWN_CYCLES && seen.estimate > 0.0 {
             self.of_known(seen)
@@ -140,7 +141,7 @@ impl Rates {
         }
     }
 
-    /// The error is the spread √(2 V / π) / n of n cycles of variance V.
+    /// The error is √(2 V / π) / n for n cycles with variance V.
     fn of_known(&self, seen: &Watched) -> Expected {
         let rate = seen.rate();
         let spread = |variance: f64, cycles: f64| libm::sqrt(MEAN_OF_NORMAL * variance) / cycles;
@@ -156,8 +157,8 @@ impl Rates {
         }
     }
 
-    /// The error is averaged over the rates that the cell may have. At each rate it is the bias of the estimate,
-    /// and the spread of the cycles still to come.
+    /// The error is averaged over the rates that the cell may have. At each rate it consists of the bias of the
+    /// estimate and of the scatter of the cycles to come.
     fn of_uncertain(&self, seen: &Watched, prior: &Distribution) -> Expected {
         let &Watched { cycles, time, estimate, run, past_variance } = seen;
         let mut distribution: Distribution = std::array::from_fn(|rate| {
@@ -166,7 +167,7 @@ impl Rates {
         });
         let top = distribution.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         distribution = normalised(distribution.map(|log| libm::exp(log - top)));
-        // Half the spread so far: the other half is that of the distribution.
+        // Half the scatter so far: the other half is that of the distribution.
         let half = 0.5 * (past_variance + variance(seen.rate() * run).max(LEAST_VARIANCE));
         let has_estimate = estimate > 0.0 && cycles > 0.0;
         let estimate_time = if has_estimate { cycles / estimate } else { time };
@@ -194,7 +195,8 @@ impl Rates {
                 continued[index] += probability * (now - longer);
             }
         }
-        // The assumptions can make an estimate better than it will be; an observation is never a loss.
+        // The assumptions can make the present estimate seem better than the later one. An observation is never a
+        // loss.
         Expected {
             distribution,
             anew: anew.map(|gain| gain.max(0.0)),
@@ -209,8 +211,9 @@ impl Rates {
     }
 }
 
-/// The expected error of a cell without an event so far, after another `watch`: ln 10 if there is still
-/// none, with probability e^(−x) for x cycles expected; else the bias and spread of the first few.
+/// The expected error of a cell without an event so far, after another observation of duration `watch`: ln 10 if
+/// there is still no event (probability e^(−x) for x expected cycles), otherwise bias and scatter of the first few
+/// cycles.
 fn error_after_first(rate: f64, time: f64, watch: f64) -> f64 {
     let expected = rate * watch;
     let none = libm::exp(-expected);

@@ -3,10 +3,10 @@
 use super::rates::{Expected, Watched, variance};
 use mapper::Mapper;
 
-/// A cell that was in view for this share of the time between two goals counts as in view all the time.
+/// If a cell was in view for this share of the time between two goals, it counts as in view all the time.
 const UNINTERRUPTED: f64 = 0.9;
 
-/// A cell that changed, as observed at the last goal.
+/// A cell that changed, as known at the last goal.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     cell: usize,
@@ -15,12 +15,12 @@ struct Run {
     expected: Expected,
 }
 
-/// All cells that ever changed, in the order in which they first did.
+/// All cells that ever changed, in the order of their first change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Runs(Vec<Run>);
 
 impl Runs {
-    /// Applies the observations since the last goal. `expect` computes the expectation for a cell, and is called
+    /// Applies the observations since the last goal. `expect` computes the expectation for a cell; it is called
     /// only for cells that were observed.
     pub(super) fn update(&mut self, mapper: &Mapper, expect: impl Fn(usize, &Watched) -> Expected) {
         let now = mapper.time();
@@ -51,7 +51,7 @@ impl Runs {
                     *run = Run { cell, time: now, seen, expected };
                 }
                 None => {
-                    // Another map: the following runs belong to the old one.
+                    // The map is another one: the following entries belong to the old map.
                     self.0.truncate(index);
                     self.0.push(Run { cell, time: now, seen, expected: expect(cell, &seen) });
                 }

@@ -1,17 +1,17 @@
-//! The time to each cell, also past obstacles that may have moved away.
+//! The travel time to each cell, also past obstacles that may have moved away.
 
 use crate::Situation;
 use interfaces::CellState;
 use std::collections::VecDeque;
 
-/// The additional time to pass a cell that was blocked when it was last seen, and may still be.
+/// The additional time to pass a cell that was blocked when last seen, and may still be blocked.
 const MAY_BE_CLOSED: f64 = 10.0;
 
-/// The time from the robot to each cell; ∞ where no path is known.
+/// The travel time from the robot to each cell; ∞ where no path is known.
 ///
-/// The planner knows no path past an obstacle that stood in a door when it was last seen, and a robot that
-/// never goes there never sees the door free. From a cell that changed, is mapped as blocked and is out of
-/// view, paths therefore continue from cell to cell, at a metre per unit of time.
+/// The planner knows no path past an obstacle that stood in a door when it was last seen, and a robot that never
+/// goes there never sees the door open. Paths therefore also lead through cells that changed, are blocked in the
+/// map and are out of view; from there on they go from cell to cell, at one meter per unit of time.
 pub(super) fn times(situation: &Situation) -> Vec<f64> {
     let (mapper, frame) = (situation.mapper, situation.mapper.frame());
     let states = mapper.states().cells();

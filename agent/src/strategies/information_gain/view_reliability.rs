@@ -4,10 +4,11 @@ use crate::visibility::{Regions, Visibility};
 use interfaces::Cell;
 use mapper::Mapper;
 
-/// The pseudo-observation of a complete view, in the unit of the readings' times.
+/// The pseudo-observation of a complete view, in the time unit of the readings.
 const TRUST: f64 = 10.0;
 
-/// The region of a visit, its planned duration, and the time that each region in view had been observed before.
+/// A visit: the region, the planned duration, and for each region in view the time that it had been observed
+/// before.
 #[derive(Clone, Debug)]
 struct Visit {
     region: usize,
@@ -15,9 +16,9 @@ struct Visit {
     watched: Vec<f64>,
 }
 
-/// For each region the observations from there: the time that each region in view should have been seen, and
-/// the time that it was. Without them the robot would stay for ever where it cannot see what it came for, as
-/// behind an obstacle that its own presence holds up.
+/// For each region, the observations from there: for each region in view, the time for which it should have been
+/// seen, and the time for which it was seen. Without this record the robot could stay forever at a place from which
+/// it cannot see the cells that it came for, for example behind an obstacle that waits for the robot itself.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ViewReliability {
     observations: Vec<Vec<[f32; 2]>>,
@@ -36,7 +37,7 @@ pub(super) fn watched(mapper: &Mapper, regions: &Regions, region: usize) -> f64 
 }
 
 impl ViewReliability {
-    /// Begins a visit; each region was `watched` for that time before.
+    /// Begins a visit. `watched` is the time that each region was observed before.
     pub(super) fn begin(
         &mut self,
         visibility: &mut Visibility,
@@ -48,7 +49,7 @@ impl ViewReliability {
         self.visit = Some(Visit { region, duration, watched });
     }
 
-    /// Ends the last visit. A robot that did not reach the region has seen nothing from there.
+    /// Ends the last visit. If the robot did not reach the region, nothing was seen from there.
     pub(super) fn end(
         &mut self,
         mapper: &Mapper,
@@ -62,7 +63,7 @@ impl ViewReliability {
         }
         let Some(Visit { region, duration, watched: before }) = self.visit.take() else { return };
         let view = visibility.seen_from(region);
-        // A wall that appeared or disappeared since makes another view.
+        // If a wall appeared or disappeared since then, the view is another one.
         if before.len() != view.len() {
             return;
         }
@@ -80,8 +81,8 @@ impl ViewReliability {
         }
     }
 
-    /// The share of a watch from a region for which each region of its view is seen, in order; `None` for a region
-    /// that was never visited, where the whole view counts as seen.
+    /// For each region of the view, in order, the share of the time for which it is seen from a region. `None` for
+    /// a region that was never visited: then the whole view counts as seen.
     pub(super) fn share(&self, region: usize, view: &[u32]) -> Option<impl Iterator<Item = f64>> {
         let observations = &self.observations[region];
         let share = |[due, seen]: &[f32; 2]| (f64::from(*seen) + TRUST) / (f64::from(*due) + TRUST);

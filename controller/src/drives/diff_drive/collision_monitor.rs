@@ -7,11 +7,11 @@ use nalgebra::{Point2, Vector2};
 const MERGE_M: f64 = 0.02;
 /// The largest distance between two checked points of a predicted trajectory, m.
 const CHECK_M: f64 = 0.04;
-/// The number of speeds tried between the wish and 0.
+/// The number of speeds that are tried between the wanted speed and 0.
 const LEVELS: u32 = 8;
 
 impl DiffDriveSettings {
-    /// The distance that the center of the robot keeps from obstacles, m.
+    /// The minimum distance from the center of the robot to obstacles, m.
     fn keep_m(&self, speed_mps: f64) -> f64 {
         self.radius_m + self.clearance_m + self.clearance_s * speed_mps
     }
@@ -26,7 +26,7 @@ impl DiffDriveSettings {
         speed_mps * self.reaction_s + 0.5 * speed_mps * speed_mps / self.acceleration_mps2
     }
 
-    /// The time at which the stopping robot passes the point at a distance, s.
+    /// The time after which the stopping robot passes the point at a distance, s.
     fn passes_at_s(&self, speed_mps: f64, distance_m: f64) -> f64 {
         let rolling_m = speed_mps * self.reaction_s;
         if distance_m <= rolling_m {
@@ -46,17 +46,17 @@ struct Obstacle {
     is_dynamic: bool,
 }
 
-/// Predicts whether the robot can still stop in time. A speed is safe if the robot, which holds it until it
-/// can react and then brakes along the same arc, keeps its distance from all sensed points and all blocked
-/// cells, even if dynamic obstacles move straight towards it. From an obstacle that is already too near the
-/// robot may only move away.
+/// Predicts whether the robot can still stop in time. The robot holds a speed until it can react, and then brakes
+/// along the same arc. The speed is safe if the robot thereby keeps its distance from all sensed points and all
+/// blocked cells, even if dynamic obstacles move straight toward it. If an obstacle is already too near, the robot
+/// may only move away from it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CollisionMonitor {
     obstacles: Vec<Obstacle>,
 }
 
 impl CollisionMonitor {
-    /// Gathers the obstacles that matter up to `speed_mps`.
+    /// Collects the obstacles that matter at speeds up to `speed_mps`.
     pub(super) fn update(&mut self, settings: &DiffDriveSettings, scene: &Scene, speed_mps: f64) {
         let reach_m = settings.keep_m(speed_mps)
             + settings.stop_m(speed_mps)
@@ -93,7 +93,7 @@ impl CollisionMonitor {
         self.obstacles.push(Obstacle { at, distance_m: at.norm(), is_dynamic });
     }
 
-    /// The highest safe speed up to `wish_mps` (negative backwards) on the arc of a curvature.
+    /// The highest safe speed up to `wish_mps` (negative: backward) on an arc with a curvature.
     pub(super) fn safe_speed_mps(
         &self,
         settings: &DiffDriveSettings,
@@ -122,7 +122,7 @@ impl CollisionMonitor {
     }
 }
 
-/// The point at `distance_m` along an arc that starts forwards at the origin.
+/// The point at `distance_m` along an arc that starts at the origin, in the direction x.
 fn along_arc(distance_m: f64, curvature_radpm: f64) -> Vector2<f64> {
     let turn_rad = distance_m * curvature_radpm;
     if turn_rad.abs() < 1e-6 {

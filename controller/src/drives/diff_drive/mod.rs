@@ -12,17 +12,17 @@ use interfaces::{SettingsError, Twist};
 use nalgebra::Point2;
 use std::f64::consts::PI;
 
-/// The part of `turn_in_place_rad` at which a turn in place ends, so that it does not begin again at once.
+/// A turn in place ends at this share of `turn_in_place_rad`, so that it does not begin again at once.
 const TURNED: f64 = 0.3;
-/// The least speed at the end of a path, m/s.
+/// The minimum speed at the end of a path, m/s.
 const CREEP_MPS: f64 = 0.05;
 /// The duration of a recovery, s.
 const RECOVERY_S: f64 = 2.0;
-/// A longer tick does not allow a larger change of speed, s.
+/// The maximum duration of a tick, s, that is used to limit the change of speed.
 const LONGEST_TICK_S: f64 = 0.2;
 
-/// Follows paths by pure pursuit (Coulter 1992) of the farthest visible point ahead, turns in place where the
-/// path lies behind, and brakes for sensed obstacles.
+/// Follows paths by pure pursuit (Coulter 1992) of the farthest visible point ahead, turns in place if the path is
+/// behind the robot, and brakes for sensed obstacles.
 #[derive(Clone, Debug)]
 pub struct DiffDrive {
     settings: DiffDriveSettings,
@@ -33,7 +33,7 @@ pub struct DiffDrive {
 }
 
 impl DiffDrive {
-    /// A robot at rest.
+    /// A drive of a robot at rest.
     ///
     /// # Errors
     ///
@@ -44,14 +44,14 @@ impl DiffDrive {
         Ok(Self { settings, monitor, is_turning: false, last: Twist::STOP, last_time_s: f64::NEG_INFINITY })
     }
 
-    /// The rate of a turn in place by `angle_rad` that can still end there.
+    /// The rate of a turn in place by `angle_rad` from which the robot can still stop at that angle.
     fn turn_radps(&self, angle_rad: f64) -> f64 {
-        // Half of what the robot can do: it senses its heading only once a tick.
+        // Half of the deceleration that is possible: the robot senses its heading only once per tick.
         let brakeable = (self.settings.angular_acceleration_radps2 * angle_rad.abs()).sqrt();
         brakeable.min(self.settings.max_angular_radps).copysign(angle_rad)
     }
 
-    /// Limits the acceleration within a tick. Deceleration is left to the robot.
+    /// Limits the acceleration within a tick. The robot itself limits the deceleration.
     fn command(&mut self, scene: &Scene, wish: Twist) -> Twist {
         let tick_s = (scene.situation.time - self.last_time_s).clamp(0.0, LONGEST_TICK_S);
         let faster = self.settings.acceleration_mps2 * tick_s;
@@ -81,7 +81,7 @@ impl Drive for DiffDrive {
             step_m,
             directions: 16,
             step_s,
-            // To turn round, to accelerate and to brake.
+            // The time to turn around, to accelerate and to brake.
             step_limit_s: 2.0 * step_s + PI / self.settings.max_angular_radps,
         }
     }
@@ -101,7 +101,7 @@ impl Drive for DiffDrive {
         if self.is_turning {
             return self.command(scene, turn);
         }
-        // The arc that starts in the robot's heading and passes through the target.
+        // The arc that starts in the direction of the robot's heading and passes through the target.
         let curvature_radpm = 2.0 * towards.y / towards.norm_squared().max(1e-6);
         let end_mps = (settings.acceleration_mps2 * path.remaining_m(&position)).sqrt().max(CREEP_MPS);
         let aligned = 1.0 - (off_rad / settings.turn_in_place_rad).abs();
@@ -122,7 +122,7 @@ impl Drive for DiffDrive {
         self.command(scene, Twist::STOP)
     }
 
-    /// Backs up straight while that is safe, otherwise turns in place.
+    /// Drives straight backward while that is safe, otherwise turns in place.
     fn recover(&mut self, scene: &Scene, elapsed_s: f64) -> Option<Twist> {
         if elapsed_s >= RECOVERY_S {
             return None;

@@ -1,38 +1,39 @@
 use interfaces::{SettingsCheck, SettingsError};
 use serde::{Deserialize, Serialize};
 
-/// The body of a differential drive robot, and how it follows paths.
+/// Settings of a differential drive robot: its body, its limits, and how it follows paths.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DiffDriveSettings {
     /// The radius of the footprint, m.
     pub radius_m: f64,
-    /// The maximum speed, m/s.
+    /// The maximum linear speed, m/s.
     pub max_linear_mps: f64,
-    /// The maximum rate of turn, rad/s.
+    /// The maximum angular speed, rad/s.
     pub max_angular_radps: f64,
-    /// The acceleration and deceleration, m/s². No more than the robot can do, or it touches what it should
-    /// have stopped for.
+    /// The linear acceleration and deceleration, m/s². The value must not be higher than the robot can reach;
+    /// otherwise the robot touches obstacles before it stops.
     pub acceleration_mps2: f64,
-    /// The acceleration of a turn, rad/s².
+    /// The angular acceleration, rad/s².
     pub angular_acceleration_radps2: f64,
-    /// The distance of the pursued point ahead on the path, m. A larger one cuts corners, a smaller one
-    /// makes the robot oscillate.
+    /// The distance along the path to the pursued point, m. A larger value makes the robot cut corners, a smaller
+    /// value makes it oscillate.
     pub lookahead_m: f64,
-    /// The robot turns in place where the path leads away from its heading by more, rad.
+    /// The robot turns in place if the angle between its heading and the path is larger than this, rad.
     pub turn_in_place_rad: f64,
-    /// The distance to a point at which the robot has arrived there, m.
+    /// The robot has arrived at a point if it is nearer than this, m.
     pub tolerance_m: f64,
-    /// The time from a reading until its command acts and the next can, s: a little more than a tick.
+    /// The time from a reading until its command has an effect and the next command can have one, s: a little
+    /// longer than a tick.
     pub reaction_s: f64,
-    /// The least distance to sensed obstacles, m; less than the footprint padding of the inflation, or
-    /// paths along walls cannot be followed.
+    /// The minimum distance to sensed obstacles, m. It must be less than the footprint padding of the inflation;
+    /// otherwise the robot cannot follow paths along walls.
     pub clearance_m: f64,
     /// The additional clearance per m/s of speed, s.
     pub clearance_s: f64,
     /// The maximum speed of dynamic obstacles, m/s.
     pub max_obstacle_mps: f64,
-    /// The speed of backing up in a recovery, m/s.
+    /// The backward speed in a recovery, m/s.
     pub reverse_mps: f64,
 }
 

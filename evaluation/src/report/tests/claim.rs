@@ -1,8 +1,8 @@
-//! The verdict, and what is printed.
+//! The verdict, and its text.
 
 use super::*;
 
-/// A report of 10 seeds in which log errors and map qualities are set, with a little of chance.
+/// A report of 10 seeds in which log errors and map qualities are given, with a little noise.
 fn made([curious, recency, poisson]: [f64; 3], [of_curious, of_recency]: [f64; 2], chance: f64) -> Report {
     let (settings, mut trials) = experiment(1, &["paper"], &["curious", "recency", "poisson"], 10);
     let mut stream = ChaCha8Rng::seed_from_u64(5);

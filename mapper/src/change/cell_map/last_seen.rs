@@ -11,7 +11,7 @@ pub(super) struct LastSeenCounts {
 }
 
 impl Default for LastSeenCounts {
-    /// With nothing counted, and the readings "never" and "prior" open.
+    /// Counts nothing; the readings "never" and "prior" are open.
     fn default() -> Self {
         Self { counts: VecDeque::from([0, 0]), oldest: NEVER }
     }
@@ -23,14 +23,14 @@ impl LastSeenCounts {
         self.counts.push_back(0);
     }
 
-    /// A candidate last observed by reading `from` was observed by reading `to`.
+    /// A candidate that was last observed by reading `from` has now been observed by reading `to`.
     #[inline]
     pub(super) fn moved(&mut self, from: ReadingIndex, to: ReadingIndex) {
         self.counts[(from - self.oldest) as usize] -= 1;
         self.counts[(to - self.oldest) as usize] += 1;
     }
 
-    /// A number of candidates that the reading before the open one observed were observed again.
+    /// The open reading observed this number of candidates again; the reading before had observed them, too.
     #[inline]
     pub(super) fn observed_again(&mut self, candidates: u32) {
         let newest = self.counts.len() - 1;
@@ -38,7 +38,7 @@ impl LastSeenCounts {
         self.counts[newest - 1] -= candidates;
     }
 
-    /// A cell last observed by reading `last` became a candidate, or ceased to be one.
+    /// A cell that was last observed by reading `last` became a candidate, or stopped being one.
     pub(super) fn count(&mut self, last: ReadingIndex, is_candidate: bool) {
         // `oldest` passes a reading only when no candidate was last observed by it; a cell that becomes a
         // candidate again can go back further.
@@ -50,8 +50,8 @@ impl LastSeenCounts {
         if is_candidate { *count += 1 } else { *count -= 1 }
     }
 
-    /// The last reading of the candidate that was not observed for longest. Drops readings by which no
-    /// candidate was last observed.
+    /// The last reading of the candidate with the longest time since its last observation. Removes readings by
+    /// which no candidate was last observed.
     pub(super) fn oldest(&mut self) -> Option<ReadingIndex> {
         while self.counts.len() > 2 && self.counts[0] == 0 {
             self.counts.pop_front();

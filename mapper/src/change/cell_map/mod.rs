@@ -16,19 +16,20 @@ use record::Record;
 /// The index of a cell among the cells that ever changed.
 pub(crate) type Slot = u32;
 
-/// The state of every cell, and its change statistics.
+/// The state and the change statistics of every cell.
 ///
-/// An [occupancy model](crate::OccupancyModel) decides which cells a reading observed and which changed their
-/// state, and writes that with [`observe`](Self::observe) and [`set_state`](Self::set_state); all statistics follow.
-/// Cells are addressed by their index in row-major order. An index outside of the map panics.
+/// An [occupancy model](crate::OccupancyModel) decides which cells a reading observed and which cells changed their
+/// state, and writes both with [`observe`](Self::observe) and [`set_state`](Self::set_state). All statistics follow
+/// from these calls. Cells are addressed by their index in row-major order. An index outside of the map causes a
+/// panic.
 #[derive(Clone, Debug)]
 pub struct CellMap {
     pub(crate) estimator: EstimatorChoice,
-    /// A time without an observation up to this does not interrupt the view of a cell.
+    /// A cell stays in view during a time without an observation if this time is at most `max_gap`.
     max_gap: f64,
     states: Grid<CellState>,
     times: ReadingTimes,
-    /// The last reading that observed each cell, with the mark [`observing::UNSETTLED`].
+    /// For each cell the last reading that observed it, with the mark [`observing::UNSETTLED`].
     observed: Vec<ReadingIndex>,
     records: Vec<Record>,
     /// The gaps of every cell; empty if the estimator has no model of gaps.
@@ -36,10 +37,10 @@ pub struct CellMap {
     regularity: Regularity,
     /// The cells that ever changed, in the order of their first change.
     pub(crate) changed: Vec<u32>,
-    /// Those of them that came back into view with the open reading.
+    /// The cells of `changed` that came back into view with the open reading.
     pub(crate) returned: Vec<Slot>,
     pub(crate) transitions: Vec<Transition>,
-    /// Cells that can be a goal: free cells, and surfaces and frontiers beside them.
+    /// Cells that can be a goal: free cells, and the surfaces and frontiers beside free cells.
     pub(crate) candidates: Vec<bool>,
     last_seen_counts: LastSeenCounts,
 }
@@ -81,8 +82,8 @@ impl CellMap {
         self.last_seen_counts.open();
     }
 
-    /// A cell is a candidate when it is free, or shares a side with a free cell: a frontier cell or
-    /// a surface. The inside of a wall never is.
+    /// A cell is a candidate if it is free, or shares a side with a free cell (a frontier cell or a surface). The
+    /// inside of a wall never is a candidate.
     fn update_candidate(&mut self, index: usize) {
         let is_free = |index: usize| self.state(index) == CellState::Free;
         let is = is_free(index) || self.frame().beside(index).any(is_free);

@@ -7,7 +7,7 @@ use interfaces::{Cell, CellState};
 
 /// Set in the last reading of a cell that is not settled; see [`CellMap::observe_run`].
 pub(super) const UNSETTLED: ReadingIndex = 1 << 31;
-/// Cells that [`CellMap::observe_run`] takes at once.
+/// The number of cells that [`CellMap::observe_run`] processes at once.
 const BLOCK: usize = 16;
 
 impl CellMap {
@@ -23,8 +23,8 @@ impl CellMap {
         self.last_reading(index) == self.reading()
     }
 
-    /// Whether the cell was in view when the open reading came: the reading before observed the cell, or one not
-    /// longer ago than [`MapperSettings::max_gap`](crate::MapperSettings::max_gap).
+    /// Whether the cell was in view when the open reading came: the last observation of the cell was made by the
+    /// reading before, or at most [`MapperSettings::max_gap`](crate::MapperSettings::max_gap) ago.
     #[inline]
     pub fn is_in_view(&self, index: usize) -> bool {
         let (now, last) = (self.reading(), self.last_reading(index));
@@ -43,7 +43,8 @@ impl CellMap {
         self.observed[index] = if is_settled { last } else { last | UNSETTLED };
     }
 
-    /// The open reading observed the cell in the same state as before. At a gap, the time up to the gap is recorded.
+    /// The open reading observed the cell in the same state as before. After a gap, the time up to the gap is
+    /// recorded.
     #[inline]
     pub fn observe(&mut self, index: usize) {
         if self.is_seen_now(index) {
@@ -56,7 +57,7 @@ impl CellMap {
         self.mark(index);
     }
 
-    /// Notes the first observation of the cell by the open reading.
+    /// Records that the open reading observed the cell for the first time.
     #[inline]
     pub(super) fn mark(&mut self, index: usize) {
         let (now, last) = (self.reading(), self.last_reading(index));
@@ -71,17 +72,17 @@ impl CellMap {
         }
     }
 
-    /// The open reading observed the cells of one row from `start` to before `end`, and found them free. Cells that
-    /// are [settled](Self::set_settled) and were in view before are updated here; the others are appended to
-    /// `closer`. Most cells of a scan are of the first kind, so the loop goes block by block, without a branch per
-    /// cell.
+    /// The open reading observed the cells of one row from `start` up to, but not including, `end`, and found them
+    /// free. Cells that are [settled](Self::set_settled) and were in view before are updated here; the others are
+    /// appended to `closer`. Most cells of a scan are settled, so that the loop goes block by block, without a
+    /// branch per cell.
     #[inline]
     pub fn observe_run(&mut self, start: usize, end: usize, closer: &mut Vec<u32>) {
         let now = self.reading();
         let mut again = 0;
         let mut block_start = start;
         for block in self.observed[start..end].chunks_mut(BLOCK) {
-            // No early exit: the comparison of a whole block vectorises.
+            // No early exit: the comparison of a whole block vectorizes.
             if block.len() == BLOCK && block.iter().fold(true, |all, &last| all & (last == now - 1)) {
                 block.fill(now);
                 again += BLOCK as u32;
@@ -101,7 +102,7 @@ impl CellMap {
         self.last_seen_counts.observed_again(again);
     }
 
-    /// The open reading observed the states of cells without error. Cells outside of the map are ignored.
+    /// The open reading observed the states of these cells without error. Cells outside of the map are ignored.
     pub fn observe_states(&mut self, cells: &[(Cell, bool)]) {
         let frame = *self.frame();
         let now = self.reading();
@@ -110,7 +111,7 @@ impl CellMap {
             let Some(index) = frame.index(cell) else { continue };
             let state = if is_blocked { CellState::Blocked } else { CellState::Free };
             let is_as_before = self.state(index) == state;
-            // Most cells were in view before and are as they were.
+            // Most cells were in view before and have the same state as before.
             if is_as_before && self.last_reading(index) == now - 1 {
                 self.observed[index] += 1;
                 again += u32::from(self.candidates[index]);

@@ -47,7 +47,7 @@ impl CellMap {
         self.last_reading(index) != super::NEVER
     }
 
-    /// The time of the last observation of the candidate that was not observed for longest.
+    /// The time of the last observation of the candidate that has not been observed for longest.
     pub(crate) fn oldest_candidate(&mut self) -> Option<f64> {
         self.last_seen_counts.oldest().map(|reading| self.times.at(reading))
     }
@@ -81,13 +81,13 @@ impl CellMap {
         }
     }
 
-    /// The cycle rate of a cell by the estimator in use.
+    /// The cycle rate of a cell, by the estimator in use.
     #[inline]
     pub(crate) fn rate(&self, index: usize) -> f64 {
         self.estimator.rate(&self.statistics(index))
     }
 
-    /// The transition rates of a cell, if the estimator in use has them.
+    /// The transition rates of a cell, if the estimator in use computes them.
     pub(crate) fn transition_rates(&self, index: usize) -> Option<TransitionRates> {
         self.estimator.transition_rates(&self.statistics(index))
     }

@@ -2,16 +2,15 @@ use super::{NEVER, ReadingIndex, Slot};
 use interfaces::CellState;
 use std::num::NonZeroU32;
 
-/// The change record of one cell, without its last observation, which is written with
-/// every reading and stored apart.
+/// The change record of one cell. The last observation changes with every reading and is stored separately.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Record {
     /// The first observation.
     pub(super) first: ReadingIndex,
-    /// From here to the last observation the cell was in view in its present state without a gap,
-    /// and that time is not in `watched` yet.
+    /// The start of the time up to the last observation in which the cell was in view in its present state without
+    /// a gap. This time is not in `watched` yet.
     pub(super) since: ReadingIndex,
-    /// Time in view while free and while blocked, up to `since`.
+    /// The time in view while free, and while blocked, up to `since`.
     pub(super) watched: [f64; 2],
     /// Block and free events in view.
     pub(super) in_view: [u32; 2],
@@ -19,9 +18,9 @@ pub(super) struct Record {
     pub(super) after_gap: [u32; 2],
     /// Gaps that began while the cell was free, and while it was blocked.
     pub(super) gaps: [u32; 2],
-    /// One more than the index among the cells that ever changed.
+    /// The index among the cells that ever changed, plus one.
     slot: Option<NonZeroU32>,
-    /// Whether the present state began with an event in view, and was in view since.
+    /// Whether the present state began with an event in view, and the cell has been in view since.
     pub(super) is_whole: bool,
 }
 
@@ -34,7 +33,7 @@ pub(super) const fn state_index(state: CellState) -> usize {
 }
 
 impl Record {
-    /// The record of a cell first known in a reading.
+    /// The record of a cell that first became known in a reading.
     pub(super) fn since(first: ReadingIndex) -> Self {
         Self { first, since: first, ..Self::default() }
     }

@@ -5,13 +5,13 @@ use super::{CellMap, PRIOR, ReadingIndex, Slot};
 use crate::change::gaps::{CellGaps, neighbors};
 use interfaces::{Cell, CellState, Transition};
 
-/// The neighborhood of a cell: this many cells to either side, along both axes.
+/// The neighborhood of a cell extends this many cells in each direction along both axes.
 const NEAR: i32 = 3;
 
 impl CellMap {
-    /// The cell changes its state. `since` is the reading that first observed the new state; now, or earlier where
-    /// several readings were needed as evidence. `in_view` says whether the cell was
-    /// [in view](Self::is_in_view) at that reading: if so the change happened in view, else it was found
+    /// Changes the state of the cell. `since` is the reading that first observed the new state: the open reading,
+    /// or an earlier one if several readings were needed as evidence. `in_view` states whether the cell was [in
+    /// view](Self::is_in_view) at that reading: if so, the change happened in view; otherwise the change was found
     /// after a gap.
     pub fn set_state(&mut self, index: usize, after: CellState, since: ReadingIndex, in_view: bool) {
         let before = self.state(index);
@@ -39,7 +39,7 @@ impl CellMap {
         }
     }
 
-    /// Records the time in the state that a cell leaves, and the event.
+    /// Records the time in the state that the cell leaves, and the event.
     fn record_event(&mut self, index: usize, before: CellState, since: ReadingIndex, in_view: bool) {
         let last = self.last_reading(index);
         let period = self.times.period(last);
@@ -63,14 +63,14 @@ impl CellMap {
         if in_view { record.in_view[event] += 1 } else { record.after_gap[event] += 1 }
     }
 
-    /// Whether the cell is still in the state of its first observation, not of a prior map,
-    /// and was in view for less than `confirm` (in the unit of the times of the readings).
+    /// Whether the cell still has the state of its first observation (not the state of a prior map) and was in view
+    /// for less than `confirm` (in the time unit of the readings).
     pub fn is_unconfirmed(&self, index: usize, confirm: f64) -> bool {
         let seen = self.statistics(index);
         self.records[index].first > PRIOR && seen.events() == 0 && seen.observed() < confirm
     }
 
-    /// The first observation of the cell was wrong: nothing changed, its state was `after` all the time.
+    /// Corrects a wrong first observation: nothing changed; the state of the cell was `after` from the start.
     pub fn correct(&mut self, index: usize, after: CellState) {
         let now = self.reading();
         self.observe(index);
@@ -84,7 +84,7 @@ impl CellMap {
         self.set_state(index, after, now, false);
     }
 
-    /// Weighs the gaps of a cell that changes, when enough was observed since the last time.
+    /// Weighs the gaps of a cell that changes, if enough was observed since the gaps were last weighed.
     pub(super) fn weigh_gaps(&mut self, index: usize) {
         if self.gaps.is_empty() || self.records[index].slot().is_none() {
             return;

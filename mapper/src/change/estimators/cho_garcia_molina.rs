@@ -1,10 +1,10 @@
 use super::Estimator;
 use crate::change::{CellStatistics, Exposure, GapBin, GapEvidence, GapHistogram, GapModel, GapWeights};
 
-/// `cho-garcia-molina`: Cho & Garcia-Molina's estimator of how often a web page changes ("Estimating frequency of
-/// change", 2003): one Poisson process, and each visit shows whether there was any event since the visit
-/// before. X of N visits at interval I found a change: −ln((N − X + ½)/(N + ½)) / I. Visits at irregular intervals
-/// by their maximum likelihood. In view each reading is a visit.
+/// `cho-garcia-molina`: the estimator of Cho & Garcia-Molina for how often a web page changes ("Estimating
+/// frequency of change", 2003). The changes are one Poisson process, and each visit shows whether there was any
+/// event since the last visit. If X of N visits at interval I found a change, the rate is −ln((N − X + ½)/(N + ½))
+/// / I. For visits at irregular intervals the rate has maximum likelihood. In view, each reading is a visit.
 #[derive(Clone, Copy, Debug)]
 pub struct ChoGarciaMolina;
 
@@ -31,7 +31,7 @@ impl GapModel for ChoGarciaMolina {
     }
 }
 
-/// Changes in view, those between two readings included.
+/// The changes in view, including those between two readings.
 fn changes_in_view(seen: &CellStatistics) -> f64 {
     let changed = f64::from(seen.block_events + seen.free_events);
     if changed == 0.0 {
@@ -44,15 +44,15 @@ fn changes_in_view(seen: &CellStatistics) -> f64 {
     -visits * libm::log((visits - changed + 0.5) / (visits + 0.5))
 }
 
-/// Rounds at most; the rate is found to a millionth long before.
+/// The maximum number of iterations; the relative error is below a millionth much earlier.
 const MOST_ROUNDS: usize = 100;
 
-/// The expected number of changes in all gaps together, at the rate that explains best the states
-/// after the gaps and the changes in view.
+/// The expected number of changes in all gaps together, at the rate that best explains the states after the gaps
+/// and the changes in view.
 ///
-/// A gap shows whether there was any change: one of length I at rate r holds rI/(1 − e^(−rI)) if so, and
-/// none if not. As in their estimator, half an unchanged gap is added, so that a rate is found also
-/// where every gap showed a change.
+/// A gap shows whether there was any change: a gap of length I at rate r has rI/(1 − e^(−rI)) changes if the state
+/// differs, and none if the state is the same. As in the original estimator, half an unchanged gap is added, so
+/// that there is a rate even if every gap showed a change.
 fn hidden_changes(bins: &GapHistogram, seen: &CellStatistics) -> f64 {
     let (changes, time) = (changes_in_view(seen), seen.observed());
     let total: f64 = bins.iter().map(|bin| bin.total).sum();
@@ -69,7 +69,7 @@ fn hidden_changes(bins: &GapHistogram, seen: &CellStatistics) -> f64 {
         };
         changed().map(of).sum()
     };
-    // r (T + t) = changes + expected(r): the right side grows slower, so there is one solution.
+    // r (T + t) = changes + expected(r): the right side grows more slowly, so that there is one solution.
     let excess = |rate: f64| changes + expected(rate) - rate * (total + time);
     let (mut low, mut high) =
         (0.0, (changes + changed().map(|bin| f64::from(bin.count)).sum::<f64>()) / total);

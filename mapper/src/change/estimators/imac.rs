@@ -1,8 +1,10 @@
 use super::Estimator;
 use crate::change::{CellStatistics, TransitionRates};
 
-/// `imac`: independent Markov chains of Saarinen, Andreasson & Lilienthal (IROS 2012). Per state and observation
-/// λ = (events + 1) / (observations + 1), where an event is a change found at the next observation, after any time.
+/// `imac`: independent Markov chains of Saarinen, Andreasson & Lilienthal (IROS 2012).
+///
+/// For each state, λ = (events + 1) / (observations + 1) per observation. An event is a change that is found at the
+/// next observation, whatever the time between.
 #[derive(Clone, Copy, Debug)]
 pub struct Imac;
 

@@ -1,7 +1,8 @@
 //! Estimators of how often a cell changes, one per file.
 //!
-//! To add one: write a file with an [`Estimator`], and add a line to [`EstimatorChoice::all`]. An estimator in a crate of its own
-//! goes into [`MapperSettings::estimator`](crate::MapperSettings::estimator) with `.into()`.
+//! To add an estimator: write a file with a type that implements [`Estimator`], and add a line to
+//! [`EstimatorChoice::all`]. An estimator of another crate is set in
+//! [`MapperSettings::estimator`](crate::MapperSettings::estimator) with `.into()`.
 
 mod cho_garcia_molina;
 mod imac;
@@ -23,26 +24,26 @@ pub trait Estimator: fmt::Debug + Send + Sync {
     /// The name on the command line, in files and in reports.
     fn name(&self) -> &'static str;
 
-    /// The mean time of one cycle, blocked to free and back (T of equation 1), in the unit of the times of the
+    /// The cycle time T (equation 1): the mean duration of blocked → free → blocked, in the time unit of the
     /// statistics. Called only for cells with an event. A result that is not a positive number means that the
     /// events give no rate.
     fn interval(&self, seen: &CellStatistics) -> f64;
 
-    /// The rates of both changes, from which the state of a cell out of view is predicted; `None` if unknown.
-    /// Called only for cells with an [interval](Estimator::interval). By default each state has the share of the
-    /// cycle in which it was observed.
+    /// The rates of both changes, from which the state of a cell out of view is predicted; `None` if they are
+    /// unknown. Called only for cells with a cycle time ([`Estimator::interval`]). By default, the cycle is divided
+    /// between the states in proportion to the time that the cell was observed in each.
     fn transition_rates(&self, seen: &CellStatistics) -> Option<TransitionRates> {
         Some(TransitionRates::shared(seen, 1.0 / self.interval(seen)))
     }
 
-    /// The model of gaps in the view. Without one gaps are not recorded, and
-    /// [`CellStatistics::gap_worth`] stays 0.
+    /// The model of the gaps in the view. Without a model, gaps are not recorded, and [`CellStatistics::gap_worth`]
+    /// stays 0.
     fn gap_model(&self) -> Option<&dyn GapModel> {
         None
     }
 }
 
-/// A choice of an estimator, by its name. The default is `two-state-gaps`: `docs/estimators.md` says why.
+/// A choice of an estimator, by its name. The default is `two-state-gaps`, for the reasons in `docs/estimators.md`.
 #[derive(Clone)]
 pub struct EstimatorChoice(Arc<dyn Estimator>);
 
@@ -78,14 +79,14 @@ impl EstimatorChoice {
         self.0.name()
     }
 
-    /// The mean time of one cycle, T; ∞ for a cell without an event, or that was never in view for any time.
+    /// The cycle time T; ∞ for a cell without an event, or for a cell that was in view for no time.
     pub fn interval(&self, seen: &CellStatistics) -> f64 {
         let interval = if seen.events() == 0 { f64::INFINITY } else { self.0.interval(seen) };
-        // The events of a cell that was in view for no time, or for a time without an inverse, give no rate.
+        // If the time in view is zero, or so small that it has no inverse, the events give no rate.
         if interval >= f64::MIN_POSITIVE { interval } else { f64::INFINITY }
     }
 
-    /// The number of cycles per unit of time, 1/T; 0 for a cell without an event.
+    /// The cycle rate 1/T, in cycles per unit of time; 0 for a cell without an event.
     pub fn rate(&self, seen: &CellStatistics) -> f64 {
         1.0 / self.interval(seen)
     }

@@ -1,8 +1,9 @@
 //! Equation 1 of the paper (section 3): T = min(T_block, T_free), with
 //! T_block = (t_last − t_unobserved − t_init) / n_block, and the same for T_free with n_free.
 //!
-//! The two processes are coupled, so they share one rate: the smaller interval, that of the process with more
-//! events. The paper does not say whether a change that is found after a gap counts. Hence two estimators.
+//! The two processes are coupled and have one rate: the cycle time is the smaller interval, that of the process
+//! with more events. The paper does not say whether a change that is found after a gap counts. Therefore there are
+//! two estimators.
 
 use super::Estimator;
 use crate::change::CellStatistics;
@@ -26,8 +27,8 @@ impl Estimator for Paper {
     }
 }
 
-/// `paper-all`: equation 1 with all changes, also those found after a gap. The gaps are still taken off the time,
-/// so short visits bias the rate upward.
+/// `paper-all`: equation 1 with all changes, including those found after a gap. The gaps are still subtracted from
+/// the time, so that short visits bias the rate upward.
 #[derive(Clone, Copy, Debug)]
 pub struct PaperAll;
 

@@ -1,14 +1,14 @@
 use super::Estimator;
 use crate::change::{CellStatistics, TransitionRates};
 
-/// `two-state`: a two-state continuous-time Markov chain, T = 1/α + 1/β with α the rate of block events while free,
-/// and β of free events while blocked. Each rate is conditioned on the state in which the cell was in view, so that
-/// looking longer while a thing stands in the cell biases less.
+/// `two-state`: a two-state continuous-time Markov chain with the cycle time T = 1/α + 1/β, where α is the rate of
+/// block events while free, and β the rate of free events while blocked. Each rate is conditioned on the state in
+/// which the cell was in view, so that longer observation while a thing is in the cell causes less bias.
 #[derive(Clone, Copy, Debug)]
 pub struct TwoState;
 
-/// The number of events that stands for none in a state that was left often but never entered in view: half
-/// an event, the mean of the Jeffreys posterior of a Poisson rate for no event.
+/// The assumed number of events for a state that was left in view, but never entered in view: half an event, the
+/// mean of the Jeffreys posterior of a Poisson rate for no event.
 const UNSEEN_EVENTS: f64 = 0.5;
 
 /// The mean time in each state: the time in view per event that ended the state; `None` without an event in view.

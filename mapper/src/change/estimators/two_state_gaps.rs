@@ -6,13 +6,13 @@ use crate::change::{
     CellStatistics, Exposure, GapEvidence, GapHistogram, GapModel, GapWeights, TransitionRates,
 };
 
-/// `two-state-gaps`: the two-state Markov chain in steps of the readings, with the information in the gaps: the
-/// state before, the state after, and the time between. Maximum a posteriori.
+/// `two-state-gaps`: the two-state Markov chain in steps of the readings, with the information in the gaps (the
+/// state before, the state after, and the time between). Maximum a posteriori.
 #[derive(Clone, Copy, Debug)]
 pub struct TwoStateGaps;
 
-/// An equally long stay that was in view from begin to end counts as this many more stays of a chain: it tells the
-/// length of all of them.
+/// If stays are equally long, a stay that was in view from begin to end counts as this many additional stays of a
+/// chain: one stay shows the length of all.
 const WHOLE_STAY: f64 = 3.0;
 
 impl Estimator for TwoStateGaps {
@@ -62,9 +62,9 @@ impl GapModel for TwoStateGaps {
     }
 }
 
-/// Steps without an event that give the prior the weight of one visit: the harmonic mean of the time between
-/// two observations. The rate of a cell that changes much faster than it was observed cannot be known; the estimate
-/// is then the slowest rate that explains the observations.
+/// The number of steps without an event that gives the prior the weight of one visit: the harmonic mean of the time
+/// between two observations. The rate of a cell that changes much faster than it was observed cannot be known; the
+/// estimate is then the slowest rate that explains the observations.
 fn visit_prior(in_view: Exposure, gaps: &GapHistogram, period: f64) -> Exposure {
     let steps = in_view.steps[0] + in_view.steps[1];
     let (mut visits, mut pace) = (steps, steps);
@@ -77,8 +77,9 @@ fn visit_prior(in_view: Exposure, gaps: &GapHistogram, period: f64) -> Exposure 
     Exposure::uniform(0.0, if visit > 1.0 && visit.is_finite() { visit - 1.0 } else { 0.0 })
 }
 
-/// The information in whole stays beyond their time in view. Mostly the state with the shorter stays
-/// has whole stays; of the other state only its shortest stays fit into a visit, and count little.
+/// The information in complete stays, in addition to their time in view. Mostly it is the state with the shorter
+/// stays that has complete stays; of the other state, only the shortest stays fit into a visit, and they count
+/// little.
 fn whole_stays(evidence: &GapEvidence<'_>) -> Exposure {
     let Some(Step { block, free }) = evidence.last_step else { return Exposure::default() };
     let [blocked, unblocked] = [block, free].map(|leave| leave / (block + free));
@@ -87,7 +88,7 @@ fn whole_stays(evidence: &GapEvidence<'_>) -> Exposure {
     evidence.whole_stays.scaled(part.map(|part| WHOLE_STAY * part))
 }
 
-/// A chain as slow as the observations of a cell allow.
+/// The slowest chain that the observations of a cell allow.
 fn slowest(seen: &CellStatistics) -> Step {
     let steps = (seen.last_seen - seen.first_seen) / seen.period + 1.0;
     let leave = (f64::from(seen.events().max(1)) / steps).min(0.5);

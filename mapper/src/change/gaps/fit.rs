@@ -21,21 +21,21 @@ pub(in crate::change) struct Observations<'a> {
 pub(in crate::change) struct Fit {
     /// The transition probabilities per step.
     pub(in crate::change) step: Step,
-    /// The exposure with the same score and information as the gaps at the maximum.
+    /// The exposure whose score and information equal those of the gaps at the maximum.
     pub(in crate::change) worth: Exposure,
     /// The mixed term of the information of the gaps, in log-odds.
     pub(in crate::change) mixed: f64,
 }
 
-/// Scoring steps at most. Most fits take two or three.
+/// The maximum number of scoring steps. Most fits take two or three.
 const MOST_ROUNDS: usize = 30;
-/// A probability is found when its log-odds move less than this.
+/// The search ends when the log-odds of both probabilities change by less than this.
 const FOUND: f64 = 1e-4;
-/// Log-odds move by at most this in one round.
+/// The maximum change of log-odds in one step.
 const LONGEST_MOVE: f64 = 2.0;
-/// Log-odds stay within these bounds.
+/// The limit of the absolute value of log-odds.
 const EXTREME: f64 = 30.0;
-/// Halvings of a move that leads downhill.
+/// The maximum number of times that a step which leads downhill is halved.
 const MOST_HALVINGS: usize = 12;
 
 /// The logarithm of the posterior at one point, and its first and expected second derivatives in log-odds.
@@ -57,7 +57,7 @@ impl Observations<'_> {
             let seen = if bin.after() { blocked } else { 1.0 - blocked };
             let sign = if bin.after() { 1.0 } else { -1.0 };
             sum.height += count * libm::log(seen.max(f64::MIN_POSITIVE));
-            // Score of the observation, and its expected square over both outcomes.
+            // The score of the observation, and its expected square over both outcomes.
             let variance = blocked * (1.0 - blocked);
             if variance > f64::MIN_POSITIVE {
                 let (pull, weight) = (count * sign / seen, count / variance);
@@ -83,8 +83,8 @@ impl Observations<'_> {
         sum
     }
 
-    /// Fits by Fisher scoring from `start`, with smaller moves where a whole one would lead downhill; `None`
-    /// where a result is not finite.
+    /// Fits by Fisher scoring from `start`, with smaller steps where a full step would lead downhill; `None` if a
+    /// result is not finite.
     pub(in crate::change) fn fit(&self, start: Step) -> Option<Fit> {
         let mut odds = [start.block, start.free].map(|leave| {
             let odds = libm::log(leave) - libm::log1p(-leave);
@@ -124,7 +124,7 @@ impl Observations<'_> {
 }
 
 impl Height {
-    /// The move to the top of a hill of this slope and information.
+    /// The step to the maximum, by slope and information.
     fn best_move(&self) -> Option<[f64; 2]> {
         let ([a, b], [u, v]) = (self.information, self.score);
         let determinant = a * b - self.mixed * self.mixed;

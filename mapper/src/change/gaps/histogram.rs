@@ -2,8 +2,8 @@
 
 use crate::change::reading_times::ReadingIndex;
 
-/// Lengths outside of this range count as its ends, so that a histogram stays small for all times: 2^-20 and
-/// 2^40 units.
+/// Lengths outside of this range are limited to its ends, so that a histogram stays small: 2^-20 to 2^40 units of
+/// time.
 const SHORTEST: f64 = 1.0 / (1u64 << 20) as f64;
 const LONGEST: f64 = (1u64 << 40) as f64;
 
@@ -14,12 +14,12 @@ pub struct GapBin {
     key: u16,
     /// The number of gaps.
     pub count: u32,
-    /// Their total length, in the unit of the readings' times.
+    /// The sum of the lengths of these gaps, in the time unit of the readings.
     pub total: f64,
 }
 
-/// Binary digits of a length, after the leading one, that distinguish bins: two bins per octave, with gaps of two
-/// and of three steps in bins of their own.
+/// The number of binary digits of a length, after the leading digit, that distinguish bins: two bins per octave;
+/// gaps of two steps and gaps of three steps have separate bins.
 const DIGITS: u32 = 1;
 
 impl GapBin {
@@ -33,7 +33,7 @@ impl GapBin {
         self.key & 1 != 0
     }
 
-    /// Their mean length.
+    /// The mean length of these gaps.
     pub fn length(self) -> f64 {
         self.total / f64::from(self.count)
     }
@@ -54,7 +54,7 @@ pub(in crate::change) struct Gap {
 impl Gap {
     /// The key of its bin.
     fn key(&self) -> u16 {
-        // The bits of positive numbers grow with them.
+        // The bits of a positive floating-point number grow with the number.
         let magnitude = (self.length.clamp(SHORTEST, LONGEST).to_bits() >> (52 - DIGITS)) as u16;
         magnitude << 2 | u16::from(self.before) << 1 | u16::from(self.after)
     }
@@ -65,7 +65,7 @@ impl Gap {
 pub struct GapHistogram {
     /// In the order of their keys.
     bins: Vec<GapBin>,
-    /// Later readings can correct its states.
+    /// The last gap: later readings can correct its states.
     last: Option<Gap>,
     count: u32,
 }
@@ -78,8 +78,8 @@ impl GapHistogram {
         self.count += 1;
     }
 
-    /// The cell has been in another state, `after`, since the reading `since`: if that lies before the end of
-    /// the last gap, corrects the states of the gap.
+    /// The cell has had another state, `after`, since the reading `since`. If `since` is before the end of the last
+    /// gap, corrects the states of the gap.
     pub(in crate::change) fn correct_last(&mut self, since: ReadingIndex, after: bool) {
         let Some(last) = self.last.filter(|last| since <= last.end) else { return };
         if let Ok(at) = self.find(last.key()) {

@@ -1,7 +1,7 @@
 //! The information in the gaps in the view of a cell: the state before, the state after, and the time between.
 //!
-//! [`CellGaps`] collects the gaps of a cell and decides when they are weighed. How they are weighed is up to the
-//! [`GapModel`] of the estimator.
+//! [`CellGaps`] collects the gaps of a cell and decides when they are weighed. The [`GapModel`] of the estimator
+//! computes the weights.
 
 pub(super) mod fit;
 mod histogram;
@@ -14,61 +14,63 @@ pub(super) use histogram::Gap;
 pub use histogram::{GapBin, GapHistogram};
 pub(super) use regularity::Regularity;
 
-/// Events of a cell without any observation, in one step. By Jeffreys' prior the rate after n events is
-/// distributed as Γ(n + ½), and its median, which is too high as often as too low, is that of n + ⅙ events.
+/// The number of events of a cell without any observation, in one step. With Jeffreys' prior the rate after n
+/// events has the distribution Γ(n + ½). The median of this distribution, which is as often too high as too low, is
+/// that of n + ⅙ events.
 pub(super) const MEDIAN_EVENTS: f64 = 1.0 / 6.0;
-/// The same for the mean of that distribution.
+/// The number of events, in one step, that gives the mean of that distribution.
 pub(super) const MEAN_EVENTS: f64 = 0.5;
 
-/// Gaps are weighed again when the events and gaps, or the time in view, have grown by these shares: the
-/// work per gap is bounded, and what is missed in between is little.
+/// Gaps are weighed again when the number of events and gaps, or the time in view, has grown by these shares. The
+/// work per gap is bounded, and little information is missing in between.
 const COUNTED_GROWTH: f64 = 1.0 / 8.0;
 const WATCHED_GROWTH: f64 = 1.0 / 4.0;
 
-/// Computes the information of the gaps in the view of a cell about its rates.
+/// Computes the information that the gaps of a cell give about its rates.
 pub trait GapModel {
-    /// Weighs the gaps of a cell. `None` keeps the result of the last time.
+    /// Weighs the gaps of a cell. With `None`, the previous result is kept.
     fn weigh(&self, evidence: &GapEvidence<'_>) -> Option<GapWeights>;
 
-    /// Whether [`GapWeights::worth`] is the exposure of a two-state chain. Credible intervals take the gaps into
-    /// account only then.
+    /// Whether [`GapWeights::worth`] is the exposure of a two-state chain. Only then do credible intervals take the
+    /// gaps into account.
     fn is_two_state(&self) -> bool {
         false
     }
 }
 
-/// Everything known of a cell when its gaps are weighed.
+/// The inputs of a [`GapModel`] for one cell.
 #[derive(Clone, Copy, Debug)]
 pub struct GapEvidence<'a> {
     /// The statistics of the cell.
     pub seen: &'a CellStatistics,
     /// The gaps.
     pub gaps: &'a GapHistogram,
-    /// The exposure that stands for what is known before any observation.
+    /// The prior: an exposure that stands for the knowledge before any observation.
     pub prior: Exposure,
-    /// The exposure of the cells nearby, as far as they resemble this cell.
+    /// The exposure of the cells nearby, weighted by how much they resemble this cell.
     pub neighbors: Exposure,
-    /// The stays from an event in view to an event in view: their number, and their steps.
+    /// The stays that began and ended with an event in view: their number, and their total number of steps.
     pub whole_stays: Exposure,
-    /// Per state, from 0 for stays of random length to 1 for equal stays; over all cells of the map.
+    /// For each state, the regularity of stays: from 0 (random length) to 1 (equal length). One value for the whole
+    /// map.
     pub regularity: [f64; 2],
-    /// [`GapWeights::step`] of the last time.
+    /// [`GapWeights::step`] of the previous result.
     pub last_step: Option<Step>,
 }
 
-/// The information in the gaps of a cell. The default is: none.
+/// The information in the gaps of a cell. By default there is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct GapWeights {
-    /// The exposure with the information of the gaps and all other evidence that is not in view. It becomes
+    /// The exposure that has the same information as the gaps and all other evidence out of view. It becomes
     /// [`CellStatistics::gap_worth`].
     pub worth: Exposure,
     /// The part of `worth` that comes from the neighbors.
     pub neighbors: Exposure,
-    /// The exposure of this cell alone, in view and in gaps. The neighbors learn from it.
+    /// The exposure of this cell alone, in view and in gaps. The neighboring cells use it.
     pub own: Exposure,
     /// The mixed term of the information about both transition probabilities, in log-odds.
     pub mixed: f64,
-    /// The most probable chain: the start of the next search.
+    /// The most probable chain; the next search starts there.
     pub step: Option<Step>,
 }
 
@@ -93,16 +95,17 @@ pub(super) struct CellGaps {
 #[derive(Clone, Debug, Default)]
 struct Weighed {
     weights: GapWeights,
-    /// Gaps and events, and the time in view, at which the gaps are weighed next.
+    /// The number of gaps and events, and the time in view, at which the gaps are weighed again.
     due: [f64; 2],
-    /// The last stay in each state from an event in view to an event in view, in steps; 0 before the first.
+    /// For each state the length of the last stay that began and ended with an event in view, in steps; 0 before
+    /// the first.
     stays: [f64; 2],
-    /// All such stays: their number, and their steps.
+    /// All stays that began and ended with an event in view: their number, and their total number of steps.
     whole_stays: Exposure,
 }
 
 impl CellGaps {
-    /// The cell stayed in a state for a number of steps, from an event in view to an event in view.
+    /// Adds a stay of this many steps in a state that began and ended with an event in view.
     pub(super) fn add_stay(&mut self, state: usize, steps: f64, regularity: &mut Regularity) {
         let weighed = self.weighed.get_or_insert_default();
         weighed.whole_stays.events[state] += 1.0;
@@ -113,12 +116,12 @@ impl CellGaps {
         }
     }
 
-    /// [`GapWeights::own`] of the last time.
+    /// [`GapWeights::own`] of the previous result.
     pub(super) fn own(&self) -> Exposure {
         self.weighed.as_ref().map_or(Exposure::default(), |weighed| weighed.weights.own)
     }
 
-    /// The worth of the gaps, with steps of `period`.
+    /// The information in the gaps, with steps of length `period`.
     pub(super) fn worth(&self, period: f64) -> GapWorth {
         self.weighed.as_ref().map_or(GapWorth::default(), |weighed| {
             let Exposure { events: [block_events, free_events], steps: [free, blocked] } =
@@ -132,7 +135,7 @@ impl CellGaps {
         })
     }
 
-    /// Whether the gaps of a cell that changes are to be weighed again.
+    /// Whether the gaps of a cell that changes must be weighed again.
     pub(super) fn is_due(&self, seen: &CellStatistics) -> bool {
         let due = self.weighed.as_ref().map_or([0.0; 2], |weighed| weighed.due);
         seen.period > 0.0 && (self.counted(seen) >= due[0] || seen.observed() >= due[1])
@@ -170,7 +173,7 @@ impl CellGaps {
         weighed.weights = weights.unwrap_or(weighed.weights);
     }
 
-    /// The belief about a cell, also about one that never changed.
+    /// The belief about the transition probabilities of a cell; also defined for a cell that never changed.
     pub(super) fn belief(
         &self,
         model: &dyn GapModel,
@@ -181,7 +184,8 @@ impl CellGaps {
         let exposure = Exposure::in_view(seen) + prior;
         if let Some(Weighed { weights, .. }) = self.weighed.as_deref() {
             let all = exposure + weights.worth;
-            // The cells nearby saw mostly the same events: they move the estimate, but do not make it more certain.
+            // The cells nearby observed mostly the same events: they move the estimate, but do not make it more
+            // certain.
             let own = [0, 1].map(|state| 1.0 - weights.neighbors.steps[state] / all.steps[state]);
             return Belief { exposure: all.scaled(own), mixed: weights.mixed };
         }

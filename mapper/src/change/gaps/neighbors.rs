@@ -1,27 +1,28 @@
-//! The information of the cells nearby about a cell: a thing that moves goes from cell to cell, and stays equally long
-//! in each.
+//! The information that the cells nearby give about a cell: a moving thing goes from cell to cell, and stays
+//! equally long in each.
 
 use super::MEAN_EVENTS;
 use crate::change::Exposure;
 
 // The next four were chosen on generated block worlds; `docs/estimators.md` lists the alternatives.
 
-/// The neighbors count as this many events at most.
+/// The maximum number of events that all neighbors together count as.
 const NEAR_EVENTS: f64 = 120.0;
-/// The same for a cell without an event of its own; each of its own events adds one. At first all neighbors were
-/// observed in the same few passages of one obstacle: together they have little more information than one, and their
-/// rate is too high.
+/// The maximum number of events that all neighbors together count as for a cell without an event of its own; each
+/// of its own events adds one. At first, all neighbors were observed in the same few passages of one obstacle:
+/// together they have little more information than one neighbor, and their rate is too high.
 const FIRST_NEAR_EVENTS: f64 = 2.0;
 /// The variance of the logarithms of rates between similar neighbors.
 const NEAR_VARIANCE: f64 = 0.03;
-/// Degrees of freedom of the doubt whether a neighbor resembles the cell: few, so that a different neighbor soon
-/// counts for nothing.
+/// The degrees of freedom of the distribution that compares a neighbor with the cell. With few degrees of freedom,
+/// a neighbor that differs soon counts for nothing.
 const FREEDOM: f64 = 1.5;
 
-/// The information of the cells `near` a cell with the exposure `own`, as an exposure of the cell itself.
+/// The information of the cells `near` a cell with the exposure `own`, as an exposure of the cell.
 ///
-/// Every neighbor counts by itself, and counts the less, the less it agrees with the observations of the cell: the
-/// ends of a path back and forth are entered half as often as the cells between, and another thing may move nearby.
+/// Every neighbor counts separately. The less a neighbor agrees with the observations of the cell, the less it
+/// counts: the ends of a back-and-forth path are entered half as often as the cells between, and another thing may
+/// move nearby.
 pub(in crate::change) fn prior(own: Exposure, near: impl Iterator<Item = Exposure>) -> Exposure {
     let mut sum = Exposure::default();
     for near in near {

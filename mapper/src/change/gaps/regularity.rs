@@ -1,37 +1,39 @@
-//! The regularity of the times that cells stay in a state.
+//! The regularity of stays: how equal the times are that cells stay in a state.
 //!
-//! The rest of a stay of a Markov chain does not depend on the time of the stay so far. Equal stays are different, and
-//! that matters for gaps about as long as a stay: after the mean time of one stay 63 % of the stays of a chain have
-//! ended, and all equal stays.
+//! In a Markov chain, the remaining time of a stay does not depend on how long the stay has lasted. For stays of
+//! equal length it does, and this matters for gaps about as long as a stay: after the mean duration of a stay, 63 %
+//! of the stays of a chain have ended, but all stays of equal length.
 
 /// Two stays that differ by at most this share of their sum are equal.
 const EQUAL: f64 = 0.1;
-/// Pairs of a Markov chain that count as observed from the start: nothing is regular until shown.
+/// The number of pairs of a Markov chain that are assumed as observed at the start: stays count as random until the
+/// observations show otherwise.
 const DOUBT: f64 = 4.0;
-/// Up to the first share of pairs that are equal beyond chance, stays are random; from the second on they are equal.
-/// Stays within short visits are a little more equal than others; regular motion stops while something blocks it.
+/// Up to the first share of pairs that are equal beyond chance, stays count as random; from the second share on
+/// they count as equal. Stays within short visits are a little more equal than others; regular motion stops while
+/// something blocks it.
 const BETWEEN: [f64; 2] = [0.15, 0.4];
 
-/// How often two consecutive stays of a cell are equal, over all cells.
+/// How often two consecutive stays of a cell are equal, over all cells of the map.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::change) struct Regularity {
-    /// Per state: equal pairs, less those expected of Markov chains.
+    /// For each state: the number of equal pairs, minus the number expected of Markov chains.
     equal: [f64; 2],
-    /// Unequal pairs expected of Markov chains.
+    /// The number of unequal pairs expected of Markov chains.
     unequal: [f64; 2],
 }
 
 impl Regularity {
-    /// A cell stayed in a state for `steps`, from an event in view to an event in view; and before that for
+    /// Adds a stay of `steps` steps in a state that began and ended with an event in view, after such a stay of
     /// `before` steps.
     pub(super) fn add(&mut self, state: usize, before: f64, steps: f64) {
         let (before, steps) = (libm::round(before), libm::round(steps));
         let sum = before + steps;
         if sum < 4.0 {
-            return; // two stays of one or two steps are equal, or not, for any motion
+            return; // Two stays of one or two steps show nothing about regularity.
         }
-        // For a Markov chain of any rates all ways to split the sum in two are equally likely. Of the
-        // sum − 1 ways this many count as equal:
+        // For a Markov chain of any rates, all ways to divide the sum into two stays are equally likely. Of the sum
+        // − 1 ways, this number counts as equal:
         let most = libm::floor(EQUAL * sum);
         let ways = if sum % 2.0 == 0.0 {
             2.0 * libm::floor(most / 2.0) + 1.0
@@ -43,7 +45,7 @@ impl Regularity {
         self.unequal[state] += 1.0 - expected;
     }
 
-    /// Per state, from 0 for stays of random length to 1 for equal stays.
+    /// For each state, from 0 for stays of random length to 1 for stays of equal length.
     pub(super) fn weights(&self) -> [f64; 2] {
         let [low, high] = BETWEEN;
         [0, 1].map(|state| {
@@ -78,7 +80,7 @@ mod tests {
             let stays = Geometric::new(leave).unwrap();
             let mut next = || stays.sample(&mut rng) as f64 + 1.0;
             assert_eq!(weight((0..3000).map(|_| next())), 0.0, "leaving with {leave}");
-            // Only stays that fit in a window of ten steps are seen whole.
+            // Only stays that fit into a window of ten steps are completely observed.
             let seen: Vec<f64> = (0..3000).map(|_| next()).filter(|&stay| stay < 9.0).collect();
             assert_eq!(weight(seen), 0.0, "leaving with {leave}, in short visits");
         }

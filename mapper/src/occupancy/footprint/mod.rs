@@ -1,12 +1,11 @@
-//! Footprint: the set of cells that the beams of one scan passed through, each once.
+//! The footprint of a scan: the set of cells that its beams passed through, each cell once.
 //!
-//! Between two neighboring beams the scan covers a triangle. All triangles together are a
-//! star-shaped polygon, which is filled row by row: a cell counts as passed when its center
-//! lies inside. That touches each cell once, in memory order, where walking along every beam
-//! touches the cells near the sensor hundreds of times.
+//! Between two neighboring beams the scan covers a triangle. All triangles together form a star-shaped polygon,
+//! which is filled row by row: a cell counts as passed if its center is inside. This visits each cell once, in
+//! memory order; following every beam would visit the cells near the sensor hundreds of times.
 //!
-//! Where neighboring beams are farther apart than `max_gap_m`, a thin obstacle could stand
-//! between them. There the fan ends, and only the cells on the beams themselves count.
+//! Where neighboring beams are farther apart than `max_gap_m`, a thin obstacle could be between them. There the
+//! polygon (the fan) ends, and only the cells on the beams themselves count.
 
 use super::projection::ProjectedScan;
 use interfaces::{Cell, GridFrame};
@@ -20,8 +19,8 @@ pub(in crate::occupancy) struct Footprint {
 }
 
 impl Footprint {
-    /// Calls `run(start, end)` for the runs of cells (indices in row-major order) inside the fan,
-    /// each cell once. `is_joined(beam)` says whether a beam and the next ended on one surface.
+    /// Calls `run(start, end)` for the runs of cells (indices in row-major order) inside the fan, each cell once.
+    /// `is_joined(beam)` states whether a beam and the next beam ended on the same surface.
     pub(in crate::occupancy) fn fill(
         &mut self,
         scan: &ProjectedScan,
@@ -69,7 +68,7 @@ impl Footprint {
                 (low, high) = (low.min(first), high.max(end));
             }
         };
-        // The end of the border so far, on a beam at this range.
+        // The end of the border so far, on a beam with this range.
         let (mut last, mut last_m) = (origin, f64::NAN);
         for beam in 0..scan.len() {
             let Some(next) = scan.next(beam) else { break };
@@ -124,17 +123,16 @@ pub(in crate::occupancy) fn beyond_fan(
     }
 }
 
-/// The first column (or row) whose center lies after `at`, at most `count`: column i has the
-/// center i + 1/2, so an interval covers the columns from `first_after` its start to before that
-/// of its end.
+/// The first column (or row) whose center is after `at`, at most `count`. Column i has the center i + 1/2. An
+/// interval therefore covers the columns from `first_after` its start to just before `first_after` its end.
 #[inline]
 fn first_after(at: f64, count: usize) -> usize {
     // A cast from f64 to usize is slow where there is no instruction for it.
     (at + 0.5).max(0.0).min(count as f64) as u32 as usize
 }
 
-/// The shares of the segment from `at`, `delta` long, after which it enters and leaves the grid (Liang
-/// and Barsky's clipping; all in cells). `None` beside the grid.
+/// The parameters (shares of its length) at which the segment from `at` to `at + delta` enters and leaves the grid
+/// (Liang and Barsky's clipping; all in cells). `None` if the segment misses the grid.
 fn clip(frame: &GridFrame, at: Vector2<f64>, delta: Vector2<f64>) -> Option<(f64, f64)> {
     let (mut enter, mut leave) = (0.0f64, 1.0f64);
     for (at, delta, count) in [(at.x, delta.x, frame.width()), (at.y, delta.y, frame.height())] {
@@ -169,8 +167,7 @@ pub(in crate::occupancy) fn cells_along(
         };
         (cell, end) = (inside(enter), inside(leave));
     }
-    // Per axis the direction of a step, and the shares of the segment to the next border and between
-    // borders.
+    // For each axis: the direction of a step, and the shares of the segment to the next border and between borders.
     let axis = |at: f64, cell: i32, end: i32, delta: f64| {
         let step = (end - cell).signum();
         let border = f64::from(cell + i32::from(step > 0));

@@ -1,4 +1,4 @@
-//! The oracles ask every cell of the grid on its own, with exact angles and no state.
+//! The reference results test every cell of the grid separately, with exact angles and no state.
 
 use super::*;
 use interfaces::{LaserReading, Scan, Twist};
@@ -10,7 +10,7 @@ const RANGE_MAX_M: f64 = 3.0;
 /// Cells whose middle lies nearer than this to a border of the polygon can go either way.
 const TIE_M: f64 = 1e-6;
 
-/// A scan that can come from any star-shaped place, some of its beams invalid.
+/// A scan from any place, some of whose beams are invalid.
 #[derive(Clone, Debug)]
 struct Case {
     x_m: f64,
@@ -67,7 +67,7 @@ impl Case {
         cloud
     }
 
-    /// How far a beam is known to be clear, by REP-117 and the reach of the fan.
+    /// The range that is known to be clear along a beam, by REP-117 and the range of the fan.
     fn clear_m(&self, beam: usize) -> f64 {
         let range_m = f64::from(self.ranges_m[beam]);
         let clear_m = if range_m == f64::INFINITY {
@@ -126,7 +126,7 @@ proptest! {
         }
     }
 
-    /// Scratch space is reused: a fill leaves nothing behind for the next.
+    /// Scratch memory is reused: a fill must not affect the next one.
     #[test]
     fn a_second_fill_does_not_remember_the_first(first in case(), second in case()) {
         let runs = |footprint: &mut Footprint, case: &Case| {
@@ -140,7 +140,7 @@ proptest! {
         prop_assert_eq!(runs(&mut used, &second), runs(&mut Footprint::default(), &second));
     }
 
-    /// The oracle walks the segment in steps of a thousandth of a cell.
+    /// The reference follows the segment in steps of a thousandth of a cell.
     #[test]
     fn cells_along_are_those_that_the_segment_crosses(
         from in (-1.0..5.0f64, -1.0..5.0f64),
@@ -178,7 +178,7 @@ proptest! {
             if frame.contains(cell) && off < frame.resolution_m() / 2.0 - 1e-9 {
                 prop_assert!(visited.contains(&cell), "{:?} at {} is missing", cell, point);
             }
-            // Within a step of a border the neighbours count as touched too.
+            // Within a step of a border the neighbors count as touched too.
             let near = Vector2::repeat(1.5e-3 * frame.resolution_m());
             for corner in [point - near, point + near] {
                 touched.extend([(corner.x, point.y), (point.x, corner.y), (corner.x, corner.y)].map(|(x, y)| {

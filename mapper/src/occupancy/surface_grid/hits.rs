@@ -8,7 +8,7 @@ use crate::occupancy::projection::ProjectedScan;
 use interfaces::{Cell, CellState};
 use nalgebra::{Point2, Vector2};
 
-/// A hit farther than this from every standing surface, m, is a hit on a new obstacle.
+/// A hit farther than this from every standing surface, m, counts as a hit on a new obstacle.
 const OPEN_M: f64 = 0.1;
 
 impl SurfaceGrid {
@@ -17,7 +17,8 @@ impl SurfaceGrid {
         let Some(end) = self.segmentation.ends[beam] else { return };
         let frame = *cells.frame();
         let index_at = |point: Point2<f64>| frame.index(frame.cell_at(&point));
-        // Most beams end on known walls: in a cell whose surface has settled, or right before it, no normal is needed.
+        // Most beams end on known walls: in a cell with a settled surface, or right before it. Then no normal is
+        // needed.
         let ahead = end + scan.directions[beam] * (self.settings.surface_depth_m / 4.0);
         if let Some(index) = index_at(ahead).filter(|&index| self.has_settled(index, cells)) {
             self.support(index, None, cells);
@@ -27,8 +28,8 @@ impl SurfaceGrid {
             return;
         }
         let point = hit_point(beam, &end, self.settings.surface_depth_m, &self.segmentation, scan);
-        // A surface in a cell is an observation of the cell, even where the hit counts for the cell behind: a cell
-        // that an obstacle moves into stays in view.
+        // A surface in a cell is an observation of the cell, even if the hit counts for the cell behind: a cell
+        // that an obstacle enters stays in view.
         if let Some(index) = index_at(end).filter(|&index| cells.state(index) != CellState::Unknown) {
             cells.observe(index);
         }
@@ -69,7 +70,7 @@ impl SurfaceGrid {
             // surface, but that takes more hits.
             Some(_) if is_free => return,
             Some(_) => hits_to_stand,
-            // In the open one hit is enough, unless noise puts the hit into this cell.
+            // Far from known surfaces one hit is enough, unless noise could put the hit into this cell.
             None if is_free
                 && self.surface_near(end, OPEN_M, hits_to_stand, cells).is_none()
                 && is_inside(end + (point - end).normalize() * noise_m) =>
@@ -97,8 +98,8 @@ impl SurfaceGrid {
         .map(|(_, index)| index)
     }
 
-    /// A new obstacle has a body (rule 4): the free cells behind a hit are blocked, to the depth `body_m`. They are
-    /// hidden now, and no beam can show their state.
+    /// A new obstacle has a body (rule 4): the free cells behind a hit become blocked, to the depth `body_m`. These
+    /// cells are hidden now, and no beam can show their state.
     fn fill_body(&mut self, end: &Point2<f64>, point: &Point2<f64>, cells: &mut CellMap) {
         let frame = *cells.frame();
         let Some(inward) = (point - end).try_normalize(1e-9) else { return };
@@ -134,8 +135,8 @@ impl SurfaceGrid {
         }
     }
 
-    /// The cells between this hit and the next on the same surface lie on the surface too: the blocked ones
-    /// stand, and no beam passes any of them.
+    /// The cells between this hit and the next hit on the same surface are on the surface, too: the blocked ones
+    /// stay blocked, and no beam passes them.
     fn support_between(&mut self, beam: usize, from: Point2<f64>, scan: &ProjectedScan, cells: &mut CellMap) {
         let frame = *cells.frame();
         let ends = &self.segmentation.ends;
@@ -144,7 +145,7 @@ impl SurfaceGrid {
         let to = from + (next - end);
         let (first, last) = (frame.cell_at(&from), frame.cell_at(&to));
         if first.x.abs_diff(last.x) + first.y.abs_diff(last.y) <= 1 {
-            return; // the two hits cover the cells between them
+            return; // The two hits cover the cells between them.
         }
         cells_along(&frame, &from, &to, |index| match cells.state(index) {
             CellState::Blocked => self.support(index, None, cells),
@@ -164,7 +165,7 @@ impl SurfaceGrid {
                 surface.evidence = 0;
                 (surface.doubted_since, surface.doubted_in_view) = (now, in_view);
                 if cells.state(index) == CellState::Free {
-                    surface.hits = 0; // in an unknown cell hits add up, with or without misses between
+                    surface.hits = 0; // In an unknown cell hits accumulate, with or without misses between them.
                 }
             }
             surface.evidence += 1;
@@ -187,7 +188,7 @@ impl SurfaceGrid {
         }
     }
 
-    /// Moves the remembered surface point towards a hit.
+    /// Moves the remembered surface point toward a hit.
     fn remember(&mut self, index: usize, point: Point2<f64>, cells: &CellMap) {
         let surface = &mut self.surfaces[index];
         let at = point - cells.frame().origin();

@@ -34,7 +34,7 @@ impl SurfaceGrid {
     fn miss(&mut self, index: usize, scan: &ProjectedScan, cells: &mut CellMap) {
         let now = cells.reading();
         if self.surfaces[index].hit_at == now {
-            return; // a cell that was hit takes no miss
+            return; // A cell that was hit receives no miss.
         }
         match cells.state(index) {
             CellState::Free => {

@@ -1,8 +1,8 @@
 //! The default occupancy model (`steady`): occupancy without flicker.
 //!
-//! A grazing beam crosses the cells of a surface that steeper beams hit, many scans in a row. Counts of hits and misses
-//! cannot distinguish that from an obstacle that disappeared. Four rules can, because they remember *where in the cell*
-//! the surface is:
+//! A grazing beam crosses the cells of a surface that steeper beams hit, in many consecutive scans. Counts of hits
+//! and misses cannot distinguish this from an obstacle that disappeared. The following four rules can, because they
+//! store *where in the cell* the surface is:
 //!
 //! 1. **A hit belongs behind the surface.** Surfaces lie on the borders of cells; the hit counts
 //!    for the cell a little behind the surface, along its normal.
@@ -14,8 +14,8 @@
 //!    that surface, not a new obstacle beside it.
 //! 4. **A new obstacle has a body.** The cells that the body hides at once are blocked too, a little behind the surface.
 //!
-//! A cell that was hit takes no miss from the same scan. A first observation from afar can be wrong: a state that is
-//! contradicted before it was confirmed is corrected, and that is not a change.
+//! A cell that was hit receives no miss from the same scan. A first observation from far away can be wrong: if a
+//! state is contradicted before it was confirmed, the state is corrected, which does not count as a change.
 
 mod hits;
 mod misses;
@@ -29,7 +29,7 @@ use crate::change::{CellMap, ReadingIndex};
 use interfaces::CellState;
 pub use settings::SurfaceGridSettings;
 
-/// The mean of the points hit is over about this number of hits.
+/// The mean of the hit points is taken over about this number of hits.
 const SURFACE_MEMORY: u16 = 32;
 
 /// The hits in a cell.
@@ -37,18 +37,18 @@ const SURFACE_MEMORY: u16 = 32;
 struct Surface {
     /// The mean of the points that were hit, relative to the lower left corner of the grid, m.
     point_m: [f32; 2],
-    /// Scans with a hit in this cell since the cell was last free.
+    /// The number of scans with a hit in this cell since the cell was last free.
     hits: u16,
-    /// Of an unknown or free cell: hits (above 0) or misses (below) in a row. Of a blocked cell:
-    /// the misses left until the cell is free.
+    /// For an unknown or free cell: the number of consecutive hits (above 0) or misses (below 0). For a blocked
+    /// cell: the number of misses left until the cell becomes free.
     evidence: i8,
     /// The reading of the last hit.
     hit_at: ReadingIndex,
     /// The last reading in which a surface between two hits went through the cell.
     surface_at: ReadingIndex,
-    /// Whether the cell was free before: the surface is that of a new obstacle.
+    /// Whether the cell was free before, so that the surface is that of a new obstacle.
     came: bool,
-    /// The start of the evidence against the present state, and whether the cell was in view then.
+    /// The reading at which the evidence against the present state began, and whether the cell was in view then.
     doubted_since: ReadingIndex,
     doubted_in_view: bool,
 }

@@ -4,36 +4,38 @@ use interfaces::{SettingsCheck, SettingsError};
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SurfaceGridSettings {
-    /// The standard deviation of the range noise of the laser, m. Surfaces are distinct from four standard deviations
-    /// on.
+    /// The standard deviation of the range noise of the laser, m. Surfaces that are at least four standard
+    /// deviations apart are distinct.
     pub range_noise_std_m: f64,
-    /// A hit counts for the cell this far behind the surface, along its normal, m: a surface on
-    /// the border of two cells belongs to the solid one.
+    /// The distance behind the surface, along its normal, at which a hit counts, m: a surface on the border of two
+    /// cells belongs to the solid cell.
     pub surface_depth_m: f64,
-    /// The smallest thickness of new obstacles, m: to this depth behind a hit cells are blocked. 0 marks surfaces
-    /// only.
+    /// The assumed thickness of new obstacles, m: cells behind a hit become blocked to this depth. With 0, only
+    /// surfaces are marked.
     pub body_m: f64,
-    /// Hits nearer than this to each other, m, are one surface: no beam passes the cells on the surface.
+    /// Hits nearer to each other than this, m, belong to one surface: no beam passes the cells between them.
     pub join_m: f64,
-    /// Where neighboring beams are farther apart than this, m, the space between them counts as not
-    /// observed.
+    /// Where neighboring beams are farther apart than this, m, the space between them counts as not observed.
     pub max_gap_m: f64,
-    /// Scans with a hit until a free or unknown cell is blocked.
+    /// The number of scans with a hit after which a free or unknown cell becomes blocked.
     pub hits_to_block: u8,
-    /// The same away from every standing surface. One hit is enough for a laser without spurious returns.
+    /// The number of scans with a hit after which a cell far from every standing surface becomes blocked. 1 is
+    /// enough for a laser without spurious returns.
     pub hits_to_block_in_open: u8,
-    /// Scans that pass an unknown cell until the cell is free.
+    /// The number of scans that must pass an unknown cell until the cell becomes free.
     pub misses_to_discover: u8,
-    /// The same for an unknown cell beside a surface, which can still be part of the surface.
+    /// The number of scans that must pass an unknown cell beside a surface until the cell becomes free. Such a cell
+    /// can still be part of the surface.
     pub misses_to_discover_beside: u8,
-    /// Scans that pass a blocked cell until the cell is free, when the cell was just blocked.
+    /// The number of scans that must pass a blocked cell until the cell becomes free, if the cell became blocked
+    /// only recently.
     pub misses_to_free_fresh: u8,
-    /// The same for a cell that was hit often.
+    /// The number of scans that must pass a blocked cell until the cell becomes free, if the cell was hit often.
     pub misses_to_free: u8,
-    /// Hits after which a surface counts as standing: noise around it is then not a new obstacle.
+    /// The number of hits after which a surface counts as standing: noise around it is then not a new obstacle.
     pub hits_to_stand: u16,
-    /// A first observation that is contradicted after less than this time in view, s, was wrong: the state is
-    /// corrected, and that does not count as a change.
+    /// The confirmation time, s: a first observation that is contradicted after less than this time in view was
+    /// wrong. The state is corrected, which does not count as a change.
     pub confirm_s: f64,
 }
 
@@ -58,14 +60,14 @@ impl Default for SurfaceGridSettings {
 }
 
 impl SurfaceGridSettings {
-    /// The misses in a row that free a blocked cell after this many hits.
+    /// The number of consecutive misses that free a blocked cell after this number of hits.
     pub(crate) fn misses_to_free_after(&self, hits: u16) -> i8 {
         let fresh = u16::from(self.misses_to_free_fresh);
         fresh.saturating_add(hits).min(u16::from(self.misses_to_free)) as i8
     }
 
     pub(crate) fn check(&self, check: SettingsCheck) -> Result<(), SettingsError> {
-        // Every hit searches as far as the noise reaches.
+        // Every hit searches as far as the range noise reaches.
         check.within("steady.range_noise_std_m", self.range_noise_std_m, 0.0..=0.5, "from 0 to 0.5 m")?;
         check.within("steady.surface_depth_m", self.surface_depth_m, 0.0..=0.5, "from 0 to 0.5 m")?;
         check.within("steady.body_m", self.body_m, 0.0..=10.0, "from 0 to 10 m")?;

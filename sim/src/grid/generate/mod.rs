@@ -11,11 +11,11 @@ use nalgebra::Point2;
 use rand::RngExt;
 use std::ops::RangeInclusive;
 
-/// The largest number of maps that are drawn until one has room for all blocks.
+/// The maximum number of maps that are drawn until a map has room for all blocks.
 const MAX_MAPS: usize = 20;
 
-/// The settings of random worlds. A pair gives the smallest and the largest value, both included; each world draws
-/// its own value between them. A pair in the wrong order is swapped, and values out of range are cut to the range.
+/// Settings of random worlds. A pair is the smallest and the largest value, both included; each world draws its own
+/// value between them. A pair in the wrong order is swapped, and values out of range are limited to the range.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GenerateSettings {
@@ -43,7 +43,7 @@ pub struct GenerateSettings {
 }
 
 impl Default for GenerateSettings {
-    /// Worlds like those that ship.
+    /// Worlds similar to the shipped worlds.
     fn default() -> Self {
         Self {
             width: [21, 31],
@@ -66,9 +66,9 @@ impl Default for GenerateSettings {
 pub enum PathKind {
     /// A straight line, back and forth.
     Line,
-    /// The border of a rectangle, round and round.
+    /// The border of a rectangle, always in the same direction.
     Ring,
-    /// A way that bends at random and never crosses itself, back and forth.
+    /// A path with random bends that never crosses itself, back and forth.
     Winding,
 }
 
@@ -78,9 +78,9 @@ impl PathKind {
 }
 
 impl GridSpec {
-    /// A random world, called `generated-` and the seed: an outer wall, inner walls with openings,
-    /// free-standing walls, blocks whose paths keep apart, the robot in the centre. All free cells
-    /// are connected. The same settings and seed give the same world, on every machine.
+    /// A random world, named `generated-` and the seed: an outer wall, inner walls with openings, free-standing
+    /// walls, blocks with paths that do not touch each other, the robot in the center. All free cells are
+    /// connected. The same settings and seed give the same world, on every machine.
     pub fn generate(settings: &GenerateSettings, seed: u64) -> Self {
         let mut rng = RandomStream::new(seed, Purpose::WorldGenerator);
         let wanted = between(&mut rng, settings.blocks, 0..=1000) as usize;
@@ -98,7 +98,7 @@ impl GridSpec {
     }
 }
 
-/// A world with as many of the `wanted` blocks as there is room for.
+/// A world with the `wanted` number of blocks, or with as many as there is room for.
 fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomStream) -> GridSpec {
     let (width, height) = (between(rng, settings.width, 9..=1000), between(rng, settings.height, 9..=1000));
     let frame = GridFrame::new(Point2::origin(), 1.0, width as usize, height as usize);
@@ -135,7 +135,7 @@ fn between(rng: &mut RandomStream, pair: [u32; 2], valid: RangeInclusive<u32>) -
     rng.random_range(low..=high) as i32
 }
 
-/// A setting, in order and cut to its range.
+/// A setting in ascending order, limited to its range.
 fn cut([a, b]: [u32; 2], valid: RangeInclusive<u32>) -> (u32, u32) {
     let cut = |value: u32| value.clamp(*valid.start(), *valid.end());
     (cut(a.min(b)), cut(a.max(b)))

@@ -75,7 +75,7 @@ fn ring(first: Cell, low: u32, high: u32, rng: &mut RandomStream) -> Option<Vec<
             cells.push(at);
         }
     }
-    // The last cell is the first again.
+    // The last cell is the same as the first.
     cells.pop();
     if rng.random() {
         cells.reverse();

@@ -4,7 +4,7 @@ use interfaces::{GroundTruth, Step, World};
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 
-/// What must hold of any world, whatever the settings.
+/// Properties of every generated world, for all settings.
 fn check(spec: &GridSpec, seed: u64) {
     let (frame, walls) = (spec.frame(), &spec.walls);
     assert_eq!(spec.name, format!("generated-{seed}"));
@@ -45,7 +45,7 @@ fn two_hundred_generated_worlds_are_valid() {
             kinds.insert((block.course == Course::Loop, is_straight));
         }
         worlds.insert(spec.drawing());
-        // Every block really moves, over all of its path, where nobody is in its way.
+        // Every block really moves over its whole path, if nothing is in its way.
         let longest = spec.blocks.iter().map(|block| block.dwell as usize * block.path.len()).max();
         let mut world = GridWorld::new(&spec, seed);
         for _ in 0..longest.unwrap() {

@@ -1,18 +1,18 @@
-//! What a grid world is made of: plain values in cells and steps.
+//! The specification of a grid world: plain values in cells and steps.
 //!
-//! [`super::GridWorld`] takes a spec as it is: it checks no ranges. The crate `worldfile` makes specs from texts,
-//! and checks them.
+//! [`super::GridWorld`] does not check the ranges of a spec. The crate `worldfile` makes specs from texts, and
+//! checks them.
 
 pub(super) mod parts;
 
 use interfaces::{Cell, Grid, GridFrame};
 
-/// A grid world.
+/// The specification of a grid world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridSpec {
     /// The name of the world.
     pub name: String,
-    /// What the world shows, in a sentence or two; can be empty.
+    /// What the world is for, in one or two sentences; can be empty.
     pub description: String,
     /// Which cells are walls; cells of 1 m, with `[0, 0]` at the origin.
     pub walls: Grid<bool>,
@@ -32,56 +32,56 @@ pub struct GridSpec {
 /// A block that moves from cell to cell along its path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BlockSpec {
-    /// The name.
+    /// The name of the block.
     pub name: String,
-    /// The time on every cell, steps; 1 to [`BlockSpec::MAX_DWELL`].
+    /// The dwell: the time on every cell, steps; 1 to [`BlockSpec::MAX_DWELL`].
     pub dwell: u32,
-    /// The time already spent on the first cell at the start, steps; below `dwell`.
+    /// The time that has already been spent on the first cell at the start, steps; below `dwell`.
     pub stood: u32,
-    /// The continuation at the end of the path.
+    /// How the block continues at the end of its path.
     pub course: Course,
     /// The cells of the path, at least two, none of them a wall; the block starts on the first. Consecutive cells
     /// share a side, and so do the last and the first of a loop.
     pub path: Vec<Cell>,
 }
 
-/// The continuation at the end of the path of a block.
+/// How a block continues at the end of its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Course {
-    /// With the first cell.
+    /// The block continues with the first cell.
     Loop,
-    /// Back along the path.
+    /// The block goes back along the path.
     BackAndForth,
 }
 
 impl BlockSpec {
-    /// The largest dwell, steps: a block with a longer one would not move in any practical run.
+    /// The maximum dwell, steps: a block with a longer dwell would not move in any practical run.
     pub const MAX_DWELL: u32 = 1_000_000;
 }
 
 impl GridSpec {
-    /// The largest range of a sensor, in cells.
+    /// The maximum range of a sensor, cells.
     pub const MAX_SENSOR_RADIUS: u32 = 100;
 
-    /// The cells of the world.
+    /// The position and the size of the grid.
     pub fn frame(&self) -> &GridFrame {
         self.walls.frame()
     }
 
-    /// Probable mistakes in a valid world: a sentence for every part of the map that the robot cannot reach, named by
-    /// its lowest, leftmost cell and its size.
+    /// Probable mistakes in a valid world: one sentence for every part of the map that the robot cannot reach. The
+    /// part is identified by its lowest, leftmost cell and its size.
     pub fn warnings(&self) -> Vec<String> {
         parts::warnings(&self.walls, self.start)
     }
 
-    /// The same world with another sensor; the radius is clamped to 1 to [`GridSpec::MAX_SENSOR_RADIUS`] cells.
+    /// The same world with another range of the sensor, limited to 1 to [`GridSpec::MAX_SENSOR_RADIUS`] cells.
     #[must_use]
     pub fn with_sensor_radius(self, sensor_radius: u32) -> Self {
         Self { sensor_radius: sensor_radius.clamp(1, Self::MAX_SENSOR_RADIUS), ..self }
     }
 
-    /// The same world with other probabilities for blocks and the robot, clamped to above 0 and at most 1; NaN
-    /// becomes the least.
+    /// The same world with other probabilities for blocks and the robot, limited to above 0 and at most 1; NaN
+    /// becomes the smallest valid value.
     #[must_use]
     pub fn with_probabilities(self, block: f64, robot: f64) -> Self {
         let clamp = |value: f64| if value > 0.0 { value.min(1.0) } else { f64::MIN_POSITIVE };

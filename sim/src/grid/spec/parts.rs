@@ -6,15 +6,15 @@ use interfaces::{Cell, Grid};
 /// The maximum number of parts that are named one by one.
 const MAX_NAMED: usize = 5;
 
-/// Whether each cell is connected with `start` over the sides of cells that are not walls.
-/// Row-major. Blocks do not count, since they move.
+/// For each cell, in row-major order, whether it is connected with `start` over the sides of cells that are not
+/// walls. Blocks are ignored, since they move.
 pub(in crate::grid) fn connected(walls: &Grid<bool>, start: Cell) -> Vec<bool> {
     let mut reached = vec![false; walls.frame().len()];
     flood(walls.frame(), start, |index| !walls.cells()[index], &mut reached);
     reached
 }
 
-/// A sentence for every part of the map that the robot cannot get to.
+/// One sentence for every part of the map that the robot cannot reach.
 pub(in crate::grid) fn warnings(walls: &Grid<bool>, start: Cell) -> Vec<String> {
     let frame = walls.frame();
     let mut reached = connected(walls, start);

@@ -1,13 +1,13 @@
-//! The exact sensor of a grid world: line of sight between the centres of cells.
+//! The exact sensor of a grid world: line of sight between the centers of cells.
 //!
-//! A cell is in line of sight when the segment from the centre of the robot's cell to the centre of the cell
+//! A cell is in line of sight when the segment from the center of the robot's cell to the center of the cell
 //! passes through the inside of no other blocked cell. A segment may pass exactly through the corner at which
 //! four cells meet, unless both cells beside the corner are blocked. Line of sight is symmetric.
 //!
 //! Nearly all of the work is done in advance. Seen from the robot, a blocked cell always hides the same cells:
-//! those strictly within the angle of its corners and behind the cell. So every blocked cell near the robot has
-//! a *shadow*, a set of bits, and the union of the shadows is hidden. The cost grows with the number of blocked
-//! cells around the robot, not with the size of the world.
+//! those strictly within the angle of its corners and behind the cell. Every blocked cell near the robot therefore
+//! has a *shadow*, a set of bits, and the union of the shadows is hidden. The computing time depends on the number
+//! of blocked cells around the robot, not on the size of the world.
 
 mod blocked;
 mod shadows;
@@ -77,7 +77,7 @@ impl LineOfSight {
 }
 
 impl GridSpec {
-    /// For every cell the cells that the robot sees from there when no block is in the way, all by index. From
+    /// For every cell, the cells that the robot sees from there if no block is in between, all by index. From
     /// inside a wall the robot sees nothing.
     pub fn sights(&self) -> Vec<Vec<usize>> {
         let frame = self.frame();

@@ -3,7 +3,7 @@ use interfaces::{Grid, GridFrame};
 use nalgebra::Point2;
 use proptest::prelude::*;
 
-/// Walls from a drawing, the top row first, and where the robot is.
+/// Walls from a drawing, the top row first, and the cell of the robot.
 fn walls(drawing: &str) -> (Grid<bool>, Cell) {
     let rows: Vec<&str> = drawing.split_whitespace().collect();
     let frame = GridFrame::new(Point2::origin(), 1.0, rows[0].len(), rows.len()).unwrap();
@@ -16,7 +16,7 @@ fn look(walls: &Grid<bool>, robot: Cell, radius: u32) -> Vec<(Cell, bool)> {
     LineOfSight::new(radius).look(&BlockedCells::new(walls, radius), robot)
 }
 
-/// What the robot of a drawing sees: `.` free, `#` blocked, `?` nothing.
+/// The view of the robot in a drawing: `.` free, `#` blocked, `?` not seen.
 fn seen(drawing: &str, radius: u32) -> String {
     let (walls, robot) = walls(drawing);
     let frame = walls.frame();
@@ -32,8 +32,8 @@ fn seen(drawing: &str, radius: u32) -> String {
     (0..frame.height()).rev().map(|y| row(y) + "\n").collect()
 }
 
-/// Whether the segment between the middles of two cells is free, worked out for every cell and
-/// every corner on the way in fractions. Slow, and straight from the definition.
+/// Whether the segment between the centers of two cells is free, computed for every cell and every corner on the
+/// way in fractions. Slow, and directly from the definition.
 fn is_in_sight(walls: &Grid<bool>, from: Cell, to: Cell) -> bool {
     let (dx, dy) = (i64::from(to.x - from.x), i64::from(to.y - from.y));
     let blocked =
@@ -90,7 +90,7 @@ fn crosses(to: (i64, i64), cell: (i64, i64)) -> bool {
     low.0 * high.1 < high.0 * low.1
 }
 
-/// What the robot sees by the definition, row by row.
+/// The view of the robot by the definition, row by row.
 fn oracle(walls: &Grid<bool>, robot: Cell, radius: u32) -> Vec<(Cell, bool)> {
     let frame = walls.frame();
     let cells = (0..frame.len()).map(|index| (frame.cell(index), walls.cells()[index]));
@@ -214,7 +214,7 @@ proptest! {
         }
     }
 
-    /// The order is the same whatever is in sight: that of the open map.
+    /// The order does not depend on the blocks: it is that of the empty map.
     #[test]
     fn the_order_is_fixed((walls, robot, radius) in scene(1..28, 1..=12)) {
         let open = look(&Grid::filled(*walls.frame(), false), robot, radius);
@@ -233,7 +233,7 @@ proptest! {
     /// Where a row of the view takes more than one word.
     #[test]
     fn sight_agrees_with_the_definition_far_away((walls, robot, radius) in scene(60..150, 31..=100)) {
-        // Few walls, or nothing is seen from far away.
+        // Few walls; otherwise nothing is seen from far away.
         let sparse = Grid::from_cells(
             *walls.frame(),
             walls.cells().iter().enumerate().map(|(index, wall)| *wall && index % 16 == 0).collect(),

@@ -5,16 +5,18 @@ use crate::physics::spec::RobotSpec;
 use interfaces::{LaserReading, Twist};
 use nalgebra::{UnitComplex, Vector2};
 
-/// The robot turns in place beyond the first angle off its leg, and drives again within the second, rad.
+/// The robot turns in place if its heading differs from the leg by more than the first angle, and drives again if
+/// the difference is below the second angle, rad.
 const TURN_BEYOND_RAD: f64 = 0.5;
 const TURNED_RAD: f64 = 0.03;
-/// Something is in the way if less than this is left beside it at the end of the leg, m.
+/// An obstacle is in the way if less than this space is left between it and the robot at the end of the leg, m.
 const END_MARGIN_M: f64 = 0.03;
-/// After a stop this much more space must be free to continue, m: it avoids stop and go at the limit.
+/// After a stop, this much additional space must be free before the robot continues, m: this avoids stop-and-go at
+/// the limit.
 const HYSTERESIS_M: f64 = 0.05;
 
-/// Driving along straight legs by odometry: the robot turns in place where the next leg has another
-/// direction, and stops while the laser shows something ahead.
+/// Drives along straight legs by odometry: the robot turns in place if the next leg has another direction, and
+/// stops while the laser measures an obstacle ahead.
 #[derive(Clone, Debug)]
 pub(super) struct Legs {
     pub(super) radius_m: f64,
@@ -49,9 +51,9 @@ impl Legs {
         vec![value(&mut self.turning), value(&mut self.blocked)]
     }
 
-    /// The velocity on the leg along the unit vector `along`, `remaining_m` before its end. `look` gets the rotation
-    /// from the frame of the robot to that of the leg, and returns the free distance ahead, m, and the heading to
-    /// steer to, rad from the direction of the leg.
+    /// The velocity on the leg in the direction of the unit vector `along`, `remaining_m` before its end. `look`
+    /// receives the rotation from the frame of the robot to the frame of the leg, and returns the free distance
+    /// ahead, m, and the heading to steer to, rad from the direction of the leg.
     pub(super) fn drive(
         &mut self,
         reading: &LaserReading,
@@ -79,7 +81,7 @@ impl Legs {
         }
     }
 
-    /// The points that the laser sees, in the frame of the leg, m.
+    /// The end points of the beams, in the frame of the leg, m.
     pub(super) fn points(
         &self,
         reading: &LaserReading,
@@ -91,7 +93,7 @@ impl Legs {
         points.map(move |(range_m, beam)| lean * (mount + beam * f64::from(*range_m)))
     }
 
-    /// How far the round body can drive before it touches a point ahead, m.
+    /// The distance that the round body can drive before it touches a point ahead, m.
     pub(super) fn gap_m(&self, point: &Vector2<f64>) -> f64 {
         let nose_m = (self.radius_m * self.radius_m - point.y * point.y).max(0.0).sqrt();
         point.x - nose_m

@@ -1,4 +1,4 @@
-//! What robots do on their own, by their laser and odometry.
+//! The behaviors of robots that drive without commands, by laser and odometry.
 
 mod legs;
 mod pace;
@@ -15,10 +15,10 @@ use wall_patrol::WallPatrol;
 use wander::Wander;
 use waypoints::Waypoints;
 
-/// A way to drive without commands.
+/// A behavior: a way to drive without commands.
 #[derive(Clone)]
 pub(super) enum Behavior {
-    /// The same velocity at all times.
+    /// A constant velocity.
     Steady(Twist),
     Wander(Box<Wander>),
     Waypoints(Waypoints),
@@ -26,7 +26,7 @@ pub(super) enum Behavior {
 }
 
 impl Behavior {
-    /// The behavior of `robot`, whose main laser has `beams`; `None`: the robot obeys commands.
+    /// The behavior of `robot`, whose main laser has `beams`; `None` if the robot executes commands.
     pub(super) fn of(robot: &RobotSpec, step_s: f64, beams: &Beams, random: RandomStream) -> Option<Self> {
         Some(match &robot.behavior {
             BehaviorSpec::Driven => return None,

@@ -1,12 +1,11 @@
 use crate::physics::spec::RobotSpec;
 
-/// Steering towards a heading, 1/s.
+/// Steering toward a heading, 1/s.
 pub(super) const HEADING_GAIN: f64 = 3.0;
-/// The slowest approach to an end, m/s: with a speed in proportion to the distance the robot would never
-/// arrive.
+/// The minimum speed of an approach, m/s: with a speed proportional to the distance, the robot would never arrive.
 pub(super) const CREEP_MPS: f64 = 0.02;
 
-/// How soon a robot that gets a command at every scan can stop and turn.
+/// How fast a robot that receives one command per scan can stop and turn.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pace {
     speed_mps: f64,
@@ -22,7 +21,8 @@ pub(super) struct Pace {
 impl Pace {
     /// The pace of `robot` at `speed_mps`.
     pub(super) fn new(robot: &RobotSpec, speed_mps: f64, step_s: f64) -> Self {
-        // Commands come with scans: the robot brakes at half the bound, so that a late command is early enough.
+        // Commands come with scans: the robot brakes with half of its maximum deceleration, so that a late command
+        // is early enough.
         let braking_mps2 = robot.drive.max_linear_acceleration_mps2 / 2.0;
         let reaction_s = (robot.laser.period_steps + 1) as f64 * step_s;
         Self {
@@ -35,8 +35,8 @@ impl Pace {
         }
     }
 
-    /// The highest speed from which the robot can stop within `distance_m`, although the next command comes
-    /// a reading later: the root of v·t + v²/2b = distance. At least the speed of the slowest approach.
+    /// The highest speed from which the robot can stop within `distance_m`, if the next command comes one reading
+    /// later: the root of v·t + v²/2b = distance. At least the minimum speed of an approach.
     pub(super) fn approach_mps(&self, distance_m: f64) -> f64 {
         let (t, b) = (self.reaction_s, self.braking_mps2);
         let fastest_mps = b * ((t * t + 2.0 * distance_m.max(0.0) / b).sqrt() - t);

@@ -5,24 +5,24 @@ use crate::physics::spec::{PatrolSpec, RobotSpec};
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Point2, Vector2};
 
-/// The end of a leg counts as reached this far before it, m.
+/// The end of a leg counts as reached at this distance, m.
 const ARRIVED_M: f64 = 0.01;
-/// Points this near to the expected wall belong to the wall, m.
+/// Points nearer to the expected wall than this belong to the wall, m.
 const WALL_SLACK_M: f64 = 0.1;
-/// Free space kept on the open side, m.
+/// The free space that is kept on the open side, m.
 const SIDE_MARGIN_M: f64 = 0.05;
-/// Steering towards the distance of the wall, rad per m, and its bound, rad.
+/// Steering toward the distance of the wall, rad per m, and its bound, rad.
 const LATERAL_GAIN: f64 = 2.0;
 const MAX_LEAN_RAD: f64 = 0.25;
 
-/// The behavior of the dummy robot (paper, section 5): it drives back and forth between two points, keeps
+/// The behavior of the dummy robot (paper, section 5): the robot drives back and forth between two points, keeps
 /// its distance to the wall by laser and its heading by odometry, turns in place at the ends, and stops while
 /// anything else is in its way.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct WallPatrol {
     spec: PatrolSpec,
     legs: Legs,
-    /// Whether the robot drives towards `to`; otherwise towards `from`.
+    /// Whether the robot drives toward `to`; otherwise toward `from`.
     outbound: bool,
 }
 

@@ -8,29 +8,29 @@ use std::ops::Range;
 
 /// The width that must be free ahead, as a multiple of the width of the body.
 const WIDTH: f64 = 1.1;
-/// After a stop this much more space must be free to continue, m.
+/// After a stop, this much additional space must be free before the robot continues, m.
 const HYSTERESIS_M: f64 = 0.1;
-/// Shares of the turn rate of the drive: of a turn in place, and of the sharpest curve on the way.
+/// Shares of the maximum turn rate: for a turn in place, and for the sharpest curve.
 const TURN_SHARE: f64 = 0.5;
 const CURVE_SHARE: f64 = 0.15;
-/// The number of scans that a curve lasts.
+/// The number of scans for which a curve lasts.
 const CURVE_SCANS: Range<f64> = 10.0..50.0;
 
-/// Drives without a goal: ahead in long random curves. Where something comes too near ahead, the robot turns
-/// in place towards the side with more space, until the way is free.
+/// Drives without a goal: forward in long random curves. If an obstacle is too near ahead, the robot turns in place
+/// toward the side with more space, until the way is free.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Wander {
     spec: WanderSpec,
     max_turn_radps: f64,
-    /// Below the first range on a beam the robot stops; above the second it continues. 0 for beams that do
-    /// not point ahead.
+    /// The ranges at which the robot stops (below the first value on any beam) and continues (above the second
+    /// value). 0 for beams that do not point ahead.
     stop_m: Vec<f32>,
     go_m: Vec<f32>,
     /// Which beams point to the left, and which point ahead.
     left: Vec<bool>,
     ahead: Vec<bool>,
     random: RandomStream,
-    /// The turn in place, rad/s, while the way is blocked.
+    /// The rate of the turn in place, rad/s, while the way is blocked.
     turning: Option<f64>,
     curve_radps: f64,
     scans_left: u32,
@@ -46,7 +46,8 @@ impl Wander {
     ) -> Self {
         let pace = Pace::new(robot, spec.speed_mps, step_s);
         let needed_m = spec.clearance_m + pace.stopping_m;
-        // A laser outside of the body counts as one on its border: bodies ahead then seem nearer.
+        // A laser outside of the body is treated as if it were on the border of the body: obstacles ahead then seem
+        // nearer.
         let mount = robot.laser.mount.translation.vector.cap_magnitude(robot.radius_m);
         let beams = super::in_robot_frame(robot, beams);
         let table = |free_m: f64| {

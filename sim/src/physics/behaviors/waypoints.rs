@@ -7,11 +7,12 @@ use nalgebra::Point2;
 
 /// A waypoint counts as reached within this distance, m.
 const ARRIVED_M: f64 = 0.02;
-/// Free space kept beside the body, m: less than the distance that the legs are known to keep from walls.
+/// The free space that is kept beside the body, m: less than the distance that the legs are known to keep from
+/// walls.
 const SIDE_MARGIN_M: f64 = 0.03;
 
 /// Drives straight from point to point by odometry, turns in place at the points, and waits while the laser
-/// shows something in the way.
+/// measures an obstacle in the way.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Waypoints {
     spec: WaypointsSpec,
@@ -43,7 +44,7 @@ impl Waypoints {
     /// The velocity until the next reading.
     pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {
         let at = Point2::from(reading.pose.translation.vector);
-        // At most one round: where all points are within reach, there is nothing to do.
+        // At most one round: if all points are within reach, the robot has nothing to do.
         for _ in 0..self.spec.points.len() {
             let Some(next) = self.next.filter(|next| *next < self.spec.points.len()) else { break };
             let leg = self.spec.points[next] - at;

@@ -20,7 +20,7 @@ use nalgebra::{Isometry2, Translation2, Vector2};
 use rapier2d::prelude as rapier;
 use serde::{Deserialize, Serialize};
 
-/// The largest motion of the surface of an obstacle in a step, m, with a margin.
+/// The maximum motion of the surface of an obstacle in a step, m, with a margin.
 const MAX_MOVER_M: f64 = 0.125;
 /// The largest motion of a corner in a step that contacts are predicted for, m: a longer motion is not straight.
 const MAX_TURN_M: f64 = 0.25;
@@ -109,20 +109,20 @@ impl Bodies {
         values
     }
 
-    /// Adds a body that stands still.
+    /// Adds a body that does not move.
     pub(super) fn add_box(&mut self, body: Body, shape: &Rectangle) -> Handle {
         let collider = cuboid(body, shape).position(to_rapier(&shape.pose));
         Handle(self.world.insert_collider(collider, None))
     }
 
-    /// Removes such a body.
+    /// Removes a body that was added by `add_box`.
     pub(super) fn remove_box(&mut self, handle: Handle) {
         self.world.remove_collider(handle.0);
     }
 
     /// Adds a robot; robots are numbered in the order in which they are added.
     pub(super) fn add_robot(&mut self, spec: &RobotSpec, step_s: f64) {
-        // Friction 0: a round robot slides along a wall, as one with a bumper ring does.
+        // Friction 0: a round robot slides along a wall, like a robot with a bumper ring.
         let corners = spec.corners.iter().map(|corner| rapier::Vector::new(corner.x as f32, corner.y as f32));
         let is_round = spec.corners.is_empty();
         let hull = if is_round { None } else { rapier::ColliderBuilder::convex_polyline(corners.collect()) };
@@ -131,7 +131,7 @@ impl Bodies {
             .friction(0.0)
             .user_data(pack(Body::Robot(self.robots.len())));
         let collider = match spec.mass_kg {
-            // The wheels turn the robot about its centre, wherever the centroid of its outline is.
+            // The drive turns the robot about its center, even if the centroid of its outline is elsewhere.
             _ if !is_round => collider.density(0.0),
             Some(mass_kg) => collider.mass(mass_kg as f32),
             None => collider,
@@ -170,7 +170,7 @@ impl Bodies {
         body.set_angvel(own_velocity.turn_radps as f32, true);
     }
 
-    /// Lets one step pass.
+    /// Simulates one step.
     pub(super) fn step(&mut self) {
         for Free { body, before, .. } in &mut self.free {
             *before = *self.world.bodies[*body].position();
@@ -221,7 +221,7 @@ fn predicted_m(spec: &FleetSpec) -> Option<f64> {
     Some(motions_m.fold(if has_movers { MAX_MOVER_M } else { 0.0 }, f64::max))
 }
 
-/// The mass of a disc about the centre of a robot.
+/// The mass of a disc about the center of a robot.
 fn disc_mass(spec: &RobotSpec) -> rapier::MassProperties {
     let square_m2 = spec.radius_m * spec.radius_m;
     let mass_kg = spec.mass_kg.unwrap_or(std::f64::consts::PI * square_m2);

@@ -53,7 +53,7 @@ impl Bodies {
             let world = &mut self.world;
             let floor =
                 *self.floor.get_or_insert_with(|| world.insert_body(rapier::RigidBodyBuilder::fixed()));
-            // The mean distance of the points of a rectangle from its centre is 0.87 (long) to 0.94 (square)
+            // The mean distance of the points of a rectangle from its center is 0.87 (long) to 0.94 (square)
             // times the root mean square distance.
             let lever_m = 0.9 * (shape.half_m.norm_squared() / 3.0).sqrt();
             let mut motors = rapier::GenericJointBuilder::new(rapier::JointAxesMask::empty());

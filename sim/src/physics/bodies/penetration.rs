@@ -1,4 +1,4 @@
-//! Resolving penetration that the contact solver leaves.
+//! Resolves penetration that the contact solver leaves.
 //!
 //! rapier detects contacts at the begin of a step and approximates velocities that keep the bodies apart.
 //! Where heavy bodies press light ones together, or where corners turn, that is not enough. Bodies that
@@ -16,14 +16,15 @@ use rapier2d::parry::query::contact;
 use rapier2d::prelude as rapier;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The penetration that is allowed, m. A deeper one is reduced to half of this.
+/// The allowed penetration, m. A deeper penetration is reduced to half of this value.
 const DEPTH_M: f64 = 0.005;
 /// A penetration that is allowed for the thinnest bodies as well, m.
 const SHALLOW_M: f64 = 0.0002;
 /// The largest number of rounds of shifting.
 const ROUNDS: usize = 16;
-/// The number of first rounds in which bodies are shifted by the inverse of their mass. A light body between
-/// two heavy ones would go to and fro for hundreds of rounds; so later both bodies are shifted alike.
+/// In this number of first rounds, bodies are shifted in proportion to the inverse of their mass. A light body
+/// between two heavy bodies would move back and forth for hundreds of rounds; in later rounds both bodies are
+/// therefore shifted by the same distance.
 const WEIGHTED_ROUNDS: usize = 4;
 /// The shares of its step that a body keeps, tried in this order until there is room.
 const SHARES: [f32; 4] = [0.5, 0.25, 0.125, 0.0];
@@ -275,7 +276,7 @@ impl Bodies {
         Some((was.normal1, from.extent_m(&normal) + to.extent_m(&-normal)))
     }
 
-    /// Takes another part of its step from a free body. Returns whether there was a part left.
+    /// Reverts another part of the step of a free body. Returns whether a part was left.
     fn put_back(&mut self, collider: rapier::ColliderHandle, step: &mut Step) -> bool {
         let Some(body) = self.world.colliders[collider].parent() else { return false };
         let Some(before) = step.before.get(&body.into_raw_parts()) else { return false };
@@ -293,8 +294,8 @@ impl Bodies {
         self.world.bodies.propagate_modified_body_positions_to_colliders(&mut self.world.colliders);
     }
 
-    /// Slows down every changed body that moved less than its velocity says, to the velocity of its motion: the
-    /// body does not continue as if nothing had been in its way.
+    /// Reduces the velocity of every changed body that moved less than its velocity implies to the velocity of its
+    /// real motion, so that the body does not continue as if nothing had been in its way.
     fn slow_down(&mut self, step: &Step) {
         let dt = self.world.integration_parameters.dt;
         for &(index, generation) in step.changed.keys() {

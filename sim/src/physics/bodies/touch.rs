@@ -3,7 +3,8 @@ use crate::physics::report::Body;
 use nalgebra::Point2;
 use rapier2d::prelude as rapier;
 
-/// Bodies farther apart than this no longer touch, m. The distance of a lasting contact varies by less.
+/// Bodies that are farther apart than this do not touch any more, m. The distance of a lasting contact varies by
+/// less.
 const SEPARATE_M: f32 = 0.001;
 
 /// A contact of a robot.

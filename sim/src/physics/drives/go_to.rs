@@ -5,17 +5,18 @@ use crate::physics::spec::{DriveKind, DriveLimits};
 use interfaces::wrap_rad;
 use nalgebra::{Isometry2, Vector2};
 
-/// Within this distance and angle the robot has arrived, m and rad.
+/// The robot has arrived if it is within this distance and angle, m and rad.
 const ARRIVED_M: f64 = 0.01;
 const ARRIVED_RAD: f64 = 0.01;
-/// The same for a car, which cannot turn in place, m.
+/// A car, which cannot turn in place, has arrived within this distance, m.
 const CAR_ARRIVED_M: f64 = 0.05;
-/// A robot that can turn in place does so first where the goal is farther off its heading than this, rad.
+/// A robot that can turn in place does so first if the angle between its heading and the goal is larger than this,
+/// rad.
 const TURN_FIRST_RAD: f64 = 0.3;
-/// At the end the speed is in proportion to the remaining distance, 1/s: brakes alone would overshoot.
+/// At the end the speed is proportional to the remaining distance, 1/s: braking alone would overshoot.
 const SLOW_DOWN_PER_S: f64 = 3.0;
 
-/// The velocity to aim at, on the way from the pose `at` to the pose `goal`.
+/// The wanted velocity on the way from the pose `at` to the pose `goal`.
 pub(super) fn velocity(limits: &DriveLimits, at: &Isometry2<f64>, goal: &Isometry2<f64>) -> Velocity {
     let offset = at.inverse_transform_vector(&(goal.translation.vector - at.translation.vector));
     let distance_m = offset.norm();
@@ -53,7 +54,7 @@ pub(super) fn velocity(limits: &DriveLimits, at: &Isometry2<f64>, goal: &Isometr
     }
 }
 
-/// Pure pursuit (Coulter, 1992): along the circle through the goal; backwards if the goal lies behind.
+/// Pure pursuit (Coulter, 1992): along the circle through the goal; backward if the goal is behind the car.
 fn car(limits: &DriveLimits, offset: &Vector2<f64>, distance_m: f64, speed_mps: f64) -> Velocity {
     if distance_m < CAR_ARRIVED_M {
         return Velocity::STOP;
@@ -61,13 +62,13 @@ fn car(limits: &DriveLimits, offset: &Vector2<f64>, distance_m: f64, speed_mps: 
     let curvature_radpm = 2.0 * offset.y / (distance_m * distance_m);
     let forward_mps = speed_mps.copysign(offset.x);
     if curvature_radpm.abs() > limits.max_curvature_radpm() {
-        // The goal lies in a circle that the car cannot enter: away from the goal first.
+        // The goal is inside a circle that the car cannot enter: first drive away from the goal.
         return Velocity { forward_mps: -limits.max_linear_mps.copysign(offset.x), ..Velocity::STOP };
     }
     Velocity { forward_mps, left_mps: 0.0, turn_radps: forward_mps * curvature_radpm }
 }
 
-/// The highest speed from which the robot can stop within a distance, at half of the braking.
+/// The highest speed from which the robot can stop within a distance, with half of the maximum deceleration.
 fn stopping_speed(fastest: f64, braking: f64, distance: f64) -> f64 {
     fastest.min((braking * distance).sqrt()).min(SLOW_DOWN_PER_S * distance)
 }

@@ -1,4 +1,4 @@
-//! The drives of robots: the velocity of the next physics step under a command.
+//! The drives of robots: from a command to the velocity of the next physics step.
 
 mod go_to;
 
@@ -11,7 +11,7 @@ use nalgebra::Isometry2;
 /// value is well above the rounding of the physics.
 const HELD_BACK: f64 = 1e-4;
 
-/// The motors of a robot: they follow a command as fast as the limits allow.
+/// The motors of a robot. They follow a command as fast as the limits allow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Drive {
     limits: DriveLimits,
@@ -22,7 +22,7 @@ pub(super) struct Drive {
 }
 
 impl Drive {
-    /// Standing still.
+    /// A drive at rest.
     pub(super) fn new(limits: DriveLimits) -> Self {
         Self { limits, velocity: Velocity::STOP, is_stalled: false }
     }
@@ -32,8 +32,8 @@ impl Drive {
         vec![value(&mut self.velocity), value(&mut self.is_stalled)]
     }
 
-    /// The velocity of the next physics step under a command. `at` is the pose by odometry. A command that is
-    /// not a number stops the robot.
+    /// The velocity of the next physics step under a command. `at` is the pose by odometry. A command that contains
+    /// NaN stops the robot.
     pub(super) fn step(&mut self, command: &Command, at: &Isometry2<f64>, step_s: f64) -> Velocity {
         let (limits, now) = (&self.limits, self.velocity);
         let aim = match command {
@@ -71,8 +71,8 @@ impl Drive {
         self.velocity
     }
 
-    /// Takes over the velocity after contacts, so that a robot that a wall held has to accelerate again when
-    /// the wall no longer holds it.
+    /// Replaces the velocity by the velocity after contacts. A robot that was stopped by a wall must therefore
+    /// accelerate again when the wall no longer blocks it.
     pub(super) fn settle(&mut self, solved: &Velocity) -> Velocity {
         let settle = |own: &mut f64, solved: f64, fastest: f64| {
             let is_off = (*own - solved).abs() > HELD_BACK;

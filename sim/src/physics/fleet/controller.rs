@@ -2,15 +2,15 @@ use crate::physics::command::Command;
 use crate::physics::robot::RobotView;
 use interfaces::LaserReading;
 
-/// A controller of driven robots: any type, or a closure from a robot and the reading of its main laser to a
-/// velocity ([`interfaces::Twist`]) or any other [`Command`].
+/// A controller of driven robots: any type, or a closure that takes a robot and the reading of its main laser and
+/// returns a velocity ([`interfaces::Twist`]) or any other [`Command`].
 ///
-/// The fleet calls it at every scan of the main laser of a robot. `&mut ()` gives no commands: robots keep the
-/// command of [`Fleet::command`](super::Fleet::command).
+/// The fleet calls the controller at every scan of the main laser of a driven robot. The controller `&mut ()` gives
+/// no commands: the robots keep the command of [`Fleet::command`](super::Fleet::command).
 pub trait Controller {
-    /// The command from now on; `None`: the robot keeps its command. The readings of all other sensors are in
-    /// the view of the robot. A command that is not a number stops the robot; one beyond the bounds of the robot
-    /// is cut to them.
+    /// The new command; `None` if the robot keeps its command. The readings of all other sensors are in the view of
+    /// the robot. A command that contains NaN stops the robot; a command beyond the limits of the drive is limited
+    /// to them.
     fn drive(&mut self, robot: &RobotView<'_>, reading: &LaserReading) -> Option<Command>;
 }
 

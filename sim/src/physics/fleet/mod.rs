@@ -23,8 +23,8 @@ use nalgebra::{Point2, Vector2};
 
 /// A world with any number of robots.
 ///
-/// The same spec, seed and commands give the same bits, on every machine and any number of threads.
-/// A clone is a fork: it continues on its own, and in the same way under the same commands.
+/// The same spec, seed and commands give the same bits, on every machine and any number of threads. A clone is
+/// independent, and behaves in the same way under the same commands.
 #[derive(Clone)]
 pub struct Fleet {
     spec: FleetSpec,
@@ -47,8 +47,8 @@ pub struct Fleet {
 }
 
 impl Fleet {
-    /// The world of `spec` at its start. `seed` seeds all random streams: sensor noise, odometry noise, and the
-    /// decisions of robots and doors, each in a stream of its own.
+    /// The world of `spec` at its start. All random streams are seeded by `seed`: sensor noise, odometry noise, and
+    /// the decisions of robots and doors, each with a separate stream.
     pub fn new(spec: &FleetSpec, seed: u64) -> Self {
         let mut bodies = Bodies::new(spec);
         for (index, wall) in spec.walls.iter().enumerate() {
@@ -125,14 +125,14 @@ impl Fleet {
         &self.contacts
     }
 
-    /// Whether lasers measure on all threads of the pool of rayon, or only on this thread (the default). The
-    /// result is the same. It pays where a step takes at least about 0.1 ms.
+    /// Whether lasers measure on all threads of rayon's thread pool, or only on this thread (the default). The
+    /// result is the same. Threads save time if a step takes at least about 0.1 ms.
     pub fn set_parallel_lasers(&mut self, parallel: bool) {
         self.parallel_lasers = parallel;
     }
 
     /// Sets the command of a robot (by index), at any step and not only at a new scan. Returns whether the robot
-    /// obeys: a robot that is not driven does not.
+    /// executes commands: a robot that is not driven does not.
     pub fn command(&mut self, robot: usize, wanted: impl Into<Command>) -> bool {
         let driven = self.robots.get_mut(robot).filter(|robot| robot.is_driven());
         driven.map(|robot| robot.command(&wanted.into())).is_some()
@@ -148,7 +148,8 @@ impl Fleet {
         &self.robots[robot]
     }
 
-    /// Lets a robot measure now: with its main laser scanner, and with all other sensors that are due.
+    /// Measures with the sensors of a robot now: with its main laser scanner, and with all other sensors that are
+    /// due.
     pub(super) fn look(&mut self, robot: usize) -> &Robot {
         self.scene.sort();
         let (step, time_s, tagged) = (self.step, self.time_s(), self.tagged());

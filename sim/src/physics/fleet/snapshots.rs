@@ -1,11 +1,11 @@
-//! The state of a fleet: back to the start, to bytes, and from bytes.
+//! The state of a fleet: reset to the start, to bytes, and from bytes.
 
 use super::Fleet;
 use crate::physics::snapshot::{self, SnapshotError, Values, value};
 use crate::physics::spec::FleetSpec;
 
 impl Fleet {
-    /// Goes back to the start, with another seed or the same.
+    /// Resets the fleet to the start, with the same seed or another one.
     pub fn reset(&mut self, seed: u64) {
         let parallel_lasers = self.parallel_lasers;
         *self = Self::new(&self.spec, seed);

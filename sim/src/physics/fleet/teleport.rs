@@ -6,7 +6,7 @@ use crate::physics::shape::{Rectangle, TOUCH_M};
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Point2};
 
-/// Why a robot was not moved.
+/// The error for a robot that was not moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TeleportError {
     /// The index is too large.
@@ -17,26 +17,26 @@ pub enum TeleportError {
         /// The number of robots.
         robots: usize,
     },
-    /// The robot would reach out of the map, or a number is not finite.
+    /// A part of the robot would be outside of the map, or a number is not finite.
     #[error("[{x_m}, {y_m}] is not within the map")]
     Outside {
-        /// The requested position, m.
+        /// The x coordinate of the requested position, m.
         x_m: f64,
-        /// The requested position, m.
+        /// The y coordinate of the requested position, m.
         y_m: f64,
     },
     /// A wall, an obstacle or another robot is at the requested pose.
     #[error("at [{x_m:.3}, {y_m:.3}] there is something else")]
     Occupied {
-        /// The requested position, m.
+        /// The x coordinate of the requested position, m.
         x_m: f64,
-        /// The requested position, m.
+        /// The y coordinate of the requested position, m.
         y_m: f64,
     },
 }
 
 impl Fleet {
-    /// Puts a robot (by index) at `pose`, at rest. Its odometry is exact then, as at the start, and its sensors
+    /// Moves a robot (by index) to `pose`, at rest. The odometry is then exact, as at the start, and the sensors
     /// measure when they are due.
     ///
     /// # Errors

@@ -12,8 +12,8 @@ use crate::physics::shape::Rectangle;
 use rayon::prelude::*;
 
 impl Fleet {
-    /// Does one physics step. Robots with a scan due measure first, and decide; `controller` decides for driven
-    /// robots.
+    /// Simulates one physics step. Robots whose scan is due measure first, and decide; `controller` decides for
+    /// driven robots.
     pub fn step(&mut self, controller: &mut impl Controller) {
         self.contacts.clear();
         self.take_step(controller);
@@ -34,7 +34,7 @@ impl Fleet {
         self.update_obstacles(|_, _, _| ());
     }
 
-    /// Steps until the time is `time_s`.
+    /// Simulates steps until the time is `time_s`, s.
     pub fn run_until(&mut self, time_s: f64, controller: &mut impl Controller) {
         self.contacts.clear();
         // Half a microsecond of slack: times are multiples of the step.
@@ -43,7 +43,7 @@ impl Fleet {
         }
     }
 
-    /// Lets the robots for which `is_meant` holds measure with the sensors that are due, and decide.
+    /// Robots for which `is_meant` is true measure with the sensors that are due, and decide.
     pub(in crate::physics) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
         let (step, time_s) = (self.step, self.time_s());
         let is_due = |robot: &&mut Robot| robot.senses(step) && is_meant(robot);
@@ -134,7 +134,7 @@ impl Fleet {
         }
     }
 
-    /// Lets obstacles appear and disappear. Each time, `report` gets the index of the obstacle, whether it
+    /// Makes obstacles appear and disappear. Each time, `report` receives the index of the obstacle, whether it
     /// appeared, and the walls and obstacles that are present now.
     pub(in crate::physics) fn update_obstacles(&mut self, mut report: impl FnMut(usize, bool, &[Rectangle])) {
         let time_s = self.time_s();

@@ -31,7 +31,7 @@ pub(super) fn box_cells(frame: &GridFrame, shape: &Rectangle, mut visit: impl Fn
     });
 }
 
-/// The same for the body of a robot.
+/// Calls `visit` with the cells that the body of a robot overlaps, like [`box_cells`].
 pub(super) fn form_cells(frame: &GridFrame, form: &Form, visit: impl FnMut(usize, bool)) {
     match form {
         Form::Disc { center, radius_m } => disc_cells(frame, center, *radius_m, visit),
@@ -51,7 +51,7 @@ fn convex_cells(frame: &GridFrame, form: &Form, corners: &[Point2<f64>], mut vis
     });
 }
 
-/// The same for a disc.
+/// Calls `visit` with the cells that a disc overlaps, like [`box_cells`].
 fn disc_cells(frame: &GridFrame, center: &Point2<f64>, radius_m: f64, mut visit: impl FnMut(usize, bool)) {
     let half_cell_m = frame.resolution_m() / 2.0;
     let reach = Vector2::repeat(radius_m);

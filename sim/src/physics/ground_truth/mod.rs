@@ -15,18 +15,18 @@ use std::collections::BTreeMap;
 
 /// The ground truth of a physics world.
 ///
-/// The body of the driven robot covers no cell: the robot never sees itself, so no map could represent its
-/// body. Walls and obstacles may cover a cell together. A robot covers a cell only alone, since solids do not
-/// overlap and so leave a gap beside a round body.
+/// The body of the driven robot covers no cell: the robot never sees its own body, so that no map could represent
+/// it. Walls and obstacles can cover a cell together. A robot covers a cell only alone, since solid bodies do not
+/// overlap and leave a gap beside a round body.
 ///
-/// Every physics step updates the ground truth, at a cost in proportion to the number of cells under the bodies
-/// that moved.
+/// The ground truth is updated in every physics step. The computing time is proportional to the number of cells
+/// under the bodies that moved.
 #[derive(Clone, Debug)]
 pub struct PhysicsGroundTruth {
     frame: GridFrame,
     elapsed_s: f64,
     states: Vec<TrueState>,
-    /// The states that walls and present obstacles give the cells.
+    /// The states that follow from walls and present obstacles alone.
     fixed: Vec<TrueState>,
     /// The number of robots that overlap a cell, and the number of robots that cover all of the cell.
     overlapped: Vec<u16>,
@@ -35,7 +35,7 @@ pub struct PhysicsGroundTruth {
     armed: Vec<bool>,
     block_events: Vec<u32>,
     movers: Vec<Option<Body>>,
-    /// Cells that are connected with the start of the driven robot, past obstacles but not walls.
+    /// The cells that are connected with the start of the driven robot. Walls separate cells, obstacles do not.
     reachable: Vec<bool>,
     changes: Vec<TrueChange>,
 }
@@ -59,8 +59,8 @@ impl PhysicsGroundTruth {
         }
     }
 
-    /// The first moving thing that touched each cell, by index: another robot, or an obstacle that moves, appears
-    /// or disappears. `None` for static cells.
+    /// For each cell the first moving thing that touched it: another robot, or an obstacle that moves, appears or
+    /// disappears. `None` for static cells.
     pub fn movers(&self) -> &[Option<Body>] {
         &self.movers
     }
@@ -178,7 +178,8 @@ impl GroundTruth for PhysicsGroundTruth {
         }
     }
 
-    /// A cell that becomes blocked again without having been free in between was blocked once.
+    /// A cell that is blocked, becomes partly covered and is blocked again without being free in between counts as
+    /// blocked once.
     fn block_events(&self, index: usize) -> u32 {
         self.block_events[index]
     }
@@ -187,8 +188,8 @@ impl GroundTruth for PhysicsGroundTruth {
         self.movers[index].is_some()
     }
 
-    /// Obstacles first, then robots, each in the order of the world file. The cost is that of a look at
-    /// every cell.
+    /// Obstacles first, then robots, each in the order of the world file. The computing time is that of a pass over
+    /// all cells.
     fn moving_things(&self) -> Cow<'_, [Vec<usize>]> {
         let mut things: BTreeMap<Body, Vec<usize>> = BTreeMap::new();
         for (index, mover) in self.movers.iter().enumerate() {

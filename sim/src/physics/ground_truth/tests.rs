@@ -47,14 +47,14 @@ fn a_disc_that_passes_blocks_every_cell_once() {
     truth.move_robot(robot, None, &disc(at));
     truth.begin();
     assert_eq!(drawn(&truth)[1..5], ["+++..++.", "##+..++.", "##+..++.", "+++..++."]);
-    // A wobble that uncovers a cell in part is not an event.
+    // A motion that uncovers a cell only partly is not an event.
     for to in [0.11, 0.1, 0.18, 0.1, 0.35, 0.33, 0.35, 0.1] {
         let to = Point2::new(to, 0.3);
         truth.move_robot(robot, Some(&disc(at)), &disc(to));
         at = to;
     }
     let index = |x, y| truth.frame().index(Cell::new(x, y)).unwrap();
-    // It stood on the first cell, left it in part only, and came back.
+    // The robot was on the first cell, left it only partly, and returned.
     assert_eq!(truth.block_events(index(0, 3)), 1);
     assert_eq!(truth.block_events(index(3, 3)), 1);
     assert_eq!(truth.block_events(index(3, 4)), 0);

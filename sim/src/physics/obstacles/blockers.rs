@@ -2,18 +2,18 @@ use crate::physics::form::Form;
 use crate::physics::shape::Rectangle;
 use nalgebra::Point2;
 
-/// An obstacle may move to a pose if every body that moves is this far away, m: far enough that the physics engine
-/// pushes nothing apart.
+/// An obstacle may move to a pose if every other moving body is at least this far away, m: far enough that the
+/// physics engine does not push the bodies apart.
 const ROOM_M: f64 = 0.005;
 
-/// The bodies that an obstacle must not run into. The obstacle waits instead, so that it crushes nothing.
+/// The bodies that an obstacle must not hit. The obstacle waits instead, so that it does not crush anything.
 #[derive(Default)]
 pub(in crate::physics) struct Blockers {
     things: Vec<Thing>,
 }
 
 struct Thing {
-    /// Centre and radius of a circle around the body, m.
+    /// Center and radius of a circle around the body, m.
     center: Point2<f64>,
     radius_m: f64,
     form: Form,

@@ -8,9 +8,9 @@ const SLACK_S: f64 = 5e-7;
 /// The state of a door.
 #[derive(Clone, Deserialize, Serialize)]
 pub(super) struct Door {
-    /// How far the door is open: 0 closed, 1 open.
+    /// The openness of the door: 0 closed, 1 open.
     pub(super) openness: f64,
-    /// Of a door that opens at random: whether the door is to be open, and the time of the next change, s.
+    /// For a door that opens at random: whether it must be open now, and the time of the next change, s.
     is_to_open: bool,
     next_s: f64,
     random: RandomStream,
@@ -29,8 +29,8 @@ impl Door {
         door
     }
 
-    /// How far the door would be open after a step that ends at `time_s`. The direction changes at the exact
-    /// time of a change, also within the step.
+    /// The openness after a step that ends at `time_s`, if nothing is in the way. The direction of the motion
+    /// changes at the exact time of a change, also within the step.
     pub(super) fn next(&mut self, spec: &DoorSpec, time_s: f64, step_s: f64) -> f64 {
         let (mut openness, mut left_s) = (self.openness, step_s);
         while left_s > SLACK_S {
@@ -43,7 +43,8 @@ impl Door {
         openness
     }
 
-    /// Whether the door is to be open from a time on, and the time of the next change, s. Time never goes back.
+    /// Whether the door must be open from a time on, and the time of the next change, s. The time must not decrease
+    /// between calls.
     fn target(&mut self, spec: &DoorSpec, time_s: f64) -> (bool, f64) {
         let time_s = time_s + SLACK_S;
         match &spec.opening {
@@ -88,7 +89,7 @@ mod tests {
     use crate::physics::spec::Leaf;
     use nalgebra::Vector2;
 
-    /// How far a door that takes 2 s to open is open at some times, in steps of 0.05 s.
+    /// The openness of a door that needs 2 s to open, at some times, in steps of 0.05 s.
     fn opennesses(opening: Opening, starts_open: bool, times_s: &[f64]) -> Vec<f64> {
         let leaf = Leaf::Sliding { by_m: Vector2::x() };
         let spec = DoorSpec { leaf, opening, move_s: 2.0, starts_open };

@@ -69,7 +69,7 @@ impl Obstacle {
         matches!(self.state, State::Path(..) | State::Door(..))
     }
 
-    /// Starts the motion of the next physics step, which ends at `time_s`, if nothing is in the way.
+    /// Starts the motion in the next physics step, which ends at `time_s`, if nothing is in the way.
     pub(super) fn start_step(&mut self, time_s: f64, step_s: f64, bodies: &mut Bodies, blockers: &Blockers) {
         let mut go = |shape: &mut Rectangle, mover: &Mover, next: Rectangle| {
             let is_free = next == *shape || blockers.is_free(shape, &next);
@@ -96,7 +96,7 @@ impl Obstacle {
         }
     }
 
-    /// Takes over the pose of the body of a pushed obstacle after the step.
+    /// Stores the pose of the body of a pushed obstacle after the step.
     pub(super) fn end_step(&mut self, bodies: &mut Bodies) {
         if let State::Pushed(mover) = &self.state {
             self.shape.pose = bodies.pushed_pose(mover);
@@ -112,8 +112,9 @@ impl Obstacle {
         }
     }
 
-    /// Appears or disappears, if it is time: `Some(true)` or `Some(false)`. A body in the same place delays the
-    /// appearance. An obstacle whose place is not free before it would have to disappear never appears.
+    /// Makes the obstacle appear or disappear, if it is time: `Some(true)` or `Some(false)`. If a body is in the
+    /// same place, the appearance is delayed. An obstacle whose place is not free until its time to disappear never
+    /// appears.
     pub(super) fn update_presence(
         &mut self,
         index: usize,

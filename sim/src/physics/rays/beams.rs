@@ -163,7 +163,7 @@ impl<'a> Hits<'a> {
         self.beams.range_max_m
     }
 
-    /// Adds a round body with the centre `center` (m, in the frame of the laser). Its directions are less than
+    /// Adds a round body with the center `center` (m, in the frame of the laser). Its directions are less than
     /// `half_rad` away from `angle_rad`, and its inverse ranges are at most `nearest`.
     pub(super) fn add_disc(
         &mut self,

@@ -15,7 +15,7 @@ const SAFE: f32 = 1.0 + 1e-5;
 /// A round body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::physics) struct Disc {
-    /// The centre, m.
+    /// The center, m.
     pub(in crate::physics) center: Point2<f64>,
     /// The radius, m.
     pub(in crate::physics) radius_m: f64,
@@ -24,7 +24,7 @@ pub(in crate::physics) struct Disc {
 /// A disc within the range of a laser, in the frame of the laser.
 #[derive(Clone, Copy, Debug, Default)]
 struct Near {
-    /// The centre, m.
+    /// The center, m.
     center: Vector2<f64>,
     radius_m: f64,
     /// The power of the laser position: distance squared less radius squared, m²; positive.
@@ -35,11 +35,11 @@ struct Near {
 #[derive(Clone, Debug, Default)]
 pub(in crate::physics) struct Discs {
     near: Vec<Near>,
-    /// The following lists are approximate and of the same length. Centre and radius, m:
+    /// The following lists are approximate and of the same length. Center and radius, m:
     x: Vec<f32>,
     y: Vec<f32>,
     radius: Vec<f32>,
-    /// The direction of the centre, rad; the half width, at least the true one, rad; and one over the shortest
+    /// The direction of the center, rad; the half width, at least the true one, rad; and one over the shortest
     /// range, at least the true value, 1/m.
     angle: Vec<f32>,
     half: Vec<f32>,

@@ -1,10 +1,10 @@
 //! Ray casting: the ranges of all beams of a sensor, exact to the geometry.
 //!
-//! The usual method asks for every beam what the beam hits. Here every body asks which beams can hit the
-//! body, and only these are computed ([`beams`]): the cost is the number of bodies plus the number of beams
-//! that they cover, not the product. Walls are reduced to the [`edges`] that a ray can hit, and a potentially
-//! visible set ([`visibility`]) lists for every position the few of them that can be seen from there. What
-//! moves is sorted by position ([`polygons`], and round robots in [`scene`]).
+//! The usual method computes for every beam which bodies the beam hits. Here, for every body, the beams that can
+//! hit the body are determined, and only these are computed ([`beams`]). The computing time depends on the number
+//! of bodies plus the number of beams that they cover, not on the product. Walls are reduced to the [`edges`] that
+//! a ray can hit, and a potentially visible set ([`visibility`]) lists for every position the few edges that can be
+//! seen from there. Moving bodies are sorted by position ([`polygons`], and round robots in [`scene`]).
 
 mod beams;
 mod circles;

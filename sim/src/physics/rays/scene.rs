@@ -25,7 +25,7 @@ pub(in crate::physics) struct Scene {
     polygons: Polygons,
     /// The robots, by index.
     discs: Vec<Disc>,
-    /// The robots by the cell of their centre; at the end those beyond the borders.
+    /// The robots by the cell of their center; at the end those beyond the borders.
     sorted: IndexLists<(u32, Disc)>,
     is_sorted: bool,
 }
@@ -72,7 +72,7 @@ impl Scene {
         self.polygons.set(index, robot, corners);
     }
 
-    /// Sets the centre of a robot, m.
+    /// Sets the center of a robot, m.
     pub(in crate::physics) fn move_disc(&mut self, robot: usize, center: Point2<f64>) {
         self.discs[robot].center = center;
         self.is_sorted = false;

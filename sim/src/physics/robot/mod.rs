@@ -39,7 +39,7 @@ pub(super) struct Robot {
     command: Command,
     drive: Drive,
     odometry: Odometry,
-    /// `None`: the robot obeys commands.
+    /// `None` if the robot executes commands.
     behavior: Option<Behavior>,
     /// All sensors, the main laser scanner first.
     sensors: Vec<Sensor>,
@@ -91,7 +91,7 @@ impl Robot {
         values
     }
 
-    /// The centre, m.
+    /// The center, m.
     pub(super) fn at(&self) -> Point2<f64> {
         self.pose.translation.vector.into()
     }
@@ -124,12 +124,12 @@ impl Robot {
         }
     }
 
-    /// Sets the command.
+    /// Sets the command of the robot.
     pub(super) fn command(&mut self, command: &Command) {
         self.command = *command;
     }
 
-    /// Puts the robot at `pose`, at rest. Its odometry starts again there.
+    /// Moves the robot to `pose`, at rest. The odometry starts again there.
     pub(super) fn put(&mut self, pose: Isometry2<f64>) {
         self.pose = pose;
         self.previous_pose = pose;
@@ -149,7 +149,7 @@ impl Robot {
         self.sensors[0].measure(&platform, surroundings, scratch);
     }
 
-    /// Measures with all sensors that are due. A robot with a behavior decides what to do.
+    /// Measures with all sensors that are due. A robot with a behavior then decides its velocity.
     pub(super) fn think(&mut self, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
         self.sense(surroundings, scratch);
         if self.decides(surroundings.step)

@@ -3,11 +3,11 @@ use crate::physics::spec::{DriveKind, OdometryError, RobotSpec};
 use interfaces::{RandomStream, Twist, pose, wrap_rad};
 use nalgebra::{Isometry2, Vector2};
 
-/// The pose of a robot by its own measurements: its motion, added up since the start.
+/// The pose of a robot by odometry: the sum of its measured motions since the start.
 #[derive(Clone, Debug)]
 pub(super) struct Odometry {
     error: OdometryError,
-    /// Whether the wheels roll in every direction, not only forwards and backwards.
+    /// Whether the wheels roll in every direction, not only forward and backward.
     is_omni: bool,
     noise: RandomStream,
     pose: Isometry2<f64>,
@@ -67,7 +67,7 @@ impl Odometry {
         // A random walk: the variance grows with the distance, whatever the length of the steps.
         let slip_m = distance_noise_m * distance_m.sqrt() * self.noise.normal();
         let swerve_rad = turn_noise_rad * turn_rad.abs().sqrt() * self.noise.normal();
-        // Wheels slip in the direction in which they roll.
+        // Wheel slip acts in the direction in which the wheels roll.
         let along = if self.is_omni && distance_m > 0.0 { moved / distance_m } else { Vector2::x() };
         let measured = moved * (1.0 + distance_gain) + along * slip_m;
         let measured_turn_rad = turn_rad * (1.0 + turn_gain) + moved.x * turn_radpm + swerve_rad;

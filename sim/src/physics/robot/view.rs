@@ -5,23 +5,23 @@ use interfaces::{LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
 use std::fmt;
 
-/// What there is to show of a robot.
+/// The state of a robot, as controllers and viewers read it.
 #[derive(Clone, Copy)]
 pub struct RobotView<'a> {
     /// The index of the robot.
     pub index: usize,
     /// The name of the robot.
     pub name: &'a str,
-    /// The true pose.
+    /// The true pose, m and rad.
     pub pose: Isometry2<f64>,
-    /// The radius of the body, m. For a body with corners: the radius of the circle about its centre that
+    /// The radius of the body, m. For a body with corners: the radius of the circle about its center that
     /// contains the body.
     pub radius_m: f64,
-    /// The corners of the body in its own frame, counter-clockwise, m. None: the body is round.
+    /// The corners of the body in the frame of the robot, counter-clockwise, m. Empty if the body is round.
     pub corners: &'a [Point2<f64>],
-    /// Whether the robot obeys commands.
+    /// Whether the robot executes commands.
     pub is_driven: bool,
-    /// The true velocity.
+    /// The true velocity, m/s and rad/s.
     pub twist: Twist,
     /// The true velocity to the left, m/s: 0 except for an omni drive.
     pub left_mps: f64,
@@ -29,7 +29,7 @@ pub struct RobotView<'a> {
     pub is_stalled: bool,
     /// The bodies that the robot touches now.
     pub touching: &'a [Body],
-    /// The latest reading of the main laser scanner; `None`: the scanner has not measured yet.
+    /// The latest reading of the main laser scanner; `None` before the first measurement.
     pub reading: Option<&'a LaserReading>,
     robot: &'a Robot,
 }
@@ -64,7 +64,7 @@ impl<'a> RobotView<'a> {
         })
     }
 
-    /// Whether each bumper touches something now, from right to left.
+    /// For each bumper, from right to left, whether it touches something now.
     pub fn bumpers(&self) -> impl ExactSizeIterator<Item = bool> + use<> {
         let pressed = self.robot.pressed_bumpers;
         let sectors = self.robot.spec.bumper.map_or(0, |bumper| bumper.sectors);
@@ -82,7 +82,7 @@ impl fmt::Debug for RobotView<'_> {
 }
 
 impl Robot {
-    /// What there is to show of the robot.
+    /// The state of the robot, as controllers and viewers read it.
     pub(in crate::physics) fn view(&self) -> RobotView<'_> {
         RobotView {
             index: self.index,

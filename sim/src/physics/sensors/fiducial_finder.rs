@@ -13,13 +13,13 @@ const ON_SURFACE_M: f64 = 1e-6;
 /// A detected body with a tag.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Fiducial {
-    /// The tag.
+    /// The tag of the body.
     pub tag: u32,
-    /// The body.
+    /// The body that was detected.
     pub body: Body,
-    /// The direction of the centre of the body in the frame of the finder, counter-clockwise, rad.
+    /// The direction of the center of the body in the frame of the finder, counter-clockwise, rad.
     pub bearing_rad: f64,
-    /// The distance of the centre of the body, m.
+    /// The distance to the center of the body, m.
     pub range_m: f64,
 }
 
@@ -27,7 +27,7 @@ pub struct Fiducial {
 pub(in crate::physics) struct Tagged {
     pub(in crate::physics) tag: u32,
     pub(in crate::physics) body: Body,
-    /// The centre, m.
+    /// The center, m.
     pub(in crate::physics) center: Point2<f64>,
     pub(in crate::physics) form: Form,
 }
@@ -46,7 +46,7 @@ impl FiducialFinder {
         Self { spec: *spec, beam: Beams::new(0.0, 1.0, 1, spec.range_max_m), found: Vec::new() }
     }
 
-    /// Measures, unless there is a reading of this moment already. `scratch` is overwritten.
+    /// Measures, unless there is already a reading of this time. `scratch` is overwritten.
     pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
         let pose = platform.pose * self.spec.mount;
         self.found.clear();
@@ -57,7 +57,7 @@ impl FiducialFinder {
             if range_m > self.spec.range_max_m || bearing_rad.abs() > self.spec.fov_rad / 2.0 + 1e-12 {
                 continue;
             }
-            // The first body that the ray to the centre hits must be the body itself.
+            // The first body that the ray to the center hits must be the body itself.
             let ray = pose * Isometry2::from_parts(nalgebra::Translation2::identity(), rotation(bearing_rad));
             now.scene.cast(&self.beam, &ray, platform.robot, scratch);
             let first_m = 1.0 / scratch.inverse[0];

@@ -27,7 +27,7 @@ impl LaserScanner {
         }
     }
 
-    /// Measures, unless there is a reading of this moment already. `scratch` is overwritten.
+    /// Measures, unless there is already a reading of this time. `scratch` is overwritten.
     pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
         let LaserSpec { range_min_m, range_max_m, noise_std_m, dropout, mount, .. } = self.spec;
         let reading = self.reading.get_or_insert_with(|| LaserReading {
@@ -51,18 +51,19 @@ impl LaserScanner {
         let beams = ranges_m.iter_mut().zip(&scratch.inverse);
         if noise_std_m > 0.0 {
             for (range_m, inverse) in beams {
-                // One draw per beam, hit or not: what one beam meets never changes the noise of another.
+                // One draw per beam, whether or not the beam hits anything: the result of one beam never changes
+                // the noise of another.
                 *range_m = reported(1.0 / inverse + noise_std_m * self.noise.normal());
             }
         } else {
-            // A loop of its own, without a state: the compiler handles several beams at once.
+            // A separate loop without a state: the compiler processes several beams at once.
             for (range_m, inverse) in beams {
                 *range_m = reported(1.0 / inverse);
             }
         }
         if dropout > 0.0 {
             for range_m in ranges_m {
-                // REP-117: a missing measurement is not a number. One draw per beam, as above.
+                // REP-117: a missing measurement is NaN. One draw per beam, as above.
                 if self.dropout.bernoulli(dropout) {
                     *range_m = f32::NAN;
                 }

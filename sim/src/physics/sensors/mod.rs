@@ -1,7 +1,7 @@
 //! The sensors of a robot.
 //!
-//! Stepping, snapshots and views go through one list of sensors, [`Sensor::all`]. A new sensor is a file, a variant of
-//! [`Sensor`] and one of [`SensorReading`].
+//! Stepping, snapshots and views use one list of sensors, [`Sensor::all`]. To add a sensor: write a file, and add a
+//! variant to [`Sensor`] and one to [`SensorReading`].
 
 pub(super) mod bumper;
 mod fiducial_finder;
@@ -54,7 +54,7 @@ impl Sensor {
         })
     }
 
-    /// Measures, unless there is a reading of this moment already. `scratch` is overwritten.
+    /// Measures, unless there is already a reading of this time. `scratch` is overwritten.
     pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
         match self {
             Self::Laser(laser) => laser.measure(platform, now, scratch),
@@ -93,14 +93,14 @@ impl Sensor {
     }
 }
 
-/// The latest reading of a sensor; `None`: the sensor has not measured yet.
+/// The latest reading of a sensor; `None` before the first measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SensorReading<'a> {
-    /// Of a laser scanner. The pose is that of the odometry.
+    /// The reading of a laser scanner. The pose is the pose by odometry.
     Laser(Option<&'a LaserReading>),
-    /// Of a sonar.
+    /// The reading of a sonar.
     Sonar(Option<SonarReading>),
-    /// Of a fiducial finder: robots first, then obstacles, each in the order of the spec.
+    /// The bodies that a fiducial finder detected: robots first, then obstacles, each in the order of the spec.
     Fiducials(&'a [Fiducial]),
 }
 
@@ -115,7 +115,7 @@ pub(super) struct Platform {
     pub(super) odometry_twist: Twist,
 }
 
-/// What there is to measure at one moment.
+/// The surroundings of a robot at the time of a measurement.
 pub(super) struct Surroundings<'a> {
     /// The number of the physics step.
     pub(super) step: u64,

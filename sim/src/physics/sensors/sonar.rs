@@ -10,9 +10,9 @@ const BEAM_SPACING_RAD: f64 = std::f64::consts::PI / 360.0;
 /// The reading of a sonar.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct SonarReading {
-    /// The time, s.
+    /// The time of the measurement, s.
     pub time_s: f64,
-    /// The distance of the nearest surface in the cone, m; ±∞ as in a laser scan.
+    /// The distance of the nearest surface in the cone, m; −∞ too close, +∞ no surface in range.
     pub range_m: f32,
 }
 
@@ -38,7 +38,7 @@ impl Sonar {
         }
     }
 
-    /// Measures, unless there is a reading of this moment already. `scratch` is overwritten.
+    /// Measures, unless there is already a reading of this time. `scratch` is overwritten.
     pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
         let time_s = now.time_s;
         if self.reading.is_some_and(|reading| reading.time_s == time_s) {

@@ -6,11 +6,11 @@ use nalgebra::{Point2, UnitComplex};
 /// The behavior of a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BehaviorSpec {
-    /// Obeys commands.
+    /// Executes commands.
     Driven,
-    /// Stands still.
+    /// Does not move.
     Standing,
-    /// Drives a circle without regard to its sensors.
+    /// Drives in a circle and ignores its sensors.
     Circle(CircleSpec),
     /// Drives without a goal, and turns away from obstacles ahead.
     Wander(WanderSpec),
@@ -20,56 +20,56 @@ pub enum BehaviorSpec {
     WallPatrol(PatrolSpec),
 }
 
-/// A circle.
+/// Settings of a drive in a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CircleSpec {
-    /// The speed, m/s.
+    /// The linear speed, m/s.
     pub speed_mps: f64,
-    /// The turn, counter-clockwise, rad/s.
+    /// The angular velocity, counter-clockwise, rad/s.
     pub turn_radps: f64,
 }
 
-/// Driving without a goal.
+/// Settings of a drive without a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WanderSpec {
-    /// The speed while nothing is ahead, m/s.
+    /// The linear speed while nothing is ahead, m/s.
     pub speed_mps: f64,
     /// The free space that the robot keeps ahead, m.
     pub clearance_m: f64,
 }
 
-/// Driving from point to point.
+/// Settings of a drive from point to point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaypointsSpec {
     /// The points, at least one, m.
     pub points: Vec<Point2<f64>>,
-    /// The speed on the legs, m/s.
+    /// The linear speed on the legs, m/s.
     pub speed_mps: f64,
-    /// The continuation after the last point.
+    /// How the robot continues after the last point.
     pub repeat: Repeat,
     /// The free space that the robot keeps to an obstacle ahead, m.
     pub clearance_m: f64,
 }
 
-/// The continuation after the last waypoint.
+/// How the robot continues after the last waypoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Repeat {
-    /// The first waypoint.
+    /// The robot continues with the first waypoint.
     Loop,
-    /// The waypoints in reverse order.
+    /// The robot drives to the waypoints in reverse order.
     BackAndForth,
-    /// None: the robot stands still.
+    /// The robot stops.
     Once,
 }
 
-/// Driving along a wall, back and forth (paper, section 5).
+/// Settings of a patrol along a wall, back and forth (paper, section 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatrolSpec {
     /// One end of the path of the center of the robot, m.
     pub from: Point2<f64>,
-    /// The other end, m.
+    /// The other end of the path of the center of the robot, m.
     pub to: Point2<f64>,
-    /// The speed on the legs, m/s.
+    /// The linear speed on the legs, m/s.
     pub speed_mps: f64,
     /// Whether the wall is on the left from `from` to `to`.
     pub wall_on_left: bool,
@@ -80,7 +80,7 @@ pub struct PatrolSpec {
 }
 
 impl PatrolSpec {
-    /// The least distance between the wall and the body of the robot, m.
+    /// The minimum distance between the wall and the body of the robot, m.
     pub const WALL_RELIEF_M: f64 = 0.05;
 }
 

@@ -1,7 +1,7 @@
-//! What a physics world is made of: plain values in SI units.
+//! The specification of a physics world: plain values in SI units.
 //!
-//! Every field says its unit and its valid range. [`super::Fleet`] and [`super::PhysicsWorld`] take a spec as
-//! it is: they check no ranges. The crate `worldfile` makes specs from texts, and checks them.
+//! The documentation of every field has its unit and its valid range. [`super::Fleet`] and [`super::PhysicsWorld`]
+//! do not check the ranges of a spec. The crate `worldfile` makes specs from texts, and checks them.
 
 mod behavior;
 mod obstacle;
@@ -17,14 +17,14 @@ use super::shape::{Rectangle, turned};
 use interfaces::{GridFrame, rotation};
 use nalgebra::Point2;
 
-/// A world with any number of robots.
+/// The specification of a world with any number of robots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FleetSpec {
     /// The name of the world.
     pub name: String,
-    /// What the world shows, in a sentence or two; can be empty.
+    /// What the world is for, in one or two sentences; can be empty.
     pub description: String,
-    /// The cells of the ground truth. They cover everything.
+    /// The grid of the ground truth. It covers the whole world.
     pub frame: GridFrame,
     /// The physics step, s; 0.001 to 0.1.
     pub step_s: f64,
@@ -32,12 +32,12 @@ pub struct FleetSpec {
     pub walls: Vec<Rectangle>,
     /// The obstacles: boxes, moving blocks and doors.
     pub obstacles: Vec<ObstacleSpec>,
-    /// The robots. At the start no two of them overlap, and none overlaps a wall or an obstacle.
+    /// The robots. At the start no robot overlaps another robot, a wall or an obstacle.
     pub robots: Vec<RobotSpec>,
 }
 
 impl FleetSpec {
-    /// Turns everything but the frame by `turn_rad` (counter-clockwise) about `center` (m).
+    /// Rotates everything except the frame by `turn_rad` (counter-clockwise) about `center` (m).
     pub fn turn(&mut self, turn_rad: f64, center: &Point2<f64>) {
         if turn_rad == 0.0 {
             return;
@@ -55,21 +55,21 @@ impl FleetSpec {
         }
     }
 
-    /// The indices of the robots that obey commands.
+    /// The indices of the robots that execute commands.
     pub fn driven_robots(&self) -> impl Iterator<Item = usize> {
         let is_driven = |(_, robot): &(usize, &RobotSpec)| robot.behavior == BehaviorSpec::Driven;
         self.robots.iter().enumerate().filter(is_driven).map(|(index, _)| index)
     }
 }
 
-/// A world in which exactly one robot is driven: the one that explores.
+/// The specification of a world in which exactly one robot is driven: the robot that explores.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldSpec {
     fleet: FleetSpec,
     driven: usize,
 }
 
-/// Why a fleet is no world of one driven robot.
+/// The error for a fleet that does not have exactly one driven robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DrivenError {
     /// No robot is driven.
@@ -99,7 +99,7 @@ impl WorldSpec {
         }
     }
 
-    /// The world of `fleet` with the robot of index `driven` driven, whatever its behavior is there; other
+    /// The world of `fleet` in which the robot with the index `driven` is driven, whatever its behavior was; other
     /// driven robots stand still. `None` if there is no such robot.
     pub fn driving(mut fleet: FleetSpec, driven: usize) -> Option<Self> {
         for robot in fleet.robots.iter_mut().filter(|robot| robot.behavior == BehaviorSpec::Driven) {

@@ -6,17 +6,17 @@ use nalgebra::{Point2, UnitComplex, Vector2};
 /// A box, a moving block or a door.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObstacleSpec {
-    /// The name.
+    /// The name of the obstacle.
     pub name: String,
-    /// The shape at the start; of a door: the leaf while closed.
+    /// The shape at the start; for a door, the shape of the closed leaf.
     pub shape: Rectangle,
-    /// The motion.
+    /// The motion of the obstacle.
     pub motion: Motion,
-    /// The tag that fiducial finders detect.
+    /// The tag that fiducial finders detect; `None` if they do not detect the obstacle.
     pub tag: Option<u32>,
-    /// When the obstacle appears, s; `None`: it is present from the start.
+    /// The time at which the obstacle appears, s; `None` if it is present from the start.
     pub appears_s: Option<f64>,
-    /// When the obstacle disappears, s; `None`: never.
+    /// The time at which the obstacle disappears, s; `None` if it never disappears.
     pub disappears_s: Option<f64>,
 }
 
@@ -26,7 +26,7 @@ impl ObstacleSpec {
         self.appears_s.is_some() || self.disappears_s.is_some() || self.motion != Motion::Fixed
     }
 
-    /// The shape at the start, a door open or closed.
+    /// The shape at the start; for a door, open or closed.
     pub fn start(&self) -> Rectangle {
         match &self.motion {
             Motion::Door(door) => door.shape(&self.shape, f64::from(u8::from(door.starts_open))),
@@ -53,17 +53,17 @@ impl ObstacleSpec {
 /// The motion of an obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// None.
+    /// The obstacle does not move.
     Fixed,
-    /// Robots push the obstacle.
+    /// Robots can push the obstacle.
     Pushed(PushedSpec),
-    /// Along a path in time.
+    /// The obstacle moves along a path, at given times.
     Path(PathSpec),
-    /// Opens and closes.
+    /// The obstacle is a door: it opens and closes.
     Door(DoorSpec),
 }
 
-/// A box that can be pushed.
+/// Settings of a box that can be pushed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PushedSpec {
     /// The mass, kg.
@@ -72,17 +72,19 @@ pub struct PushedSpec {
     pub friction: f64,
 }
 
-/// A path in time. A block waits while a body is in the way; the rest of the path is delayed by the wait.
+/// A path with times. The block waits while a body is in the way; the rest of the path is then delayed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathSpec {
-    /// Times and positions of the center (s and m), in order, the first at 0; linear in between.
+    /// Times (s) and positions of the center (m), in ascending order, the first time is 0; linear interpolation in
+    /// between.
     pub keys: Vec<(f64, Point2<f64>)>,
-    /// Whether the path begins again at the last time (the last position is then the first), or ends there.
+    /// Whether the path begins again at the last time (the last position is then the first one), or the block stops
+    /// there.
     pub is_loop: bool,
 }
 
 impl PathSpec {
-    /// The position of the center (m) at a time of the path (s).
+    /// The position of the center (m) at a time on the path (s).
     pub(in crate::physics) fn at(&self, time_s: f64) -> Point2<f64> {
         let (end_s, last) = self.keys[self.keys.len() - 1];
         let time_s = if self.is_loop { time_s % end_s } else { time_s };
@@ -95,14 +97,14 @@ impl PathSpec {
     }
 }
 
-/// A door. It waits while a body is in the way of its leaf.
+/// Settings of a door. The door waits while a body is in the way of its leaf.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DoorSpec {
     /// The motion of the leaf.
     pub leaf: Leaf,
-    /// The times of opening and closing.
+    /// When the door opens and closes.
     pub opening: Opening,
-    /// The time from closed to open, s.
+    /// The duration of the motion from closed to open, s.
     pub move_s: f64,
     /// Whether the door is open at the start.
     pub starts_open: bool,
@@ -123,40 +125,40 @@ impl DoorSpec {
 /// The motion of the leaf of a door.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Leaf {
-    /// Rotates.
+    /// The leaf rotates.
     Hinged {
         /// The position of the hinge, m.
         hinge: Point2<f64>,
         /// The angle when open, counter-clockwise, rad.
         open_rad: f64,
     },
-    /// Slides.
+    /// The leaf slides.
     Sliding {
         /// The displacement when open, m.
         by_m: Vector2<f64>,
     },
 }
 
-/// When a door opens and closes. A change is the time at which the leaf begins to move.
+/// When a door opens and closes. The time of a change is the time at which the leaf begins to move.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Opening {
-    /// Periodically.
+    /// The door opens and closes periodically.
     Periodic {
-        /// From the change to closed until the change to open, s.
+        /// The time from the beginning of closing to the beginning of opening, s.
         closed_s: f64,
-        /// From the change to open until the change to closed, s.
+        /// The time from the beginning of opening to the beginning of closing, s.
         open_s: f64,
     },
-    /// At random: exponentially distributed times.
+    /// The door opens and closes at random: the times are exponentially distributed.
     Random {
-        /// The mean time from the change to closed until the change to open, s.
+        /// The mean time from the beginning of closing to the beginning of opening, s.
         closed_s: f64,
-        /// The mean time from the change to open until the change to closed, s.
+        /// The mean time from the beginning of opening to the beginning of closing, s.
         open_s: f64,
     },
-    /// At given times, alternately.
+    /// The door opens and closes alternately at given times.
     Scripted {
-        /// The times in order, s.
+        /// The times of the changes, in ascending order, s.
         switches_s: Vec<f64>,
     },
 }

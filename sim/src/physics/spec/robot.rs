@@ -9,39 +9,40 @@ use std::f64::consts::{PI, TAU};
 /// A robot with wheels and lasers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotSpec {
-    /// The name.
+    /// The name of the robot.
     pub name: String,
-    /// The radius of the body, m; with corners: of the circle about the center that contains the body.
+    /// The radius of the body, m. For a body with corners: the radius of the circle about the center that contains
+    /// the body.
     pub radius_m: f64,
-    /// The corners of the body in the frame of the robot, convex, counter-clockwise, m; none: the body is round.
+    /// The corners of the body in the frame of the robot, convex, counter-clockwise, m. Empty if the body is round.
     pub corners: Vec<Point2<f64>>,
-    /// The mass, kg; `None`: 1 kg per m² of the circle.
+    /// The mass, kg; `None` means 1 kg per m² of the circle with `radius_m`.
     pub mass_kg: Option<f64>,
-    /// The pose at the start.
+    /// The pose at the start, m and rad.
     pub pose: Isometry2<f64>,
-    /// The drive.
+    /// The kind and the limits of the drive.
     pub drive: DriveLimits,
     /// The errors of the odometry.
     pub odometry: OdometryError,
-    /// The main laser scanner, by which behaviors and controllers decide.
+    /// The main laser scanner. Behaviors and controllers decide at its scans.
     pub laser: LaserSpec,
     /// The other laser scanners.
     pub more_lasers: Vec<LaserSpec>,
-    /// The ring of bumpers.
+    /// The ring of bumpers; `None` if there is none.
     pub bumper: Option<BumperSpec>,
     /// The sonars and infrared sensors.
     pub sonars: Vec<SonarSpec>,
-    /// The fiducial finder.
+    /// The fiducial finder; `None` if there is none.
     pub fiducial: Option<FiducialSpec>,
-    /// The tag that fiducial finders of other robots detect.
+    /// The tag that fiducial finders of other robots detect; `None` if they do not detect the robot.
     pub tag: Option<u32>,
-    /// The behavior.
+    /// The behavior of the robot.
     pub behavior: BehaviorSpec,
 }
 
 impl RobotSpec {
-    /// A round robot of 0.2 m on two wheels: up to 0.5 m/s and 120 °/s, exact odometry, a laser of 360 beams and
-    /// 10 m at 10 Hz in a world of physics steps of 0.05 s, and no other sensors.
+    /// A round robot with a radius of 0.2 m and two driven wheels: up to 0.5 m/s and 120 °/s, exact odometry, one
+    /// laser with 360 beams and a range of 10 m at 10 Hz (for physics steps of 0.05 s), and no other sensors.
     pub fn new(name: &str, pose: Isometry2<f64>, behavior: BehaviorSpec) -> Self {
         Self {
             name: name.to_owned(),
@@ -91,16 +92,16 @@ impl RobotSpec {
 /// The kind of a drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DriveKind {
-    /// Two driven wheels: turns in place.
+    /// Two driven wheels. The robot can turn in place.
     Differential,
-    /// Drives in every direction and turns at the same time.
+    /// The robot can drive in every direction and turn at the same time.
     Omni {
         /// The maximum speed to either side, m/s.
         max_left_mps: f64,
         /// The maximum acceleration to either side, m/s².
         max_left_acceleration_mps2: f64,
     },
-    /// Steered front wheels (Ackermann); the center of the robot is that of the rear axle.
+    /// Steered front wheels (Ackermann); the center of the robot is the center of the rear axle.
     Car {
         /// The distance between the axles, m.
         wheelbase_m: f64,
@@ -109,16 +110,16 @@ pub enum DriveKind {
     },
 }
 
-/// The limits of a drive, which hold at every physics step. All positive.
+/// The limits of a drive, which hold in every physics step. All values are positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveLimits {
     /// The kind of the drive.
     pub kind: DriveKind,
-    /// The maximum speed forwards and backwards, m/s.
+    /// The maximum linear speed forward and backward, m/s.
     pub max_linear_mps: f64,
-    /// The maximum turn rate, rad/s.
+    /// The maximum angular speed, rad/s.
     pub max_angular_radps: f64,
-    /// The maximum acceleration and deceleration, m/s².
+    /// The maximum linear acceleration and deceleration, m/s².
     pub max_linear_acceleration_mps2: f64,
     /// The maximum angular acceleration and deceleration, rad/s².
     pub max_angular_acceleration_radps2: f64,
@@ -133,8 +134,8 @@ impl DriveLimits {
         }
     }
 
-    /// The maximum curvature, rad/m. That of a car is limited by the steering angle, and so that braking in the curve
-    /// exceeds no limit of acceleration.
+    /// The maximum curvature, rad/m. For a car, the curvature is limited by the maximum steering angle, and by the
+    /// condition that braking in the curve exceeds no limit of acceleration.
     pub fn max_curvature_radpm(&self) -> f64 {
         match self.kind {
             DriveKind::Differential | DriveKind::Omni { .. } => f64::INFINITY,
@@ -144,14 +145,14 @@ impl DriveLimits {
     }
 }
 
-/// The errors of odometry; all zero is exact.
+/// The errors of odometry. With all values 0 the odometry is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OdometryError {
-    /// Error of the distance per metre travelled.
+    /// Error of the distance per meter traveled.
     pub distance_gain: f64,
     /// Error of the heading per radian turned.
     pub turn_gain: f64,
-    /// Error of the heading per metre travelled, rad/m.
+    /// Error of the heading per meter traveled, rad/m.
     pub turn_radpm: f64,
     /// Standard deviation of the distance after 1 m, m; it grows with the square root of the distance.
     pub distance_noise_m: f64,
@@ -166,30 +167,30 @@ pub struct LaserSpec {
     pub beams: usize,
     /// The field of view, rad, in (0, 2π].
     pub fov_rad: f64,
-    /// Below this range a beam gives −∞, m.
+    /// The minimum range, m: a beam with a shorter range gives −∞.
     pub range_min_m: f64,
-    /// Beyond this range a beam gives +∞, m.
+    /// The maximum range, m: a beam with a longer range gives +∞.
     pub range_max_m: f64,
     /// Scans per second, Hz.
     pub rate_hz: f64,
-    /// The physics steps from one scan to the next; at least 1.
+    /// The number of physics steps from one scan to the next; at least 1.
     pub period_steps: u64,
-    /// The pose in the frame of the robot.
+    /// The pose of the laser in the frame of the robot, m and rad.
     pub mount: Isometry2<f64>,
-    /// Standard deviation of a range, m.
+    /// The standard deviation of the range noise, m.
     pub noise_std_m: f64,
-    /// The share of ranges that are missing (not a number), at random.
+    /// The probability that a range is missing (NaN), from 0 to 1.
     pub dropout: f64,
 }
 
 impl LaserSpec {
-    /// The direction of the first beam in the laser's frame, rad.
+    /// The direction of the first beam in the frame of the laser, rad.
     pub fn angle_min_rad(&self) -> f64 {
         if self.is_full_turn() { -PI } else { -self.fov_rad / 2.0 }
     }
 
     /// The angle between neighboring beams, rad. In a full turn the last beam is a neighbor of the first; in a
-    /// narrower view, the first and the last beam lie on the borders.
+    /// narrower field of view, the first and the last beam are on its borders.
     pub fn angle_increment_rad(&self) -> f64 {
         let gaps = if self.is_full_turn() { self.beams } else { self.beams - 1 };
         self.fov_rad / gaps as f64

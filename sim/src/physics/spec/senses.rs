@@ -7,7 +7,7 @@ use nalgebra::Isometry2;
 pub struct BumperSpec {
     /// The number of bumpers, at most 64, from right to left.
     pub sectors: usize,
-    /// The angle that they share, symmetrical to straight ahead, rad, in (0, 2π].
+    /// The angle that all bumpers cover together, symmetrical to straight ahead, rad, in (0, 2π].
     pub fov_rad: f64,
 }
 
@@ -16,15 +16,15 @@ pub struct BumperSpec {
 pub struct SonarSpec {
     /// The angle of the cone, rad.
     pub cone_rad: f64,
-    /// A shorter range is reported as −∞, m.
+    /// The minimum range, m: a shorter range is reported as −∞.
     pub range_min_m: f64,
-    /// A longer range is reported as +∞, m.
+    /// The maximum range, m: a longer range is reported as +∞.
     pub range_max_m: f64,
-    /// The physics steps from one measurement to the next; at least 1.
+    /// The number of physics steps from one measurement to the next; at least 1.
     pub period_steps: u64,
-    /// The pose in the frame of the robot.
+    /// The pose of the sensor in the frame of the robot, m and rad.
     pub mount: Isometry2<f64>,
-    /// Standard deviation of a range, m.
+    /// The standard deviation of the range noise, m.
     pub noise_std_m: f64,
 }
 
@@ -33,10 +33,10 @@ pub struct SonarSpec {
 pub struct FiducialSpec {
     /// The field of view, symmetrical to straight ahead, rad, in (0, 2π].
     pub fov_rad: f64,
-    /// The largest distance to the center of a body, m.
+    /// The maximum distance to the center of a body, m.
     pub range_max_m: f64,
-    /// The physics steps from one measurement to the next; at least 1.
+    /// The number of physics steps from one measurement to the next; at least 1.
     pub period_steps: u64,
-    /// The pose in the frame of the robot.
+    /// The pose of the sensor in the frame of the robot, m and rad.
     pub mount: Isometry2<f64>,
 }

@@ -1,4 +1,4 @@
-//! Our rays against rapier's.
+//! The rays of this crate compared with rapier's rays.
 
 use super::oracle::{self, Place, Tally, uniform};
 use super::*;
@@ -9,7 +9,7 @@ use nalgebra::{Point2, Vector2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
-/// A cluttered house, turned, with boxes at odd angles and several robots.
+/// A cluttered, rotated house with boxes at odd angles and several robots.
 fn cluttered() -> FleetSpec {
     let boxes = [(3.3, 4.1, 0.4, 0.7, 33.0), (8.0, 2.0, 1.5, 0.02, -71.0), (9.0, 8.7, 0.3, 0.3, 45.0)];
     let mut spec = four_rooms();
@@ -20,7 +20,7 @@ fn cluttered() -> FleetSpec {
         ObstacleSpec { name, shape, motion, tag: None, appears_s: None, disappears_s: None }
     }));
     spec.turn(10.0_f64.to_radians(), &Point2::new(6.0, 6.0));
-    // As large as the turned house.
+    // As large as the rotated house.
     let side_m = 12.0 * (libm::cos(10.0_f64.to_radians()) + libm::sin(10.0_f64.to_radians()));
     let low = Point2::new(6.0, 6.0) - Vector2::repeat(side_m / 2.0);
     spec.frame = GridFrame::covering(low, side_m, side_m, 0.05).unwrap();
@@ -42,11 +42,11 @@ fn a_million_beams_agree_with_rapier() {
             place.compare(&laser, &pose(at.x, at.y, heading), 0, &mut tally);
         }
     }
-    // Every grazing beam was looked at above; a change of their number is a change of the rays.
+    // Every grazing beam was inspected; if their number changes, the rays have changed.
     assert_eq!((tally.beams, tally.grazing), (1_000_080, 19), "of them grazing");
 }
 
-/// Houses side by side with many robots: what the cells hide must be hidden.
+/// Houses side by side with many robots: bodies that the cells hide must really be hidden.
 #[test]
 fn beams_agree_with_rapier_among_many_houses() {
     let mut stream = ChaCha8Rng::seed_from_u64(3);
@@ -79,7 +79,7 @@ fn beams_agree_with_rapier_among_many_houses() {
     assert!(tally.grazing < tally.beams / 10_000, "{tally:?}");
 }
 
-/// Doors, blocks and boxes on the move, again and again.
+/// Doors, blocks and boxes in motion, repeatedly.
 #[test]
 fn moving_bodies_are_seen_at_their_poses() {
     let spec = busy();
@@ -120,7 +120,7 @@ fn narrow_lasers_see_the_same() {
     }
 }
 
-/// A narrow view with things behind it: what lies there is in none of its beams.
+/// A narrow field of view with bodies behind it: none of its beams may show these bodies.
 #[test]
 fn nothing_is_seen_behind_a_narrow_laser() {
     let place = Place::of(Fleet::new(&crowd(), 0));

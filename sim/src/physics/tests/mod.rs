@@ -1,4 +1,5 @@
-//! Our rays against two oracles. Tests of worlds as a whole are in the crate `worldfile`, where worlds are texts.
+//! The rays of this crate compared with two references. Tests of whole worlds are in the crate `worldfile`, where
+//! worlds are texts.
 
 mod caster;
 mod energy;

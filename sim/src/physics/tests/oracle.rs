@@ -1,4 +1,4 @@
-//! Two oracles for our rays: a slab or a root per thing and beam, and rapier's rays.
+//! Two references for the rays of this crate: a slab or a root per body and beam, and rapier's rays.
 
 use super::*;
 use crate::physics::bodies::Bodies;
@@ -10,10 +10,10 @@ use nalgebra::{Isometry2, Point2, Vector2};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
-/// A beam whose target does not survive a turn of this much is grazing, rad.
+/// A beam is grazing if a rotation by this angle changes the body that it hits, rad.
 const GRAZE_RAD: f64 = 1e-6;
 
-/// The range to the nearest thing, m, by a slab or a root per thing and beam: slow and simple.
+/// The range to the nearest body, m, by a slab or a root per body and beam: slow and simple.
 fn brute_force_m(
     from: &Point2<f64>,
     along: &Vector2<f64>,
@@ -36,12 +36,12 @@ fn brute_force_m(
     disc_m.fold(box_m.min(side_m), f64::min)
 }
 
-/// A place with what is in it, for our rays and for both oracles.
+/// A place with its bodies, for the rays of this crate and for both references.
 pub(super) struct Place {
     pub(super) spec: FleetSpec,
     scene: Scene,
     bodies: Bodies,
-    /// Walls, and whatever else is there.
+    /// Walls and other rectangles.
     boxes: Vec<Rectangle>,
     discs: Vec<(Point2<f64>, f64)>,
     /// The robots that are not round, with their corners.
@@ -62,12 +62,12 @@ pub(super) fn scan(spec: &LaserSpec, at: &Isometry2<f64>, scene: &Scene, own: us
     }
 }
 
-/// What became of the beams that were compared.
+/// The results for the beams that were compared.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
     pub(super) beams: usize,
-    /// Those whose target a turn of ±[`GRAZE_RAD`] changes. Each was as one of these three turns
-    /// has it.
+    /// The beams whose target changes with a rotation by ±[`GRAZE_RAD`]. The range of each agreed with one of these
+    /// three rotations.
     pub(super) grazing: usize,
 }
 
@@ -80,7 +80,7 @@ impl Place {
         let mut discs = Vec::new();
         for (i, robot) in spec.robots.iter().enumerate() {
             bodies.add_robot(robot, spec.step_s);
-            // As rapier has it, so that both see the same.
+            // As rapier computes it, so that both have the same value.
             discs.push((bodies.pose(i).translation.vector.into(), f64::from(robot.radius_m as f32)));
         }
         bodies.step();
@@ -115,7 +115,7 @@ impl Place {
         Self { spec, scene, bodies, boxes, discs, cornered }
     }
 
-    /// Whether a laser there is outside of everything.
+    /// Whether a laser at this position is outside of all bodies.
     pub(super) fn is_free(&self, at: &Point2<f64>, own: usize) -> bool {
         let mut others = self.discs.iter().enumerate().filter(|(i, _)| *i != own);
         self.boxes.iter().all(|shape| shape.distance_m(at) > 1e-3)
@@ -123,7 +123,7 @@ impl Place {
             && others.all(|(_, (center, radius_m))| (center - at).norm() > radius_m + 1e-3)
     }
 
-    /// Holds a scan from `at` on robot `own` against both oracles.
+    /// Compares a scan from `at` on robot `own` with both references.
     pub(super) fn compare(&self, spec: &LaserSpec, at: &Isometry2<f64>, own: usize, tally: &mut Tally) {
         let scan = scan(spec, at, &self.scene, own);
         let from = Point2::from(at.translation.vector);
@@ -140,7 +140,7 @@ impl Place {
             let exact =
                 |turn_rad: f64| brute_force_m(&from, &direction(turn_rad), &self.boxes, &sides, &others);
             let [low, range, high] = [-GRAZE_RAD, 0.0, GRAZE_RAD].map(exact);
-            // Where the target stays the same, so does the range, within what a turn can shift it.
+            // If the target stays the same, the range stays the same, within the effect of the rotation.
             if (low - range).abs() > 1e-3 || (high - range).abs() > 1e-3 || (range - max_m).abs() < 1e-3 {
                 tally.grazing += 1;
                 let near = [low, range, high]
@@ -168,7 +168,7 @@ impl Place {
     }
 }
 
-/// A number in a range, the same for everyone.
+/// A number in a range, the same on every machine.
 pub(super) fn uniform(stream: &mut ChaCha8Rng, range: std::ops::Range<f64>) -> f64 {
     range.start + (range.end - range.start) * (stream.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
 }

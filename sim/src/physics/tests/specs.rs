@@ -47,7 +47,7 @@ fn house(robots: Vec<RobotSpec>, obstacles: Vec<ObstacleSpec>) -> FleetSpec {
     }
 }
 
-/// The four rooms with the driven robot and the dummy, which stands here.
+/// The four rooms with the driven robot and the dummy robot, which stands still here.
 pub(super) fn four_rooms() -> FleetSpec {
     let curious = RobotSpec::new("curious", pose(2.0, 2.0, 0.0), BehaviorSpec::Driven);
     let dummy = RobotSpec::new("dummy", pose(7.2, 11.5, 0.0), BehaviorSpec::Standing);
@@ -89,7 +89,7 @@ pub(super) fn heap() -> FleetSpec {
     house(vec![RobotSpec { mass_kg: Some(20.0), ..driver }], boxes.collect())
 }
 
-/// A block that goes round and round over these points at 0.7 m/s.
+/// A block that moves repeatedly along these points at 0.7 m/s.
 fn block(size_m: [f64; 2], points: &[[f64; 2]]) -> ObstacleSpec {
     let points: Vec<Point2<f64>> = points.iter().map(|point| Point2::from(*point)).collect();
     let mut keys = vec![(0.0, points[0])];
@@ -143,7 +143,7 @@ pub(super) fn busy() -> FleetSpec {
     house(places.map(robot).to_vec(), things)
 }
 
-/// Robots that look at nothing and drive in wild curves.
+/// Robots that ignore their sensors and drive in wild curves.
 pub(super) fn reckless(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
     let phase = reading.time_s * (0.3 + 0.1 * robot.index as f64);
     Twist { linear_mps: 0.5 * libm::cos(phase * 0.7), angular_radps: 1.5 * libm::sin(phase) }

@@ -1,5 +1,7 @@
-//! The entities of a recording: their appearance, which is logged once, and the items that they have in a
-//! view of the run.
+//! The entities of a recording: their constant style, which is logged once, and the items of each view of the run.
+//!
+//! To add an entity: write a function that logs the style with `Tracks::always` and calls `Tracks::add`, and add a
+//! line to [`start`].
 
 mod curves;
 mod field_of_view;
@@ -29,7 +31,7 @@ pub(super) const WORLD: &str = "/world";
 /// The messages of the run.
 pub(super) const LOG: &str = "/log";
 
-/// The entities so far, and what they are made from.
+/// The entities so far, and the data from which they are made.
 struct Tracks<'a> {
     stream: &'a RecordingStream,
     scene: &'a Scene,
@@ -38,7 +40,8 @@ struct Tracks<'a> {
     tracks: Vec<Box<dyn Track>>,
 }
 
-/// Logs the appearance of everything, and returns what changes. `view` is the first view of the run.
+/// Logs the constant style of all entities, and returns the entities that change. `view` is the first view of the
+/// run.
 pub(super) fn start(
     stream: &RecordingStream,
     scene: &Scene,
@@ -66,7 +69,7 @@ impl Tracks<'_> {
         (Kind::State, self.scene.unit.choose(seconds, steps * frame.len().div_ceil(STEP_CELLS) as f64))
     }
 
-    /// Logs what never changes.
+    /// Logs components that never change.
     fn always(&self, path: &str, components: &impl AsComponents) -> RecordingStreamResult<()> {
         self.stream.log_static(path, components)
     }
@@ -111,7 +114,7 @@ fn messages(tracks: &mut Tracks) {
     });
 }
 
-/// What is drawn over what, from the bottom up.
+/// The drawing order, from the lowest to the highest layer.
 mod order {
     pub(super) const MAP: f32 = -10.0;
     pub(super) const FIELD_OF_VIEW: f32 = -9.0;

@@ -1,4 +1,4 @@
-//! What is said of a file that is wrong.
+//! The messages for invalid files.
 
 use super::*;
 

@@ -8,7 +8,7 @@ use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{BehaviorSpec, CircleSpec, DriveKind, DriveLimits, Repeat, WanderSpec, WaypointsSpec};
 
-/// What follows the last waypoint.
+/// The continuation after the last waypoint.
 pub(super) const REPEATS: [(&str, Repeat); 3] =
     [("loop", Repeat::Loop), ("back_and_forth", Repeat::BackAndForth), ("once", Repeat::Once)];
 
@@ -29,7 +29,7 @@ const KINDS: [(&str, &str, &str); 6] = [
 pub(super) struct Driver<'a> {
     pub(super) robot: &'a Table<'a>,
     pub(super) name: &'a str,
-    /// The radius of the circle that holds the robot, m, and its start. No path is judged if they are invalid.
+    /// The radius of the circle around the robot and its start, m. Paths are not checked if these are invalid.
     pub(super) start: Option<(f64, Point2<f64>)>,
     pub(super) drive: &'a DriveLimits,
     pub(super) space: &'a Space,
@@ -57,7 +57,7 @@ impl Driver<'_> {
             let what = format!("a robot that is `{kind}` has no `{key}`");
             table.error::<()>(&what, (span, "not for this robot"), &[], &help)
         });
-        // Where such a key stands, the kind may be what is invalid: nothing else is judged by it.
+        // If such a key is given, the kind itself may be the mistake: nothing else is checked by the kind.
         if foreign.count() > 0 {
             return None;
         }
@@ -75,7 +75,7 @@ impl Driver<'_> {
         table.sound(behavior)
     }
 
-    /// Notes a key that is missing although this kind of behavior needs it.
+    /// Records an error if a key is missing that this kind of behavior needs.
     fn needs(&self, table: &Table<'_>, key: &'static str) -> Option<()> {
         if table.has(key) {
             return Some(());
@@ -130,7 +130,7 @@ impl Driver<'_> {
         Some(BehaviorSpec::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m }))
     }
 
-    /// The path from the start to all points leads past everything.
+    /// Checks that the path from the start through all points is free.
     fn is_path_free(&self, table: &Table<'_>, points: &[Point2<f64>], repeat: Repeat) -> Option<()> {
         /// Kept free beside the path, m.
         const BESIDE_M: f64 = 0.05;

@@ -111,7 +111,7 @@ impl Obstacle<'_> {
         Some(keys)
     }
 
-    /// In one step it moves no farther than what the physics keeps apart.
+    /// Whether the speed is low enough: the motion in one step must not be longer than the physics can handle.
     fn is_slow_enough(&self, speed_mps: f64, span: Range<usize>) -> Option<()> {
         let fastest_mps = FASTEST_MPS.min(self.fastest_mps());
         if speed_mps <= fastest_mps {
@@ -177,7 +177,7 @@ fn dwelling(points: &[Point2<f64>], speed_mps: f64, dwell_s: f64, repeat: Repeat
     keys
 }
 
-/// What a rectangle sweeps on a straight way: a convex body of at most six corners.
+/// The area that a rectangle sweeps along a straight line: a convex body of at most six corners.
 fn swept(shape: &Rectangle, way: &Vector2<f64>) -> Vec<Point2<f64>> {
     let corners = shape.corners();
     let mut hull = Vec::new();

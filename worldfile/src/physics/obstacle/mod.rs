@@ -74,7 +74,7 @@ pub(super) fn obstacle(table: &Table<'_>, space: &Space) -> Option<ObstacleSpec>
 }
 
 impl Obstacle<'_> {
-    /// Notes an error about the obstacle as a whole.
+    /// Records an error about the obstacle as a whole.
     fn error<T>(&self, what: &str, help: &str) -> Option<T> {
         self.table.error(what, (self.table.at("name"), "this one"), &[], help)
     }

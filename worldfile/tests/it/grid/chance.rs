@@ -1,6 +1,6 @@
 use super::*;
 
-/// Pearson's statistic for counts against expected ones.
+/// Pearson's statistic of observed against expected counts.
 fn chi_square(counts: &[(f64, f64)]) -> f64 {
     counts.iter().map(|(found, expected)| (found - expected).powi(2) / expected).sum()
 }
@@ -16,7 +16,7 @@ fn a_block_that_is_due_moves_with_its_chance() {
         world.act(&Step::Stay);
         let cell = world.blocks().next().unwrap().1;
         if cell != before {
-            // The dwell, and a number of tries that failed.
+            // The dwell, and the number of failed attempts.
             let wait: usize = step - since - 3;
             waits[wait.min(7)] += 1.0;
             moves += 1.0;
@@ -44,7 +44,7 @@ fn an_action_happens_with_its_chance() {
         pairs += f64::from(u8::from(moved && moved_before));
         moved_before = moved;
     }
-    // 1 in 1000 is above 10.8. Whether one happens says nothing of the next.
+    // 1 in 1000 is above 10.8. Whether one move happens must not depend on the one before.
     assert!(chi_square(&[(moves, 60_000.0), (100_000.0 - moves, 40_000.0)]) < 10.8, "{moves}");
     assert!((pairs / 100_000.0 - 0.36).abs() < 4.0 * 0.0021, "{pairs}");
 }
@@ -82,7 +82,7 @@ fn blocks_have_chances_of_their_own() {
     };
     let both = run(&spec(&[line("one", 1), line("two", 3)]));
     assert!(both.iter().any(|columns| columns[0] != columns[1]));
-    // Another block draws from another stream.
+    // Another block uses another random stream.
     let one = run(&spec(&[line("one", 1)]));
     assert!(both.iter().zip(&one).all(|(both, one)| both[0] == one[0]));
 }

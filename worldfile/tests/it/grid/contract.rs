@@ -60,7 +60,7 @@ fn looking_changes_nothing() {
     assert_eq!(one.sense(), two.sense());
 }
 
-/// What the robot sees is what is there: in the map, in reach, each once.
+/// The robot observes the true states of cells in the map and within range, each cell once.
 #[test]
 fn readings_are_true() {
     for spec in shipped().chain([GridSpec::generate(&GenerateSettings::default(), 9).with_sensor_radius(12)])

@@ -1,6 +1,6 @@
 use super::*;
 
-/// FNV-1a over 64 bits: what it gives never changes.
+/// FNV-1a with 64 bits: a fixed hash function.
 struct Hash(u64);
 
 impl Hash {
@@ -11,7 +11,7 @@ impl Hash {
     }
 }
 
-/// All that is sensed, and the truth in the end, over 2000 steps.
+/// A hash of all readings over 2000 steps, and of the ground truth at the end.
 fn hash(spec: &GridSpec) -> String {
     let mut world = GridWorld::new(spec, 1);
     let mut hash = Hash(0xcbf2_9ce4_8422_2325);
@@ -32,7 +32,7 @@ fn hash(spec: &GridSpec) -> String {
     format!("{:016x}", hash.0)
 }
 
-/// The same on every machine, and as long as nobody means to change it.
+/// The same on every machine, until it is changed on purpose.
 #[test]
 fn shipped_worlds_run_as_they_always_did() {
     let mut hashes = String::new();

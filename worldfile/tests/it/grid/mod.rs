@@ -1,4 +1,4 @@
-//! The grid world as a whole.
+//! Tests of the grid world as a whole.
 
 mod chance;
 mod contract;
@@ -31,9 +31,9 @@ fn block(name: &str, dwell: u32, course: &str, path: &str) -> String {
     format!("[[block]]\nname = \"{name}\"\ndwell = {dwell}\ncourse = \"{course}\"\npath = {path}\n")
 }
 
-/// A way of so many steps that depends on nothing but its number.
+/// A sequence of this number of steps that depends only on its number.
 fn way(number: u64) -> impl Iterator<Item = Step> {
-    // Knuth's MMIX generator; its high bits are good enough to wander about.
+    // Knuth's MMIX generator; its high bits are good enough for a random walk.
     let mut state = number;
     std::iter::from_fn(move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

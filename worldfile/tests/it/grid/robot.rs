@@ -1,6 +1,6 @@
 use super::*;
 
-/// Where the robot is after each step.
+/// The cell of the robot after each step.
 fn walk(world: &mut GridWorld, steps: &[Step]) -> Vec<(i32, i32)> {
     let mut cells = Vec::new();
     for step in steps {

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Where the blocks are from the start on, while the robot stays: the columns, a digit per step.
+/// The positions of the blocks from the start on, while the robot stays: the columns, one digit per step.
 fn columns(spec: &GridSpec, steps: usize) -> Vec<String> {
     let mut world = GridWorld::new(spec, 0);
     let mut columns = vec![String::new(); spec.blocks.len()];
@@ -37,7 +37,7 @@ fn two_cells_are_a_path() {
 
 #[test]
 fn a_loop_goes_round() {
-    // Either way to say it: ending beside the first cell, or on it.
+    // Both notations: the path ends beside the first cell, or on it.
     for path in ["[[1, 0], [3, 0], [3, 1], [1, 1]]", "[[1, 0], [3, 0], [3, 1], [1, 1], [1, 0]]"] {
         let spec = spec("....R\n.....\n.....", &block("b", 2, "loop", path));
         let mut world = GridWorld::new(&spec, 0);
@@ -65,7 +65,7 @@ fn a_block_waits_for_the_robot_and_then_stands_for_its_dwell_again() {
     let spec = spec("###\n...\n.R.", &block("b", 2, "back-and-forth", "[[0, 1], [2, 1]]"));
     let mut world = GridWorld::new(&spec, 0);
     let mut columns = String::new();
-    // In its way from the first step to the fifth, and due from the second on.
+    // The robot is in the way from the first step to the fifth; the block is due from the second step on.
     let steps = [Step::Up, Step::Stay, Step::Stay, Step::Stay, Step::Stay, Step::Down];
     for step in steps.into_iter().chain([Step::Stay; 4]) {
         world.act(&step);
@@ -81,14 +81,14 @@ fn blocks_wait_for_each_other() {
         block("right", 1, "back-and-forth", "[[0, 0], [5, 0]]"),
         block("left", 1, "back-and-forth", "[[5, 0], [2, 0]]"),
     ];
-    // Face to face for good: neither turns before the end of its path. They meet at 2 and 3: at the
-    // third step the first one goes ahead, as the file has it first, and finds 3 taken.
+    // The blocks face each other forever: neither turns before the end of its path. They meet at 2 and 3: in the
+    // third step the block that comes first in the file moves first, and finds 3 occupied.
     assert_eq!(columns(&corridor(&blocks), 8), ["01222222", "54333333"]);
     let odd = [
         block("right", 1, "back-and-forth", "[[0, 0], [5, 0]]"),
         block("left", 1, "back-and-forth", "[[4, 0], [2, 0]]"),
     ];
-    // Both want 2: the first in the file gets it. The other one waits at 3.
+    // Both blocks move to 2: the one that comes first in the file gets there. The other one waits at 3.
     assert_eq!(columns(&corridor(&odd), 8), ["01222222", "43333333"]);
 }
 
@@ -98,7 +98,7 @@ fn a_block_may_enter_what_an_earlier_one_leaves() {
     let behind = block("behind", 2, "back-and-forth", "[[0, 0], [7, 0]]");
     let first_moves_first = corridor(&[ahead.clone(), behind.clone()]);
     assert_eq!(columns(&first_moves_first, 7), ["1122334", "0011223"]);
-    // The other way round, the one behind finds the cell taken at first, and comes a step later.
+    // In the other order, the block behind finds the cell occupied at first, and follows one step later.
     assert_eq!(columns(&corridor(&[behind, ahead]), 7), ["0001122", "1122334"]);
 }
 

@@ -2,7 +2,7 @@ use super::*;
 use interfaces::TrueChange;
 use proptest::prelude::*;
 
-/// The truth from outside: walls, and where the blocks are now.
+/// The ground truth, computed independently: walls, and the present positions of the blocks.
 fn blocked(world: &GridWorld) -> Vec<bool> {
     let mut blocked = world.spec().walls.clone();
     for (_, cell) in world.blocks() {
@@ -44,7 +44,7 @@ fn free_cells_and_the_sides_of_blocked_ones_can_be_seen() {
     --------
     --------
     ");
-    // The wall on the right of the block has lost its last free neighbour, and the block's old cell
+    // The wall on the right of the block has lost its last free neighbor, and the block's old cell
     // is free.
     world.act(&Step::Stay);
     insta::assert_snapshot!(can_be_seen(&world), @r"
@@ -122,15 +122,15 @@ fn things_are_the_cells_of_paths() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Every figure is what one counts who looks at the world after every step.
+    /// Every value equals the one that is counted by observing the world after every step.
     #[test]
     fn counts_are_those_of_a_recount(seed in 0..10_000_u64, chance in 0.2..1.3_f64, narrow: bool) {
-        // In a narrow map blocks and robot are in each other's way.
+        // In a narrow map, blocks and robot block each other.
         let side = if narrow { [9, 10] } else { [15, 25] };
         let settings = GenerateSettings { width: side, height: side, dwell: [1, 8], ..GenerateSettings::default() };
         let mut spec = GridSpec::generate(&settings, seed).with_probabilities(chance, chance);
         if narrow {
-            // Every block once more the other way: they meet.
+            // Every block a second time in the opposite direction: they meet.
             let mut more = spec.blocks.to_vec();
             more.iter_mut().for_each(|block| {
                 block.path.reverse();

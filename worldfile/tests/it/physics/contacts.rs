@@ -3,7 +3,7 @@ use nalgebra::Point2;
 
 const AHEAD: Twist = Twist { linear_mps: 9.0, angular_radps: 0.0 };
 
-/// How deep the driven robot is in a wall, m.
+/// The depth by which the driven robot penetrates a wall, m.
 fn depth_m(world: &PhysicsWorld) -> f64 {
     let at = Point2::from(world.true_pose().translation.vector);
     let gap = world.spec().walls.iter().map(|wall| wall.distance_m(&at)).fold(f64::INFINITY, f64::min);
@@ -59,7 +59,7 @@ fn bounds_hold_at_every_reading_whatever_the_command() {
         });
     }
     assert_eq!(world.contacts(), []);
-    // The last command was not a number: the robot stands.
+    // The last command contained NaN: the robot stands still.
     assert_eq!(before, Twist::STOP);
 }
 
@@ -67,7 +67,7 @@ fn bounds_hold_at_every_reading_whatever_the_command() {
 fn a_circle_is_a_circle() {
     let mut world = PhysicsWorld::new(&four_rooms(), 0);
     let twist = Twist { linear_mps: 0.5, angular_radps: 0.5 };
-    // Up to speed first; then once around.
+    // First accelerate to full speed, then drive one full circle.
     drive(&mut world, twist, 1.0, |_| ());
     let start = *world.true_pose();
     let middle = start * Point2::new(0.0, 1.0);
@@ -80,7 +80,7 @@ fn a_circle_is_a_circle() {
 
 #[test]
 fn being_run_into_is_no_collision_of_ones_own() {
-    // A dummy that sees no farther than its own skin.
+    // A dummy robot that sees no farther than its own surface.
     let blind =
         [("range_max_m = 5.0", "range_max_m = 0.15"), ("pose_m = [2.0, 2.0]", "pose_m = [8.5, 11.5]")];
     let mut world = PhysicsWorld::new(&four_rooms_but(&blind, ""), 0);

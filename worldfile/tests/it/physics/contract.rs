@@ -89,7 +89,7 @@ fn exact_odometry_is_the_truth_and_drifting_odometry_drifts() {
     let reading = drifting.sense();
     assert_eq!(drifting.true_pose(), exact.true_pose());
     assert!((reading.twist.linear_mps - 0.55).abs() < 1e-5);
-    // Both started at heading 0, and were up to speed within the first step.
+    // Both robots started with heading 0, and reached full speed within the first step.
     let felt_rad = interfaces::heading_rad(&reading.pose);
     assert!(interfaces::wrap_rad(felt_rad - 1.05 * 0.5 * 10.0).abs() < 1e-3, "{felt_rad}");
 }
@@ -105,14 +105,14 @@ fn the_three_worlds_that_ship_can_be_run() {
         assert!(!spec.name.is_empty() && !spec.description.is_empty(), "{name}");
         let readings = run(&spec, 0, 20);
         assert_eq!(readings[20].scan.ranges_m.len(), beams);
-        // The laser covers the room: what it cannot see lies behind doors.
+        // The laser covers the room: cells that it cannot see are behind doors.
         let seen = readings[20].scan.ranges_m.iter().filter(|range| range.is_finite()).count();
         assert!(seen > beams * 9 / 10, "{name}: {seen}");
     }
 }
 
-/// A minute of the noisy four rooms, bit by bit. A change of this number is a change of the
-/// world: it must be meant.
+/// A minute of the four rooms with noise, bit by bit. If this number changes, the world has changed: this must be
+/// intended.
 #[test]
 fn golden_hash() {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64; // FNV-1a

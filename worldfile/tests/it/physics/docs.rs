@@ -1,4 +1,4 @@
-//! What is said of the code is true of the code.
+//! The documentation agrees with the code.
 
 #[test]
 fn every_line_that_hello_explains_is_in_hello() {

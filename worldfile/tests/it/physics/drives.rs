@@ -1,11 +1,11 @@
-//! Drives of every kind, and what they are told.
+//! Drives of every kind, and their commands.
 
 use super::fleet::{house, robot};
 use super::*;
 use interfaces::{LaserReading, pose, wrap_rad};
 use nalgebra::Isometry2;
 
-/// A controller that always says the same.
+/// A controller that always gives the same command.
 struct Say(Command);
 
 impl Controller for Say {
@@ -133,7 +133,7 @@ fn a_car_drives_the_circle_of_its_wheels() {
         let off_m: f64 = (now(&fleet).0.translation.vector - middle.coords).norm() - radius_m;
         assert!(off_m.abs() < 2e-3, "{off_m}");
     }
-    // It cannot turn in place.
+    // This robot cannot turn in place.
     let mut fleet = alone("kind = \"car\"\nwheelbase_m = 0.4");
     fleet.run_until(2.0, &mut Say(Command::Velocity(Velocity { turn_radps: 1.0, ..Velocity::STOP })));
     assert!((now(&fleet).0.rotation.angle()).abs() < 1e-9);
@@ -172,18 +172,18 @@ fn lasers_look_each_at_its_rate_and_from_its_place() {
     assert_eq!(times.iter().map(Vec::len).collect::<Vec<_>>(), [20, 40, 4]);
     let robot = fleet.robots().next().unwrap();
     let readings: Vec<&LaserReading> = robot.lasers().flatten().collect();
-    // Of four beams over a full turn the third looks straight ahead: to the left of the robot.
+    // Of four beams over a full turn, the third points straight ahead: to the left of the robot.
     let ranges_m = &readings[1].scan.ranges_m;
     assert!(((readings[1].pose * readings[1].mount).translation.x - 3.1).abs() < 1e-6);
     let main = &readings[0].scan.ranges_m;
     assert!((main[45 + 22] - ranges_m[2]).abs() < 0.2, "{main:?} {ranges_m:?}");
     let missing = readings[2].scan.ranges_m.iter().filter(|range_m| range_m.is_nan()).count();
     assert!((5..30).contains(&missing), "{missing}");
-    // The other lasers change nothing that the first one sees.
+    // The other lasers do not change the readings of the first one.
     let mut alone = Fleet::new(&with(laser), 7);
     alone.run_until(2.0, &mut Say(Command::STOP));
     assert_eq!(alone.robots().next().unwrap().reading, robot.reading);
-    // And a snapshot knows them all.
+    // A snapshot contains them all, too.
     let snapshot = fleet.snapshot();
     let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();
     for fleet in [&mut fleet, &mut again] {

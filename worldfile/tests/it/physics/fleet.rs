@@ -1,4 +1,4 @@
-//! Many robots, each with a behaviour of its own.
+//! Many robots, each with its own behavior.
 
 use super::*;
 use interfaces::LaserReading;
@@ -31,7 +31,7 @@ pub(super) fn crowd() -> FleetSpec {
     house(&robots.collect::<Vec<_>>(), "")
 }
 
-/// No robot obeys commands.
+/// No robot executes commands.
 pub(super) fn nobody(robot: &RobotView<'_>, _: &LaserReading) -> Twist {
     panic!("robot {} is not driven", robot.name)
 }
@@ -44,7 +44,7 @@ fn at(fleet: &Fleet, robot: usize) -> Point2<f64> {
     pose(fleet, robot).translation.vector.into()
 }
 
-/// Every bit of where the robots are and what they see.
+/// A hash of every bit of the poses and the readings of the robots.
 pub(super) fn hash(fleet: &Fleet) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64; // FNV-1a
     let mut eat = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
@@ -57,8 +57,8 @@ pub(super) fn hash(fleet: &Fleet) -> u64 {
     hash
 }
 
-/// Half a minute of a crowd, bit by bit. A change of this number is a change of the robots, the
-/// rays or the physics: it must be meant.
+/// Half a minute of many robots, bit by bit. If this number changes, the robots, the rays or the physics have
+/// changed: this must be intended.
 #[test]
 fn golden_hash_on_any_number_of_threads() {
     let run = |threads: usize| {
@@ -99,7 +99,7 @@ fn a_crowd_keeps_moving_and_stays_apart_and_in_its_house() {
             assert!(others.fold(f64::MAX, f64::min) > 0.399, "robot {i} is in another");
         }
     }
-    // The way they could have gone is 24 m.
+    // The distance that they could have driven is 24 m.
     let mean_m = driven_m.iter().sum::<f64>() / driven_m.len() as f64;
     assert!(mean_m > 10.0, "they mostly stand: {driven_m:?}");
     assert!(driven_m.iter().all(|&way_m| way_m > 2.0), "{driven_m:?}");
@@ -135,7 +135,7 @@ fn a_circle_is_driven_and_standing_is_not_moving() {
     }
 }
 
-/// The points of a way that the robot was near to, in order.
+/// The points of a path that the robot came near to, in order.
 fn visits(fleet: &mut Fleet, points: &[[f64; 2]], seconds: f64) -> Vec<usize> {
     let mut visits = Vec::new();
     let end_s = fleet.time_s() + seconds;
@@ -235,7 +235,7 @@ fn a_robot_against_a_wall_is_stalled_and_one_that_stands_is_not() {
     }
     let stalled: Vec<bool> = fleet.robots().map(|robot| robot.is_stalled).collect();
     assert_eq!(stalled, [true, false]);
-    // It weighs π·0.04 kg, and was at full speed.
+    // The mass is π·0.04 kg, and the robot was at full speed.
     let impulse_ns = contacts[0].impulse_ns;
     assert!((impulse_ns - 0.5 * 0.04 * std::f64::consts::PI).abs() < 1e-3, "{impulse_ns}");
     let touched: Vec<_> =
@@ -245,7 +245,7 @@ fn a_robot_against_a_wall_is_stalled_and_one_that_stands_is_not() {
 
 #[test]
 fn a_heavy_robot_pushes_a_light_one_away() {
-    // Both go for each other.
+    // Both robots drive toward each other.
     let driven = "kind = \"driven\"";
     let mass = |robot: String, mass_kg: f64| {
         robot.replace("radius_m = 0.2", &format!("radius_m = 0.2\nmass_kg = {mass_kg:?}"))

@@ -1,4 +1,4 @@
-//! Walls from pictures, and the worlds that are made of them.
+//! Walls from pictures, and worlds with such walls.
 
 use super::*;
 use nalgebra::Point2;
@@ -77,7 +77,7 @@ fn lasers_see_the_pixels() {
             seen.clone_from(&reading.scan.ranges_m);
             Twist::STOP
         });
-        // Back, right, ahead (the pillar), left: metres from [1.125, 1.625].
+        // Back, right, ahead (the pillar), left: meters from [1.125, 1.625].
         let expected = [0.375, 0.375, 0.625, 0.625];
         assert!(seen.iter().zip(expected).all(|(range, right)| (range - right).abs() < 1e-5), "{seen:?}");
     }
@@ -118,13 +118,12 @@ fn bad_plans_have_their_place() {
     );
 }
 
-/// The worlds beside this crate: each can be read, and its robots drive without getting stuck or
-/// lost.
+/// The worlds beside this crate: each can be read, and its robots drive without getting stuck or lost.
 #[test]
 fn the_worlds_of_this_crate_run() {
     for name in ["cave", "house", "office", "warehouse", "yard"] {
         let path = PathBuf::from(FOLDER).join(format!("{name}.toml"));
-        // One robot is driven, so that the curious one can live there.
+        // One robot is driven, so that the curious robot can explore the world.
         let spec = worldfile::physics::load_world(&path).unwrap_or_else(|error| panic!("{error}"));
         let mut fleet = Fleet::new(spec.fleet(), 3);
         let starts: Vec<_> = fleet.robots().map(|robot| robot.pose).collect();

@@ -1,4 +1,4 @@
-//! Robots that are not round, and what they touch.
+//! Robots that are not round, and their contacts.
 
 use super::fleet::{house, robot};
 use super::*;
@@ -6,7 +6,7 @@ use interfaces::GroundTruth;
 use interfaces::LaserReading;
 use nalgebra::Point2;
 
-/// A robot of 0.6 × 0.3 m at [3, 3], whose middle is 0.1 m behind that of its outline.
+/// A robot of 0.6 × 0.3 m at [3, 3]; its center is 0.1 m behind the center of its outline.
 fn long(heading_deg: f64) -> String {
     let outline = "footprint_m = [[-0.2, -0.15], [0.4, -0.15], [0.4, 0.15], [-0.2, 0.15]]\nmass_kg = 5.0";
     robot("long", [3.0, 3.0], heading_deg, "kind = \"driven\"").replace("radius_m = 0.2", outline)
@@ -44,7 +44,7 @@ fn its_corners_stay_out_of_walls_and_it_says_where_it_touches() {
             contacts.extend_from_slice(fleet.contacts());
             for corner in corners(&fleet) {
                 let depth_m = spec.walls.iter().map(|wall| depth_m(wall, &corner)).fold(f64::MIN, f64::max);
-                // 11 mm were the most when this was written; of round robots it is less than 1 mm.
+                // The maximum was 11 mm when this test was written; for round robots it is less than 1 mm.
                 assert!(depth_m < 0.02, "{depth_m} m at {} s", fleet.time_s());
             }
             if let Some(contact) = fleet.contacts().first() {
@@ -57,7 +57,7 @@ fn its_corners_stay_out_of_walls_and_it_says_where_it_touches() {
     }
 }
 
-/// How deep a point lies in a box, m.
+/// The depth of a point inside of a box, m.
 fn depth_m(shape: &Rectangle, point: &Point2<f64>) -> f64 {
     let local = shape.pose.inverse_transform_point(point);
     (shape.half_m.x - local.x.abs()).min(shape.half_m.y - local.y.abs())

@@ -1,10 +1,10 @@
-//! Whoever is in the way of each other is parted, and goes on.
+//! Bodies that are in each other's way are separated, and continue.
 
 use super::things::pushed;
 use super::*;
 use interfaces::LaserReading;
 
-/// A hall of 20 m × 4 m, and what is in it.
+/// A hall of 20 m × 4 m, with further parts.
 fn hall(step_s: f64, things: &str) -> Fleet {
     let text = format!(
         "name = \"hall\"\n[map]\nsize_m = [20.0, 4.0]\ncell_m = 0.1\n[physics]\nstep_s = {step_s:?}\n{things}"
@@ -15,7 +15,7 @@ fn hall(step_s: f64, things: &str) -> Fleet {
     )
 }
 
-/// A quick robot that looks along x.
+/// A fast robot with its heading along x.
 fn robot(name: &str, body: &str, mass_kg: f64, at: [f64; 2]) -> String {
     format!(
         "[[robot]]\nname = \"{name}\"\n{body}\nmass_kg = {mass_kg:?}\npose_m = {at:?}\nbehaviour = {{ kind = \"driven\" }}\n\
@@ -24,7 +24,7 @@ fn robot(name: &str, body: &str, mass_kg: f64, at: [f64; 2]) -> String {
     )
 }
 
-/// How far along x the first robot comes in 4 s, driving at 1 m/s and turning as it is told.
+/// The distance along x that the first robot covers in 4 s, driving at 1 m/s and turning at the commanded rate.
 fn way_m(mut fleet: Fleet, turn: impl Fn(usize) -> f64) -> f64 {
     let x = |fleet: &Fleet| fleet.robots().next().unwrap().pose.translation.x;
     let from = x(&fleet);
@@ -62,7 +62,7 @@ fn robots_side_by_side_in_a_corridor_get_along() {
     for (step_s, body) in [0.1, 0.05, 0.02].into_iter().flat_map(|step_s| bodies.map(|body| (step_s, body))) {
         let corridor = format!("{WALL}[[wall]]\nmin_m = [0.0, 0.93]\nmax_m = [20.0, 1.03]\n");
         let robots = robot("a", body, 20.0, [1.0, 0.31]) + &robot("b", body, 0.5, [1.0, 0.72]);
-        // Each turns towards the other.
+        // Each turns toward the other.
         let way_m = way_m(hall(step_s, &(corridor + &robots)), |robot| if robot == 0 { 0.5 } else { -0.5 });
         assert!(way_m > 2.0, "{way_m} m at steps of {step_s} s, {body}");
     }

@@ -1,11 +1,11 @@
-//! What `keys.md` says of each key is what the schema and its checks say.
+//! `keys.md` agrees with the reader on every key.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 const KEYS: &str = include_str!("../../../keys.md");
 
-/// A row of a table: the heading that it stands under, and its cells.
+/// A row of a table: the heading above it, and its cells.
 struct Row<'a> {
     heading: &'a str,
     keys: Vec<&'a str>,
@@ -29,7 +29,7 @@ fn rows() -> Vec<Row<'static>> {
     rows
 }
 
-/// Under each heading: the table of the file, and keys that make a good one.
+/// For each heading: the table of the file, and keys that make it valid.
 const GOOD: &[(&str, &str, &str)] = &[
     ("The file", "", ""),
     ("`map`", "map", "size_m = [4.0, 3.0]\ncell_m = 0.05"),
@@ -69,7 +69,7 @@ const GOOD: &[(&str, &str, &str)] = &[
     ("`robot.fiducial`", "robot.fiducial", "range_max_m = 5.0\nrate_hz = 10.0"),
 ];
 
-/// The keys that a key needs beside it, where the good ones do not have it.
+/// The additional keys that a key needs, if the valid ones do not include them.
 fn fit(heading: &str, key: &str, good: &str) -> String {
     let kind = |kind: &str| format!("kind = \"{kind}\"\nspeed_mps = 0.3");
     match (heading, key) {
@@ -85,12 +85,12 @@ fn fit(heading: &str, key: &str, good: &str) -> String {
     }
 }
 
-/// A world in which the table under a heading has other keys.
+/// A world in which the table of a heading has other keys.
 fn world(heading: &str, changed: &str) -> String {
     let mut text = "name = \"w\"\n".to_owned();
     let table_of = |heading: &str| GOOD.iter().find(|(known, _, _)| *known == heading).unwrap().1;
     for (known, table, good) in GOOD {
-        // These are only there where they are asked for.
+        // These exist only where they are asked for.
         let is_optional =
             matches!(*table, "floor_plan" | "obstacle" | "robot.bumper" | "robot.sonar" | "robot.fiducial");
         if (is_optional || table_of(heading) == *table) && *known != heading {
@@ -176,7 +176,7 @@ fn the_defaults_are_those_that_are_taken() {
             assert!(known.contains(&row.default), "{:?}: {}", row.keys, row.default);
             continue;
         };
-        // Another key's value is no value.
+        // The value of another key does not count.
         if default == "{}" || default == "[]" || default.starts_with("max_") {
             continue;
         }

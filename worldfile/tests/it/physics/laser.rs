@@ -1,4 +1,4 @@
-//! What a laser says: its limits, and other robots.
+//! The readings of a laser: its limits, and other robots.
 
 use super::*;
 
@@ -20,7 +20,7 @@ fn a_robot_sees_the_other_but_not_itself() {
     let spec = four_rooms_but(&[("pose_m = [2.0, 2.0]", "pose_m = [7.2, 10.5]")], "");
     let mut world = PhysicsWorld::new(&spec, 0);
     let scan = world.sense().scan;
-    // The dummy stands 1 m above, and is 0.2 m in radius.
+    // The dummy robot is 1 m above, and has a radius of 0.2 m.
     assert!((scan.ranges_m[540] - 0.8).abs() < 1e-6, "{}", scan.ranges_m[540]);
     assert!(scan.ranges_m.iter().all(|range| *range > 0.5));
     world.act(&Twist::STOP);

@@ -1,4 +1,4 @@
-//! The physics world as a whole.
+//! Tests of the physics world as a whole.
 
 mod contacts;
 mod contract;
@@ -42,7 +42,7 @@ fn four_rooms_but(replacements: &[(&str, &str)], more: &str) -> WorldSpec {
     parse(&format!("{text}\n{more}"))
 }
 
-/// Lets the world go on under one command for some seconds, with a look at every reading.
+/// Simulates the world under one command for some seconds, with a call at every reading.
 fn drive(world: &mut PhysicsWorld, twist: Twist, seconds: f64, mut see: impl FnMut(&PhysicsWorld)) {
     for _ in 0..(seconds * 10.0).round() as usize {
         world.act(&twist);
@@ -50,7 +50,7 @@ fn drive(world: &mut PhysicsWorld, twist: Twist, seconds: f64, mut see: impl FnM
     }
 }
 
-/// How far the closest pair of the robots' bodies is apart, m.
+/// The smallest distance between the bodies of two robots, m.
 fn bodies_apart_m(world: &PhysicsWorld) -> f64 {
     let robots: Vec<RobotView<'_>> = world.robots().collect();
     let pairs = (0..robots.len()).flat_map(|b| (0..b).map(move |a| (a, b)));

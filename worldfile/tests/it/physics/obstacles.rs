@@ -48,7 +48,7 @@ fn it_waits_for_its_place() {
     assert!(event.appeared && event.time_s > 3.0);
     assert_eq!(world.contacts(), []);
 
-    // Whoever never finds a place does not come late.
+    // An obstacle that never finds a free place does not appear late.
     let late = four_rooms_but(&[], &format!("{here}appears_s = 1.0\ndisappears_s = 2.0"));
     let mut world = PhysicsWorld::new(&late, 0);
     drive(&mut world, Twist::STOP, 3.0, |_| ());

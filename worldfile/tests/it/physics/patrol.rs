@@ -4,13 +4,13 @@ use proptest::prelude::*;
 
 const FAR: &str = "pose_m = [2.0, 2.0]";
 
-/// The dummy's place along its way, and how far it is from the wall's distance, m.
+/// The position of the dummy robot along its path, and the error of its distance to the wall, m.
 fn dummy(world: &PhysicsWorld) -> (f64, f64) {
     let at = world.robots().nth(1).unwrap().pose.translation.vector;
     (at.x, at.y - 11.5)
 }
 
-/// The ends that the dummy turned at in some seconds, m.
+/// The ends at which the dummy robot turned in some seconds, m.
 fn turns(world: &mut PhysicsWorld, seconds: f64) -> Vec<f64> {
     let mut path = vec![dummy(world).0];
     drive(world, Twist::STOP, seconds, |world| path.push(dummy(world).0));
@@ -62,7 +62,7 @@ fn it_finds_back_to_its_distance() {
 
 #[test]
 fn it_stops_for_the_standing_robot_and_goes_on_when_that_has_gone() {
-    // In its way, and at its side by more or less.
+    // In the way of the robot, and more or less beside it.
     for y in ["11.5", "11.3", "11.15", "11.09", "11.05"] {
         let start = format!("pose_m = [9.5, {y}]");
         let mut world = PhysicsWorld::new(
@@ -136,7 +136,7 @@ proptest! {
         text = text.replace("rate_hz = 10.0\nnoise_std_m = 0.0", &format!("rate_hz = 10.0\nnoise_std_m = {noise}"));
         let Ok(spec) = worldfile::physics::parse_world("test.toml", &text) else { return Err(TestCaseError::reject("overlap")) };
         let mut world = PhysicsWorld::new(&spec, 0);
-        // It may pass beside at a few millimetres, or stand so from the start: it must not touch.
+        // It may pass at a distance of a few millimeters, or stand there from the start: it must not touch.
         let least_m = bodies_apart_m(&world).min(0.001) - 1e-6;
         drive(&mut world, Twist::STOP, 60.0, |world| assert!(bodies_apart_m(world) > least_m));
         prop_assert_eq!(world.contacts(), []);

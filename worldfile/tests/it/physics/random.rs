@@ -1,4 +1,4 @@
-//! Random worlds: nothing leaves its place, whatever stands in it.
+//! Random worlds: no body leaves its place, whatever its surroundings.
 
 use super::*;
 use interfaces::LaserReading;
@@ -9,7 +9,7 @@ use rand_chacha::rand_core::SeedableRng;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// As many as a run of all tests can wait for; SIM_RANDOM_WORLDS=1000 asks for more.
+/// The number of worlds, small enough for a run of all tests; SIM_RANDOM_WORLDS=1000 sets another number.
 const WORLDS: u64 = 100;
 const SECONDS: f64 = 60.0;
 const SIDE_M: f64 = 6.0;
@@ -26,8 +26,8 @@ impl Chance {
     }
 }
 
-/// A closed room with walls at all angles, robots of all sizes and every kind of drive; what does
-/// not fit is left out.
+/// A closed room with walls at all angles, and robots of all sizes with every kind of drive. Parts that do not fit
+/// are left out.
 fn world(seed: u64) -> FleetSpec {
     let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
     let mut text = format!("name = \"random\"\n[map]\nsize_m = [{SIDE_M:?}, {SIDE_M:?}]\ncell_m = 0.1\n");
@@ -54,7 +54,7 @@ fn world(seed: u64) -> FleetSpec {
         } else {
             let radius_m = chance.between(0.05, 0.3);
             let kinds = ["kind = \"driven\"", "kind = \"wander\"\nspeed_mps = 0.3", "kind = \"standing\""];
-            // At most what is allowed at the longest step, of a circle within a footprint.
+            // At most the speed that is allowed at the longest step, for a circle within a footprint.
             let fastest_mps = chance.between(0.2, (radius_m / 0.2).clamp(0.25, 2.0));
             // Every drive, and every third robot is not round.
             let drive =
@@ -85,7 +85,7 @@ fn world(seed: u64) -> FleetSpec {
     spec
 }
 
-/// Something that moves.
+/// An obstacle that moves.
 fn thing(thing: usize, at: [f64; 2], chance: &mut Chance) -> String {
     let name = format!("[[obstacle]]\nname = \"{thing}\"\n");
     let to = chance.point();
@@ -116,7 +116,7 @@ pub(super) fn passes(fleet: &Fleet, from: &Point2<f64>, to: &Point2<f64>) -> boo
     fleet.spec().walls.iter().any(|wall| wall.segment_distance_m(from, to) <= 0.0)
 }
 
-/// How deep the bodies of two kinds lay in each other at most, m, and where.
+/// The maximum depth by which the bodies of two kinds penetrated each other, m, and where.
 #[derive(Debug, Default)]
 pub(super) struct Deepest(BTreeMap<(&'static str, &'static str), (f64, String)>);
 
@@ -172,7 +172,7 @@ fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
         let mut fleet = Fleet::new(&spec, seed);
         robots += spec.robots.len();
         let mut chance = Chance(ChaCha8Rng::seed_from_u64(!seed));
-        // Reckless drivers: full speed in any direction, now and then another.
+        // Commands without regard to obstacles: full speed in any direction, sometimes another direction.
         let mut wanted = vec![Twist::STOP; spec.robots.len()];
         let mut before: Vec<Twist> = wanted.clone();
         while fleet.time_s() < SECONDS {
@@ -208,7 +208,7 @@ fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
                 assert!(at.coords.iter().all(|value| value.is_finite()), "{}", place());
                 assert!(at.coords.min() > 0.0 && at.coords.max() < SIDE_M, "{} left: {at}", place());
                 assert!(!passes(&fleet, from, &at), "{} passed a wall: {from} to {at}", place());
-                // Bounds hold, and speeding up has its bound where nothing pushes.
+                // The limits hold, and the acceleration is limited where nothing pushes the robot.
                 let (limits, now) = (spec.robots[index].drive, robot.twist);
                 assert!(now.linear_mps.abs() <= limits.max_linear_mps + 1e-3, "{}: {now:?}", place());
                 assert!(now.angular_radps.abs() <= limits.max_angular_radps + 1e-3, "{}: {now:?}", place());

@@ -9,7 +9,7 @@ const SENSES: &str = "[robot.bumper]\nsectors = 4\nfov_deg = 180.0\n\
     [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 5.0\nmount_deg = 90.0\nnoise_std_m = 0.02\n\
     [robot.fiducial]\nfov_deg = 180.0\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behaviour]";
 
-/// A robot at [1, 2] with all senses, and whatever else.
+/// A robot at [1, 2] with all sensors, and further keys.
 fn place(more: &[String], things: &str) -> FleetSpec {
     let one = robot("one", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("[robot.behaviour]", SENSES);
     let robots: Vec<String> = [one].into_iter().chain(more.iter().cloned()).collect();
@@ -92,7 +92,7 @@ fn a_flat_touch_presses_every_bumper_along_it_until_they_part() {
     assert_eq!(pressed(&fleet), [true; 3]);
     assert_eq!(fleet.contacts().len(), 1);
     assert_eq!(fleet.robots().next().unwrap().touching, [fleet.contacts()[0].with]);
-    // At rest against the wall it still feels it.
+    // At rest against the wall the bumper still detects the contact.
     fleet.run_until(4.0, &mut drive(0.0));
     assert_eq!(pressed(&fleet), [true; 3]);
     assert_eq!(fleet.contacts(), []);

@@ -1,4 +1,4 @@
-//! Snapshots, forks and new starts.
+//! Snapshots, copies and resets.
 
 use super::fleet::{crowd, hash, nobody, robot};
 use super::*;
@@ -28,7 +28,7 @@ fn zoo() -> FleetSpec {
     fleet::house(&robots.collect::<Vec<_>>(), boxes)
 }
 
-/// The two driven robots go for each other.
+/// The two driven robots drive toward each other.
 fn drivers(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
     let turn = libm::sin(reading.time_s) * 0.3;
     Twist { linear_mps: if robot.index == 4 { 0.4 } else { -0.4 }, angular_radps: turn }

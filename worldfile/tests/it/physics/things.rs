@@ -6,7 +6,7 @@ use interfaces::GroundTruth;
 use interfaces::LaserReading;
 use nalgebra::Point2;
 
-/// A heavy robot at [1, 2] that drives straight on along x, and things.
+/// A heavy robot at [1, 2] that drives straight along x, and obstacles.
 fn yard(things: &str) -> FleetSpec {
     let driver =
         robot("driver", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("radius_m", "mass_kg = 20.0\nradius_m");
@@ -88,7 +88,7 @@ fn a_light_box_is_pushed_and_a_heavy_one_is_not() {
         assert!(goes_m.contains(&gone_m), "{mass_kg} kg: {gone_m} m");
         let robot = fleet.robots().next().unwrap();
         assert_eq!(robot.twist.linear_mps > 0.4, mass_kg < 5.0, "{mass_kg} kg: {:?}", robot.twist);
-        // In touch, not in each other.
+        // In contact, without penetration.
         let gap_m = middle(&fleet, 0).x - 0.15 - robot.pose.translation.x - 0.2;
         assert!(gap_m.abs() < 0.003, "{mass_kg} kg: {gap_m} m");
     }
@@ -112,7 +112,7 @@ fn a_light_box_holds_a_heavy_robot_where_something_holds_the_box() {
         }
         assert!(deepest_m > -0.002, "{mass_kg} kg: they never met: {deepest_m} m");
         assert!(deepest_m < 0.0051, "{mass_kg} kg: {deepest_m} m");
-        // And it comes free again.
+        // The robot can drive away again.
         let met = robot_at(&fleet, 0);
         fleet.run_until(18.0, &mut |_: &RobotView<'_>, _: &LaserReading| Twist {
             linear_mps: -0.5,
@@ -140,7 +140,7 @@ fn block(keys: &str) -> String {
     format!("[[obstacle]]\nname = \"block\"\nkind = \"block\"\nsize_m = [0.4, 0.4]\n{keys}\n")
 }
 
-/// Where the block is at some times, s.
+/// The positions of the block at some times, s.
 fn places(keys: &str, times_s: &[f64]) -> Vec<[f64; 2]> {
     let mut fleet = Fleet::new(&yard(&block(keys)), 0);
     times_s
@@ -155,7 +155,7 @@ fn places(keys: &str, times_s: &[f64]) -> Vec<[f64; 2]> {
 #[test]
 fn blocks_keep_their_schedule() {
     let dwelling = "path_m = [[3.0, 3.0], [4.0, 3.0]]\ndwell_s = 2.0\nspeed_mps = 0.5";
-    // Two seconds here, two on the way, two there, two back.
+    // Two seconds here, two seconds of motion, two seconds there, two seconds back.
     let expected = [[3.0, 3.0], [3.5, 3.0], [4.0, 3.0], [3.5, 3.0], [3.0, 3.0], [3.5, 3.0]];
     assert_eq!(places(dwelling, &[2.0, 3.0, 5.0, 7.0, 9.0, 11.0]), expected);
     let back = format!("{dwelling}\nrepeat = \"back_and_forth\"");
@@ -257,8 +257,8 @@ fn random_doors_have_their_means_and_their_seed() {
         (switches, open_s)
     };
     let (switches, open_s) = run(1);
-    // 500 cycles of 8 s; the standard deviations are those of sums of exponential times. Stays
-    // below the time of a move don't show.
+    // 500 cycles of 8 s; the standard deviations are those of sums of exponential times. Stays that are shorter
+    // than the duration of a move are not visible.
     assert!((400..560).contains(&switches), "{switches}");
     assert!(f64::abs(open_s - 1000.0) < 4.0 * 75.0, "{open_s}");
     assert_eq!(run(1), (switches, open_s));
