@@ -91,7 +91,21 @@ fn worlds() {
     }
     let folder = Run::new();
     std::fs::create_dir(folder.path("attic")).unwrap();
-    insta::assert_snapshot!(refuses(&folder, "--world attic", &["attic"]), @"error: cannot read the world file `attic`: Is a directory (os error 21)");
+    insta::assert_snapshot!(refuses(&folder, "--world attic", &["attic"]), @"error: cannot read the world file `attic`: it is not a regular file");
+}
+
+/// A pipe would let a reader wait for ever, a device would fill the memory.
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices() {
+    let folder = Run::new();
+    nix::unistd::mkfifo(&folder.path("pipe"), nix::sys::stat::Mode::S_IRWXU).unwrap();
+    for argument in ["--world", "--drive tour --tour", "--map"] {
+        for file in ["pipe", "/dev/zero"] {
+            let message = refuses(&folder, &format!("{argument} {file}"), &["pipe"]);
+            assert!(message.contains("it is not a regular file"), "{argument} {file}: {message}");
+        }
+    }
 }
 
 #[test]
@@ -189,9 +203,9 @@ fn command_lines() {
         ("--duration=nan", "a time above 0"),
         ("--duration=1001h", "at most 1000h"),
         ("--duration=ten", "as in 90s, 20m, 1h"),
-        ("--speed=0", "a factor above 0, or max"),
-        ("--speed=-2", "a factor above 0, or max"),
-        ("--speed=inf", "a factor above 0, or max"),
+        ("--speed=0", "a factor from 0.001 to 1000000, or max"),
+        ("--speed=-2", "a factor from 0.001 to 1000000, or max"),
+        ("--speed=inf", "a factor from 0.001 to 1000000, or max"),
         ("--seed=-1", "--seed <SEED>"),
         ("--seed=1.5", "--seed <SEED>"),
         ("--strategy=clever", "[possible values: curious, recency, poisson, random, coin"),

@@ -44,7 +44,7 @@ impl WorldError {
 /// The kind, the name in messages, and the text of a file; `kind` is `world file` or `tour`.
 pub(crate) fn read_text(kind: &str, path: &Path) -> Result<(String, String), WorldError> {
     let name = path.display().to_string();
-    let not_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text file");
+    let not_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text in UTF-8");
     match Disk.read(path, MAX_TEXT_BYTES).and_then(|bytes| String::from_utf8(bytes).map_err(not_text)) {
         Ok(text) => Ok((name, text)),
         Err(error) => {

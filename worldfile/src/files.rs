@@ -48,7 +48,7 @@ impl Files for BTreeMap<PathBuf, Vec<u8>> {
 
 fn within(bytes: Vec<u8>, most_bytes: u64) -> Result<Vec<u8>> {
     if bytes.len() as u64 > most_bytes {
-        return Err(Error::new(ErrorKind::FileTooLarge, format!("it is longer than {most_bytes} bytes")));
+        return Err(Error::new(ErrorKind::FileTooLarge, format!("it has more than {most_bytes} bytes")));
     }
     Ok(bytes)
 }

@@ -48,7 +48,7 @@ fn worlds() {
     insta::assert_snapshot!(refused_world("name = \"two blocks\"", "name = \"two blocks\""), @"error: two worlds have the name `two blocks`: results are listed by name, so give each world its own name");
     let folder = Run::grid();
     std::fs::create_dir(folder.path("grid")).unwrap();
-    insta::assert_snapshot!(refuses(&folder, "--world grid", &["grid"]), @"error: cannot read the world file `grid`: Is a directory (os error 21)");
+    insta::assert_snapshot!(refuses(&folder, "--world grid", &["grid"]), @"error: cannot read the world file `grid`: it is not a regular file");
 }
 
 #[test]

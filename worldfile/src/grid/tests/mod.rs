@@ -73,7 +73,7 @@ fn what_is_written_reads_as_the_same_world() {
     assert_eq!(spec.drawing(), GOOD[GOOD.find('#').unwrap()..].split("\"\"\"").next().unwrap());
     assert_eq!(crate::grid::parse("again.toml", &to_toml(&spec)).unwrap(), spec);
     // Names that need care, chances of many digits, a path that comes back over itself.
-    let odd = GOOD.replace("name = \"yard\"", r#"name = "a \"yard\" \\ # \n 庭""#).replace("0.5", "1e-7");
+    let odd = GOOD.replace("name = \"yard\"", r#"name = "a \"yard\" \\ # 庭""#).replace("0.5", "1e-7");
     let odd = odd.replace("[[1, 5], [6, 5], [6, 4]]", "[[1, 5], [6, 5], [3, 5], [7, 5]]");
     let spec = crate::grid::parse("yard.toml", &odd).unwrap();
     assert_eq!(crate::grid::parse("again.toml", &to_toml(&spec)).unwrap(), spec);
