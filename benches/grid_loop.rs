@@ -8,14 +8,17 @@
 //! Two conditions must hold: `whole` in the world of 25 × 25 cells runs at 300,000 steps per second or more, and
 //! `known_way` (everything except decisions) needs at most three times as long with 200 × 200 cells.
 
+mod generated;
+
 use agent::{Agent, AgentSettings, Travel};
 use controller::{CellDrive, Controller};
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use generated::generated;
 use interfaces::{Purpose, RandomStream, Step};
 use mapper::{Mapper, MapperSettings, ReadingError};
 use robot::{Autonomous, Belief, Destination, GoalSelector, Pilot, explore};
-use sim::grid::{GenerateSettings, GridSpec, GridWorld};
+use sim::grid::{GridSpec, GridWorld};
 use std::ops::ControlFlow;
 
 const STEPS: usize = 20_000;
@@ -41,18 +44,7 @@ fn world(name: &str) -> GridSpec {
         "200 x 200" => 200,
         shipped => return worldfile::shipped::load_grid(shipped).expect("a shipped world is valid"),
     };
-    // Larger worlds have more rooms.
-    let rooms = (side / 12u32).pow(2);
-    let settings = GenerateSettings {
-        width: [side; 2],
-        height: [side; 2],
-        walls: [rooms - 1; 2],
-        pillars: [rooms; 2],
-        blocks: [4; 2],
-        sensor_radius: 4,
-        ..GenerateSettings::default()
-    };
-    GridSpec::generate(&settings, SEED)
+    generated(side, 4, SEED)
 }
 
 /// A robot in its world.

@@ -1,11 +1,14 @@
 //! The time of a step of a grid world: `cargo bench -p benches --bench grid_world`.
 
+mod generated;
+
 use divan::{Bencher, black_box};
+use generated::generated;
 use interfaces::{Step, World};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sim::grid::{GenerateSettings, GridSpec, GridWorld};
+use sim::grid::GridWorld;
 
 /// The number of cells per side, and the range of the sensor.
 const SIZES: [(u32, u32); 4] = [(25, 4), (25, 8), (200, 4), (200, 8)];
@@ -18,17 +21,7 @@ fn main() {
 
 /// A random world of `side` × `side` cells; larger worlds have more walls.
 fn world(side: u32, radius: u32) -> GridWorld {
-    let rooms = (side / 12).pow(2);
-    let settings = GenerateSettings {
-        width: [side; 2],
-        height: [side; 2],
-        walls: [rooms - 1; 2],
-        pillars: [rooms; 2],
-        blocks: [4; 2],
-        sensor_radius: radius,
-        ..GenerateSettings::default()
-    };
-    GridWorld::new(&GridSpec::generate(&settings, 1), 1)
+    GridWorld::new(&generated(side, radius, 1), 1)
 }
 
 /// A walk that continues in one direction for a while.

@@ -41,7 +41,7 @@ impl WorldError {
     }
 }
 
-/// The kind, the name in messages, and the text of a file; `kind` is `world file` or `tour`.
+/// The name of a file in messages, and its text; `kind` is `world file` or `tour`.
 pub(crate) fn read_text(kind: &str, path: &Path) -> Result<(String, String), WorldError> {
     let name = path.display().to_string();
     let not_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text in UTF-8");

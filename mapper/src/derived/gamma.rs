@@ -12,8 +12,7 @@ const FOUND: f64 = 1e-12;
 /// that close in.
 pub(super) fn quantile(shape: f64, probability: f64) -> f64 {
     if shape >= NORMAL_FROM {
-        let ninth = 1.0 / (9.0 * shape);
-        let root = 1.0 - ninth + normal_quantile(probability) * libm::sqrt(ninth);
+        let root = cube_root(shape, probability);
         return root.max(0.0) * root * root;
     }
     let of_shape = libm::lgamma(shape);
@@ -48,9 +47,13 @@ fn first_guess(shape: f64, of_shape: f64, probability: f64) -> f64 {
     if small < libm::log(0.2 * (shape + 1.0)) {
         return small;
     }
+    libm::log(shape) + 3.0 * libm::log(cube_root(shape, probability).max(0.1))
+}
+
+/// The cube root of the quantile, as if it were normal (Wilson & Hilferty).
+fn cube_root(shape: f64, probability: f64) -> f64 {
     let ninth = 1.0 / (9.0 * shape);
-    let root = 1.0 - ninth + normal_quantile(probability) * libm::sqrt(ninth);
-    libm::log(shape) + 3.0 * libm::log(root.max(0.1))
+    1.0 - ninth + normal_quantile(probability) * libm::sqrt(ninth)
 }
 
 /// The quantile of a normal distribution of variance 1 around 0, by halving.

@@ -45,6 +45,8 @@ struct Free {
     body: rapier::RigidBodyHandle,
     /// The pose before the last step.
     before: rapier::Pose,
+    /// The radius of a circle around the origin of the body that holds the body, m.
+    radius_m: f32,
     /// The longest motion in a step, m, for which it is enough to look at its end: contacts are predicted over it, and
     /// no body passes through another one in it.
     reach_m: f64,
@@ -155,7 +157,11 @@ impl Bodies {
     fn add_free(&mut self, body: rapier::RigidBodyHandle, inner_m: f64, predicted_m: f64) {
         // Half of it: the other body may move as well.
         let reach_m = (inner_m / 2.0).min(predicted_m + ROUNDING_M);
-        self.free.push(Free { body, before: *self.world.bodies[body].position(), reach_m });
+        let (before, colliders) = (*self.world.bodies[body].position(), self.world.bodies[body].colliders());
+        let around =
+            colliders.first().map(|own| self.world.colliders[*own].shape().compute_local_bounding_sphere());
+        let radius_m = around.map_or(0.0, |circle| circle.center.length() + circle.radius);
+        self.free.push(Free { body, before, radius_m, reach_m });
     }
 
     /// Sets the velocity of a robot for the next step: along the heading in the middle of the step, so that

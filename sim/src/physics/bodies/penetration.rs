@@ -40,8 +40,8 @@ type PerBody<T> = BTreeMap<(u32, u32), T>;
 
 /// A step with penetration.
 struct Step {
-    /// The poses of free bodies before the step.
-    before: PerBody<rapier::Pose>,
+    /// The free bodies, with their poses before the step.
+    free: PerBody<Free>,
     /// The bodies that were shifted or put back: the pose without being put back, and how often the body was
     /// put back.
     changed: PerBody<(rapier::Pose, usize)>,
@@ -73,8 +73,8 @@ impl Bodies {
         if quick.is_empty() && !self.touching().any(|pair| self.is_too_deep(pair, self.gap_m(pair))) {
             return;
         }
-        let before = self.free.iter().map(|free| (free.body.into_raw_parts(), free.before)).collect();
-        let mut step = Step { before, changed: BTreeMap::new(), pairs: Vec::new(), known: BTreeSet::new() };
+        let free = self.free.iter().map(|free| (free.body.into_raw_parts(), *free)).collect();
+        let mut step = Step { free, changed: BTreeMap::new(), pairs: Vec::new(), known: BTreeSet::new() };
         self.touching().for_each(|pair| step.add(pair));
         self.add_near(&quick, &mut step);
         let mut deep = self.violating(&step);
@@ -101,22 +101,12 @@ impl Bodies {
         }
     }
 
-    /// How far a body moved in the step, m, in its centre or at its border.
+    /// The longest motion of a point of a body in the step, m, at most.
     fn motion_m(&self, free: &Free) -> f64 {
         let body = &self.world.bodies[free.body];
         let turned_rad = free.before.rotation.angle_between(&body.position().rotation).abs();
-        let radius_m = if turned_rad > 0.0 { self.radius_m(free.body) } else { 0.0 };
         let moved_m = (body.position().translation - free.before.translation).length();
-        f64::from(moved_m + turned_rad * radius_m)
-    }
-
-    /// The radius of a circle around the origin of a body that holds the body, m.
-    fn radius_m(&self, body: rapier::RigidBodyHandle) -> f32 {
-        let colliders = self.world.bodies[body].colliders();
-        colliders.first().map_or(0.0, |collider| {
-            let around = self.world.colliders[*collider].shape().compute_local_bounding_sphere();
-            around.center.length() + around.radius
-        })
+        f64::from(moved_m + turned_rad * free.radius_m)
     }
 
     /// All pairs of bodies that rapier found near to each other. Not only those that rapier found touching: rapier
@@ -144,7 +134,7 @@ impl Bodies {
             let Some(own) = world.bodies[*body].colliders().first() else { continue };
             let shape = world.colliders[*own].shape();
             let now = shape.compute_aabb(world.bodies[*body].position());
-            let before = shape.compute_aabb(&step.before[&body.into_raw_parts()]);
+            let before = shape.compute_aabb(&step.free[&body.into_raw_parts()].before);
             let around = rapier::BoundingVolume::merged(&now, &before);
             let around = rapier::BoundingVolume::loosened(&around, farthest_m);
             let others = query.intersect_aabb_conservative(around).map(|(other, _)| other);
@@ -178,20 +168,14 @@ impl Bodies {
 
     /// The least gap between two bodies on their path, m.
     fn least_gap_m(&self, pair: Pair, step: &Step) -> f64 {
-        let motions_m = pair.map(|collider| self.path_m(collider, step));
+        let motions_m =
+            pair.map(|collider| self.free(collider, step).map_or(0.0, |free| self.motion_m(free)));
         let all_m = motions_m[0] + motions_m[1];
         // No pose between is skipped in which the bodies are too deep in each other: see `allowed_m`.
         let poses =
             if all_m == 0.0 { 1.0 } else { (all_m / self.inner_m(pair)).ceil().clamp(1.0, MOST_POSES) };
         let gaps_m = (1..=poses as usize).map(|pose| self.gap_on_path_m(pair, pose as f64 / poses, step));
         gaps_m.fold(f64::INFINITY, f64::min)
-    }
-
-    /// How far a body comes in the step, m.
-    fn path_m(&self, collider: rapier::ColliderHandle, step: &Step) -> f64 {
-        let Some(body) = self.world.colliders[collider].parent() else { return 0.0 };
-        let Some(before) = step.before.get(&body.into_raw_parts()) else { return 0.0 };
-        self.motion_m(&Free { body, before: *before, reach_m: 0.0 })
     }
 
     /// The gap between two bodies now, m.
@@ -208,12 +192,16 @@ impl Bodies {
 
     /// The pose of a body at a share of the step.
     fn pose_at(&self, collider: rapier::ColliderHandle, share: f64, step: &Step) -> rapier::Pose {
-        let collider = &self.world.colliders[collider];
-        let before = collider.parent().and_then(|body| step.before.get(&body.into_raw_parts()));
-        match before {
-            Some(before) if share < 1.0 => before.lerp(collider.position(), share as f32),
-            _ => *collider.position(),
+        let position = self.world.colliders[collider].position();
+        match self.free(collider, step) {
+            Some(Free { before, .. }) if share < 1.0 => before.lerp(position, share as f32),
+            _ => *position,
         }
+    }
+
+    /// The free body of a collider; none for walls and for obstacles that contacts do not move.
+    fn free<'a>(&self, collider: rapier::ColliderHandle, step: &'a Step) -> Option<&'a Free> {
+        step.free.get(&self.world.colliders[collider].parent()?.into_raw_parts())
     }
 
     /// The outline of a body at a pose.
@@ -278,13 +266,12 @@ impl Bodies {
 
     /// Reverts another part of the step of a free body. Returns whether a part was left.
     fn put_back(&mut self, collider: rapier::ColliderHandle, step: &mut Step) -> bool {
-        let Some(body) = self.world.colliders[collider].parent() else { return false };
-        let Some(before) = step.before.get(&body.into_raw_parts()) else { return false };
+        let Some(&Free { body, before, .. }) = self.free(collider, step) else { return false };
         let now = *self.world.bodies[body].position();
         let (reached, times) = step.changed.entry(body.into_raw_parts()).or_insert((now, 0));
         let Some(share) = SHARES.get(*times) else { return false };
         *times += 1;
-        let pose = if *share > 0.0 { before.lerp(reached, *share) } else { *before };
+        let pose = if *share > 0.0 { before.lerp(reached, *share) } else { before };
         self.place(body, pose);
         true
     }
@@ -298,9 +285,9 @@ impl Bodies {
     /// real motion, so that the body does not continue as if nothing had been in its way.
     fn slow_down(&mut self, step: &Step) {
         let dt = self.world.integration_parameters.dt;
-        for &(index, generation) in step.changed.keys() {
-            let before = &step.before[&(index, generation)];
-            let body = &mut self.world.bodies[rapier::RigidBodyHandle::from_raw_parts(index, generation)];
+        for key in step.changed.keys() {
+            let Free { body, before, .. } = step.free[key];
+            let body = &mut self.world.bodies[body];
             let (speed, turn_rate) = (body.linvel().length(), body.angvel().abs());
             let moved = (body.position().translation - before.translation).length() / dt;
             let turned = before.rotation.angle_between(&body.position().rotation).abs() / dt;
