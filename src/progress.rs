@@ -2,6 +2,7 @@
 
 use evaluation::output::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::fmt::Display;
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -97,6 +98,11 @@ impl Progress {
             let left_s = self.start.elapsed().as_secs_f64() * (all as f64 / done.max(1) as f64 - 1.0);
             say(stderr(), format_args!("{done} of {all} trials, {left_s:.0} s left"));
         }
+    }
+
+    /// Prints a line to the error output, above the bar.
+    pub fn say(&self, what: impl Display) {
+        self.bar.suspend(|| say(stderr(), format_args!("{what}\r"))); // a raw terminal needs the carriage return
     }
 
     /// Removes the bar.

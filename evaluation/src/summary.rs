@@ -46,6 +46,8 @@ pub struct Summary {
     pub wall_s: f64,
     /// Simulated time divided by wall time.
     pub real_time_factor: f64,
+    /// The names of the other files with results, in the same folder.
+    pub files: Vec<String>,
     /// The results.
     #[serde(flatten)]
     pub results: RunResults,

@@ -193,6 +193,8 @@ fn tours() {
       = help: did you mean `waypoints_m`? the keys here are: repeat, waypoints_m
     ");
     insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [[1, 2]]", "--tour t.toml"), @"error: --tour needs --drive tour");
+    insta::assert_snapshot!(refused("--drive tour --strategy recency"), @"error: --strategy is for the agent: leave out --drive, or --strategy");
+    insta::assert_snapshot!(refused("--drive tour --world house"), @"error: the tour that ships is for the walls of `four_rooms`: for `house`, give waypoints by --tour FILE");
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn every_estimator_estimates_in_its_own_way() {
     let mut errors = BTreeSet::new();
     for estimator in EstimatorChoice::all().iter().map(EstimatorChoice::name) {
         // A tour does not depend on rates, so that all runs have the same observations.
-        let arguments = format!("--duration 8m --drive tour --strategy curious --estimator {estimator}");
+        let arguments = format!("--duration 8m --drive tour --estimator {estimator}");
         let summary = Run::quiet(&arguments).summary();
         assert_eq!(summary.text("/estimator"), estimator);
         assert!(summary.at("/strategy").is_null(), "nobody chose a strategy");

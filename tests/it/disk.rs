@@ -49,8 +49,7 @@ fn a_file_that_cannot_be_replaced() {
         std::fs::create_dir_all(run.out(file).join("taken")).unwrap();
         let error = error(&run, program.arguments);
         assert!(error.starts_with(&format!("error: cannot write out/{file}: ")), "{error}");
-        let left = names(&run.path("out"));
-        assert!(left.iter().all(|name| !name.ends_with(".part")), "{left:?}");
+        assert_eq!(names(&run.path("out")), [file], "incomplete files");
     }
 }
 
@@ -72,7 +71,31 @@ fn cannot_record(file: &str, reason: &str) {
         let run = (program.run)();
         let error = error(&run, &format!("{} --rrd {file}", program.arguments));
         assert_eq!(error, format!("error: cannot write the recording {file}: {reason}"));
-        assert_eq!(names(&run.path("out")), [""; 0]);
+        assert_eq!(run.names(), [""; 0]);
+    }
+}
+
+#[test]
+fn a_moving_picture_in_a_folder_that_does_not_exist() {
+    let run = Run::new();
+    let error = error(&run, "--duration 30 --no-rrd --gif no/such/run.gif");
+    assert_eq!(error, "error: cannot write no/such/run.gif: No such file or directory (os error 2)");
+    assert_eq!(run.names(), [""; 0]);
+}
+
+#[test]
+fn a_file_that_is_no_recording_is_not_replaced() {
+    for program in PROGRAMS {
+        let run = (program.run)();
+        run.write("thesis.rrd", "precious");
+        let error = error(&run, &format!("{} --rrd thesis.rrd", program.arguments));
+        assert_eq!(
+            error,
+            "error: cannot write the recording thesis.rrd: there is a file with this name that is not a recording; \
+             choose another name"
+        );
+        assert_eq!(std::fs::read_to_string(run.path("thesis.rrd")).unwrap(), "precious");
+        assert_eq!(run.names(), ["thesis.rrd"]);
     }
 }
 
@@ -87,18 +110,38 @@ fn a_recording_outside_the_output_folder() {
 }
 
 /// Simulates a disk that becomes full during the run: a named pipe whose reader closes the pipe after a while.
-#[test]
 #[cfg(unix)]
-fn a_recording_that_cannot_go_on_costs_no_trial() {
+fn with_a_recording_that_ends(run: &Run, arguments: &str) -> Ended {
     use std::io::Read;
-    let run = Run::grid();
     let pipe = run.path("pipe");
     nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).unwrap();
-    let arguments = "--steps 3000 --trials 2 --strategy recency --estimator paper";
     let child = run.starts(&format!("{arguments} --rrd pipe"));
     std::fs::File::open(&pipe).unwrap().read_exact(&mut [0; 1000]).unwrap();
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(1), "{ended:?}");
+    ended
+}
+
+#[test]
+#[cfg(unix)]
+fn a_recording_that_cannot_go_on_costs_no_result() {
+    let run = Run::new();
+    let ended = with_a_recording_that_ends(&run, "--duration 2m --quiet");
+    assert_eq!(
+        ended.stderr.trim_end(),
+        "error: cannot write the recording pipe: Broken pipe (os error 32); the run goes on without it"
+    );
+    let without = Run::quiet("--duration 2m");
+    assert_eq!(run.summary().hash(), without.summary().hash());
+    assert_eq!(names(&run.path("out")), names(&without.path("out")));
+}
+
+#[test]
+#[cfg(unix)]
+fn a_recording_that_cannot_go_on_costs_no_trial() {
+    let run = Run::grid();
+    let arguments = "--steps 3000 --trials 2 --strategy recency --estimator paper";
+    let ended = with_a_recording_that_ends(&run, arguments);
     assert_eq!(ended.stderr, "error: cannot write the recording pipe: Broken pipe (os error 32)\n");
     let without = Run::grid();
     without.goes_well(arguments);

@@ -54,7 +54,7 @@ fn ctrl_c_ends_a_slow_run() {
     let child = run.starts("--duration 1h --speed 0.001");
     let has_begun = (0..1200).any(|_| {
         std::thread::sleep(Duration::from_millis(50));
-        run.out("four_rooms.rrd").exists()
+        run.unfinished("four_rooms.rrd").exists()
     });
     assert!(has_begun, "no recording");
     send(Signal::SIGINT, &child);
@@ -66,7 +66,7 @@ fn ctrl_c_ends_a_slow_run() {
 fn ends_in_order(signal: Signal) {
     let run = Run::new();
     let child = starts(&run);
-    wait_for_recording(&run.out("four_rooms.rrd"));
+    wait_for_recording(&run.unfinished("four_rooms.rrd"));
     send(signal, &child);
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{ended:?}");
@@ -98,8 +98,13 @@ fn a_killed_run_leaves_all_but_the_last_seconds() {
     send(Signal::SIGKILL, &child);
     assert_eq!(child.wait().unwrap().code(), None);
 
-    let recording = Recording::read(&run.out("four_rooms.rrd"));
+    let recording = Recording::read(&run.unfinished("four_rooms.rrd"));
     assert!(recording.end_s() >= simulated_s, "{} of at least {simulated_s} s", recording.end_s());
     assert!(recording.curve("/curves/scores/coverage").len() as f64 > 0.9 * simulated_s);
-    assert_eq!(crate::run::names(&run.path("out")), ["four_rooms.rrd"], "half-written files");
+    assert_eq!(crate::run::names(&run.path("out")), ["unfinished_run"]);
+
+    // The next run removes it.
+    run.goes_well("--quiet --no-rrd --duration 1");
+    assert!(!run.path("out/unfinished_run").exists());
+    assert_eq!(crate::run::names(&run.path("out")).len(), 10);
 }

@@ -13,6 +13,7 @@ mod disk;
 mod dummy;
 mod ending;
 mod flicker;
+mod folder;
 mod grid;
 mod keyboard;
 mod output;

@@ -17,3 +17,26 @@ fn a_known_map_is_right_from_the_start() {
     assert!(first["coverage"].as_f64().unwrap() < 0.5, "{first}");
     assert_eq!(again["false_change_events"], 0);
 }
+
+#[test]
+fn a_map_of_another_place_is_reported() {
+    let map = |origin: &str| {
+        let run = Run::new();
+        let walls: Vec<&str> = (0..144).map(|pixel| if pixel % 13 == 4 { "0" } else { "254" }).collect();
+        run.write("m.pgm", &format!("P2\n12 12\n255\n{}\n", walls.join(" ")));
+        run.write(
+            "m.yaml",
+            &format!(
+                "image: m.pgm\nresolution: 1.0\norigin: [{origin}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n\
+                 free_thresh: 0.196\n"
+            ),
+        );
+        run.ends("--quiet --no-rrd --duration 1 --map m.yaml")
+    };
+    let other = map("0.0, 0.0");
+    assert_eq!(other.code, Some(0), "{other:?}");
+    insta::assert_snapshot!(other.stderr.trim_end(), @"");
+    let far = map("100.0, 0.0");
+    assert_eq!(far.code, Some(2), "{far:?}");
+    insta::assert_snapshot!(far.stderr.trim_end(), @"");
+}

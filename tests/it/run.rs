@@ -59,6 +59,11 @@ impl Run {
         self.path("out").join(name)
     }
 
+    /// The path of a recording in the output folder before the run is finished.
+    pub(crate) fn unfinished(&self, name: &str) -> PathBuf {
+        self.out("unfinished_run").join(name.replace(".rrd", ".unfinished.rrd"))
+    }
+
     pub(crate) fn write(&self, name: &str, text: &str) {
         std::fs::write(self.path(name), text).unwrap();
     }

@@ -42,3 +42,14 @@ fn a_world_file_runs_as_the_shipped_world_does() {
         .map(|world| Run::quiet(&format!("--duration 20 --world {world}")).summary().hash().to_owned());
     assert_eq!(by_name, by_path);
 }
+
+#[test]
+fn odometry_that_drifts_is_reported() {
+    let run = Run::new();
+    let world = include_str!("../../worlds/four_rooms.toml");
+    let (exact, drifting) = ("# [robot.odometry] makes", "[robot.odometry]\nturn_gain = 0.01 # makes");
+    assert!(world.contains(exact));
+    run.write("drift.toml", &world.replacen(exact, drifting, 1));
+    let ended = run.goes_well("--quiet --no-rrd --duration 1 --world drift.toml");
+    insta::assert_snapshot!(ended.stderr.trim_end(), @"");
+}

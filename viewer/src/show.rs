@@ -17,7 +17,7 @@ pub struct Show {
     film: Option<Film>,
 }
 
-/// The error for a run that can no longer be shown.
+/// The error for a recording or a film that cannot continue. The run does.
 #[derive(Debug, thiserror::Error)]
 pub enum ShowError {
     /// The recording cannot continue.
@@ -39,18 +39,23 @@ impl Show {
     ///
     /// # Errors
     ///
-    /// When the recording cannot be written, or a frame of the film cannot be drawn.
+    /// When the recording cannot be written, or a frame of the film cannot be drawn. Each is reported once: the
+    /// recording or the film is given up then, and everything else goes on.
     pub fn add(&mut self, view: &View, is_last: bool) -> Result<(), ShowError> {
         for (trail, robot) in self.trails.iter_mut().zip(&view.robots) {
             trail.push(robot.pose.translation.vector.into());
         }
-        if let Some(film) = &mut self.film {
-            film.add(view, &self.trails)?;
+        let recorded = self.recorder.as_mut().map_or(Ok(()), |recorder| recorder.log(view, is_last));
+        if recorded.is_err() {
+            // A viewer shows the run without the file.
+            self.recorder.take_if(|recorder| !recorder.is_live());
         }
-        if let Some(recorder) = &mut self.recorder {
-            recorder.log(view, is_last)?;
+        let filmed = self.film.as_mut().map_or(Ok(()), |film| film.add(view, &self.trails));
+        if filmed.is_err() {
+            self.film = None;
         }
-        Ok(())
+        recorded?;
+        Ok(filmed?)
     }
 
     /// Why a viewer does not show the run, or no longer shows it. The file is not affected.
@@ -63,15 +68,9 @@ impl Show {
     /// # Errors
     ///
     /// When a picture cannot be drawn or written.
-    pub fn write(
-        self,
-        folder: &Path,
-        film: Option<&Path>,
-        mapper: &Mapper,
-        goals: &[Point2<f64>],
-    ) -> Result<(), PictureError> {
-        if let (Some(made), Some(path)) = (self.film, film) {
-            made.write(path)?;
+    pub fn write(self, folder: &Path, mapper: &Mapper, goals: &[Point2<f64>]) -> Result<(), PictureError> {
+        if let Some(film) = self.film {
+            film.write()?;
         }
         pictures::write_all(folder, &self.scene, mapper, &self.trails, goals)
     }

@@ -11,9 +11,19 @@ use serde::{Serialize, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};
 use std::io::{self, Write};
 
-/// Writes `report.json`.
-pub(super) fn write_report(report: &Report, mut to: impl Write) -> io::Result<()> {
-    report.serialize(&mut serde_json::Serializer::with_formatter(&mut to, Layout::default()))?;
+/// The content of `report.json`.
+#[derive(Serialize)]
+struct Content<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    /// The names of the other files.
+    files: &'a [String],
+}
+
+/// Writes `report.json`; `files` are the names of the other files.
+pub(super) fn write_report(report: &Report, files: &[String], mut to: impl Write) -> io::Result<()> {
+    let content = Content { report, files };
+    content.serialize(&mut serde_json::Serializer::with_formatter(&mut to, Layout::default()))?;
     writeln!(to)
 }
 

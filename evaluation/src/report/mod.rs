@@ -24,14 +24,15 @@ pub use statistics::Estimate;
 pub use strategy::StrategyResult;
 
 use crate::drawing::PictureError;
-use crate::output::{make_folder, write_file};
+use crate::output::{RunFolder, write_file};
 use serde::Serialize;
 use sim::grid::GridSpec;
 use statistics::Quantiles;
-use std::path::{Path, PathBuf};
 
 /// Up to this number of worlds, the table and the figures show single worlds.
 const ONE_BY_ONE: usize = 8;
+/// The name of the file with all results.
+pub const REPORT: &str = "report.json";
 /// A strategy that knows the ground truth: it is listed with the others, but cannot be the best one.
 const REFERENCE: &str = "oracle";
 
@@ -119,8 +120,8 @@ impl Report {
         table::table(self)
     }
 
-    /// Writes `report.json`, `trials.csv` and the figures into `folder`, which is made unless it exists. Returns
-    /// the paths of the files.
+    /// Writes `trials.csv`, the figures, and `report.json`, which lists all files of the run, into the folder of the
+    /// unfinished run. Returns the names of the files.
     ///
     /// `figure3` shows the first run; the other figures are `figure3-<world>-<estimator>`, without the estimator
     /// if there is only one. With more than eight worlds, only the first world and all worlds together are drawn.
@@ -130,15 +131,14 @@ impl Report {
     /// # Errors
     ///
     /// When something cannot be drawn or written.
-    pub fn write(&self, folder: &Path, worlds: &[GridSpec]) -> Result<Vec<PathBuf>, PictureError> {
-        make_folder(folder)?;
-        let report = folder.join("report.json");
-        write_file(&report, |file| files::write_report(self, file))?;
-        let trials = folder.join("trials.csv");
-        write_file(&trials, |file| files::write_trials(&self.trials, file))?;
-        let mut files = vec![report, trials];
-        files.extend(figure::write_all(folder, self, worlds)?);
-        Ok(files)
+    pub fn write(&self, folder: &RunFolder, worlds: &[GridSpec]) -> Result<Vec<String>, PictureError> {
+        let to = folder.unfinished();
+        write_file(&to.join("trials.csv"), |file| files::write_trials(&self.trials, file))?;
+        figure::write_all(to, self, worlds)?;
+        let mut names = folder.results()?;
+        write_file(&to.join(REPORT), |file| files::write_report(self, &names, file))?;
+        names.insert(0, REPORT.to_owned());
+        Ok(names)
     }
 }
 

@@ -13,8 +13,12 @@ use viewer::recording::Live;
 ///
 /// Without options, the curious agent explores the paper's four rooms for 20 simulated minutes. The folder
 /// four_rooms_out contains the results: pictures of the maps (figure5.png) and of the trajectories
-/// (trajectory.png), a recording (four_rooms.rrd, open it with `rerun FILE`), the map in ROS format (map.yaml,
-/// map.pgm), the statistics of every cell (cell_statistics.csv), and all results as JSON (summary.json).
+/// (trajectory.png), a recording (four_rooms.rrd, named after the world; open it with `rerun FILE`), the map in ROS
+/// format (map.yaml, map.pgm), the statistics of every cell (cell_statistics.csv), and all results as JSON
+/// (summary.json).
+///
+/// The results of an earlier run in the folder stay until the new ones are complete; until then these are in its
+/// subfolder unfinished_run.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "four_rooms",
@@ -52,9 +56,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", help_heading = "Pilot")]
     pub(crate) tour: Option<PathBuf>,
 
-    /// The strategy of the agent
-    #[arg(long, default_value_t = Policy::default(), value_parser = strategies(), help_heading = "Pilot")]
-    pub(crate) strategy: Policy,
+    /// The strategy of the agent [default: curious]
+    #[arg(long, value_parser = strategies(), help_heading = "Pilot")]
+    pub(crate) strategy: Option<Policy>,
 
     /// The speed as a multiple of real time, or max for full speed [default: max, with --drive keyboard 1]
     #[arg(long, value_name = "FACTOR|max", value_parser = speed, help_heading = "Pilot")]
@@ -72,7 +76,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR", default_value = "four_rooms_out", help_heading = "Output")]
     pub(crate) out: PathBuf,
 
-    /// The file of the recording [default: four_rooms.rrd in the output folder]
+    /// The file of the recording [default: named after the world, in the output folder]
     #[arg(long, value_name = "FILE", conflicts_with = "no_rrd", help_heading = "Output")]
     pub(crate) rrd: Option<PathBuf>,
 
@@ -95,6 +99,13 @@ pub(crate) struct Args {
     /// Print only errors
     #[arg(long, short, help_heading = "Output")]
     pub(crate) quiet: bool,
+}
+
+impl Args {
+    /// The strategy of the agent.
+    pub(crate) fn strategy(&self) -> Policy {
+        self.strategy.clone().unwrap_or_default()
+    }
 }
 
 /// The pilot of the curious robot.
@@ -147,6 +158,7 @@ mod tests {
     #[test]
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
+        assert_eq!(Args::parse_from(["four_rooms"]).strategy().name(), "curious");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Arguments → parts → loop → results.
 
 mod args;
+mod combination;
 mod output;
 mod parts;
 
@@ -10,9 +11,10 @@ use clap::Parser;
 use curious::program::{Failure, INTERRUPTED, exit_code, input, interrupt_flag, list};
 use curious::progress::Progress;
 use curious::worlds;
-use evaluation::output::{make_folder, say};
+use evaluation::output::{RunFolder, UnfinishedFile, say};
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::{Reading, Twist};
+use mapper::ReadingError;
 use parts::Parts;
 use robot::Pilot;
 use std::io::{stderr, stdout};
@@ -35,10 +37,7 @@ fn main() -> ExitCode {
         list(&worlds::SHIPPED, 18, |name| worlds::load(name).map(|world| world.spec.description.clone()));
         return ExitCode::SUCCESS;
     }
-    exit_code(run(&args).map(|ended| match ended {
-        Ended::Interrupted => ExitCode::from(INTERRUPTED),
-        Ended::Duration | Ended::Pilot => ExitCode::SUCCESS,
-    }))
+    exit_code(run(&args))
 }
 
 /// The reason for the end of a run.
@@ -49,7 +48,7 @@ enum Ended {
     Interrupted,
 }
 
-fn run(args: &Args) -> Result<Ended, Failure> {
+fn run(args: &Args) -> Result<ExitCode, Failure> {
     let parts = Parts::new(args)?;
     match args.drive {
         DriveChoice::Agent => explore(args, &parts, parts.agent(args)?),
@@ -59,15 +58,12 @@ fn run(args: &Args) -> Result<Ended, Failure> {
 }
 
 /// Runs the robot in the world, and writes the results.
-fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Result<Ended, Failure> {
+fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Result<ExitCode, Failure> {
     let Parts { spec, settings, prior } = parts;
     let trial = PhysicsTrial::new(spec, args.seed, &settings.mapper, prior.clone(), pilot);
     let mut trial = trial.context("cannot make the mapper").map_err(input)?;
-    make_folder(&args.out).map_err(anyhow::Error::from)?;
-    let scene = || Scene::from(trial.world.spec().fleet());
-    let recorder = recorder(args, scene())?;
-    let film = args.gif.is_some().then(|| Film::new(scene(), args.duration));
-    let mut show = Show::new(scene(), recorder, film);
+    let mut folder = RunFolder::open(&args.out).map_err(anyhow::Error::from)?;
+    let mut show = show(args, Scene::from(spec.fleet()), &mut folder)?;
     let reported = show.live_problem();
     reported.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
     let is_interrupted = interrupt_flag()?;
@@ -78,9 +74,9 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     }
     let speed = args.speed.unwrap_or(if is_keyboard { 1.0 } else { f64::INFINITY });
     let progress = Progress::of_time(args.duration, args.quiet, is_keyboard);
-    let mut ended = Ended::Duration;
+    let (mut ended, mut is_shown) = (Ended::Duration, true);
     let start = Instant::now();
-    trial.run_with(|world, reading, belief, pilot, observer| -> anyhow::Result<_> {
+    let went = trial.run_with(|world, reading, belief, pilot, observer| -> Result<_, ReadingError> {
         progress.show(reading.time(), observer.scores().map(|scores| scores.coverage));
         let end = match () {
             () if is_interrupted.load(Ordering::Relaxed) => Some(Ended::Interrupted),
@@ -90,7 +86,10 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
         };
         let measured =
             Measured { scores: observer.scores(), rate_errors: None, messages: &observer.messages };
-        show.add(&View::new(world, reading, belief, pilot, measured), end.is_some())?;
+        if let Err(problem) = show.add(&View::new(world, reading, belief, pilot, measured), end.is_some()) {
+            is_shown = false;
+            progress.say(format_args!("error: {problem}; the run goes on without it"));
+        }
         if let Some(end) = end {
             ended = end;
             return Ok(ControlFlow::Break(()));
@@ -103,30 +102,46 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
             }
         }
         Ok(ControlFlow::Continue(()))
-    })?;
+    });
+    went.map_err(anyhow::Error::from)?;
     let wall_s = start.elapsed().as_secs_f64();
     progress.finish();
     if let Some(problem) = show.live_problem().filter(|problem| Some(problem) != reported.as_ref()) {
         say(stderr(), format_args!("note: {problem}"));
     }
 
-    let summary = output::summary(args, settings, &trial, ended, wall_s);
+    let mut summary = output::summary(args, settings, &trial, ended, wall_s);
     let PhysicsTrial { mapper, pilot, observer, .. } = trial;
     drop(pilot); // restores the terminal before anything is printed
-    output::write(&args.out, args.gif.as_deref(), &mapper, show, &observer.goals, &summary)?;
+    output::write(folder, &mapper, show, &observer.goals, &mut summary)?;
     if !args.quiet {
         say(stdout(), format_args!("{summary}\n  files     {}", args.out.display()));
     }
-    Ok(ended)
+    Ok(match ended {
+        _ if !is_shown => ExitCode::FAILURE,
+        Ended::Interrupted => ExitCode::from(INTERRUPTED),
+        Ended::Duration | Ended::Pilot => ExitCode::SUCCESS,
+    })
 }
 
-fn recorder(args: &Args, scene: Scene) -> Result<Option<Recorder>, Failure> {
+/// Opens everything that shows the run: the recording, viewers, the moving picture.
+fn show(args: &Args, scene: Scene, folder: &mut RunFolder) -> Result<Show, Failure> {
+    args.rrd.iter().chain(&args.gif).for_each(|path| folder.adopt(path));
     let mut live = Vec::from_iter(args.connect.clone());
     live.extend(args.view.then_some(Live::Spawn));
-    let file = (!args.no_rrd).then(|| args.rrd.clone().unwrap_or_else(|| args.out.join("four_rooms.rrd")));
-    if file.is_none() && live.is_empty() {
-        return Ok(None);
-    }
-    let recorder = Recorder::new(file.as_deref(), &live, scene).map_err(anyhow::Error::from)?;
-    Ok(Some(recorder))
+    let named = || folder.unfinished().join(format!("{}.rrd", file_name(&scene.title)));
+    let file = (!args.no_rrd).then(|| args.rrd.clone().unwrap_or_else(named));
+    let recorder = match &file {
+        None if live.is_empty() => None,
+        file => Some(Recorder::new(file.as_deref(), &live, scene.clone()).map_err(anyhow::Error::from)?),
+    };
+    let gif = args.gif.as_deref().map(UnfinishedFile::create).transpose().map_err(anyhow::Error::from)?;
+    let film = gif.map(|file| Film::new(file, scene.clone(), args.duration));
+    Ok(Show::new(scene, recorder, film))
+}
+
+/// The name of a world as a part of a file name.
+fn file_name(name: &str) -> String {
+    let plain = |letter: char| if letter.is_alphanumeric() || "-._".contains(letter) { letter } else { '_' };
+    name.chars().map(plain).collect()
 }

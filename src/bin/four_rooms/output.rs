@@ -3,34 +3,37 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use evaluation::cell_statistics;
-use evaluation::output::write_file;
+use evaluation::output::{RunFolder, write_file};
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::summary::Summary;
 use interfaces::Twist;
 use mapper::Mapper;
 use nalgebra::Point2;
 use robot::Pilot;
-use std::path::Path;
 use viewer::show::Show;
 use worldfile::ros_map;
 
+/// The file that ends a run.
+const SUMMARY: &str = "summary.json";
+
 /// Writes everything except the recording, which is written during the run.
 pub(crate) fn write(
-    folder: &Path,
-    film: Option<&Path>,
+    folder: RunFolder,
     mapper: &Mapper,
     show: Show,
     goals: &[Point2<f64>],
-    summary: &Summary,
+    summary: &mut Summary,
 ) -> anyhow::Result<()> {
-    show.write(folder, film, mapper, goals)?;
+    let to = folder.unfinished();
+    show.write(to, mapper, goals)?;
     let map = mapper.states();
-    write_file(&folder.join("map.pgm"), |file| file.write_all(&ros_map::pgm(map)))?;
-    write_file(&folder.join("map.yaml"), |file| write!(file, "{}", ros_map::yaml(map.frame(), "map.pgm")))?;
-    cell_statistics::write(&folder.join("cell_statistics.csv"), mapper)?;
+    write_file(&to.join("map.pgm"), |file| file.write_all(&ros_map::pgm(map)))?;
+    write_file(&to.join("map.yaml"), |file| write!(file, "{}", ros_map::yaml(map.frame(), "map.pgm")))?;
+    cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
+    summary.files = folder.results()?;
     let text = serde_json::to_string_pretty(summary)?;
-    write_file(&folder.join("summary.json"), |file| writeln!(file, "{text}"))?;
-    Ok(())
+    write_file(&to.join(SUMMARY), |file| writeln!(file, "{text}"))?;
+    Ok(folder.finish(SUMMARY, &[])?)
 }
 
 pub(crate) fn summary(
@@ -52,7 +55,7 @@ pub(crate) fn summary(
             DriveChoice::Keyboard => "keyboard",
             DriveChoice::Tour => "tour",
         },
-        strategy: (args.drive == DriveChoice::Agent).then(|| args.strategy.name()),
+        strategy: (args.drive == DriveChoice::Agent).then(|| args.strategy().name()),
         estimator: args.estimator.name(),
         occupancy: args.occupancy.name(),
         ended_by: match ended {
@@ -64,6 +67,7 @@ pub(crate) fn summary(
         simulated_s,
         wall_s,
         real_time_factor: simulated_s / wall_s.max(f64::MIN_POSITIVE),
+        files: Vec::new(),
         results: trial.results(),
     }
 }

@@ -1,6 +1,7 @@
 //! Arguments → the parts of a run.
 
 use crate::args::{Args, DriveChoice};
+use crate::combination;
 use agent::Agent;
 use anyhow::{Context, anyhow};
 use controller::DiffDrive;
@@ -14,7 +15,7 @@ use robot::{Autonomous, Tour};
 use sim::physics::WorldSpec;
 use std::io::stderr;
 use std::path::Path;
-use worldfile::ros_map::{self, RosMap};
+use worldfile::ros_map;
 use worldfile::{Disk, Findings, Severity, TourSpec};
 
 /// The world and the settings of the robot.
@@ -30,31 +31,41 @@ impl Parts {
         if args.tour.is_some() && args.drive != DriveChoice::Tour {
             return Err(input(anyhow!("--tour needs --drive tour")));
         }
-        let Loaded { spec, warnings } = worlds::load(&args.world).map_err(input)?;
-        for warning in warnings {
-            say(stderr(), format_args!("{warning}\n"));
+        if args.strategy.is_some() && args.drive != DriveChoice::Agent {
+            return Err(input(anyhow!("--strategy is for the agent: leave out --drive, or --strategy")));
         }
+        let Loaded { spec, warnings } = worlds::load(&args.world).map_err(input)?;
+        warnings.iter().chain(&combination::odometry(&spec)).for_each(warn);
         let settings = PhysicsSettings::of(&spec).with_context(|| format!("cannot run `{}`", args.world));
         let mut settings = settings.map_err(input)?;
         settings.mapper.estimator = args.estimator.clone();
         settings.mapper.occupancy = args.occupancy.clone();
-        let read = |path| read_map(path).map(|map| map.onto(&spec.frame));
-        let prior = args.map.as_deref().map(read).transpose()?;
+        let prior = args.map.as_deref().map(|path| known_map(path, &spec)).transpose()?;
         Ok(Self { spec, settings, prior })
     }
 
     pub(crate) fn agent(&self, args: &Args) -> Result<Autonomous<Agent, DiffDrive>, Failure> {
-        let agent = self.settings.agent(&args.strategy, args.seed).map_err(input)?;
+        let agent = self.settings.agent(&args.strategy(), args.seed).map_err(input)?;
         self.settings.pilot(agent, args.seed).map_err(input)
     }
 
     pub(crate) fn tour(&self, args: &Args) -> Result<Autonomous<Tour, DiffDrive>, Failure> {
         let (name, text) = worlds::TOUR;
+        let home = worlds::SHIPPED[0].0;
         let tour = match &args.tour {
             Some(path) => TourSpec::load(path),
-            None => TourSpec::parse(name, text),
+            None if worlds::load(home).is_ok_and(|home| home.spec.walls == self.spec.walls) => {
+                TourSpec::parse(name, text)
+            }
+            None => {
+                let name = &self.spec.name;
+                return Err(input(anyhow!(
+                    "the tour that ships is for the walls of `{home}`: for `{name}`, give waypoints by --tour FILE"
+                )));
+            }
         };
         let TourSpec { waypoints, repeat } = tour.map_err(input)?;
+        combination::waypoints(&self.spec, &waypoints).iter().for_each(warn);
         self.settings.pilot(Tour::new(waypoints, repeat), args.seed).map_err(input)
     }
 
@@ -65,12 +76,17 @@ impl Parts {
     }
 }
 
-/// Reads a ROS map; its warnings go to the error output.
-fn read_map(path: &Path) -> Result<RosMap, Failure> {
+/// Reads a ROS map as the knowledge of the robot in a world; warnings go to the error output.
+fn known_map(path: &Path, spec: &WorldSpec) -> Result<Grid<CellState>, Failure> {
     let mut findings = Findings::default();
     let map = ros_map::read(path, &Disk, &mut findings);
-    for warning in findings.messages(Severity::Warning) {
-        say(stderr(), format_args!("{warning}\n"));
-    }
-    map.ok_or_else(|| input(anyhow!(findings.error_text())))
+    findings.messages(Severity::Warning).iter().for_each(warn);
+    let map = map.ok_or_else(|| input(anyhow!(findings.error_text())))?.onto(&spec.frame);
+    let warning = combination::map(spec, &map).map_err(|why| input(anyhow!("{}: {why}", path.display())))?;
+    warning.iter().for_each(warn);
+    Ok(map)
+}
+
+fn warn(warning: &String) {
+    say(stderr(), format_args!("{warning}\n"));
 }

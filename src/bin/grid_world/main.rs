@@ -9,14 +9,15 @@ use controller::CellDrive;
 use curious::program::{Failure, INTERRUPTED, exit_code, interrupt_flag, list};
 use curious::progress::Progress;
 use curious::worlds;
-use evaluation::output::{make_folder, say, write_file};
-use evaluation::report::{Report, ReportSettings, Trial};
+use evaluation::output::{RunFolder, say, write_file};
+use evaluation::report::{REPORT, Report, ReportSettings, Trial};
 use evaluation::trials::Experiment;
 use interfaces::SettingsError;
 use mapper::{EstimatorChoice, MapperSettings, Paper};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::collections::BTreeSet;
 use std::io::{stderr, stdout};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use viewer::recording::{Recorder, RecordingError};
@@ -130,7 +131,8 @@ fn trials(
 
 /// Runs the trials, and writes the results.
 fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
-    make_folder(&args.out)?;
+    let mut folder = RunFolder::open(&args.out)?;
+    args.rrd.iter().for_each(|path| folder.adopt(path));
     let is_canceled = interrupt_flag()?;
     let (trials, problem) = trials(args, experiment, &is_canceled)?;
     let is_interrupted = is_canceled.load(Ordering::Relaxed);
@@ -141,7 +143,7 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     if args.save_worlds {
         let named = experiment.worlds.len() - args.generate.unwrap_or(0) as usize;
         for world in &experiment.worlds[named..] {
-            let path = args.out.join(format!("{}.toml", world.name));
+            let path = folder.unfinished().join(format!("{}.toml", world.name));
             write_file(&path, |file| file.write_all(worldfile::grid::to_toml(world).as_bytes()))?;
         }
     }
@@ -152,10 +154,11 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
         ..experiment.report_settings()
     };
     let report = Report::new(settings, trials);
-    let files = report.write(&args.out, &experiment.worlds)?;
+    let names = report.write(&folder, &experiment.worlds)?;
+    let inputs: Vec<&Path> = args.world.iter().map(Path::new).collect();
+    folder.finish(REPORT, &inputs)?;
     if !args.quiet {
         say(stdout(), report.table());
-        let names: Vec<_> = files.iter().filter_map(|file| file.file_name()?.to_str()).collect();
         say(stdout(), format_args!("written to {}: {}", args.out.display(), names.join(", ")));
     }
     if let Some(problem) = problem {

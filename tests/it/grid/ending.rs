@@ -4,7 +4,7 @@
 use super::{report, rows};
 use crate::ending::{send, wait_for_recording};
 use crate::recording::Recording;
-use crate::run::{Ended, Run, names};
+use crate::run::{Ended, Run};
 use nix::sys::signal::Signal;
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
@@ -43,12 +43,12 @@ fn ctrl_c_keeps_the_finished_trials() {
 fn a_signal_closes_the_recording_even_before_the_first_trial_is_finished() {
     let run = Run::grid();
     let child = run.starts("--trials 1 --steps 100000000 --rrd trial.rrd --estimator paper");
-    wait_for_recording(&run.path("trial.rrd"));
+    wait_for_recording(&run.path("trial.unfinished.rrd"));
     send(Signal::SIGTERM, &child);
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{ended:?}");
     insta::assert_snapshot!(ended.stderr, @"interrupted before the first trial was finished: no report");
-    assert_eq!(names(&run.path("out")), [""; 0]);
+    assert_eq!(run.names(), ["trial.rrd"]);
 
     // It does not matter whether the program ended by itself first.
     let recording = Recording::read(&run.path("trial.rrd"));

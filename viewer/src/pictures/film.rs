@@ -9,12 +9,12 @@ use crate::outline::field_of_view;
 use crate::scene::{Scene, Sight, TimeUnit};
 use crate::view::{Trail, View};
 use evaluation::drawing::{Area, Canvas, PictureError, ink, px, why};
-use evaluation::output::write_file;
+use evaluation::output::UnfinishedFile;
 use evaluation::palette::{self, Rgb};
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use plotters::prelude::*;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::io::{self, Write};
 
 /// The number of frames.
 const FRAMES: u32 = 130;
@@ -28,6 +28,7 @@ const SAME: u8 = 255;
 
 /// The frames so far of a moving picture.
 pub struct Film {
+    file: UnfinishedFile,
     scene: Scene,
     duration: f64,
     panels: [Panel; 2],
@@ -38,10 +39,11 @@ pub struct Film {
 }
 
 impl Film {
-    /// A moving picture of a run in `scene`; `duration` is in the unit of time of the scene.
-    pub fn new(scene: Scene, duration: f64) -> Self {
+    /// A moving picture of a run in `scene`, to be written to a GIF file; `duration` is in the unit of time of the
+    /// scene.
+    pub fn new(file: UnfinishedFile, scene: Scene, duration: f64) -> Self {
         let panels = [false, true].map(|has_bar| Panel::of_film(&scene.frame, scene.unit, has_bar));
-        Self { scene, duration, panels, colors: Colors::new(), frames: Vec::new(), last: Vec::new() }
+        Self { file, scene, duration, panels, colors: Colors::new(), frames: Vec::new(), last: Vec::new() }
     }
 
     /// Adds the present state of the run, with the trails of the robots. Frames are frequent at the start, when
@@ -65,23 +67,24 @@ impl Film {
         Ok(())
     }
 
-    /// Writes a GIF file that repeats forever.
+    /// Writes the file; the picture repeats forever.
     ///
     /// # Errors
     ///
     /// When the file cannot be written.
-    pub fn write(mut self, path: &Path) -> Result<(), PictureError> {
+    pub fn write(mut self) -> Result<(), PictureError> {
         if let Some(last) = self.frames.last_mut() {
             last.delay = LAST_DELAY;
         }
         let [width, height] = self.size().map(|length| length as u16);
         let colors: Vec<u8> = self.colors.all.iter().flatten().copied().collect();
-        let write = |file: &mut dyn std::io::Write| -> Result<(), gif::EncodingError> {
-            let mut encoder = Encoder::new(file, width, height, &colors)?;
+        let frames = self.frames;
+        let write = |to: &mut dyn Write| -> Result<(), gif::EncodingError> {
+            let mut encoder = Encoder::new(to, width, height, &colors)?;
             encoder.set_repeat(Repeat::Infinite)?;
-            self.frames.iter().try_for_each(|frame| encoder.write_frame(frame))
+            frames.iter().try_for_each(|frame| encoder.write_frame(frame))
         };
-        Ok(write_file(path, |file| write(file).map_err(std::io::Error::other))?)
+        Ok(self.file.write(|to| write(to).map_err(io::Error::other))?)
     }
 
     /// Width and height, pixels.

@@ -1,5 +1,6 @@
 use super::*;
 use crate::tests::FakeRun;
+use evaluation::output::UnfinishedFile;
 use evaluation::palette::{self, Rgb};
 use image::RgbImage;
 use interfaces::CellState;
@@ -101,7 +102,7 @@ fn a_film_is_a_small_gif_that_shows_the_run() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.gif");
     let mut run = FakeRun::new();
-    let mut film = Film::new(run.scene.clone(), 30.0);
+    let mut film = Film::new(UnfinishedFile::create(&file).unwrap(), run.scene.clone(), 30.0);
     let mut trails = [(); 2].map(|()| Trail::default());
     for _ in 0..300 {
         run.step();
@@ -110,7 +111,7 @@ fn a_film_is_a_small_gif_that_shows_the_run() {
         }
         run.with_view(|view| film.add(view, &trails)).unwrap();
     }
-    film.write(&file).unwrap();
+    film.write().unwrap();
     let bytes = std::fs::read(&file).unwrap();
     assert!(bytes.len() < 1_000_000, "{}", bytes.len());
     let mut options = gif::DecodeOptions::new();

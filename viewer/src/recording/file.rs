@@ -1,13 +1,17 @@
 //! The file of a recording.
 
 use super::RecordingError;
+use evaluation::output::{OutputError, UnfinishedFile};
 use rerun::external::re_log_encoding::rrd::{EncodeError, Encoder, EncodingOptions};
 use rerun::log::LogMsg;
 use std::fs::File;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-/// An `.rrd` file with its final name from the start, so that a viewer can follow it, and a killed run leaves a
+/// The first bytes of every recording, before the version of the format.
+const MAGIC: &[u8] = b"RRF";
+
+/// An `.rrd` file that is written during the run, under a temporary name that a viewer can open: a killed run leaves a
 /// readable file.
 ///
 /// The file sink of the SDK reports a failed write only to its logger, and drops everything after it. This sink
@@ -16,6 +20,8 @@ use std::path::{Path, PathBuf};
 pub(super) struct RrdFile {
     path: PathBuf,
     encoder: Encoder<Output>,
+    /// The file of `encoder`; `None` in tests, and when it has its name.
+    unfinished: Option<UnfinishedFile>,
     /// The first error.
     written: Result<(), String>,
 }
@@ -23,18 +29,28 @@ pub(super) struct RrdFile {
 type Output = Box<dyn Write + Send>;
 
 impl RrdFile {
-    /// Creates the file, over an older one, and writes its header.
+    /// Creates the file, and writes its header. An older recording stays until this one is complete; a file that is
+    /// no recording is not replaced.
     pub(super) fn create(path: &Path) -> Result<Self, RecordingError> {
         let failed = |why| RecordingError::File { path: path.to_owned(), why };
-        let file = File::create(path).map_err(|error| failed(error.to_string()))?;
-        Self::with_output(path, Box::new(file)).map_err(failed)
+        if is_something_else(path) {
+            return Err(failed(
+                "there is a file with this name that is not a recording; choose another name".into(),
+            ));
+        }
+        let unfinished =
+            UnfinishedFile::create(path).map_err(|OutputError { why, .. }| failed(why.to_string()))?;
+        let output = unfinished.file().try_clone().map_err(|error| failed(error.to_string()))?;
+        let mut file = Self::with_output(path, Box::new(output)).map_err(failed)?;
+        file.unfinished = Some(unfinished);
+        Ok(file)
     }
 
     /// Like [`RrdFile::create`], with an `output`; `path` is used only in errors.
     pub(super) fn with_output(path: &Path, output: Output) -> Result<Self, String> {
         let version = rerun::build_info().version;
         let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, output);
-        Ok(Self { path: path.to_owned(), encoder: encoder.map_err(why)?, written: Ok(()) })
+        Ok(Self { path: path.to_owned(), encoder: encoder.map_err(why)?, unfinished: None, written: Ok(()) })
     }
 
     pub(super) fn send(&mut self, message: &LogMsg) {
@@ -43,10 +59,13 @@ impl RrdFile {
         }
     }
 
-    /// Writes the footer.
+    /// Writes the footer, and gives the file its name.
     pub(super) fn finish(&mut self) {
         if self.written.is_ok() {
             self.written = self.encoder.finish().map_err(why);
+        }
+        if let (Ok(()), Some(unfinished)) = (&self.written, self.unfinished.take()) {
+            self.written = unfinished.finish().map_err(|error| error.why.to_string());
         }
     }
 
@@ -54,6 +73,13 @@ impl RrdFile {
     pub(super) fn check(&self) -> Result<(), RecordingError> {
         self.written.clone().map_err(|why| RecordingError::File { path: self.path.clone(), why })
     }
+}
+
+/// Whether there is a file that is neither empty nor a recording.
+fn is_something_else(path: &Path) -> bool {
+    let is_file = path.metadata().is_ok_and(|known| known.is_file() && known.len() > 0);
+    let mut start = [0; MAGIC.len()];
+    is_file && !File::open(path).is_ok_and(|mut file| file.read_exact(&mut start).is_ok() && start == MAGIC)
 }
 
 /// The message of the operating system, without the context of the SDK.

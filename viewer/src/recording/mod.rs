@@ -70,8 +70,9 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the `.rrd` file (an older file is overwritten) and the viewers that show the run live. A viewer that
-    /// cannot be reached does not stop a recording with a file: see [`Recorder::live_problem`].
+    /// Opens the `.rrd` file (an older recording is replaced when this one is complete) and the viewers that show the
+    /// run live. A viewer that cannot be reached does not stop a recording with a file: see
+    /// [`Recorder::live_problem`].
     ///
     /// # Errors
     ///
@@ -93,7 +94,8 @@ impl Recorder {
     ///
     /// # Errors
     ///
-    /// When the file can no longer be written; at the end, when a part of the recording could not be written.
+    /// When the file can no longer be written; at the end, when a part of the recording could not be written. The
+    /// file is removed then; viewers go on, see [`Recorder::is_live`].
     pub fn log(&mut self, view: &View, is_last: bool) -> Result<(), RecordingError> {
         if self.tracks.is_none() {
             // A viewer's y axis points down.
@@ -115,6 +117,11 @@ impl Recorder {
             self.sinks.finish()?;
         }
         Ok(())
+    }
+
+    /// Whether a viewer shows the run.
+    pub fn is_live(&self) -> bool {
+        self.sinks.is_live()
     }
 
     /// Why a viewer does not show the run, or shows it no longer. The file is not affected.

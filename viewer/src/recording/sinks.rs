@@ -53,9 +53,15 @@ impl Sinks {
         Some(format!("the viewer at {} went away", lost.address()))
     }
 
-    /// Whether everything so far was written to the file.
+    /// Whether everything so far was written to the file. An error is returned once: the file is closed and removed,
+    /// so that the results have its space on a full disk.
     pub(super) fn check(&self) -> Result<(), RecordingError> {
-        self.outputs().file.as_ref().map_or(Ok(()), RrdFile::check)
+        let mut outputs = self.outputs();
+        let checked = outputs.file.as_ref().map_or(Ok(()), RrdFile::check);
+        if checked.is_err() {
+            outputs.file = None;
+        }
+        checked
     }
 
     /// Closes everything, once the stream was flushed.

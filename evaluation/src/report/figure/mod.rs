@@ -16,7 +16,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 use sim::grid::GridSpec;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 // All lengths in pixels of the finished picture.
 const WIDTH: u32 = 1180;
@@ -26,13 +26,8 @@ const LEGEND_ROW: i32 = 26;
 const LEGEND_COLUMNS: usize = 5;
 const PANEL_HEIGHT: i32 = 360;
 
-/// Writes the figures as PNG and SVG. Returns the files.
-pub(super) fn write_all(
-    folder: &Path,
-    report: &Report,
-    worlds: &[GridSpec],
-) -> Result<Vec<PathBuf>, PictureError> {
-    let mut files = Vec::new();
+/// Writes the figures as PNG and SVG.
+pub(super) fn write_all(folder: &Path, report: &Report, worlds: &[GridSpec]) -> Result<(), PictureError> {
     for (name, run) in chosen(report) {
         let figure = Figure { report, run, worlds: worlds_of(report, run, worlds) };
         let failed = |why| PictureError::Draw { name: name.clone(), why };
@@ -40,9 +35,8 @@ pub(super) fn write_all(
         Canvas::draw(figure.size(), |sheet| figure.draw(sheet, &Pen::BITMAP)).map_err(failed)?.write(&png)?;
         let text = svg(figure.size(), |sheet| figure.draw(sheet, &Pen::VECTOR)).map_err(failed)?;
         write_file(&vector, |file| file.write_all(text.as_bytes()))?;
-        files.extend([vector, png]);
     }
-    Ok(files)
+    Ok(())
 }
 
 /// The runs that are drawn, each with the name of its file: the first, and the others, unless

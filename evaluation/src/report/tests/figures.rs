@@ -137,7 +137,9 @@ fn draw_figures() {
         let report = report(worlds, &["two-state"], &strategies, seeds);
         let made = start.elapsed();
         let plans: Vec<GridSpec> = (0..worlds).map(world).collect();
-        let files = report.write(&folder.join(name), &plans).unwrap();
+        let run = RunFolder::open(&folder.join(name)).unwrap();
+        let files = report.write(&run, &plans).unwrap();
+        run.finish(REPORT, &[]).unwrap();
         println!("{name}: statistics in {made:?}, {} files after {:?}", files.len(), start.elapsed());
     }
     println!("{}", folder.display());

@@ -14,13 +14,14 @@ fn report(worlds: usize, estimators: &[&str], strategies: &[&str], seeds: u64) -
     Report::new(settings, trials)
 }
 
-/// All that a report writes, as names and contents.
+/// All that a report writes, as names and contents: `report.json`, and the other files by name.
 fn written(report: &Report) -> Vec<(String, Vec<u8>)> {
     let folder = tempfile::tempdir().unwrap();
+    let folder = RunFolder::open(folder.path()).unwrap();
     let worlds: Vec<GridSpec> = (0..3).map(world).collect();
-    let files = report.write(folder.path(), &worlds).unwrap();
-    let name = |file: &PathBuf| file.file_name().unwrap().to_str().unwrap().to_owned();
-    files.iter().map(|file| (name(file), std::fs::read(file).unwrap())).collect()
+    let names = report.write(&folder, &worlds).unwrap();
+    let content = |name: &String| std::fs::read(folder.unfinished().join(name)).unwrap();
+    names.iter().map(|name| (name.clone(), content(name))).collect()
 }
 
 fn close(a: f64, b: f64, tolerance: f64) {

@@ -1,8 +1,14 @@
-//! Output: lines for the user, and files that are either complete or absent.
+//! Output: lines for the user, files that are either complete or absent, and the folder of a run.
+
+mod folder;
+mod unfinished;
+
+pub use folder::RunFolder;
+pub use unfinished::UnfinishedFile;
 
 use std::fmt::Display;
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::fs::{self, TryLockError};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Prints a line. A closed pipe (for example `| head`) is ignored: the run continues.
@@ -16,7 +22,7 @@ pub fn say(mut to: impl Write, what: impl Display) {
 pub struct OutputError {
     /// The file or folder.
     pub path: PathBuf,
-    /// The error of the operating system.
+    /// The reason, in most cases an error of the operating system.
     pub why: io::Error,
 }
 
@@ -25,30 +31,29 @@ impl OutputError {
     pub fn new(path: &Path, why: impl Into<io::Error>) -> Self {
         Self { path: path.to_owned(), why: why.into() }
     }
+
+    /// The error for a `path` that another run has locked; `advice` says what to do.
+    fn locked(path: &Path, error: TryLockError, advice: &str) -> Self {
+        match error {
+            TryLockError::WouldBlock => {
+                let why = format!("another run is writing there; {advice}");
+                Self::new(path, io::Error::new(io::ErrorKind::ResourceBusy, why))
+            }
+            TryLockError::Error(why) => Self::new(path, why),
+        }
+    }
 }
 
-/// Writes a file under a temporary name in the same folder, and renames the complete file. An older file stays
-/// until then, and a file with the final name is always complete.
+/// Writes a file as an [`UnfinishedFile`]: an older file stays until the new one is complete.
 ///
 /// # Errors
 ///
-/// When the file cannot be written. No temporary file is left.
+/// When the file cannot be written. Nothing is left of it then.
 pub fn write_file(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), OutputError> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let partial = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
-    let outcome = File::create(&partial).and_then(|file| {
-        let mut file = BufWriter::new(file);
-        write(&mut file)?;
-        file.flush()?;
-        fs::rename(&partial, path)
-    });
-    outcome.map_err(|why| {
-        fs::remove_file(&partial).ok(); // the first error is reported
-        OutputError::new(path, why)
-    })
+    UnfinishedFile::create(path)?.write(write)
 }
 
 /// Makes a folder, and its parent folders, unless it exists.
