@@ -35,8 +35,11 @@ fn a_map_of_another_place_is_reported() {
     };
     let other = map("0.0, 0.0");
     assert_eq!(other.code, Some(0), "{other:?}");
-    insta::assert_snapshot!(other.stderr.trim_end(), @"");
+    insta::assert_snapshot!(other.stderr.trim_end(), @"
+    warning: only 8 % of the walls of the map stand in the world `four rooms`: it looks like a map of another place
+      = help: the robot takes the map as its knowledge, and unlearns it cell by cell
+    ");
     let far = map("100.0, 0.0");
     assert_eq!(far.code, Some(2), "{far:?}");
-    insta::assert_snapshot!(far.stderr.trim_end(), @"");
+    insta::assert_snapshot!(far.stderr.trim_end(), @"error: m.yaml: the map shows nothing of the world `four rooms`: check `origin` and `resolution`");
 }

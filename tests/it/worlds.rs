@@ -51,5 +51,8 @@ fn odometry_that_drifts_is_reported() {
     assert!(world.contains(exact));
     run.write("drift.toml", &world.replacen(exact, drifting, 1));
     let ended = run.goes_well("--quiet --no-rrd --duration 1 --world drift.toml");
-    insta::assert_snapshot!(ended.stderr.trim_end(), @"");
+    insta::assert_snapshot!(ended.stderr.trim_end(), @"
+    warning: the odometry of `curious` drifts, and poses are taken as exact: this map will be wrong
+      = help: without `[robot.odometry]` the poses are exact
+    ");
 }

@@ -14,7 +14,9 @@ fn the_output_folder_is_complete() {
     // In addition the figure of the second estimator.
     assert_eq!(written.len(), 6, "{written:?}");
     let last = ended.stdout.lines().last().unwrap();
-    assert!(last.starts_with("written to out: report.json, trials.csv, figure3.svg, figure3.png"), "{last}");
+    let listed = "written to out: report.json, figure3-two-blocks-two-state-gaps.png, \
+                  figure3-two-blocks-two-state-gaps.svg, figure3.png, figure3.svg, trials.csv";
+    assert_eq!(last, listed);
 
     let picture = image::open(run.out("figure3.png")).unwrap().into_rgb8();
     assert!(picture.width() >= 800 && picture.height() >= 400, "{:?}", picture.dimensions());
