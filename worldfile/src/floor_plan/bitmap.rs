@@ -95,17 +95,6 @@ impl Bitmap {
         })
     }
 
-    /// The sides of pixels between a blocked pixel and a free one, or the border of the picture.
-    pub fn boundary_sides(&self) -> usize {
-        let mut sides = 0;
-        self.for_row_pairs(|_, below, above| {
-            sides += below.iter().zip(above).filter(|(below, above)| below != above).count();
-            let ends = usize::from(above.first() == Some(&true)) + usize::from(above.last() == Some(&true));
-            sides += ends + above.windows(2).filter(|pair| pair[0] != pair[1]).count();
-        });
-        sides
-    }
-
     /// One row of pixels.
     pub(super) fn row(&self, y: u32) -> &[bool] {
         let start = y as usize * self.width as usize;
@@ -123,8 +112,7 @@ impl Bitmap {
         }
     }
 
-    /// The corners of the blocked area: as many as its outline has segments. Where two blocked
-    /// pixels touch in a point only, there are two.
+    /// The corners of the blocked area. Where two blocked pixels touch in a point only, there are two.
     fn corners(&self) -> usize {
         let mut corners = 0;
         self.for_row_pairs(|_, below, above| {

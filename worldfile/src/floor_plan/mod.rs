@@ -1,25 +1,19 @@
 //! Floor plans: pictures whose dark pixels are walls.
 //!
 //! A [`Bitmap`] has the blocked pixels of a picture. It is read from a PNG or PGM picture, either alone or through
-//! a ROS `map.yaml` ([`crate::ros_map`]). A [`FloorPlan`] adds a size and a place. From these come two descriptions
-//! of the same walls, both exact on the borders of pixels:
-//!
-//! - [`FloorPlan::outline`]: the segments between blocked and free, for rays. Of a plan with right
-//!   angles these are as many as it has corners.
-//! - [`FloorPlan::rectangles`]: solid rectangles whose union is the blocked area, for bodies. They
-//!   overlap where walls meet, so that no seam lies across a flat surface.
+//! a ROS `map.yaml` ([`crate::ros_map`]). A [`FloorPlan`] adds a size and a place. From these come the walls:
+//! [`FloorPlan::rectangles`], solid rectangles whose union is the blocked area, exact on the borders of pixels. They
+//! overlap where walls meet, so that no seam lies across a flat surface.
 //!
 //! Pictures are bounded before they are decoded: see [`PlanError`].
 
 mod bitmap;
-mod outline;
 mod picture;
 mod rectangles;
 #[cfg(test)]
 mod tests;
 
 pub use bitmap::Bitmap;
-pub use outline::PixelSegment;
 pub(crate) use picture::Raster;
 pub use picture::{MAX_DECODED_BYTES, MAX_FILE_BYTES, MAX_PIXELS, Pixel};
 pub use rectangles::PixelRectangle;
@@ -65,15 +59,6 @@ pub enum PlanError {
     },
 }
 
-/// A straight piece of the surface of a wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
-    /// The start of the segment, m. The wall is on the left of the direction from start to end.
-    pub from: Point2<f64>,
-    /// The end of the segment, m.
-    pub to: Point2<f64>,
-}
-
 /// A picture of walls with its size and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorPlan {
@@ -92,12 +77,6 @@ impl FloorPlan {
             .component_mul(&self.pixel_m)
     }
 
-    /// The surface of the walls.
-    pub fn outline(&self) -> impl Iterator<Item = Segment> {
-        let segments = self.bitmap.outline().into_iter();
-        segments.map(|segment| Segment { from: self.point(segment.from), to: self.point(segment.to) })
-    }
-
     /// Solid rectangles whose union is the walls.
     pub fn rectangles(&self) -> impl Iterator<Item = Rectangle> {
         self.bitmap.rectangles().into_iter().map(|rectangle| {
@@ -108,10 +87,6 @@ impl FloorPlan {
                 half_m: (high - low) / 2.0,
             }
         })
-    }
-
-    fn point(&self, corner: [u32; 2]) -> Point2<f64> {
-        self.origin * self.local(corner)
     }
 
     /// A corner of a pixel in the picture's own frame, m.
