@@ -63,15 +63,26 @@ impl Show {
         self.recorder.as_ref()?.live_problem()
     }
 
-    /// Writes the pictures into `folder`, and the film to its file if there is one.
+    /// Writes the pictures into `folder`.
     ///
     /// # Errors
     ///
     /// When a picture cannot be drawn or written.
-    pub fn write(self, folder: &Path, mapper: &Mapper, goals: &[Point2<f64>]) -> Result<(), PictureError> {
-        if let Some(film) = self.film {
-            film.write()?;
-        }
+    pub fn write_pictures(
+        &self,
+        folder: &Path,
+        mapper: &Mapper,
+        goals: &[Point2<f64>],
+    ) -> Result<(), PictureError> {
         pictures::write_all(folder, &self.scene, mapper, &self.trails, goals)
+    }
+
+    /// Writes the film to its file, if there is one.
+    ///
+    /// # Errors
+    ///
+    /// When the film cannot be written.
+    pub fn write_film(self) -> Result<(), PictureError> {
+        self.film.map_or(Ok(()), Film::write)
     }
 }

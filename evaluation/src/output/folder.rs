@@ -98,7 +98,6 @@ impl RunFolder {
     /// When the folder cannot be read.
     pub fn results(&self) -> Result<Vec<String>, OutputError> {
         let mut names = self.adopted.clone();
-        names.retain(|name| self.path.join(name).is_file());
         for entry in fs::read_dir(&self.unfinished).map_err(|why| self.failed(why))? {
             names.extend(entry.map_err(|why| self.failed(why))?.file_name().into_string().ok());
         }

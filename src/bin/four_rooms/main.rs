@@ -113,7 +113,11 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let mut summary = output::summary(args, settings, &trial, ended, wall_s);
     let PhysicsTrial { mapper, pilot, observer, .. } = trial;
     drop(pilot); // restores the terminal before anything is printed
-    output::write(folder, &mapper, show, &observer.goals, &mut summary)?;
+    output::write(folder, &mapper, &show, &observer.goals, &mut summary)?;
+    if let Err(problem) = show.write_film() {
+        is_shown = false;
+        say(stderr(), format_args!("error: {problem}"));
+    }
     if !args.quiet {
         say(stdout(), format_args!("{summary}\n  files     {}", args.out.display()));
     }

@@ -16,16 +16,16 @@ use worldfile::ros_map;
 /// The file that ends a run.
 const SUMMARY: &str = "summary.json";
 
-/// Writes everything except the recording, which is written during the run.
+/// Writes everything except the recording and the moving picture: no result is lost for them.
 pub(crate) fn write(
     folder: RunFolder,
     mapper: &Mapper,
-    show: Show,
+    show: &Show,
     goals: &[Point2<f64>],
     summary: &mut Summary,
 ) -> anyhow::Result<()> {
     let to = folder.unfinished();
-    show.write(to, mapper, goals)?;
+    show.write_pictures(to, mapper, goals)?;
     let map = mapper.states();
     write_file(&to.join("map.pgm"), |file| file.write_all(&ros_map::pgm(map)))?;
     write_file(&to.join("map.yaml"), |file| write!(file, "{}", ros_map::yaml(map.frame(), "map.pgm")))?;

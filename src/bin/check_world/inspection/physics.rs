@@ -55,14 +55,7 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
                 "picture",
                 format!("{} × {} pixels of {} m", bitmap.width(), bitmap.height(), short(plan.pixel_m.x)),
             ),
-            (
-                "walls",
-                format!(
-                    "{} rectangles, {} straight pieces of surface",
-                    rectangles.len(),
-                    plan.outline().count()
-                ),
-            ),
+            ("walls", format!("{} rectangles", rectangles.len())),
         ],
         scene: Scene {
             title: name,
