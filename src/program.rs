@@ -45,12 +45,16 @@ pub fn exit_code(result: Result<ExitCode, Failure>) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// A flag that Ctrl-C, SIGTERM and SIGHUP set, instead of ending the program.
+/// A flag that Ctrl-C, SIGTERM and SIGHUP set, instead of ending the program. A file that would be larger than the
+/// operating system allows (`ulimit -f`) does not end the program either: its writing fails.
 ///
 /// # Errors
 ///
 /// When the operating system does not allow it.
 pub fn interrupt_flag() -> anyhow::Result<Arc<AtomicBool>> {
+    #[cfg(unix)]
+    signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())
+        .context("cannot listen for signals")?;
     let is_interrupted = Arc::new(AtomicBool::new(false));
     let flag = is_interrupted.clone();
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;

@@ -136,6 +136,23 @@ fn a_recording_that_cannot_go_on_costs_no_result() {
     assert_eq!(names(&run.path("out")), names(&without.path("out")));
 }
 
+/// A file can become larger than the operating system allows.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_limit_on_the_size_of_files_costs_no_result() {
+    let run = Run::new();
+    let program = run.command("--duration 20m --quiet");
+    let mut limited = std::process::Command::new("sh");
+    // 8 MB: enough for every result, not for the recording.
+    limited.arg("-c").arg("ulimit -f 16000 && exec \"$0\" \"$@\"").arg(program.get_program());
+    let ended = Ended::from(limited.args(program.get_args()).current_dir(run.path("")).output().unwrap());
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    let expected = "error: cannot write the recording out/unfinished_run/four_rooms.rrd: File too large";
+    assert!(ended.stderr.starts_with(expected), "{}", ended.stderr);
+    assert_eq!(run.summary().text("/ended_by"), "duration");
+    assert!(!run.out("four_rooms.rrd").exists());
+}
+
 #[test]
 #[cfg(unix)]
 fn a_recording_that_cannot_go_on_costs_no_trial() {
