@@ -1,14 +1,8 @@
-//! Output: lines for the user, and files that are either complete or absent.
+//! Files that are either complete or absent.
 
-use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-
-/// Prints a line. A closed pipe (for example `| head`) is ignored: the run continues.
-pub fn say(mut to: impl Write, what: impl Display) {
-    let _ = writeln!(to, "{what}");
-}
 
 /// The error for a file or folder that cannot be written.
 #[derive(Debug, thiserror::Error)]

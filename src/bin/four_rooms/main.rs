@@ -6,16 +6,17 @@ mod parts;
 
 use anyhow::Context;
 use args::{Args, DriveChoice};
-use clap::Parser;
-use curious::program::{Failure, INTERRUPTED, exit_code, input, interrupt_flag, list};
+use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, list, start};
 use curious::progress::Progress;
+use curious::terminal::{print, say};
 use curious::worlds;
-use evaluation::output::{make_folder, say};
+use evaluation::metrics::map_scores;
+use evaluation::output::make_folder;
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::{Reading, Twist};
 use parts::Parts;
 use robot::Pilot;
-use std::io::{stderr, stdout};
+use std::io::stderr;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -30,15 +31,17 @@ use viewer::view::{Measured, View};
 const NAP: Duration = Duration::from_millis(50);
 
 fn main() -> ExitCode {
-    let args = Args::parse();
-    if args.list_worlds {
-        list(&worlds::SHIPPED, 18, |name| worlds::load(name).map(|world| world.spec.description.clone()));
-        return ExitCode::SUCCESS;
-    }
-    exit_code(run(&args).map(|ended| match ended {
-        Ended::Interrupted => ExitCode::from(INTERRUPTED),
-        Ended::Duration | Ended::Pilot => ExitCode::SUCCESS,
-    }))
+    start(|args: &Args| {
+        if args.list_worlds {
+            let describe = |name: &str| worlds::load(name).map(|world| world.spec.description.clone());
+            list(&worlds::SHIPPED, 18, describe)?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        Ok(match run(args)? {
+            Ended::Interrupted => ExitCode::from(INTERRUPTED),
+            Ended::Duration | Ended::Pilot => ExitCode::SUCCESS,
+        })
+    })
 }
 
 /// The reason for the end of a run.
@@ -81,7 +84,9 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let mut ended = Ended::Duration;
     let start = Instant::now();
     trial.run_with(|world, reading, belief, pilot, observer| -> anyhow::Result<_> {
-        progress.show(reading.time(), observer.scores().map(|scores| scores.coverage));
+        let show_progress =
+            || progress.show(reading.time(), || map_scores(belief.mapper, world.truth()).coverage);
+        show_progress();
         let end = match () {
             () if is_interrupted.load(Ordering::Relaxed) => Some(Ended::Interrupted),
             () if pilot.is_done() => Some(Ended::Pilot),
@@ -100,6 +105,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
             // In short naps: an interrupted run ends soon.
             while start.elapsed() < due && !is_interrupted.load(Ordering::Relaxed) {
                 std::thread::sleep(due.saturating_sub(start.elapsed()).min(NAP));
+                show_progress();
             }
         }
         Ok(ControlFlow::Continue(()))
@@ -115,7 +121,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     drop(pilot); // restores the terminal before anything is printed
     output::write(&args.out, args.gif.as_deref(), &mapper, show, &observer.goals, &summary)?;
     if !args.quiet {
-        say(stdout(), format_args!("{summary}\n  files     {}", args.out.display()));
+        print(format_args!("{summary}\n  files     {}", args.out.display()))?;
     }
     Ok(ended)
 }

@@ -4,32 +4,33 @@ mod args;
 
 use anyhow::{Context, bail};
 use args::Args;
-use clap::Parser;
 use controller::CellDrive;
-use curious::program::{Failure, INTERRUPTED, exit_code, interrupt_flag, list};
+use curious::program::{Failure, INTERRUPTED, interrupt_flag, list, start};
 use curious::progress::Progress;
+use curious::terminal::{print, say};
 use curious::worlds;
-use evaluation::output::{make_folder, say, write_file};
+use evaluation::output::{make_folder, write_file};
 use evaluation::report::{Report, ReportSettings, Trial};
 use evaluation::trials::Experiment;
 use interfaces::SettingsError;
 use mapper::{EstimatorChoice, MapperSettings, Paper};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::collections::BTreeSet;
-use std::io::{stderr, stdout};
+use std::io::stderr;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use viewer::recording::{Recorder, RecordingError};
 use viewer::trial::{Recorded, record};
 
 fn main() -> ExitCode {
-    let args = Args::parse();
-    if args.list_worlds {
-        list(&worlds::SHIPPED_GRID, 20, |name| worlds::load_grid(name).map(|spec| spec.description));
-        return ExitCode::SUCCESS;
-    }
-    let experiment = experiment(&args).map_err(Failure::Input);
-    exit_code(experiment.and_then(|experiment| Ok(run(&args, &experiment)?)))
+    start(|args: &Args| {
+        if args.list_worlds {
+            list(&worlds::SHIPPED_GRID, 20, |name| worlds::load_grid(name).map(|spec| spec.description))?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        let experiment = experiment(args).map_err(Failure::Input)?;
+        Ok(run(args, &experiment)?)
+    })
 }
 
 /// The experiment that the arguments describe.
@@ -154,9 +155,9 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     let report = Report::new(settings, trials);
     let files = report.write(&args.out, &experiment.worlds)?;
     if !args.quiet {
-        say(stdout(), report.table());
+        print(report.table())?;
         let names: Vec<_> = files.iter().filter_map(|file| file.file_name()?.to_str()).collect();
-        say(stdout(), format_args!("written to {}: {}", args.out.display(), names.join(", ")));
+        print(format_args!("written to {}: {}", args.out.display(), names.join(", ")))?;
     }
     if let Some(problem) = problem {
         return Err(problem.into());
