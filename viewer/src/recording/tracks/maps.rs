@@ -47,10 +47,8 @@ fn color_bar(tracks: &Tracks, layer: Layer, frame: &GridFrame) -> RecordingStrea
     bar.log(tracks, &path, order::MAP, 1.0)?;
     tracks.always(&path, &images(vec![classes]))?;
     let tick = |&value: &f64| super::position(&at(0.06 + 0.88 * scale.position(value), -0.105));
-    let note = layer.note().map(|note| (note.to_owned(), super::position(&at(0.5, -0.155))));
-    let ticks = scale.ticks.iter().map(|value| (value.to_string(), tick(value)));
-    let (texts, positions): (Vec<String>, Vec<_>) = ticks.chain(note).unzip();
-    let marks = labels(texts.iter().map(String::as_str)).with_positions(positions);
+    let texts: Vec<String> = scale.ticks.iter().map(f64::to_string).collect();
+    let marks = labels(texts.iter().map(String::as_str)).with_positions(scale.ticks.iter().map(tick));
     tracks.always(&format!("{}/marks", map(layer)), &marks)
 }
 
