@@ -1,6 +1,8 @@
-//! Code that the programs share: arguments and exit codes, worlds, progress, and the keyboard pilot.
+//! Code that the programs share: arguments and exit codes, worlds, progress, lines for the user, and the
+//! keyboard pilot.
 
 pub mod keyboard;
 pub mod program;
 pub mod progress;
+pub mod terminal;
 pub mod worlds;

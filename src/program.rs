@@ -1,11 +1,12 @@
 //! Code that the command-line programs share: exit codes, Ctrl-C, the list of worlds, parsers of arguments.
 
+use crate::terminal::{check_printed, print, say};
 use anyhow::Context;
+use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use evaluation::output::say;
 use std::error::Error;
 use std::fmt::Display;
-use std::io::{stderr, stdout};
+use std::io::stderr;
 use std::process::ExitCode;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -34,8 +35,13 @@ pub fn input(error: impl Into<anyhow::Error>) -> Failure {
     Failure::Input(error.into())
 }
 
-/// The exit code of a program; a failure is printed to the error output.
-pub fn exit_code(result: Result<ExitCode, Failure>) -> ExitCode {
+/// Runs `program` with its command line, and returns its exit code; a failure is printed to the error output.
+pub fn start<A: Parser>(program: impl FnOnce(&A) -> Result<ExitCode, Failure>) -> ExitCode {
+    let result = match A::try_parse() {
+        Ok(args) => program(&args),
+        Err(invalid) if invalid.use_stderr() => invalid.exit(),
+        Err(help) => check_printed(help.print()).map(|()| ExitCode::SUCCESS).map_err(Failure::Run),
+    };
     let (code, error) = match result {
         Ok(code) => return code,
         Err(Failure::Input(error)) => (2, error),
@@ -62,13 +68,22 @@ pub fn interrupt_flag() -> anyhow::Result<Arc<AtomicBool>> {
 }
 
 /// Prints shipped worlds, one per line: the name, in a column of `width`, and the description.
-pub fn list<E: Display>(worlds: &[(&str, &str)], width: usize, describe: impl Fn(&str) -> Result<String, E>) {
+///
+/// # Errors
+///
+/// When the standard output cannot be written.
+pub fn list<E: Display>(
+    worlds: &[(&str, &str)],
+    width: usize,
+    describe: impl Fn(&str) -> Result<String, E>,
+) -> anyhow::Result<()> {
     for (name, _) in worlds {
         match describe(name) {
-            Ok(description) => say(stdout(), format_args!("{name:<width$} {description}")),
+            Ok(description) => print(format_args!("{name:<width$} {description}"))?,
             Err(error) => say(stderr(), error),
         }
     }
+    Ok(())
 }
 
 /// A parser of the name of one of `all`.

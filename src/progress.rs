@@ -1,18 +1,22 @@
 //! The progress of a run: a bar in a terminal, plain lines elsewhere.
 
-use evaluation::output::say;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::fmt::Display;
+use crate::terminal::say;
+use crossterm::terminal;
+use evaluation::percent::percent;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::fmt::{self, Display, Formatter};
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// The wall time between two plain lines.
 const LINE_EVERY: Duration = Duration::from_secs(5);
+/// The wall time between two states of the bar.
+const BAR_EVERY: Duration = Duration::from_millis(250);
 /// The wall time before the first message on simulated time.
 const FIRST: Duration = Duration::from_millis(500);
-/// The maximum rate at which the bar is drawn.
-const BAR_HZ: u8 = 10;
+/// In a terminal of fewer columns the text beside the bar is short.
+const NARROW: u16 = 60;
 
 /// The kind of progress of a run.
 #[derive(Clone, Copy, PartialEq)]
@@ -24,9 +28,9 @@ enum Kind {
 
 /// The progress of one run in simulated time, or of many trials, which may run on any thread.
 pub struct Progress {
+    /// The position is in milliseconds of simulated time, or in trials.
     bar: ProgressBar,
     kind: Kind,
-    start: Instant,
     /// The time of the next message.
     next: Mutex<Instant>,
 }
@@ -34,16 +38,14 @@ pub struct Progress {
 impl Progress {
     /// A run of `duration_s` of simulated time. `is_raw`: the keyboard pilot uses the terminal.
     pub fn of_time(duration_s: f64, is_quiet: bool, is_raw: bool) -> Self {
-        let template = "{msg} {wide_bar} {percent:>3} %  {eta} left";
-        Self::new(duration_s.round() as u64, template, FIRST, is_quiet, is_raw)
+        Self::new(milliseconds(duration_s), OF_TIME, FIRST, is_quiet, is_raw)
     }
 
     /// A number of trials.
     pub fn of_trials(trials: usize, is_quiet: bool) -> Self {
-        let template = "{pos} of {len} trials {wide_bar} {percent:>3} %  {eta} left";
-        let progress = Self::new(trials as u64, template, LINE_EVERY, is_quiet, false);
+        let progress = Self::new(trials as u64, OF_TRIALS, LINE_EVERY, is_quiet, false);
         if progress.kind == Kind::Bar {
-            progress.bar.enable_steady_tick(Duration::from_millis(200)); // The clock advances during long trials.
+            progress.bar.enable_steady_tick(BAR_EVERY); // The time left changes during long trials.
         }
         progress
     }
@@ -51,52 +53,49 @@ impl Progress {
     fn new(length: u64, template: &str, first: Duration, is_quiet: bool, is_raw: bool) -> Self {
         let (kind, target) = match () {
             () if is_quiet => (Kind::Silent, ProgressDrawTarget::hidden()),
-            () if stderr().is_terminal() && !is_raw => {
-                (Kind::Bar, ProgressDrawTarget::stderr_with_hz(BAR_HZ))
-            }
+            () if stderr().is_terminal() && !is_raw => (Kind::Bar, ProgressDrawTarget::stderr()),
             () => (Kind::Lines, ProgressDrawTarget::hidden()),
         };
-        let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = ProgressBar::with_draw_target(Some(length), target).with_style(style);
-        let start = Instant::now();
-        Self { bar, kind, start, next: Mutex::new(start + first) }
+        Self { bar: bar(length, template, target), kind, next: Mutex::new(Instant::now() + first) }
     }
 
-    /// Whether a message is due. If it is, the next message is due after `wait`.
-    fn is_due(&self, wait: Duration) -> bool {
+    /// Whether a message is due. If it is, the time of the next message is set.
+    fn is_due(&self) -> bool {
         let Ok(mut next) = self.next.lock() else { return false };
         let is_due = Instant::now() >= *next;
         if is_due {
-            *next = Instant::now() + wait;
+            *next = Instant::now() + if self.kind == Kind::Bar { BAR_EVERY } else { LINE_EVERY };
         }
         is_due
     }
 
-    /// Shows the simulated time and the coverage so far.
-    pub fn show(&self, time_s: f64, coverage: Option<f64>) {
-        let wait = if self.kind == Kind::Bar { Duration::from_secs(1) / BAR_HZ.into() } else { LINE_EVERY };
-        if self.kind == Kind::Silent || !self.is_due(wait) {
+    /// Shows the simulated time so far, at most a few times per second. `coverage` is called only when it is shown.
+    pub fn show(&self, time_s: f64, coverage: impl FnOnce() -> f64) {
+        if self.kind == Kind::Silent || !self.is_due() {
             return;
         }
-        let speed = time_s / self.start.elapsed().as_secs_f64().max(1e-3);
-        let seen = coverage.map_or(String::new(), |share| format!(", seen {:.1} %", 100.0 * share));
-        let all_s = self.bar.length().unwrap_or(0);
-        let line = format!("{time_s:.0} of {all_s} s, {speed:.0} x real time{seen}");
+        self.bar.set_position(milliseconds(time_s));
+        let state = State {
+            time_s,
+            all_s: self.bar.length().unwrap_or(0) as f64 / 1000.0,
+            speed: time_s / self.bar.elapsed().as_secs_f64().max(1e-3),
+            coverage: coverage(),
+        };
         if self.kind == Kind::Bar {
-            self.bar.set_position(time_s as u64);
-            self.bar.set_message(line);
+            let columns = terminal::size().map_or(NARROW, |(columns, _)| columns);
+            self.bar.set_message(state.beside_bar(columns));
         } else {
-            say(stderr(), format_args!("{line}\r")); // a raw terminal needs the carriage return
+            // A raw terminal needs the carriage return.
+            say(stderr(), format_args!("{state}, {}\r", self.time_left()));
         }
     }
 
     /// Counts one more finished trial.
     pub fn step(&self) {
         self.bar.inc(1);
-        if self.kind == Kind::Lines && self.is_due(LINE_EVERY) {
+        if self.kind == Kind::Lines && self.is_due() {
             let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
-            let left_s = self.start.elapsed().as_secs_f64() * (all as f64 / done.max(1) as f64 - 1.0);
-            say(stderr(), format_args!("{done} of {all} trials, {left_s:.0} s left"));
+            say(stderr(), format_args!("{done} of {all} trials, {}", self.time_left()));
         }
     }
 
@@ -105,8 +104,178 @@ impl Progress {
         self.bar.suspend(|| say(stderr(), format_args!("{what}\r"))); // a raw terminal needs the carriage return
     }
 
+    fn time_left(&self) -> String {
+        time_left(self.bar.position(), self.bar.length(), self.bar.elapsed())
+    }
+
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// The state of a run in simulated time.
+struct State {
+    time_s: f64,
+    all_s: f64,
+    /// Simulated time divided by wall time.
+    speed: f64,
+    /// The share of the cells that can be seen that have been seen.
+    coverage: f64,
+}
+
+impl State {
+    /// The text beside a bar in a terminal of `columns`: short, so that the bar has room.
+    fn beside_bar(&self, columns: u16) -> String {
+        let Self { time_s, all_s, speed, coverage } = self;
+        let (decimals, seen) = (decimals(*speed), percent(*coverage));
+        if columns < NARROW {
+            return format!("{time_s:.0} s, seen {seen}");
+        }
+        format!("{time_s:.0} of {all_s:.0} s at {speed:.decimals$} x, seen {seen}")
+    }
+}
+
+impl Display for State {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { time_s, all_s, speed, coverage } = self;
+        let (decimals, seen) = (decimals(*speed), percent(*coverage));
+        write!(f, "{time_s:.0} of {all_s:.0} s, {speed:.decimals$} x real time, seen {seen}")
+    }
+}
+
+/// The decimals of a speed: a slow run must not have the speed 0.
+fn decimals(speed: f64) -> usize {
+    match speed {
+        speed if speed < 0.1 => 4,
+        speed if speed < 10.0 => 1,
+        _ => 0,
+    }
+}
+
+fn milliseconds(time_s: f64) -> u64 {
+    (1000.0 * time_s).round() as u64
+}
+
+const OF_TIME: &str = "{done:>3} % {wide_bar} {msg}, {left}";
+const OF_TRIALS: &str = "{done:>3} % {wide_bar} {pos} of {len} trials, {left}";
+
+fn bar(length: u64, template: &str, target: ProgressDrawTarget) -> ProgressBar {
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    // Writing to a text in memory cannot fail.
+    let done = |state: &ProgressState, to: &mut dyn fmt::Write| {
+        let percent = 100 * state.pos() / state.len().unwrap_or(0).max(1); // rounded down: 100 % is the end
+        let _ = write!(to, "{percent}");
+    };
+    let left = |state: &ProgressState, to: &mut dyn fmt::Write| {
+        let _ = to.write_str(&time_left(state.pos(), state.len(), state.elapsed()));
+    };
+    let style = style.with_key("done", done).with_key("left", left);
+    ProgressBar::with_draw_target(Some(length), target).with_style(style)
+}
+
+/// The wall time that remains if the run goes on at its mean speed so far.
+fn time_left(done: u64, all: Option<u64>, elapsed: Duration) -> String {
+    if done == 0 {
+        return "? s left".into();
+    }
+    let left_s = elapsed.as_secs_f64() * (all.unwrap_or(0) as f64 / done as f64 - 1.0).max(0.0);
+    match left_s {
+        left_s if left_s < 100.0 => format!("{left_s:.0} s left"),
+        left_s if left_s < 6000.0 => format!("{:.0} min left", left_s / 60.0),
+        left_s => format!("{:.0} h left", left_s / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use indicatif::TermLike;
+    use std::io;
+    use std::sync::Arc;
+
+    /// A terminal with a width, and all that was written to it.
+    #[derive(Clone, Debug)]
+    struct Terminal(u16, Arc<Mutex<String>>);
+
+    impl TermLike for Terminal {
+        fn width(&self) -> u16 {
+            self.0
+        }
+        fn move_cursor_up(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_down(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_right(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_left(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn write_line(&self, text: &str) -> io::Result<()> {
+            self.write_str(&format!("{text}\n"))
+        }
+        fn write_str(&self, text: &str) -> io::Result<()> {
+            self.1.lock().unwrap().push_str(text);
+            Ok(())
+        }
+        fn clear_line(&self) -> io::Result<()> {
+            self.write_str("\n")
+        }
+        fn flush(&self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    /// The lines of a bar in a terminal of `columns`.
+    fn drawn(columns: u16, template: &str, [done, all]: [u64; 2], message: &str) -> Vec<String> {
+        let terminal = Terminal(columns, Arc::default());
+        let target = ProgressDrawTarget::term_like(Box::new(terminal.clone()));
+        let bar = bar(all, template, target).with_elapsed(Duration::from_secs(30));
+        bar.set_message(message.to_owned());
+        bar.set_position(done);
+        bar.force_draw();
+        let text = terminal.1.lock().unwrap();
+        text.lines().map(|line| line.trim_end().to_owned()).filter(|line| !line.is_empty()).collect()
+    }
+
+    #[test]
+    fn the_bar_fits_its_terminal() {
+        let state = State { time_s: 1199.0, all_s: 1200.0, speed: 412.3, coverage: 0.99999 };
+        for columns in [40, 60, 80, 200] {
+            let of_time = drawn(columns, OF_TIME, [1_199_000, 1_200_000], &state.beside_bar(columns));
+            let of_trials = drawn(columns, OF_TRIALS, [3, 40], "");
+            assert!(!of_time.is_empty() && !of_trials.is_empty());
+            for line in of_time.iter().chain(&of_trials) {
+                assert!(line.chars().count() <= columns.into(), "{columns}: {line:?}");
+                assert!(line.contains(['█', '░']), "{columns}: {line:?}");
+            }
+        }
+        let [.., last] = &drawn(60, OF_TIME, [600_000, 1_200_000], &state.beside_bar(60))[..] else {
+            panic!()
+        };
+        assert!(
+            last.starts_with(" 50 % █") && last.ends_with("1199 of 1200 s at 412 x, seen >99.9 %, 30 s left"),
+            "{last}"
+        );
+    }
+
+    #[test]
+    fn what_remains_is_never_zero_before_the_start() {
+        let left = |done, elapsed_s| time_left(done, Some(1000), Duration::from_secs(elapsed_s));
+        assert_eq!(
+            [left(0, 5), left(500, 5), left(10, 60), left(1, 60), left(1000, 60)],
+            ["? s left", "5 s left", "99 min left", "17 h left", "0 s left"]
+        );
+    }
+
+    #[test]
+    fn a_slow_run_has_a_speed() {
+        let line = |speed| State { time_s: 1.0, all_s: 60.0, speed, coverage: 0.5 }.to_string();
+        assert_eq!(line(0.001), "1 of 60 s, 0.0010 x real time, seen 50.0 %");
+        assert_eq!(line(1.0), "1 of 60 s, 1.0 x real time, seen 50.0 %");
+        assert_eq!(line(412.3), "1 of 60 s, 412 x real time, seen 50.0 %");
     }
 }

@@ -10,6 +10,7 @@ pub mod observer;
 pub mod oracle;
 pub mod output;
 pub mod palette;
+pub mod percent;
 pub mod physics_trial;
 pub mod report;
 pub mod summary;

@@ -51,6 +51,9 @@ const STRATEGIES: [(&str, Rgb); 9] = [
     ("oracle", [0, 0, 0]),
 ];
 
+/// For the other robots of a world: Paul Tol's muted scheme beside the colors above.
+const ROBOTS: [Rgb; 5] = [OTHER_ROBOT, [136, 34, 85], [153, 153, 51], SENSOR, [51, 34, 136]];
+
 /// For other strategies: the dark colors of Paul Tol's muted scheme.
 const OTHER_STRATEGIES: [Rgb; 5] =
     [[51, 34, 136], [17, 119, 51], [136, 34, 85], [153, 153, 51], [68, 170, 153]];
@@ -72,6 +75,11 @@ pub fn strategy(name: &str) -> Rgb {
     let known = STRATEGIES.iter().find(|(known, _)| *known == name).map(|(_, color)| *color);
     let other = || (xxh3_64(name.as_bytes()) % OTHER_STRATEGIES.len() as u64) as usize;
     known.unwrap_or_else(|| OTHER_STRATEGIES[other()])
+}
+
+/// The colors of `count` other robots: one for each of a handful, and one for all if there are more.
+pub fn other_robots(count: usize) -> Vec<Rgb> {
+    ROBOTS.get(..count).map_or_else(|| vec![OTHER_ROBOT; count], <[Rgb]>::to_vec)
 }
 
 /// The color of the cells of a thing that moves, by its index in the world.

@@ -1,6 +1,7 @@
 //! The results of a run in a physics world: `summary.json`, and a few lines for the terminal.
 
 use crate::metrics::{Age, ChangingScores, Delays, MapScores, RateScores, ThingReport};
+use crate::percent::percent;
 use mapper::Mapper;
 use robot::GoalCount;
 use serde::Serialize;
@@ -122,21 +123,22 @@ impl Liveliest {
     }
 }
 
-fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
-}
-
 fn seconds(time_s: Option<f64>) -> String {
     time_s.map_or("never".into(), |time_s| format!("at {time_s:.1} s"))
 }
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let minutes = self.simulated_s / 60.0;
+        let Self { drive, world, simulated_s, wall_s, real_time_factor, .. } = self;
+        let ended = match self.ended_by {
+            "interrupted" => ", interrupted",
+            "person" => ", ended by the user",
+            _ => "",
+        };
+        let minutes = simulated_s / 60.0;
         writeln!(
             f,
-            "{} in {}: {minutes:.1} simulated minutes in {:.1} s ({:.0} x real time)",
-            self.drive, self.world, self.wall_s, self.real_time_factor
+            "{drive} in {world}{ended}: {minutes:.1} simulated minutes in {wall_s:.1} s ({real_time_factor:.0} x real time)"
         )?;
         self.results.fmt(f)
     }
@@ -144,58 +146,21 @@ impl fmt::Display for Summary {
 
 impl fmt::Display for RunResults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { map, age, rates, goals, .. } = self;
-        let or_none = |value: Option<f64>, text: fn(f64) -> String| value.map_or("-".into(), text);
-        let number = |value: f64| format!("{value:.3}");
-        let (seen, correct) = (percent(map.coverage), percent(map.map_quality));
+        let Self { map, rates, goals, .. } = self;
+        let correct = percent(map.map_quality);
         let (events, cells) = (rates.false_change_events, rates.static_cells);
-        let changes = match &self.liveliest {
-            None => "none seen".into(),
-            Some(Liveliest { low_m, high_m, cells, median_interval_s }) => format!(
-                "{cells} cells between ({:.1}, {:.1}) and ({:.1}, {:.1}) m, median cycle {median_interval_s:.0} s",
-                low_m[0], low_m[1], high_m[0], high_m[1]
-            ),
-        };
         let mut lines = vec![
-            (
-                "seen",
-                format!(
-                    "{seen} of the cells that can be seen; the oldest observation is {:.0} s old",
-                    age.max_s
-                ),
-            ),
+            ("seen", self.seen()),
             ("map", format!("{correct} correct now; {events} false changes on {cells} static cells")),
-            ("changes", changes),
+            ("changes", self.liveliest.as_ref().map_or("none seen".into(), Liveliest::to_string)),
         ];
-        if rates.rate_error_all.is_some() {
-            let errors = [rates.rate_error, rates.rate_error_all].map(|error| or_none(error, percent));
-            let [log_error, auc] = [rates.log_error, rates.rate_auc].map(|value| or_none(value, number));
-            lines.push((
-                "rates",
-                format!(
-                    "mean error {} of well-seen cells, {} of all changing cells; log error {log_error}, AUC {auc}",
-                    errors[0], errors[1]
-                ),
-            ));
-        }
-        for thing in &self.things {
-            let verb = if thing.appeared { "appeared" } else { "disappeared" };
-            let [in_view, noticed, correct] = [thing.in_view_s, thing.noticed_s, thing.right_s].map(seconds);
-            lines.push((
-                "thing",
-                format!(
-                    "{} {verb} at {:.0} s: in view {in_view}, first cell correct {noticed}, 90 % correct {correct}",
-                    thing.name, thing.happened_s
-                ),
-            ));
-        }
+        lines.extend(self.rates());
+        lines.extend(self.things.iter().map(|thing| ("thing", line_of(thing))));
         let GoalCount { reached, approached, given_up } = goals;
         let all = reached + approached + given_up;
         if all > 0 {
-            lines.push((
-                "goals",
-                format!("{all}: {reached} reached, {approached} approached, {given_up} given up"),
-            ));
+            let text = format!("{all}: {reached} reached, {approached} approached, {given_up} given up");
+            lines.push(("goals", text));
         }
         if !self.strategy_share.is_empty() {
             let share = |(name, share): (&String, &f64)| format!("{name} {}", percent(*share));
@@ -207,5 +172,123 @@ impl fmt::Display for RunResults {
         }
         let (moving, standing) = (self.collisions, self.contacts_while_standing);
         write!(f, "  contacts  {moving} while the robot moved, {standing} while it stood still")
+    }
+}
+
+impl RunResults {
+    /// The seen part of the map, and its age.
+    fn seen(&self) -> String {
+        let Age { max_s, never_seen, .. } = self.age;
+        let seen = format!("{} of the cells that can be seen", percent(self.map.coverage));
+        match never_seen {
+            0 => format!("{seen}; every cell was seen in the last {:.0} s", max_s.ceil()),
+            1 => format!("{seen}; 1 cell was never seen"),
+            cells => format!("{seen}; {cells} cells were never seen"),
+        }
+    }
+
+    /// The errors of the estimated rates, in words; empty if nothing changed.
+    fn rates(&self) -> Vec<(&'static str, String)> {
+        let RateScores { rate_error, rate_error_cells, rate_error_all, log_error, rate_auc, .. } =
+            &self.rates;
+        let mut lines = Vec::new();
+        if let Some(all) = rate_error_all {
+            let well_seen = rate_error.map_or("none was in view for 3 cycles".into(), |error| {
+                format!("{} over the {rate_error_cells} in view for 3 cycles or more", percent(error))
+            });
+            let all = percent(*all);
+            lines.push(("rates", format!("mean error {all} over all changing cells, {well_seen}")));
+        }
+        if let Some(error) = log_error {
+            let meaning = "0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate";
+            lines.push(("", format!("log error {error:.2}: {meaning}")));
+        }
+        if let Some(auc) = rate_auc {
+            let meaning =
+                "how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance";
+            lines.push(("", format!("AUC {auc:.2}: {meaning}")));
+        }
+        lines
+    }
+}
+
+impl fmt::Display for Liveliest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { low_m, high_m, cells, median_interval_s } = self;
+        write!(
+            f,
+            "{cells} cells changed more than once, between ({:.1}, {:.1}) and ({:.1}, {:.1}) m; median cycle time \
+             {median_interval_s:.0} s",
+            low_m[0], low_m[1], high_m[0], high_m[1]
+        )
+    }
+}
+
+/// The detection of a thing as a line.
+fn line_of(thing: &ThingReport) -> String {
+    let verb = if thing.appeared { "appeared" } else { "disappeared" };
+    let [in_view, noticed, correct] = [thing.in_view_s, thing.noticed_s, thing.right_s].map(seconds);
+    format!(
+        "{} {verb} at {:.0} s: in view {in_view}, first cell correct {noticed}, 90 % correct {correct}",
+        thing.name, thing.happened_s
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::ChangingAccuracy;
+
+    fn results(coverage: f64, age: Age, rates: RateScores) -> RunResults {
+        RunResults {
+            map: MapScores { coverage, map_quality: 0.9999 },
+            changing: ChangingAccuracy::default().scores(),
+            rates,
+            age,
+            block_latency: Delays::default(),
+            free_latency: Delays::default(),
+            collisions: 0,
+            contacts_while_standing: 0,
+            goals: GoalCount::default(),
+            strategy_share: BTreeMap::new(),
+            things: Vec::new(),
+            curve: Vec::new(),
+            map_hash: String::new(),
+            liveliest: None,
+        }
+    }
+
+    #[test]
+    fn figures_say_what_they_are_and_agree() {
+        let rates = RateScores {
+            rate_error: Some(0.29),
+            rate_error_cells: 43,
+            rate_error_all: Some(2.51),
+            log_error: Some(0.912),
+            rate_auc: Some(0.83),
+            static_cells: 50_000,
+            ..RateScores::default()
+        };
+        let age = Age { mean_s: 60.0, max_s: 600.0, never_seen: 2 };
+        insta::assert_snapshot!(results(0.99999, age, rates), @"
+          seen      >99.9 % of the cells that can be seen; 2 cells were never seen
+          map       >99.9 % correct now; 0 false changes on 50000 static cells
+          changes   none seen
+          rates     mean error 251.0 % over all changing cells, 29.0 % over the 43 in view for 3 cycles or more
+                    log error 0.91: 0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate
+                    AUC 0.83: how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance
+          contacts  0 while the robot moved, 0 while it stood still
+        ");
+    }
+
+    #[test]
+    fn a_complete_map_without_changes_is_short() {
+        let age = Age { mean_s: 60.0, max_s: 431.0, never_seen: 0 };
+        insta::assert_snapshot!(results(1.0, age, RateScores::default()), @"
+          seen      100.0 % of the cells that can be seen; every cell was seen in the last 431 s
+          map       >99.9 % correct now; 0 false changes on 0 static cells
+          changes   none seen
+          contacts  0 while the robot moved, 0 while it stood still
+        ");
     }
 }

@@ -31,6 +31,21 @@ fn worlds_are_described_and_drawn() {
     }
 }
 
+/// Standard output that goes to a file on a full disk. The pictures are complete.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_description_on_a_full_disk() {
+    let folder = tempfile::tempdir().unwrap();
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_check_world"));
+    command.args(["--png", "two_blocks", "open_hall"]).current_dir(folder.path()).stdout(full);
+    let ended = command.output().unwrap();
+    assert_eq!(ended.status.code(), Some(1), "{ended:?}");
+    let error = "error: cannot write to the standard output: No space left on device (os error 28)\n";
+    assert_eq!(text(&ended.stderr), error);
+    assert!(["two_blocks.png", "open_hall.png"].iter().all(|name| folder.path().join(name).exists()));
+}
+
 #[test]
 fn what_is_wrong_is_told_of_every_file() {
     let folder = tempfile::tempdir().unwrap();

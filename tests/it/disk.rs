@@ -109,6 +109,31 @@ fn a_recording_outside_the_output_folder() {
     assert!((recording.end_s() - 30.0).abs() < 1e-6);
 }
 
+/// Standard output that goes to a file on a full disk. The results are complete.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_summary_on_a_full_disk() {
+    let runs: [(fn() -> Run, &str, Option<&str>); 5] = [
+        (Run::new, "--no-rrd --duration 30", Some("summary.json")),
+        (Run::grid, "--steps 200 --trials 1", Some("report.json")),
+        (Run::new, "--list-worlds", None),
+        (Run::grid, "--list-worlds", None),
+        (Run::new, "--help", None),
+    ];
+    for (run, arguments, file) in runs {
+        let run = run();
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let ended = Ended::from(run.command(arguments).stdout(full).output().unwrap());
+        assert_eq!(ended.code, Some(1), "{arguments}: {ended:?}");
+        let error = ended.stderr.lines().last().unwrap();
+        assert_eq!(
+            error,
+            "error: cannot write to the standard output: No space left on device (os error 28)"
+        );
+        assert!(file.is_none_or(|file| run.out(file).exists()), "{arguments}");
+    }
+}
+
 /// Simulates a disk that becomes full during the run: a named pipe whose reader closes the pipe after a while.
 #[cfg(unix)]
 fn with_a_recording_that_ends(run: &Run, arguments: &str) -> Ended {

@@ -70,6 +70,7 @@ fn ends_in_order(signal: Signal) {
     send(signal, &child);
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{ended:?}");
+    assert!(ended.stdout.starts_with("agent in four rooms, interrupted: "), "{ended:?}");
 
     let summary = run.summary();
     assert_eq!(summary.text("/ended_by"), "interrupted");

@@ -16,7 +16,7 @@ fn keys_drive_and_q_ends() {
     });
     assert_eq!(ended.code, Some(0), "{ended:?}");
     assert!(ended.stdout.contains("Q ends the run"), "{ended:?}");
-    assert!(ended.stdout.contains("keyboard in four rooms"), "{ended:?}");
+    assert!(ended.stdout.contains("keyboard in four rooms, ended by the user: "), "{ended:?}");
     let summary = run.summary();
     assert_eq!((summary.text("/drive"), summary.text("/ended_by")), ("keyboard", "person"));
     assert_ne!(summary.hash(), stands(summary.number("/simulated_s")), "it did not move");

@@ -21,9 +21,19 @@ fn the_end_is_told_in_sentences_and_progress_in_plain_lines() {
     let progress: Vec<&str> = ended.stderr.lines().collect();
     assert!(!progress.is_empty());
     for line in progress {
-        assert!(line.contains(" of 120 s, ") && line.contains(" x real time"), "{line:?}");
+        assert!(line.contains(" of 120 s, ") && line.contains(" x real time, seen "), "{line:?}");
+        assert!(line.ends_with(" s left"), "{line:?}");
         assert!(line.chars().all(|character| !character.is_control()), "{line:?}");
     }
+}
+
+/// The map is scored every ten simulated seconds; what is shown is newer.
+#[test]
+fn progress_is_up_to_date_in_a_slow_run() {
+    let ended = Run::new().goes_well("--no-rrd --duration 9 --speed 1.5");
+    let seen = |line: &str| line.split_once(" seen ").unwrap().1.to_owned();
+    let texts: Vec<String> = ended.stderr.lines().map(seen).collect();
+    assert!(texts.len() >= 2 && texts[0] != texts[1], "{texts:?}");
 }
 
 #[test]
@@ -88,8 +98,12 @@ fn a_terminal_shows_a_bar_that_goes_away() {
     let ended = crate::terminal::run(&run, "--no-rrd --duration 300 --speed 200", |_| ());
     assert_eq!(ended.code, Some(0), "{ended:?}");
     let (before, after) = ended.stdout.split_once("agent in four rooms: 5.0").unwrap();
-    assert!(before.contains("█") && before.contains(" of 300 s, "), "{before:?}");
+    assert!(before.contains("█") && before.contains(" of 300 s at "), "{before:?}");
     assert!(!after.contains("█"), "{after:?}");
+    for line in before.split(['\r', '\n', '\u{1b}']).filter(|line| line.contains("█")) {
+        assert!(line.chars().count() <= usize::from(crate::terminal::COLUMNS), "{line:?}");
+        assert!(line.contains(" %, ") && line.ends_with(" left"), "{line:?}");
+    }
 }
 
 /// Like `| head`: both ends of the pipe exist, and then one is closed.

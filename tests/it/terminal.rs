@@ -8,7 +8,9 @@ use std::io::{Read, Write};
 use std::process::Stdio;
 use std::time::Duration;
 
-const SIZE: Winsize = Winsize { ws_row: 24, ws_col: 80, ws_xpixel: 0, ws_ypixel: 0 };
+/// The width of the terminal: half of a screen.
+pub(crate) const COLUMNS: u16 = 60;
+const SIZE: Winsize = Winsize { ws_row: 24, ws_col: COLUMNS, ws_xpixel: 0, ws_ypixel: 0 };
 
 /// Runs the program while `person` presses keys; standard error is joined with standard output.
 pub(crate) fn run(run: &Run, arguments: &str, person: impl FnOnce(&mut Keys)) -> Ended {

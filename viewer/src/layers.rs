@@ -143,7 +143,8 @@ impl Layer {
             (_, BLOCKED) => palette::BLOCKED_FAINT,
             // Short cycle times are dark, and long ones light, but dark enough to be seen on white.
             (Self::Interval, _) => gradient(colorous::INFERNO, 0.12 + 0.78 * position),
-            (Self::ChangeProbability, _) => gradient(colorous::CIVIDIS, 1.0 - position),
+            // Without the lightest part, which is similar to a free cell, and without grays, as those of a wall.
+            (Self::ChangeProbability, _) => gradient(colorous::YELLOW_ORANGE_RED, 0.25 + 0.75 * position),
             (Self::Recency | Self::Occupancy, _) => gradient(colorous::VIRIDIS, 1.0 - position),
         }
     }
@@ -162,6 +163,11 @@ impl Layer {
                 vec![(FREE, "free, no change"), (BLOCKED, "blocked, no change"), (UNKNOWN, "never seen")]
             }
         }
+    }
+
+    /// What a reader must know about the unit of the scale; `None` if the title says it all.
+    pub fn note(self) -> Option<&'static str> {
+        (self == Self::Interval).then_some("one cycle: blocked, then free, then blocked again")
     }
 
     /// Every class that a cell can have, with its meaning.
@@ -245,6 +251,22 @@ mod tests {
             let rises = shades.windows(2).filter(|pair| pair[0] < pair[1]).count();
             assert!(rises == 0 || rises == shades.len() - 1, "{layer:?}: {shades:?}");
         }
+    }
+
+    #[test]
+    fn no_value_looks_like_a_cell_without_a_value() {
+        for layer in &Layer::ALL[1..] {
+            for (plain, meaning) in layer.plain_legend() {
+                for class in layer.scale_classes() {
+                    let [a, b] = [plain, class].map(|class| layer.color(class));
+                    let distance =
+                        a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(b)).powi(2)).sum::<f64>().sqrt();
+                    assert!(distance > 70.0, "{layer:?}: class {class} is {b:?}, {meaning} is {a:?}");
+                }
+            }
+        }
+        let lowest = |layer: Layer| lightness(layer.color(FIRST));
+        assert!(lowest(Layer::ChangeProbability) < 90.0, "{}", lowest(Layer::ChangeProbability));
     }
 
     #[test]

@@ -38,21 +38,25 @@ pub fn map_scores(mapper: &Mapper, truth: &impl GroundTruth) -> MapScores {
     MapScores { coverage: share(seen), map_quality: share(correct) }
 }
 
-/// The time since cells were last seen, over the cells that can be seen.
+/// The time since cells were last seen, over the cells that can be seen. A cell that was never seen counts with the
+/// time since the start.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Age {
     /// The mean, s (steps in a grid world).
     pub mean_s: f64,
     /// The maximum, s (steps in a grid world).
     pub max_s: f64,
+    /// The number of cells that were never seen.
+    pub never_seen: usize,
 }
 
 /// The age of the map now: the time since its cells were last seen.
 pub fn age(mapper: &Mapper, truth: &impl GroundTruth) -> Age {
-    let (mut ages, mut max_s) = (Mean::default(), 0.0_f64);
+    let (mut ages, mut max_s, mut never_seen) = (Mean::default(), 0.0_f64, 0);
     for index in visible_cells(truth) {
         ages.add(mapper.recency(index));
         max_s = max_s.max(mapper.recency(index));
+        never_seen += usize::from(!mapper.was_ever_seen(index));
     }
-    Age { mean_s: ages.get().unwrap_or(0.0), max_s }
+    Age { mean_s: ages.get().unwrap_or(0.0), max_s, never_seen }
 }

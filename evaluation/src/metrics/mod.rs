@@ -15,7 +15,7 @@ mod things;
 pub use changing::{BrierScores, ChangingAccuracy, ChangingScores, Prediction};
 pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, age, map_scores};
-pub use rates::{RateErrors, RateScores, log_error, mean_log_error, rate_scores};
+pub use rates::{MAX_LOG_ERROR, RateErrors, RateScores, log_error, mean_log_error, rate_scores};
 pub use things::{ThingReport, Things};
 
 #[cfg(test)]

@@ -3,8 +3,8 @@ use interfaces::GroundTruth;
 use mapper::Mapper;
 use serde::Serialize;
 
-/// The log error is limited to the logarithm of this factor, for too high and too low estimates.
-const MAX_FACTOR: f64 = 10.0;
+/// The log error is limited to that of a factor of 10, for too high and too low estimates.
+pub const MAX_LOG_ERROR: f64 = std::f64::consts::LN_10;
 /// A cell counts for [`RateScores::rate_error`] if it was in view for at least this many true cycles.
 const MIN_CYCLES: f64 = 3.0;
 
@@ -79,8 +79,7 @@ pub fn rate_scores(mapper: &Mapper, truth: &impl GroundTruth) -> RateScores {
 
 /// The log error of one cell: min(|ln(estimate / truth)|, ln 10). No estimate counts as ln 10.
 pub fn log_error(estimate: f64, truth: f64) -> f64 {
-    let limit = libm::log(MAX_FACTOR);
-    if estimate > 0.0 { libm::log(estimate / truth).abs().min(limit) } else { limit }
+    if estimate > 0.0 { libm::log(estimate / truth).abs().min(MAX_LOG_ERROR) } else { MAX_LOG_ERROR }
 }
 
 /// The log error of the rates, the primary metric: for each moving thing, the mean of [`log_error`] over its cells

@@ -1,4 +1,4 @@
-//! Output: lines for the user, files that are either complete or absent, and the folder of a run.
+//! Files that are either complete or absent, and the folder of a run.
 
 mod folder;
 mod unfinished;
@@ -6,15 +6,9 @@ mod unfinished;
 pub use folder::RunFolder;
 pub use unfinished::UnfinishedFile;
 
-use std::fmt::Display;
 use std::fs::{self, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-
-/// Prints a line. A closed pipe (for example `| head`) is ignored: the run continues.
-pub fn say(mut to: impl Write, what: impl Display) {
-    let _ = writeln!(to, "{what}");
-}
 
 /// The error for a file or folder that cannot be written.
 #[derive(Debug, thiserror::Error)]

@@ -19,6 +19,8 @@ pub struct Comparison {
     pub measure: Measure,
     /// The number of pairs.
     pub pairs: usize,
+    /// The mean of b, in the unit of the metric.
+    pub mean_b: f64,
     /// The mean of a − b, in the unit of the metric.
     pub mean_difference: f64,
     /// The lower end of the 95 % confidence interval of the difference; NaN for a single pair.
@@ -52,6 +54,7 @@ impl Comparison {
         Self {
             a: self.b.clone(),
             b: self.a.clone(),
+            mean_b: self.mean_b + self.mean_difference,
             mean_difference: -self.mean_difference,
             low: -self.high,
             high: -self.low,
@@ -94,18 +97,20 @@ fn compare(
     if pairs.is_empty() {
         return None;
     }
+    let [mean_a, mean_b] = [0, 1].map(|side| mean(pairs.iter().map(|pair| pair[side])));
     let test = quantiles.paired_test(pairs.iter().map(|[a, b]| a - b));
     Some(Comparison {
         a: a.name.clone(),
         b: b.name.clone(),
         measure,
         pairs: pairs.len(),
+        mean_b,
         mean_difference: test.difference.mean,
         low: test.difference.low,
         high: test.difference.high,
         p_value: test.p_value,
         p_holm: f64::NAN,
-        ratio: mean(pairs.iter().map(|[a, _]| *a)) / mean(pairs.iter().map(|[_, b]| *b)),
+        ratio: mean_a / mean_b,
         effect_size: test.effect_size,
     })
 }

@@ -1,8 +1,16 @@
 //! Trials with their metrics, and the measures in which strategies are compared.
 
+use crate::metrics::MAX_LOG_ERROR;
+use std::ops::RangeInclusive;
+
+/// A share, or the mean of shares.
+const SHARE: RangeInclusive<f64> = 0.0..=1.0;
+/// An error or a rate without an upper limit.
+const NOT_NEGATIVE: RangeInclusive<f64> = 0.0..=f64::INFINITY;
+
 /// Defines [`Sample`] and [`Metric`] from one list of metrics.
 macro_rules! metrics {
-    ($count:literal: $($(#[$doc:meta])+ $field:ident => $metric:ident,)+) => {
+    ($count:literal: $($(#[$doc:meta])+ $field:ident => $metric:ident in $range:expr,)+) => {
         /// The metrics at the end of a step, see [`crate::metrics`]. A metric that is undefined at this step,
         /// as the error of the rates before anything changed, is NaN.
         #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +35,11 @@ macro_rules! metrics {
                 match self { $(Self::$metric => stringify!($field),)+ }
             }
 
+            /// The values that the metric can have.
+            pub fn range(self) -> RangeInclusive<f64> {
+                match self { $(Self::$metric => $range,)+ }
+            }
+
             /// The value in `sample`.
             pub fn of(self, sample: &Sample) -> f64 {
                 match self { $(Self::$metric => sample.$field,)+ }
@@ -38,25 +51,25 @@ macro_rules! metrics {
 metrics! {
     10:
     /// Mean relative error of the rates over the cells that truly changed.
-    rate_error => RateError,
+    rate_error => RateError in NOT_NEGATIVE,
     /// The log error of the rates: per moving thing, then over the things.
-    log_error => LogError,
+    log_error => LogError in 0.0..=MAX_LOG_ERROR,
     /// The share of the cells that can be seen whose mapped state is the true state.
-    map_quality => MapQuality,
+    map_quality => MapQuality in SHARE,
     /// Balanced accuracy of the map on swept cells.
-    map_quality_changing => MapQualityChanging,
+    map_quality_changing => MapQualityChanging in SHARE,
     /// Share of the cells that can be seen that were seen.
-    coverage => Coverage,
+    coverage => Coverage in SHARE,
     /// Mean estimated rate over the observed static cells, 1/step.
-    false_rate => FalseRate,
+    false_rate => FalseRate in NOT_NEGATIVE,
     /// The share of the steps so far with a swept cell in view. A large share is the paper's lock-down.
-    changing_share => ChangingShare,
+    changing_share => ChangingShare in SHARE,
     /// Brier score of the two-state model for swept cells out of view.
-    brier => Brier,
+    brier => Brier in SHARE,
     /// Brier score of the state that was last seen, for swept cells out of view.
-    brier_last_seen => BrierLastSeen,
+    brier_last_seen => BrierLastSeen in SHARE,
     /// Brier score of the share of the time in view during which the cell was blocked, for swept cells out of view.
-    brier_mean => BrierMean,
+    brier_mean => BrierMean in SHARE,
 }
 
 /// The result of one trial: a strategy with an estimator in a world.

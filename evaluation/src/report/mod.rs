@@ -63,6 +63,15 @@ pub struct ReportSettings {
     pub strategies: Vec<String>,
 }
 
+impl ReportSettings {
+    /// The number of trials of the whole experiment.
+    fn all_trials(&self) -> u64 {
+        [&self.worlds, &self.estimators, &self.strategies]
+            .iter()
+            .fold(self.trials, |all, names| all * names.len() as u64)
+    }
+}
+
 /// The results of an experiment. Serialized, they are the content of `report.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {

@@ -1,8 +1,9 @@
 //! Means with 95 % intervals, the paired t test, and Holm's correction for many tests.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::ops::RangeInclusive;
 
-/// A mean and its 95 % confidence interval.
+/// A mean and its 95 % confidence interval, which is cut to the values that the metric can have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The number of values.
@@ -13,6 +14,14 @@ pub struct Estimate {
     pub low: f64,
     /// The upper end of the 95 % confidence interval; NaN for fewer than two values.
     pub high: f64,
+}
+
+impl Estimate {
+    /// The estimate of a value that is within `range`: Student's interval can reach beyond it.
+    pub(super) fn within(self, range: RangeInclusive<f64>) -> Self {
+        let cut = |end: f64| end.clamp(*range.start(), *range.end()); // NaN stays NaN
+        Self { low: cut(self.low), high: cut(self.high), ..self }
+    }
 }
 
 /// A mean difference of pairs, with the paired t test of the hypothesis that it is zero.

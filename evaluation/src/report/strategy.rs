@@ -83,9 +83,11 @@ impl StrategyResult {
     }
 
     fn of_units(name: &str, steps: &[u64], units: Vec<Unit>, quantiles: &Quantiles) -> Self {
-        let at = |metric: usize, sample: usize| units.iter().map(move |unit| unit.curves[metric][sample]);
-        let curve = |metric| (0..steps.len()).map(|sample| quantiles.estimate(at(metric, sample))).collect();
-        let metrics = 0..Metric::ALL.len();
+        let at = |metric: Metric, sample: usize| {
+            let values = units.iter().map(move |unit| unit.curves[metric as usize][sample]);
+            quantiles.estimate(values).within(metric.range())
+        };
+        let curve = |metric| (0..steps.len()).map(|sample| at(metric, sample)).collect();
         Self {
             name: name.to_owned(),
             trials: 0,
@@ -93,8 +95,10 @@ impl StrategyResult {
             strategy_share: Vec::new(),
             false_change_events: 0,
             steps: steps.to_vec(),
-            curves: metrics.clone().map(curve).collect(),
-            areas: metrics.map(|metric| mean(units.iter().map(|unit| unit.areas[metric]))).collect(),
+            curves: Metric::ALL.map(curve).into(),
+            areas: (0..Metric::ALL.len())
+                .map(|metric| mean(units.iter().map(|unit| unit.areas[metric])))
+                .collect(),
             units,
         }
     }

@@ -6,6 +6,7 @@ use super::run::{Run, conditions};
 use super::strategy::StrategyResult;
 use super::wording::{difference, p_value, value};
 use super::{ONE_BY_ONE, REFERENCE, Report};
+use crate::percent::percent;
 use tabled::Table;
 use tabled::settings::object::Columns;
 use tabled::settings::{Alignment, Padding, Span, Style};
@@ -52,6 +53,11 @@ pub(super) fn table(report: &Report) -> String {
     }
     let is_short = report.runs.iter().any(|run| run.worlds > ONE_BY_ONE);
     let mut text = String::new();
+    if report.settings.interrupted {
+        let finished = report.trials.len();
+        text =
+            format!("Interrupted: {finished} of {} trials were finished.\n\n", report.settings.all_trials());
+    }
     for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
         let conclusions = [false_events(run), winner(run), Claim::of(run).map(|claim| claim.sentence())];
         let paragraphs = [
@@ -110,7 +116,7 @@ fn cells(strategies: &[StrategyResult], measure: Measure, kind: Kind) -> impl It
         Kind::Error => value(number, 3),
         Kind::Quality => value(number, 4),
         Kind::Share if number.is_nan() => "-".into(),
-        Kind::Share => format!("{:.1} %", 100.0 * number),
+        Kind::Share => percent(number),
     };
     let rivals = strategies.iter().filter(|strategy| strategy.name != REFERENCE);
     let numbers = rivals.map(|strategy| strategy.value(measure));
@@ -165,7 +171,7 @@ fn false_events(run: &Run) -> Option<String> {
         .then(|| format!("False change events on cells that never change: {}.", counts.join(", ")))
 }
 
-/// The strategy that learned the rates fastest, and whether the difference is significant.
+/// The strategy with the smallest error of the rates, and whether the next one is significantly worse.
 fn winner(run: &Run) -> Option<String> {
     let area = |strategy: &StrategyResult| strategy.value(Measure::PRIMARY);
     let is_rival = |strategy: &&StrategyResult| strategy.name != REFERENCE && !area(strategy).is_nan();
@@ -173,15 +179,18 @@ fn winner(run: &Run) -> Option<String> {
     ranked.sort_by(|a, b| area(a).total_cmp(&area(b)));
     let [winner, next, ..] = ranked.as_slice() else { return None };
     let comparison = run.comparison(&winner.name, &next.name, Measure::PRIMARY)?;
-    let certainty = match comparison.p_holm {
-        p if p.is_nan() => "a single pair cannot be tested".into(),
-        p if p < 0.05 => format!("significant: {} after Holm's correction", p_value(p)),
-        p => format!("not significant: {} after Holm's correction", p_value(p)),
-    };
-    Some(format!(
-        "{} learns rates fastest: its log error over the run is {} times\nthat of {} ({certainty}).",
-        winner.name,
-        value(comparison.ratio, 2),
-        next.name
-    ))
+    let (winner, next, ratio) = (&winner.name, &next.name, value(comparison.ratio, 2));
+    let smallest = format!("{winner} has the smallest log error over the run, {ratio} times\nthat of {next}");
+    Some(match comparison.p_holm {
+        p if p.is_nan() => format!("{smallest}; a single pair cannot be tested."),
+        p if p < 0.05 => format!(
+            "{winner} learns rates fastest: its log error over the run is {ratio} times\n\
+             that of {next} (significant: {} after Holm's correction).",
+            p_value(p)
+        ),
+        p => format!(
+            "{smallest}; the difference is not significant\n({} after Holm's correction).",
+            p_value(p)
+        ),
+    })
 }

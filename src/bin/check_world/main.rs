@@ -4,10 +4,12 @@ mod inspection;
 
 use anyhow::bail;
 use clap::Parser;
-use evaluation::output::{make_folder, say, write_file};
+use curious::program::{Failure, start};
+use curious::terminal::{print, say};
+use evaluation::output::{make_folder, write_file};
 use inspection::{Content, Inspection, as_world_file, inspect};
 use std::collections::BTreeSet;
-use std::io::{stderr, stdout};
+use std::io::stderr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use viewer::pictures::draw_plan;
@@ -50,48 +52,55 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    let args = Args::parse();
-    let (mut code, mut written) = (ExitCode::SUCCESS, BTreeSet::new());
+    start(check)
+}
+
+/// Checks every file, and writes what is asked for. Standard output that cannot be written is an error at the end.
+fn check(args: &Args) -> Result<ExitCode, Failure> {
+    let (mut code, mut written, mut printed) = (ExitCode::SUCCESS, BTreeSet::new(), Ok(()));
     for file in &args.files {
         let inspection = inspect(file);
-        report(&inspection);
-        let Some(content) = &inspection.content else {
-            code = ExitCode::from(2);
-            continue;
+        for message in inspection.warnings.iter().chain(&inspection.errors) {
+            say(stderr(), format_args!("{message}\n"));
+        }
+        let mut lines = describe(&inspection);
+        let outcome = match &inspection.content {
+            Some(content) => write(content, file, args, &mut written, &mut lines),
+            None => {
+                code = ExitCode::from(2);
+                Ok(())
+            }
         };
-        if let Err(error) = write(content, file, &args, &mut written) {
-            say(stderr(), format_args!("error: {error:#}"));
-            return ExitCode::FAILURE;
-        }
+        printed = printed.and(print(lines.join("\n")));
+        outcome?;
     }
-    code
+    printed?;
+    Ok(code)
 }
 
-fn report(inspection: &Inspection) {
-    for message in inspection.warnings.iter().chain(&inspection.errors) {
-        say(stderr(), format_args!("{message}\n"));
-    }
-    match &inspection.content {
-        Some(Content { kind, description, lines, scene }) => {
-            say(stdout(), format_args!("{}: valid, a {kind} named `{}`", inspection.file, scene.title));
-            if !description.is_empty() {
-                say(stdout(), format_args!("  {description}"));
-            }
-            for (name, what) in lines {
-                say(stdout(), format_args!("  {name:<9} {what}"));
-            }
-        }
-        None => {
-            let errors = inspection.error_count;
-            let plural = if errors == 1 { "" } else { "s" };
-            say(stdout(), format_args!("{}: invalid, {errors} error{plural}", inspection.file));
-        }
-    }
+/// The content of a valid file, or the number of its errors, as lines.
+fn describe(inspection: &Inspection) -> Vec<String> {
+    let Inspection { file, content, error_count, .. } = inspection;
+    let Some(Content { kind, description, lines, scene }) = content else {
+        let plural = if *error_count == 1 { "" } else { "s" };
+        return vec![format!("{file}: invalid, {error_count} error{plural}")];
+    };
+    let first = format!("{file}: valid, a {kind} named `{}`", scene.title);
+    let second = (!description.is_empty()).then(|| format!("  {description}"));
+    let others = lines.iter().map(|(name, what)| format!("  {name:<9} {what}"));
+    [first].into_iter().chain(second).chain(others).collect()
 }
 
-/// Writes the picture and the world file. Their names are the name of the input with one more extension: with
-/// the extension replaced, the picture could overwrite the floor plan that the world file uses.
-fn write(content: &Content, file: &str, args: &Args, written: &mut BTreeSet<PathBuf>) -> anyhow::Result<()> {
+/// Writes the picture and the world file, and adds their names to the `lines` for the user. The name of a file is
+/// the name of the input with one more extension: with the extension replaced, the picture could overwrite the floor
+/// plan that the world file uses.
+fn write(
+    content: &Content,
+    file: &str,
+    args: &Args,
+    written: &mut BTreeSet<PathBuf>,
+    lines: &mut Vec<String>,
+) -> anyhow::Result<()> {
     let name = Path::new(file).file_name().unwrap_or_default();
     let mut path_with = |ending: &str| {
         let mut name = name.to_owned();
@@ -109,21 +118,20 @@ fn write(content: &Content, file: &str, args: &Args, written: &mut BTreeSet<Path
     if args.png {
         let picture = path_with(".png")?;
         draw_plan(&picture, &content.scene)?;
-        say(stdout(), format_args!("  picture   {}", picture.display()));
+        lines.push(format!("  picture   {}", picture.display()));
     }
     if args.toml {
         let Some(text) = as_world_file(file) else {
-            say(stdout(), "  world     not written: only Stage worlds can be converted");
+            lines.push("  world     not written: only Stage worlds can be converted".into());
             return Ok(());
         };
         let world_file = path_with(".toml")?;
         write_file(&world_file, |to| to.write_all(text.as_bytes()))?;
-        say(stdout(), format_args!("  world     {}", world_file.display()));
+        lines.push(format!("  world     {}", world_file.display()));
         if content.scene.robots.iter().filter(|robot| robot.is_driven).count() != 1 {
-            say(
-                stdout(),
-                "            to use the file with four_rooms, give exactly one robot `kind = \"driven\"`",
-            );
+            let hint =
+                "            to use the file with four_rooms, give exactly one robot `kind = \"driven\"`";
+            lines.push(hint.into());
         }
     }
     Ok(())

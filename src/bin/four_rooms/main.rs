@@ -7,17 +7,18 @@ mod parts;
 
 use anyhow::Context;
 use args::{Args, DriveChoice};
-use clap::Parser;
-use curious::program::{Failure, INTERRUPTED, exit_code, input, interrupt_flag, list};
+use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, list, start};
 use curious::progress::Progress;
+use curious::terminal::{print, say};
 use curious::worlds;
-use evaluation::output::{RunFolder, UnfinishedFile, say};
+use evaluation::metrics::map_scores;
+use evaluation::output::{RunFolder, UnfinishedFile};
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::{Reading, Twist};
 use mapper::ReadingError;
 use parts::Parts;
 use robot::Pilot;
-use std::io::{stderr, stdout};
+use std::io::stderr;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -32,12 +33,14 @@ use viewer::view::{Measured, View};
 const NAP: Duration = Duration::from_millis(50);
 
 fn main() -> ExitCode {
-    let args = Args::parse();
-    if args.list_worlds {
-        list(&worlds::SHIPPED, 18, |name| worlds::load(name).map(|world| world.spec.description.clone()));
-        return ExitCode::SUCCESS;
-    }
-    exit_code(run(&args))
+    start(|args: &Args| {
+        if args.list_worlds {
+            let describe = |name: &str| worlds::load(name).map(|world| world.spec.description.clone());
+            list(&worlds::SHIPPED, 18, describe)?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        run(args)
+    })
 }
 
 /// The reason for the end of a run.
@@ -77,7 +80,9 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let (mut ended, mut is_shown) = (Ended::Duration, true);
     let start = Instant::now();
     let went = trial.run_with(|world, reading, belief, pilot, observer| -> Result<_, ReadingError> {
-        progress.show(reading.time(), observer.scores().map(|scores| scores.coverage));
+        let show_progress =
+            || progress.show(reading.time(), || map_scores(belief.mapper, world.truth()).coverage);
+        show_progress();
         let end = match () {
             () if is_interrupted.load(Ordering::Relaxed) => Some(Ended::Interrupted),
             () if pilot.is_done() => Some(Ended::Pilot),
@@ -99,6 +104,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
             // In short naps: an interrupted run ends soon.
             while start.elapsed() < due && !is_interrupted.load(Ordering::Relaxed) {
                 std::thread::sleep(due.saturating_sub(start.elapsed()).min(NAP));
+                show_progress();
             }
         }
         Ok(ControlFlow::Continue(()))
@@ -119,7 +125,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
         say(stderr(), format_args!("error: {problem}"));
     }
     if !args.quiet {
-        say(stdout(), format_args!("{summary}\n  files     {}", args.out.display()));
+        print(format_args!("{summary}\n  files     {}", args.out.display()))?;
     }
     Ok(match ended {
         _ if !is_shown => ExitCode::FAILURE,

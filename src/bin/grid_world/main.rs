@@ -4,19 +4,19 @@ mod args;
 
 use anyhow::{Context, bail};
 use args::Args;
-use clap::Parser;
 use controller::CellDrive;
-use curious::program::{Failure, INTERRUPTED, exit_code, interrupt_flag, list};
+use curious::program::{Failure, INTERRUPTED, interrupt_flag, list, start};
 use curious::progress::Progress;
+use curious::terminal::{print, say};
 use curious::worlds;
-use evaluation::output::{RunFolder, say, write_file};
+use evaluation::output::{RunFolder, write_file};
 use evaluation::report::{REPORT, Report, ReportSettings, Trial};
 use evaluation::trials::Experiment;
 use interfaces::SettingsError;
 use mapper::{EstimatorChoice, MapperSettings, Paper};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::collections::BTreeSet;
-use std::io::{stderr, stdout};
+use std::io::stderr;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,13 +24,14 @@ use viewer::recording::{Recorder, RecordingError};
 use viewer::trial::{Recorded, record};
 
 fn main() -> ExitCode {
-    let args = Args::parse();
-    if args.list_worlds {
-        list(&worlds::SHIPPED_GRID, 20, |name| worlds::load_grid(name).map(|spec| spec.description));
-        return ExitCode::SUCCESS;
-    }
-    let experiment = experiment(&args).map_err(Failure::Input);
-    exit_code(experiment.and_then(|experiment| Ok(run(&args, &experiment)?)))
+    start(|args: &Args| {
+        if args.list_worlds {
+            list(&worlds::SHIPPED_GRID, 20, |name| worlds::load_grid(name).map(|spec| spec.description))?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        let experiment = experiment(args).map_err(Failure::Input)?;
+        Ok(run(args, &experiment)?)
+    })
 }
 
 /// The experiment that the arguments describe.
@@ -158,8 +159,8 @@ fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     let inputs: Vec<&Path> = args.world.iter().map(Path::new).collect();
     folder.finish(REPORT, &inputs)?;
     if !args.quiet {
-        say(stdout(), report.table());
-        say(stdout(), format_args!("written to {}: {}", args.out.display(), names.join(", ")));
+        print(report.table())?;
+        print(format_args!("written to {}: {}", args.out.display(), names.join(", ")))?;
     }
     if let Some(problem) = problem {
         return Err(problem.into());

@@ -18,7 +18,7 @@ fn ctrl_c_keeps_the_finished_trials() {
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
     let mut line = String::new();
     stderr.read_line(&mut line).unwrap();
-    assert!(line.contains(" of 200000 trials, ") && line.ends_with(" s left\n"), "{line:?}");
+    assert!(line.contains(" of 200000 trials, ") && line.ends_with(" left\n"), "{line:?}");
     send(Signal::SIGINT, &child);
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{ended:?}");
@@ -36,6 +36,7 @@ fn ctrl_c_keeps_the_finished_trials() {
         .sum();
     assert_eq!(counted, finished.len() as u64);
     assert!(run.out("figure3.svg").exists());
+    assert!(ended.stdout.starts_with("Interrupted: "), "{}", ended.stdout);
     assert!(ended.stdout.contains("written to out"), "{}", ended.stdout);
 }
 

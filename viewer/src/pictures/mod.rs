@@ -5,6 +5,7 @@ mod film;
 mod ground;
 mod panel;
 mod plan;
+mod plate;
 mod trajectory;
 
 pub use film::Film;

@@ -54,7 +54,7 @@ impl Panel {
     /// A panel for one layer of the map, a third of Figure 5.
     pub(super) fn of_layer(frame: &GridFrame, unit: TimeUnit) -> Self {
         let width = 280 - Y_AXIS - MARGIN;
-        Self { frame: *frame, unit: unit.length(), width, scale: 2, columns: 2, rows: 2, has_bar: true }
+        Self { frame: *frame, unit: unit.length(), width, scale: 2, columns: 2, rows: 3, has_bar: true }
     }
 
     /// A panel for a picture of its own, with a legend of `entries` entries.
@@ -226,7 +226,10 @@ impl Panel {
         let entries = layer.plain_legend().into_iter();
         let entries: Vec<(Mark, String)> =
             entries.map(|(class, text)| (Mark::Area(layer.color(class)), text.to_owned())).collect();
-        panel.legend(&legend, &entries)
+        panel.legend(&legend, &entries)?;
+        let Some(note) = layer.note() else { return Ok(()) };
+        let row = (entries.len() as u32).div_ceil(self.columns);
+        self.write(&legend, (0, self.px(BAR + row * ROW + ROW / 2)), HPos::Left, note)
     }
 
     /// Draws the cells, as few rectangles as the rows allow.

@@ -2,6 +2,7 @@
 
 use super::ground::{self, fill};
 use super::panel::{Chart, Panel, pair};
+use super::plate::Plate;
 use crate::legend::{self, Legend, Mark};
 use crate::scene::{Robot, Scene, Sector, span};
 use evaluation::drawing::{Area, why};
@@ -98,7 +99,7 @@ fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<Point2<f64>>
     (0..=CORNERS).map(point).collect()
 }
 
-/// Writes the names: that of an obstacle in its middle if there is room, every other name below.
+/// Writes the names: that of an obstacle in its middle if there is room, every other name beside its owner.
 fn names(panel: &Panel, chart: &Chart, scene: &Scene) -> Result<(), String> {
     let obstacles = scene.obstacles.iter().filter_map(|obstacle| {
         let outline = if obstacle.outline.is_empty() { obstacle.reach.first()? } else { &obstacle.outline };
@@ -106,20 +107,33 @@ fn names(panel: &Panel, chart: &Chart, scene: &Scene) -> Result<(), String> {
     });
     let robots = scene.robots.iter().map(|robot| (&robot.name, body(robot, &robot.pose), false));
     let plot = chart.plotting_area();
+    let (columns, rows) = plot.get_pixel_range();
     let pixels = plot.use_screen_coord();
+    let (mut beside, mut taken) = (Vec::new(), Vec::new());
     for (name, outline, is_light) in obstacles.chain(robots) {
         let [low, high] = span(&outline).map(|corner| plot.map_coordinate(&pair(&corner)));
-        let [width, height] = panel.text_size(&pixels, name)?;
+        let owner = Plate { left: low.0, right: high.0, top: high.1, bottom: low.1 };
+        let size = panel.text_size(&pixels, name)?;
         // A name may be a little wider than its obstacle.
-        let has_room = is_light && 5 * (high.0 - low.0) > 4 * width && low.1 - high.1 > height;
-        let (x, mut y) = ((low.0 + high.0) / 2, (low.1 + high.1) / 2);
-        if !has_room {
-            // A light ground, because there may be a wall.
-            y = low.1 + height / 2 + panel.px(2);
-            let plate = [(x - width / 2, y - height / 2), (x + width / 2, y + height / 2)];
-            pixels.draw(&Rectangle::new(plate, WHITE.mix(0.75).filled())).map_err(why)?;
+        let has_room = is_light && 5 * owner.width() > 4 * size[0] && owner.height() > size[1];
+        if has_room {
+            panel.write(&pixels, owner.center(), HPos::Center, name)?;
+            taken.push(Plate::around(owner.center(), size));
+        } else {
+            beside.push((name, owner, size));
         }
-        panel.write(&pixels, (x, y), HPos::Center, name)?;
+        if !is_light {
+            taken.push(owner);
+        }
+    }
+    let area = Plate { left: columns.start, right: columns.end, top: rows.start, bottom: rows.end };
+    for (name, owner, size) in beside {
+        let plate = owner.place_beside(size, panel.px(2), &area, &taken);
+        // A light ground, because there may be a wall.
+        let corners = [(plate.left, plate.top), (plate.right, plate.bottom)];
+        pixels.draw(&Rectangle::new(corners, WHITE.mix(0.75).filled())).map_err(why)?;
+        panel.write(&pixels, plate.center(), HPos::Center, name)?;
+        taken.push(plate);
     }
     Ok(())
 }

@@ -1,4 +1,6 @@
 use super::*;
+use crate::legend::Mark;
+use crate::scene::Robot;
 use crate::tests::FakeRun;
 use evaluation::output::UnfinishedFile;
 use evaluation::palette::{self, Rgb};
@@ -95,6 +97,25 @@ fn trails_walls_obstacles_starts_and_goals_are_drawn() {
     assert!(near(6.0, 1.0, palette::WALL));
     assert!(near(2.2, 10.2, palette::SWEPT));
     assert!(near(3.0, 4.0, palette::GOAL));
+}
+
+#[test]
+fn a_few_robots_have_a_color_each_and_many_share_one() {
+    let mut scene = FakeRun::new().scene;
+    let lines = |scene: &Scene| -> Vec<(Rgb, String)> {
+        let entries = trajectory::entries(scene, &[]).into_iter();
+        let line = |(mark, text)| if let Mark::Line(color) = mark { Some((color, text)) } else { None };
+        entries.filter_map(line).collect()
+    };
+    let named = |color: Rgb, text: &str| (color, text.to_owned());
+    let curious = named(palette::CURIOUS, "curious");
+    scene.robots.insert(0, Robot { name: "cat".into(), ..scene.robots[1].clone() });
+    let dummy = palette::other_robots(2)[1];
+    assert_eq!(lines(&scene), [curious.clone(), named(palette::OTHER_ROBOT, "cat"), named(dummy, "dummy")]);
+    let all = palette::other_robots(5);
+    assert!((1..5).all(|robot| !all[..robot].contains(&all[robot]) && all[robot] != palette::CURIOUS));
+    scene.robots.extend(vec![scene.robots[0].clone(); 6]);
+    assert_eq!(lines(&scene), [curious, named(palette::OTHER_ROBOT, "8 other robots")]);
 }
 
 #[test]

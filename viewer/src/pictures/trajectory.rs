@@ -3,7 +3,7 @@
 use super::ground;
 use super::panel::{Chart, Panel, pair};
 use crate::legend::{Legend, Mark};
-use crate::scene::Scene;
+use crate::scene::{Robot, Scene};
 use crate::view::Trail;
 use evaluation::drawing::{Area, ink, why};
 use evaluation::palette::{self, Rgb};
@@ -21,28 +21,41 @@ pub(super) fn draw(
     let (chart, legend) = panel.axes(area, &format!("Trajectories in {}", scene.title))?;
     ground::draw(&chart, scene)?;
     // The other robots' trails on top: the curious robot goes everywhere.
-    let mut drawn: Vec<_> = scene.robots.iter().zip(trails).collect();
-    drawn.sort_by_key(|(robot, _)| !robot.is_driven);
-    drawn.iter().try_for_each(|(robot, trail)| line(panel, &chart, trail.points(), robot.color()))?;
+    let mut drawn: Vec<_> = scene.robots.iter().zip(trails).zip(colors(scene)).collect();
+    drawn.sort_by_key(|((robot, _), _)| !robot.is_driven);
+    drawn.iter().try_for_each(|((_, trail), color)| line(panel, &chart, trail.points(), *color))?;
     let plot = chart.plotting_area();
     for goal in goals {
         let cross = Cross::new(pair(goal), panel.px(3), panel.line(ink(palette::GOAL), 2));
         plot.draw(&cross).map_err(why)?;
     }
-    for (robot, trail) in scene.robots.iter().zip(trails) {
+    for ((_, trail), color) in drawn {
         if let Some(first) = trail.points().first() {
             let at = plot.map_coordinate(&pair(first));
-            panel.dot(&plot.use_screen_coord(), at, robot.color())?;
+            panel.dot(&plot.use_screen_coord(), at, color)?;
         }
     }
     panel.frame(&chart)?;
     panel.legend(&legend, &entries(scene, goals))
 }
 
+/// The colors of the robots, in the order of the scene.
+fn colors(scene: &Scene) -> Vec<Rgb> {
+    let others = scene.robots.iter().filter(|robot| !robot.is_driven).count();
+    let mut others = palette::other_robots(others).into_iter();
+    let color = |robot: &Robot| if robot.is_driven { None } else { others.next() };
+    scene.robots.iter().map(color).map(|color| color.unwrap_or(palette::CURIOUS)).collect()
+}
+
 /// The entries of the legend.
 pub(super) fn entries(scene: &Scene, goals: &[Point2<f64>]) -> Legend {
-    let robots = scene.robots.iter().map(|robot| (Mark::Line(robot.color()), robot.name.clone()));
-    let mut entries: Legend = robots.collect();
+    let mut robots: Vec<(&Robot, Rgb)> = scene.robots.iter().zip(colors(scene)).collect();
+    robots.sort_by_key(|(robot, _)| !robot.is_driven);
+    let entry = |same: &[(&Robot, Rgb)]| match same {
+        [(robot, color)] => (Mark::Line(*color), robot.name.clone()),
+        several => (Mark::Line(several[0].1), format!("{} other robots", several.len())),
+    };
+    let mut entries: Legend = robots.chunk_by(|(_, a), (_, b)| a == b).map(entry).collect();
     entries.push((Mark::Dot(palette::CURIOUS), "start".into()));
     if !goals.is_empty() {
         entries.push((Mark::Cross(palette::GOAL), format!("{} goals", goals.len())));

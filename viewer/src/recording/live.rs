@@ -1,12 +1,12 @@
 //! A live viewer of a run: started here, or already running.
 
+use super::reach::{ANSWER_TIMEOUT, check_answer, reach};
 use rerun::external::re_grpc_client::write::ClientConnectionState;
 use rerun::external::re_uri::ProxyUri;
 use rerun::log::LogMsg;
 use rerun::sink::{GrpcSink, LogSink};
 use std::fmt::Display;
 use std::io;
-use std::net::{TcpStream, ToSocketAddrs};
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
 use std::thread;
@@ -43,8 +43,6 @@ impl LiveError {
     }
 }
 
-/// The maximum time until a running viewer answers.
-const ANSWER_TIMEOUT: Duration = Duration::from_millis(1500);
 /// The maximum time until a viewer has started: the first start from a slow disk takes several seconds.
 const START_TIMEOUT: Duration = Duration::from_secs(20);
 /// If a viewer accepts nothing for this time, the connection counts as lost.
@@ -155,25 +153,8 @@ fn wait_for<T>(timeout: Duration, mut poll: impl FnMut() -> Option<T>) -> Option
     }
 }
 
-/// Checks that a server listens at `uri`. The SDK would try without end.
-fn reach(uri: &ProxyUri) -> io::Result<()> {
-    let (host, port) = (uri.origin.host.to_string(), uri.origin.port);
-    let (report, outcome) = channel();
-    // In a thread, because the lookup of a name has no timeout of its own.
-    thread::spawn(move || {
-        let reached = (host.trim_matches(['[', ']']), port).to_socket_addrs().and_then(|addresses| {
-            let none = Err(io::Error::new(io::ErrorKind::NotFound, "the name has no address"));
-            addresses.fold(none, |reached, address| {
-                reached.or_else(|_| TcpStream::connect_timeout(&address, ANSWER_TIMEOUT).map(drop))
-            })
-        });
-        report.send(reached)
-    });
-    outcome.recv_timeout(ANSWER_TIMEOUT).unwrap_or_else(|_| Err(io::ErrorKind::TimedOut.into()))
-}
-
 fn connect(uri: &ProxyUri) -> Result<GrpcSink, LiveError> {
-    reach(uri).map_err(|error| LiveError::unreachable(uri, error))?;
+    check_answer(uri).map_err(|error| LiveError::unreachable(uri, error))?;
     let sink = GrpcSink::new(uri.clone());
     let is_connected = wait_for(ANSWER_TIMEOUT, || match sink.status() {
         ClientConnectionState::Connected => Some(true),
@@ -187,7 +168,7 @@ fn connect(uri: &ProxyUri) -> Result<GrpcSink, LiveError> {
     Err(LiveError::unreachable(uri, "what listens there is not a viewer"))
 }
 
-/// Starts the viewer and waits until it listens.
+/// Starts the viewer and waits until it answers.
 fn spawn(program: &str, uri: &ProxyUri) -> Result<(), LiveError> {
     let mut command = Command::new(program);
     command.arg("--port").arg(uri.origin.port.to_string()).arg("--hide-welcome-screen");
@@ -205,7 +186,7 @@ fn spawn(program: &str, uri: &ProxyUri) -> Result<(), LiveError> {
             format!("cannot start the viewer `{program}`: {why}")
         })
     })?;
-    let started = wait_for(START_TIMEOUT, || match (reach(uri), viewer.try_wait()) {
+    let started = wait_for(START_TIMEOUT, || match (check_answer(uri), viewer.try_wait()) {
         (Ok(()), _) => Some(Ok(())),
         // A launcher may end with success while the viewer that it launched goes on.
         (_, Ok(Some(status))) if !status.success() => Some(Err(LiveError(format!(
@@ -220,6 +201,7 @@ fn spawn(program: &str, uri: &ProxyUri) -> Result<(), LiveError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Write;
     use std::net::TcpListener;
 
     fn fails(address: &str) -> String {
@@ -241,6 +223,28 @@ mod tests {
         let message = fails(&format!("127.0.0.1:{free}"));
         assert!(message.starts_with("no viewer answers at rerun+http://127.0.0.1:"), "{message}");
         assert!(!message.contains('\n'));
+    }
+
+    /// For example a viewer that is stopped, or another program with a similar port.
+    #[test]
+    fn a_server_that_never_answers_is_one_sentence() {
+        let server = TcpListener::bind("127.0.0.1:0").unwrap(); // the system accepts connections for it
+        let address = server.local_addr().unwrap().to_string();
+        let message = fails(&address);
+        let silent = "a program accepts connections there, but does not answer";
+        assert!(
+            message.starts_with(&format!("no viewer answers at rerun+http://{address}/proxy: {silent}; ")),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn a_server_that_is_no_viewer_is_one_sentence() {
+        let server = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = server.local_addr().unwrap().to_string();
+        std::thread::spawn(move || server.accept().unwrap().0.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n"));
+        let message = fails(&address);
+        assert!(message.contains("what listens there is not a viewer"), "{message}");
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod entity;
 mod file;
 mod layout;
 mod live;
+mod reach;
 mod sinks;
 mod tracks;
 
@@ -77,7 +78,7 @@ impl Recorder {
     /// # Errors
     ///
     /// When the file cannot be written, or when there is no file and a viewer cannot be reached. Both are
-    /// known within two seconds, unless a viewer has to be started.
+    /// known within five seconds, unless a viewer has to be started.
     pub fn new(file: Option<&Path>, live: &[Live], scene: Scene) -> Result<Self, RecordingError> {
         let (sinks, live_problem) = Sinks::open(file, live)?;
         let (_, info, properties, ..) =

@@ -24,27 +24,68 @@ fn claim(report: &Report) -> Option<Claim> {
     Claim::of(report.run("two_blocks", "paper")?)
 }
 
-fn verdict(errors: [f64; 3], qualities: [f64; 2]) -> (Verdict, String) {
-    let claim = claim(&made(errors, qualities, 0.02)).unwrap();
+/// The verdict, and its parts as text; `chance` is the deviation of the errors.
+fn verdict(errors: [f64; 3], qualities: [f64; 2], chance: f64) -> (Verdict, String) {
+    let claim = claim(&made(errors, qualities, chance)).unwrap();
     let parts = claim.sentence();
-    (claim.verdict, parts.split_once("curious ").unwrap().1.replace('\n', " "))
+    (claim.verdict, parts.split_once(":\n").unwrap().1.replace('\n', " "))
 }
 
 #[test]
 fn the_claim_holds_only_in_all_its_parts() {
-    let as_good = "and its map is as good as that of recency.";
-    for (errors, qualities, expected, parts) in [
-        ([0.5, 0.6, 0.7], [0.98, 0.98], Verdict::Holds, "faster than recency and faster than poisson"),
-        ([0.5, 0.6, 0.5], [0.98, 0.98], Verdict::NotShown, "faster than recency and level with poisson"),
-        ([0.5, 0.6, 0.4], [0.98, 0.98], Verdict::Fails, "faster than recency and slower than poisson"),
-        ([0.5, 0.4, 0.6], [0.98, 0.98], Verdict::Fails, "slower than recency and faster than poisson"),
-        ([0.5, 0.6, 0.7], [0.977, 0.98], Verdict::Holds, "faster than recency and faster than poisson"),
+    let as_good = "curious has as good a map as recency.";
+    for (errors, qualities, expected, [to_recency, to_poisson]) in [
+        ([0.5, 0.6, 0.7], [0.98, 0.98], Verdict::Holds, ["faster than recency", "faster than poisson"]),
+        (
+            [0.5, 0.6, 0.5],
+            [0.98, 0.98],
+            Verdict::NotShown,
+            ["faster than recency", "level with poisson, within 10 %"],
+        ),
+        ([0.5, 0.6, 0.4], [0.98, 0.98], Verdict::Fails, ["faster than recency", "slower than poisson"]),
+        ([0.5, 0.4, 0.6], [0.98, 0.98], Verdict::Fails, ["slower than recency", "faster than poisson"]),
+        ([0.5, 0.6, 0.7], [0.977, 0.98], Verdict::Holds, ["faster than recency", "faster than poisson"]),
     ] {
-        assert_eq!(verdict(errors, qualities), (expected, format!("learns rates {parts}, {as_good}")));
+        let parts =
+            format!("curious learns rates {to_recency}; curious learns rates {to_poisson}; {as_good}");
+        assert_eq!(verdict(errors, qualities, 0.02), (expected, parts));
     }
-    let (worse, parts) = verdict([0.5, 0.6, 0.7], [0.97, 0.98]);
+    let (worse, parts) = verdict([0.5, 0.6, 0.7], [0.97, 0.98], 0.02);
     assert_eq!(worse, Verdict::Fails);
-    assert!(parts.ends_with("its map is worse than that of recency."), "{parts}");
+    assert!(parts.ends_with("curious has a worse map than recency."), "{parts}");
+}
+
+#[test]
+fn a_wide_interval_cannot_tell() {
+    let (not_shown, parts) = verdict([0.5, 0.55, 0.5], [0.98, 0.98], 0.3);
+    assert_eq!(not_shown, Verdict::NotShown);
+    let cannot_tell =
+        |other| format!("10 trials cannot tell whether curious or {other} learns rates faster; ");
+    assert!(parts.starts_with(&(cannot_tell("recency") + &cannot_tell("poisson"))), "{parts}");
+    // The errors are clear, the map qualities are not: no claim holds.
+    let (not_shown, parts) = verdict([1.5, 4.0, 4.0], [0.98, 0.98], 1.0);
+    assert_eq!(not_shown, Verdict::NotShown);
+    assert!(
+        parts.ends_with("10 trials cannot tell whether curious has as good a map as recency."),
+        "{parts}"
+    );
+}
+
+#[test]
+fn an_interrupted_experiment_says_so_first() {
+    let (mut settings, mut trials) = experiment(1, &["paper"], &["curious", "recency"], 3);
+    settings.interrupted = true;
+    trials.truncate(4);
+    let table = Report::new(settings, trials).table();
+    assert!(table.starts_with("Interrupted: 4 of 6 trials were finished.\n\ntwo_blocks\n"), "{table}");
+}
+
+#[test]
+fn a_strategy_is_the_fastest_only_if_that_is_significant() {
+    let table = made([0.5, 0.51, 0.9], [0.98; 2], 0.1).table().replace('\n', " ");
+    assert!(table.contains("recency has the smallest log error over the run, 0.94 times"), "{table}");
+    assert!(table.contains("that of curious; the difference is not significant (p = "), "{table}");
+    assert!(!table.contains("learns rates fastest"), "{table}");
 }
 
 #[test]

@@ -79,15 +79,27 @@ fn runs_and_strategies_come_as_they_were_asked_for() {
 #[test]
 fn a_curve_is_the_mean_of_its_trials_with_what_is_undefined_left_out() {
     let mut trials = vec![flat("a", "x", 0, 1.0), flat("a", "x", 1, 2.0), flat("a", "x", 2, 6.0)];
-    trials[2].samples[0].brier = f64::NAN;
+    trials[2].samples[0].rate_error = f64::NAN;
     let report = Report::new(ReportSettings::default(), trials);
     let strategy = report.runs[0].strategy("x").unwrap();
-    let curve = strategy.curve(Metric::Brier);
+    let curve = strategy.curve(Metric::RateError);
     assert_eq!((curve[0].count, curve[0].mean, curve[1].count, curve[1].mean), (2, 1.5, 3, 3.0));
     // 4.3027 √7 / √3 around 3.
     close(curve[1].high, 3.0 + 4.302_65 * (7.0_f64 / 3.0).sqrt(), 1e-4);
-    assert_eq!(strategy.value(Measure::Final(Metric::Brier)), 3.0);
+    assert_eq!(strategy.value(Measure::Final(Metric::RateError)), 3.0);
     assert_eq!((strategy.trials, strategy.false_change_events), (3, 3));
+}
+
+#[test]
+fn no_band_exceeds_what_its_metric_can_be() {
+    let report = Report::new(ReportSettings::default(), vec![flat("a", "x", 0, 0.1), flat("a", "x", 1, 0.9)]);
+    let strategy = report.runs[0].strategy("x").unwrap();
+    for metric in Metric::ALL {
+        let at = strategy.curve(metric)[1];
+        assert_eq!((at.mean, at.low), (0.5, 0.0), "{metric:?}");
+        let unlimited: f64 = 0.5 + 12.7062 * 0.4; // Student's t of two values
+        close(at.high, unlimited.min(*metric.range().end()), 1e-4);
+    }
 }
 
 #[test]
