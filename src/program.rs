@@ -3,6 +3,7 @@
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use evaluation::output::say;
+use interfaces::printable_lines;
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{stderr, stdout};
@@ -41,7 +42,7 @@ pub fn exit_code(result: Result<ExitCode, Failure>) -> ExitCode {
         Err(Failure::Input(error)) => (2, error),
         Err(Failure::Run(error)) => (1, error),
     };
-    say(stderr(), format_args!("error: {error:#}"));
+    say(stderr(), format_args!("error: {}", printable_lines(&format!("{error:#}"))));
     ExitCode::from(code)
 }
 

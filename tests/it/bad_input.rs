@@ -108,6 +108,25 @@ fn pipes_and_devices() {
     }
 }
 
+/// Escape sequences would reach the terminal, newlines would forge lines.
+#[test]
+fn names_and_values_that_are_not_printable() {
+    let forged = "\\u001b[2J\\nerror: forged";
+    for (right, wrong) in [
+        ("name = \"four rooms\"", format!("name = \"{forged}\"")),
+        ("kind = \"driven\"", format!("kind = \"{forged}\"")),
+        ("max_linear_mps", format!("\"{forged}\"")),
+        ("[map]", format!("[[floor_plan]]\nimage = \"{forged}\"\npixel_m = 1.0\n[map]")),
+        ("cell_m = 0.05", "cell_m = 1e9 # \u{1b}[2J\u{9b}2J".to_owned()),
+    ] {
+        let message = refused_world(right, &wrong);
+        assert!(message.lines().all(|line| !line.chars().any(char::is_control)), "{message:?}");
+    }
+    let map = MAP.replace("gone.pgm", "\"\\e[2J\\nerror: forged\"").replace("0.05", "\"\\e[2J\"");
+    let message = refused_file("m.yaml", &map, "--map m.yaml");
+    assert!(message.lines().all(|line| !line.chars().any(char::is_control)), "{message:?}");
+}
+
 #[test]
 fn maps() {
     insta::assert_snapshot!(refused("--map no.yaml"), @"

@@ -6,6 +6,7 @@ use anyhow::bail;
 use clap::Parser;
 use evaluation::output::{make_folder, say, write_file};
 use inspection::{Content, Inspection, as_world_file, inspect};
+use interfaces::printable;
 use std::collections::BTreeSet;
 use std::io::{stderr, stdout};
 use std::path::{Path, PathBuf};
@@ -60,7 +61,7 @@ fn main() -> ExitCode {
             continue;
         };
         if let Err(error) = write(content, file, &args, &mut written) {
-            say(stderr(), format_args!("error: {error:#}"));
+            say(stderr(), format_args!("error: {}", printable(&format!("{error:#}"))));
             return ExitCode::FAILURE;
         }
     }
@@ -75,7 +76,8 @@ fn report(inspection: &Inspection) {
         Some(Content { kind, description, lines, scene }) => {
             say(stdout(), format_args!("{}: valid, a {kind} named `{}`", inspection.file, scene.title));
             if !description.is_empty() {
-                say(stdout(), format_args!("  {description}"));
+                let words: Vec<&str> = description.split_whitespace().collect();
+                say(stdout(), format_args!("  {}", printable(&words.join(" "))));
             }
             for (name, what) in lines {
                 say(stdout(), format_args!("  {name:<9} {what}"));
@@ -109,7 +111,7 @@ fn write(content: &Content, file: &str, args: &Args, written: &mut BTreeSet<Path
     if args.png {
         let picture = path_with(".png")?;
         draw_plan(&picture, &content.scene)?;
-        say(stdout(), format_args!("  picture   {}", picture.display()));
+        say(stdout(), format_args!("  picture   {}", printable(&picture.display().to_string())));
     }
     if args.toml {
         let Some(text) = as_world_file(file) else {
@@ -118,7 +120,7 @@ fn write(content: &Content, file: &str, args: &Args, written: &mut BTreeSet<Path
         };
         let world_file = path_with(".toml")?;
         write_file(&world_file, |to| to.write_all(text.as_bytes()))?;
-        say(stdout(), format_args!("  world     {}", world_file.display()));
+        say(stdout(), format_args!("  world     {}", printable(&world_file.display().to_string())));
         if content.scene.robots.iter().filter(|robot| robot.is_driven).count() != 1 {
             say(
                 stdout(),

@@ -105,11 +105,33 @@ fn of_many_errors_the_first_are_shown_and_the_rest_are_counted() {
 }
 
 #[test]
-fn a_name_with_control_characters_is_refused() {
+fn a_name_that_is_not_printable_is_refused() {
     let robot = robot("a\\u001b[2Jb\\nc", "pose_m = [1.0, 1.0]");
-    assert_eq!(firsts(&room(&robot)), ["`robot.name` has a control character"]);
+    assert_eq!(firsts(&room(&robot)), ["`robot.name` has a character that is not printable"]);
     let map = room("").replace("\"room\"", "\"a\\tb\"");
-    assert_eq!(firsts(&map), ["`name` has a control character"]);
+    assert_eq!(firsts(&map), ["`name` has a character that is not printable"]);
+}
+
+/// In keys, values, comments and names of files.
+#[test]
+fn no_message_has_a_character_that_is_not_printable() {
+    let texts = [
+        "\"a\\u001b[2J\\nerror: forged\" = 1 # \u{9b}2J\u{85}",
+        "name = \"a\\u001b\\u009b\"\n[map]\nsize_m = \"\\n\\u001b]0;x\\u0007\" # \u{9b}2J",
+        "physics = { step_s = 'a' } # \u{202e}\u{2028}",
+        "wall = 1\r\n\u{1b}[2J",
+        "[[floor_plan]]\nimage = \"\\u001b[2J\\n\"\npixel_m = 1.0",
+    ];
+    for text in texts {
+        let error = crate::physics::parse_fleet("a\u{1b}[2J\nerror: b.toml", text).unwrap_err();
+        for message in error.messages() {
+            let is_safe = |line: &str| line.chars().all(interfaces::is_printable);
+            assert!(message.lines().all(is_safe), "{message:?}");
+            assert!(message.lines().all(|line| !line.starts_with("error: ")), "{message}");
+        }
+    }
+    let long = format!("name = 1\nphysics = {{ {} = 1 }}", "k".repeat(1_000_000));
+    assert!(crate::physics::parse_fleet("w.toml", &long).unwrap_err().to_string().len() < 20_000);
 }
 
 #[test]
