@@ -46,13 +46,13 @@ fn refused_world(right: &str, wrong: &str) -> String {
 fn worlds() {
     insta::assert_snapshot!(refused("--world nowhere"), @"error: there is no world `nowhere`: it is neither a file nor one of those that ship (four_rooms, toy_on_the_floor, turned_house, house, office, warehouse, cave, yard)");
     insta::assert_snapshot!(refused_world("cell_m = 0.05", "cell_m = = 0.05"), @"
-    error: not a TOML file: extra `=`
+    error: one `=` too many
      --> house.toml:9:10
       |
     9 | cell_m = = 0.05           # cell size of the ground truth grid, against which maps are scored
       |          ^
       |
-      = help: expected nothing
+      = help: a key and its value are written as in `radius_m = 0.2`
     ");
     insta::assert_snapshot!(refused_world("max_linear_mps", "max_liner_mps"), @"
     error: unknown key `max_liner_mps`

@@ -55,7 +55,7 @@ fn worlds() {
 #[test]
 fn names_that_are_no_names_of_files() {
     let named = |name: &str| refused_world("name = \"two blocks\"", &format!("name = \"{name}\""));
-    insta::assert_snapshot!(named("a/b"), @"");
+    insta::assert_snapshot!(named("a/b"), @"error: the world `a/b` in `grid.toml` needs another name, since files of results contain it: it has the character `/`; `a_b` would be valid");
     for (name, why) in [
         ("..", "it begins with a dot"),
         (".hidden", "it begins with a dot"),

@@ -24,6 +24,9 @@ pub(crate) use value::{Figure, Value, extent};
 /// The number of errors that are shown; further errors are only counted.
 const MOST_SHOWN: usize = 20;
 
+/// The number of errors after which no key is looked up for an unknown one.
+const MOST_JUDGED: usize = 1000;
+
 /// The kinds of files: two kinds of worlds, and tours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
@@ -111,7 +114,7 @@ impl File<'_> {
 
     fn syntax_error<T>(&self, error: &toml::de::Error) -> Option<T> {
         let span = error.span().unwrap_or(0..0);
-        let (what, help) = syntax::fault(error.message());
+        let (what, help) = syntax::fault(error.message(), self.text(span.clone()));
         self.error(what, (span, ""), &[], help)
     }
 
@@ -162,7 +165,8 @@ impl<'a> Table<'a> {
     ) -> Self {
         let mut table = Self { file, path, keys, entries, span, is_sound: true, meant: Vec::new() };
         for (key, _) in entries.into_iter().flatten().filter(|(key, _)| !has(keys, key.get_ref())) {
-            let near = spelling::nearest(key.get_ref(), keys.split(", "));
+            let is_judged = file.errors.borrow().len() < MOST_JUDGED;
+            let near = is_judged.then(|| spelling::nearest(key.get_ref(), keys.split(", "))).flatten();
             let hint = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
             let help = format!("{hint}the keys here are: {keys}");
             file.error::<()>(

@@ -5,8 +5,8 @@ const VALUE: &str =
     "a number is written as in 0.5 or -12, a text in quotes as in \"curious\", a flag as `true` or `false`";
 const LIST: &str = "a list is written as in `[1.0, 2.0]`, a table on one line as in `{ kind = \"driven\" }`";
 
-/// What the parser's message is about, and what is valid.
-pub(super) fn fault(message: &str) -> (&'static str, &'static str) {
+/// What the parser's message about the text `found` means, and what is valid.
+pub(super) fn fault(message: &str, found: &str) -> (&'static str, &'static str) {
     match message.split(", expected ").next().unwrap_or_default() {
         "duplicate key" => ("a key is given twice", "leave one of them out"),
         what if what.starts_with("cannot extend value") => {
@@ -19,11 +19,13 @@ pub(super) fn fault(message: &str) -> (&'static str, &'static str) {
         | "missing value"
         | "missing value for key"
         | "missing assignment between key-value pairs"
-        | "missing key for inline table element" => ("a key without a value, or a value without a key", KEY),
+        | "missing key for inline table element"
+        | "missing opening quote" => ("a key without a value, or a value without a key", KEY),
         "extra `=`" | "extra assignment between key-value pairs" | "unexpected `=` in array" => {
             ("one `=` too many", KEY)
         }
-        "string values must be quoted" => ("a text without quotes", VALUE),
+        "string values must be quoted" if found.trim().is_empty() => ("a value is missing", VALUE),
+        "string values must be quoted" => ("this is neither a number nor a text in quotes", VALUE),
         "missing comma between array elements" | "missing comma between key-value pairs" => {
             ("a comma is missing", LIST)
         }
@@ -37,7 +39,7 @@ pub(super) fn fault(message: &str) -> (&'static str, &'static str) {
             ("a line goes on after its value", "write each key on a line of its own; comments begin with `#`")
         }
         what if what.contains("key") => ("this is no key", "a key has letters, digits, `_` and `-` only"),
-        what if what.contains("string") || what.contains("quote") || what.contains("escape") => (
+        what if ["string", "quote", "escape", "unicode"].iter().any(|word| what.contains(word)) => (
             "this text in quotes is not complete",
             "a text begins and ends with `\"`, on one line; `\\` is written as `\\\\` in it",
         ),

@@ -9,6 +9,9 @@ use serde_saphyr::Error;
 /// A fault of the text: its line, what it is, and what is valid.
 pub(super) type Fault = (usize, &'static str, &'static str);
 
+const TOO_MUCH: &str = "this file has too many values, or lists in too many others";
+/// The maximum depth of lists in each other; the parser has a limit of its own, which is not below.
+const MAX_DEPTH: usize = 50;
 const LIST: &str = "a list is written as in `[-6.0, -6.0, 0.0]`";
 
 /// The fault at which the parser has stopped.
@@ -20,7 +23,7 @@ pub(super) fn fault(source: &SourceText, error: &Error) -> Fault {
             ("this file has more than one document", "a map is one document: leave `---` and the rest out")
         }
         Error::NullIntoString { .. } => ("a key without a name", EXAMPLE),
-        Error::Budget { .. } => ("this file has too many values, or lists in too many others", EXAMPLE),
+        Error::Budget { .. } => (TOO_MUCH, EXAMPLE),
         Error::UnknownAnchor { .. }
         | Error::AliasError { .. }
         | Error::AliasReplayLimitExceeded { .. }
@@ -70,6 +73,7 @@ fn in_text(text: &str) -> Option<Fault> {
         }
         for bracket in text.chars() {
             match bracket {
+                '[' | '{' if open.len() == MAX_DEPTH => return Some((line, TOO_MUCH, EXAMPLE)),
                 '[' | '{' => open.push((line, bracket)),
                 ']' | '}' => match open.pop() {
                     Some((_, '[')) if bracket == ']' => {}
