@@ -64,12 +64,12 @@ impl fmt::Display for Value {
             Self::Flag(flag) => write!(f, "is {flag}"),
             Self::Number(number) => write!(f, "is {}", Figure(*number)),
             Self::Text(text) if text.is_empty() => write!(f, "is empty"),
-            Self::Text(text) => write!(f, "is {text}"),
+            Self::Text(text) => write!(f, "is \"{text}\""),
             Self::List(numbers) => {
                 let numbers: Vec<String> = numbers.iter().map(|number| Figure(*number).to_string()).collect();
                 write!(f, "is [{}]", numbers.join(", "))
             }
-            Self::Other(_) => write!(f, "is a list or a table"),
+            Self::Other(_) => write!(f, "is a list or a table with other values than numbers"),
         }
     }
 }

@@ -159,14 +159,14 @@ fn values_of_every_kind_are_shown_as_what_they_are() {
         (" ~", "`image` has no value"),
         (" # none", "`image` has no value"),
         (" ''", "`image` is empty"),
-        (" \"a\\eb\\n\"", "`image` is a\\u{1b}b\\n"),
+        (" \"a\\eb\\n\"", "`image` is \"a\\u{1b}b\\n\""),
         (" 1e300", "`image` is 1e300"),
         (" yes", "`image` is true"),
         (" [1, 2.5, .nan]", "`image` is [1, 2.5, NaN]"),
         ("\n - 1\n - 2", "`image` is [1, 2]"),
-        (" [a, b]", "`image` is a list or a table"),
-        (" {a: b}", "`image` is a list or a table"),
-        (" [[1]]", "`image` is a list or a table"),
+        (" [a, b]", "`image` is a list or a table with other values than numbers"),
+        (" {a: b}", "`image` is a list or a table with other values than numbers"),
+        (" [[1]]", "`image` is a list or a table with other values than numbers"),
     ] {
         let (_, findings) = read(&GOOD.replace(" house.pgm", value));
         assert_eq!(findings.iter().next().unwrap().what, shown, "{findings}");

@@ -145,8 +145,8 @@ fn an_invalid_value_is_named_with_a_valid_one() {
         ("negate: 0", "negate: 2", "`negate` is 2", "it must be 0 or 1"),
         ("free_thresh: 0.196", "free_thresh: 0.7", "`free_thresh` is 0.7", "above `occupied_thresh`"),
         ("occupied_thresh: 0.65", "occupied_thresh: 65", "`occupied_thresh` is 65", "a number from 0 to 1"),
-        ("negate: 0", "mode: fancy", "`mode` is fancy", "`trinary`, `scale` or `raw`"),
-        ("resolution: 0.5", "resolution: abc", "`resolution` is abc", "the side of a pixel in metres"),
+        ("negate: 0", "mode: fancy", "`mode` is \"fancy\"", "`trinary`, `scale` or `raw`"),
+        ("resolution: 0.5", "resolution: abc", "`resolution` is \"abc\"", "the side of a pixel in metres"),
         ("resolution: 0.5\n", "", "the key `resolution` is missing", "the side of a pixel in metres"),
         ("1.0, -2.0, 0.0", "1.0, -2.0", "`origin` is [1, -2]", "[x, y, yaw] in m and rad"),
     ];
