@@ -4,6 +4,7 @@ use crate::terminal::{check_printed, print, say};
 use anyhow::Context;
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use interfaces::printable_lines;
 use std::error::Error;
 use std::fmt::Display;
 use std::io::stderr;
@@ -47,7 +48,7 @@ pub fn start<A: Parser>(program: impl FnOnce(&A) -> Result<ExitCode, Failure>) -
         Err(Failure::Input(error)) => (2, error),
         Err(Failure::Run(error)) => (1, error),
     };
-    say(stderr(), format_args!("error: {error:#}"));
+    say(stderr(), format_args!("error: {}", printable_lines(&format!("{error:#}"))));
     ExitCode::from(code)
 }
 

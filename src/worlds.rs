@@ -1,10 +1,13 @@
 //! The world to run: a shipped world, a world file, or a Stage file.
 
+use evaluation::file_name::{self, FileNameError};
+use interfaces::printable;
+use sim::grid::GridSpec;
 use sim::physics::WorldSpec;
 use std::path::Path;
 use worldfile::{Disk, Severity};
 
-pub use worldfile::shipped::{GRID as SHIPPED_GRID, LoadError, PHYSICS as SHIPPED, TOUR, load_grid};
+pub use worldfile::shipped::{GRID as SHIPPED_GRID, LoadError, PHYSICS as SHIPPED, TOUR};
 
 /// The error for a name that does not lead to a world.
 #[derive(Debug, thiserror::Error)]
@@ -20,6 +23,21 @@ pub enum WorldError {
     NoRobot {
         /// The name as given.
         name: String,
+    },
+    /// A grid world whose results would have no valid file names.
+    #[error(
+        "the world `{world}` in `{name}` needs another name, since files of results contain it: {why}; `{valid}` \
+         would be valid"
+    )]
+    FileName {
+        /// The name as given.
+        name: String,
+        /// The name of the world.
+        world: String,
+        /// What is invalid.
+        why: FileNameError,
+        /// A valid name.
+        valid: String,
     },
 }
 
@@ -40,10 +58,29 @@ pub struct Loaded {
 /// When there is no such world or file, or when it is not a world of this kind.
 pub fn load(name: &str) -> Result<Loaded, WorldError> {
     let path = Path::new(name);
-    if path.extension().is_some_and(|ending| ending == "world") && path.exists() {
+    if is_of_stage(path) && path.exists() {
         return load_stage(name);
     }
     Ok(Loaded { spec: worldfile::shipped::load(name)?, warnings: Vec::new() })
+}
+
+/// Whether a file is read as a Stage file, by the end of its name.
+pub fn is_of_stage(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "world" || ending == "inc")
+}
+
+/// The grid world with the name `name`: a shipped world, or otherwise the file with this path.
+///
+/// # Errors
+///
+/// When there is no such world or file, when it is not a world of this kind, or when the name of the world cannot be
+/// part of the name of a file.
+pub fn load_grid(name: &str) -> Result<GridSpec, WorldError> {
+    let spec = worldfile::shipped::load_grid(name)?;
+    let [name, world] = [name, &spec.name].map(|name| printable(name).into_owned());
+    let invalid = |why| WorldError::FileName { name, world, why, valid: file_name::of(&spec.name) };
+    file_name::check(&spec.name).map_err(invalid)?;
+    Ok(spec)
 }
 
 fn load_stage(name: &str) -> Result<Loaded, WorldError> {
@@ -55,12 +92,13 @@ fn load_stage(name: &str) -> Result<Loaded, WorldError> {
         [Severity::Warning, Severity::Note].map(|severity| findings.messages(severity)).concat();
     let driven: Vec<usize> = fleet.driven_robots().collect();
     let explorer = driven.first().copied().unwrap_or(0);
-    let spec =
-        WorldSpec::driving(fleet, explorer).ok_or_else(|| WorldError::NoRobot { name: name.to_owned() })?;
+    let spec = WorldSpec::driving(fleet, explorer)
+        .ok_or_else(|| WorldError::NoRobot { name: printable(name).into_owned() })?;
     if driven.len() != 1 {
         warnings.push(format!(
-            "warning: of the robots in `{name}`, `{}` explores{}\n  = help: for another one, make a world file with \
-             `check_world --toml {name}`, and change the behaviours there",
+            "warning: of the robots in `{0}`, `{1}` explores{2}\n  = help: for another one, make a world file with \
+             `check_world --toml {0}`, and change the behaviours there",
+            printable(name),
             spec.driven().name,
             if driven.is_empty() { "" } else { ", and the others that obey commands stand still" },
         ));

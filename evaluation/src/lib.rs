@@ -4,6 +4,7 @@
 
 pub mod cell_statistics;
 pub mod drawing;
+pub mod file_name;
 pub mod map_hash;
 pub mod metrics;
 pub mod observer;

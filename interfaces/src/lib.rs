@@ -1,5 +1,6 @@
 //! The values and traits that the crates exchange: cells and grids, scans and readings, commands, the
-//! traits [`World`] and [`GroundTruth`], parts chosen by name, checks of settings, and seeded random streams.
+//! traits [`World`] and [`GroundTruth`], parts chosen by name, checks of settings, text that is safe to print, and
+//! seeded random streams.
 //!
 //! This crate depends on no other crate of the workspace. It has no clock and no input or output.
 //!
@@ -12,6 +13,7 @@ mod cell;
 mod command;
 mod grid;
 mod ground_truth;
+mod printable;
 mod random;
 mod reading;
 mod scan;
@@ -26,6 +28,7 @@ pub use cell::Cell;
 pub use command::{Step, Twist};
 pub use grid::{Grid, GridFrame};
 pub use ground_truth::{GroundTruth, TrueChange, TrueState};
+pub use printable::{is_printable, printable, printable_lines};
 pub use random::{Purpose, RandomStream};
 pub use reading::{CellReading, LaserReading, Observation, Reading};
 pub use scan::{Scan, ScanError};

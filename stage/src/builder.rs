@@ -6,7 +6,7 @@ use super::pictures::Pictures;
 use super::sources::Sources;
 use super::tree::Entity;
 use super::{StageRobot, StageWall};
-use interfaces::pose;
+use interfaces::{is_printable, pose};
 use nalgebra::{Isometry2, Point2};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
@@ -105,7 +105,13 @@ impl Builder<'_, '_> {
     pub(super) fn text(&mut self, entity: &Entity, name: &str) -> Option<(String, Place)> {
         let property = entity.get(name)?;
         if let [Token { kind: Kind::Text, place }] = property.values.as_slice() {
-            return Some((self.sources.text(*place).to_owned(), *place));
+            let text = self.sources.text(*place);
+            if text.chars().all(is_printable) {
+                return Some((text.to_owned(), *place));
+            }
+            let what = format!("`{name}` has a character that is not printable");
+            self.sources.error(*place, what, "it takes one line of printable text");
+            return None;
         }
         let what = format!("`{name}` has the wrong values");
         self.sources.error(property.place(), what, "it takes one text in quotes");

@@ -3,8 +3,8 @@
 use super::sources::Sources;
 use super::to_toml::{STEER_DEG, is_upright, short};
 use super::{Drive, StageRobot, StageWall, StageWorld, fastest};
-use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
+use sim::physics::{BoxTree, Form, Rectangle};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 use worldfile::Severity;
@@ -35,11 +35,12 @@ pub(super) fn check(sources: &mut Sources<'_>, world: &StageWorld) {
         sources.add_file(Severity::Error, what, help);
     }
     check_walls(sources, world);
+    let room = Room::new(world);
     for (index, robot) in world.robots.iter().enumerate() {
         check_figures(sources, robot);
         warn_of_drive(sources, robot);
         check_sensors(sources, robot);
-        check_room(sources, world, index);
+        room.check(sources, index);
     }
 }
 
@@ -151,22 +152,43 @@ fn check_sensors(sources: &mut Sources<'_>, robot: &StageRobot) {
     }
 }
 
-/// Whether a robot stands in a wall or in another robot.
-fn check_room(sources: &mut Sources<'_>, world: &StageWorld, index: usize) {
-    let robot = &world.robots[index];
-    let (form, radius_m) = (robot.form(), robot.radius_m());
-    let middle = Point2::from(robot.pose.translation.vector);
-    let stands_in = |wall: &&StageWall| {
-        let mut near = wall.rectangles.iter().filter(|rectangle| rectangle.distance_m(&middle) < radius_m);
-        near.any(|rectangle| form.gap_m(&rectangle.corners()) < -TOUCH_M)
-    };
-    if let Some(wall) = world.walls.iter().find(stands_in) {
-        let what = format!("the robot `{}` stands in `{}`", robot.name, wall.name);
-        sources.error(robot.at, what, format!("it may touch, but not overlap, {}", wall.place));
+/// The walls and the robots of a world, in trees: not every pair is compared.
+struct Room<'a> {
+    /// The pieces of all walls, each with its wall.
+    pieces: Vec<(&'a StageWall, &'a Rectangle)>,
+    tree_of_pieces: BoxTree,
+    robots: &'a [StageRobot],
+    /// The area that each robot covers at its start.
+    forms: Vec<Form>,
+    tree_of_forms: BoxTree,
+}
+
+impl<'a> Room<'a> {
+    fn new(world: &'a StageWorld) -> Self {
+        let pieces =
+            world.walls.iter().flat_map(|wall| wall.rectangles.iter().map(move |piece| (wall, piece)));
+        let pieces: Vec<_> = pieces.collect();
+        let forms: Vec<Form> = world.robots.iter().map(StageRobot::form).collect();
+        Self {
+            tree_of_pieces: BoxTree::new(pieces.iter().map(|(_, piece)| piece.bounds())),
+            pieces,
+            robots: &world.robots,
+            tree_of_forms: BoxTree::new(forms.iter().map(Form::bounds)),
+            forms,
+        }
     }
-    for other in &world.robots[..index] {
-        let apart_m = (other.pose.translation.vector - middle.coords).norm();
-        if apart_m < radius_m + other.radius_m() && form.apart_m(&other.form()) < -TOUCH_M {
+
+    /// Adds an error if a robot stands in a wall or in an earlier robot.
+    fn check(&self, sources: &mut Sources<'_>, index: usize) {
+        let (robot, form) = (&self.robots[index], &self.forms[index]);
+        let holds = |piece: &Rectangle| form.gap_m(&piece.corners()) < -TOUCH_M;
+        let wall = self.tree_of_pieces.first_below(usize::MAX, holds, |i| holds(self.pieces[i].1));
+        if let Some((wall, _)) = wall.map(|i| self.pieces[i]) {
+            let what = format!("the robot `{}` stands in `{}`", robot.name, wall.name);
+            sources.error(robot.at, what, format!("it may touch, but not overlap, {}", wall.place));
+        }
+        let overlaps = |i: usize| form.apart_m(&self.forms[i]) < -TOUCH_M;
+        if let Some(other) = self.tree_of_forms.first_below(index, holds, overlaps).map(|i| &self.robots[i]) {
             let what = format!("the robots `{}` and `{}` overlap", other.name, robot.name);
             let help = format!("they may touch, but not overlap; the other one is at {}", other.place);
             sources.error(robot.at, what, help);

@@ -7,8 +7,8 @@ use super::heights::Solid;
 use super::left_out;
 use super::lexer::Place;
 use super::tree::Entity;
+use sim::physics::{BoxTree, Rectangle};
 use worldfile::Severity;
-use worldfile::physics::MAX_PIECES;
 
 /// The size of a model, where the file gives none, m.
 pub(super) const DEFAULT_SIZE_M: [f64; 3] = [0.1; 3];
@@ -184,7 +184,10 @@ impl Builder<'_, '_> {
     /// Leaves the tags of all walls out that cannot be obstacles here, which are one rectangle with the tag in
     /// its middle and lie outside of walls.
     pub(super) fn check_tags(&mut self) {
-        let pieces: usize = self.walls.iter().map(|wall| wall.rectangles.len()).sum();
+        let pieces = self.walls.iter().enumerate();
+        let pieces = pieces.flat_map(|(wall, of)| of.rectangles.iter().map(move |piece| (wall, *piece)));
+        let pieces: Vec<(usize, Rectangle)> = pieces.collect();
+        let tree = BoxTree::new(pieces.iter().map(|(_, piece)| piece.bounds()));
         for (index, position, place) in &self.tagged {
             let (what, help) = match self.walls[*index].rectangles.as_slice() {
                 [shape] if (shape.pose.translation.vector - position.coords).norm() > NEAR_M => {
@@ -192,14 +195,9 @@ impl Builder<'_, '_> {
                     ("the tag of a thing that does not lie about its pose is left out", help)
                 }
                 [shape] => {
-                    let others = self.walls.iter().enumerate().filter(|(other, _)| other != index);
-                    let mut others = others.flat_map(|(_, wall)| &wall.rectangles);
-                    let overlaps = |other: &sim::physics::Rectangle| {
-                        let apart_m = (other.pose.translation.vector - shape.pose.translation.vector).norm();
-                        apart_m <= shape.half_m.norm() + other.half_m.norm() && shape.overlaps(other)
-                    };
-                    // A world of too many pieces does not run.
-                    if pieces > MAX_PIECES || !others.any(overlaps) {
+                    let overlaps = |other: &Rectangle| shape.overlaps(other);
+                    let is_another = |i: usize| pieces[i].0 != *index && overlaps(&pieces[i].1);
+                    if tree.first_below(usize::MAX, overlaps, is_another).is_none() {
                         continue;
                     }
                     let what = "the tag of a thing that lies in another one is left out";

@@ -1,6 +1,7 @@
 //! The texts that make up a world: the file itself and what it includes.
 
 use super::lexer::{self, Kind, Place, Token};
+use interfaces::printable;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
@@ -66,7 +67,7 @@ impl<'a> Sources<'a> {
     fn append(&mut self, path: &Path, bytes: Vec<u8>) -> bool {
         self.bytes_left -= bytes.len() as u64;
         let file = self.texts.len() as u32;
-        self.texts.push(SourceText::new(path.display().to_string(), bytes));
+        self.texts.push(SourceText::new(printable(&path.display().to_string()).into_owned(), bytes));
         self.paths.push(path.to_owned());
         let own = match lexer::tokens(&self.texts[file as usize].text, file) {
             Ok(own) => own,

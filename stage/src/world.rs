@@ -8,6 +8,7 @@ use super::pictures::Pictures;
 use super::sources::Sources;
 use super::tree::Entity;
 use super::{Drive, StageRobot, StageWorld, fastest};
+use interfaces::printable;
 use std::collections::{BTreeMap, BTreeSet};
 use worldfile::Severity;
 
@@ -71,7 +72,7 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
         return None;
     };
     let file = sources.path().file_stem();
-    let file = file.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let file = file.map_or_else(String::new, |stem| printable(&stem.to_string_lossy()).into_owned());
     let name = name.filter(|name| !name.is_empty()).unwrap_or(file);
     Some(StageWorld { name, files: sources.file_names(), step_s, quit_time_s, walls, robots })
 }

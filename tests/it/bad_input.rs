@@ -46,13 +46,13 @@ fn refused_world(right: &str, wrong: &str) -> String {
 fn worlds() {
     insta::assert_snapshot!(refused("--world nowhere"), @"error: there is no world `nowhere`: it is neither a file nor one of those that ship (four_rooms, toy_on_the_floor, turned_house, house, office, warehouse, cave, yard)");
     insta::assert_snapshot!(refused_world("cell_m = 0.05", "cell_m = = 0.05"), @"
-    error: not a TOML file: extra `=`
+    error: one `=` too many
      --> house.toml:9:10
       |
     9 | cell_m = = 0.05           # cell size of the ground truth grid, against which maps are scored
       |          ^
       |
-      = help: expected nothing
+      = help: a key and its value are written as in `radius_m = 0.2`
     ");
     insta::assert_snapshot!(refused_world("max_linear_mps", "max_liner_mps"), @"
     error: unknown key `max_liner_mps`
@@ -106,6 +106,25 @@ fn pipes_and_devices() {
             assert!(message.contains("it is not a regular file"), "{argument} {file}: {message}");
         }
     }
+}
+
+/// Escape sequences would reach the terminal, newlines would forge lines.
+#[test]
+fn names_and_values_that_are_not_printable() {
+    let forged = "\\u001b[2J\\nerror: forged";
+    for (right, wrong) in [
+        ("name = \"four rooms\"", format!("name = \"{forged}\"")),
+        ("kind = \"driven\"", format!("kind = \"{forged}\"")),
+        ("max_linear_mps", format!("\"{forged}\"")),
+        ("[map]", format!("[[floor_plan]]\nimage = \"{forged}\"\npixel_m = 1.0\n[map]")),
+        ("cell_m = 0.05", "cell_m = 1e9 # \u{1b}[2J\u{9b}2J".to_owned()),
+    ] {
+        let message = refused_world(right, &wrong);
+        assert!(message.lines().all(|line| !line.chars().any(char::is_control)), "{message:?}");
+    }
+    let map = MAP.replace("gone.pgm", "\"\\e[2J\\nerror: forged\"").replace("0.05", "\"\\e[2J\"");
+    let message = refused_file("m.yaml", &map, "--map m.yaml");
+    assert!(message.lines().all(|line| !line.chars().any(char::is_control)), "{message:?}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The findings of a reader about a file: all errors, warnings and notes at once, each with its place.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use interfaces::{printable, printable_lines};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -13,6 +14,8 @@ const MOST_KEPT: usize = 100;
 const MOST_ALIKE: usize = 10;
 /// If a line is longer, only the part around the place is shown, bytes.
 const LONG_LINE: usize = 4000;
+/// Texts of a message are cut after this, bytes: they can quote a value that is as long as its file.
+const LONG_TEXT: usize = 2000;
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
 /// The severity of a finding.
@@ -46,13 +49,13 @@ pub struct Finding {
 
 impl Finding {
     fn new(severity: Severity, file: &str, line: usize, what: &str, help: &str) -> Self {
-        let [file, what, help] = [file, what, help].map(str::to_owned);
+        let [file, what, help] = [file, what, help].map(shown);
         Self { severity, file, line, what, help, message: String::new() }
     }
 
     /// An error about a file that cannot be read.
     pub(crate) fn unreadable(file: &str, what: &str) -> Self {
-        Self { message: format!("error: {what}"), ..Self::new(Severity::Error, file, 0, what, "") }
+        Self { message: format!("error: {}", shown(what)), ..Self::new(Severity::Error, file, 0, what, "") }
     }
 }
 
@@ -60,6 +63,13 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
     }
+}
+
+/// A text as a message shows it: one printable line, not too long.
+fn shown(text: &str) -> String {
+    let end = text.floor_char_boundary(LONG_TEXT);
+    let more = if end < text.len() { " …" } else { "" };
+    format!("{}{more}", printable(&text[..end]))
 }
 
 impl Severity {
@@ -254,16 +264,18 @@ impl SourceText {
         let annotation = |kind: AnnotationKind, span: &Range<usize>, label: &str| {
             let [start, end] =
                 [span.start, span.end].map(|at| at.clamp(shown.start, shown.end) - shown.start);
-            kind.span(start..end).label((!label.is_empty()).then(|| label.to_owned()))
+            kind.span(start..end).label((!label.is_empty()).then(|| self::shown(label)))
         };
         let context = spans.iter().zip(others);
         let snippet = Snippet::source(&self.text[shown.clone()])
             .line_start(line)
-            .path(&self.name)
+            .path(printable(&self.name))
             .annotation(annotation(AnnotationKind::Primary, &main, mark.1))
             .annotations(context.map(|(span, (_, label))| annotation(AnnotationKind::Context, span, label)));
-        let title = severity.level().primary_title(what);
-        Renderer::plain().render(&[title.element(snippet).element(Level::HELP.message(help))])
+        let title = severity.level().primary_title(self::shown(what));
+        let help = Level::HELP.message(self::shown(help));
+        // The renderer leaves some control characters of the source as they are.
+        printable_lines(&Renderer::plain().render(&[title.element(snippet).element(help)])).into_owned()
     }
 
     /// The part of a span on its first line: a whole table would be underlined otherwise.

@@ -1,6 +1,7 @@
 //! The worlds that are part of the program, so that it runs from any folder.
 
 use crate::{Files, WorldError, grid, physics};
+use interfaces::printable;
 use sim::grid::GridSpec;
 use sim::physics::WorldSpec;
 use std::collections::BTreeMap;
@@ -93,7 +94,7 @@ pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
         return Err(LoadError::OtherKind { name: name.to_owned(), kind: "grid", program: "grid_world" });
     }
     if Path::new(name).extension().is_some_and(|ending| ending == "yaml" || ending == "yml") {
-        return Err(LoadError::Map { name: name.to_owned() });
+        return Err(LoadError::Map { name: printable(name).into_owned() });
     }
     let parse = |name: &str, text: &str| physics::parse_world_with(name, text, &pictures());
     find(name, &PHYSICS, parse, |path| physics::load_world(path))
@@ -123,7 +124,7 @@ fn find<T>(
     let path = Path::new(name);
     if !path.exists() {
         let names: Vec<&str> = shipped.iter().map(|(name, _)| *name).collect();
-        return Err(LoadError::Unknown { name: name.to_owned(), shipped: names.join(", ") });
+        return Err(LoadError::Unknown { name: printable(name).into_owned(), shipped: names.join(", ") });
     }
     Ok(load(path)?)
 }

@@ -1,5 +1,5 @@
 //! `report.json` and `trials.csv`. An undefined value is `null` in JSON and an empty field in CSV; names are in
-//! the order of the experiment.
+//! the order of the experiment. In CSV, a name that would begin a formula has an apostrophe before it.
 
 use super::Report;
 use super::claim::Claim;
@@ -9,6 +9,7 @@ use super::strategy::StrategyResult;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// The content of `report.json`.
@@ -35,9 +36,11 @@ pub(super) fn write_trials(trials: &[Trial], to: impl Write) -> io::Result<()> {
     for trial in trials {
         let seed = trial.seed.to_string();
         for sample in &trial.samples {
-            for field in [&trial.world, &trial.estimator, &trial.strategy, &seed, &sample.step.to_string()] {
-                file.write_field(field)?;
+            for name in [&trial.world, &trial.estimator, &trial.strategy] {
+                file.write_field(no_formula(name).as_ref())?;
             }
+            file.write_field(&seed)?;
+            file.write_field(sample.step.to_string())?;
             for value in Metric::ALL.map(|metric| metric.of(sample)) {
                 file.write_field(if value.is_nan() { String::new() } else { value.to_string() })?;
             }
@@ -45,6 +48,11 @@ pub(super) fn write_trials(trials: &[Trial], to: impl Write) -> io::Result<()> {
         }
     }
     file.flush()
+}
+
+/// A name that a spreadsheet shows as it is: with an apostrophe before what would begin a formula.
+fn no_formula(name: &str) -> Cow<'_, str> {
+    if name.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{name}").into() } else { name.into() }
 }
 
 impl Serialize for Run {

@@ -7,6 +7,7 @@
 
 mod behaviors;
 mod bodies;
+mod box_tree;
 mod command;
 pub mod convex;
 mod drives;
@@ -25,6 +26,7 @@ mod spec;
 mod tests;
 mod world;
 
+pub use box_tree::BoxTree;
 pub use command::{Acceleration, Command, Velocity};
 pub use fleet::{Controller, Fleet, TeleportError};
 pub use form::Form;

@@ -8,6 +8,7 @@ use curious::program::{Failure, start};
 use curious::terminal::{print, say};
 use evaluation::output::{make_folder, write_file};
 use inspection::{Content, Inspection, as_world_file, inspect};
+use interfaces::printable;
 use std::collections::BTreeSet;
 use std::io::stderr;
 use std::path::{Path, PathBuf};
@@ -86,7 +87,8 @@ fn describe(inspection: &Inspection) -> Vec<String> {
         return vec![format!("{file}: invalid, {error_count} error{plural}")];
     };
     let first = format!("{file}: valid, a {kind} named `{}`", scene.title);
-    let second = (!description.is_empty()).then(|| format!("  {description}"));
+    let description = description.split_whitespace().collect::<Vec<_>>().join(" ");
+    let second = (!description.is_empty()).then(|| format!("  {}", printable(&description)));
     let others = lines.iter().map(|(name, what)| format!("  {name:<9} {what}"));
     [first].into_iter().chain(second).chain(others).collect()
 }
@@ -118,7 +120,7 @@ fn write(
     if args.png {
         let picture = path_with(".png")?;
         draw_plan(&picture, &content.scene)?;
-        lines.push(format!("  picture   {}", picture.display()));
+        lines.push(format!("  picture   {}", printable(&picture.display().to_string())));
     }
     if args.toml {
         let Some(text) = as_world_file(file) else {
@@ -127,7 +129,7 @@ fn write(
         };
         let world_file = path_with(".toml")?;
         write_file(&world_file, |to| to.write_all(text.as_bytes()))?;
-        lines.push(format!("  world     {}", world_file.display()));
+        lines.push(format!("  world     {}", printable(&world_file.display().to_string())));
         if content.scene.robots.iter().filter(|robot| robot.is_driven).count() != 1 {
             let hint =
                 "            to use the file with four_rooms, give exactly one robot `kind = \"driven\"`";

@@ -11,6 +11,7 @@ use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, list, start}
 use curious::progress::Progress;
 use curious::terminal::{print, say};
 use curious::worlds;
+use evaluation::file_name;
 use evaluation::metrics::map_scores;
 use evaluation::output::{RunFolder, UnfinishedFile};
 use evaluation::physics_trial::PhysicsTrial;
@@ -139,7 +140,7 @@ fn show(args: &Args, scene: Scene, folder: &mut RunFolder) -> Result<Show, Failu
     args.rrd.iter().chain(&args.gif).for_each(|path| folder.adopt(path));
     let mut live = Vec::from_iter(args.connect.clone());
     live.extend(args.view.then_some(Live::Spawn));
-    let named = || folder.unfinished().join(format!("{}.rrd", file_name(&scene.title)));
+    let named = || folder.unfinished().join(format!("{}.rrd", file_name::of(&scene.title)));
     let file = (!args.no_rrd).then(|| args.rrd.clone().unwrap_or_else(named));
     let recorder = match &file {
         None if live.is_empty() => None,
@@ -148,10 +149,4 @@ fn show(args: &Args, scene: Scene, folder: &mut RunFolder) -> Result<Show, Failu
     let gif = args.gif.as_deref().map(UnfinishedFile::create).transpose().map_err(anyhow::Error::from)?;
     let film = gif.map(|file| Film::new(file, scene.clone(), args.duration));
     Ok(Show::new(scene, recorder, film))
-}
-
-/// The name of a world as a part of a file name.
-fn file_name(name: &str) -> String {
-    let plain = |letter: char| if letter.is_alphanumeric() || "-._".contains(letter) { letter } else { '_' };
-    name.chars().map(plain).collect()
 }

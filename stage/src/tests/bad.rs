@@ -171,6 +171,15 @@ model( size [300 200 1] pose [0 600 0 90] )",
 }
 
 #[test]
+fn texts_that_are_not_printable_are_refused() {
+    let (world, findings) = one("model( name \"a\u{1b}[2J\" )\nmodel( bitmap \"\u{9b}.png\" )");
+    assert!(world.is_none());
+    let whats: Vec<&str> = findings.iter().map(|finding| finding.what.as_str()).collect();
+    assert_eq!(whats, ["name", "bitmap"].map(|key| format!("`{key}` has a character that is not printable")));
+    assert!(findings.to_string().lines().all(|line| !line.chars().any(char::is_control)), "{findings}");
+}
+
+#[test]
 fn files_that_include_themselves() {
     let mut files = Table::new();
     files.insert("a.world".into(), b"model( )\ninclude \"b.inc\"\n".to_vec());

@@ -51,6 +51,22 @@ fn worlds() {
     insta::assert_snapshot!(refuses(&folder, "--world grid", &["grid"]), @"error: cannot read the world file `grid`: it is not a regular file");
 }
 
+/// Files of results contain the names of worlds.
+#[test]
+fn names_that_are_no_names_of_files() {
+    let named = |name: &str| refused_world("name = \"two blocks\"", &format!("name = \"{name}\""));
+    insta::assert_snapshot!(named("a/b"), @"error: the world `a/b` in `grid.toml` needs another name, since files of results contain it: it has the character `/`; `a_b` would be valid");
+    for (name, why) in [
+        ("..", "it begins with a dot"),
+        (".hidden", "it begins with a dot"),
+        ("a\\\\b", "it has the character"),
+        (&"n".repeat(101), "it has 101 bytes, and 100 are the most"),
+    ] {
+        let message = named(name);
+        assert!(message.contains(why) && message.contains("grid.toml"), "{message}");
+    }
+}
+
 #[test]
 fn maps() {
     let row = "#.....#.....R.....#.....#";

@@ -29,7 +29,7 @@ pub const MAX_CORNERS: usize = 1 << 20;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// Neither PNG nor PBM, PGM, PPM or PAM, by its first bytes.
-    #[error("this is neither a PNG nor a PGM picture")]
+    #[error("it is neither a PNG nor a PGM picture")]
     Format,
     /// The header has more pixels than are allowed; nothing was decoded.
     #[error("{width} × {height} pixels are too many: at most {MAX_PIXELS}")]
@@ -48,9 +48,12 @@ pub enum PlanError {
     /// The picture has no pixels.
     #[error("it has no pixels")]
     Empty,
-    /// The picture is damaged.
-    #[error("it cannot be decoded: {0}")]
-    Damaged(String),
+    /// The part before the pixels is damaged.
+    #[error("its header is damaged or incomplete")]
+    DamagedHeader,
+    /// The pixels are damaged.
+    #[error("its pixels are damaged or incomplete")]
+    DamagedPixels,
     /// The blocked pixels have too many corners, for example in a picture of noise.
     #[error("its blocked pixels have {corners} corners, which are too many: at most {MAX_CORNERS}")]
     TooManyCorners {

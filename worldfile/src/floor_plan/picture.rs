@@ -52,7 +52,7 @@ pub(crate) struct Raster {
 
 impl Raster {
     pub(crate) fn decode(bytes: &[u8]) -> Result<Self, PlanError> {
-        let damaged = |error: image::ImageError| PlanError::Damaged(error.to_string());
+        let damaged = |_| PlanError::DamagedHeader;
         match bytes {
             [0x89, b'P', b'N', b'G', ..] => {
                 // The decoder's own limits would hide how large the picture claims to be.
@@ -90,7 +90,7 @@ impl Raster {
             _ => return Err(PlanError::Format),
         };
         let mut bytes = vec![0; size as usize];
-        decoder.read_image(&mut bytes).map_err(|error| PlanError::Damaged(error.to_string()))?;
+        decoder.read_image(&mut bytes).map_err(|_| PlanError::DamagedPixels)?;
         Ok(Self { width, height, channels, is_wide, bytes })
     }
 

@@ -3,10 +3,16 @@
 use super::map::{Drawing, drawing};
 use super::path;
 use crate::reader::{Table, unique_names};
+use interfaces::Cell;
 use sim::grid::{BlockSpec, Course, GridSpec};
+use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// The keys of a world file.
 pub(super) const KEYS: &str = "name, description, sensor_radius, map, transitions, block";
+
+/// The maximum number of cells of all paths together: they are kept in memory.
+const MAX_PATH_CELLS: usize = 10_000_000;
 
 pub(super) fn world(root: &Table<'_>) -> Option<GridSpec> {
     let name = root.name();
@@ -20,20 +26,28 @@ pub(super) fn world(root: &Table<'_>) -> Option<GridSpec> {
         .map(|table| ["block_chance", "robot_chance"].map(|key| chance(&table, key)));
     let tables = root.tables("block", "name, dwell, stood, course, path");
     unique_names("block", &tables);
-    let mut blocks: Vec<(&Table<'_>, BlockSpec)> = Vec::new();
+    let mut blocks: Vec<BlockSpec> = Vec::new();
+    let (mut starts, mut cells) = (BTreeMap::new(), 0);
     for table in &tables {
         let Some(block) = block(table, drawing.as_ref()) else { continue };
-        if let Some(drawing) = &drawing {
-            apart(table, &block, &blocks, drawing);
+        cells += block.path.len();
+        if cells > MAX_PATH_CELLS {
+            let what = format!("the paths of the blocks have more than {MAX_PATH_CELLS} cells together");
+            let help = "give the file fewer blocks, or blocks with shorter paths";
+            table.error::<()>(&what, (table.at("path"), "with this path"), &[], help);
+            break;
         }
-        blocks.push((table, block));
+        if let Some(drawing) = &drawing {
+            apart(table, &block, &mut starts, drawing);
+        }
+        blocks.push(block);
     }
     let (drawing, [block_probability, robot_probability]) = (drawing?, chances?);
     Some(GridSpec {
         name: name?,
         description: description?,
         walls: drawing.walls,
-        blocks: blocks.into_iter().map(|(_, block)| block).collect(),
+        blocks,
         start: drawing.start,
         sensor_radius: sensor_radius?,
         block_probability: block_probability?,
@@ -60,18 +74,26 @@ fn block(table: &Table<'_>, drawing: Option<&Drawing>) -> Option<BlockSpec> {
     table.sound(BlockSpec { name: name?, dwell: dwell?, stood: stood?, course: course?, path: path? })
 }
 
-/// Records a block that starts on the cell of another block or of the robot.
-fn apart(table: &Table<'_>, block: &BlockSpec, others: &[(&Table<'_>, BlockSpec)], drawing: &Drawing) {
+/// Records a block that starts on the cell of another block or of the robot. `starts` has the first block on each
+/// cell: its name, and the place of the cell in the file.
+fn apart(
+    table: &Table<'_>,
+    block: &BlockSpec,
+    starts: &mut BTreeMap<Cell, (String, Range<usize>)>,
+    drawing: &Drawing,
+) {
     let start = block.path[0];
     if start == drawing.start {
         let what = format!("the robot and the block `{}` start on one cell", block.name);
         let help = "begin the path elsewhere, or draw an `R` where the robot starts";
         table.error::<()>(&what, (table.at_item("path", 0), "the robot starts here"), &[], help);
-    } else if let Some((other, first)) = others.iter().find(|(_, other)| other.path[0] == start) {
-        let what = format!("the blocks `{}` and `{}` start on one cell", first.name, block.name);
-        let others = [(other.at_item("path", 0), "the other one")];
+    } else if let Some((first, place)) = starts.get(&start) {
+        let what = format!("the blocks `{first}` and `{}` start on one cell", block.name);
+        let others = [(place.clone(), "the other one")];
         let help = "begin one of the paths elsewhere";
         table.error::<()>(&what, (table.at_item("path", 0), "one starts here"), &others, help);
+    } else {
+        starts.insert(start, (block.name.clone(), table.at_item("path", 0)));
     }
 }
 

@@ -17,7 +17,7 @@
 //! | `block.dwell` | required | 1 to 1 000 000 steps on every cell |
 //! | `block.stood` | 0 | 0 to `dwell` − 1: steps that it has stood on its first cell when time begins |
 //! | `block.course` | required | `"loop"`: from the last cell on to the first; `"back-and-forth"` |
-//! | `block.path` | required | way points, joined by straight lines along rows and columns, clear of walls; two cells or more |
+//! | `block.path` | required | way points, joined by straight lines along rows and columns, clear of walls; two cells or more, of all blocks together at most 10 million |
 
 mod check;
 mod map;

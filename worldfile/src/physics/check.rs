@@ -1,15 +1,18 @@
 //! From the tables of a world file to the spec of a world.
 
+use super::behavior;
+use super::floor_plan::{self, FloorPlans};
 use super::obstacle::{self, obstacle};
 use super::robot::{self, robot};
-use super::space::{Solid, Space, inside, upright};
-use super::{behavior, floor_plan};
+use super::space::{Solid, Solids, Space, inside, upright};
 use crate::files::Files;
 use crate::reader::{Table, unique_names};
 use interfaces::GridFrame;
 use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
-use sim::physics::{DrivenError, FleetSpec, Motion, ObstacleSpec, Rectangle, RobotSpec, WorldSpec};
+use sim::physics::{
+    BoxTree, DrivenError, FleetSpec, Form, Motion, ObstacleSpec, Rectangle, RobotSpec, WorldSpec,
+};
 
 /// The keys of a world file.
 pub(super) const KEYS: &str = "name, description, map, physics, wall, floor_plan, obstacle, robot";
@@ -29,33 +32,35 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         // If these are invalid, nothing else is invalid because of them: no map is larger, no step shorter.
         size: size.unwrap_or(Point2::from([f64::INFINITY; 2])),
         step_s: step_s.unwrap_or(1e-12),
-        walls: Vec::new(),
-        fixed: Vec::new(),
-        movers: Vec::new(),
+        walls: Solids::default(),
+        fixed: Solids::default(),
+        movers: Solids::default(),
         is_whole: false,
     };
+    let mut walls = Vec::new();
     for table in root.tables("wall", "from_m, to_m, thickness_m, min_m, max_m") {
         let shape = wall(&table, &space.size);
-        space.walls.extend(shape.map(|shape| Solid { shape, span: table.span.clone() }));
+        walls.extend(shape.map(|shape| Solid { shape, span: table.span.clone() }));
     }
+    let mut plans = FloorPlans::new(files);
     for table in root.tables("floor_plan", floor_plan::KEYS) {
-        let walls = floor_plan::walls(&table, files, &space.size).unwrap_or_default().into_iter();
-        space.walls.extend(walls.map(|shape| Solid { shape, span: table.span.clone() }));
+        let pieces = plans.walls(&table, &space.size).unwrap_or_default().into_iter();
+        walls.extend(pieces.map(|shape| Solid { shape, span: table.span.clone() }));
     }
+    space.walls = Solids::new(walls);
     let obstacle_tables = root.tables("obstacle", obstacle::KEYS);
-    let mut obstacles = Vec::new();
+    let (mut obstacles, mut fixed, mut movers) = (Vec::new(), Vec::new(), Vec::new());
     for table in &obstacle_tables {
         let Some(obstacle) = obstacle(table, &space) else { continue };
         let solid = |shape| Solid { shape, span: table.span.clone() };
         match &obstacle.motion {
             Motion::Fixed if obstacle.appears_s.is_some() => {}
-            Motion::Fixed => space.fixed.push(solid(obstacle.shape)),
-            Motion::Pushed(_) | Motion::Path(_) | Motion::Door(_) => {
-                space.movers.push(solid(obstacle.start()));
-            }
+            Motion::Fixed => fixed.push(solid(obstacle.shape)),
+            Motion::Pushed(_) | Motion::Path(_) | Motion::Door(_) => movers.push(solid(obstacle.start())),
         }
         obstacles.push((table, obstacle));
     }
+    (space.fixed, space.movers) = (Solids::new(fixed), Solids::new(movers));
     space.is_whole = root.file.is_sound();
     let robot_tables = root.tables("robot", robot::KEYS);
     let robots = robot_tables.iter().filter_map(|table| Some((table, robot(table, &space)?)));
@@ -70,7 +75,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         description: description?,
         frame,
         step_s: space.step_s,
-        walls: space.walls.iter().map(|wall| wall.shape).collect(),
+        walls: space.walls.shapes().collect(),
         obstacles: obstacles.into_iter().map(|(_, obstacle)| obstacle).collect(),
         robots: robots.into_iter().map(|(_, robot)| robot).collect(),
     };
@@ -135,18 +140,21 @@ fn wall(table: &Table<'_>, size: &Point2<f64>) -> Option<Rectangle> {
 
 /// Records boxes that can be pushed and overlap something else at the start: the physics would throw them apart.
 fn boxes_apart(obstacles: &[(&Table<'_>, ObstacleSpec)]) {
-    let is_pushed = |obstacle: &ObstacleSpec| matches!(obstacle.motion, Motion::Pushed(_));
     let starts: Vec<Rectangle> = obstacles.iter().map(|(_, obstacle)| obstacle.start()).collect();
+    let is_pushed = |i: &usize| matches!(obstacles[*i].1.motion, Motion::Pushed(_));
+    let pushed: Vec<usize> = (0..starts.len()).filter(is_pushed).collect();
+    let tree_of_all = BoxTree::new(starts.iter().map(Rectangle::bounds));
+    let tree_of_pushed = BoxTree::new(pushed.iter().map(|i| starts[*i].bounds()));
     for (i, (table, second)) in obstacles.iter().enumerate() {
-        let overlaps = |&j: &usize| {
-            let (a, b) = (&starts[i], &starts[j]);
-            let apart = a.pose.translation.vector - b.pose.translation.vector;
-            // Circles first: nearly all are far apart.
-            apart.norm_squared() <= 2.0 * (a.half_m.norm_squared() + b.half_m.norm_squared())
-                && (is_pushed(&obstacles[j].1) || is_pushed(second))
-                && b.overlaps(a)
+        let overlaps = |shape: &Rectangle| shape.overlaps(&starts[i]);
+        // Two things that cannot be pushed may overlap.
+        let found = if is_pushed(&i) {
+            tree_of_all.first_below(i, overlaps, |j| overlaps(&starts[j]))
+        } else {
+            let before = pushed.partition_point(|j| *j < i);
+            tree_of_pushed.first_below(before, overlaps, |j| overlaps(&starts[pushed[j]])).map(|j| pushed[j])
         };
-        let Some((other, first)) = (0..i).find(overlaps).map(|j| &obstacles[j]) else { continue };
+        let Some((other, first)) = found.map(|j| &obstacles[j]) else { continue };
         let what = format!("the obstacles `{}` and `{}` overlap", first.name, second.name);
         let others = [(other.at("name"), "and this one")];
         let help = "a box that can be pushed may touch other things, but not overlap them";
@@ -156,20 +164,15 @@ fn boxes_apart(obstacles: &[(&Table<'_>, ObstacleSpec)]) {
 
 /// Records robots that overlap at the start.
 fn apart(robots: &[(&Table<'_>, RobotSpec)]) {
+    let forms: Vec<Form> = robots.iter().map(|(_, robot)| robot.form(&robot.pose)).collect();
+    let tree = BoxTree::new(forms.iter().map(Form::bounds));
     for (i, (table, second)) in robots.iter().enumerate() {
-        let distances_m = |first: &RobotSpec| {
-            let apart_m: f64 = (first.pose.translation.vector - second.pose.translation.vector).norm();
-            (first.radius_m + second.radius_m, apart_m)
-        };
-        let overlaps = |(_, first): &&(&Table<'_>, RobotSpec)| {
-            let (needed_m, apart_m) = distances_m(first);
-            // Circles first: nearly all are far apart.
-            apart_m < needed_m - TOUCH_M
-                && first.form(&first.pose).apart_m(&second.form(&second.pose)) < -TOUCH_M
-        };
-        let Some((other, first)) = robots[..i].iter().find(overlaps) else { continue };
+        let may_overlap = |area: &Rectangle| forms[i].gap_m(&area.corners()) < 0.0;
+        let found = tree.first_below(i, may_overlap, |j| forms[j].apart_m(&forms[i]) < -TOUCH_M);
+        let Some((other, first)) = found.map(|j| &robots[j]) else { continue };
         let what = format!("the robots `{}` and `{}` overlap", first.name, second.name);
-        let (needed_m, apart_m) = distances_m(first);
+        let apart_m: f64 = (first.pose.translation.vector - second.pose.translation.vector).norm();
+        let needed_m = first.radius_m + second.radius_m;
         let help = match first.corners.is_empty() && second.corners.is_empty() {
             true => format!("their middles must be {needed_m:.3} m apart or more, not {apart_m:.3} m"),
             false => "their footprints may touch, but not overlap".to_owned(),

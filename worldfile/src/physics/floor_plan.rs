@@ -3,45 +3,77 @@
 use super::space::inside;
 use crate::files::Files;
 use crate::findings::{Findings, Severity};
-use crate::floor_plan::{Bitmap, FloorPlan, MAX_FILE_BYTES};
+use crate::floor_plan::{Bitmap, FloorPlan, MAX_FILE_BYTES, MAX_PIXELS};
 use crate::reader::Table;
 use crate::ros_map;
 use interfaces::{heading_rad, pose};
 use nalgebra::{Point2, Vector2};
 use sim::physics::Rectangle;
 
-/// More pieces of wall than this are refused: the search for hidden surfaces takes their square.
+/// More pieces of wall than this in one file are refused: the search for hidden surfaces takes their square.
 pub const MAX_PIECES: usize = 20_000;
+/// The maximum number of pixels of all floor plans of a file together.
+const MAX_ALL_PIXELS: u64 = 2 * MAX_PIXELS;
 
 pub(super) const KEYS: &str = "image, map, pixel_m, corner_m, heading_deg, blocked_below";
 
-/// The walls of a floor plan: solid rectangles, which overlap.
-pub(super) fn walls(table: &Table<'_>, files: &dyn Files, size: &Point2<f64>) -> Option<Vec<Rectangle>> {
-    let corner = table.get("corner_m").map_or(Some(Point2::origin()), |corner| corner.point(size));
-    let is_picture = table.has("image") && table.has("pixel_m");
-    let has_keys_of_picture =
-        ["image", "pixel_m", "heading_deg", "blocked_below"].into_iter().any(|key| table.has(key));
-    let (plan, key) = match table.has("map") {
-        true if !has_keys_of_picture => (map(table, files, corner), "map"),
-        false if is_picture => (picture(table, files, corner), "image"),
-        _ => {
-            let help = "give either `image` and `pixel_m`, and `heading_deg` and `blocked_below` if need be, or \
-                        the `map` of ROS, which has these itself";
-            let mark = (table.span.clone(), "this floor plan");
-            return table.error("a floor plan needs one picture", mark, &[], help);
+/// Reads the floor plans of a file, as far as they are not too large together.
+pub(super) struct FloorPlans<'a> {
+    files: &'a dyn Files,
+    /// The pixels and the pieces of wall of the plans read so far.
+    pixels: u64,
+    pieces: usize,
+}
+
+impl<'a> FloorPlans<'a> {
+    pub(super) fn new(files: &'a dyn Files) -> Self {
+        Self { files, pixels: 0, pieces: 0 }
+    }
+
+    /// The walls of a floor plan: solid rectangles, which overlap.
+    pub(super) fn walls(&mut self, table: &Table<'_>, size: &Point2<f64>) -> Option<Vec<Rectangle>> {
+        let corner = table.get("corner_m").map_or(Some(Point2::origin()), |corner| corner.point(size));
+        let is_picture = table.has("image") && table.has("pixel_m");
+        let has_keys_of_picture =
+            ["image", "pixel_m", "heading_deg", "blocked_below"].into_iter().any(|key| table.has(key));
+        let key = match table.has("map") {
+            true if !has_keys_of_picture => "map",
+            false if is_picture => "image",
+            _ => {
+                let help = "give either `image` and `pixel_m`, and `heading_deg` and `blocked_below` if need be, \
+                            or the `map` of ROS, which has these itself";
+                let mark = (table.span.clone(), "this floor plan");
+                return table.error("a floor plan needs one picture", mark, &[], help);
+            }
+        };
+        if self.pixels > MAX_ALL_PIXELS || self.pieces > MAX_PIECES {
+            return None;
         }
-    };
-    let walls: Vec<Rectangle> = plan?.rectangles().collect();
-    if walls.len() > MAX_PIECES {
-        let what = format!("this floor plan makes {} pieces of wall", walls.len());
-        let help =
-            format!("{MAX_PIECES} are the most: take a coarser picture, or one with fewer rough edges");
-        return table.error(&what, (table.at(key), "too ragged"), &[], &help);
+        let plan =
+            if key == "map" { map(table, self.files, corner) } else { picture(table, self.files, corner) };
+        let plan = plan?;
+        self.pixels += u64::from(plan.bitmap.width()) * u64::from(plan.bitmap.height());
+        if self.pixels > MAX_ALL_PIXELS {
+            let what = format!("the floor plans have {} pixels together", self.pixels);
+            let help = format!("{MAX_ALL_PIXELS} are the most in one file: take coarser pictures");
+            return table.error(&what, (table.at(key), "with this one"), &[], &help);
+        }
+        let walls: Vec<Rectangle> = plan.rectangles().collect();
+        self.pieces += walls.len();
+        if self.pieces > MAX_PIECES {
+            let what = match self.pieces == walls.len() {
+                true => format!("this floor plan makes {} pieces of wall", walls.len()),
+                false => format!("the floor plans make {} pieces of wall together", self.pieces),
+            };
+            let help =
+                format!("{MAX_PIECES} are the most: take a coarser picture, or one with fewer rough edges");
+            return table.error(&what, (table.at(key), "too ragged"), &[], &help);
+        }
+        for wall in &walls {
+            inside(table.file, "a floor plan reaches out of the map", table.at(key), wall, size)?;
+        }
+        table.sound(walls)
     }
-    for wall in &walls {
-        inside(table.file, "a floor plan reaches out of the map", table.at(key), wall, size)?;
-    }
-    table.sound(walls)
 }
 
 /// The plan that an `image` shows.

@@ -4,12 +4,12 @@ use super::behavior::{self, Driver};
 use super::drive::{self, drive};
 use super::footprint::{Footprint, footprint};
 use super::sensor::{Carrier, bumper};
-use super::space::{Solid, Space};
+use super::space::Space;
 use crate::reader::Table;
 use interfaces::pose;
 use nalgebra::Isometry2;
 use sim::physics::shape::TOUCH_M;
-use sim::physics::{DriveKind, DriveLimits, Form, OdometryError, RobotSpec, convex};
+use sim::physics::{DriveKind, DriveLimits, Form, OdometryError, Rectangle, RobotSpec, convex};
 
 pub(super) const KEYS: &str = "name, radius_m, footprint_m, mass_kg, pose_m, heading_deg, drive, odometry, laser, \
                                bumper, sonar, fiducial, tag, behaviour";
@@ -90,11 +90,11 @@ fn body(
         let what = format!("the robot `{name}` reaches out of the map");
         return table.error(&what, (table.at("pose_m"), "too near to the border"), &[], &help);
     }
-    let overlaps = |solid: &&Solid| match &form {
-        Form::Disc { .. } => solid.shape.distance_m(&at) < radius_m - TOUCH_M,
-        Form::Convex(corners) => convex::gap_m(corners, &solid.shape.corners()) < -TOUCH_M,
+    let overlaps = |shape: &Rectangle| match &form {
+        Form::Disc { .. } => shape.distance_m(&at) < radius_m - TOUCH_M,
+        Form::Convex(corners) => convex::gap_m(corners, &shape.corners()) < -TOUCH_M,
     };
-    if let Some(solid) = space.solids().chain(&space.movers).find(overlaps) {
+    if let Some(solid) = space.first_solid(overlaps).or_else(|| space.movers.first(overlaps)) {
         let what = format!("the robot `{name}` starts in a wall or an obstacle");
         let others = [(solid.span.clone(), "in this one")];
         return table.error(&what, (table.at("pose_m"), "stands here"), &others, &help);

@@ -1,9 +1,10 @@
 //! The space that the things of a file are put into: the map, and what is solid.
 
 use crate::reader::{File, Table, extent};
-use nalgebra::Point2;
-use sim::physics::Rectangle;
+use nalgebra::{Point2, Vector2};
 use sim::physics::shape::TOUCH_M;
+use sim::physics::{BoxTree, Rectangle};
+use std::cell::Cell;
 use std::ops::Range;
 
 /// The maximum time in a file, s: about thirty years.
@@ -15,25 +16,64 @@ pub(super) struct Solid {
     pub(super) span: Range<usize>,
 }
 
+/// Solid things in the order of the file. A search does not look at all of them.
+#[derive(Default)]
+pub(super) struct Solids {
+    solids: Vec<Solid>,
+    tree: BoxTree,
+}
+
+impl Solids {
+    pub(super) fn new(solids: Vec<Solid>) -> Self {
+        let tree = BoxTree::new(solids.iter().map(|solid| solid.shape.bounds()));
+        Self { solids, tree }
+    }
+
+    pub(super) fn shapes(&self) -> impl Iterator<Item = Rectangle> {
+        self.solids.iter().map(|solid| solid.shape)
+    }
+
+    /// The first solid for whose shape `is_near` holds. It must hold for a shape that holds a smaller one for which
+    /// it holds.
+    pub(super) fn first(&self, is_near: impl Fn(&Rectangle) -> bool) -> Option<&Solid> {
+        let found = self.tree.first_below(usize::MAX, &is_near, |index| is_near(&self.solids[index].shape));
+        found.map(|index| &self.solids[index])
+    }
+
+    /// The range at which a ray from `origin` (m) in the direction of the unit vector `direction` hits the nearest
+    /// solid, m; infinite if there is none.
+    pub(super) fn ray_m(&self, origin: &Point2<f64>, direction: &Vector2<f64>) -> f64 {
+        let nearest_m = Cell::new(f64::INFINITY);
+        let range_m = |shape: &Rectangle| shape.ray_m(origin, direction).unwrap_or(f64::INFINITY);
+        let may_be_nearest = |area: &Rectangle| range_m(area) < nearest_m.get();
+        self.tree.first_below(usize::MAX, may_be_nearest, |index| {
+            nearest_m.set(nearest_m.get().min(range_m(&self.solids[index].shape)));
+            false
+        });
+        nearest_m.get()
+    }
+}
+
 /// The surroundings of a robot or an obstacle. What is invalid in the file is missing.
 pub(super) struct Space {
     /// The size of the map, m; infinite if it is invalid.
     pub(super) size: Point2<f64>,
     /// The physics step, s; tiny if it is invalid.
     pub(super) step_s: f64,
-    pub(super) walls: Vec<Solid>,
+    pub(super) walls: Solids,
     /// The obstacles that stand from the start to the end.
-    pub(super) fixed: Vec<Solid>,
+    pub(super) fixed: Solids,
     /// The obstacles that stand at the start but can be gone later.
-    pub(super) movers: Vec<Solid>,
+    pub(super) movers: Solids,
     /// Whether nothing is missing.
     pub(super) is_whole: bool,
 }
 
 impl Space {
-    /// Everything that stands from the start to the end.
-    pub(super) fn solids(&self) -> impl Iterator<Item = &Solid> {
-        self.walls.iter().chain(&self.fixed)
+    /// The first thing that stands from the start to the end and for whose shape `is_near` holds, as in
+    /// [`Solids::first`].
+    pub(super) fn first_solid(&self, is_near: impl Fn(&Rectangle) -> bool) -> Option<&Solid> {
+        self.walls.first(&is_near).or_else(|| self.fixed.first(&is_near))
     }
 }
 

@@ -6,21 +6,26 @@
 //! the list of its keys: an unknown key may be a misspelling of a key that then seems to be missing.
 
 mod spelling;
+mod syntax;
 #[cfg(test)]
 mod tests;
 mod value;
 
 use crate::error::WorldError;
 use crate::findings::{Findings, Mark, SourceText};
+use interfaces::is_printable;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
-pub(crate) use value::{Value, extent};
+pub(crate) use value::{Figure, Value, extent};
 
 /// The number of errors that are shown; further errors are only counted.
 const MOST_SHOWN: usize = 20;
+
+/// The number of errors after which no key is looked up for an unknown one.
+const MOST_JUDGED: usize = 1000;
 
 /// The kinds of files: two kinds of worlds, and tours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,14 +114,8 @@ impl File<'_> {
 
     fn syntax_error<T>(&self, error: &toml::de::Error) -> Option<T> {
         let span = error.span().unwrap_or(0..0);
-        if error.message().starts_with("duplicate key") {
-            return self.error("a key is given twice", (span, "again here"), &[], "leave one of them out");
-        }
-        let (what, help) = match error.message().split_once(", expected ") {
-            Some((what, expected)) => (what, format!("expected {expected}")),
-            None => (error.message(), "see https://toml.io for how a TOML file is written".to_owned()),
-        };
-        self.error(&format!("not a TOML file: {what}"), (span, ""), &[], &help)
+        let (what, help) = syntax::fault(error.message(), self.text(span.clone()));
+        self.error(what, (span, ""), &[], help)
     }
 
     /// Whether the file does not describe a world of the other kind: `map` is a drawing, or a table of sizes.
@@ -166,7 +165,8 @@ impl<'a> Table<'a> {
     ) -> Self {
         let mut table = Self { file, path, keys, entries, span, is_sound: true, meant: Vec::new() };
         for (key, _) in entries.into_iter().flatten().filter(|(key, _)| !has(keys, key.get_ref())) {
-            let near = spelling::nearest(key.get_ref(), keys.split(", "));
+            let is_judged = file.errors.borrow().len() < MOST_JUDGED;
+            let near = is_judged.then(|| spelling::nearest(key.get_ref(), keys.split(", "))).flatten();
             let hint = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
             let help = format!("{hint}the keys here are: {keys}");
             file.error::<()>(
@@ -274,8 +274,8 @@ impl<'a> Table<'a> {
             return self.file.error(&what, (self.at("name"), "empty"), &[], help);
         }
         // They would forge lines of a report, or reach the terminal.
-        if name.chars().any(char::is_control) {
-            let what = format!("`{}` has a control character", self.path("name"));
+        if !name.chars().all(is_printable) {
+            let what = format!("`{}` has a character that is not printable", self.path("name"));
             let help = "a name is one line of printable text";
             return self.file.error(&what, (self.at("name"), "not printable"), &[], help);
         }

@@ -1,6 +1,7 @@
 //! Everything that is invalid in a file is reported, and nothing else.
 
 use proptest::prelude::*;
+use std::ops::Add;
 
 const HOUSE: &str = include_str!("../../../worlds/house.toml");
 const YARD: &str = include_str!("../../../worlds/yard.toml");
@@ -105,11 +106,86 @@ fn of_many_errors_the_first_are_shown_and_the_rest_are_counted() {
 }
 
 #[test]
-fn a_name_with_control_characters_is_refused() {
+fn a_name_that_is_not_printable_is_refused() {
     let robot = robot("a\\u001b[2Jb\\nc", "pose_m = [1.0, 1.0]");
-    assert_eq!(firsts(&room(&robot)), ["`robot.name` has a control character"]);
+    assert_eq!(firsts(&room(&robot)), ["`robot.name` has a character that is not printable"]);
     let map = room("").replace("\"room\"", "\"a\\tb\"");
-    assert_eq!(firsts(&map), ["`name` has a control character"]);
+    assert_eq!(firsts(&map), ["`name` has a character that is not printable"]);
+}
+
+#[test]
+fn a_text_that_is_not_toml_is_described_without_words_of_the_parser() {
+    let value = "this is no value";
+    let number = "this is no number";
+    let text = "this text in quotes is not complete";
+    let deep = "too many lists or tables in each other";
+    let cases = [
+        ("name = ", "a value is missing"),
+        ("name", "a key without a value, or a value without a key"),
+        ("name = room", "this is neither a number nor a text in quotes"),
+        ("name == 'a'", "one `=` too many"),
+        ("name = 'a", text),
+        ("name = \"a\nb = 1", text),
+        ("name = \"\"\"a", text),
+        ("name = \"a\\q\"", text),
+        ("name = \"\\ud8\"", text),
+        ("a = [1, 2", "a list does not end"),
+        ("a = [1 2]", "this is neither a number nor a text in quotes"),
+        ("a = [[1] [2]]", "a comma is missing"),
+        ("a = [1,, 2]", "one comma too many"),
+        ("a = [b = 1]", "one `=` too many"),
+        ("a = {b = 1", "a table does not end"),
+        ("a = {b = 1 c = 2}", "one `=` too many"),
+        ("a = {b}", "a key without a value, or a value without a key"),
+        ("a = 1 b = 2", "a line goes on after its value"),
+        ("[map", "the header of a table does not end"),
+        ("[[map]", "the header of a table does not end"),
+        ("[]", "this is no key"),
+        ("a b = 1", "a key without a value, or a value without a key"),
+        ("$ = 1", "this is no key"),
+        ("a = 1\na.b = 2", "a key has both a value and keys of its own"),
+        ("a = 1\na = 2", "a key is given twice"),
+        ("a = 01", number),
+        ("a = 1.", value),
+        ("a = +-1", value),
+        ("a = 1e", value),
+        ("a = 1__0", value),
+        ("a = 0xg", value),
+        ("a = 1979-13-45", value),
+        ("a = tru", value),
+        ("a = 1 # \u{1}", "a control character"),
+        ("a = 1\r", "a control character"),
+        ("\0", "a key without a value, or a value without a key"),
+        (&"a = ".to_owned().add(&"[".repeat(100_000)), deep),
+        (&"a = ".to_owned().add(&"{a = ".repeat(100_000)), deep),
+        (&"a.".repeat(100_000).add("a = 1"), deep),
+        (&format!("[{}a]", "a.".repeat(100_000)), deep),
+    ];
+    for (text, what) in cases {
+        assert_eq!(firsts(text)[0], what, "{:?}", &text[..text.len().min(30)]);
+    }
+}
+
+/// In keys, values, comments and names of files.
+#[test]
+fn no_message_has_a_character_that_is_not_printable() {
+    let texts = [
+        "\"a\\u001b[2J\\nerror: forged\" = 1 # \u{9b}2J\u{85}",
+        "name = \"a\\u001b\\u009b\"\n[map]\nsize_m = \"\\n\\u001b]0;x\\u0007\" # \u{9b}2J",
+        "physics = { step_s = 'a' } # \u{202e}\u{2028}",
+        "wall = 1\r\n\u{1b}[2J",
+        "[[floor_plan]]\nimage = \"\\u001b[2J\\n\"\npixel_m = 1.0",
+    ];
+    for text in texts {
+        let error = crate::physics::parse_fleet("a\u{1b}[2J\nerror: b.toml", text).unwrap_err();
+        for message in error.messages() {
+            let is_safe = |line: &str| line.chars().all(interfaces::is_printable);
+            assert!(message.lines().all(is_safe), "{message:?}");
+            assert!(message.lines().all(|line| !line.starts_with("error: ")), "{message}");
+        }
+    }
+    let long = format!("name = 1\nphysics = {{ {} = 1 }}", "k".repeat(1_000_000));
+    assert!(crate::physics::parse_fleet("w.toml", &long).unwrap_err().to_string().len() < 20_000);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use toml::Spanned;
 use toml::de::{DeFloat, DeInteger, DeValue};
 
 /// A number as one would write it: 1e300 has no 300 digits.
-struct Figure(f64);
+pub(crate) struct Figure(pub(crate) f64);
 
 impl fmt::Display for Figure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -242,7 +242,7 @@ fn float(number: &DeFloat<'_>) -> Option<f64> {
 
 /// A value in everyday words.
 fn description(value: &DeValue<'_>, expected: &str) -> String {
-    let is_number = expected.contains("number");
+    let is_number = expected.starts_with("a number") || expected.starts_with("a whole number");
     match value {
         DeValue::String(text) => format!("the text {text:?}"),
         DeValue::Integer(number) if is_number && !number.as_str().starts_with('-') => {

@@ -16,6 +16,7 @@
 //! ROS ignores other keys. Here they cause a warning, since a misspelled key would change the map.
 
 mod read;
+mod syntax;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -30,6 +31,9 @@ use interfaces::{CellState, Grid, GridFrame};
 use nalgebra::{Isometry2, Vector2};
 use std::path::Path;
 use std::sync::Arc;
+
+const EXAMPLE: &str = "a map has e.g. `image: map.pgm`, `resolution: 0.05`, `origin: [-6.0, -6.0, 0.0]`, \
+                       `negate: 0`, `occupied_thresh: 0.65`, `free_thresh: 0.196`";
 
 /// A map with its pose in the world.
 #[derive(Clone, Debug, PartialEq)]

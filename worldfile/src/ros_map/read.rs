@@ -1,22 +1,21 @@
 //! Reads a map from the two files of ROS.
 
-use super::RosMap;
+use super::{EXAMPLE, RosMap, syntax};
 use crate::files::Files;
 use crate::findings::{Findings, Severity, SourceText};
 use crate::floor_plan::{MAX_FILE_BYTES, Pixel, Raster};
-use interfaces::{CellState, Grid, GridFrame, pose};
+use crate::reader::Figure;
+use interfaces::{CellState, Grid, GridFrame, is_printable, pose};
 use nalgebra::Point2;
 use serde::Deserialize;
 use serde_saphyr::{NonFiniteFloatPolicy, Spanned, from_str_with_options, options};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
 /// The maximum length of a YAML file.
 const MAX_YAML_BYTES: u64 = 1 << 20;
-
-const EXAMPLE: &str = "a map has e.g. `image: map.pgm`, `resolution: 0.05`, `origin: [-6.0, -6.0, 0.0]`, \
-                       `negate: 0`, `occupied_thresh: 0.65`, `free_thresh: 0.196`";
 
 /// Reads a `map.yaml` and the picture that it names. Without a map there are errors among the findings.
 pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<RosMap> {
@@ -34,15 +33,8 @@ pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<R
     let values: BTreeMap<String, Spanned<Value>> = match from_str_with_options(&source.text, options) {
         Ok(values) => values,
         Err(error) => {
-            let place = error.location().map(|at| at.line() as usize).unwrap_or(1);
-            // The parser's own message about a duplicate key is about the parser's settings.
-            let (what, help) = match error.without_snippet() {
-                serde_saphyr::Error::DuplicateMappingKey { .. } => {
-                    ("a key is given twice".to_owned(), "leave one of them out")
-                }
-                error => (format!("not a map: {error}"), EXAMPLE),
-            };
-            findings.add(Severity::Error, &source, &what, (source.whole_line(place), ""), help);
+            let (line, what, help) = syntax::fault(&source, error.without_snippet());
+            findings.add(Severity::Error, &source, what, (source.whole_line(line), ""), help);
             return None;
         }
     };
@@ -56,11 +48,30 @@ pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<R
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Value {
+    None(()),
     Flag(bool),
     Number(f64),
     Text(String),
     List(Vec<f64>),
     Other(serde::de::IgnoredAny),
+}
+
+/// As in `resolution` **is -1**.
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None(()) => write!(f, "has no value"),
+            Self::Flag(flag) => write!(f, "is {flag}"),
+            Self::Number(number) => write!(f, "is {}", Figure(*number)),
+            Self::Text(text) if text.is_empty() => write!(f, "is empty"),
+            Self::Text(text) => write!(f, "is \"{text}\""),
+            Self::List(numbers) => {
+                let numbers: Vec<String> = numbers.iter().map(|number| Figure(*number).to_string()).collect();
+                write!(f, "is [{}]", numbers.join(", "))
+            }
+            Self::Other(_) => write!(f, "is a list or a table with other values than numbers"),
+        }
+    }
 }
 
 /// A value and its place.
@@ -114,7 +125,7 @@ impl Keys<'_> {
         // All of them, so that everything that is invalid is reported at once.
         let name = "the name of a picture, as in `image: map.pgm`";
         let image = self.value("image", None, name, |value| match value {
-            Value::Text(text) if !text.is_empty() => Some(text.clone()),
+            Value::Text(text) if !text.is_empty() && text.chars().all(is_printable) => Some(text.clone()),
             _ => None,
         });
         let side = "the side of a pixel in metres, from 0.0001 to 100";
@@ -200,11 +211,7 @@ impl Keys<'_> {
         let place = self.place(&value);
         let parsed = parse(&value.value);
         if parsed.is_none() {
-            let what = match self.source.text.get(place.clone()).unwrap_or_default() {
-                "" => format!("`{key}` has no value"),
-                found => format!("`{key}` is {found}"),
-            };
-            self.error(&what, place.clone(), &help);
+            self.error(&format!("`{key}` {}", value.value), place.clone(), &help);
         }
         Some((parsed?, place))
     }

@@ -90,6 +90,119 @@ fn other_faults() {
     insta::with_settings!({ omit_expression => true }, { insta::assert_snapshot!(messages) });
 }
 
+/// Words of the parser and of the decoders.
+const JARGON: [&str; 10] = [
+    "deserialize",
+    "budget",
+    "scalar",
+    "mapping",
+    "Option",
+    "Chunk",
+    "Format error",
+    "MAXVAL",
+    "indicator",
+    "expected",
+];
+
+#[test]
+fn faults_of_the_text_are_said_in_plain_words() {
+    let deep = format!("a: {}", "[".repeat(1000));
+    let blocks: String = (0..500).map(|depth| format!("{}a:\n", " ".repeat(depth))).collect();
+    let bomb = format!(
+        "a: &a [1, 1]\n{}",
+        (1..30).map(|i| format!("{0}: &{0} [*{1}, *{1}]\n", letter(i), letter(i - 1))).collect::<String>()
+    );
+    let long = format!("a: [{}]", "1, ".repeat(300_000));
+    let cases = [
+        ("- a", 1, "this is not a list of keys with values"),
+        ("just a text", 1, "this is not a list of keys with values"),
+        ("42", 1, "this is not a list of keys with values"),
+        (": 1\nimage: a.pgm", 1, "a key without a name"),
+        ("image: a.pgm\n~: 1", 2, "a key without a name"),
+        ("image: a.pgm\nimage: b.pgm", 2, "a key is given twice"),
+        ("image: [a.pgm\nnegate: 0", 1, "a list does not end"),
+        ("negate: 0\norigin: [1, 2}", 2, "a list ends that did not begin"),
+        ("negate: 0\norigin: 1, 2]: [", 2, "a list ends that did not begin"),
+        ("negate: 0\nimage: \"a.pgm\nmode: raw", 2, "a text in quotes does not end"),
+        ("negate: 0\nimage: 'a.pgm", 2, "a text in quotes does not end"),
+        ("origin:\n\t- 1", 2, "a tab at the start of a line"),
+        ("negate: 0\n a: b: c", 2, "this line is not a key with a value"),
+        ("negate: 0\nimage a.pgm", 2, "this line is not a key with a value"),
+        ("negate: 0\n---\nnegate: 1", 3, "this file has more than one document"),
+        ("negate: 0\nimage: \0", 2, "a character that is not text"),
+        ("negate: *b", 1, "a reference (`*name` or `<<`) to nothing, to itself or to too much"),
+        (&bomb, 0, ""),
+        (&deep, 1, "this file has too many values, or lists in too many others"),
+        (&blocks, 0, "this file has too many values, or lists in too many others"),
+        (&long, 1, "this file has too many values, or lists in too many others"),
+    ];
+    for (yaml, line, what) in cases {
+        let (plan, findings) = read(yaml);
+        let first = findings.iter().next().unwrap();
+        assert!(plan.is_none() && !first.help.is_empty());
+        for word in JARGON {
+            assert!(!findings.to_string().contains(word), "{findings}");
+        }
+        assert!(line == 0 || first.line == line, "{findings}");
+        assert!(what.is_empty() || first.what == what, "{findings}");
+    }
+}
+
+fn letter(index: u8) -> char {
+    char::from(b'a' + index % 26)
+}
+
+#[test]
+fn values_of_every_kind_are_shown_as_what_they_are() {
+    for (value, shown) in [
+        ("", "`image` has no value"),
+        (" ~", "`image` has no value"),
+        (" # none", "`image` has no value"),
+        (" ''", "`image` is empty"),
+        (" \"a\\eb\\n\"", "`image` is \"a\\u{1b}b\\n\""),
+        (" 1e300", "`image` is 1e300"),
+        (" yes", "`image` is true"),
+        (" [1, 2.5, .nan]", "`image` is [1, 2.5, NaN]"),
+        ("\n - 1\n - 2", "`image` is [1, 2]"),
+        (" [a, b]", "`image` is a list or a table with other values than numbers"),
+        (" {a: b}", "`image` is a list or a table with other values than numbers"),
+        (" [[1]]", "`image` is a list or a table with other values than numbers"),
+    ] {
+        let (_, findings) = read(&GOOD.replace(" house.pgm", value));
+        assert_eq!(findings.iter().next().unwrap().what, shown, "{findings}");
+    }
+}
+
+#[test]
+fn pictures_that_are_none_are_named_in_plain_words() {
+    let picture = |bytes: &[u8]| {
+        let mut files = BTreeMap::new();
+        files.insert(PathBuf::from("m.yaml"), GOOD.as_bytes().to_vec());
+        files.insert(PathBuf::from("house.pgm"), bytes.to_vec());
+        let mut findings = Findings::default();
+        assert!(read_floor_plan(Path::new("m.yaml"), &files, &mut findings).is_none());
+        findings.iter().next().unwrap().what.clone()
+    };
+    for (bytes, why) in [
+        (&b""[..], "it is neither a PNG nor a PGM picture"),
+        (b"\xff\xd8\xff\xe0 JFIF", "it is neither a PNG nor a PGM picture"),
+        (b"\x89PNG\r\n\x1a\n", "its header is damaged or incomplete"),
+        (
+            b"\x89PNG\r\n\x1a\n\0\0\0\x0dIDAT\0\0\0\x01\0\0\0\x01\x08\0\0\0\0",
+            "its header is damaged or incomplete",
+        ),
+        (b"P5", "its header is damaged or incomplete"),
+        (b"P5 a b 255 ", "its header is damaged or incomplete"),
+        (b"P5 2 2 0 \0\0\0\0", "its header is damaged or incomplete"),
+        (b"P5 2 2 255 \0\0\0", "its pixels are damaged or incomplete"),
+        (b"P2 2 1 255 0 x", "its pixels are damaged or incomplete"),
+        (b"P5 0 5 255 ", "it has no pixels"),
+        (b"P5 99999 99999 255 ", "99999 × 99999 pixels are too many: at most 67108864"),
+    ] {
+        assert_eq!(picture(bytes), format!("cannot read the picture house.pgm: {why}"));
+    }
+}
+
 #[test]
 fn missing_and_strange_files() {
     let mut findings = Findings::default();
@@ -115,6 +228,8 @@ proptest! {
     /// Aliases of aliases, deep lists and long lines.
     #[test]
     fn no_yaml_makes_it_panic(text in "([&*][ab] |[-?:\\[\\]{},\"'|>#!%@`~ \n]|[a-z0-9.]){0,200}") {
-        read(&text);
+        let (_, findings) = read(&text);
+        let shown = findings.to_string();
+        prop_assert!(JARGON.iter().all(|word| !shown.contains(word)), "{}", shown);
     }
 }

@@ -1,6 +1,7 @@
 //! Lengths, lines and text for PNG and SVG figures.
 
 use crate::drawing::{FONT, INK, px, register_fonts, why};
+use interfaces::printable;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::TextStyle;
@@ -47,7 +48,8 @@ impl Pen {
     ) -> Result<(), String> {
         let style = self.text(height).pos(Pos::new(anchor, VPos::Center));
         let lower = if self.is_bitmap { self.px(height) / 4 } else { 0 };
-        sheet.draw_text(text, &style, (self.px(at.0), self.px(at.1) + lower)).map_err(why)
+        // XML forbids some characters, and names can have any.
+        sheet.draw_text(&printable(text), &style, (self.px(at.0), self.px(at.1) + lower)).map_err(why)
     }
 
     /// Fills a rectangle.

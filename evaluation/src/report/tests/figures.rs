@@ -117,9 +117,10 @@ fn a_strategy_keeps_its_colour() {
 #[test]
 fn names_are_escaped() {
     let (settings, mut trials) = experiment(1, &["paper"], &["curious"], 1);
-    trials[0].world = "a < b & c".into();
+    trials[0].world = "a < b & \"c\"\u{1b}\u{ffff}".into();
     let (.., texts) = figures(&Report::new(settings, trials));
-    assert!(texts[0].contains("a &lt; b &amp; c: 1 trial"));
+    // Control characters are not allowed in XML, not even escaped.
+    assert!(texts[0].contains("a &lt; b &amp; &quot;c&quot;\\u{1b}\\u{ffff}: 1 trial"));
 }
 
 #[test]

@@ -135,3 +135,23 @@ fn the_csv_has_a_row_per_trial_and_sample_and_gives_the_report_again() {
         }
     }
 }
+
+#[test]
+fn a_name_is_no_formula_in_the_csv() {
+    for (name, field) in [
+        ("=1+1", "'=1+1"),
+        ("+1", "'+1"),
+        ("-1", "'-1"),
+        ("@SUM(A1)", "'@SUM(A1)"),
+        ("\tx", "'\tx"),
+        ("two, \"blocks\"", "two, \"blocks\""),
+    ] {
+        let (_, mut trials) = experiment(1, &["paper"], &["curious"], 1);
+        trials[0].world = name.into();
+        let mut bytes = Vec::new();
+        crate::report::files::write_trials(&trials, &mut bytes).unwrap();
+        let mut reader = csv::Reader::from_reader(bytes.as_slice());
+        let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+        assert!(rows.iter().all(|row| &row[0] == field), "{name:?}: {:?}", rows[0]);
+    }
+}

@@ -1,6 +1,6 @@
 //! The description of a grid world.
 
-use super::Content;
+use super::{Content, GRID_WORLD};
 use sim::grid::{BlockSpec, Course, GridSpec};
 
 pub(super) fn content(world: &GridSpec) -> Content {
@@ -22,7 +22,7 @@ pub(super) fn content(world: &GridSpec) -> Content {
         lines.push(("chance", both.join(", ")));
     }
     lines.extend(world.blocks.iter().map(|block| ("block", describe(block))));
-    Content { kind: "grid world", description: world.description.to_owned(), lines, scene: world.into() }
+    Content { kind: GRID_WORLD, description: world.description.to_owned(), lines, scene: world.into() }
 }
 
 /// The name, the path and the dwell time of a block.

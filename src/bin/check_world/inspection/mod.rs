@@ -2,18 +2,24 @@
 
 mod grid;
 mod physics;
+mod runs;
 #[cfg(test)]
 mod tests;
 
+use curious::worlds::is_of_stage;
+use interfaces::printable;
 use std::path::Path;
 use viewer::scene::Scene;
 use worldfile::floor_plan::FloorPlan;
 use worldfile::{Disk, Files, Findings, MAX_TEXT_BYTES, Severity, ros_map, shipped};
 
+const GRID_WORLD: &str = "grid world";
+const FLOOR_PLAN: &str = "floor plan";
+
 /// The result for one file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Inspection {
-    /// The name of the file, as given.
+    /// The name of the file, printable.
     pub(crate) file: String,
     /// The world, unless there are errors.
     pub(crate) content: Option<Content>,
@@ -32,7 +38,8 @@ pub(crate) struct Content {
     pub(crate) kind: &'static str,
     /// The description in the file; can be empty.
     pub(crate) description: String,
-    /// One line per part of the world: the name of the part, and its description.
+    /// One line per part of the world: the name of the part, and its description; at the end, the program that runs
+    /// the file.
     pub(crate) lines: Vec<(&'static str, String)>,
     /// The world from above; its title is the name of the world.
     pub(crate) scene: Scene,
@@ -50,14 +57,23 @@ pub(crate) fn inspect(name: &str) -> Inspection {
         (None, _) => match Disk.read(path, MAX_TEXT_BYTES) {
             Ok(bytes) => match String::from_utf8(bytes) {
                 Ok(text) => world_file(name, &text, &Disk),
-                Err(_) => invalid(format!("error: cannot read `{name}`: it is not a text file")),
+                Err(_) => invalid(format!("error: cannot read `{}`: it is not a text file", printable(name))),
             },
             Err(why) => invalid(format!(
-                "error: cannot read `{name}`: {why}, and there is no shipped world of this name"
+                "error: cannot read `{}`: {why}, and there is no shipped world of this name",
+                printable(name)
             )),
         },
     };
-    inspection.file = name.to_owned();
+    inspection.file = printable(name).into_owned();
+    if let Some(Content { kind, lines, .. }) = &mut inspection.content {
+        let command = match *kind {
+            GRID_WORLD => runs::in_grid_world(name),
+            FLOOR_PLAN => format!("four_rooms --map {}", inspection.file),
+            _ => runs::in_four_rooms(name),
+        };
+        lines.push(("runs in", command));
+    }
     inspection
 }
 
@@ -66,10 +82,6 @@ pub(crate) fn as_world_file(name: &str) -> Option<String> {
     let path = Path::new(name);
     let (world, _) = is_of_stage(path).then(|| stage::read(path, &Disk))?;
     world.map(|world| world.to_toml())
-}
-
-fn is_of_stage(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == "world" || ending == "inc")
 }
 
 fn invalid(error: String) -> Inspection {

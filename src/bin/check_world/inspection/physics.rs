@@ -1,15 +1,18 @@
 //! The description of physics worlds and floor plans.
 
-use super::Content;
-use interfaces::GridFrame;
+use super::{Content, FLOOR_PLAN};
+use interfaces::{GridFrame, printable};
 use nalgebra::Point2;
 use sim::physics::{
-    BehaviorSpec, DriveKind, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec,
+    BehaviorSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening,
+    Rectangle, RobotSpec,
 };
 use std::path::Path;
 use viewer::scene::{Scene, TimeUnit};
 use worldfile::floor_plan::FloorPlan;
 
+/// The maximum number of lines about robots.
+const MAX_ROBOT_LINES: usize = 10;
 /// The minimum side of the cells of a floor plan's frame, m.
 const PLAN_CELL_M: f64 = 0.05;
 
@@ -45,9 +48,9 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
     let high = corners.iter().fold(corners[0], |high, corner| high.sup(corner));
     let rectangles: Vec<Rectangle> = plan.rectangles().collect();
     let bitmap = &plan.bitmap;
-    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let name = printable(&path.file_stem().unwrap_or_default().to_string_lossy()).into_owned();
     Some(Content {
-        kind: "floor plan",
+        kind: FLOOR_PLAN,
         description: String::new(),
         lines: vec![
             ("size", format!("{} × {} m", short(size.x), short(size.y))),
@@ -103,16 +106,25 @@ fn thing_line(obstacle: &ObstacleSpec) -> String {
     )
 }
 
-/// A line for each robot; consecutive robots that differ only in name and pose share a line.
-fn robot_lines(robots: &[RobotSpec]) -> impl Iterator<Item = (&'static str, String)> {
-    robots.chunk_by(|one, next| robot_line(one) == robot_line(next)).map(|alike| {
+/// A line for each robot; consecutive robots that differ only in name and pose share a line. Of many lines, the first
+/// ones, and the number of the other robots.
+fn robot_lines(robots: &[RobotSpec]) -> Vec<(&'static str, String)> {
+    let mut others = robots.len();
+    let groups = robots.chunk_by(|one, next| robot_line(one) == robot_line(next)).take(MAX_ROBOT_LINES);
+    let line = |alike: &[RobotSpec]| {
+        others -= alike.len();
         let (first, last) = (&alike[0], &alike[alike.len() - 1]);
         let what = robot_line(first);
         match alike.len() {
             1 => ("robot", format!("`{}` {what}", first.name)),
             number => ("robots", format!("{number}, `{}` to `{}`, each {what}", first.name, last.name)),
         }
-    })
+    };
+    let mut lines: Vec<_> = groups.map(line).collect();
+    if others > 0 {
+        lines.push(("robots", format!("… and {others} more")));
+    }
+    lines
 }
 
 fn robot_line(robot: &RobotSpec) -> String {
@@ -136,13 +148,15 @@ fn robot_line(robot: &RobotSpec) -> String {
     let mut parts = vec![format!("{does}, {body}, {drive} up to {} m/s", short(robot.drive.max_linear_mps))];
     parts.extend(robot.lasers().map(|laser| {
         format!(
-            "laser of {} beams over {}°, {} m, {} Hz",
+            "laser of {} beams over {}°, {} m, {} Hz, {}",
             laser.beams,
             short(laser.fov_rad.to_degrees()),
             short(laser.range_max_m),
             short(laser.rate_hz),
+            range_errors(laser),
         )
     }));
+    parts.push(odometry_errors(&robot.odometry));
     let others = [
         (robot.sonars.len(), "sonar"),
         (usize::from(robot.bumper.is_some()), "bumper"),
@@ -153,6 +167,34 @@ fn robot_line(robot: &RobotSpec) -> String {
     );
     parts.extend(robot.tag.map(|tag| format!("tag {tag}")));
     parts.join("; ")
+}
+
+fn range_errors(laser: &LaserSpec) -> String {
+    let noise = match laser.noise_std_m {
+        0.0 => "no noise".to_owned(),
+        noise_m => format!("noise {} m", short(noise_m)),
+    };
+    let dropout = match laser.dropout {
+        0.0 => "no dropout".to_owned(),
+        dropout => format!("dropout {} %", short(100.0 * dropout)),
+    };
+    format!("{noise}, {dropout}")
+}
+
+fn odometry_errors(error: &OdometryError) -> String {
+    let errors = [
+        (100.0 * error.distance_gain, " % of the distance"),
+        (100.0 * error.turn_gain, " % of the turns"),
+        (error.turn_radpm.to_degrees(), "° per metre"),
+        (error.distance_noise_m, " m of noise after 1 m"),
+        (error.turn_noise_rad.to_degrees(), "° of noise after a turn of 1 rad"),
+    ];
+    let errors = errors.into_iter().filter(|(value, _)| *value != 0.0);
+    let errors: Vec<String> = errors.map(|(value, what)| format!("{}{what}", short(value))).collect();
+    match errors.is_empty() {
+        true => "poses are exact".to_owned(),
+        false => format!("odometry errors: {}", errors.join(", ")),
+    }
 }
 
 /// A number rounded to thousandths, without trailing zeros.

@@ -161,6 +161,19 @@ fn a_path_may_be_too_long() {
 }
 
 #[test]
+fn all_paths_together_may_be_too_long() {
+    let map = format!("{}\n", ".".repeat(1000)).repeat(3);
+    let path = "[0, 0], [999, 0], ".repeat(500);
+    let block = |i: usize| {
+        format!("[[block]]\nname = 'b{i}'\ndwell = 1\ncourse = 'back-and-forth'\npath = [{path}]\n")
+    };
+    let blocks: String = (0..12).map(block).collect();
+    let text = format!("name = 'many'\nsensor_radius = 1\nmap = '''\n{map}'''\n{blocks}");
+    let error = crate::grid::parse("many.toml", &text).unwrap_err();
+    assert!(error.to_string().contains("the paths of the blocks have more than 10000000 cells"), "{error}");
+}
+
+#[test]
 fn a_world_of_the_other_kind_is_called_what_it_is() {
     let physics = include_str!("../../../../worlds/four_rooms.toml");
     insta::assert_snapshot!(crate::grid::parse("four_rooms.toml", physics).unwrap_err(), @r"

@@ -2,11 +2,13 @@
 
 mod patrol;
 
-use crate::physics::space::{Solid, Space};
+use crate::physics::space::Space;
 use crate::reader::{Table, has};
 use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
-use sim::physics::{BehaviorSpec, CircleSpec, DriveKind, DriveLimits, Repeat, WanderSpec, WaypointsSpec};
+use sim::physics::{
+    BehaviorSpec, CircleSpec, DriveKind, DriveLimits, Rectangle, Repeat, WanderSpec, WaypointsSpec,
+};
 
 /// The continuation after the last waypoint.
 pub(super) const REPEATS: [(&str, Repeat); 3] =
@@ -153,8 +155,8 @@ impl Driver<'_> {
                     "they must be at least 0.1 m apart",
                 );
             }
-            let near = |solid: &&Solid| solid.shape.segment_distance_m(a, b) < keep_m - TOUCH_M;
-            if let Some(solid) = self.space.solids().find(near) {
+            let is_near = |shape: &Rectangle| shape.segment_distance_m(a, b) < keep_m - TOUCH_M;
+            if let Some(solid) = self.space.first_solid(is_near) {
                 let what = format!("the way of `{}` leads through a wall or an obstacle", self.name);
                 let others = [(from.clone(), "from here"), (solid.span.clone(), "too near to this one")];
                 let help =

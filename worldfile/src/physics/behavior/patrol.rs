@@ -2,10 +2,11 @@
 
 use super::Driver;
 use crate::findings::Mark;
+use crate::physics::space::Space;
 use crate::reader::Table;
 use nalgebra::{Point2, Vector2};
-use sim::physics::PatrolSpec;
 use sim::physics::shape::{TOUCH_M, point_segment_m};
+use sim::physics::{PatrolSpec, Rectangle};
 
 /// A wall farther away than this cannot be followed, m.
 const FARTHEST_WALL_M: f64 = 2.0;
@@ -71,10 +72,8 @@ impl Path<'_> {
         if (self.to - self.from).norm() < 0.1 {
             return self.error("has no length", &[], "its two ends must be at least 0.1 m apart");
         }
-        let mut solids = self.driver.space.solids();
-        let near =
-            solids.find(|solid| solid.shape.segment_distance_m(&self.from, &self.to) < radius_m - TOUCH_M);
-        if let Some(solid) = near {
+        let is_near = |shape: &Rectangle| shape.segment_distance_m(&self.from, &self.to) < radius_m - TOUCH_M;
+        if let Some(solid) = self.driver.space.first_solid(is_near) {
             let help = format!("the way must keep the robot's radius of {radius_m} m away");
             let others = [(solid.span.clone(), "through this one")];
             return self.error("leads through a wall or an obstacle", &others, &help);
@@ -97,8 +96,8 @@ impl Path<'_> {
         let samples = (along.norm() / SAMPLE_EVERY_M).ceil();
         let sample = |i: f64| {
             let at = self.from + along * (i / samples);
-            let hits = self.driver.space.solids().filter_map(|solid| solid.shape.ray_m(&at, &side));
-            (at, hits.fold(f64::INFINITY, f64::min))
+            let Space { walls, fixed, .. } = self.driver.space;
+            (at, walls.ray_m(&at, &side).min(fixed.ray_m(&at, &side)))
         };
         let (_, first_m) = sample(0.0);
         let mut i = 0.0;

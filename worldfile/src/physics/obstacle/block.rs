@@ -2,7 +2,7 @@
 
 use super::{Obstacle, spec};
 use crate::physics::behavior::REPEATS;
-use crate::physics::space::{MAX_TIME_S, Solid, inside};
+use crate::physics::space::{MAX_TIME_S, inside};
 use nalgebra::{Point2, Vector2};
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{Motion, ObstacleSpec, PathSpec, Rectangle, Repeat, convex};
@@ -131,8 +131,8 @@ impl Obstacle<'_> {
             let what = format!("the path of `{}` leads out of the map", self.name);
             inside(self.table.file, &what, span.clone(), &at(&to), &self.space.size)?;
             let swept = swept(&at(&from), &(to - from));
-            let is_in_way = |wall: &&Solid| convex::gap_m(&swept, &wall.shape.corners()) < -TOUCH_M;
-            if let Some(wall) = self.space.walls.iter().find(is_in_way) {
+            let is_in_way = |wall: &Rectangle| convex::gap_m(&swept, &wall.corners()) < -TOUCH_M;
+            if let Some(wall) = self.space.walls.first(is_in_way) {
                 let what = format!("the path of `{}` leads through a wall", self.name);
                 let others = [(wall.span.clone(), "through this one")];
                 let help = "the block may touch walls all the way, but not overlap them";

@@ -149,7 +149,7 @@ impl Obstacle<'_> {
         };
         let what = format!("the obstacle `{}` reaches out of the map", self.name);
         inside(table.file, &what, table.at("name"), &shape, size)?;
-        if let Some(wall) = self.space.walls.iter().find(|wall| wall.shape.overlaps(&shape)) {
+        if let Some(wall) = self.space.walls.first(|wall| wall.overlaps(&shape)) {
             let what = format!("the obstacle `{}` stands in a wall", self.name);
             let others = [(wall.span.clone(), "in this wall")];
             let help = "it may touch walls, but not overlap them";
