@@ -115,14 +115,14 @@ fn names_and_values_that_are_not_printable() {
     for (right, wrong) in [
         ("name = \"four rooms\"", format!("name = \"{forged}\"")),
         ("kind = \"driven\"", format!("kind = \"{forged}\"")),
-        ("max_linear_mps", format!("\"{forged}\"")),
+        ("max_linear_mps", format!("\"{forged}\" = 1\nmax_linear_mps")),
         ("[map]", format!("[[floor_plan]]\nimage = \"{forged}\"\npixel_m = 1.0\n[map]")),
         ("cell_m = 0.05", "cell_m = 1e9 # \u{1b}[2J\u{9b}2J".to_owned()),
     ] {
         let message = refused_world(right, &wrong);
         assert!(message.lines().all(|line| !line.chars().any(char::is_control)), "{message:?}");
     }
-    let map = MAP.replace("gone.pgm", "\"\\e[2J\\nerror: forged\"").replace("0.05", "\"\\e[2J\"");
+    let map = MAP.replace("gone.pgm", "\"\\e[2J\\nerror: forged\"");
     let message = refused_file("m.yaml", &map, "--map m.yaml");
     assert!(message.lines().all(|line| !line.chars().any(char::is_control)), "{message:?}");
 }

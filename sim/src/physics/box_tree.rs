@@ -7,8 +7,8 @@ use nalgebra::{Point2, Vector2};
 /// The lower left and the upper right corner of an upright box, m.
 type Bounds = (Point2<f64>, Point2<f64>);
 
-/// The boxes around some shapes, nearby ones together. The time to build it is n log n; a search takes as long as
-/// the result is large, and a logarithm.
+/// The boxes around some shapes, nearby ones together. To build it takes n log n; a search takes the logarithm of n,
+/// and the time for the shapes near the place.
 #[derive(Clone, Debug, Default)]
 pub struct BoxTree {
     /// Every node before the nodes below it.

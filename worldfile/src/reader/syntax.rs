@@ -19,8 +19,7 @@ pub(super) fn fault(message: &str, found: &str) -> (&'static str, &'static str) 
         | "missing value"
         | "missing value for key"
         | "missing assignment between key-value pairs"
-        | "missing key for inline table element"
-        | "missing opening quote" => ("a key without a value, or a value without a key", KEY),
+        | "missing key for inline table element" => ("a key without a value, or a value without a key", KEY),
         "extra `=`" | "extra assignment between key-value pairs" | "unexpected `=` in array" => {
             ("one `=` too many", KEY)
         }
@@ -40,7 +39,7 @@ pub(super) fn fault(message: &str, found: &str) -> (&'static str, &'static str) 
         }
         what if what.contains("key") => ("this is no key", "a key has letters, digits, `_` and `-` only"),
         what if ["string", "quote", "escape", "unicode"].iter().any(|word| what.contains(word)) => (
-            "this text in quotes is not complete",
+            "a value is missing, or a text in quotes is not complete",
             "a text begins and ends with `\"`, on one line; `\\` is written as `\\\\` in it",
         ),
         what if what.contains("comment") || what.contains("carriage return") => {

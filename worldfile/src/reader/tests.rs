@@ -117,7 +117,7 @@ fn a_name_that_is_not_printable_is_refused() {
 fn a_text_that_is_not_toml_is_described_without_words_of_the_parser() {
     let value = "this is no value";
     let number = "this is no number";
-    let text = "this text in quotes is not complete";
+    let text = "a value is missing, or a text in quotes is not complete";
     let deep = "too many lists or tables in each other";
     let cases = [
         ("name = ", "a value is missing"),
@@ -136,7 +136,7 @@ fn a_text_that_is_not_toml_is_described_without_words_of_the_parser() {
         ("a = [b = 1]", "one `=` too many"),
         ("a = {b = 1", "a table does not end"),
         ("a = {b = 1 c = 2}", "one `=` too many"),
-        ("a = {b}", "a key without a value, or a value without a key"),
+        ("a = {b}", text),
         ("a = 1 b = 2", "a line goes on after its value"),
         ("[map", "the header of a table does not end"),
         ("[[map]", "the header of a table does not end"),
