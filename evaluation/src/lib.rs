@@ -13,4 +13,5 @@ pub mod palette;
 pub mod physics_trial;
 pub mod report;
 pub mod summary;
+pub mod thinned;
 pub mod trials;

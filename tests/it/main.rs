@@ -15,6 +15,7 @@ mod ending;
 mod flicker;
 mod grid;
 mod keyboard;
+mod memory;
 mod output;
 mod prior;
 mod screen;

@@ -5,8 +5,8 @@ use crate::recording::{Recorder, RecordingError};
 use crate::scene::Scene;
 use crate::view::{Trail, View};
 use evaluation::drawing::PictureError;
+use evaluation::observer::Goals;
 use mapper::Mapper;
-use nalgebra::Point2;
 use std::path::Path;
 
 /// Shows a run, and keeps the trails of its robots.
@@ -68,7 +68,7 @@ impl Show {
         folder: &Path,
         film: Option<&Path>,
         mapper: &Mapper,
-        goals: &[Point2<f64>],
+        goals: &Goals,
     ) -> Result<(), PictureError> {
         if let (Some(made), Some(path)) = (self.film, film) {
             made.write(path)?;

@@ -3,12 +3,12 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use evaluation::cell_statistics;
+use evaluation::observer::Goals;
 use evaluation::output::write_file;
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::summary::Summary;
 use interfaces::Twist;
 use mapper::Mapper;
-use nalgebra::Point2;
 use robot::Pilot;
 use std::path::Path;
 use viewer::show::Show;
@@ -20,7 +20,7 @@ pub(crate) fn write(
     film: Option<&Path>,
     mapper: &Mapper,
     show: Show,
-    goals: &[Point2<f64>],
+    goals: &Goals,
     summary: &Summary,
 ) -> anyhow::Result<()> {
     show.write(folder, film, mapper, goals)?;

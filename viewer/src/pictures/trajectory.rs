@@ -6,6 +6,7 @@ use crate::legend::{Legend, Mark};
 use crate::scene::Scene;
 use crate::view::Trail;
 use evaluation::drawing::{Area, ink, why};
+use evaluation::observer::Goals;
 use evaluation::palette::{self, Rgb};
 use nalgebra::Point2;
 use plotters::prelude::*;
@@ -16,7 +17,7 @@ pub(super) fn draw(
     area: &Area,
     scene: &Scene,
     trails: &[Trail],
-    goals: &[Point2<f64>],
+    goals: &Goals,
 ) -> Result<(), String> {
     let (chart, legend) = panel.axes(area, &format!("Trajectories in {}", scene.title))?;
     ground::draw(&chart, scene)?;
@@ -25,7 +26,7 @@ pub(super) fn draw(
     drawn.sort_by_key(|(robot, _)| !robot.is_driven);
     drawn.iter().try_for_each(|(robot, trail)| line(panel, &chart, trail.points(), robot.color()))?;
     let plot = chart.plotting_area();
-    for goal in goals {
+    for goal in goals.samples() {
         let cross = Cross::new(pair(goal), panel.px(3), panel.line(ink(palette::GOAL), 2));
         plot.draw(&cross).map_err(why)?;
     }
@@ -40,12 +41,14 @@ pub(super) fn draw(
 }
 
 /// The entries of the legend.
-pub(super) fn entries(scene: &Scene, goals: &[Point2<f64>]) -> Legend {
+pub(super) fn entries(scene: &Scene, goals: &Goals) -> Legend {
     let robots = scene.robots.iter().map(|robot| (Mark::Line(robot.color()), robot.name.clone()));
     let mut entries: Legend = robots.collect();
     entries.push((Mark::Dot(palette::CURIOUS), "start".into()));
-    if !goals.is_empty() {
-        entries.push((Mark::Cross(palette::GOAL), format!("{} goals", goals.len())));
+    let (shown, all) = (goals.samples().len(), goals.count());
+    if all > 0 {
+        let of_all = if shown as u64 == all { String::new() } else { format!(" of {all}") };
+        entries.push((Mark::Cross(palette::GOAL), format!("{shown}{of_all} goals")));
     }
     entries.extend(ground::entries(scene));
     entries

@@ -7,6 +7,11 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+/// The number of messages that the footer of a file can list, about 1.5 simulated hours at full speed. The encoder keeps
+/// about 2 kB per message until the end; the file of a longer run has no footer. A viewer then reads the whole file
+/// before it shows everything.
+const MAX_LISTED: usize = 4096;
+
 /// An `.rrd` file with its final name from the start, so that a viewer can follow it, and a killed run leaves a
 /// readable file.
 ///
@@ -16,6 +21,8 @@ use std::path::{Path, PathBuf};
 pub(super) struct RrdFile {
     path: PathBuf,
     encoder: Encoder<Output>,
+    /// The number of messages so far.
+    messages: usize,
     /// The first error.
     written: Result<(), String>,
 }
@@ -34,16 +41,20 @@ impl RrdFile {
     pub(super) fn with_output(path: &Path, output: Output) -> Result<Self, String> {
         let version = rerun::build_info().version;
         let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, output);
-        Ok(Self { path: path.to_owned(), encoder: encoder.map_err(why)?, written: Ok(()) })
+        Ok(Self { path: path.to_owned(), encoder: encoder.map_err(why)?, messages: 0, written: Ok(()) })
     }
 
     pub(super) fn send(&mut self, message: &LogMsg) {
         if self.written.is_ok() {
+            self.messages += 1;
+            if self.messages > MAX_LISTED {
+                self.encoder.do_not_emit_footer();
+            }
             self.written = self.encoder.append(message).map(drop).map_err(why);
         }
     }
 
-    /// Writes the footer.
+    /// Writes the footer, unless there are too many messages for it.
     pub(super) fn finish(&mut self) {
         if self.written.is_ok() {
             self.written = self.encoder.finish().map_err(why);
