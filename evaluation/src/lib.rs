@@ -15,4 +15,5 @@ pub mod percent;
 pub mod physics_trial;
 pub mod report;
 pub mod summary;
+pub mod thinned;
 pub mod trials;

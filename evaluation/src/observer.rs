@@ -2,6 +2,7 @@
 
 use crate::metrics::{ChangingAccuracy, Latency, MapScores, Things, map_scores};
 use crate::summary::CurvePoint;
+use crate::thinned::Thinned;
 use interfaces::{GroundTruth, LaserReading, Twist};
 use mapper::Mapper;
 use nalgebra::Point2;
@@ -13,6 +14,11 @@ const SCORE_EVERY: usize = 100;
 /// The accuracy on changing cells is sampled once in this many readings.
 const SAMPLE_EVERY: usize = 10;
 
+/// Coverage and map quality over time: all points of a run of nearly three hours at 10 Hz.
+pub type Curve = Thinned<CurvePoint, 1024>;
+/// The positions of goals, m: all goals of about ten hours.
+pub type Goals = Thinned<Point2<f64>, 2048>;
+
 /// The measurements of a run so far.
 #[derive(Debug, Default)]
 pub struct Observer {
@@ -23,12 +29,14 @@ pub struct Observer {
     /// The accuracy on swept cells.
     pub changing: ChangingAccuracy,
     /// Coverage and map quality over time.
-    pub curve: Vec<CurvePoint>,
+    pub curve: Curve,
     /// The positions of the goals of the curious robot, m.
-    pub goals: Vec<Point2<f64>>,
+    pub goals: Goals,
+    /// The number of contacts of the curious robot that began while it stood still, and of those that began while
+    /// it moved.
+    pub contacts: [usize; 2],
     /// The messages of the last tick.
     pub messages: Vec<Message>,
-    contacts_reported: usize,
 }
 
 impl Observer {
@@ -46,7 +54,7 @@ impl Observer {
 
     /// The latest coverage and map quality.
     pub fn scores(&self) -> Option<MapScores> {
-        self.curve.last().map(|point| point.scores)
+        self.curve.samples().last().map(|point| point.scores)
     }
 
     fn measure(&mut self, world: &PhysicsWorld, reading: &LaserReading, mapper: &Mapper) {
@@ -69,11 +77,11 @@ impl Observer {
         }
         let mut log = |level, text| self.messages.push(Message { level, text });
         self.things.take_messages().into_iter().for_each(|text| log(Level::Event, text));
-        for contact in &world.contacts()[self.contacts_reported..] {
+        for contact in world.contacts() {
+            self.contacts[usize::from(contact.moving)] += 1;
             let how = if contact.moving { "drove into" } else { "was hit by" };
             log(Level::Trouble, format!("the curious robot {how} {}", name(world, contact.with)));
         }
-        self.contacts_reported = world.contacts().len();
     }
 }
 

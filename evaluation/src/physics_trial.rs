@@ -190,7 +190,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         let Self { world, mapper, pilot, observer } = self;
         let truth = world.truth();
         let [block_latency, free_latency] = observer.latency.delays();
-        let collisions = world.contacts().iter().filter(|contact| contact.moving).count();
+        let [contacts_while_standing, collisions] = observer.contacts;
         let strategies = pilot.strategies(Features::default()).into_iter();
         RunResults {
             map: map_scores(mapper, truth),
@@ -200,11 +200,11 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             block_latency,
             free_latency,
             collisions,
-            contacts_while_standing: world.contacts().len() - collisions,
+            contacts_while_standing,
             goals: pilot.goals(),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
             things: observer.things.reports().cloned().collect(),
-            curve: observer.curve.clone(),
+            curve: observer.curve.samples().to_vec(),
             map_hash: map_hash(mapper),
             liveliest: Liveliest::of(mapper),
         }

@@ -80,9 +80,10 @@ pub struct RunResults {
     pub goals: GoalCount,
     /// For each strategy, the share of the goals that it selected.
     pub strategy_share: BTreeMap<String, f64>,
-    /// The detection of the things that appeared or disappeared.
+    /// The detection of the things that appeared or disappeared: at most two entries per thing, since a thing
+    /// appears and disappears at most once.
     pub things: Vec<ThingReport>,
-    /// Coverage and map quality over time.
+    /// Coverage and map quality over time: every 100th reading, and for long runs 513 to 1024 points, spread evenly.
     pub curve: Vec<CurvePoint>,
     /// The hash of everything that was learned, see [`crate::map_hash`].
     pub map_hash: String,

@@ -12,12 +12,12 @@ pub struct GridFrame {
 
 impl GridFrame {
     /// A frame of `width` × `height` cells with sides of `resolution_m` (m), whose lower left corner is at `origin`
-    /// (m). `None` unless every number is finite, the resolution is positive, and the grid has between one and 2²⁸
+    /// (m). `None` unless every number is finite, the resolution is positive, and the grid has between one and 2²⁶
     /// cells.
     pub fn new(origin: Point2<f64>, resolution_m: f64, width: usize, height: usize) -> Option<Self> {
         let cells = width.checked_mul(height)?;
         let finite = origin.x.is_finite() && origin.y.is_finite() && resolution_m.is_finite();
-        (finite && resolution_m > 0.0 && (1..=1 << 28).contains(&cells)).then_some(Self {
+        (finite && resolution_m > 0.0 && (1..=1 << 26).contains(&cells)).then_some(Self {
             origin,
             resolution_m,
             width,
@@ -220,6 +220,7 @@ mod tests {
         assert_eq!(GridFrame::new(origin, f64::NAN, 1, 1), None);
         assert_eq!(GridFrame::new(origin, 1.0, 0, 1), None);
         assert_eq!(GridFrame::new(origin, 1.0, usize::MAX, 2), None);
+        assert_eq!(GridFrame::new(origin, 1.0, (1 << 13) + 1, 1 << 13), None);
         assert_eq!(GridFrame::covering(origin, 1e9, 1e9, 1e-3), None);
     }
 }

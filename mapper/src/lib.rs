@@ -32,6 +32,9 @@ use interfaces::{
 use nalgebra::{Isometry2, Point2};
 use occupancy::FARTHEST_M;
 
+/// The maximum of [`Mapper::bytes`].
+const MAX_BYTES: usize = 2 << 30;
+
 /// Settings of a [`Mapper`].
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
@@ -98,12 +101,35 @@ pub struct Mapper {
 }
 
 impl Mapper {
+    /// The memory that a mapper takes when every cell was seen, bytes; known before anything is allocated. Cells that
+    /// change take some hundred bytes more. An occupancy model of another crate counts as much as the largest built-in
+    /// model.
+    pub fn bytes(frame: &GridFrame) -> usize {
+        frame.len() * (CellMap::BYTES_PER_CELL + occupancy::BYTES_PER_CELL)
+    }
+
+    fn check_bytes(frame: &GridFrame) -> Result<(), SettingsError> {
+        let bytes = Self::bytes(frame);
+        if bytes <= MAX_BYTES {
+            return Ok(());
+        }
+        let (width, height, gib) = (frame.width(), frame.height(), bytes as f64 / f64::from(1 << 30));
+        let found = format!("{width} × {height} cells, which need {gib:.1} GiB");
+        Err(SettingsError {
+            part: "mapper",
+            key: "frame",
+            expected: "a frame that needs at most 2 GiB",
+            found,
+        })
+    }
+
     /// A mapper whose cells are all unknown.
     ///
     /// # Errors
     ///
-    /// When a setting is out of range or contradicts another.
+    /// When a setting is out of range or contradicts another, and when the cells need more than 2 GiB.
     pub fn new(settings: &MapperSettings, frame: GridFrame) -> Result<Self, SettingsError> {
+        Self::check_bytes(&frame)?;
         Self::with_prior(settings, Grid::filled(frame, CellState::Unknown))
     }
 
@@ -111,9 +137,10 @@ impl Mapper {
     ///
     /// # Errors
     ///
-    /// When a setting is out of range or contradicts another.
+    /// When a setting is out of range or contradicts another, and when the cells need more than 2 GiB.
     pub fn with_prior(settings: &MapperSettings, prior: Grid<CellState>) -> Result<Self, SettingsError> {
         settings.check()?;
+        Self::check_bytes(prior.frame())?;
         let mut cells = CellMap::new(prior, settings.estimator.clone(), settings.max_gap);
         let occupancy = settings.occupancy.build(settings, &mut cells);
         let expected_changes = ExpectedChanges::default();

@@ -16,6 +16,7 @@ mod flicker;
 mod folder;
 mod grid;
 mod keyboard;
+mod memory;
 mod output;
 mod prior;
 mod screen;

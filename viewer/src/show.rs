@@ -5,8 +5,8 @@ use crate::recording::{Recorder, RecordingError};
 use crate::scene::Scene;
 use crate::view::{Trail, View};
 use evaluation::drawing::PictureError;
+use evaluation::observer::Goals;
 use mapper::Mapper;
-use nalgebra::Point2;
 use std::path::Path;
 
 /// Shows a run, and keeps the trails of its robots.
@@ -68,12 +68,7 @@ impl Show {
     /// # Errors
     ///
     /// When a picture cannot be drawn or written.
-    pub fn write_pictures(
-        &self,
-        folder: &Path,
-        mapper: &Mapper,
-        goals: &[Point2<f64>],
-    ) -> Result<(), PictureError> {
+    pub fn write_pictures(&self, folder: &Path, mapper: &Mapper, goals: &Goals) -> Result<(), PictureError> {
         pictures::write_all(folder, &self.scene, mapper, &self.trails, goals)
     }
 

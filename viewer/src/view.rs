@@ -3,10 +3,12 @@
 use crate::scene::{Outline, RobotState, Sight, Visible};
 use agent::Features;
 use evaluation::metrics::{MapScores, RateErrors};
+use evaluation::thinned::Thinned;
 use interfaces::Reading;
 use mapper::Mapper;
 use nalgebra::Point2;
 use robot::{Belief, Message, Pilot, StrategyState};
+use std::collections::VecDeque;
 
 /// The state of a run at one time.
 pub struct View<'a> {
@@ -73,30 +75,47 @@ impl<'a> View<'a> {
     }
 }
 
-/// The positions of a robot since the start. Positions nearer than a few centimeters to the last one are dropped,
-/// so that a robot at rest needs no memory.
+/// The positions of a robot since the start, in bounded memory. Positions nearer than a few centimeters to the last one
+/// are dropped.
 #[derive(Clone, Debug, Default)]
 pub struct Trail {
-    points: Vec<Point2<f64>>,
+    points: Thinned<Point2<f64>, MAX_POINTS>,
+    /// The last positions, all of them.
+    recent: VecDeque<Point2<f64>>,
 }
 
 /// The minimum distance between two points of a trail, m: half a cell of the shipped worlds.
 const TRAIL_SPACING_M: f64 = 0.025;
+/// The maximum number of points of a whole trail: a robot that moves all the time adds 12,000 points in 20 minutes.
+const MAX_POINTS: usize = 1 << 14;
+/// The number of recent points.
+const RECENT_POINTS: usize = 500;
+
+/// Whether a robot has moved far enough from the `last` point of its trail for `position` to be the next point.
+pub fn is_next_point(last: Option<&Point2<f64>>, position: &Point2<f64>) -> bool {
+    last.is_none_or(|last| (position - last).norm() >= TRAIL_SPACING_M)
+}
 
 impl Trail {
-    /// Appends the present position of the robot, m. Returns whether the robot has moved far enough for the
-    /// position to be kept.
-    pub fn push(&mut self, position: Point2<f64>) -> bool {
-        let keep = self.points.last().is_none_or(|last| (position - last).norm() >= TRAIL_SPACING_M);
-        if keep {
+    /// Appends the present position of the robot, m, if the robot has moved far enough.
+    pub fn push(&mut self, position: Point2<f64>) {
+        if is_next_point(self.recent.back(), &position) {
             self.points.push(position);
+            self.recent.push_back(position);
+            if self.recent.len() > RECENT_POINTS {
+                self.recent.pop_front();
+            }
         }
-        keep
     }
 
-    /// The positions from the start on, m.
+    /// The positions from the start on, m; of a long run spread evenly along the trail.
     pub fn points(&self) -> &[Point2<f64>] {
-        &self.points
+        self.points.samples()
+    }
+
+    /// The last 500 positions, m; fewer at the start.
+    pub fn recent(&self) -> impl Iterator<Item = Point2<f64>> {
+        self.recent.iter().copied()
     }
 }
 
@@ -113,5 +132,17 @@ mod tests {
         }
         assert_eq!(trail.points().len(), 34); // every 3 cm from 0 to 99 cm
         assert_eq!(trail.points()[1], Point2::new(0.03, 0.0));
+    }
+
+    #[test]
+    fn a_trail_of_many_hours_is_bounded() {
+        let mut trail = Trail::default();
+        for step in 0..1_000_000 {
+            trail.push(Point2::new(f64::from(step), 0.0));
+        }
+        let (points, recent) = (trail.points(), Vec::from_iter(trail.recent()));
+        assert!((8192..=16_384).contains(&points.len()), "{}", points.len());
+        assert_eq!((points[0].x, points.last().unwrap().x), (0.0, 999_999.0));
+        assert_eq!((recent.len(), recent[0].x, recent[499].x), (500, 999_500.0, 999_999.0));
     }
 }

@@ -4,9 +4,14 @@ use interfaces::RandomStream;
 use rand::RngExt;
 use std::collections::BTreeMap;
 
+/// The maximum number of tiles of a tiling. A run of 20 minutes at 10 Hz does not reach it. Without a limit, a cell that
+/// is never seen would add new tiles for ever, since r grows with the time.
+const MAX_TILES: usize = 1 << 14;
+
 /// A value function over the features (p, r): several grids of tiles (tilings) with random offsets, and one weight
 /// per tile (section 4). Tiles are stored by column and row: two tiles never share a weight. The weight of a tile
-/// is 0 until something is learned for the tile.
+/// is 0 until something is learned for the tile. A tiling has at most 16,384 tiles: the tiles that were visited longest
+/// ago are forgotten.
 #[derive(Clone, Debug)]
 pub struct TileCoder {
     /// The size of a tile in p and r.
@@ -18,7 +23,36 @@ pub struct TileCoder {
 struct Tiling {
     /// The offset of the tiling in p and r, in tiles, in [0, 1).
     offset: [f64; 2],
-    weights: BTreeMap<(i64, i64), f64>,
+    tiles: BTreeMap<(i64, i64), Tile>,
+    /// The number of visits of all tiles.
+    visits: u64,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Tile {
+    weight: f64,
+    /// The number of the last visit.
+    visit: u64,
+}
+
+impl Tiling {
+    /// The weight of a tile at its next visit.
+    fn visit(&mut self, tile: (i64, i64)) -> &mut f64 {
+        if self.tiles.len() == MAX_TILES && !self.tiles.contains_key(&tile) {
+            self.forget_half();
+        }
+        self.visits += 1;
+        let tile = self.tiles.entry(tile).or_default();
+        tile.visit = self.visits;
+        &mut tile.weight
+    }
+
+    /// Forgets the half of the tiles that were visited longest ago.
+    fn forget_half(&mut self) {
+        let mut visits: Vec<u64> = self.tiles.values().map(|tile| tile.visit).collect();
+        let (_, &mut median, _) = visits.select_nth_unstable(MAX_TILES / 2);
+        self.tiles.retain(|_, tile| tile.visit >= median);
+    }
 }
 
 impl TileCoder {
@@ -31,13 +65,14 @@ impl TileCoder {
     /// A tile coder with value 0 everywhere, with tiles of size `tile` in p and r, and one tiling per offset (in
     /// tiles).
     pub fn with_offsets(tile: [f64; 2], offsets: &[[f64; 2]]) -> Self {
-        let tiling = |&offset| Tiling { offset, weights: BTreeMap::new() };
+        let tiling = |&offset| Tiling { offset, tiles: BTreeMap::new(), visits: 0 };
         Self { tile, tilings: offsets.iter().map(tiling).collect() }
     }
 
     /// V(p, r): the mean over the tilings of the weight of the tile that contains the features.
     pub fn value(&self, features: Features) -> f64 {
-        let weight = |tiling: &Tiling| tiling.weights.get(&tile(tiling.offset, self.tile, features)).copied();
+        let weight =
+            |tiling: &Tiling| Some(tiling.tiles.get(&tile(tiling.offset, self.tile, features))?.weight);
         let sum: f64 = self.tilings.iter().filter_map(weight).sum();
         sum / self.tilings.len().max(1) as f64
     }
@@ -50,7 +85,7 @@ impl TileCoder {
             let tile = |features: &Features| tile(offset, size, *features);
             // The features change slowly: consecutive pairs are mostly in the same tile.
             for visit in trajectory.chunk_by(|a, b| tile(a) == tile(b)) {
-                let weight = tiling.weights.entry(tile(&visit[0])).or_insert(0.0);
+                let weight = tiling.visit(tile(&visit[0]));
                 for _ in visit {
                     *weight = *weight * (1.0 - learning_rate) + target * learning_rate;
                 }
@@ -116,6 +151,20 @@ mod tests {
         let mut coder = two_tilings();
         coder.learn(&[], 10.0, 0.9);
         assert_eq!(coder.value(at(0.0, 0.0)), 0.0);
+    }
+
+    #[test]
+    fn the_tiles_visited_longest_ago_are_forgotten() {
+        let mut coder = TileCoder::with_offsets([0.5, 100.0], &[[0.0, 0.0]]);
+        let row = |row: usize| at(0.0, 100.0 * row as f64);
+        for newest in 0..5 * MAX_TILES {
+            coder.learn(&[row(0), row(newest)], 1.0, 1.0);
+            assert!(coder.tilings[0].tiles.len() <= MAX_TILES);
+        }
+        let newest = 5 * MAX_TILES - 1;
+        assert!((newest - MAX_TILES / 4..=newest).all(|kept| coder.value(row(kept)) == 1.0));
+        assert_eq!(coder.value(row(0)), 1.0, "visited all the time");
+        assert_eq!(coder.value(row(MAX_TILES)), 0.0, "visited once, long ago");
     }
 
     proptest! {

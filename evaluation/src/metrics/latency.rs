@@ -13,9 +13,10 @@ pub struct Delays {
     /// The share of these changes that the map did not follow before the cell changed back. Changes that are still
     /// open at the end of the run are not counted.
     pub never_noticed: f64,
-    /// The median time from the first beam that shows the change to the change of the map, s.
+    /// The median time from the first beam that shows the change to the change of the map, s. A delay of more than
+    /// an hour counts as an hour.
     pub median_s: Option<f64>,
-    /// The time within which the map followed 95 % of these changes, s.
+    /// The time within which the map followed 95 % of these changes, s, with the same limit.
     pub p95_s: Option<f64>,
 }
 
@@ -37,8 +38,37 @@ struct Open {
 #[derive(Clone, Debug, Default)]
 pub struct Latency {
     open: BTreeMap<usize, Open>,
-    delays_s: [Vec<f64>; 2],
+    noticed: [DelayCounts; 2],
     missed: [usize; 2],
+}
+
+/// Delays longer than this count as this long, s: the number of different delays is bounded.
+const MAX_DELAY_S: f64 = 3600.0;
+
+/// How often each delay occurred. Delays are multiples of the time between two readings, so that few of them differ;
+/// in whole microseconds, since the differences of two times are not exact.
+#[derive(Clone, Debug, Default)]
+struct DelayCounts(BTreeMap<u64, usize>);
+
+impl DelayCounts {
+    fn add(&mut self, delay_s: f64) {
+        *self.0.entry((delay_s.clamp(0.0, MAX_DELAY_S) * 1e6).round() as u64).or_default() += 1;
+    }
+
+    fn count(&self) -> usize {
+        self.0.values().sum()
+    }
+
+    /// The delay within which this share of the changes was noticed, s; `None` without a delay.
+    fn quantile(&self, share: f64) -> Option<f64> {
+        let rank = (share * self.count().saturating_sub(1) as f64) as usize;
+        let mut up_to = 0;
+        let reaches_rank = |&(_, count): &(_, &usize)| {
+            up_to += count;
+            up_to > rank
+        };
+        self.0.iter().find(reaches_rank).map(|(&delay_us, _)| delay_us as f64 / 1e6)
+    }
 }
 
 const EVENTS: [Event; 2] = [Event::Block, Event::Free];
@@ -110,7 +140,7 @@ impl Latency {
             self.open.remove(&index)
         {
             match noticed_s {
-                Some(noticed_s) => self.delays_s[event as usize].push((noticed_s - shown_s).max(0.0)),
+                Some(noticed_s) => self.noticed[event as usize].add(noticed_s - shown_s),
                 None => self.missed[event as usize] += 1,
             }
         }
@@ -119,19 +149,45 @@ impl Latency {
     /// The delays of block events and of free events so far.
     pub fn delays(&self) -> [Delays; 2] {
         EVENTS.map(|event| {
-            let mut delays_s = self.delays_s[event as usize].clone();
-            delays_s.sort_unstable_by(f64::total_cmp);
-            let missed = self.missed[event as usize];
-            let shown = delays_s.len() + missed;
-            let quantile = |share: f64| {
-                delays_s.get((share * delays_s.len().saturating_sub(1) as f64) as usize).copied()
-            };
+            let (noticed, missed) = (&self.noticed[event as usize], self.missed[event as usize]);
+            let shown = noticed.count() + missed;
             Delays {
                 shown,
                 never_noticed: missed as f64 / shown.max(1) as f64,
-                median_s: quantile(0.5),
-                p95_s: quantile(0.95),
+                median_s: noticed.quantile(0.5),
+                p95_s: noticed.quantile(0.95),
             }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_of_counts_are_those_of_the_list() {
+        let mut counts = DelayCounts::default();
+        assert_eq!((counts.count(), counts.quantile(0.5)), (0, None));
+        let mut delays_s: Vec<f64> =
+            (0..1001).map(|event: u32| 0.1 * f64::from(event * event % 97)).collect();
+        delays_s.iter().for_each(|&delay_s| counts.add(delay_s));
+        delays_s.sort_unstable_by(f64::total_cmp);
+        for (share, rank) in [(0.0, 0), (0.5, 500), (0.95, 950), (1.0, 1000)] {
+            assert!((counts.quantile(share).unwrap() - delays_s[rank]).abs() < 1e-9, "{share}");
+        }
+        assert_eq!(counts.count(), 1001);
+    }
+
+    #[test]
+    fn many_delays_take_little_memory() {
+        let mut counts = DelayCounts::default();
+        for reading in 0..1_000_000_u32 {
+            let shown_s = 0.05 * f64::from(reading * 2);
+            counts.add(0.05 * f64::from(reading * 2 + reading % 7 * 2) - shown_s);
+        }
+        assert_eq!(counts.0.len(), 7);
+        (0..100_000).for_each(|delay_s| counts.add(f64::from(delay_s)));
+        assert!(counts.0.len() <= 3608 && counts.quantile(1.0) == Some(MAX_DELAY_S));
     }
 }

@@ -56,6 +56,9 @@ impl Clone for Box<dyn OccupancyModel> {
     }
 }
 
+/// The memory of the largest built-in model, bytes per cell.
+pub(crate) const BYTES_PER_CELL: usize = SurfaceGrid::BYTES_PER_CELL;
+
 type Build = dyn Fn(&MapperSettings, &mut CellMap) -> Box<dyn OccupancyModel> + Send + Sync;
 
 /// A choice of an occupancy model, by its name. The default is `steady`.

@@ -2,7 +2,7 @@
 
 use crate::house::{House, Thing, rectangle};
 use crate::observed::{Observed, assert_sound};
-use interfaces::{CellState, GridFrame, LaserReading, Scan, ScanError, Twist};
+use interfaces::{CellState, Grid, GridFrame, LaserReading, Scan, ScanError, Twist};
 use mapper::{Mapper, MapperSettings, OccupancyChoice, ReadingError, SurfaceGridSettings};
 use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 use proptest::prelude::*;
@@ -240,6 +240,22 @@ fn settings_that_contradict_are_refused() {
 }
 
 /// Every setting at its limits, in a house where a box appears and disappears.
+#[test]
+fn a_map_that_needs_too_much_memory_is_refused_before_it_is_allocated() {
+    let frame = |side| GridFrame::new(Point2::origin(), 0.05, side, side).unwrap();
+    assert_eq!(Mapper::bytes(&frame(100)), 10_000 * Mapper::bytes(&frame(1)));
+    // As large as a world file can be.
+    assert!(Mapper::new(&MapperSettings::default(), frame(2000)).is_ok());
+    let error = Mapper::new(&MapperSettings::default(), frame(8192)).unwrap_err().to_string();
+    let gib = Mapper::bytes(&frame(8192)) as f64 / 2.0_f64.powi(30);
+    let expected =
+        "mapper setting `frame` must be a frame that needs at most 2 GiB, not 8192 × 8192 cells, which need";
+    assert_eq!(error, format!("{expected} {gib:.1} GiB"));
+    let prior = Grid::filled(frame(4096), CellState::Free);
+    let error = Mapper::with_prior(&MapperSettings::default(), prior).unwrap_err().to_string();
+    assert!(error.contains("not 4096 × 4096 cells"), "{error}");
+}
+
 #[test]
 fn lawful_settings_are_lived_with() {
     let edits: [fn(&mut SurfaceGridSettings); 9] = [

@@ -57,12 +57,12 @@ impl PhysicsWorld {
         &self.fleet.robot(self.spec.driven_index()).pose
     }
 
-    /// All contacts of the driven robot since the start, in the order of their beginning.
+    /// The contacts of the driven robot that began in the last [`act`](World::act), in the order of their beginning.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
     }
 
-    /// All appearances and disappearances of obstacles since the start, in order of time.
+    /// All appearances and disappearances of obstacles since the start, in order of time: at most two per obstacle.
     pub fn obstacle_events(&self) -> &[ObstacleEvent] {
         &self.obstacle_events
     }
@@ -131,6 +131,7 @@ impl World for PhysicsWorld {
 
     fn act(&mut self, command: &Twist) {
         self.truth.forget_changes();
+        self.contacts.clear();
         self.fleet.command(self.spec.driven_index(), *command);
         for _ in 0..self.spec.driven().laser.period_steps {
             self.advance();

@@ -3,12 +3,12 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use evaluation::cell_statistics;
+use evaluation::observer::Goals;
 use evaluation::output::{RunFolder, write_file};
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::summary::Summary;
 use interfaces::Twist;
 use mapper::Mapper;
-use nalgebra::Point2;
 use robot::Pilot;
 use viewer::show::Show;
 use worldfile::ros_map;
@@ -21,7 +21,7 @@ pub(crate) fn write(
     folder: RunFolder,
     mapper: &Mapper,
     show: &Show,
-    goals: &[Point2<f64>],
+    goals: &Goals,
     summary: &mut Summary,
 ) -> anyhow::Result<()> {
     let to = folder.unfinished();

@@ -21,8 +21,6 @@ const FRAMES: u32 = 130;
 /// The duration of a frame, and of the last frame, 1/100 s.
 const DELAY: u16 = 10;
 const LAST_DELAY: u16 = 250;
-/// The drawn part of the curious robot's trail, points.
-const TRAIL: usize = 500;
 /// The color index of a pixel that is as in the frame before.
 const SAME: u8 = 255;
 
@@ -118,9 +116,7 @@ impl Film {
             }
         }
         for (robot, trail) in self.scene.robots.iter().zip(trails) {
-            let points = trail.points();
-            let points = &points[points.len().saturating_sub(TRAIL)..];
-            line(panel, chart, points, robot.color())?;
+            line(panel, chart, &Vec::from_iter(trail.recent()), robot.color())?;
         }
         line(panel, chart, view.path, palette::PATH)?;
         if let Some(goal) = view.goal {

@@ -14,9 +14,9 @@ use crate::layers::Layer;
 use crate::scene::Scene;
 use crate::view::Trail;
 use evaluation::drawing::{Area, Canvas, PictureError};
+use evaluation::observer::Goals;
 use evaluation::output::make_folder;
 use mapper::Mapper;
-use nalgebra::Point2;
 use panel::Panel;
 use std::path::Path;
 
@@ -25,7 +25,7 @@ const FIGURE_5: [Layer; 3] = [Layer::Occupancy, Layer::Interval, Layer::ChangePr
 
 /// Writes `figure5.png`, each of its panels and the recency as `<layer>.png`, and `trajectory.png` into
 /// `folder`, which is created if needed. `trails` are in the order of the robots of the scene; `goals` are
-/// those of the curious robot, m.
+/// those of the curious robot.
 ///
 /// # Errors
 ///
@@ -35,7 +35,7 @@ pub fn write_all(
     scene: &Scene,
     mapper: &Mapper,
     trails: &[Trail],
-    goals: &[Point2<f64>],
+    goals: &Goals,
 ) -> Result<(), PictureError> {
     make_folder(folder)?;
     let file = |name: &str| folder.join(format!("{name}.png"));

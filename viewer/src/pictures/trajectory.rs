@@ -6,6 +6,7 @@ use crate::legend::{Legend, Mark};
 use crate::scene::{Robot, Scene};
 use crate::view::Trail;
 use evaluation::drawing::{Area, ink, why};
+use evaluation::observer::Goals;
 use evaluation::palette::{self, Rgb};
 use nalgebra::Point2;
 use plotters::prelude::*;
@@ -16,7 +17,7 @@ pub(super) fn draw(
     area: &Area,
     scene: &Scene,
     trails: &[Trail],
-    goals: &[Point2<f64>],
+    goals: &Goals,
 ) -> Result<(), String> {
     let (chart, legend) = panel.axes(area, &format!("Trajectories in {}", scene.title))?;
     ground::draw(&chart, scene)?;
@@ -25,7 +26,7 @@ pub(super) fn draw(
     drawn.sort_by_key(|((robot, _), _)| !robot.is_driven);
     drawn.iter().try_for_each(|((_, trail), color)| line(panel, &chart, trail.points(), *color))?;
     let plot = chart.plotting_area();
-    for goal in goals {
+    for goal in goals.samples() {
         let cross = Cross::new(pair(goal), panel.px(3), panel.line(ink(palette::GOAL), 2));
         plot.draw(&cross).map_err(why)?;
     }
@@ -48,7 +49,7 @@ fn colors(scene: &Scene) -> Vec<Rgb> {
 }
 
 /// The entries of the legend.
-pub(super) fn entries(scene: &Scene, goals: &[Point2<f64>]) -> Legend {
+pub(super) fn entries(scene: &Scene, goals: &Goals) -> Legend {
     let mut robots: Vec<(&Robot, Rgb)> = scene.robots.iter().zip(colors(scene)).collect();
     robots.sort_by_key(|(robot, _)| !robot.is_driven);
     let entry = |same: &[(&Robot, Rgb)]| match same {
@@ -57,8 +58,10 @@ pub(super) fn entries(scene: &Scene, goals: &[Point2<f64>]) -> Legend {
     };
     let mut entries: Legend = robots.chunk_by(|(_, a), (_, b)| a == b).map(entry).collect();
     entries.push((Mark::Dot(palette::CURIOUS), "start".into()));
-    if !goals.is_empty() {
-        entries.push((Mark::Cross(palette::GOAL), format!("{} goals", goals.len())));
+    let (shown, all) = (goals.samples().len(), goals.count());
+    if all > 0 {
+        let of_all = if shown as u64 == all { String::new() } else { format!(" of {all}") };
+        entries.push((Mark::Cross(palette::GOAL), format!("{shown}{of_all} goals")));
     }
     entries.extend(ground::entries(scene));
     entries

@@ -10,6 +10,10 @@ use std::path::{Path, PathBuf};
 
 /// The first bytes of every recording, before the version of the format.
 const MAGIC: &[u8] = b"RRF";
+/// The number of messages that the footer of a file can list, about 1.5 simulated hours at full speed. The encoder keeps
+/// about 2 kB per message until the end; the file of a longer run has no footer. A viewer then reads the whole file
+/// before it shows everything.
+const MAX_LISTED: usize = 4096;
 
 /// An `.rrd` file that is written during the run, under a temporary name that a viewer can open: a killed run leaves a
 /// readable file.
@@ -22,6 +26,8 @@ pub(super) struct RrdFile {
     encoder: Encoder<Output>,
     /// The file of `encoder`; `None` in tests, and when it has its name.
     unfinished: Option<UnfinishedFile>,
+    /// The number of messages so far.
+    messages: usize,
     /// The first error.
     written: Result<(), String>,
 }
@@ -50,16 +56,21 @@ impl RrdFile {
     pub(super) fn with_output(path: &Path, output: Output) -> Result<Self, String> {
         let version = rerun::build_info().version;
         let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, output);
-        Ok(Self { path: path.to_owned(), encoder: encoder.map_err(why)?, unfinished: None, written: Ok(()) })
+        let encoder = encoder.map_err(why)?;
+        Ok(Self { path: path.to_owned(), encoder, unfinished: None, messages: 0, written: Ok(()) })
     }
 
     pub(super) fn send(&mut self, message: &LogMsg) {
         if self.written.is_ok() {
+            self.messages += 1;
+            if self.messages > MAX_LISTED {
+                self.encoder.do_not_emit_footer();
+            }
             self.written = self.encoder.append(message).map(drop).map_err(why);
         }
     }
 
-    /// Writes the footer, and gives the file its name.
+    /// Writes the footer, unless there are too many messages for it, and gives the file its name.
     pub(super) fn finish(&mut self) {
         if self.written.is_ok() {
             self.written = self.encoder.finish().map_err(why);

@@ -19,6 +19,8 @@ pub(super) const KEYS: &str = "name, description, map, physics, wall, floor_plan
 
 /// The maximum number of cells; more cells are refused before memory is allocated.
 const MAX_CELLS: f64 = 4e6;
+/// The memory of a run, bytes per cell: 410 for the mapper, 90 for ground truth, planner and agent.
+const BYTES_PER_CELL: f64 = 500.0;
 
 /// The fleet that a world file describes, any number of its robots driven.
 pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
@@ -90,29 +92,40 @@ fn map(table: &Table<'_>) -> (Option<Point2<f64>>, Option<(GridFrame, f64)>) {
     let turn_deg = table.number_or("turn_deg", 0.0, -360.0..=360.0);
     let (Some(size), Some(cell_m), Some(turn_deg)) = (size, cell_m, turn_deg) else { return (size, None) };
     let turn_rad = turn_deg.to_radians();
-    let frame = covering(&size, cell_m, turn_rad).or_else(|| {
-        table.error(
+    let frame = match covering(&size, cell_m, turn_rad) {
+        Ok(frame) => Some((frame, turn_rad)),
+        Err(cells) => table.error(
             "the map has too many cells",
             (table.at("cell_m"), "cells of this size"),
             &[(table.at("size_m"), "on a map of this size")],
-            "4 million cells are the most: make the cells larger or the map smaller",
-        )
-    });
-    (Some(size), frame.map(|frame| (frame, turn_rad)))
+            &format!(
+                "it has {}, and {} are the most: make the cells larger or the map smaller",
+                cost(cells),
+                cost(MAX_CELLS)
+            ),
+        ),
+    };
+    (Some(size), frame)
 }
 
-/// The cells that cover the map after its turn; `None` if they are too many.
-fn covering(size: &Point2<f64>, cell_m: f64, turn_rad: f64) -> Option<GridFrame> {
+/// The number of cells, and the memory of a run with them.
+fn cost(cells: f64) -> String {
+    format!("{:.1} million cells (about {:.1} GB of memory)", cells / 1e6, cells * BYTES_PER_CELL / 1e9)
+}
+
+/// The cells that cover the map after its turn, or their number if they are too many.
+fn covering(size: &Point2<f64>, cell_m: f64, turn_rad: f64) -> Result<GridFrame, f64> {
     let half = size.coords / 2.0;
     let (low, high) = Rectangle::around(size / 2.0, half * 2.0, turn_rad).bounds();
     let extent = high - low;
-    if (extent.x / cell_m + 1.0) * (extent.y / cell_m + 1.0) > MAX_CELLS {
-        return None;
+    let cells = (extent.x / cell_m + 1.0) * (extent.y / cell_m + 1.0);
+    if cells > MAX_CELLS {
+        return Err(cells);
     }
     // Corners that the turn left where they were stay exactly there.
     let exact = |value: f64, plain: f64| if (value - plain).abs() < TOUCH_M { plain } else { value };
     let origin = Point2::new(exact(low.x, 0.0), exact(low.y, 0.0));
-    GridFrame::covering(origin, exact(extent.x, size.x), exact(extent.y, size.y), cell_m)
+    GridFrame::covering(origin, exact(extent.x, size.x), exact(extent.y, size.y), cell_m).ok_or(cells)
 }
 
 fn wall(table: &Table<'_>, size: &Point2<f64>) -> Option<Rectangle> {

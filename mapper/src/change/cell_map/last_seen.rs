@@ -1,62 +1,132 @@
 //! The longest time since a candidate was observed, without a pass over the map.
 
 use super::{NEVER, ReadingIndex};
-use std::collections::VecDeque;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, VecDeque};
 
-/// For each reading from `oldest` on, the number of candidates that were last observed by that reading.
+/// The number of recent readings that are counted one by one, with or without a candidate.
+const MAX_RECENT: usize = 1 << 14;
+
+/// For each reading, the number of candidates that were last observed by that reading.
 #[derive(Clone, Debug)]
 pub(super) struct LastSeenCounts {
-    counts: VecDeque<u32>,
-    oldest: ReadingIndex,
+    /// For the readings before `start`; only numbers above 0. A candidate that is never observed again does not need
+    /// more memory with every reading.
+    old: BTreeMap<ReadingIndex, u32>,
+    /// For each reading from `start` on.
+    recent: VecDeque<u32>,
+    start: ReadingIndex,
 }
 
 impl Default for LastSeenCounts {
     /// Counts nothing; the readings "never" and "prior" are open.
     fn default() -> Self {
-        Self { counts: VecDeque::from([0, 0]), oldest: NEVER }
+        Self { old: BTreeMap::new(), recent: VecDeque::from([0, 0]), start: NEVER }
     }
 }
 
 impl LastSeenCounts {
     /// Opens the next reading.
     pub(super) fn open(&mut self) {
-        self.counts.push_back(0);
+        self.recent.push_back(0);
+        if self.recent.len() > MAX_RECENT {
+            self.pass_first();
+        }
+    }
+
+    /// Moves the first of the recent readings to the old ones.
+    fn pass_first(&mut self) {
+        if let Some(count) = self.recent.pop_front().filter(|&count| count > 0) {
+            self.old.insert(self.start, count);
+        }
+        self.start += 1;
     }
 
     /// A candidate that was last observed by reading `from` has now been observed by reading `to`.
     #[inline]
     pub(super) fn moved(&mut self, from: ReadingIndex, to: ReadingIndex) {
-        self.counts[(from - self.oldest) as usize] -= 1;
-        self.counts[(to - self.oldest) as usize] += 1;
+        self.count(from, false);
+        self.count(to, true);
     }
 
     /// The open reading observed this number of candidates again; the reading before had observed them, too.
     #[inline]
     pub(super) fn observed_again(&mut self, candidates: u32) {
-        let newest = self.counts.len() - 1;
-        self.counts[newest] += candidates;
-        self.counts[newest - 1] -= candidates;
+        let newest = self.recent.len() - 1;
+        self.recent[newest] += candidates;
+        self.recent[newest - 1] -= candidates;
     }
 
     /// A cell that was last observed by reading `last` became a candidate, or stopped being one.
+    #[inline]
     pub(super) fn count(&mut self, last: ReadingIndex, is_candidate: bool) {
-        // `oldest` passes a reading only when no candidate was last observed by it; a cell that becomes a
-        // candidate again can go back further.
-        while last < self.oldest {
-            self.counts.push_front(0);
-            self.oldest -= 1;
-        }
-        let count = &mut self.counts[(last - self.oldest) as usize];
+        let Some(offset) = last.checked_sub(self.start) else { return self.count_old(last, is_candidate) };
+        let count = &mut self.recent[offset as usize];
         if is_candidate { *count += 1 } else { *count -= 1 }
     }
 
-    /// The last reading of the candidate with the longest time since its last observation. Removes readings by
-    /// which no candidate was last observed.
-    pub(super) fn oldest(&mut self) -> Option<ReadingIndex> {
-        while self.counts.len() > 2 && self.counts[0] == 0 {
-            self.counts.pop_front();
-            self.oldest += 1;
+    fn count_old(&mut self, last: ReadingIndex, is_candidate: bool) {
+        match self.old.entry(last) {
+            Entry::Vacant(entry) => drop(entry.insert(u32::from(is_candidate))),
+            Entry::Occupied(mut entry) if is_candidate => *entry.get_mut() += 1,
+            Entry::Occupied(entry) if *entry.get() == 1 => drop(entry.remove()),
+            Entry::Occupied(mut entry) => *entry.get_mut() -= 1,
         }
-        self.counts.iter().position(|&count| count > 0).map(|offset| self.oldest + offset as ReadingIndex)
+    }
+
+    /// The last reading of the candidate with the longest time since its last observation. Passes readings by which
+    /// no candidate was last observed.
+    pub(super) fn oldest(&mut self) -> Option<ReadingIndex> {
+        if let Some((&oldest, _)) = self.old.first_key_value() {
+            return Some(oldest);
+        }
+        while self.recent.len() > 2 && self.recent[0] == 0 {
+            self.pass_first();
+        }
+        self.recent.iter().position(|&count| count > 0).map(|offset| self.start + offset as ReadingIndex)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn candidates_that_are_not_observed_again_need_no_memory_per_reading() {
+        let mut counts = LastSeenCounts::default();
+        counts.count(NEVER, true);
+        counts.count(NEVER, true);
+        let mut newest = 1;
+        for _ in 0..100_000 {
+            counts.open();
+            newest += 1;
+            // One more cell becomes a candidate now and then, and all of these are seen again later.
+            if newest % 1000 == 0 {
+                counts.count(newest, true);
+            }
+            if newest % 50_000 == 0 {
+                let old = (1..=newest / 1000)
+                    .map(|reading| reading * 1000)
+                    .filter(|&reading| reading > newest - 50_000);
+                old.filter(|&reading| reading < newest).for_each(|reading| counts.moved(reading, newest));
+            }
+            assert_eq!(counts.oldest(), Some(NEVER));
+        }
+        assert!(counts.recent.len() <= MAX_RECENT && counts.old.len() <= 3, "{} old", counts.old.len());
+        counts.moved(NEVER, newest);
+        counts.count(NEVER, false);
+        assert_eq!(counts.oldest(), Some(50_000));
+    }
+
+    #[test]
+    fn a_cell_can_become_a_candidate_again_long_after_it_was_seen() {
+        let mut counts = LastSeenCounts::default();
+        (0..10).for_each(|_| counts.open());
+        assert_eq!(counts.oldest(), None);
+        counts.count(4, true);
+        assert_eq!(counts.oldest(), Some(4));
+        counts.count(4, false);
+        counts.count(9, true);
+        assert_eq!(counts.oldest(), Some(9));
     }
 }

@@ -7,7 +7,7 @@ mod record;
 mod state_change;
 
 use super::EstimatorChoice;
-use super::gaps::{CellGaps, Regularity};
+use super::gaps::{CellGaps, GapHistogram, Regularity};
 use super::reading_times::{NEVER, PRIOR, ReadingIndex, ReadingTimes};
 use interfaces::{CellState, Grid, Transition};
 use last_seen::LastSeenCounts;
@@ -46,6 +46,14 @@ pub struct CellMap {
 }
 
 impl CellMap {
+    /// The memory of a cell that was seen, bytes; a cell that changed takes some hundred bytes more.
+    pub(crate) const BYTES_PER_CELL: usize = size_of::<CellState>()
+        + size_of::<ReadingIndex>()
+        + size_of::<Record>()
+        + size_of::<CellGaps>()
+        + GapHistogram::FIRST_BYTES
+        + size_of::<bool>();
+
     pub(crate) fn new(prior: Grid<CellState>, estimator: EstimatorChoice, max_gap: f64) -> Self {
         let cells = prior.frame().len();
         let gaps =
@@ -78,8 +86,18 @@ impl CellMap {
     pub(crate) fn open(&mut self, time: f64) {
         self.transitions.clear();
         self.returned.clear();
+        if self.times.is_full() {
+            self.forget_times();
+        }
         self.times.push(time);
         self.last_seen_counts.open();
+    }
+
+    /// Forgets the times of readings that no cell refers to any more.
+    fn forget_times(&mut self) {
+        let seen = self.observed.iter().map(|last| last & !observing::UNSETTLED);
+        let known = self.records.iter().flat_map(|record| [record.first, record.since]);
+        self.times.forget(seen.chain(known));
     }
 
     /// A cell is a candidate if it is free, or shares a side with a free cell (a frontier cell or a surface). The

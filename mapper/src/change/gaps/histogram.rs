@@ -22,6 +22,10 @@ pub struct GapBin {
 /// gaps of two steps and gaps of three steps have separate bins.
 const DIGITS: u32 = 1;
 
+/// The number of bins that are allocated for the first gap of a cell, and whenever these are full.
+const FIRST_BINS: usize = 16;
+const MORE_BINS: usize = 4;
+
 impl GapBin {
     /// Whether the cell was blocked before these gaps.
     pub fn before(self) -> bool {
@@ -71,6 +75,9 @@ pub struct GapHistogram {
 }
 
 impl GapHistogram {
+    /// The memory of the bins of a cell after its first gap, bytes.
+    pub(in crate::change) const FIRST_BYTES: usize = FIRST_BINS * size_of::<GapBin>();
+
     /// Adds a gap.
     pub(in crate::change) fn add(&mut self, gap: Gap) {
         self.put(&gap);
@@ -113,7 +120,14 @@ impl GapHistogram {
                 self.bins[at].count += 1;
                 self.bins[at].total += gap.length;
             }
-            Err(at) => self.bins.insert(at, GapBin { key, count: 1, total: gap.length }),
+            Err(at) => {
+                // Most cells get as many bins as this in some hours. With all of them at once, the memory of a long run
+                // is that of a short one.
+                if self.bins.len() == self.bins.capacity() {
+                    self.bins.reserve_exact(if self.bins.is_empty() { FIRST_BINS } else { MORE_BINS });
+                }
+                self.bins.insert(at, GapBin { key, count: 1, total: gap.length });
+            }
         }
     }
 

@@ -65,6 +65,9 @@ pub(super) struct SurfaceGrid {
 }
 
 impl SurfaceGrid {
+    /// The memory of the model, bytes per cell.
+    pub(super) const BYTES_PER_CELL: usize = size_of::<Surface>();
+
     pub(super) fn new(settings: SurfaceGridSettings, cells: &mut CellMap) -> Self {
         for index in 0..cells.frame().len() {
             cells.set_settled(index, cells.state(index) == CellState::Free);

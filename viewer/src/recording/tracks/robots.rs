@@ -3,7 +3,7 @@
 use super::{EVENTS, LABEL, ON_CHANGE, Strip, Tracks, WORLD, color, escape, labels, line, order, points};
 use super::{position, strips};
 use crate::scene::TimeUnit;
-use crate::view::{Trail, View};
+use crate::view::{View, is_next_point};
 use evaluation::palette;
 use interfaces::rotation;
 use nalgebra::{Isometry2, Vector2};
@@ -21,11 +21,14 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
         let trail = self::robot(&robot.name, "trail");
         let order = if robot.is_driven { order::TRAIL } else { order::OTHER_TRAIL };
         tracks.always(&trail, &line(color(robot.color(), 140), 1.0, order))?;
-        let mut so_far = Trail::default();
+        let mut last = None;
         let step = move |view: &View| -> Vec<Strip> {
-            let moved = so_far.push(view.robots[index].pose.translation.vector.into());
-            let step = so_far.points().last_chunk::<2>().filter(|_| moved);
-            step.map(|step| step.iter().map(position).collect()).into_iter().collect()
+            let now = view.robots[index].pose.translation.vector.into();
+            if !is_next_point(last.as_ref(), &now) {
+                return Vec::new();
+            }
+            let step = last.replace(now).map(|last| vec![position(&last), position(&now)]);
+            step.into_iter().collect()
         };
         tracks.add(trail, EVENTS, step, strips);
     }

@@ -16,13 +16,13 @@ fn driving_into_a_wall_is_one_contact_and_no_tunnel() {
         let spec = four_rooms_but(&[("heading_deg = 0.0", &format!("heading_deg = {heading}"))], "");
         let mut world = PhysicsWorld::new(&spec, 0);
         let mut deepest_m = f64::NEG_INFINITY;
-        drive(&mut world, AHEAD, 12.0, |world| deepest_m = deepest_m.max(depth_m(world)));
+        let contacts = drive(&mut world, AHEAD, 12.0, |world| deepest_m = deepest_m.max(depth_m(world)));
         assert!(deepest_m > -0.002, "never reached a wall: {deepest_m} m at heading {heading}");
         assert!(deepest_m < 0.001, "{deepest_m} m deep at heading {heading}");
         // One wall, or two where it slid along the first into the second.
-        assert!((1..=2).contains(&world.contacts().len()), "{:?}", world.contacts());
-        assert!(world.contacts().iter().all(|contact| contact.moving));
-        assert!(matches!(world.contacts()[0].with, Body::Wall(_)));
+        assert!((1..=2).contains(&contacts.len()), "{contacts:?}");
+        assert!(contacts.iter().all(|contact| contact.moving));
+        assert!(matches!(contacts[0].with, Body::Wall(_)));
     }
 }
 
@@ -30,12 +30,12 @@ fn driving_into_a_wall_is_one_contact_and_no_tunnel() {
 fn a_contact_counts_again_only_after_parting() {
     let mut world =
         PhysicsWorld::new(&four_rooms_but(&[("heading_deg = 0.0", "heading_deg = 180.0")], ""), 0);
-    drive(&mut world, AHEAD, 5.0, |_| ());
-    assert_eq!(world.contacts().len(), 1);
-    drive(&mut world, Twist { linear_mps: -0.5, angular_radps: 0.0 }, 1.0, |_| ());
-    drive(&mut world, AHEAD, 3.0, |_| ());
-    assert_eq!(world.contacts().len(), 2);
-    assert_eq!(world.contacts()[0].with, world.contacts()[1].with);
+    let first = drive(&mut world, AHEAD, 5.0, |_| ());
+    assert_eq!(first.len(), 1);
+    assert_eq!(drive(&mut world, Twist { linear_mps: -0.5, angular_radps: 0.0 }, 1.0, |_| ()), []);
+    let second = drive(&mut world, AHEAD, 3.0, |_| ());
+    assert_eq!(second.len(), 1);
+    assert_eq!(first[0].with, second[0].with);
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn bounds_hold_at_every_reading_whatever_the_command() {
     let commands = [(9.0, 0.0), (-9.0, 9.0), (inf, -inf), (f64::NAN, 1.0), (0.3, -9.0), (0.0, f64::NAN)];
     let mut before = world.sense().twist;
     for (linear_mps, angular_radps) in commands {
-        drive(&mut world, Twist { linear_mps, angular_radps }, 1.2, |world| {
+        let contacts = drive(&mut world, Twist { linear_mps, angular_radps }, 1.2, |world| {
             let now = world.robots().next().unwrap().twist;
             let slack = 1e-4;
             assert!(now.linear_mps.abs() <= limits.max_linear_mps + slack);
@@ -57,8 +57,8 @@ fn bounds_hold_at_every_reading_whatever_the_command() {
             assert!(spin <= limits.max_angular_acceleration_radps2 + 0.01, "{spin}");
             before = now;
         });
+        assert_eq!(contacts, []);
     }
-    assert_eq!(world.contacts(), []);
     // The last command contained NaN: the robot stands still.
     assert_eq!(before, Twist::STOP);
 }
@@ -84,7 +84,7 @@ fn being_run_into_is_no_collision_of_ones_own() {
     let blind =
         [("range_max_m = 5.0", "range_max_m = 0.15"), ("pose_m = [2.0, 2.0]", "pose_m = [8.5, 11.5]")];
     let mut world = PhysicsWorld::new(&four_rooms_but(&blind, ""), 0);
-    drive(&mut world, Twist::STOP, 6.0, |world| assert!(bodies_apart_m(world) > -0.001));
-    assert!(!world.contacts().is_empty());
-    assert!(world.contacts().iter().all(|contact| contact.with == Body::Robot(1) && !contact.moving));
+    let contacts = drive(&mut world, Twist::STOP, 6.0, |world| assert!(bodies_apart_m(world) > -0.001));
+    assert!(!contacts.is_empty());
+    assert!(contacts.iter().all(|contact| contact.with == Body::Robot(1) && !contact.moving));
 }

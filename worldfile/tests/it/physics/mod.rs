@@ -42,12 +42,20 @@ fn four_rooms_but(replacements: &[(&str, &str)], more: &str) -> WorldSpec {
     parse(&format!("{text}\n{more}"))
 }
 
-/// Simulates the world under one command for some seconds, with a call at every reading.
-fn drive(world: &mut PhysicsWorld, twist: Twist, seconds: f64, mut see: impl FnMut(&PhysicsWorld)) {
+/// Simulates the world under one command for some seconds, with a call at every reading. Returns the contacts.
+fn drive(
+    world: &mut PhysicsWorld,
+    twist: Twist,
+    seconds: f64,
+    mut see: impl FnMut(&PhysicsWorld),
+) -> Vec<Contact> {
+    let mut contacts = Vec::new();
     for _ in 0..(seconds * 10.0).round() as usize {
         world.act(&twist);
+        contacts.extend_from_slice(world.contacts());
         see(world);
     }
+    contacts
 }
 
 /// The smallest distance between the bodies of two robots, m.

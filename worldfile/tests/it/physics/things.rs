@@ -275,12 +275,8 @@ fn what_moves_is_truth_and_contact() {
         world.truth().state(frame.index(frame.cell_at(&Point2::new(x, 2.01))).unwrap())
     };
     assert_eq!((state(&world, 2.01), state(&world, 2.51)), (TrueState::Blocked, TrueState::Free));
-    drive(&mut world, Twist { linear_mps: 0.4, angular_radps: 0.0 }, 4.5, |_| ());
-    assert!(
-        world.contacts().iter().any(|contact| contact.with == Body::Obstacle(0)),
-        "{:?}",
-        world.contacts()
-    );
+    let contacts = drive(&mut world, Twist { linear_mps: 0.4, angular_radps: 0.0 }, 4.5, |_| ());
+    assert!(contacts.iter().any(|contact| contact.with == Body::Obstacle(0)), "{contacts:?}");
     let cells = world.truth().movers().iter().filter(|mover| **mover == Some(Body::Obstacle(0))).count();
     // It has swept more than its own 7 × 7 cells.
     assert!(cells > 60, "{cells}");
