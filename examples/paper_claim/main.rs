@@ -14,8 +14,8 @@ mod tables;
 
 use anyhow::Context;
 use condition::{BASE, Condition, conditions};
-use evaluation::output::{make_folder, write_file};
-use evaluation::report::{Claim, Report, Run};
+use evaluation::output::{RunFolder, make_folder, write_file};
+use evaluation::report::{Claim, REPORT, Report, Run};
 use std::path::{Path, PathBuf};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/figure3");
@@ -66,7 +66,9 @@ fn figures(findings: &[Finding], folder: &Path) -> anyhow::Result<()> {
     let base = findings.iter().find(|finding| finding.condition.name == BASE).context("no base")?;
     for (report, name) in [(&base.shipped, "two_blocks"), (&base.generated, "generated")] {
         let out = tempfile::tempdir()?;
-        report.write(out.path(), &condition::shipped())?;
+        let run = RunFolder::open(out.path())?;
+        report.write(&run, &condition::shipped())?;
+        run.finish(REPORT, &[])?;
         let figure = if name == "generated" { "figure3-all-worlds.svg" } else { "figure3.svg" };
         let from = out.path().join(figure);
         let text = std::fs::read(&from).with_context(|| format!("there is no {}", from.display()))?;

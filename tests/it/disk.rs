@@ -113,15 +113,13 @@ fn a_recording_outside_the_output_folder() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_summary_on_a_full_disk() {
-    let runs: [(fn() -> Run, &str, Option<&str>); 5] = [
-        (Run::new, "--no-rrd --duration 30", Some("summary.json")),
-        (Run::grid, "--steps 200 --trials 1", Some("report.json")),
-        (Run::new, "--list-worlds", None),
-        (Run::grid, "--list-worlds", None),
-        (Run::new, "--help", None),
-    ];
-    for (run, arguments, file) in runs {
-        let run = run();
+    for (run, arguments, file) in [
+        (Run::new(), "--no-rrd --duration 30", Some("summary.json")),
+        (Run::grid(), "--steps 200 --trials 1", Some("report.json")),
+        (Run::new(), "--list-worlds", None),
+        (Run::grid(), "--list-worlds", None),
+        (Run::new(), "--help", None),
+    ] {
         let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
         let ended = Ended::from(run.command(arguments).stdout(full).output().unwrap());
         assert_eq!(ended.code, Some(1), "{arguments}: {ended:?}");
