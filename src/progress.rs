@@ -74,7 +74,6 @@ impl Progress {
         if self.kind == Kind::Silent || !self.is_due() {
             return;
         }
-        self.bar.set_position(milliseconds(time_s));
         let state = State {
             time_s,
             all_s: self.bar.length().unwrap_or(0) as f64 / 1000.0,
@@ -83,8 +82,11 @@ impl Progress {
         };
         if self.kind == Kind::Bar {
             let columns = terminal::size().map_or(NARROW, |(columns, _)| columns);
+            // The text first: each of the two draws the bar.
             self.bar.set_message(state.beside_bar(columns));
+            self.bar.set_position(milliseconds(time_s));
         } else {
+            self.bar.set_position(milliseconds(time_s));
             // A raw terminal needs the carriage return.
             say(stderr(), format_args!("{state}, {}\r", self.time_left()));
         }

@@ -20,7 +20,8 @@ impl Estimate {
     /// The estimate of a value that is within `range`: Student's interval can reach beyond it.
     pub(super) fn within(self, range: RangeInclusive<f64>) -> Self {
         let cut = |end: f64| end.clamp(*range.start(), *range.end()); // NaN stays NaN
-        Self { low: cut(self.low), high: cut(self.high), ..self }
+        // Also the mean: rounding can take it beyond the range.
+        Self { mean: cut(self.mean), low: cut(self.low), high: cut(self.high), ..self }
     }
 }
 
