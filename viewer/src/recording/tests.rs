@@ -322,6 +322,25 @@ fn a_full_disk_is_reported_once() {
 }
 
 #[test]
+fn a_long_recording_has_no_footer() {
+    let (stream, memory) = rerun::RecordingStreamBuilder::new(APPLICATION).memory().unwrap();
+    stream.log("/log", &rerun::TextLog::new("a line")).unwrap();
+    stream.flush_blocking().unwrap();
+    let messages = memory.take();
+    let footer_bytes = |count: usize| {
+        let disk = SmallDisk(Arc::new(usize::MAX.into()));
+        let mut file = file::RrdFile::with_output(Path::new("run.rrd"), Box::new(disk.clone())).unwrap();
+        messages.iter().cycle().take(count).for_each(|message| file.send(message));
+        let before = *disk.0.lock().unwrap();
+        file.finish();
+        file.check().unwrap();
+        before - *disk.0.lock().unwrap()
+    };
+    assert!(footer_bytes(messages.len()) > 1000);
+    assert_eq!(footer_bytes(5000), 0);
+}
+
+#[test]
 fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
     let free = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let live = [Live::Connect(free.to_string())];
