@@ -90,6 +90,21 @@ impl Canvas {
         Ok(Self { size, pixels: shrink(&pixels, width as usize) })
     }
 
+    /// Pictures of the same height side by side, from the left.
+    pub fn beside(pictures: &[&Self]) -> Self {
+        let height = pictures.iter().map(|picture| picture.size[1]).min().unwrap_or(0);
+        let width = pictures.iter().map(|picture| picture.size[0]).sum();
+        let row = |picture: &Self, y: usize| {
+            let stride = 3 * picture.size[0] as usize;
+            y * stride..(y + 1) * stride
+        };
+        let rows = (0..height as usize).flat_map(|y| pictures.iter().map(move |picture| (picture, y)));
+        Self {
+            size: [width, height],
+            pixels: rows.flat_map(|(of, y)| of.pixels[row(of, y)].iter().copied()).collect(),
+        }
+    }
+
     /// The rows from the top; red, green and blue of every pixel.
     pub fn pixels(&self) -> &[u8] {
         &self.pixels

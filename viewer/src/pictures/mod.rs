@@ -40,17 +40,18 @@ pub fn write_all(
     make_folder(folder)?;
     let file = |name: &str| folder.join(format!("{name}.png"));
     let panel = Panel::of_layer(mapper.frame(), scene.unit);
-    let [width, height] = panel.size();
+    let mut panels = Vec::new();
     for layer in Layer::ALL {
-        let draw = |area: &Area| panel.layer(area, mapper, layer, scene.unit);
-        save(&file(layer.name()), panel.size(), draw)?;
+        let picture = draw(layer.name(), panel.size(), |area| panel.layer(area, mapper, layer, scene.unit))?;
+        picture.write(&file(layer.name()))?;
+        panels.push((layer, picture));
     }
-    save(&file("figure5"), [width * FIGURE_5.len() as u32, height], |area| {
-        let areas = area.split_evenly((1, FIGURE_5.len()));
-        areas.iter().zip(FIGURE_5).try_for_each(|(area, layer)| panel.layer(area, mapper, layer, scene.unit))
-    })?;
+    let of_layer = |layer| panels.iter().find(|(of, _)| *of == layer).map(|(_, picture)| picture);
+    let panels: Vec<&Canvas> = FIGURE_5.into_iter().filter_map(of_layer).collect();
+    Canvas::beside(&panels).write(&file("figure5"))?;
     let panel = Panel::of_scene(mapper.frame(), scene.unit, trajectory::entries(scene, goals).len());
-    save(&file("trajectory"), panel.size(), |area| trajectory::draw(&panel, area, scene, trails, goals))
+    let draw_trails = |area: &Area| trajectory::draw(&panel, area, scene, trails, goals);
+    Ok(draw("trajectory", panel.size(), draw_trails)?.write(&file("trajectory"))?)
 }
 
 /// Draws a world from above to the PNG file `path`.
@@ -60,17 +61,16 @@ pub fn write_all(
 /// When the picture cannot be drawn or written.
 pub fn draw_plan(path: &Path, scene: &Scene) -> Result<(), PictureError> {
     let panel = Panel::of_scene(&scene.frame, scene.unit, plan::entries(scene).len());
-    save(path, panel.size(), |area| plan::draw(&panel, area, scene))
+    let picture = draw(&scene.title, panel.size(), |area| plan::draw(&panel, area, scene))?;
+    Ok(picture.write(path)?)
 }
 
-fn save(
-    path: &Path,
+fn draw(
+    name: &str,
     size: [u32; 2],
     draw: impl FnOnce(&Area) -> Result<(), String>,
-) -> Result<(), PictureError> {
-    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let canvas = Canvas::draw(size, draw).map_err(|why| PictureError::Draw { name, why })?;
-    Ok(canvas.write(path)?)
+) -> Result<Canvas, PictureError> {
+    Canvas::draw(size, draw).map_err(|why| PictureError::Draw { name: name.to_owned(), why })
 }
 
 #[cfg(test)]
