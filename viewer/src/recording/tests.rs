@@ -244,7 +244,7 @@ fn a_killed_run_leaves_what_was_sent() {
     recorder.flush().unwrap();
     recorder.stream.flush_blocking().unwrap();
     // What the disk has now, whole and with the last message torn.
-    let killed = std::fs::read(&file).unwrap();
+    let killed = std::fs::read(folder.path().join("run.unfinished.rrd")).unwrap();
     let whole = store(&killed, StoreKind::Recording);
     let position = Transform3D::descriptor_translation().component;
     let body = rows::<Translation3D>(&whole, &tracks::robot("curious", "body"), position);
