@@ -136,10 +136,13 @@ impl fmt::Display for Summary {
             "person" => ", ended by the user",
             _ => "",
         };
-        let minutes = simulated_s / 60.0;
+        let simulated = match simulated_s {
+            short if *short < 60.0 => format!("{short:.1} simulated seconds"),
+            long => format!("{:.1} simulated minutes", long / 60.0),
+        };
         writeln!(
             f,
-            "{drive} in {world}{ended}: {minutes:.1} simulated minutes in {wall_s:.1} s ({real_time_factor:.0} x real time)"
+            "{drive} in {world}{ended}: {simulated} in {wall_s:.1} s ({real_time_factor:.0} x real time)"
         )?;
         self.results.fmt(f)
     }
@@ -160,7 +163,8 @@ impl fmt::Display for RunResults {
         let GoalCount { reached, approached, given_up } = goals;
         let all = reached + approached + given_up;
         if all > 0 {
-            let text = format!("{all}: {reached} reached, {approached} approached, {given_up} given up");
+            let text =
+                format!("{all} finished: {reached} reached, {approached} approached, {given_up} given up");
             lines.push(("goals", text));
         }
         if !self.strategy_share.is_empty() {
@@ -202,7 +206,7 @@ impl RunResults {
         }
         if let Some(error) = log_error {
             let meaning = "0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate";
-            lines.push(("", format!("log error {error:.2}: {meaning}")));
+            lines.push(("", format!("log error {error:.2}, mean over moving things: {meaning}")));
         }
         if let Some(auc) = rate_auc {
             let meaning =
@@ -228,6 +232,9 @@ impl fmt::Display for Liveliest {
 /// The detection of a thing as a line.
 fn line_of(thing: &ThingReport) -> String {
     let verb = if thing.appeared { "appeared" } else { "disappeared" };
+    if thing.in_view_s.is_none() {
+        return format!("{} {verb} at {:.0} s: not in view since then", thing.name, thing.happened_s);
+    }
     let [in_view, noticed, correct] = [thing.in_view_s, thing.noticed_s, thing.right_s].map(seconds);
     format!(
         "{} {verb} at {:.0} s: in view {in_view}, first cell correct {noticed}, 90 % correct {correct}",

@@ -49,7 +49,9 @@ fn a_file_that_cannot_be_replaced() {
         std::fs::create_dir_all(run.out(file).join("taken")).unwrap();
         let error = error(&run, program.arguments);
         assert!(error.starts_with(&format!("error: cannot write out/{file}: ")), "{error}");
-        assert_eq!(names(&run.path("out")), [file], "incomplete files");
+        assert_eq!(names(&run.path("out")), [file, "unfinished_run"]);
+        assert!(error.ends_with("; the results are in out/unfinished_run"), "{error}");
+        assert!(run.path("out/unfinished_run").join(file).exists());
     }
 }
 

@@ -22,12 +22,12 @@ fn a_known_map_is_right_from_the_start() {
 fn a_map_of_another_place_is_reported() {
     let map = |origin: &str| {
         let run = Run::new();
-        let walls: Vec<&str> = (0..144).map(|pixel| if pixel % 13 == 4 { "0" } else { "254" }).collect();
-        run.write("m.pgm", &format!("P2\n12 12\n255\n{}\n", walls.join(" ")));
+        let walls: Vec<&str> = (0..48 * 48).map(|pixel| if pixel % 49 == 4 { "0" } else { "254" }).collect();
+        run.write("m.pgm", &format!("P2\n48 48\n255\n{}\n", walls.join(" ")));
         run.write(
             "m.yaml",
             &format!(
-                "image: m.pgm\nresolution: 1.0\norigin: [{origin}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n\
+                "image: m.pgm\nresolution: 0.25\norigin: [{origin}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n\
                  free_thresh: 0.196\n"
             ),
         );
@@ -36,7 +36,7 @@ fn a_map_of_another_place_is_reported() {
     let other = map("0.0, 0.0");
     assert_eq!(other.code, Some(0), "{other:?}");
     insta::assert_snapshot!(other.stderr.trim_end(), @"
-    warning: only 8 % of the walls of the map stand in the world `four rooms`: it looks like a map of another place
+    warning: only 17 % of the walls and 100 % of the free space of the map agree with the world `four rooms`: it looks like a map of another place
       = help: the robot takes the map as its knowledge, and unlearns it cell by cell
     ");
     let far = map("100.0, 0.0");

@@ -22,7 +22,7 @@ const FILES_KEY: &str = "files";
 ///
 /// A run writes into the subfolder `unfinished_run`, [`RunFolder::unfinished`]. At the end the results of the earlier
 /// run are replaced by the new ones, the summary last; whatever fails before, the earlier results stay. A killed
-/// run leaves the subfolder, and the next run removes it.
+/// run leaves the subfolder, as does a run whose results cannot be moved; the next run removes it.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
@@ -33,6 +33,8 @@ pub struct RunFolder {
     _lock: File,
     /// Whether there was no such folder before.
     is_new: bool,
+    /// Whether the subfolder stays, because its results could not be moved.
+    keeps_unfinished: bool,
 }
 
 impl RunFolder {
@@ -46,6 +48,10 @@ impl RunFolder {
         let unfinished = path.join(UNFINISHED);
         make_folder(path)?;
         let failed = |why| OutputError::new(path, why);
+        if !is_of_a_run(&unfinished) {
+            let why = "it is not a folder that a run has left; give another folder by --out";
+            return Err(OutputError::new(&unfinished, io::Error::other(why)));
+        }
         fs::create_dir_all(&unfinished).map_err(failed)?;
         let lock = File::create(unfinished.join(LOCK)).map_err(failed)?;
         match lock.try_lock() {
@@ -55,8 +61,14 @@ impl RunFolder {
                 return Err(OutputError::locked(path, error, advice));
             }
         }
-        let folder =
-            Self { path: path.to_owned(), unfinished, adopted: BTreeSet::new(), _lock: lock, is_new };
+        let folder = Self {
+            path: path.to_owned(),
+            unfinished,
+            adopted: BTreeSet::new(),
+            _lock: lock,
+            is_new,
+            keeps_unfinished: false,
+        };
         folder.remove_left_over().map_err(|why| folder.failed(why))?;
         Ok(folder)
     }
@@ -82,13 +94,28 @@ impl RunFolder {
         &self.unfinished
     }
 
-    /// Counts a file that is written directly as a result of this run, if it is in this folder.
-    pub fn adopt(&mut self, path: &Path) {
+    /// Counts a file that is written directly as a result of this run, if it is in this folder. Its name must have an
+    /// `ending`, so that it is not the name of another result.
+    ///
+    /// # Errors
+    ///
+    /// When the name has another ending, or when the file would be in the subfolder of the unfinished run.
+    pub fn adopt(&mut self, path: &Path, ending: &str) -> Result<(), OutputError> {
         let folder = path.parent().map(|folder| if folder == "" { Path::new(".") } else { folder });
-        let is_own = |folder: &Path| same(folder, &self.path);
-        if let Some(name) = path.file_name().and_then(OsStr::to_str).filter(|_| folder.is_some_and(is_own)) {
-            self.adopted.insert(name.to_owned());
+        let is_in = |own: &Path| folder.is_some_and(|folder| same(folder, own));
+        if is_in(&self.unfinished) {
+            let why = "this folder is removed at the end of the run; choose another one";
+            return Err(OutputError::new(path, io::Error::other(why)));
         }
+        let Some(name) = path.file_name().and_then(OsStr::to_str).filter(|_| is_in(&self.path)) else {
+            return Ok(());
+        };
+        if path.extension().is_none_or(|own| own != ending) {
+            let why = format!("in the folder of the results its name must end in .{ending}");
+            return Err(OutputError::new(path, io::Error::other(why)));
+        }
+        self.adopted.insert(name.to_owned());
+        Ok(())
     }
 
     /// The names of the results so far, sorted.
@@ -110,8 +137,8 @@ impl RunFolder {
     ///
     /// # Errors
     ///
-    /// When a file cannot be renamed. The earlier results are put back then.
-    pub fn finish(self, summary: &str, inputs: &[&Path]) -> Result<(), OutputError> {
+    /// When a file cannot be renamed. The earlier results are put back then, and the new ones stay in the subfolder.
+    pub fn finish(mut self, summary: &str, inputs: &[&Path]) -> Result<(), OutputError> {
         let mut written = self.results()?;
         written.retain(|name| !self.adopted.contains(name));
         written.sort_by_key(|name| name == summary);
@@ -125,10 +152,13 @@ impl RunFolder {
 
         let mut moves = Moves::default();
         let moved = self.exchange(&replaced, &written, &mut moves);
-        if moved.is_err() {
+        moved.map_err(|error| {
             moves.undo();
-        }
-        moved
+            fs::remove_dir(&earlier).ok(); // empty now
+            self.keeps_unfinished = true;
+            let why = format!("{}; the results are in {}", error.why, self.unfinished.display());
+            OutputError::new(&error.path, io::Error::new(error.why.kind(), why))
+        })
     }
 
     fn exchange(
@@ -169,6 +199,9 @@ impl RunFolder {
 
 impl Drop for RunFolder {
     fn drop(&mut self) {
+        if self.keeps_unfinished {
+            return;
+        }
         // What fails has a reason that was reported, or is removed by the next run.
         fs::remove_dir_all(&self.unfinished).ok();
         if self.is_new {
@@ -192,6 +225,15 @@ impl Moves {
         for (from, to) in self.0.iter().rev() {
             fs::rename(to, from).ok(); // the first error is reported
         }
+    }
+}
+
+/// Whether there is nothing, or what a run has left: nothing else is removed.
+fn is_of_a_run(unfinished: &Path) -> bool {
+    let is_empty = || fs::read_dir(unfinished).is_ok_and(|mut files| files.next().is_none());
+    match fs::symlink_metadata(unfinished) {
+        Ok(known) => known.is_dir() && (unfinished.join(LOCK).is_file() || is_empty()),
+        Err(error) => error.kind() == io::ErrorKind::NotFound,
     }
 }
 
@@ -240,8 +282,11 @@ mod tests {
         let file = folder.path().join("own.rrd");
         for text in ["first", "second"] {
             let mut run = RunFolder::open(folder.path()).unwrap();
-            run.adopt(&file);
-            run.adopt(Path::new("elsewhere.rrd"));
+            run.adopt(&file, "rrd").unwrap();
+            run.adopt(Path::new("elsewhere"), "rrd").unwrap();
+            for wrong in ["map.pgm", "unfinished_run/own.rrd"] {
+                run.adopt(&folder.path().join(wrong), "rrd").unwrap_err();
+            }
             fs::write(&file, text).unwrap();
             assert_eq!(run.results().unwrap(), ["own.rrd"]);
             let summary = serde_json::json!({ FILES_KEY: run.results().unwrap() });
@@ -263,7 +308,9 @@ mod tests {
         drop(failing);
         fs::create_dir(path.join("taken.png")).unwrap();
         run(&path, &["a.png", "map.pgm", "taken.png"], &[]).unwrap_err();
-        assert_eq!(names(&path), ["house.rrd", "map.pgm", "summary.json", "taken.png"]);
+        let left = ["house.rrd", "map.pgm", "summary.json", "taken.png", UNFINISHED];
+        assert_eq!(names(&path), left);
+        assert!(path.join(UNFINISHED).join("a.png").exists(), "the new results are not lost");
         let map = fs::read_to_string(path.join("map.pgm")).unwrap();
         assert_eq!(map, "map.pgm of [\"map.pgm\", \"house.rrd\"]");
         let new = folder.path().join("new");
@@ -276,9 +323,20 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let unfinished = folder.path().join(UNFINISHED);
         fs::create_dir_all(unfinished.join(EARLIER)).unwrap();
+        fs::write(unfinished.join(LOCK), "").unwrap();
         fs::write(unfinished.join("house.rrd"), "half").unwrap();
         run(folder.path(), &["map.pgm"], &[]).unwrap();
         assert_eq!(names(folder.path()), ["map.pgm", "summary.json"]);
+    }
+
+    #[test]
+    fn only_what_a_run_has_left_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let notes = folder.path().join(UNFINISHED).join("notes.txt");
+        fs::create_dir(folder.path().join(UNFINISHED)).unwrap();
+        fs::write(&notes, "of the user").unwrap();
+        RunFolder::open(folder.path()).unwrap_err();
+        assert!(notes.exists());
     }
 
     #[test]

@@ -4,7 +4,7 @@ mod folder;
 mod unfinished;
 
 pub use folder::RunFolder;
-pub use unfinished::UnfinishedFile;
+pub use unfinished::{UnfinishedFile, is_another_kind};
 
 use std::fs::{self, TryLockError};
 use std::io::{self, Write};

@@ -2,8 +2,14 @@
 
 use super::OutputError;
 use std::fs::{self, File, TryLockError};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::channel;
+use std::thread;
+use std::time::Duration;
+
+/// The maximum time until somebody reads from a pipe.
+const READER_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// A file that is being written under a temporary name in the same folder: `run.unfinished.rrd` for `run.rrd`. A file
 /// that is dropped before it is finished is removed; a killed run leaves it, and the next one replaces it.
@@ -28,7 +34,7 @@ impl UnfinishedFile {
         match fs::metadata(path) {
             Ok(known) if known.is_dir() => return Err(failed(io::ErrorKind::IsADirectory.into())),
             Ok(known) if !known.is_file() => {
-                let file = File::options().write(true).open(path).map_err(failed)?;
+                let file = open_device(path).map_err(failed)?;
                 return Ok(Self { path: path.to_owned(), partial: None, file });
             }
             _ => {}
@@ -81,6 +87,23 @@ impl Drop for UnfinishedFile {
             fs::remove_file(partial).ok(); // the reason for the end is reported
         }
     }
+}
+
+/// Opens a device or a pipe to write to. Opening a pipe takes until somebody reads from it.
+fn open_device(path: &Path) -> io::Result<File> {
+    let (report, opened) = channel();
+    let path = path.to_owned();
+    thread::spawn(move || report.send(File::options().write(true).open(path)));
+    let nobody = || io::Error::new(io::ErrorKind::TimedOut, "this is a pipe, and nobody reads from it");
+    opened.recv_timeout(READER_TIMEOUT).unwrap_or_else(|_| Err(nobody()))
+}
+
+/// Whether there is a file that is neither empty nor begins with `start`: another kind of file, which must not be
+/// replaced.
+pub fn is_another_kind(path: &Path, start: &[u8]) -> bool {
+    let is_file = path.metadata().is_ok_and(|known| known.is_file() && known.len() > 0);
+    let mut found = vec![0; start.len()];
+    is_file && !File::open(path).is_ok_and(|mut file| file.read_exact(&mut found).is_ok() && found == start)
 }
 
 /// The name of a file while it is incomplete. It keeps its ending, so that a viewer opens it.

@@ -99,6 +99,11 @@ fn compare(
     }
     let [mean_a, mean_b] = [0, 1].map(|side| mean(pairs.iter().map(|pair| pair[side])));
     let test = quantiles.paired_test(pairs.iter().map(|[a, b]| a - b));
+    // No difference is larger than the range of the metric.
+    let range = match measure {
+        Measure::Final(metric) | Measure::Area(metric) => metric.range(),
+    };
+    let most = range.end() - range.start();
     Some(Comparison {
         a: a.name.clone(),
         b: b.name.clone(),
@@ -106,8 +111,8 @@ fn compare(
         pairs: pairs.len(),
         mean_b,
         mean_difference: test.difference.mean,
-        low: test.difference.low,
-        high: test.difference.high,
+        low: test.difference.low.clamp(-most, most),
+        high: test.difference.high.clamp(-most, most),
         p_value: test.p_value,
         p_holm: f64::NAN,
         ratio: mean_a / mean_b,

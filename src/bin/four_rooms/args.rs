@@ -24,7 +24,7 @@ use viewer::recording::Live;
     name = "four_rooms",
     version,
     max_term_width = 100,
-    after_help = "Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; \
+    after_help = "Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C, SIGTERM or SIGHUP; \
                   the results so far are written)."
 )]
 pub(crate) struct Args {
@@ -41,11 +41,11 @@ pub(crate) struct Args {
     pub(crate) map: Option<PathBuf>,
 
     /// The seed of all random streams: equal seeds give equal runs, bit for bit
-    #[arg(long, default_value_t = 0, help_heading = "World")]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, help_heading = "World")]
     pub(crate) seed: u64,
 
     /// The length of the run in simulated time: seconds, or with a unit as in 90s, 20m, 1h
-    #[arg(long, value_name = "TIME", default_value = "20m", value_parser = duration_s, help_heading = "World")]
+    #[arg(long, value_name = "TIME", default_value = "20m", value_parser = duration_s, allow_negative_numbers = true, help_heading = "World")]
     pub(crate) duration: f64,
 
     /// The pilot of the curious robot
@@ -61,7 +61,7 @@ pub(crate) struct Args {
     pub(crate) strategy: Option<Policy>,
 
     /// The speed as a multiple of real time, or max for full speed [default: max, with --drive keyboard 1]
-    #[arg(long, value_name = "FACTOR|max", value_parser = speed, help_heading = "Pilot")]
+    #[arg(long, value_name = "FACTOR|max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
     pub(crate) speed: Option<f64>,
 
     /// The estimator of the rates of change
@@ -84,8 +84,8 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     pub(crate) no_rrd: bool,
 
-    /// Write a moving picture of the run, a GIF file
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    /// Write a moving picture of the run, a GIF file; the run takes some seconds more
+    #[arg(long, value_name = "FILE", value_parser = gif, help_heading = "Output")]
     pub(crate) gif: Option<PathBuf>,
 
     /// Show the run live: start the Rerun viewer (pip install rerun-sdk==0.36.3)
@@ -140,6 +140,12 @@ fn duration_s(text: &str) -> Result<f64, String> {
     } else {
         Err("must be a time above 0 and at most 1000h: seconds, or with a unit as in 90s, 20m, 1h".into())
     }
+}
+
+fn gif(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_gif = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gif"));
+    if is_gif { Ok(path) } else { Err("must end in .gif".into()) }
 }
 
 fn speed(text: &str) -> Result<f64, String> {

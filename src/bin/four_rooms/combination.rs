@@ -1,12 +1,15 @@
 //! Warnings about a world, a tour and a map that do not fit together: the run is possible, but not what a user
 //! expects.
 
-use interfaces::{Cell, CellState, Grid, GroundTruth, TrueState};
+use interfaces::{Cell, CellState, GroundTruth, TrueState};
 use nalgebra::Point2;
 use sim::physics::{OdometryError, PhysicsWorld, WorldSpec};
+use worldfile::ros_map::RosMap;
 
-/// A map with a smaller share of walls that stand in the world is probably of another place.
-const MIN_AGREEMENT: f64 = 0.5;
+/// A map with a smaller share of walls, or of free space, that is right in the world is probably of another place.
+/// Robots that pass leave walls in a map that was learned for a short time.
+const MIN_WALLS: f64 = 0.55;
+const MIN_FREE: f64 = 0.95;
 
 /// What the odometry of the driven robot does to the map.
 pub(crate) fn odometry(spec: &WorldSpec) -> Option<String> {
@@ -44,31 +47,46 @@ pub(crate) fn waypoints(spec: &WorldSpec, waypoints: &[Point2<f64>]) -> Option<S
 }
 
 /// The difference between a known map and the world; an error if the map shows nothing of the world.
-pub(crate) fn map(spec: &WorldSpec, map: &Grid<CellState>) -> Result<Option<String>, String> {
+pub(crate) fn map(spec: &WorldSpec, map: &RosMap) -> Result<Option<String>, String> {
     let world = PhysicsWorld::new(spec, 0);
-    let truth = world.truth();
-    let frame = map.frame();
-    // A wall may be drawn one cell beside its place.
-    let stands_near = |index: usize| {
-        let cell = frame.cell(index);
-        let mut near = (-1..=1).flat_map(|x| (-1..=1).map(move |y| Cell::new(cell.x + x, cell.y + y)));
+    let (truth, of_map) = (world.truth(), map.cells.frame());
+    let frame = truth.frame();
+    // A wall may be anywhere in its pixel, or drawn a cell beside its place.
+    let reach = (of_map.resolution_m() / frame.resolution_m() / 2.0).ceil() as i32;
+    let is_wall_near = |cell: Cell| {
+        let mut near =
+            (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| Cell::new(cell.x + x, cell.y + y)));
         near.any(|near| frame.index(near).is_some_and(|at| truth.state(at) != TrueState::Free))
     };
-    let walls = (0..frame.len()).filter(|&index| map.cells()[index] == CellState::Blocked);
-    let (walls, standing) = walls
-        .fold((0, 0), |(walls, standing), index| (walls + 1, standing + usize::from(stands_near(index))));
-    if map.cells().iter().all(|state| *state == CellState::Unknown) {
+    // The number of blocked and of free cells of the map, in the world or not, and how many of them are right.
+    let (mut blocked, mut free, mut is_overlapping) = ([0_usize; 2], [0_usize; 2], false);
+    for (index, state) in map.cells.cells().iter().enumerate() {
+        let cell = frame.cell_at(&(map.origin * of_map.center(of_map.cell(index))));
+        let place = frame.index(cell);
+        is_overlapping |= place.is_some() && *state != CellState::Unknown;
+        let (counts, is_right) = match state {
+            CellState::Unknown => continue,
+            CellState::Blocked => (&mut blocked, is_wall_near(cell)),
+            CellState::Free => (&mut free, place.is_some_and(|at| truth.state(at) != TrueState::Blocked)),
+        };
+        counts[0] += 1;
+        counts[1] += usize::from(is_right);
+    }
+    if !is_overlapping {
         return Err(format!(
             "the map shows nothing of the world `{}`: check `origin` and `resolution`",
             spec.name
         ));
     }
-    let agreement = standing as f64 / f64::from(walls.max(1));
-    Ok((walls > 0 && agreement < MIN_AGREEMENT).then(|| {
+    let [walls, space] =
+        [blocked, free].map(|[all, right]| if all > 0 { right as f64 / all as f64 } else { 1.0 });
+    Ok((walls < MIN_WALLS || space < MIN_FREE).then(|| {
         format!(
-            "warning: only {:.0} % of the walls of the map stand in the world `{}`: it looks like a map of another \
-             place\n  = help: the robot takes the map as its knowledge, and unlearns it cell by cell",
-            100.0 * agreement,
+            "warning: only {:.0} % of the walls and {:.0} % of the free space of the map agree with the world `{}`: it \
+             looks like a map of another place\n  = help: the robot takes the map as its knowledge, and unlearns it cell \
+             by cell",
+            100.0 * walls,
+            100.0 * space,
             spec.name
         )
     }))

@@ -5,7 +5,7 @@ mod combination;
 mod output;
 mod parts;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use args::{Args, DriveChoice};
 use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, list, start};
 use curious::progress::Progress;
@@ -13,7 +13,7 @@ use curious::terminal::{print, say};
 use curious::worlds;
 use evaluation::file_name;
 use evaluation::metrics::map_scores;
-use evaluation::output::{RunFolder, UnfinishedFile};
+use evaluation::output::{RunFolder, UnfinishedFile, is_another_kind};
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::{Reading, Twist};
 use mapper::ReadingError;
@@ -137,7 +137,13 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
 
 /// Opens everything that shows the run: the recording, viewers, the moving picture.
 fn show(args: &Args, scene: Scene, folder: &mut RunFolder) -> Result<Show, Failure> {
-    args.rrd.iter().chain(&args.gif).for_each(|path| folder.adopt(path));
+    for (path, ending) in [(&args.rrd, "rrd"), (&args.gif, "gif")] {
+        path.iter().try_for_each(|path| folder.adopt(path, ending)).map_err(input)?;
+    }
+    if let Some(path) = args.gif.as_ref().filter(|path| is_another_kind(path, b"GIF8")) {
+        let path = path.display();
+        return Err(input(anyhow!("there is a file {path} that is not a GIF picture; choose another name")));
+    }
     let mut live = Vec::from_iter(args.connect.clone());
     live.extend(args.view.then_some(Live::Spawn));
     let named = || folder.unfinished().join(format!("{}.rrd", file_name::of(&scene.title)));

@@ -81,10 +81,10 @@ fn known_map(path: &Path, spec: &WorldSpec) -> Result<Grid<CellState>, Failure> 
     let mut findings = Findings::default();
     let map = ros_map::read(path, &Disk, &mut findings);
     findings.messages(Severity::Warning).iter().for_each(warn);
-    let map = map.ok_or_else(|| input(anyhow!(findings.error_text())))?.onto(&spec.frame);
+    let map = map.ok_or_else(|| input(anyhow!(findings.error_text())))?;
     let warning = combination::map(spec, &map).map_err(|why| input(anyhow!("{}: {why}", path.display())))?;
     warning.iter().for_each(warn);
-    Ok(map)
+    Ok(map.onto(&spec.frame))
 }
 
 fn warn(warning: &String) {

@@ -133,7 +133,7 @@ fn trials(
 /// Runs the trials, and writes the results.
 fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
     let mut folder = RunFolder::open(&args.out)?;
-    args.rrd.iter().for_each(|path| folder.adopt(path));
+    args.rrd.iter().try_for_each(|path| folder.adopt(path, "rrd"))?;
     let is_canceled = interrupt_flag()?;
     let (trials, problem) = trials(args, experiment, &is_canceled)?;
     let is_interrupted = is_canceled.load(Ordering::Relaxed);

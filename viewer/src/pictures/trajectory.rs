@@ -61,7 +61,7 @@ pub(super) fn entries(scene: &Scene, goals: &Goals) -> Legend {
     let (shown, all) = (goals.samples().len(), goals.count());
     if all > 0 {
         let of_all = if shown as u64 == all { String::new() } else { format!(" of {all}") };
-        entries.push((Mark::Cross(palette::GOAL), format!("{shown}{of_all} goals")));
+        entries.push((Mark::Cross(palette::GOAL), format!("{shown}{of_all} goals chosen")));
     }
     entries.extend(ground::entries(scene));
     entries

@@ -1,11 +1,10 @@
 //! The file of a recording.
 
 use super::RecordingError;
-use evaluation::output::{OutputError, UnfinishedFile};
+use evaluation::output::{OutputError, UnfinishedFile, is_another_kind};
 use rerun::external::re_log_encoding::rrd::{EncodeError, Encoder, EncodingOptions};
 use rerun::log::LogMsg;
-use std::fs::File;
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The first bytes of every recording, before the version of the format.
@@ -39,7 +38,7 @@ impl RrdFile {
     /// no recording is not replaced.
     pub(super) fn create(path: &Path) -> Result<Self, RecordingError> {
         let failed = |why| RecordingError::File { path: path.to_owned(), why };
-        if is_something_else(path) {
+        if is_another_kind(path, MAGIC) {
             return Err(failed(
                 "there is a file with this name that is not a recording; choose another name".into(),
             ));
@@ -84,13 +83,6 @@ impl RrdFile {
     pub(super) fn check(&self) -> Result<(), RecordingError> {
         self.written.clone().map_err(|why| RecordingError::File { path: self.path.clone(), why })
     }
-}
-
-/// Whether there is a file that is neither empty nor a recording.
-fn is_something_else(path: &Path) -> bool {
-    let is_file = path.metadata().is_ok_and(|known| known.is_file() && known.len() > 0);
-    let mut start = [0; MAGIC.len()];
-    is_file && !File::open(path).is_ok_and(|mut file| file.read_exact(&mut start).is_ok() && start == MAGIC)
 }
 
 /// The message of the operating system, without the context of the SDK.

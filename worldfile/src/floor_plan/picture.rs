@@ -55,6 +55,10 @@ impl Raster {
         let damaged = |_| PlanError::DamagedHeader;
         match bytes {
             [0x89, b'P', b'N', b'G', ..] => {
+                // Without the first chunk, its place holds no size.
+                if bytes.get(12..16) != Some(b"IHDR") {
+                    return Err(PlanError::DamagedHeader);
+                }
                 // The decoder's own limits would hide how large the picture claims to be.
                 if let Some([a, b, c, d, e, f, g, h]) = bytes.get(16..24) {
                     let (width, height) = ([*a, *b, *c, *d], [*e, *f, *g, *h]);
