@@ -283,7 +283,7 @@ mod tests {
           map       >99.9 % correct now; 0 false changes on 50000 static cells
           changes   none seen
           rates     mean error 251.0 % over all changing cells, 29.0 % over the 43 in view for 3 cycles or more
-                    log error 0.91: 0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate
+                    log error 0.91, mean over moving things: 0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate
                     AUC 0.83: how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance
           contacts  0 while the robot moved, 0 while it stood still
         ");
