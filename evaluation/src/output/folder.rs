@@ -1,9 +1,9 @@
 //! The folder of a run's results.
 
-use super::{OutputError, make_folder};
+use super::{OutputError, lock, make_folder};
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -29,8 +29,8 @@ pub struct RunFolder {
     unfinished: PathBuf,
     /// The names of results that are written directly.
     adopted: BTreeSet<String>,
-    /// Locked while the run goes on, if the file system has locks.
-    _lock: File,
+    /// Locked while it is open, if the file system has locks.
+    _locked: File,
     /// Whether there was no such folder before.
     is_new: bool,
     /// Whether the subfolder stays, because its results could not be moved.
@@ -53,19 +53,13 @@ impl RunFolder {
             return Err(OutputError::new(&unfinished, io::Error::other(why)));
         }
         fs::create_dir_all(&unfinished).map_err(failed)?;
-        let lock = File::create(unfinished.join(LOCK)).map_err(failed)?;
-        match lock.try_lock() {
-            Ok(()) | Err(TryLockError::Error(_)) => {}
-            Err(error) => {
-                let advice = "wait for it, or give this one another folder by --out";
-                return Err(OutputError::locked(path, error, advice));
-            }
-        }
+        let locked = File::create(unfinished.join(LOCK)).map_err(failed)?;
+        lock(&locked, path, "wait for it, or give this one another folder by --out")?;
         let folder = Self {
             path: path.to_owned(),
             unfinished,
             adopted: BTreeSet::new(),
-            _lock: lock,
+            _locked: locked,
             is_new,
             keeps_unfinished: false,
         };
@@ -124,12 +118,19 @@ impl RunFolder {
     ///
     /// When the folder cannot be read.
     pub fn results(&self) -> Result<Vec<String>, OutputError> {
-        let mut names = self.adopted.clone();
+        let mut names = self.written()?;
+        names.extend(self.adopted.iter().cloned());
+        Ok(names.into_iter().collect())
+    }
+
+    /// The names of the files in the subfolder.
+    fn written(&self) -> Result<BTreeSet<String>, OutputError> {
+        let mut names = BTreeSet::new();
         for entry in fs::read_dir(&self.unfinished).map_err(|why| self.failed(why))? {
             names.extend(entry.map_err(|why| self.failed(why))?.file_name().into_string().ok());
         }
         names.remove(LOCK);
-        Ok(names.into_iter().collect())
+        Ok(names)
     }
 
     /// Replaces the results of the earlier run, except `inputs` of this one, by the files that were written. The file
@@ -139,8 +140,7 @@ impl RunFolder {
     ///
     /// When a file cannot be renamed. The earlier results are put back then, and the new ones stay in the subfolder.
     pub fn finish(mut self, summary: &str, inputs: &[&Path]) -> Result<(), OutputError> {
-        let mut written = self.results()?;
-        written.retain(|name| !self.adopted.contains(name));
+        let mut written = Vec::from_iter(self.written()?);
         written.sort_by_key(|name| name == summary);
         let earlier = self.unfinished.join(EARLIER);
         fs::create_dir(&earlier).map_err(|why| OutputError::new(&earlier, why))?;
@@ -161,6 +161,7 @@ impl RunFolder {
         })
     }
 
+    /// Moves the files with the names `replaced` away, if there are such files, and those that were written here.
     fn exchange(
         &self,
         replaced: &[String],

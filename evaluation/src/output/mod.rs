@@ -6,7 +6,7 @@ mod unfinished;
 pub use folder::RunFolder;
 pub use unfinished::{UnfinishedFile, is_another_kind};
 
-use std::fs::{self, TryLockError};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -25,15 +25,17 @@ impl OutputError {
     pub fn new(path: &Path, why: impl Into<io::Error>) -> Self {
         Self { path: path.to_owned(), why: why.into() }
     }
+}
 
-    /// The error for a `path` that another run has locked; `advice` says what to do.
-    fn locked(path: &Path, error: TryLockError, advice: &str) -> Self {
-        match error {
-            TryLockError::WouldBlock => {
-                let why = format!("another run is writing there; {advice}");
-                Self::new(path, io::Error::new(io::ErrorKind::ResourceBusy, why))
-            }
-            TryLockError::Error(why) => Self::new(path, why),
+/// Locks an open file until it is closed. If another run has locked it, `path` cannot be written, and `advice` says
+/// what to do.
+fn lock(file: &File, path: &Path, advice: &str) -> Result<(), OutputError> {
+    match file.try_lock() {
+        // Not every file system has locks.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(()),
+        Err(TryLockError::WouldBlock) => {
+            let why = format!("another run is writing there; {advice}");
+            Err(OutputError::new(path, io::Error::new(io::ErrorKind::ResourceBusy, why)))
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A file that has its name only when it is complete.
 
-use super::OutputError;
-use std::fs::{self, File, TryLockError};
+use super::{OutputError, lock};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::channel;
@@ -42,11 +42,8 @@ impl UnfinishedFile {
         let partial = temporary_name(path);
         // Cut off only when it is locked: it may be the file of a run that goes on.
         let file = File::options().write(true).create(true).truncate(false).open(&partial).map_err(failed)?;
-        match file.try_lock() {
-            // Not every file system has locks.
-            Ok(()) | Err(TryLockError::Error(_)) => file.set_len(0).map_err(failed)?,
-            Err(error) => return Err(OutputError::locked(path, error, "wait for it, or give another name")),
-        }
+        lock(&file, path, "wait for it, or give another name")?;
+        file.set_len(0).map_err(failed)?;
         Ok(Self { path: path.to_owned(), partial: Some(partial), file })
     }
 

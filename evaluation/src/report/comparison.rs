@@ -23,9 +23,10 @@ pub struct Comparison {
     pub mean_b: f64,
     /// The mean of a − b, in the unit of the metric.
     pub mean_difference: f64,
-    /// The lower end of the 95 % confidence interval of the difference; NaN for a single pair.
+    /// The lower end of the 95 % confidence interval of the difference, within the range of the metric; NaN for a
+    /// single pair.
     pub low: f64,
-    /// The upper end of the 95 % confidence interval of the difference; NaN for a single pair.
+    /// The upper end of this interval, with the same limit.
     pub high: f64,
     /// The p-value of the two-sided paired t test; NaN for a single pair, 1 if nothing differs.
     pub p_value: f64,

@@ -17,8 +17,8 @@ use viewer::recording::Live;
 /// format (map.yaml, map.pgm), the statistics of every cell (cell_statistics.csv), and all results as JSON
 /// (summary.json).
 ///
-/// The results of an earlier run in the folder stay until the new ones are complete; until then these are in its
-/// subfolder unfinished_run.
+/// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones
+/// are in its subfolder unfinished_run.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "four_rooms",

@@ -1,5 +1,5 @@
-//! Warnings about a world, a tour and a map that do not fit together: the run is possible, but not what a user
-//! expects.
+//! A world, a tour and a map that do not fit together: warnings where the run is possible, but not what a user
+//! expects, and an error where it makes no sense.
 
 use interfaces::{Cell, CellState, GroundTruth, TrueState};
 use nalgebra::Point2;
@@ -27,23 +27,20 @@ pub(crate) fn odometry(spec: &WorldSpec) -> Option<String> {
 pub(crate) fn waypoints(spec: &WorldSpec, waypoints: &[Point2<f64>]) -> Option<String> {
     let world = PhysicsWorld::new(spec, 0);
     let truth = world.truth();
-    let is_free = |at: &&Point2<f64>| {
-        truth
-            .frame()
-            .index(truth.frame().cell_at(at))
-            .is_some_and(|cell| truth.state(cell) == TrueState::Free)
+    let frame = truth.frame();
+    let is_free = |at: &Point2<f64>| {
+        frame.index(frame.cell_at(at)).is_some_and(|cell| truth.state(cell) == TrueState::Free)
     };
-    let blocked = waypoints.iter().filter(|at| !is_free(at)).count();
-    (blocked > 0).then(|| {
-        let first = waypoints.iter().position(|at| !is_free(&at)).unwrap_or(0);
-        format!(
-            "warning: {blocked} of the {} waypoints of the tour are in walls or outside of the map of `{}`, the first \
-             at {:?}\n  = help: the robot stops at the nearest point that it can reach",
-            waypoints.len(),
-            spec.name,
-            <[f64; 2]>::from(waypoints[first].coords),
-        )
-    })
+    let blocked: Vec<&Point2<f64>> = waypoints.iter().filter(|at| !is_free(at)).collect();
+    let first = blocked.first()?;
+    Some(format!(
+        "warning: {} of the {} waypoints of the tour are in walls or outside of the map of `{}`, the first at \
+         {:?}\n  = help: the robot stops at the nearest point that it can reach",
+        blocked.len(),
+        waypoints.len(),
+        spec.name,
+        [first.x, first.y],
+    ))
 }
 
 /// The difference between a known map and the world; an error if the map shows nothing of the world.

@@ -66,11 +66,11 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let Parts { spec, settings, prior } = parts;
     let trial = PhysicsTrial::new(spec, args.seed, &settings.mapper, prior.clone(), pilot);
     let mut trial = trial.context("cannot make the mapper").map_err(input)?;
+    let is_interrupted = interrupt_flag()?; // before any file is made
     let mut folder = RunFolder::open(&args.out).map_err(anyhow::Error::from)?;
     let mut show = show(args, Scene::from(spec.fleet()), &mut folder)?;
     let reported = show.live_problem();
     reported.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
-    let is_interrupted = interrupt_flag()?;
 
     let is_keyboard = args.drive == DriveChoice::Keyboard;
     if is_keyboard && !args.quiet {

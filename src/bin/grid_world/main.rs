@@ -132,9 +132,9 @@ fn trials(
 
 /// Runs the trials, and writes the results.
 fn run(args: &Args, experiment: &Experiment) -> anyhow::Result<ExitCode> {
+    let is_canceled = interrupt_flag()?; // before any file is made
     let mut folder = RunFolder::open(&args.out)?;
     args.rrd.iter().try_for_each(|path| folder.adopt(path, "rrd"))?;
-    let is_canceled = interrupt_flag()?;
     let (trials, problem) = trials(args, experiment, &is_canceled)?;
     let is_interrupted = is_canceled.load(Ordering::Relaxed);
     if trials.is_empty() {
