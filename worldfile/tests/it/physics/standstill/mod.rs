@@ -1,7 +1,7 @@
 //! No deadlocks: no robot stands still for a minute while there is a way to one of its waypoints.
 
 mod oracle;
-mod worlds;
+pub(super) mod worlds;
 
 use super::random::Chance;
 use interfaces::{LaserReading, Twist};

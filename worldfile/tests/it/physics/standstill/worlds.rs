@@ -28,7 +28,7 @@ struct House {
 }
 
 /// The house of a seed.
-pub(super) fn house(seed: u64) -> FleetSpec {
+pub(in crate::physics) fn house(seed: u64) -> FleetSpec {
     let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
     let low_m = chance.between(2.6, 3.2);
     let corridor_m = [low_m, low_m + chance.between(0.8, 1.6)];
