@@ -138,7 +138,7 @@ impl Wander {
     /// The velocity until the next reading.
     pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {
         let ranges_m = &reading.scan.ranges_m;
-        self.is_narrow &= self.wide.is_blocked(ranges_m, true);
+        self.is_narrow = self.is_narrow && self.wide.is_blocked(ranges_m, true);
         let (space, share) = if self.is_narrow { (&self.narrow, NARROW_SHARE) } else { (&self.wide, 1.0) };
         if !space.is_blocked(ranges_m, self.turning.is_some()) {
             self.turning = None;
@@ -150,7 +150,7 @@ impl Wander {
             None => self.open_side(reading) * self.max_turn_radps * TURN_SHARE,
         };
         self.turning = Some(turn_radps);
-        self.turned_scans += 1;
+        self.turned_scans = self.turned_scans.saturating_add(1);
         self.is_narrow |= self.turned_scans > self.full_turn_scans;
         Twist { linear_mps: 0.0, angular_radps: share * turn_radps }
     }
