@@ -2,6 +2,7 @@
 
 mod legs;
 mod pace;
+mod patience;
 mod wall_patrol;
 mod wander;
 mod waypoints;
@@ -21,7 +22,7 @@ pub(super) enum Behavior {
     /// A constant velocity.
     Steady(Twist),
     Wander(Box<Wander>),
-    Waypoints(Waypoints),
+    Waypoints(Box<Waypoints>),
     WallPatrol(WallPatrol),
 }
 
@@ -38,7 +39,7 @@ impl Behavior {
                 Self::Wander(Box::new(Wander::new(*spec, robot, step_s, beams, random)))
             }
             BehaviorSpec::Waypoints(spec) => {
-                Self::Waypoints(Waypoints::new(spec.clone(), robot, step_s, beams))
+                Self::Waypoints(Box::new(Waypoints::new(spec.clone(), robot, step_s, beams, random)))
             }
             BehaviorSpec::WallPatrol(spec) => Self::WallPatrol(WallPatrol::new(*spec, robot, step_s, beams)),
         })

@@ -1,9 +1,12 @@
 use super::legs::Legs;
+use super::patience::Patience;
+use super::wander::Wander;
 use crate::physics::rays::Beams;
 use crate::physics::snapshot::{Values, value};
-use crate::physics::spec::{Repeat, RobotSpec, WaypointsSpec};
-use interfaces::{LaserReading, Twist};
+use crate::physics::spec::{Repeat, RobotSpec, WanderSpec, WaypointsSpec};
+use interfaces::{LaserReading, RandomStream, Twist};
 use nalgebra::Point2;
+use std::ops::Range;
 
 /// A waypoint counts as reached within this distance, m.
 const ARRIVED_M: f64 = 0.02;
@@ -11,8 +14,17 @@ const ARRIVED_M: f64 = 0.02;
 /// walls.
 const SIDE_MARGIN_M: f64 = 0.03;
 
+/// A robot that reached a waypoint this far from where it was blocked is out of that place, m.
+const AWAY_M: f64 = 0.5;
+/// The duration of a detour, s. At random, so that two robots do not meet again and again.
+const DETOUR_S: Range<f64> = 3.0..10.0;
+
 /// Drives straight from point to point by odometry, turns in place at the points, and waits while the laser
 /// measures an obstacle in the way.
+///
+/// A robot that has waited too long turns round: it visits the points in reverse order, since the leg behind it was
+/// free. If it is blocked there as well, before it reached a point away from the first place, it makes a detour: it
+/// wanders for some seconds, and then tries the next point.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Waypoints {
     spec: WaypointsSpec,
@@ -20,51 +32,117 @@ pub(in crate::physics) struct Waypoints {
     /// The index of the next point; `None` after the last one.
     next: Option<usize>,
     is_returning: bool,
+    patience: Patience,
+    /// The x and y at which the robot last turned round, m, until it is out of that place.
+    turned_at: Option<(f64, f64)>,
+    wander: Wander,
+    /// The number of scans until the end of the detour.
+    detour_scans: u32,
 }
 
 impl Waypoints {
-    pub(super) fn new(spec: WaypointsSpec, robot: &RobotSpec, step_s: f64, beams: &Beams) -> Self {
-        let legs = Legs::new(robot, spec.speed_mps, spec.clearance_m, step_s, beams);
-        Self { spec, legs, next: Some(0), is_returning: false }
+    pub(super) fn new(
+        spec: WaypointsSpec,
+        robot: &RobotSpec,
+        step_s: f64,
+        beams: &Beams,
+        random: RandomStream,
+    ) -> Self {
+        let WaypointsSpec { speed_mps, clearance_m, .. } = spec;
+        let wander = WanderSpec { speed_mps, clearance_m };
+        Self {
+            legs: Legs::new(robot, speed_mps, clearance_m, step_s, beams),
+            next: Some(0),
+            is_returning: false,
+            patience: Patience::new(robot, speed_mps, step_s),
+            turned_at: None,
+            wander: Wander::new(wander, robot, step_s, beams, random),
+            detour_scans: 0,
+            spec,
+        }
     }
 
     /// The index of the point after `point`.
     fn after(&mut self, point: usize) -> Option<usize> {
         let last = self.spec.points.len() - 1;
-        match self.spec.repeat {
-            Repeat::Once => (point < last).then_some(point + 1),
-            Repeat::Loop => Some(if point < last { point + 1 } else { 0 }),
-            Repeat::BackAndForth => {
-                self.is_returning = if self.is_returning { point > 0 } else { point == last };
-                Some(if self.is_returning { point.saturating_sub(1) } else { (point + 1).min(last) })
-            }
+        if self.spec.repeat == Repeat::Loop {
+            let ahead = if self.is_returning { last } else { 1 };
+            return Some((point + ahead) % (last + 1));
         }
+        if self.spec.repeat == Repeat::Once && !self.is_returning && point == last {
+            return None;
+        }
+        self.is_returning = if self.is_returning { point > 0 } else { point == last };
+        Some(if self.is_returning { point.saturating_sub(1) } else { (point + 1).min(last) })
+    }
+
+    /// Continues in reverse order with the point before `next`.
+    fn turn_round(&mut self, next: usize) {
+        self.is_returning = !self.is_returning;
+        self.next = self.after(next);
+    }
+
+    /// Ends a wait on the way to the point `next`.
+    fn give_way(&mut self, at: &Point2<f64>, next: usize) {
+        if self.turned_at.is_none() {
+            self.turned_at = Some((at.x, at.y));
+            self.turn_round(next);
+            return;
+        }
+        self.detour_scans = self.wander.scans(DETOUR_S);
+        match self.after(next) {
+            Some(after) => self.next = Some(after),
+            // The last point remains to be reached.
+            None => self.turn_round(next),
+        }
+    }
+
+    /// The next point that is not reached yet; `None` after the last one.
+    fn goal(&mut self, at: &Point2<f64>) -> Option<usize> {
+        // At most one round: if all points are within reach, the robot has nothing to do.
+        for _ in 0..self.spec.points.len() {
+            let next = self.next.filter(|next| *next < self.spec.points.len())?;
+            if (self.spec.points[next] - at).norm() >= ARRIVED_M {
+                return Some(next);
+            }
+            self.turned_at = self.turned_at.filter(|(x, y)| (at - Point2::new(*x, *y)).norm() < AWAY_M);
+            self.next = self.after(next);
+        }
+        None
     }
 
     /// The velocity until the next reading.
     pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {
-        let at = Point2::from(reading.pose.translation.vector);
-        // At most one round: if all points are within reach, the robot has nothing to do.
-        for _ in 0..self.spec.points.len() {
-            let Some(next) = self.next.filter(|next| *next < self.spec.points.len()) else { break };
-            let leg = self.spec.points[next] - at;
-            let remaining_m = leg.norm();
-            if remaining_m >= ARRIVED_M {
-                return self.legs.drive(reading, &(leg / remaining_m), remaining_m, |legs, lean| {
-                    let open_m = legs.radius_m + SIDE_MARGIN_M;
-                    let points = legs.points(reading, lean);
-                    let ahead = points.filter(|point| point.x > 0.0 && point.y.abs() < open_m);
-                    (ahead.fold(f64::INFINITY, |gap_m, point| gap_m.min(legs.gap_m(&point))), 0.0)
-                });
-            }
-            self.next = self.after(next);
+        if self.detour_scans > 0 {
+            self.detour_scans -= 1;
+            return self.wander.decide(reading);
         }
-        Twist::STOP
+        let at = Point2::from(reading.pose.translation.vector);
+        let Some(goal) = self.goal(&at) else { return Twist::STOP };
+        if self.patience.is_over(&reading.pose) {
+            self.give_way(&at, goal);
+            return Twist::STOP;
+        }
+        let leg = self.spec.points[goal] - at;
+        let remaining_m = leg.norm();
+        self.legs.drive(reading, &(leg / remaining_m), remaining_m, |legs, lean| {
+            let open_m = legs.radius_m + SIDE_MARGIN_M;
+            let points = legs.points(reading, lean);
+            let ahead = points.filter(|point| point.x > 0.0 && point.y.abs() < open_m);
+            (ahead.fold(f64::INFINITY, |gap_m, point| gap_m.min(legs.gap_m(&point))), 0.0)
+        })
     }
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let mut values = vec![value(&mut self.next), value(&mut self.is_returning)];
+        let mut values = vec![
+            value(&mut self.next),
+            value(&mut self.is_returning),
+            value(&mut self.turned_at),
+            value(&mut self.detour_scans),
+        ];
+        values.extend(self.patience.values());
+        values.extend(self.wander.values());
         values.extend(self.legs.values());
         values
     }

@@ -5,6 +5,11 @@ use serde::{Deserialize, Serialize};
 /// Times are sums of steps: a time within this of an event counts as the time of the event, s.
 const SLACK_S: f64 = 5e-7;
 
+/// A door whose way is blocked for this long moves back, s.
+const PATIENCE_S: f64 = 2.0;
+/// The time for which a door that moved back stays there before it tries again, s.
+const PAUSE_S: f64 = 5.0;
+
 /// The state of a door.
 #[derive(Clone, Deserialize, Serialize)]
 pub(super) struct Door {
@@ -14,6 +19,17 @@ pub(super) struct Door {
     is_to_open: bool,
     next_s: f64,
     random: RandomStream,
+    /// For how long something has been in the way, s.
+    blocked_s: f64,
+    retreat: Option<Retreat>,
+}
+
+/// A motion against the schedule of a door, since something is in its way.
+#[derive(Clone, Copy, Deserialize, Serialize)]
+struct Retreat {
+    is_to_open: bool,
+    /// The rest of the pause at the end of the motion, s.
+    pause_s: f64,
 }
 
 impl Door {
@@ -24,6 +40,8 @@ impl Door {
             is_to_open: spec.starts_open,
             next_s: 0.0,
             random: RandomStream::new(seed, Purpose::Door(index)),
+            blocked_s: 0.0,
+            retreat: None,
         };
         door.next_s = door.stay_s(spec);
         door
@@ -32,6 +50,13 @@ impl Door {
     /// The openness after a step that ends at `time_s`, if nothing is in the way. The direction of the motion
     /// changes at the exact time of a change, also within the step.
     pub(super) fn next(&mut self, spec: &DoorSpec, time_s: f64, step_s: f64) -> f64 {
+        if let Some(retreat) = self.retreat {
+            let (is_to_open, _) = self.target(spec, time_s - step_s);
+            if is_to_open != retreat.is_to_open && retreat.pause_s > SLACK_S {
+                return self.back(spec, retreat, step_s);
+            }
+            self.retreat = None;
+        }
         let (mut openness, mut left_s) = (self.openness, step_s);
         while left_s > SLACK_S {
             let (is_to_open, until_s) = self.target(spec, time_s - left_s);
@@ -41,6 +66,31 @@ impl Door {
             left_s -= for_s;
         }
         openness
+    }
+
+    /// The openness after a step of a retreat, if nothing is in the way.
+    fn back(&mut self, spec: &DoorSpec, retreat: Retreat, step_s: f64) -> f64 {
+        let end = f64::from(u8::from(retreat.is_to_open));
+        if self.openness == end {
+            self.retreat = Some(Retreat { pause_s: retreat.pause_s - step_s, ..retreat });
+        }
+        let by = step_s / spec.move_s;
+        (self.openness + if retreat.is_to_open { by } else { -by }).clamp(0.0, 1.0)
+    }
+
+    /// Takes over the openness `next` if the way is free. Otherwise the door waits, and later moves back, or
+    /// forward again if it was moving back.
+    pub(super) fn end_step(&mut self, next: f64, is_free: bool, step_s: f64) {
+        if is_free {
+            (self.openness, self.blocked_s) = (next, 0.0);
+            return;
+        }
+        self.blocked_s += step_s;
+        if self.blocked_s >= PATIENCE_S - SLACK_S {
+            self.blocked_s = 0.0;
+            let retreat = Retreat { is_to_open: next < self.openness, pause_s: PAUSE_S };
+            self.retreat = if self.retreat.is_some() { None } else { Some(retreat) };
+        }
     }
 
     /// Whether the door must be open from a time on, and the time of the next change, s. The time must not decrease

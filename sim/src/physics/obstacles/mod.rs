@@ -88,9 +88,8 @@ impl Obstacle {
             }
             (State::Door(mover, door), Motion::Door(spec)) => {
                 let openness = door.next(spec, time_s, step_s);
-                if go(&mut self.shape, mover, spec.shape(&self.spec.shape, openness)) {
-                    door.openness = openness;
-                }
+                let is_free = go(&mut self.shape, mover, spec.shape(&self.spec.shape, openness));
+                door.end_step(openness, is_free, step_s);
             }
             _ => {}
         }

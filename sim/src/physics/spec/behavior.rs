@@ -14,7 +14,7 @@ pub enum BehaviorSpec {
     Circle(CircleSpec),
     /// Drives without a goal, and turns away from obstacles ahead.
     Wander(WanderSpec),
-    /// Drives straight from point to point.
+    /// Drives straight from point to point, and turns round where it is blocked for long.
     Waypoints(WaypointsSpec),
     /// Follows a wall between two points, back and forth.
     WallPatrol(PatrolSpec),
@@ -38,7 +38,8 @@ pub struct WanderSpec {
     pub clearance_m: f64,
 }
 
-/// Settings of a drive from point to point.
+/// Settings of a drive from point to point. A robot that is blocked for 5 s visits the points in reverse order; if it
+/// is blocked in the same place again, it wanders for 3 to 10 s and tries the next point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaypointsSpec {
     /// The points, at least one, m.

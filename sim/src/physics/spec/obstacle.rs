@@ -97,7 +97,8 @@ impl PathSpec {
     }
 }
 
-/// Settings of a door. The door waits while a body is in the way of its leaf.
+/// Settings of a door. If a body is in the way of its leaf for 2 s, the door moves back, stays there for 5 s, and tries
+/// again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DoorSpec {
     /// The motion of the leaf.

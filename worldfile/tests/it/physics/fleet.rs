@@ -177,14 +177,49 @@ fn waypoints_are_visited_in_order() {
 #[test]
 fn on_its_way_to_a_waypoint_a_robot_waits_for_what_is_in_its_way() {
     let way = "kind = \"waypoints\"\npoints_m = [[4.5, 1.0]]\nspeed_mps = 0.5\nrepeat = \"once\"";
-    let toy = "[[obstacle]]\nname = \"toy\"\nmin_m = [3.0, 0.9]\nmax_m = [3.2, 1.1]\nappears_s = 0.5\ndisappears_s = 15.0\n";
+    let toy = "[[obstacle]]\nname = \"toy\"\nmin_m = [3.0, 0.9]\nmax_m = [3.2, 1.1]\nappears_s = 0.5\ndisappears_s = 8.0\n";
     let mut fleet = Fleet::new(&house(&[robot("one", [1.0, 1.0], 0.0, way)], toy), 0);
-    fleet.run_until(14.0, &mut nobody);
+    fleet.run_until(7.5, &mut nobody);
     let waits_at = at(&fleet, 0);
     assert!((2.3..2.8).contains(&waits_at.x), "{waits_at}");
     fleet.run_until(25.0, &mut nobody);
     assert!((at(&fleet, 0).x - 4.5).abs() < 0.03);
     assert_eq!(fleet.contacts(), []);
+}
+
+#[test]
+fn a_robot_that_waited_for_long_visits_its_waypoints_in_reverse_order_or_goes_round() {
+    // From the third point on, something stands between the second and the third point.
+    let toy = "[[obstacle]]\nname = \"toy\"\nmin_m = [4.4, 2.4]\nmax_m = [4.6, 2.6]\nappears_s = 16.0\n";
+    let points = [[1.0, 1.0], [4.5, 1.0], [4.5, 4.5], [1.0, 4.5]];
+    let way = format!("kind = \"waypoints\"\npoints_m = {points:?}\nspeed_mps = 0.5");
+    let mut fleet = Fleet::new(&house(&[robot("one", points[0], 0.0, &way)], toy), 0);
+    let seen = visits(&mut fleet, &points, 150.0);
+    assert!(seen.starts_with(&[0, 1, 2, 3, 0, 1, 0, 3, 2, 3, 0, 1]), "{seen:?}");
+    assert_eq!(fleet.contacts(), []);
+    // The only point is behind the toy.
+    let way = "kind = \"waypoints\"\npoints_m = [[4.5, 4.5]]\nspeed_mps = 0.5\nrepeat = \"once\"";
+    let mut fleet = Fleet::new(&house(&[robot("one", points[1], 90.0, way)], &toy.replace("16.0", "0.1")), 0);
+    let seen = visits(&mut fleet, &[[4.5, 4.5]], 300.0);
+    assert_eq!(seen, [0]);
+    assert_eq!(fleet.contacts(), []);
+}
+
+#[test]
+fn a_wandering_robot_finds_its_way_out_of_a_narrow_place() {
+    // A dead end of 0.5 m × 1 m, for a robot of 0.4 m.
+    let walls = "[[wall]]\nmin_m = [1.0, 2.25]\nmax_m = [2.0, 2.35]\n[[wall]]\nmin_m = [1.0, 1.65]\nmax_m = [2.0, 1.75]\n\
+                 [[wall]]\nmin_m = [0.9, 1.65]\nmax_m = [1.0, 2.35]\n";
+    let wander = robot("one", [1.24, 2.0], 180.0, "kind = \"wander\"\nspeed_mps = 0.3");
+    for seed in 0..5 {
+        let mut fleet = Fleet::new(&house(std::slice::from_ref(&wander), walls), seed);
+        let is_out = (0..120).any(|second| {
+            fleet.run_until(f64::from(second), &mut nobody);
+            at(&fleet, 0).x > 2.2
+        });
+        assert!(is_out, "seed {seed}: {}", at(&fleet, 0));
+        assert_eq!(fleet.contacts(), []);
+    }
 }
 
 #[test]

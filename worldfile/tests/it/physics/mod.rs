@@ -16,6 +16,7 @@ mod patrol;
 mod random;
 mod senses;
 mod snapshot;
+mod standstill;
 mod things;
 mod truth;
 

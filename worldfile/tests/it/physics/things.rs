@@ -8,8 +8,13 @@ use nalgebra::Point2;
 
 /// A heavy robot at [1, 2] that drives straight along x, and obstacles.
 fn yard(things: &str) -> FleetSpec {
+    yard_from([1.0, 2.0], things)
+}
+
+/// The same, with another start of the robot.
+fn yard_from(start: [f64; 2], things: &str) -> FleetSpec {
     let driver =
-        robot("driver", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("radius_m", "mass_kg = 20.0\nradius_m");
+        robot("driver", start, 0.0, "kind = \"driven\"").replace("radius_m", "mass_kg = 20.0\nradius_m");
     house(&[driver], things)
 }
 
@@ -235,6 +240,30 @@ fn a_door_never_closes_on_a_robot() {
         assert_eq!(fleet.contacts(), []);
         fleet.run_until(30.0, &mut ahead);
         assert!((middle(&fleet, 0) - Point2::new(3.0, 2.0)).norm() < 1e-9, "{kind} is still open");
+    }
+}
+
+#[test]
+fn a_door_that_cannot_move_moves_back_and_tries_again() {
+    // The robot stands where the leaf wants to be when the door is closed, or when it is open.
+    for (starts_open, stands) in [(true, [2.9, 1.7]), (false, [2.4, 1.3])] {
+        let script = format!("opening = \"scripted\"\nswitches_s = [2.0]\nstarts_open = {starts_open}");
+        let mut fleet = Fleet::new(&yard_from(stands, &door("hinged_door", &script)), 0);
+        let start = middle(&fleet, 0);
+        // Moves for less than a second, waits for 2 s, moves back, and stays for 5 s.
+        let is_back = |fleet: &Fleet| (middle(fleet, 0) - start).norm() < 1e-9;
+        for (time_s, back) in
+            [(1.9, true), (3.5, false), (6.0, true), (9.0, true), (11.5, false), (14.0, true)]
+        {
+            fleet.run_until(time_s, &mut stop);
+            assert_eq!(is_back(&fleet), back, "starts open: {starts_open}, {time_s} s");
+        }
+        assert_eq!(fleet.contacts(), []);
+        let mut back = |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps: -0.5, angular_radps: 0.0 };
+        fleet.run_until(18.0, &mut back);
+        fleet.run_until(35.0, &mut stop);
+        let end = if starts_open { [3.0, 1.5] } else { [2.5, 1.0] };
+        assert!((middle(&fleet, 0) - Point2::from(end)).norm() < 1e-6, "starts open: {starts_open}");
     }
 }
 
