@@ -25,11 +25,17 @@ use Worst::{Largest, Smallest};
 /// A row: its title, where the value is in `summary.json`, a factor, the number of decimals, the unit.
 type Row = (&'static str, &'static str, f64, usize, &'static str, Worst);
 
-const ROWS: [Row; 19] = [
-    ("cells seen, of those that can be seen", "/coverage", 100.0, 1, " %", Smallest),
-    ("map right at the end", "/map_quality", 100.0, 1, " %", Smallest),
+const ROWS: [Row; 26] = [
+    ("seen, of the cells in sight of reachable places", "/coverage_reachable", 100.0, 1, " %", Smallest),
+    ("seen, of all free cells and their borders", "/coverage", 100.0, 1, " %", Smallest),
+    ("map right, of the cells in sight of reachable places", QUALITY_REACHABLE, 100.0, 1, " %", Smallest),
+    ("map right, of all free cells and their borders", "/map_quality", 100.0, 1, " %", Smallest),
     ("changing cells in view, balanced accuracy", "/map_quality_changing", 100.0, 1, " %", Smallest),
     ("changing cells out of view, balanced accuracy", OUT_OF_VIEW, 100.0, 1, " %", Smallest),
+    ("the same, as predicted now", PREDICTED, 100.0, 1, " %", Smallest),
+    ("Brier score out of view, predicted", "/predicted/brier", 1.0, 3, "", Largest),
+    ("Brier score out of view, as last seen", "/predicted/brier_last_seen", 1.0, 3, "", Largest),
+    ("Brier score out of view, share of time blocked", "/predicted/brier_mean", 1.0, 3, "", Largest),
     ("false change events on static cells", "/false_change_events", 1.0, 0, "", Largest),
     ("rate error, cells in view for 3 cycles or more", "/rate_error", 1.0, 2, "", Largest),
     ("rate error, all changing cells", "/rate_error_all", 1.0, 2, "", Largest),
@@ -40,12 +46,15 @@ const ROWS: [Row; 19] = [
     ("free event to map, median", "/free_latency/median_s", 1.0, 1, " s", Largest),
     ("free events never noticed", "/free_latency/never_noticed", 100.0, 1, " %", Largest),
     ("longest time since a cell was seen", "/age/max_s", 1.0, 0, " s", Largest),
-    ("collisions while the robot moved", "/collisions", 1.0, 0, "", Largest),
+    ("contacts by the robot's own motion", "/contacts/own_motion", 1.0, 0, "", Largest),
+    ("contacts in which something ran into it", "/contacts/run_into", 1.0, 0, "", Largest),
     ("goals reached", "/goals/reached", 1.0, 0, "", Smallest),
     ("goals approached (nearest reachable point)", "/goals/approached", 1.0, 0, "", Largest),
     ("goals given up", "/goals/given_up", 1.0, 0, "", Largest),
     ("times real time, without recording", "/real_time_factor", 1.0, 0, "", Smallest),
 ];
+const QUALITY_REACHABLE: &str = "/map_quality_reachable";
+const PREDICTED: &str = "/predicted/balanced_accuracy_out_of_view";
 const OUT_OF_VIEW: &str = "/map_quality_changing_out_of_view";
 
 fn main() -> anyhow::Result<()> {

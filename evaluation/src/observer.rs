@@ -1,6 +1,6 @@
 //! Measures a run in the physics world against the ground truth, from outside the loop.
 
-use crate::metrics::{ChangingAccuracy, Latency, MapScores, Things, map_scores};
+use crate::metrics::{ChangingAccuracy, Latency, MapScores, Prediction, Standstills, Things, map_scores};
 use crate::summary::CurvePoint;
 use crate::thinned::Thinned;
 use interfaces::{GroundTruth, LaserReading, Twist};
@@ -9,10 +9,14 @@ use nalgebra::Point2;
 use robot::{Belief, Level, Message, Pilot};
 use sim::physics::{Body, PhysicsWorld};
 
-/// Coverage and quality need a pass over the map: they are computed once in this many readings.
+/// Coverage, quality and predictions need a pass over many cells: they are computed once in this many readings.
 const SCORE_EVERY: usize = 100;
 /// The accuracy on changing cells is sampled once in this many readings.
 const SAMPLE_EVERY: usize = 10;
+
+/// A robot that moves towards a body at this speed or less when they touch has not driven into the body, m/s: a robot
+/// that turns on the spot or passes by has no speed towards what runs into it, but for rounding.
+const OWN_MPS: f64 = 0.005;
 
 /// Coverage and map quality over time: all points of a run of nearly three hours at 10 Hz.
 pub type Curve = Thinned<CurvePoint, 1024>;
@@ -28,6 +32,10 @@ pub struct Observer {
     pub things: Things,
     /// The accuracy on swept cells.
     pub changing: ChangingAccuracy,
+    /// The quality of the predicted map on swept cells out of view.
+    pub prediction: Prediction,
+    /// The longest standstill of every robot.
+    pub standstills: Standstills,
     /// Coverage and map quality over time.
     pub curve: Curve,
     /// The positions of the goals of the curious robot, m.
@@ -35,6 +43,8 @@ pub struct Observer {
     /// The number of contacts of the curious robot that began while it stood still, and of those that began while
     /// it moved.
     pub contacts: [usize; 2],
+    /// The number of these contacts in which the curious robot drove into the other body.
+    pub own_contacts: usize,
     /// The messages of the last tick.
     pub messages: Vec<Message>,
 }
@@ -64,7 +74,10 @@ impl Observer {
         if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
             self.changing.sample(mapper, truth);
         }
+        self.standstills
+            .observe(reading.time_s, world.robots().map(|robot| robot.pose.translation.vector.into()));
         if mapper.readings() % SCORE_EVERY == 1 {
+            self.prediction.sample(mapper, truth);
             self.curve.push(CurvePoint { time_s: reading.time_s, scores: map_scores(mapper, truth) });
         }
     }
@@ -78,8 +91,10 @@ impl Observer {
         let mut log = |level, text| self.messages.push(Message { level, text });
         self.things.take_messages().into_iter().for_each(|text| log(Level::Event, text));
         for contact in world.contacts() {
+            let is_own = contact.speed_mps > OWN_MPS;
             self.contacts[usize::from(contact.moving)] += 1;
-            let how = if contact.moving { "drove into" } else { "was hit by" };
+            self.own_contacts += usize::from(is_own);
+            let how = if is_own { "drove into" } else { "was hit by" };
             log(Level::Trouble, format!("the curious robot {how} {}", name(world, contact.with)));
         }
     }

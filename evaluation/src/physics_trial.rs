@@ -2,16 +2,17 @@
 //! observer.
 
 use crate::map_hash::map_hash;
-use crate::metrics::{age, map_scores, rate_scores};
+use crate::metrics::{age, map_scores, rate_scores, reachable_scores};
 use crate::observer::Observer;
-use crate::summary::{Liveliest, RunResults};
+use crate::summary::{Contacts, Liveliest, RunResults};
 use agent::{Agent, AgentSettings, Features, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
 use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, SettingsError, Twist};
 use mapper::{Mapper, MapperSettings, ReadingError};
 use robot::{Autonomous, Belief, GoalSelector, Pilot, explore};
 use serde::Serialize;
-use sim::physics::{DriveKind, PhysicsWorld, WorldSpec};
+use sim::physics::{BehaviorSpec, DriveKind, PhysicsWorld, WorldSpec};
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 /// The side of the patches over which goal weights are averaged, m.
@@ -194,13 +195,20 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         let strategies = pilot.strategies(Features::default()).into_iter();
         RunResults {
             map: map_scores(mapper, truth),
+            reachable: reachable_scores(mapper, truth, &world.spec().visible_cells()),
             changing: observer.changing.scores(),
+            predicted: observer.prediction.scores(),
             rates: rate_scores(mapper, truth),
             age: age(mapper, truth),
             block_latency,
             free_latency,
             collisions,
             contacts_while_standing,
+            contacts: Contacts {
+                own_motion: observer.own_contacts,
+                run_into: contacts_while_standing + collisions - observer.own_contacts,
+            },
+            longest_standstill_s: longest_standstill_s(world, observer),
             goals: pilot.goals(),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
             things: observer.things.reports().cloned().collect(),
@@ -209,4 +217,11 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             liveliest: Liveliest::of(mapper),
         }
     }
+}
+
+/// The longest standstills of the robots that can move, by name.
+fn longest_standstill_s(world: &PhysicsWorld, observer: &Observer) -> BTreeMap<String, f64> {
+    let robots = world.spec().robots.iter().zip(observer.standstills.longest_s());
+    let moving = robots.filter(|(robot, _)| robot.behavior != BehaviorSpec::Standing);
+    moving.map(|(robot, longest_s)| (robot.name.clone(), *longest_s)).collect()
 }

@@ -1,6 +1,8 @@
 //! The results of a run in a physics world: `summary.json`, and a few lines for the terminal.
 
-use crate::metrics::{Age, ChangingScores, Delays, MapScores, RateScores, ThingReport};
+use crate::metrics::{
+    Age, ChangingScores, Delays, MapScores, PredictedScores, RateScores, ReachableScores, ThingReport,
+};
 use crate::percent::percent;
 use mapper::Mapper;
 use robot::GoalCount;
@@ -60,9 +62,14 @@ pub struct RunResults {
     /// Coverage and map quality at the end.
     #[serde(flatten)]
     pub map: MapScores,
+    /// The same at the end, over the cells that the robot could see from some pose that it can reach.
+    #[serde(flatten)]
+    pub reachable: ReachableScores,
     /// The accuracy on swept cells over the run; `null` if there were no such cells.
     #[serde(flatten)]
     pub changing: ChangingScores,
+    /// The quality of the predicted map on swept cells out of view, over the run.
+    pub predicted: PredictedScores,
     /// The estimated rates compared with the true rates.
     #[serde(flatten)]
     pub rates: RateScores,
@@ -76,6 +83,11 @@ pub struct RunResults {
     pub collisions: usize,
     /// The number of contacts of the curious robot that began while it stood still.
     pub contacts_while_standing: usize,
+    /// The same contacts, by cause.
+    pub contacts: Contacts,
+    /// For each robot that can move, by name, the longest time for which it did not move farther than 0.1 m from a
+    /// position, s.
+    pub longest_standstill_s: BTreeMap<String, f64>,
     /// The goals by outcome.
     pub goals: GoalCount,
     /// For each strategy, the share of the goals that it selected.
@@ -89,6 +101,15 @@ pub struct RunResults {
     pub map_hash: String,
     /// The area in which the map changes most often.
     pub liveliest: Option<Liveliest>,
+}
+
+/// The number of contacts of the curious robot, by cause.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Contacts {
+    /// Those in which the curious robot drove into the other body, by the motion of its own drive.
+    pub own_motion: usize,
+    /// Those in which the other body ran into the curious robot.
+    pub run_into: usize,
 }
 
 /// The area in which the map changes most often.
@@ -172,11 +193,12 @@ impl fmt::Display for RunResults {
             let shares: Vec<String> = self.strategy_share.iter().map(share).collect();
             lines.push(("chosen", shares.join(", ")));
         }
+        lines.extend(self.standstills().map(|text| ("stood", text)));
         for (name, text) in lines {
             writeln!(f, "  {name:<9} {text}")?;
         }
-        let (moving, standing) = (self.collisions, self.contacts_while_standing);
-        write!(f, "  contacts  {moving} while the robot moved, {standing} while it stood still")
+        let Contacts { own_motion, run_into } = self.contacts;
+        write!(f, "  contacts  {own_motion} by its own motion, {run_into} in which something ran into it")
     }
 }
 
@@ -184,12 +206,22 @@ impl RunResults {
     /// The seen part of the map, and its age.
     fn seen(&self) -> String {
         let Age { max_s, never_seen, .. } = self.age;
-        let seen = format!("{} of the cells that can be seen", percent(self.map.coverage));
+        let [reachable, all] = [self.reachable.coverage_reachable, self.map.coverage].map(percent);
+        let seen = format!(
+            "{reachable} of the cells in sight of reachable places, {all} of free cells and their borders"
+        );
         match never_seen {
             0 => format!("{seen}; every cell was seen in the last {:.0} s", max_s.ceil()),
             1 => format!("{seen}; 1 cell was never seen"),
             cells => format!("{seen}; {cells} cells were never seen"),
         }
+    }
+
+    /// The robots that stood still for a minute or longer; `None` if no robot did.
+    fn standstills(&self) -> Option<String> {
+        let stood = self.longest_standstill_s.iter().filter(|(_, longest_s)| **longest_s >= 60.0);
+        let stood: Vec<String> = stood.map(|(name, longest_s)| format!("{name} {longest_s:.0} s")).collect();
+        (!stood.is_empty()).then(|| format!("longest time without moving 0.1 m: {}", stood.join(", ")))
     }
 
     /// The errors of the estimated rates, in words; empty if nothing changed.
@@ -250,13 +282,19 @@ mod tests {
     fn results(coverage: f64, age: Age, rates: RateScores) -> RunResults {
         RunResults {
             map: MapScores { coverage, map_quality: 0.9999 },
+            reachable: ReachableScores { coverage_reachable: coverage, map_quality_reachable: 0.9999 },
             changing: ChangingAccuracy::default().scores(),
+            predicted: PredictedScores::default(),
             rates,
             age,
             block_latency: Delays::default(),
             free_latency: Delays::default(),
             collisions: 0,
             contacts_while_standing: 0,
+            contacts: Contacts { own_motion: 1, run_into: 2 },
+            longest_standstill_s: [("cat", 312.4), ("dummy", 3.0)]
+                .map(|(name, s)| (name.to_owned(), s))
+                .into(),
             goals: GoalCount::default(),
             strategy_share: BTreeMap::new(),
             things: Vec::new(),
@@ -279,13 +317,14 @@ mod tests {
         };
         let age = Age { mean_s: 60.0, max_s: 600.0, never_seen: 2 };
         insta::assert_snapshot!(results(0.99999, age, rates), @"
-          seen      >99.9 % of the cells that can be seen; 2 cells were never seen
+          seen      >99.9 % of the cells in sight of reachable places, >99.9 % of free cells and their borders; 2 cells were never seen
           map       >99.9 % correct now; 0 false changes on 50000 static cells
           changes   none seen
           rates     mean error 251.0 % over all changing cells, 29.0 % over the 43 in view for 3 cycles or more
                     log error 0.91, mean over moving things: 0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate
                     AUC 0.83: how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance
-          contacts  0 while the robot moved, 0 while it stood still
+          stood     longest time without moving 0.1 m: cat 312 s
+          contacts  1 by its own motion, 2 in which something ran into it
         ");
     }
 
@@ -293,10 +332,11 @@ mod tests {
     fn a_complete_map_without_changes_is_short() {
         let age = Age { mean_s: 60.0, max_s: 431.0, never_seen: 0 };
         insta::assert_snapshot!(results(1.0, age, RateScores::default()), @"
-          seen      100.0 % of the cells that can be seen; every cell was seen in the last 431 s
+          seen      100.0 % of the cells in sight of reachable places, 100.0 % of free cells and their borders; every cell was seen in the last 431 s
           map       >99.9 % correct now; 0 false changes on 0 static cells
           changes   none seen
-          contacts  0 while the robot moved, 0 while it stood still
+          stood     longest time without moving 0.1 m: cat 312 s
+          contacts  1 by its own motion, 2 in which something ran into it
         ");
     }
 }

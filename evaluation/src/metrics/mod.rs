@@ -9,13 +9,17 @@ mod changing;
 mod latency;
 mod map;
 mod mean;
+mod prediction;
 mod rates;
+mod standstill;
 mod things;
 
-pub use changing::{BrierScores, ChangingAccuracy, ChangingScores, Prediction};
+pub use changing::{ChangingAccuracy, ChangingScores};
 pub use latency::{Delays, Latency};
-pub use map::{Age, MapScores, age, map_scores};
+pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
+pub use prediction::{PredictedScores, Prediction};
 pub use rates::{MAX_LOG_ERROR, RateErrors, RateScores, log_error, mean_log_error, rate_scores};
+pub use standstill::Standstills;
 pub use things::{ThingReport, Things};
 
 #[cfg(test)]

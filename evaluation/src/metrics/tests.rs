@@ -111,7 +111,7 @@ fn a_robot_that_sees_everything_is_correct() {
     accuracy.sample(&mapper, world.truth());
     prediction.sample(&mapper, world.truth());
     assert_eq!(accuracy.scores().all, Some(1.0));
-    assert!(prediction.scores().model.is_none(), "nothing is out of view");
+    assert!(prediction.scores().brier.is_none(), "nothing is out of view");
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn a_robot_that_sees_nothing_is_incorrect_by_definition() {
     prediction.sample(&mapper, world.truth());
     let scores = prediction.scores();
     assert_eq!(accuracy.scores().all, Some(0.0));
-    assert_eq!((scores.model, scores.last_seen), (Some(0.25), Some(0.25)));
+    assert_eq!((scores.brier, scores.brier_last_seen), (Some(0.25), Some(0.25)));
 }
 
 #[test]
@@ -160,5 +160,5 @@ fn an_old_map_is_incorrect_where_things_have_moved() {
     prediction.sample(&mapper, world.truth());
     // Of three free changing cells two are right, of two blocked ones one.
     assert_eq!(accuracy.scores().all, Some((2.0 / 3.0 + 0.5) / 2.0));
-    assert_eq!(prediction.scores().last_seen, Some(2.0 / 5.0));
+    assert_eq!(prediction.scores().brier_last_seen, Some(2.0 / 5.0));
 }

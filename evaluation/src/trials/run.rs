@@ -172,9 +172,9 @@ impl Measured {
             coverage: map.coverage,
             false_rate: rates.false_rate_hz,
             changing_share: self.steps_near_changes as f64 / self.steps as f64,
-            brier: or_nan(brier.model),
-            brier_last_seen: or_nan(brier.last_seen),
-            brier_mean: or_nan(brier.average),
+            brier: or_nan(brier.brier),
+            brier_last_seen: or_nan(brier.brier_last_seen),
+            brier_mean: or_nan(brier.brier_mean),
         }
     }
 }

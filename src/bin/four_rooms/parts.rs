@@ -7,6 +7,7 @@ use anyhow::{Context, anyhow};
 use controller::DiffDrive;
 use curious::keyboard::Keyboard;
 use curious::program::{Failure, input};
+use curious::reachability;
 use curious::terminal::say;
 use curious::worlds::{self, Loaded};
 use evaluation::physics_trial::PhysicsSettings;
@@ -36,6 +37,7 @@ impl Parts {
         }
         let Loaded { spec, warnings } = worlds::load(&args.world).map_err(input)?;
         warnings.iter().chain(&combination::odometry(&spec)).for_each(warn);
+        reachability::warnings(spec.fleet()).iter().for_each(warn);
         let settings = PhysicsSettings::of(&spec).with_context(|| format!("cannot run `{}`", args.world));
         let mut settings = settings.map_err(input)?;
         settings.mapper.estimator = args.estimator.clone();

@@ -2,6 +2,7 @@
 
 use crate::flood::flood;
 use interfaces::{Cell, Grid};
+use std::mem::replace;
 
 /// The maximum number of parts that are named one by one.
 const MAX_NAMED: usize = 5;
@@ -10,7 +11,7 @@ const MAX_NAMED: usize = 5;
 /// walls. Blocks are ignored, since they move.
 pub(in crate::grid) fn connected(walls: &Grid<bool>, start: Cell) -> Vec<bool> {
     let mut reached = vec![false; walls.frame().len()];
-    flood(walls.frame(), start, |index| !walls.cells()[index], &mut reached);
+    flood(walls.frame(), start, |index| !walls.cells()[index] && !replace(&mut reached[index], true));
     reached
 }
 
@@ -22,7 +23,10 @@ pub(in crate::grid) fn warnings(walls: &Grid<bool>, start: Cell) -> Vec<String> 
     for index in 0..frame.len() {
         if !walls.cells()[index] && !reached[index] {
             let cell = frame.cell(index);
-            parts.push((cell, flood(frame, cell, |index| !walls.cells()[index], &mut reached)));
+            parts.push((
+                cell,
+                flood(frame, cell, |index| !walls.cells()[index] && !replace(&mut reached[index], true)),
+            ));
         }
     }
     let name = |(cell, count): &(Cell, usize)| {

@@ -1,6 +1,6 @@
 use super::{Bodies, unpack};
 use crate::physics::report::Body;
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use rapier2d::prelude as rapier;
 
 /// Bodies that are farther apart than this do not touch any more, m. The distance of a lasting contact varies by
@@ -12,6 +12,8 @@ pub(in crate::physics) struct Touch {
     pub(in crate::physics) with: Body,
     /// The point of the deepest penetration, m.
     pub(in crate::physics) at: Point2<f64>,
+    /// The direction from the robot to the other body at the contact, a unit vector.
+    pub(in crate::physics) towards: Vector2<f64>,
     /// The ends of the line of contact, m.
     pub(in crate::physics) ends: [Point2<f64>; 2],
     /// The impulse of the last step, N·s; 0: the bodies have not separated yet.
@@ -36,9 +38,12 @@ impl Bodies {
             let mut touching = manifold.points.iter().filter(|contact| contact.dist < SEPARATE_M);
             let first = touching.next().unwrap_or(deepest);
             let ends = [first, touching.next_back().unwrap_or(first)].map(at);
-            let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
+            let (other, sign) =
+                if pair.collider1 == own { (pair.collider2, 1.0) } else { (pair.collider1, -1.0) };
             let with = unpack(self.world.colliders[other].user_data);
-            Some(Touch { with, at: at(deepest), ends, impulse_ns })
+            let normal = manifold.data.normal;
+            let towards = Vector2::new(f64::from(normal.x), f64::from(normal.y)) * sign;
+            Some(Touch { with, at: at(deepest), towards, ends, impulse_ns })
         })
     }
 }

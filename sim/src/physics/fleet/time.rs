@@ -2,6 +2,7 @@
 
 use super::{Controller, Fleet};
 use crate::physics::bodies::Touch;
+use crate::physics::command::Velocity;
 use crate::physics::form::Form;
 use crate::physics::obstacles::{Blockers, Obstacle};
 use crate::physics::rays::Scratch;
@@ -116,7 +117,7 @@ impl Fleet {
         for (index, robot) in self.robots.iter_mut().enumerate() {
             let mut touching = Vec::new();
             robot.pressed_bumpers = 0;
-            for Touch { with, at, ends, impulse_ns } in self.bodies.touches(index) {
+            for Touch { with, at, towards, ends, impulse_ns } in self.bodies.touches(index) {
                 let touched_before = robot.touching.contains(&with);
                 if impulse_ns <= 0.0 && !touched_before {
                     continue;
@@ -125,8 +126,10 @@ impl Fleet {
                     robot.pressed_bumpers |= bumper::pressed(spec, &robot.pose, &ends);
                 }
                 if !touched_before {
-                    let moving = robot.drove;
-                    self.contacts.push(Contact { time_s, robot: index, with, at, moving, impulse_ns });
+                    let moving = robot.driven != Velocity::STOP;
+                    let speed_mps = robot.speed_mps(&at, &towards);
+                    let contact = Contact { time_s, robot: index, with, at, moving, speed_mps, impulse_ns };
+                    self.contacts.push(contact);
                 }
                 touching.push(with);
             }

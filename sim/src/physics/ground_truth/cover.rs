@@ -11,7 +11,11 @@ const SLIVER: f64 = 1e-6;
 
 /// Calls `visit` with the index of every cell of the frame that a rectangle overlaps by more than a touch, and whether the
 /// rectangle covers the whole cell. Row by row from the bottom.
-pub(super) fn box_cells(frame: &GridFrame, shape: &Rectangle, mut visit: impl FnMut(usize, bool)) {
+pub(in crate::physics) fn box_cells(
+    frame: &GridFrame,
+    shape: &Rectangle,
+    mut visit: impl FnMut(usize, bool),
+) {
     let half_cell_m = frame.resolution_m() / 2.0;
     let (low, high) = shape.bounds();
     let (cos, sin) = (shape.pose.rotation.re.abs(), shape.pose.rotation.im.abs());
@@ -32,7 +36,7 @@ pub(super) fn box_cells(frame: &GridFrame, shape: &Rectangle, mut visit: impl Fn
 }
 
 /// Calls `visit` with the cells that the body of a robot overlaps, like [`box_cells`].
-pub(super) fn form_cells(frame: &GridFrame, form: &Form, visit: impl FnMut(usize, bool)) {
+pub(in crate::physics) fn form_cells(frame: &GridFrame, form: &Form, visit: impl FnMut(usize, bool)) {
     match form {
         Form::Disc { center, radius_m } => disc_cells(frame, center, *radius_m, visit),
         Form::Convex(corners) => convex_cells(frame, form, corners, visit),

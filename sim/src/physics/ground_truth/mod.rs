@@ -1,9 +1,10 @@
 //! The ground truth of every cell.
 
-mod cover;
+pub(super) mod cover;
 mod start;
 #[cfg(test)]
 mod tests;
+mod visible;
 
 use super::form::Form;
 use super::report::Body;

@@ -4,6 +4,7 @@ use super::cover;
 use crate::flood::flood;
 use crate::physics::shape::Rectangle;
 use interfaces::{Cell, GridFrame, TrueState};
+use std::mem::replace;
 
 /// The state of a cell of which a share is not covered.
 pub(super) fn state_of(open_share: f64) -> TrueState {
@@ -41,7 +42,7 @@ pub(super) fn walls_cover(frame: &GridFrame, walls: &[Rectangle]) -> Vec<TrueSta
 /// along an oblique wall these lead to the cells inside of the wall.
 pub(super) fn reachable(frame: &GridFrame, walls: &[TrueState], start: Cell) -> Vec<bool> {
     let mut reached = vec![false; frame.len()];
-    flood(frame, start, |index| walls[index] == TrueState::Free, &mut reached);
+    flood(frame, start, |index| walls[index] == TrueState::Free && !replace(&mut reached[index], true));
     let is_fringe = |index: &usize| {
         let mut near = frame.cell(*index).neighbours8().into_iter().filter_map(|near| frame.index(near));
         walls[*index] == TrueState::PartlyCovered && near.any(|near| reached[near])

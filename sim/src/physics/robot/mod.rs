@@ -16,7 +16,7 @@ use super::sensors::{Platform, Sensor, SensorReading, Surroundings};
 use super::snapshot::{Values, pose, value};
 use super::spec::RobotSpec;
 use interfaces::{LaserReading, Purpose, RandomStream};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::{Isometry2, Point2, Vector2};
 use odometry::Odometry;
 use std::sync::Arc;
 
@@ -30,8 +30,8 @@ pub(super) struct Robot {
     /// The true pose before the last step.
     pub(super) previous_pose: Isometry2<f64>,
     pub(super) velocity: Velocity,
-    /// Whether the drive moved the robot in the last step.
-    pub(super) drove: bool,
+    /// The velocity that the drive gave the robot in the last step.
+    pub(super) driven: Velocity,
     /// The bodies that the robot touches now.
     pub(super) touching: Vec<Body>,
     /// The bumpers that touch something, as bits.
@@ -61,7 +61,7 @@ impl Robot {
             pose,
             previous_pose: pose,
             velocity: Velocity::STOP,
-            drove: false,
+            driven: Velocity::STOP,
             touching: Vec::new(),
             pressed_bumpers: 0,
             command: Command::STOP,
@@ -79,7 +79,7 @@ impl Robot {
             pose(&mut self.pose),
             pose(&mut self.previous_pose),
             value(&mut self.velocity),
-            value(&mut self.drove),
+            value(&mut self.driven),
             value(&mut self.touching),
             value(&mut self.pressed_bumpers),
             value(&mut self.command),
@@ -179,8 +179,17 @@ impl Robot {
     /// Gives the body the velocity of the next step.
     pub(super) fn start_step(&mut self, bodies: &mut Bodies, step_s: f64) {
         self.velocity = self.drive.step(&self.command, self.odometry.pose(), step_s);
-        self.drove = self.velocity != Velocity::STOP;
+        self.driven = self.velocity;
         bodies.set_velocity(self.index, &self.velocity, step_s);
+    }
+
+    /// The speed of the drive in the last step at a point of the body (m), in the direction of a unit vector, m/s.
+    pub(super) fn speed_mps(&self, at: &Point2<f64>, direction: &Vector2<f64>) -> f64 {
+        let Velocity { forward_mps, left_mps, turn_radps } = self.driven;
+        let arm = at - self.previous_pose.translation.vector;
+        let velocity = self.previous_pose.rotation * Vector2::new(forward_mps, left_mps)
+            + Vector2::new(-arm.y, arm.x) * turn_radps;
+        velocity.dot(direction)
     }
 
     /// Takes over the pose and the velocity of the body after the step.

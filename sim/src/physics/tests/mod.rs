@@ -5,6 +5,7 @@ mod caster;
 mod energy;
 mod oracle;
 mod specs;
+mod visible;
 
 use super::*;
 use specs::{busy, crowd, four_rooms, heap, reckless, rooms};

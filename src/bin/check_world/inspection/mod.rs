@@ -6,6 +6,7 @@ mod runs;
 #[cfg(test)]
 mod tests;
 
+use curious::reachability;
 use curious::worlds::is_of_stage;
 use interfaces::printable;
 use std::path::Path;
@@ -93,16 +94,18 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
     let is_grid =
         text.parse::<toml::Table>().is_ok_and(|file| file.get("map").is_some_and(toml::Value::is_str));
     let outcome = if is_grid {
-        worldfile::grid::parse(name, text).map(|world| (grid::content(&world), world.warnings()))
+        worldfile::grid::parse(name, text).map(|world| {
+            (
+                grid::content(&world),
+                world.warnings().iter().map(|warning| format!("warning: {warning}")).collect(),
+            )
+        })
     } else {
         worldfile::physics::parse_fleet_with(name, text, files)
-            .map(|world| (physics::content("physics world", &world), Vec::new()))
+            .map(|world| (physics::content("physics world", &world), reachability::warnings(&world)))
     };
     match outcome {
-        Ok((content, warnings)) => {
-            let warnings = warnings.iter().map(|warning| format!("warning: {warning}")).collect();
-            Inspection { content: Some(content), warnings, ..Inspection::default() }
-        }
+        Ok((content, warnings)) => Inspection { content: Some(content), warnings, ..Inspection::default() },
         Err(error) => {
             let errors = error.messages().iter().map(|message| format!("error: {message}")).collect();
             Inspection { errors, error_count: error.count(), ..Inspection::default() }
@@ -112,7 +115,10 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
 
 fn stage_file(path: &Path) -> Inspection {
     let (world, findings) = stage::load(path, &Disk);
-    found(world.map(|world| physics::content("Stage world", &world)), &findings)
+    let warnings = world.as_ref().map(reachability::warnings).unwrap_or_default();
+    let mut inspection = found(world.map(|world| physics::content("Stage world", &world)), &findings);
+    inspection.warnings.extend(warnings);
+    inspection
 }
 
 fn ros_file(path: &Path) -> Inspection {

@@ -1,0 +1,88 @@
+//! Where a robot can drive.
+
+use super::form::Form;
+use super::ground_truth::cover;
+use super::shape::Rectangle;
+use super::spec::{FleetSpec, Motion, ObstacleSpec};
+use crate::flood::flood;
+use interfaces::GridFrame;
+use nalgebra::Point2;
+
+/// The cells around whose center the disc of a robot fits, divided into connected regions. Doors are open, obstacles
+/// that stand at the start are at their start, and robots and other moving things are away.
+#[derive(Clone, Debug)]
+pub struct FreeSpace {
+    frame: GridFrame,
+    /// The region of each cell; `None` where the disc does not fit.
+    regions: Vec<Option<usize>>,
+    /// The area of each region, m².
+    areas_m2: Vec<f64>,
+}
+
+impl FreeSpace {
+    /// The free space of a disc of `radius_m` in a world.
+    pub fn new(spec: &FleetSpec, radius_m: f64) -> Self {
+        let frame = spec.frame;
+        let mut is_free = vec![true; frame.len()];
+        for solid in solids(spec) {
+            let near = Rectangle { half_m: solid.half_m.add_scalar(radius_m), ..solid };
+            cover::box_cells(&frame, &near, |index, _| {
+                is_free[index] &= solid.distance_m(&frame.center(frame.cell(index))) >= radius_m;
+            });
+        }
+        let cell_m2 = frame.resolution_m() * frame.resolution_m();
+        let (mut regions, mut areas_m2) = (vec![None; frame.len()], Vec::new());
+        for index in 0..frame.len() {
+            let region = Some(areas_m2.len());
+            let enter = |index: usize| {
+                let is_new = is_free[index] && regions[index].is_none();
+                if is_new {
+                    regions[index] = region;
+                }
+                is_new
+            };
+            let count = flood(&frame, frame.cell(index), enter);
+            if count > 0 {
+                areas_m2.push(count as f64 * cell_m2);
+            }
+        }
+        Self { frame, regions, areas_m2 }
+    }
+
+    /// The region of each cell of the frame; `None` where the disc does not fit.
+    pub fn regions(&self) -> &[Option<usize>] {
+        &self.regions
+    }
+
+    /// The area of each region, m².
+    pub fn areas_m2(&self) -> &[f64] {
+        &self.areas_m2
+    }
+
+    /// The largest region with a cell that overlaps the disc of `radius_m` around `at` (m); `None` without such a cell.
+    /// With the radius of a robot this is the region of a robot that stands there: the center of the robot need not be
+    /// the center of a cell.
+    pub fn region_near(&self, at: &Point2<f64>, radius_m: f64) -> Option<usize> {
+        let mut found: Option<usize> = None;
+        cover::form_cells(&self.frame, &Form::Disc { center: *at, radius_m }, |index, _| {
+            let is_larger =
+                |region: &usize| found.is_none_or(|found| self.areas_m2[*region] > self.areas_m2[found]);
+            found = self.regions[index].filter(is_larger).or(found);
+        });
+        found
+    }
+}
+
+/// The walls, and the obstacles that stand there when the robots start, unless they move away by themselves.
+pub(super) fn solids(spec: &FleetSpec) -> Vec<Rectangle> {
+    spec.walls.iter().copied().chain(spec.obstacles.iter().filter_map(standing)).collect()
+}
+
+fn standing(obstacle: &ObstacleSpec) -> Option<Rectangle> {
+    match &obstacle.motion {
+        _ if obstacle.appears_s.is_some() => None,
+        Motion::Door(door) => Some(door.shape(&obstacle.shape, 1.0)),
+        Motion::Fixed | Motion::Pushed(_) => Some(obstacle.shape),
+        Motion::Path(_) => None,
+    }
+}

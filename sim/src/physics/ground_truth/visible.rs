@@ -1,0 +1,88 @@
+//! The cells that the driven robot could see, wherever it drives.
+
+use super::start;
+use crate::physics::free_space::{FreeSpace, solids};
+use crate::physics::rays::{Beams, Scene, Scratch};
+use crate::physics::shape::Rectangle;
+use crate::physics::spec::WorldSpec;
+use interfaces::{Cell, GridFrame, TrueState};
+use nalgebra::{Isometry2, Point2, Vector2};
+use std::f64::consts::{PI, TAU};
+
+/// The number of directions in which a line of sight is searched.
+const DIRECTIONS: usize = 360;
+/// The distance of the points that see a blocked cell from its sides, as a share of the side.
+const OUTSIDE: f64 = 1e-3;
+
+impl WorldSpec {
+    /// For every cell of the frame, whether the driven robot could see it from a pose in the [`FreeSpace`] around
+    /// its start, within the range of its main laser: with doors open, obstacles at their start, and other moving things
+    /// away. Cells that are partly covered then are left out.
+    ///
+    /// Lines of sight are searched in 360 directions from each cell, against the exact geometry.
+    pub fn visible_cells(&self) -> Vec<bool> {
+        let (frame, robot) = (&self.frame, self.driven());
+        let (solids, space) = (solids(self), FreeSpace::new(self, robot.radius_m));
+        let states = start::walls_cover(frame, &solids);
+        let own = space.region_near(&robot.pose.translation.vector.into(), robot.radius_m);
+        let reached: Vec<bool> =
+            space.regions().iter().map(|region| region.is_some() && *region == own).collect();
+        let range_m = robot.laser.range_max_m;
+        let mut sight = Sight::new(frame, &solids, range_m, &reached);
+        let is_visible = |index: usize| match states[index] {
+            _ if reached[index] => true,
+            TrueState::Free => sight.reaches(frame.center(frame.cell(index))),
+            TrueState::PartlyCovered => false,
+            TrueState::Blocked => {
+                let cell = frame.cell(index);
+                let sides = frame.beside(index).filter(|side| states[*side] != TrueState::Blocked);
+                Vec::from_iter(sides).into_iter().any(|side| sight.reaches(before(frame, cell, side)))
+            }
+        };
+        (0..frame.len()).map(is_visible).collect()
+    }
+}
+
+/// The point just outside of a cell, before the middle of the side that it shares with the cell `side`.
+fn before(frame: &GridFrame, cell: Cell, side: usize) -> Point2<f64> {
+    let (center, other) = (frame.center(cell), frame.center(frame.cell(side)));
+    center + (other - center) * (0.5 + OUTSIDE)
+}
+
+/// Lines of sight between points and poses that the robot can reach.
+struct Sight<'a> {
+    frame: &'a GridFrame,
+    reached: &'a [bool],
+    range_m: f64,
+    beams: Beams,
+    scene: Scene,
+    scratch: Scratch,
+}
+
+impl<'a> Sight<'a> {
+    fn new(frame: &'a GridFrame, solids: &[Rectangle], range_m: f64, reached: &'a [bool]) -> Self {
+        let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
+        let corners = (frame.origin(), frame.origin() + size);
+        let mut scene = Scene::new(corners, solids, Vec::new(), 0, range_m);
+        scene.sort();
+        let beams = Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m);
+        Self { frame, reached, range_m, beams, scene, scratch: Scratch::default() }
+    }
+
+    /// Whether a straight line from a point to a reached cell meets nothing.
+    fn reaches(&mut self, from: Point2<f64>) -> bool {
+        let Self { frame, reached, range_m, beams, scene, scratch } = self;
+        scene.cast(
+            beams,
+            &Isometry2::from_parts(from.into(), nalgebra::UnitComplex::identity()),
+            usize::MAX,
+            scratch,
+        );
+        let step_m = frame.resolution_m() / 2.0;
+        beams.directions().zip(&scratch.inverse).any(|((x, y), inverse)| {
+            let steps = (range_m.min(1.0 / inverse) / step_m) as usize;
+            let at = |step: usize| from + Vector2::new(x, y) * (step as f64 * step_m);
+            (0..steps).any(|step| frame.index(frame.cell_at(&at(step))).is_some_and(|cell| reached[cell]))
+        })
+    }
+}
