@@ -27,6 +27,7 @@ fn the_output_folder_is_complete() {
             "map.pgm",
             "map.yaml",
             "occupancy.png",
+            "predicted.png",
             "recency.png",
             "summary.json",
             "trajectory.png",
@@ -78,7 +79,7 @@ fn the_recording_agrees_with_the_summary() {
         entities.iter().filter(bodies).collect::<Vec<_>>(),
         ["/world/robots/curious/body", "/world/robots/dummy/body"]
     );
-    for part in ["occupancy", "interval", "recency", "change_probability"] {
+    for part in ["occupancy", "interval", "recency", "change_probability", "predicted"] {
         assert!(entities.contains(&format!("/world/maps/{part}/cells")), "{part} in {entities:?}");
     }
     assert!((recording.end_s() - 240.0).abs() < 1e-6, "{}", recording.end_s());
@@ -137,7 +138,9 @@ fn map_and_table_tell_the_same_of_every_cell() {
 
 #[test]
 fn the_pictures_are_pictures() {
-    for name in ["figure5", "occupancy", "interval", "recency", "change_probability", "trajectory"] {
+    for name in
+        ["figure5", "occupancy", "interval", "recency", "change_probability", "predicted", "trajectory"]
+    {
         let picture = image::open(RUN.out(&format!("{name}.png"))).unwrap().into_rgb8();
         assert!(picture.width() >= 400 && picture.height() >= 400, "{name}");
         let colours: std::collections::BTreeSet<_> = picture.pixels().map(|pixel| pixel.0).collect();

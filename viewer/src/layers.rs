@@ -17,6 +17,8 @@ pub enum Layer {
     ChangeProbability,
     /// The time since the cell was last seen, s or steps.
     Recency,
+    /// The probability that the cell is blocked now, for cells that change: the map as predicted.
+    Predicted,
 }
 
 /// A cell that was never seen. Class 0 stays unused: the viewer draws nothing for it.
@@ -66,7 +68,8 @@ impl Scale {
 
 impl Layer {
     /// Every layer, in the order in which they are shown.
-    pub const ALL: [Self; 4] = [Self::Occupancy, Self::Interval, Self::ChangeProbability, Self::Recency];
+    pub const ALL: [Self; 5] =
+        [Self::Occupancy, Self::Interval, Self::ChangeProbability, Self::Recency, Self::Predicted];
 
     /// The name in entity paths and file names.
     pub fn name(self) -> &'static str {
@@ -75,6 +78,7 @@ impl Layer {
             Self::Interval => "interval",
             Self::ChangeProbability => "change_probability",
             Self::Recency => "recency",
+            Self::Predicted => "predicted",
         }
     }
 
@@ -85,6 +89,7 @@ impl Layer {
             Self::Interval => format!("Change interval: {} per cycle", unit.plural()),
             Self::ChangeProbability => "Probability of a change since last seen".into(),
             Self::Recency => format!("Recency: {} since last seen", unit.plural()),
+            Self::Predicted => "Predicted: probability of being blocked now".into(),
         }
     }
 
@@ -96,11 +101,11 @@ impl Layer {
             (Self::Interval, TimeUnit::Second) => (5.0, 500.0, &[5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]),
             // From a block that moves in every step to a block that stands for hundreds of steps.
             (Self::Interval, TimeUnit::Step) => (5.0, 2000.0, &[5.0, 20.0, 50.0, 200.0, 500.0, 2000.0]),
-            (Self::ChangeProbability, _) => (0.0, 1.0, &[0.0, 0.25, 0.5, 0.75, 1.0]),
+            (Self::ChangeProbability | Self::Predicted, _) => (0.0, 1.0, &[0.0, 0.25, 0.5, 0.75, 1.0]),
             (Self::Recency, TimeUnit::Second) => (1.0, 1000.0, &[1.0, 10.0, 100.0, 1000.0]),
             (Self::Recency, TimeUnit::Step) => (1.0, 5000.0, &[1.0, 10.0, 100.0, 1000.0]),
         };
-        Some(Scale { low, high, is_log: self != Self::ChangeProbability, ticks })
+        Some(Scale { low, high, is_log: high > 1.0, ticks })
     }
 
     /// The class of every cell of the mapper's frame, in row-major order.
@@ -121,6 +126,7 @@ impl Layer {
             if interval.is_finite() {
                 classes[index] = scale.class(match self {
                     Self::Interval => interval,
+                    Self::Predicted => mapper.blocked_probability(index),
                     _ => mapper.change_probability(index),
                 });
             }
@@ -145,6 +151,7 @@ impl Layer {
             (Self::Interval, _) => gradient(colorous::INFERNO, 0.12 + 0.78 * position),
             // Without the lightest part, which is similar to a free cell, and without grays, as those of a wall.
             (Self::ChangeProbability, _) => gradient(colorous::YELLOW_ORANGE_RED, 0.25 + 0.75 * position),
+            (Self::Predicted, _) => gradient(colorous::RED_PURPLE, 0.3 + 0.7 * position),
             (Self::Recency | Self::Occupancy, _) => gradient(colorous::VIRIDIS, 1.0 - position),
         }
     }
@@ -159,7 +166,7 @@ impl Layer {
         match self {
             Self::Occupancy => vec![(FREE, "free"), (BLOCKED, "blocked"), (UNKNOWN, "never seen")],
             Self::Recency => vec![(UNKNOWN, "never seen")],
-            Self::Interval | Self::ChangeProbability => {
+            Self::Interval | Self::ChangeProbability | Self::Predicted => {
                 vec![(FREE, "free, no change"), (BLOCKED, "blocked, no change"), (UNKNOWN, "never seen")]
             }
         }
@@ -180,7 +187,9 @@ impl Layer {
                 let edge = |step: u8| scale.value(f64::from(step) / f64::from(STEPS));
                 let (from, to) = (edge(step), edge(step + 1));
                 let text = match self {
-                    Self::ChangeProbability => format!("{:.0}–{:.0} %", 100.0 * from, 100.0 * to),
+                    Self::ChangeProbability | Self::Predicted => {
+                        format!("{:.0}–{:.0} %", 100.0 * from, 100.0 * to)
+                    }
                     _ if step == STEPS - 1 => format!("{from:.0} {symbol} or more"),
                     _ if to < 20.0 => format!("{from:.1}–{to:.1} {symbol}"),
                     _ => format!("{from:.0}–{to:.0} {symbol}"),

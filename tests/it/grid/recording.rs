@@ -48,7 +48,7 @@ fn a_recording_agrees_with_its_world_and_its_trial() {
 
     // The field of view moves with the robot, and the maps exist.
     let entities = recording.entities();
-    for part in ["occupancy", "interval", "change_probability", "recency"] {
+    for part in ["occupancy", "interval", "change_probability", "recency", "predicted"] {
         assert!(recording.times(&format!("/world/maps/{part}/cells"), "step").len() > 10, "{part}");
     }
     assert!(recording.times("/world/field_of_view/cells", "step").len() > 100);

@@ -23,7 +23,7 @@ use std::path::Path;
 /// The panels of Figure 5, in its order.
 const FIGURE_5: [Layer; 3] = [Layer::Occupancy, Layer::Interval, Layer::ChangeProbability];
 
-/// Writes `figure5.png`, each of its panels and the recency as `<layer>.png`, and `trajectory.png` into
+/// Writes `figure5.png`, each layer of the map as `<layer>.png`, and `trajectory.png` into
 /// `folder`, which is created if needed. `trails` are in the order of the robots of the scene; `goals` are
 /// those of the curious robot.
 ///

@@ -26,8 +26,12 @@ pub(super) fn send(
     layout.set_time_sequence("blueprint", 0);
     let mut layout = Layout { stream: layout, scene, view, count: 0 };
     let left = [layout.scene()?, layout.log()?];
-    let maps = [Layer::Interval, Layer::ChangeProbability, Layer::Recency];
-    let maps = maps.into_iter().map(|layer| layout.map(layer)).collect::<Result<Vec<_>, _>>()?;
+    let others = [layout.map(Layer::Recency)?, layout.map(Layer::Predicted)?];
+    let maps = [
+        layout.map(Layer::Interval)?,
+        layout.map(Layer::ChangeProbability)?,
+        layout.container(ContainerKind::Tabs, &others, &[])?,
+    ];
     let curves = layout.curves()?;
     let columns = [
         layout.container(ContainerKind::Vertical, &left, &[4.5, 1.0])?,
