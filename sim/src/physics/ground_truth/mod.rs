@@ -1,6 +1,8 @@
 //! The ground truth of every cell.
 
+mod convex_cells;
 mod cover;
+mod open_share;
 mod start;
 #[cfg(test)]
 mod tests;
@@ -10,6 +12,7 @@ use super::report::Body;
 use super::shape::Rectangle;
 use interfaces::{Cell, GridFrame, GroundTruth, TrueChange, TrueState};
 use nalgebra::Point2;
+use open_share::Cover;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -31,6 +34,10 @@ pub struct PhysicsGroundTruth {
     /// The number of robots that overlap a cell, and the number of robots that cover all of the cell.
     overlapped: Vec<u16>,
     covered: Vec<u16>,
+    /// The cells under each robot, by index, and whether the robot covers all of the cell.
+    under: Vec<Vec<(u32, bool)>>,
+    /// Scratch memory for such a list.
+    spare: Vec<(u32, bool)>,
     /// Whether the cell has been free since it was last blocked, so that the next time is a new event.
     armed: Vec<bool>,
     block_events: Vec<u32>,
@@ -50,6 +57,8 @@ impl PhysicsGroundTruth {
             states: fixed.clone(),
             overlapped: vec![0; frame.len()],
             covered: vec![0; frame.len()],
+            under: Vec::new(),
+            spare: Vec::new(),
             armed: fixed.iter().map(|state| *state != TrueState::Blocked).collect(),
             block_events: vec![0; frame.len()],
             movers: vec![None; frame.len()],
@@ -75,25 +84,38 @@ impl PhysicsGroundTruth {
         self.elapsed_s = time_s;
     }
 
-    /// Puts a robot at its start, or moves the robot.
-    pub(super) fn move_robot(&mut self, body: Body, from: Option<&Form>, to: &Form) {
-        if from == Some(to) {
-            return;
+    /// Puts the robot with an index at its start, or moves the robot.
+    pub(super) fn move_robot(&mut self, robot: usize, to: &Form) {
+        let mut under = std::mem::take(&mut self.spare);
+        under.clear();
+        cover::form_cells(&self.frame, to, |index, whole| under.push((index as u32, whole)));
+        if self.under.len() <= robot {
+            self.under.resize_with(robot + 1, Vec::new);
         }
-        let frame = self.frame;
-        cover::form_cells(&frame, to, |index, whole| {
+        let before = std::mem::replace(&mut self.under[robot], under);
+        if before != self.under[robot] {
+            self.cover_cells(robot, &before);
+        }
+        self.spare = before;
+    }
+
+    /// Moves a robot from the cells `before` to the cells that are now under it.
+    fn cover_cells(&mut self, robot: usize, before: &[(u32, bool)]) {
+        let after = std::mem::take(&mut self.under[robot]);
+        for &(index, whole) in &after {
+            let index = index as usize;
             self.overlapped[index] += 1;
             self.covered[index] += u16::from(whole);
-            self.movers[index].get_or_insert(body);
-        });
-        if let Some(from) = from {
-            cover::form_cells(&frame, from, |index, whole| {
-                self.overlapped[index] -= 1;
-                self.covered[index] -= u16::from(whole);
-                self.settle(index);
-            });
+            self.movers[index].get_or_insert(Body::Robot(robot));
         }
-        cover::form_cells(&frame, to, |index, _| self.settle(index));
+        for &(index, whole) in before {
+            let index = index as usize;
+            self.overlapped[index] -= 1;
+            self.covered[index] -= u16::from(whole);
+            self.settle(index);
+        }
+        after.iter().for_each(|&(index, _)| self.settle(index as usize));
+        self.under[robot] = after;
     }
 
     /// Updates the cells of an obstacle that has appeared or disappeared. `boxes` are the walls and obstacles that
@@ -105,18 +127,56 @@ impl PhysicsGroundTruth {
         boxes: &[Rectangle],
         mover: Option<Body>,
     ) -> Vec<Cell> {
-        let near: Vec<Rectangle> = boxes.iter().filter(|other| may_meet(shape, other)).copied().collect();
-        let (frame, mut cells) = (self.frame, Vec::new());
+        let mut cells = Vec::new();
+        let near = boxes.iter().filter(|other| may_meet(shape, other)).copied();
+        self.update_under(shape, Cover::new(&self.frame, near), mover, |cell| cells.push(cell), |_| false);
+        cells
+    }
+
+    /// Updates the cells of an obstacle that moved from `before` to `after`. `boxes` are the walls and obstacles that
+    /// are present now.
+    pub(super) fn move_box(
+        &mut self,
+        before: &Rectangle,
+        after: &Rectangle,
+        boxes: &[Rectangle],
+        mover: Body,
+    ) {
+        let near = |shape: &Rectangle| {
+            let near = boxes.iter().enumerate().filter(|(_, other)| may_meet(shape, other));
+            near.map(|(index, _)| index).collect::<Vec<_>>()
+        };
+        let [near_before, near_after] = [before, after].map(near);
+        let is_same = near_before == near_after;
+        let [was, is] = [near_before, near_after]
+            .map(|near| Cover::new(&self.frame, near.into_iter().map(|index| boxes[index])));
+        self.update_under(before, was, Some(mover), |_| (), |_| false);
+        // Most cells were under the shape before as well, and are known already.
+        let known = cover::BoxTest::new(&self.frame, before);
+        self.update_under(after, is, Some(mover), |_| (), |center| is_same && known.covers(center).is_some());
+    }
+
+    /// Updates the cells under `shape` where `is_known` does not hold for the center.
+    fn update_under(
+        &mut self,
+        shape: &Rectangle,
+        mut cover: Cover,
+        mover: Option<Body>,
+        mut visit: impl FnMut(Cell),
+        is_known: impl Fn(&Point2<f64>) -> bool,
+    ) {
+        let frame = self.frame;
         cover::box_cells(&frame, shape, |index, _| {
             let cell = frame.cell(index);
-            cells.push(cell);
-            self.fixed[index] = start::state_of(cover::open_share(&frame, cell, near.iter()));
+            visit(cell);
             if let Some(body) = mover {
                 self.movers[index].get_or_insert(body);
             }
-            self.settle(index);
+            if !is_known(&frame.center(cell)) {
+                self.fixed[index] = cover.state(&frame, cell);
+                self.settle(index);
+            }
         });
-        cells
     }
 
     /// Ends the setup: the states at the start are not events.
