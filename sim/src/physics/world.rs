@@ -89,7 +89,7 @@ impl PhysicsWorld {
         self.truth.set_time(time_s);
         for index in others(&self.spec) {
             let robot = self.fleet.robot(index);
-            if robot.pose != robot.previous_pose {
+            if robot.has_moved() {
                 self.truth.move_robot(index, &robot.form());
             }
         }

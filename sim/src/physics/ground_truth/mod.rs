@@ -42,6 +42,8 @@ pub struct PhysicsGroundTruth {
     armed: Vec<bool>,
     block_events: Vec<u32>,
     movers: Vec<Option<Body>>,
+    /// The cells that have a mover, one bit each.
+    swept: Vec<u64>,
     /// The cells that are connected with the start of the driven robot. Walls separate cells, obstacles do not.
     reachable: Vec<bool>,
     changes: Vec<TrueChange>,
@@ -62,6 +64,7 @@ impl PhysicsGroundTruth {
             armed: fixed.iter().map(|state| *state != TrueState::Blocked).collect(),
             block_events: vec![0; frame.len()],
             movers: vec![None; frame.len()],
+            swept: vec![0; frame.len().div_ceil(64)],
             reachable: start::reachable(&frame, &fixed, frame.cell_at(start)),
             changes: Vec::new(),
             fixed,
@@ -106,7 +109,7 @@ impl PhysicsGroundTruth {
             let index = index as usize;
             self.overlapped[index] += 1;
             self.covered[index] += u16::from(whole);
-            self.movers[index].get_or_insert(Body::Robot(robot));
+            self.sweep(index, Body::Robot(robot));
         }
         for &(index, whole) in before {
             let index = index as usize;
@@ -170,13 +173,21 @@ impl PhysicsGroundTruth {
             let cell = frame.cell(index);
             visit(cell);
             if let Some(body) = mover {
-                self.movers[index].get_or_insert(body);
+                self.sweep(index, body);
             }
             if !is_known(&frame.center(cell)) {
                 self.fixed[index] = cover.state(&frame, cell);
                 self.settle(index);
             }
         });
+    }
+
+    /// A moving thing touches a cell.
+    fn sweep(&mut self, index: usize, body: Body) {
+        if self.movers[index].is_none() {
+            self.movers[index] = Some(body);
+            self.swept[index / 64] |= 1 << (index % 64);
+        }
     }
 
     /// Ends the setup: the states at the start are not events.
@@ -246,6 +257,15 @@ impl GroundTruth for PhysicsGroundTruth {
 
     fn is_swept(&self, index: usize) -> bool {
         self.movers[index].is_some()
+    }
+
+    fn swept(&self) -> Cow<'_, [usize]> {
+        let words = self.swept.iter().enumerate().filter(|(_, word)| **word != 0);
+        let of_word = |(at, word): (usize, &u64)| {
+            let word = *word;
+            (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| 64 * at + bit)
+        };
+        words.flat_map(of_word).collect()
     }
 
     /// Obstacles first, then robots, each in the order of the world file. The computing time is that of a pass over
