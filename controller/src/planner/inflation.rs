@@ -22,31 +22,41 @@ impl Default for InflationSettings {
     }
 }
 
-/// A cell near a blocked cell, by its offset.
+/// A row of cells near a blocked cell: from `-reach` to `reach` columns away.
 #[derive(Clone, Copy, Debug)]
-struct Near {
-    dx: i32,
+struct NearRow {
     dy: i32,
-    is_lethal: bool,
+    /// The cells that have a higher cost or are lethal.
+    reach: i32,
+    /// The cells that are lethal; below 0: none.
+    lethal_reach: i32,
 }
 
-/// The number of blocked cells near a cell.
-#[derive(Clone, Copy, Debug, Default)]
-struct Count {
-    /// The number of blocked cells that are near enough to make the cell lethal.
-    lethal: u32,
-    /// The number of blocked cells that are near enough to raise the cost.
-    inflated: u32,
+/// For every cell the number of blocked cells that are near enough to make the cell lethal, and to raise its cost.
+#[derive(Clone, Debug)]
+struct Counts {
+    lethal: Vec<i32>,
+    inflated: Vec<i32>,
 }
 
-impl Count {
-    fn cost(self, inflation_cost: u8) -> u8 {
-        match self {
-            Self { lethal: 0, inflated: 0 } => FREE,
-            Self { lethal: 0, .. } => inflation_cost,
+impl Counts {
+    fn cost(&self, index: usize, inflation_cost: u8) -> u8 {
+        match (self.lethal[index], self.inflated[index]) {
+            (..=0, ..=0) => FREE,
+            (..=0, _) => inflation_cost,
             _ => LETHAL,
         }
     }
+}
+
+/// Adds `change` to every count; returns whether a count changed from or to 0.
+fn add_to_all(counts: &mut [i32], change: i32) -> bool {
+    // No early exit and no check for overflow: several counts at once. A count is at most the size of the stencil.
+    let first = if change > 0 { 1 } else { 0 };
+    counts.iter_mut().fold(false, |any, count| {
+        *count = count.wrapping_add(change);
+        any | (*count == first)
+    })
 }
 
 /// Converts the map into a costmap for the center of a round robot: a cell is lethal if the robot would touch a
@@ -58,8 +68,8 @@ impl Count {
 #[derive(Clone, Debug)]
 pub struct Inflation {
     costmap: Costmap,
-    stencil: Vec<Near>,
-    counts: Vec<Count>,
+    stencil: Vec<NearRow>,
+    counts: Counts,
     cost: u8,
 }
 
@@ -71,13 +81,14 @@ impl Inflation {
         let cells_of = |distance_m: f64| (radius_m + distance_m) / frame.resolution_m();
         let (lethal, inflated) = (cells_of(settings.footprint_padding_m), cells_of(settings.inflation_m));
         let stencil = stencil(lethal, inflated);
-        let mut counts = vec![Count::default(); frame.len()];
-        for (index, count) in counts.iter_mut().enumerate() {
+        let mut counts = Counts { lethal: vec![0; frame.len()], inflated: vec![0; frame.len()] };
+        for index in 0..frame.len() {
             let Cell { x, y } = frame.cell(index);
             let (right, top) = (frame.width() as i32 - 1 - x, frame.height() as i32 - 1 - y);
             // As if the nearest cell beyond the border were blocked.
             let gap = f64::from(x.min(y).min(right).min(top)) + 0.5;
-            *count = Count { lethal: (gap < lethal).into(), inflated: (gap < inflated).into() };
+            counts.lethal[index] = (gap < lethal).into();
+            counts.inflated[index] = (gap < inflated).into();
         }
         let cost = settings.inflation_cost.clamp(FREE, MAX_COST);
         let mut inflation = Self { costmap: Costmap::lethal(frame), stencil, counts, cost };
@@ -86,7 +97,8 @@ impl Inflation {
                 inflation.count_around(frame.cell(index), 1, |_, _, _| {});
             }
         }
-        inflation.costmap.set_costs(inflation.counts.iter().map(|count| count.cost(cost)));
+        let costs = (0..frame.len()).map(|index| inflation.counts.cost(index, cost));
+        inflation.costmap.set_costs(costs);
         inflation
     }
 
@@ -125,17 +137,27 @@ impl Inflation {
     /// of each cell whose cost may have changed.
     fn count_around(&mut self, center: Cell, change: i32, mut changed: impl FnMut(&mut Costmap, Cell, u8)) {
         let frame = *self.costmap.frame();
-        for near in &self.stencil {
-            let cell = Cell::new(center.x + near.dx, center.y + near.dy);
-            let Some(index) = frame.index(cell) else { continue };
-            let count = &mut self.counts[index];
-            let before = count.cost(self.cost);
-            count.inflated = count.inflated.saturating_add_signed(change);
-            if near.is_lethal {
-                count.lethal = count.lethal.saturating_add_signed(change);
+        let (width, height) = (frame.width() as i32, frame.height() as i32);
+        let Counts { lethal, inflated } = &mut self.counts;
+        let mut changed_rows = Vec::new();
+        for near in self.stencil.iter().filter(|near| (0..height).contains(&(center.y + near.dy))) {
+            let row = (center.y + near.dy) as usize * frame.width();
+            let cells = |reach: i32| {
+                let (first, last) = ((center.x - reach).max(0), (center.x + reach).min(width - 1));
+                row + first as usize..(row + (last + 1).max(first) as usize)
+            };
+            let mut has_changed = add_to_all(&mut inflated[cells(near.reach)], change);
+            if near.lethal_reach >= 0 {
+                has_changed |= add_to_all(&mut lethal[cells(near.lethal_reach)], change);
             }
-            let cost = count.cost(self.cost);
-            if before != cost {
+            if has_changed {
+                changed_rows.push(cells(near.reach));
+            }
+        }
+        for index in changed_rows.into_iter().flatten() {
+            let cell = frame.cell(index);
+            let cost = self.counts.cost(index, self.cost);
+            if self.costmap.cost(cell) != cost {
                 changed(&mut self.costmap, cell, cost);
             }
         }
@@ -143,21 +165,19 @@ impl Inflation {
 }
 
 /// The cells whose center is less than `inflated` (at least `lethal`) from the square of a blocked cell, in
-/// cells; the blocked cell is one of them.
-fn stencil(lethal: f64, inflated: f64) -> Vec<Near> {
+/// cells, row by row; the blocked cell is one of them.
+fn stencil(lethal: f64, inflated: f64) -> Vec<NearRow> {
     let reach = inflated.max(lethal).max(0.0).ceil() as i32 + 1;
-    let mut near = Vec::new();
-    for dy in -reach..=reach {
-        for dx in -reach..=reach {
-            let gap = |d: i32| (f64::from(d.abs()) - 0.5).max(0.0);
+    let gap = |d: i32| (f64::from(d.abs()) - 0.5).max(0.0);
+    let rows = (-reach..=reach).map(|dy| {
+        let within = |dx: i32, radius: f64| {
             let square = gap(dx) * gap(dx) + gap(dy) * gap(dy);
-            let within = |radius: f64| (dx, dy) == (0, 0) || radius > 0.0 && square < radius * radius;
-            if within(lethal.max(inflated)) {
-                near.push(Near { dx, dy, is_lethal: within(lethal) });
-            }
-        }
-    }
-    near
+            (dx, dy) == (0, 0) || radius > 0.0 && square < radius * radius
+        };
+        let farthest = |radius: f64| (0..=reach).take_while(|&dx| within(dx, radius)).last().unwrap_or(-1);
+        NearRow { dy, reach: farthest(lethal.max(inflated)), lethal_reach: farthest(lethal) }
+    });
+    rows.filter(|row| row.reach >= 0).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 use super::beams::Beams;
-use interfaces::{CellState, Event, GroundTruth, LaserReading, TrueState};
+use interfaces::{CellState, Event, GridFrame, GroundTruth, LaserReading, TrueState};
 use mapper::Mapper;
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -23,6 +23,9 @@ pub struct Delays {
 /// A true change of a cell. It begins with the end of the old state.
 #[derive(Clone, Copy, Debug)]
 struct Open {
+    /// The index and the center (m) of the cell.
+    index: usize,
+    center: Point2<f64>,
     event: Event,
     /// Whether the new state was reached. A cell that becomes only partly covered does not count.
     is_complete: bool,
@@ -37,7 +40,9 @@ struct Open {
 /// Measures the delay between a change that a laser shows and the change of the map.
 #[derive(Clone, Debug, Default)]
 pub struct Latency {
-    open: BTreeMap<usize, Open>,
+    open: Vec<Open>,
+    /// For each cell one more than the position of its change in `open`; 0 without an open change.
+    positions: Vec<u32>,
     noticed: [DelayCounts; 2],
     missed: [usize; 2],
 }
@@ -84,6 +89,7 @@ impl Latency {
         laser: &Isometry2<f64>,
     ) {
         let frame = truth.frame();
+        self.positions.resize(frame.len(), 0);
         for change in truth.changes() {
             let Some(index) = frame.index(change.cell) else { continue };
             let mapped = mapper.states().cells()[index];
@@ -92,53 +98,66 @@ impl Latency {
                 (TrueState::Free, _) => {
                     self.close(index);
                     let is_complete = change.after == TrueState::Blocked;
-                    self.start(index, Event::Block, is_complete, mapped == CellState::Free);
+                    self.start(frame, index, Event::Block, is_complete, mapped == CellState::Free);
                 }
                 (_, TrueState::Blocked) => {
-                    if let Some(open) = self.open.get_mut(&index).filter(|open| open.event == Event::Block) {
+                    if let Some(open) = self.open_at(index).filter(|open| open.event == Event::Block) {
                         (open.is_complete, open.is_ending) = (true, false);
                     }
                 }
                 (_, TrueState::PartlyCovered) => {
-                    if let Some(open) = self.open.get_mut(&index) {
+                    if let Some(open) = self.open_at(index) {
                         open.is_ending = true;
                     }
                 }
                 (_, TrueState::Free) => {
                     self.close(index);
-                    self.start(index, Event::Free, true, mapped == CellState::Blocked);
+                    self.start(frame, index, Event::Free, true, mapped == CellState::Blocked);
                 }
             }
         }
-        let beams = Beams { reading, laser, frame };
-        for (&index, open) in &mut self.open {
-            let can_show = open.shown_s.is_none() && !open.is_ending;
-            if can_show && beams.shows(frame.cell(index), open.event) {
+        let beams = Beams::new(reading, laser, frame);
+        for open in self.open.iter_mut().filter(|open| open.shown_s.is_none() && !open.is_ending) {
+            if beams.shows(&open.center, open.event) {
                 open.shown_s = Some(reading.time_s);
             }
+        }
+        // A change is open only if the map had the old state: it is noticed when the map changes.
+        for index in mapper.transitions().iter().filter_map(|transition| frame.index(transition.cell)) {
+            let Some(open) = self.open_at(index) else { continue };
             let after = if open.event == Event::Block { CellState::Blocked } else { CellState::Free };
             if open.noticed_s.is_none() && mapper.states().cells()[index] == after {
                 open.noticed_s = Some(reading.time_s);
             }
+            // A free event is finished when the map has followed it; a block event must also become complete.
+            if open.noticed_s.is_some() && open.event == Event::Free {
+                self.close(index);
+            }
         }
-        // A free event is finished when the map has followed it; a block event must also become complete.
-        let done = |open: &Open| open.noticed_s.is_some() && open.event == Event::Free;
-        let noticed: Vec<usize> = self.open.iter().filter(|(_, open)| done(open)).map(|(&i, _)| i).collect();
-        noticed.into_iter().for_each(|index| self.close(index));
     }
 
-    fn start(&mut self, index: usize, event: Event, is_complete: bool, map_is_old: bool) {
+    fn start(&mut self, frame: &GridFrame, index: usize, event: Event, is_complete: bool, map_is_old: bool) {
         if map_is_old {
-            let (shown_s, noticed_s) = (None, None);
-            self.open.insert(index, Open { event, is_complete, is_ending: false, shown_s, noticed_s });
+            let (center, shown_s, noticed_s) = (frame.center(frame.cell(index)), None, None);
+            self.open.push(Open { index, center, event, is_complete, is_ending: false, shown_s, noticed_s });
+            self.positions[index] = self.open.len() as u32;
         }
+    }
+
+    /// The open change of a cell.
+    fn open_at(&mut self, index: usize) -> Option<&mut Open> {
+        self.open.get_mut((self.positions[index] as usize).checked_sub(1)?)
     }
 
     /// Counts the change of a cell whose new state has ended, or is known.
     fn close(&mut self, index: usize) {
-        if let Some(Open { event, is_complete: true, shown_s: Some(shown_s), noticed_s, .. }) =
-            self.open.remove(&index)
-        {
+        let Some(position) = (self.positions[index] as usize).checked_sub(1) else { return };
+        self.positions[index] = 0;
+        let closed = self.open.swap_remove(position);
+        if let Some(moved) = self.open.get(position) {
+            self.positions[moved.index] = position as u32 + 1;
+        }
+        if let Open { event, is_complete: true, shown_s: Some(shown_s), noticed_s, .. } = closed {
             match noticed_s {
                 Some(noticed_s) => self.noticed[event as usize].add(noticed_s - shown_s),
                 None => self.missed[event as usize] += 1,

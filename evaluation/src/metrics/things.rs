@@ -86,7 +86,7 @@ impl Things {
             });
         }
         self.events_taken = events.len();
-        let (beams, now_s) = (Beams { reading, laser, frame }, reading.time_s);
+        let (beams, now_s) = (Beams::new(reading, laser, frame), reading.time_s);
         for Thing { report, cells } in &mut self.things {
             if report.right_s.is_some() {
                 continue;
@@ -98,7 +98,8 @@ impl Things {
             };
             for ThingCell { index, shown_s, correct_s } in cells.iter_mut() {
                 let still_counts = report.in_view_s.is_none_or(|first_s| now_s <= first_s + SHOWN_TOGETHER_S);
-                if shown_s.is_none() && still_counts && beams.shows(frame.cell(*index), event) {
+                if shown_s.is_none() && still_counts && beams.shows(&frame.center(frame.cell(*index)), event)
+                {
                     *shown_s = Some(now_s);
                     report.in_view_s.get_or_insert(now_s);
                 }

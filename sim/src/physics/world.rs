@@ -30,8 +30,7 @@ impl PhysicsWorld {
             truth.change_box(&obstacle.start(), &boxes, mover);
         }
         for index in others(spec) {
-            let robot = fleet.robot(index);
-            truth.move_robot(Body::Robot(index), None, &robot.form());
+            truth.move_robot(index, &fleet.robot(index).form());
         }
         truth.begin();
         Self { spec: spec.clone(), fleet, truth, contacts: Vec::new(), obstacle_events: Vec::new() }
@@ -90,15 +89,14 @@ impl PhysicsWorld {
         self.truth.set_time(time_s);
         for index in others(&self.spec) {
             let robot = self.fleet.robot(index);
-            let before = robot.spec.form(&robot.previous_pose);
-            self.truth.move_robot(Body::Robot(index), Some(&before), &robot.form());
+            if robot.has_moved() {
+                self.truth.move_robot(index, &robot.form());
+            }
         }
         if self.fleet.moved().len() > 0 {
             let boxes = self.fleet.standing_boxes();
             for (index, before, after) in self.fleet.moved() {
-                for shape in [before, after] {
-                    self.truth.change_box(&shape, &boxes, Some(Body::Obstacle(index)));
-                }
+                self.truth.move_box(&before, &after, &boxes, Body::Obstacle(index));
             }
         }
         let contacts = self.fleet.take_contacts().into_iter();

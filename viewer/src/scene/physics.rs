@@ -27,7 +27,7 @@ impl Visible for PhysicsWorld {
     fn robots<'a>(&'a self, _: &'a LaserReading) -> Vec<RobotState<'a>> {
         let state = |robot: sim::physics::RobotView<'a>| RobotState {
             pose: robot.pose,
-            sight: robot.reading.filter(|_| robot.is_driven).map(Sight::Laser),
+            sight: robot.is_driven.then(|| robot.reading()).flatten().map(Sight::Laser),
         };
         PhysicsWorld::robots(self).map(state).collect()
     }

@@ -45,14 +45,19 @@ impl Behavior {
         })
     }
 
-    /// The velocity until the next reading.
-    pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {
-        match self {
+    /// Whether the behavior reads its laser.
+    pub(super) fn looks(&self) -> bool {
+        !matches!(self, Self::Steady(_))
+    }
+
+    /// The velocity until the next reading of the laser, which `read` returns; `None` without a reading.
+    pub(super) fn decide<'a>(&mut self, read: impl FnOnce() -> Option<&'a LaserReading>) -> Option<Twist> {
+        Some(match self {
             Self::Steady(twist) => *twist,
-            Self::Wander(wander) => wander.decide(reading),
-            Self::Waypoints(waypoints) => waypoints.decide(reading),
-            Self::WallPatrol(patrol) => patrol.decide(reading),
-        }
+            Self::Wander(wander) => wander.decide(read()?),
+            Self::Waypoints(waypoints) => waypoints.decide(read()?),
+            Self::WallPatrol(patrol) => patrol.decide(read()?),
+        })
     }
 
     /// The values that a snapshot holds.

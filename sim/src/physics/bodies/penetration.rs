@@ -70,7 +70,8 @@ impl Bodies {
             .filter(|free| self.motion_m(free) > free.reach_m)
             .map(|free| free.body)
             .collect();
-        if quick.is_empty() && !self.touching().any(|pair| self.is_too_deep(pair, self.gap_m(pair))) {
+        let is_deep = |pair| self.may_touch(pair) && self.is_too_deep(pair, self.gap_m(pair));
+        if quick.is_empty() && !self.touching().any(is_deep) {
             return;
         }
         let free = self.free.iter().map(|free| (free.body.into_raw_parts(), *free)).collect();
@@ -149,6 +150,12 @@ impl Bodies {
     fn violating(&self, step: &Step) -> Vec<(Pair, f64)> {
         let gaps = step.pairs.iter().map(|pair| (*pair, self.least_gap_m(*pair, step)));
         gaps.filter(|(pair, gap_m)| self.is_too_deep(*pair, *gap_m)).collect()
+    }
+
+    /// Whether the upright boxes around two bodies overlap: most bodies that rapier found near to each other are apart.
+    fn may_touch(&self, pair: Pair) -> bool {
+        let [a, b] = pair.map(|collider| self.world.colliders[collider].compute_aabb());
+        rapier::BoundingVolume::intersects(&a, &b)
     }
 
     fn is_too_deep(&self, pair: Pair, gap_m: f64) -> bool {

@@ -12,10 +12,10 @@ use super::bodies::Bodies;
 use super::command::Command;
 use super::form::Form;
 use super::obstacles::Obstacle;
-use super::rays::{Disc, Scene, Scratch};
+use super::rays::{Disc, Scene};
 use super::report::{Body, Contact, ObstacleView};
 use super::robot::{Robot, RobotView};
-use super::sensors::{SharedBeams, Surroundings, Tagged};
+use super::sensors::{SharedBeams, Tagged};
 use super::shape::Rectangle;
 use super::spec::{FleetSpec, RobotSpec};
 use interfaces::GridFrame;
@@ -43,7 +43,6 @@ pub struct Fleet {
     /// The obstacles that moved in the last step, with the shape before the step.
     moved: Vec<(usize, Rectangle)>,
     parallel_lasers: bool,
-    scratch: Scratch,
 }
 
 impl Fleet {
@@ -58,8 +57,7 @@ impl Fleet {
         let mut robots = Vec::with_capacity(spec.robots.len());
         for (index, robot) in spec.robots.iter().enumerate() {
             bodies.add_robot(robot, spec.step_s);
-            let beams = robot.lasers().map(|laser| beams.of(laser)).collect();
-            robots.push(Robot::new(robot, index, bodies.pose(index), spec.step_s, seed, beams));
+            robots.push(Robot::new(robot, index, bodies.pose(index), spec.step_s, seed, &mut beams));
         }
         let obstacles =
             spec.obstacles.iter().enumerate().map(|(i, o)| Obstacle::new(o, i, seed, &mut bodies));
@@ -86,7 +84,6 @@ impl Fleet {
             contacts: Vec::new(),
             moved: Vec::new(),
             parallel_lasers: false,
-            scratch: Scratch::default(),
         };
         fleet.show_obstacles();
         (0..fleet.robots.len()).for_each(|index| fleet.show_robot(index));
@@ -151,10 +148,8 @@ impl Fleet {
     /// Measures with the sensors of a robot now: with its main laser scanner, and with all other sensors that are
     /// due.
     pub(super) fn look(&mut self, robot: usize) -> &Robot {
-        self.scene.sort();
-        let (step, time_s, tagged) = (self.step, self.time_s(), self.tagged());
-        let surroundings = Surroundings { step, time_s, scene: &self.scene, tagged: &tagged };
-        self.robots[robot].look(&surroundings, &mut self.scratch);
+        let surroundings = self.surroundings();
+        self.robots[robot].look(&surroundings);
         &self.robots[robot]
     }
 
@@ -214,11 +209,9 @@ impl Fleet {
     fn show_robot(&mut self, index: usize) {
         let robot = &self.robots[index];
         self.scene.move_disc(index, robot.at());
-        if !robot.spec.corners.is_empty()
-            && let Form::Convex(corners) = robot.form()
-            && let Ok(polygon) = self.cornered.binary_search(&index)
-        {
-            self.scene.set_polygon(self.obstacles.len() + polygon, Some(index), &corners);
+        if let Ok(polygon) = self.cornered.binary_search(&index) {
+            let corners = robot.spec.corners.iter().map(|corner| robot.pose * corner);
+            self.scene.set_polygon(self.obstacles.len() + polygon, Some(index), corners);
         }
     }
 
@@ -226,7 +219,8 @@ impl Fleet {
     fn show_obstacle(&mut self, index: usize) {
         let obstacle = &self.obstacles[index];
         let corners = obstacle.shape.corners();
-        self.scene.set_polygon(index, None, if obstacle.is_standing() { &corners } else { &[] });
+        let corners: &[Point2<f64>] = if obstacle.is_standing() { &corners } else { &[] };
+        self.scene.set_polygon(index, None, corners.iter().copied());
     }
 }
 

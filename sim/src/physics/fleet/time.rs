@@ -5,12 +5,12 @@ use crate::physics::bodies::Touch;
 use crate::physics::command::Velocity;
 use crate::physics::form::Form;
 use crate::physics::obstacles::{Blockers, Obstacle};
-use crate::physics::rays::Scratch;
 use crate::physics::report::Contact;
 use crate::physics::robot::Robot;
 use crate::physics::sensors::{Surroundings, bumper};
 use crate::physics::shape::Rectangle;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 impl Fleet {
     /// Simulates one physics step. Robots whose scan is due measure first, and decide; `controller` decides for
@@ -25,8 +25,7 @@ impl Fleet {
         for robot in &mut self.robots {
             if robot.is_driven()
                 && robot.decides(self.step)
-                && let Some(reading) = robot.reading()
-                && let Some(command) = controller.drive(&robot.view(), reading)
+                && let Some(command) = controller.drive(&robot.view())
             {
                 robot.command(&command);
             }
@@ -46,21 +45,25 @@ impl Fleet {
 
     /// Robots for which `is_meant` is true measure with the sensors that are due, and decide.
     pub(in crate::physics) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
-        let (step, time_s) = (self.step, self.time_s());
+        let step = self.step;
         let is_due = |robot: &&mut Robot| robot.senses(step) && is_meant(robot);
         if !self.robots.iter_mut().any(|robot| is_due(&robot)) {
             return;
         }
-        self.scene.sort();
-        let tagged = self.tagged();
-        let surroundings = &Surroundings { step, time_s, scene: &self.scene, tagged: &tagged };
+        let surroundings = &self.surroundings();
         if self.parallel_lasers {
             let due = self.robots.par_iter_mut().filter(is_due);
-            due.for_each_init(Scratch::default, |scratch, robot| robot.think(surroundings, scratch));
+            due.for_each(|robot| robot.think(surroundings));
         } else {
             let due = self.robots.iter_mut().filter(is_due);
-            due.for_each(|robot| robot.think(surroundings, &mut self.scratch));
+            due.for_each(|robot| robot.think(surroundings));
         }
+    }
+
+    /// What sensors that measure now can see.
+    pub(super) fn surroundings(&self) -> Arc<Surroundings> {
+        let (scene, tagged) = (self.scene.clone(), self.tagged());
+        Arc::new(Surroundings { step: self.step, time_s: self.time_s(), scene, tagged })
     }
 
     /// Moves robots and obstacles by one physics step.
@@ -74,7 +77,9 @@ impl Fleet {
         self.bodies.step();
         for index in 0..self.robots.len() {
             self.robots[index].end_step(&self.bodies);
-            self.show_robot(index);
+            if self.robots[index].has_moved() {
+                self.show_robot(index);
+            }
         }
         self.moved.clear();
         for (index, before) in before.into_iter().enumerate() {

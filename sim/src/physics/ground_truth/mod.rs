@@ -1,6 +1,8 @@
 //! The ground truth of every cell.
 
+mod convex_cells;
 pub(super) mod cover;
+mod open_share;
 mod start;
 #[cfg(test)]
 mod tests;
@@ -11,6 +13,7 @@ use super::report::Body;
 use super::shape::Rectangle;
 use interfaces::{Cell, GridFrame, GroundTruth, TrueChange, TrueState};
 use nalgebra::Point2;
+use open_share::Cover;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -32,10 +35,16 @@ pub struct PhysicsGroundTruth {
     /// The number of robots that overlap a cell, and the number of robots that cover all of the cell.
     overlapped: Vec<u16>,
     covered: Vec<u16>,
+    /// The cells under each robot, by index, and whether the robot covers all of the cell.
+    under: Vec<Vec<(u32, bool)>>,
+    /// Scratch memory for such a list.
+    spare: Vec<(u32, bool)>,
     /// Whether the cell has been free since it was last blocked, so that the next time is a new event.
     armed: Vec<bool>,
     block_events: Vec<u32>,
     movers: Vec<Option<Body>>,
+    /// The cells that have a mover, one bit each.
+    swept: Vec<u64>,
     /// The cells that are connected with the start of the driven robot. Walls separate cells, obstacles do not.
     reachable: Vec<bool>,
     changes: Vec<TrueChange>,
@@ -51,9 +60,12 @@ impl PhysicsGroundTruth {
             states: fixed.clone(),
             overlapped: vec![0; frame.len()],
             covered: vec![0; frame.len()],
+            under: Vec::new(),
+            spare: Vec::new(),
             armed: fixed.iter().map(|state| *state != TrueState::Blocked).collect(),
             block_events: vec![0; frame.len()],
             movers: vec![None; frame.len()],
+            swept: vec![0; frame.len().div_ceil(64)],
             reachable: start::reachable(&frame, &fixed, frame.cell_at(start)),
             changes: Vec::new(),
             fixed,
@@ -76,25 +88,38 @@ impl PhysicsGroundTruth {
         self.elapsed_s = time_s;
     }
 
-    /// Puts a robot at its start, or moves the robot.
-    pub(super) fn move_robot(&mut self, body: Body, from: Option<&Form>, to: &Form) {
-        if from == Some(to) {
-            return;
+    /// Puts the robot with an index at its start, or moves the robot.
+    pub(super) fn move_robot(&mut self, robot: usize, to: &Form) {
+        let mut under = std::mem::take(&mut self.spare);
+        under.clear();
+        cover::form_cells(&self.frame, to, |index, whole| under.push((index as u32, whole)));
+        if self.under.len() <= robot {
+            self.under.resize_with(robot + 1, Vec::new);
         }
-        let frame = self.frame;
-        cover::form_cells(&frame, to, |index, whole| {
+        let before = std::mem::replace(&mut self.under[robot], under);
+        if before != self.under[robot] {
+            self.cover_cells(robot, &before);
+        }
+        self.spare = before;
+    }
+
+    /// Moves a robot from the cells `before` to the cells that are now under it.
+    fn cover_cells(&mut self, robot: usize, before: &[(u32, bool)]) {
+        let after = std::mem::take(&mut self.under[robot]);
+        for &(index, whole) in &after {
+            let index = index as usize;
             self.overlapped[index] += 1;
             self.covered[index] += u16::from(whole);
-            self.movers[index].get_or_insert(body);
-        });
-        if let Some(from) = from {
-            cover::form_cells(&frame, from, |index, whole| {
-                self.overlapped[index] -= 1;
-                self.covered[index] -= u16::from(whole);
-                self.settle(index);
-            });
+            self.sweep(index, Body::Robot(robot));
         }
-        cover::form_cells(&frame, to, |index, _| self.settle(index));
+        for &(index, whole) in before {
+            let index = index as usize;
+            self.overlapped[index] -= 1;
+            self.covered[index] -= u16::from(whole);
+            self.settle(index);
+        }
+        after.iter().for_each(|&(index, _)| self.settle(index as usize));
+        self.under[robot] = after;
     }
 
     /// Updates the cells of an obstacle that has appeared or disappeared. `boxes` are the walls and obstacles that
@@ -106,18 +131,64 @@ impl PhysicsGroundTruth {
         boxes: &[Rectangle],
         mover: Option<Body>,
     ) -> Vec<Cell> {
-        let near: Vec<Rectangle> = boxes.iter().filter(|other| may_meet(shape, other)).copied().collect();
-        let (frame, mut cells) = (self.frame, Vec::new());
+        let mut cells = Vec::new();
+        let near = boxes.iter().filter(|other| may_meet(shape, other)).copied();
+        self.update_under(shape, Cover::new(&self.frame, near), mover, |cell| cells.push(cell), |_| false);
+        cells
+    }
+
+    /// Updates the cells of an obstacle that moved from `before` to `after`. `boxes` are the walls and obstacles that
+    /// are present now.
+    pub(super) fn move_box(
+        &mut self,
+        before: &Rectangle,
+        after: &Rectangle,
+        boxes: &[Rectangle],
+        mover: Body,
+    ) {
+        let near = |shape: &Rectangle| {
+            let near = boxes.iter().enumerate().filter(|(_, other)| may_meet(shape, other));
+            near.map(|(index, _)| index).collect::<Vec<_>>()
+        };
+        let [near_before, near_after] = [before, after].map(near);
+        let is_same = near_before == near_after;
+        let [was, is] = [near_before, near_after]
+            .map(|near| Cover::new(&self.frame, near.into_iter().map(|index| boxes[index])));
+        self.update_under(before, was, Some(mover), |_| (), |_| false);
+        // Most cells were under the shape before as well, and are known already.
+        let known = cover::BoxTest::new(&self.frame, before);
+        self.update_under(after, is, Some(mover), |_| (), |center| is_same && known.covers(center).is_some());
+    }
+
+    /// Updates the cells under `shape` where `is_known` does not hold for the center.
+    fn update_under(
+        &mut self,
+        shape: &Rectangle,
+        mut cover: Cover,
+        mover: Option<Body>,
+        mut visit: impl FnMut(Cell),
+        is_known: impl Fn(&Point2<f64>) -> bool,
+    ) {
+        let frame = self.frame;
         cover::box_cells(&frame, shape, |index, _| {
             let cell = frame.cell(index);
-            cells.push(cell);
-            self.fixed[index] = start::state_of(cover::open_share(&frame, cell, near.iter()));
+            visit(cell);
             if let Some(body) = mover {
-                self.movers[index].get_or_insert(body);
+                self.sweep(index, body);
             }
-            self.settle(index);
+            if !is_known(&frame.center(cell)) {
+                self.fixed[index] = cover.state(&frame, cell);
+                self.settle(index);
+            }
         });
-        cells
+    }
+
+    /// A moving thing touches a cell.
+    fn sweep(&mut self, index: usize, body: Body) {
+        if self.movers[index].is_none() {
+            self.movers[index] = Some(body);
+            self.swept[index / 64] |= 1 << (index % 64);
+        }
     }
 
     /// Ends the setup: the states at the start are not events.
@@ -187,6 +258,15 @@ impl GroundTruth for PhysicsGroundTruth {
 
     fn is_swept(&self, index: usize) -> bool {
         self.movers[index].is_some()
+    }
+
+    fn swept(&self) -> Cow<'_, [usize]> {
+        let words = self.swept.iter().enumerate().filter(|(_, word)| **word != 0);
+        let of_word = |(at, word): (usize, &u64)| {
+            let word = *word;
+            (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| 64 * at + bit)
+        };
+        words.flat_map(of_word).collect()
     }
 
     /// Obstacles first, then robots, each in the order of the world file. The computing time is that of a pass over

@@ -1,19 +1,11 @@
 //! The states that the walls alone give the cells, once, at the start.
 
 use super::cover;
+use super::open_share::{OpenShare, state_of};
 use crate::flood::flood;
 use crate::physics::shape::Rectangle;
 use interfaces::{Cell, GridFrame, TrueState};
 use std::mem::replace;
-
-/// The state of a cell of which a share is not covered.
-pub(super) fn state_of(open_share: f64) -> TrueState {
-    match open_share {
-        share if share <= 0.0 => TrueState::Blocked,
-        share if share < 1.0 - 1e-6 => TrueState::PartlyCovered,
-        _ => TrueState::Free,
-    }
-}
 
 /// The state that the walls alone give every cell.
 pub(super) fn walls_cover(frame: &GridFrame, walls: &[Rectangle]) -> Vec<TrueState> {
@@ -28,11 +20,12 @@ pub(super) fn walls_cover(frame: &GridFrame, walls: &[Rectangle]) -> Vec<TrueSta
         });
     }
     shared.sort_unstable();
+    let mut share = OpenShare::default();
     for group in shared.chunk_by(|a, b| a.0 == b.0) {
         let index = group[0].0;
         if states[index] != TrueState::Blocked {
             let boxes = group.iter().map(|(_, wall)| &walls[*wall]);
-            states[index] = state_of(cover::open_share(frame, frame.cell(index), boxes));
+            states[index] = state_of(share.of(frame, frame.cell(index), boxes));
         }
     }
     states

@@ -42,16 +42,14 @@ fn what_can_be_seen_is_this_side_of_the_wall_and_has_a_free_side() {
 fn a_disc_that_passes_blocks_every_cell_once() {
     let mut truth = small();
     let robot = Body::Robot(1);
-    let (mut at, radius_m) = (Point2::new(0.1, 0.3), 0.2);
+    let (at, radius_m) = (Point2::new(0.1, 0.3), 0.2);
     let disc = |center| crate::physics::form::Form::Disc { center, radius_m };
-    truth.move_robot(robot, None, &disc(at));
+    truth.move_robot(1, &disc(at));
     truth.begin();
     assert_eq!(drawn(&truth)[1..5], ["+++..++.", "##+..++.", "##+..++.", "+++..++."]);
     // A motion that uncovers a cell only partly is not an event.
     for to in [0.11, 0.1, 0.18, 0.1, 0.35, 0.33, 0.35, 0.1] {
-        let to = Point2::new(to, 0.3);
-        truth.move_robot(robot, Some(&disc(at)), &disc(to));
-        at = to;
+        truth.move_robot(1, &disc(Point2::new(to, 0.3)));
     }
     let index = |x, y| truth.frame().index(Cell::new(x, y)).unwrap();
     // The robot was on the first cell, left it only partly, and returned.

@@ -2,11 +2,11 @@
 
 use super::start;
 use crate::physics::free_space::{FreeSpace, solids};
-use crate::physics::rays::{Beams, Scene, Scratch};
+use crate::physics::rays::{Beams, Scene};
 use crate::physics::shape::Rectangle;
 use crate::physics::spec::WorldSpec;
 use interfaces::{Cell, GridFrame, TrueState};
-use nalgebra::{Isometry2, Point2, Vector2};
+use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 use std::f64::consts::{PI, TAU};
 
 /// The number of directions in which a line of sight is searched.
@@ -28,15 +28,15 @@ impl WorldSpec {
         let reached: Vec<bool> =
             space.regions().iter().map(|region| region.is_some() && *region == own).collect();
         let range_m = robot.laser.range_max_m;
-        let mut sight = Sight::new(frame, &solids, range_m, &reached);
+        let sight = Sight::new(frame, &solids, range_m, &reached);
         let is_visible = |index: usize| match states[index] {
             _ if reached[index] => true,
             TrueState::Free => sight.reaches(frame.center(frame.cell(index))),
             TrueState::PartlyCovered => false,
             TrueState::Blocked => {
                 let cell = frame.cell(index);
-                let sides = frame.beside(index).filter(|side| states[*side] != TrueState::Blocked);
-                Vec::from_iter(sides).into_iter().any(|side| sight.reaches(before(frame, cell, side)))
+                let mut sides = frame.beside(index).filter(|side| states[*side] != TrueState::Blocked);
+                sides.any(|side| sight.reaches(before(frame, cell, side)))
             }
         };
         (0..frame.len()).map(is_visible).collect()
@@ -56,33 +56,28 @@ struct Sight<'a> {
     range_m: f64,
     beams: Beams,
     scene: Scene,
-    scratch: Scratch,
 }
 
 impl<'a> Sight<'a> {
     fn new(frame: &'a GridFrame, solids: &[Rectangle], range_m: f64, reached: &'a [bool]) -> Self {
         let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
         let corners = (frame.origin(), frame.origin() + size);
-        let mut scene = Scene::new(corners, solids, Vec::new(), 0, range_m);
-        scene.sort();
+        let scene = Scene::new(corners, solids, Vec::new(), 0, range_m);
         let beams = Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m);
-        Self { frame, reached, range_m, beams, scene, scratch: Scratch::default() }
+        Self { frame, reached, range_m, beams, scene }
     }
 
     /// Whether a straight line from a point to a reached cell meets nothing.
-    fn reaches(&mut self, from: Point2<f64>) -> bool {
-        let Self { frame, reached, range_m, beams, scene, scratch } = self;
-        scene.cast(
-            beams,
-            &Isometry2::from_parts(from.into(), nalgebra::UnitComplex::identity()),
-            usize::MAX,
-            scratch,
-        );
+    fn reaches(&self, from: Point2<f64>) -> bool {
+        let Self { frame, reached, range_m, beams, scene } = self;
         let step_m = frame.resolution_m() / 2.0;
-        beams.directions().zip(&scratch.inverse).any(|((x, y), inverse)| {
+        let is_reached = |at: Point2<f64>| frame.index(frame.cell_at(&at)).is_some_and(|cell| reached[cell]);
+        let meets_one = |((x, y), inverse): ((f64, f64), &f64)| {
             let steps = (range_m.min(1.0 / inverse) / step_m) as usize;
-            let at = |step: usize| from + Vector2::new(x, y) * (step as f64 * step_m);
-            (0..steps).any(|step| frame.index(frame.cell_at(&at(step))).is_some_and(|cell| reached[cell]))
-        })
+            (0..steps).any(|step| is_reached(from + Vector2::new(x, y) * (step as f64 * step_m)))
+        };
+        let laser = Isometry2::from_parts(from.into(), UnitComplex::identity());
+        // No robot is left out: there is none.
+        scene.cast(beams, &laser, usize::MAX, |inverse| beams.directions().zip(inverse).any(meets_one))
     }
 }

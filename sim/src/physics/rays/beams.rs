@@ -11,18 +11,18 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 /// An edge whose line passes the laser closer than this is seen edge-on, m.
-const EDGE_ON_M: f64 = 1e-9;
+pub(super) const EDGE_ON_M: f64 = 1e-9;
 
 /// The directions of the beams of a laser.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::physics) struct Beams {
-    count: usize,
+    pub(super) count: usize,
     angle_min_rad: f64,
     per_rad: f64,
-    range_max_m: f64,
+    pub(super) range_max_m: f64,
     /// The unit vectors in the frame of the laser. Those of a full turn end with a copy of the first.
-    x: Vec<f64>,
-    y: Vec<f64>,
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
 }
 
 impl Beams {
@@ -72,7 +72,7 @@ impl Beams {
 
     /// The beams from `from` to `to`, counter-clockwise, less than half a turn apart, both included: one range,
     /// or two where the beams pass the back.
-    fn between(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> [Range<usize>; 2] {
+    pub(super) fn between(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> [Range<usize>; 2] {
         let (from_rad, to_rad) = (approximate_atan2(from.y, from.x), approximate_atan2(to.y, to.x));
         let mut first = self.first_after(from, from_rad, true);
         let mut end = self.first_after(to, to_rad, false);
@@ -87,7 +87,7 @@ impl Beams {
 
     /// The beams that are less than `half_rad` away from `angle_rad`, and perhaps a few more: the index of the
     /// first, and the index after the last. Indices continue after the last beam of all.
-    fn around(&self, angle_rad: f64, half_rad: f64) -> (usize, usize) {
+    pub(super) fn around(&self, angle_rad: f64, half_rad: f64) -> (usize, usize) {
         // By way of 32 bits, since that takes three instructions and not ten.
         let index =
             |angle_rad: f64| (((angle_rad - self.angle_min_rad) * self.per_rad) as i32).max(0) as usize;
@@ -103,7 +103,7 @@ impl Beams {
     }
 
     /// The beams of `first..end`, where indices continue after the last beam.
-    fn runs(&self, first: usize, end: usize) -> [Range<usize>; 2] {
+    pub(super) fn runs(&self, first: usize, end: usize) -> [Range<usize>; 2] {
         let count = self.count;
         let (low, high) = (first.min(count), end.min(count));
         // In a narrow view, indices behind the view may continue past the end a second time.
@@ -180,6 +180,14 @@ impl<'a> Hits<'a> {
             let runs = self.beams.runs(first, end);
             runs.into_iter().for_each(|run| self.add_disc_to(run, center, power, nearest));
         }
+    }
+
+    /// Whether nearer bodies hide everything with directions less than `half_rad` away from `angle_rad` and inverse
+    /// ranges of at most `nearest`.
+    pub(super) fn is_hidden(&self, angle_rad: f64, half_rad: f64, nearest: f64) -> bool {
+        let (first, end) = self.beams.around(angle_rad, half_rad);
+        let runs = self.beams.runs(first, end);
+        runs.into_iter().all(|run| self.inverse[run].iter().all(|&inverse| inverse >= nearest))
     }
 
     #[inline]

@@ -1,9 +1,10 @@
-//! Round bodies that a laser may see, many at a time.
+//! Round bodies, and discs around convex bodies, that a laser may see, many at a time.
 //!
 //! Most of them are hidden. Whether they are is first computed approximately, for all of them in one loop
 //! without branches; only bodies that may be visible are then computed exactly.
 
 use super::beams::Hits;
+use super::polygons::SortedPolygons;
 use interfaces::APPROXIMATE_ATAN2_ERROR_RAD;
 use nalgebra::{Point2, Vector2};
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -29,6 +30,8 @@ struct Near {
     radius_m: f64,
     /// The power of the laser position: distance squared less radius squared, m²; positive.
     power: f64,
+    /// The convex body in the disc; `None` if the disc is a body.
+    polygon: Option<u32>,
 }
 
 /// Discs within the range of a laser.
@@ -56,25 +59,55 @@ impl Discs {
     /// Adds a disc if the disc is within range. A laser inside of the disc sees nothing else.
     #[inline(always)]
     pub(super) fn push(&mut self, disc: &Disc, hits: &mut Hits<'_>) {
+        if self.is_around(disc, None, hits) {
+            hits.add_inside();
+        }
+    }
+
+    /// Adds the convex body with an index if the body is within range and its lasers are not those of the robot `own`.
+    pub(super) fn push_polygon(
+        &mut self,
+        index: u32,
+        polygons: &SortedPolygons,
+        own: usize,
+        hits: &mut Hits<'_>,
+    ) {
+        let polygon = polygons.get(index);
+        if polygon.is_seen_by(own) && self.is_around(&polygon.around, Some(index), hits) {
+            polygons.edges(polygon).iter().for_each(|edge| hits.add_edge(edge));
+        }
+    }
+
+    /// Whether the laser is inside of a disc. If it is not, adds the disc if the disc is within range.
+    #[inline(always)]
+    fn is_around(&mut self, disc: &Disc, polygon: Option<u32>, hits: &Hits<'_>) -> bool {
         let to = disc.center - hits.laser().translation.vector;
         let power = to.coords.norm_squared() - disc.radius_m * disc.radius_m;
         let reach_m = hits.range_max_m() + disc.radius_m;
         if power > reach_m * reach_m {
-            return;
+            return false;
         }
         if power <= 0.0 {
-            return hits.add_inside();
+            return true;
         }
         let center = hits.laser().rotation.inverse() * to.coords;
-        self.near.push(Near { center, radius_m: disc.radius_m, power });
+        self.near.push(Near { center, radius_m: disc.radius_m, power, polygon });
+        false
     }
 
-    /// Adds all discs to the hits.
-    pub(super) fn add_to(&mut self, hits: &mut Hits<'_>) {
+    /// Adds all bodies to the hits.
+    pub(super) fn add_to(&mut self, polygons: &SortedPolygons, hits: &mut Hits<'_>) {
         self.approximate();
         let approximate = self.angle.iter().zip(&self.half).zip(&self.nearest);
         for (disc, ((&angle, &half), &nearest)) in self.near.iter().zip(approximate) {
-            hits.add_disc(&disc.center, disc.power, f64::from(angle), f64::from(half), f64::from(nearest));
+            let (angle_rad, half_rad, nearest) = (f64::from(angle), f64::from(half), f64::from(nearest));
+            match disc.polygon {
+                None => hits.add_disc(&disc.center, disc.power, angle_rad, half_rad, nearest),
+                Some(_) if hits.is_hidden(angle_rad, half_rad, nearest) => {}
+                Some(index) => {
+                    polygons.edges(polygons.get(index)).iter().for_each(|edge| hits.add_edge(edge));
+                }
+            }
         }
     }
 
@@ -131,7 +164,7 @@ mod tests {
             let radius_m = 0.02 + f64::from(i % 50) * 0.01;
             let distance_m = radius_m * (1.0 + 1e-6 + f64::from(i * i % 977) * 0.1);
             let center = Vector2::new(x, y) * distance_m;
-            discs.near = vec![Near { center, radius_m, power: 1.0 }];
+            discs.near = vec![Near { center, radius_m, power: 1.0, polygon: None }];
             discs.approximate();
             let off = interfaces::wrap_rad(f64::from(discs.angle[0]) - libm::atan2(y, x)).abs();
             let half = libm::asin(radius_m / distance_m);

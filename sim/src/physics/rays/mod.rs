@@ -4,16 +4,18 @@
 //! hit the body are determined, and only these are computed ([`beams`]). The computing time depends on the number
 //! of bodies plus the number of beams that they cover, not on the product. Walls are reduced to the [`edges`] that
 //! a ray can hit, and a potentially visible set ([`visibility`]) lists for every position the few edges that can be
-//! seen from there. Moving bodies are sorted by position ([`polygons`], and round robots in [`scene`]).
+//! seen from there. Moving bodies are sorted by position ([`polygons`], and round robots in [`scene`]). Where only the
+//! shortest range counts, the nearest walls and bodies come first, and what is farther away is left out ([`nearest`]).
 
 mod beams;
 mod circles;
 mod edges;
 mod index_lists;
+mod nearest;
 mod polygons;
 mod scene;
 mod visibility;
 
 pub(super) use beams::Beams;
 pub(super) use circles::Disc;
-pub(super) use scene::{Scene, Scratch};
+pub(super) use scene::Scene;

@@ -1,128 +1,160 @@
 //! Convex bodies that appear, disappear and move. Each body is listed in the cells that it overlaps, so that a
 //! laser tests only the bodies in the cells that it may see.
 
-use super::beams::Hits;
+use super::circles::Disc;
 use super::edges::Edge;
 use super::index_lists::IndexLists;
 use super::visibility::PotentiallyVisibleSet;
-use crate::physics::convex;
 use nalgebra::Point2;
+use std::ops::Range;
+
+/// The robot of a body that belongs to no robot.
+const NO_ROBOT: u32 = u32::MAX;
 
 /// Convex bodies, each with an index.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Polygons {
-    polygons: Vec<Polygon>,
-    /// The bodies in each cell; at the end the bodies that reach beyond the borders.
-    sorted: IndexLists,
-    is_sorted: bool,
+    bodies: Vec<Body>,
+    /// The corners of all bodies, counter-clockwise, m.
+    corners: Vec<Point2<f64>>,
 }
 
-#[derive(Clone, Debug, Default)]
-struct Polygon {
-    /// None while the body is absent.
-    edges: Vec<Edge>,
+#[derive(Clone, Debug)]
+struct Body {
+    /// Its corners; none while the body is absent.
+    corners: Range<usize>,
+    /// The number of corners for which there is room.
+    room: usize,
     /// The robot that the body belongs to: its lasers never see the body.
-    robot: Option<u32>,
-}
-
-/// The bodies that the present cast has tested.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Tested {
-    cast: u64,
-    last: Vec<u64>,
+    robot: u32,
 }
 
 impl Polygons {
     /// Room for `count` bodies, all absent.
     pub(super) fn new(count: usize) -> Self {
-        Self { polygons: vec![Polygon::default(); count], ..Self::default() }
-    }
-
-    /// Whether there is room for no body.
-    pub(super) fn is_empty(&self) -> bool {
-        self.polygons.is_empty()
+        let absent = Body { corners: 0..0, room: 0, robot: NO_ROBOT };
+        Self { bodies: vec![absent; count], corners: Vec::new() }
     }
 
     /// Sets the corners of a body (counter-clockwise, m). No corners: the body is absent.
-    pub(super) fn set(&mut self, index: usize, robot: Option<usize>, corners: &[Point2<f64>]) {
-        let polygon = &mut self.polygons[index];
-        polygon.robot = robot.map(|robot| robot as u32);
-        polygon.edges.clear();
-        polygon.edges.extend(convex::sides(corners).map(|(from, to)| Edge::new(*from, *to)));
-        self.is_sorted = false;
-    }
-
-    /// Sorts the bodies into cells, if any has moved.
-    pub(super) fn sort(&mut self, visible: &PotentiallyVisibleSet) {
-        if self.is_sorted || self.polygons.is_empty() {
-            return;
+    pub(super) fn set(
+        &mut self,
+        index: usize,
+        robot: Option<usize>,
+        corners: impl ExactSizeIterator<Item = Point2<f64>>,
+    ) {
+        let (body, count) = (&mut self.bodies[index], corners.len());
+        if count > body.room {
+            (body.corners.start, body.room) = (self.corners.len(), count);
+            self.corners.resize(self.corners.len() + count, Point2::origin());
         }
-        let cells: Vec<(usize, u32)> = self
-            .polygons
-            .iter()
-            .enumerate()
-            .filter(|(_, polygon)| !polygon.edges.is_empty())
-            .flat_map(|(i, polygon)| {
-                let (low, high) = polygon.bounds();
-                let beyond = visible.reaches_out(&low, &high).then_some(visible.len());
-                visible.around(&low, &high).chain(beyond).map(move |cell| (cell, i as u32))
-            })
-            .collect();
-        self.sorted.sort(visible.len() + 1, cells.iter().copied());
-        self.is_sorted = true;
+        body.robot = robot.map_or(NO_ROBOT, |robot| robot as u32);
+        body.corners.end = body.corners.start + count;
+        for (own, corner) in self.corners[body.corners.clone()].iter_mut().zip(corners) {
+            *own = corner;
+        }
     }
+}
 
-    /// Starts a new cast: no body has been tested yet.
-    pub(super) fn begin(&self, tested: &mut Tested) {
-        tested.cast += 1;
-        tested.last.resize(self.polygons.len().max(tested.last.len()), 0);
+/// The bodies that are present, prepared for rays.
+#[derive(Debug)]
+pub(super) struct SortedPolygons {
+    edges: Vec<Edge>,
+    bodies: Vec<Polygon>,
+    /// The bodies in each cell; at the end the bodies that reach beyond the borders.
+    cells: IndexLists,
+}
+
+/// A body that is present.
+#[derive(Clone, Debug)]
+pub(super) struct Polygon {
+    /// A disc that contains the body.
+    pub(super) around: Disc,
+    edges: Range<usize>,
+    robot: u32,
+}
+
+impl Polygon {
+    /// Whether the lasers of a robot see the body.
+    pub(super) fn is_seen_by(&self, robot: usize) -> bool {
+        self.robot != robot as u32
     }
+}
 
-    /// Adds the bodies in a cell that this cast has not added yet.
-    pub(super) fn add_cell(&self, cell: usize, own: usize, tested: &mut Tested, hits: &mut Hits<'_>) {
-        for &i in self.sorted.get(cell) {
-            let last = &mut tested.last[i as usize];
-            if *last != tested.cast {
-                *last = tested.cast;
-                self.polygons[i as usize].add(own, hits);
+impl SortedPolygons {
+    /// The bodies sorted into cells.
+    pub(super) fn new(polygons: &Polygons, visible: &PotentiallyVisibleSet) -> Self {
+        let mut sorted = Self { edges: Vec::new(), bodies: Vec::new(), cells: IndexLists::default() };
+        let mut cells: Vec<(usize, u32)> = Vec::new();
+        for Body { corners, robot, .. } in polygons.bodies.iter().filter(|body| !body.corners.is_empty()) {
+            let (corners, index) = (&polygons.corners[corners.clone()], sorted.bodies.len() as u32);
+            let (mut low, mut high) = (corners[0], corners[0]);
+            for corner in corners {
+                (low, high) = (low.inf(corner), high.sup(corner));
             }
+            let center = nalgebra::center(&low, &high);
+            let radius2 = corners.iter().map(|corner| (corner - center).norm_squared()).fold(0.0, f64::max);
+            let start = sorted.edges.len();
+            let next = corners.iter().cycle().skip(1);
+            sorted.edges.extend(corners.iter().zip(next).map(|(from, to)| Edge::new(*from, *to)));
+            // A little larger, because of rounding.
+            let around = Disc { center, radius_m: radius2.sqrt() * (1.0 + 1e-9) };
+            sorted.bodies.push(Polygon { around, edges: start..sorted.edges.len(), robot: *robot });
+            let beyond = visible.reaches_out(&low, &high).then_some(visible.len());
+            cells.extend(visible.around(&low, &high).chain(beyond).map(|cell| (cell, index)));
         }
+        sorted.cells.sort(visible.len() + 1, cells.iter().copied());
+        sorted
     }
 
-    /// Adds all bodies.
-    pub(super) fn add_all(&self, own: usize, hits: &mut Hits<'_>) {
-        self.polygons.iter().for_each(|polygon| polygon.add(own, hits));
+    /// The number of bodies.
+    pub(super) fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// The indices of the bodies that overlap a cell.
+    pub(super) fn in_cell(&self, cell: usize) -> &[u32] {
+        self.cells.get(cell)
+    }
+
+    /// The body with an index.
+    pub(super) fn get(&self, index: u32) -> &Polygon {
+        &self.bodies[index as usize]
+    }
+
+    /// The sides of a body.
+    pub(super) fn edges(&self, polygon: &Polygon) -> &[Edge] {
+        &self.edges[polygon.edges.clone()]
     }
 
     /// Whether a point is inside of a body that overlaps the cell of the point (none: beyond the borders).
     pub(super) fn contains(&self, cell: Option<usize>, own: usize, point: &Point2<f64>) -> bool {
         let is_in = |polygon: &Polygon| {
-            polygon.is_seen(own) && polygon.edges.iter().all(|edge| edge.gap_m(point) <= 0.0)
+            polygon.is_seen_by(own) && self.edges(polygon).iter().all(|edge| edge.gap_m(point) <= 0.0)
         };
         match cell {
-            Some(cell) => self.sorted.get(cell).iter().any(|&i| is_in(&self.polygons[i as usize])),
-            None => self.polygons.iter().any(is_in),
+            Some(cell) => self.in_cell(cell).iter().any(|&index| is_in(self.get(index))),
+            None => self.bodies.iter().any(is_in),
         }
     }
 }
 
-impl Polygon {
-    /// Whether the body is present and does not belong to the robot that measures.
-    fn is_seen(&self, own: usize) -> bool {
-        !self.edges.is_empty() && self.robot != Some(own as u32)
+/// The bodies that the present cast has tested.
+#[derive(Debug, Default)]
+pub(super) struct Tested {
+    cast: u64,
+    last: Vec<u64>,
+}
+
+impl Tested {
+    /// Starts a new cast among a number of bodies: no body has been tested yet.
+    pub(super) fn begin(&mut self, bodies: usize) {
+        self.cast += 1;
+        self.last.resize(bodies.max(self.last.len()), 0);
     }
 
-    fn add(&self, own: usize, hits: &mut Hits<'_>) {
-        if self.is_seen(own) {
-            self.edges.iter().for_each(|edge| hits.add_edge(edge));
-        }
-    }
-
-    /// The corners of the upright box around the body, m.
-    fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
-        let first = self.edges[0].from;
-        self.edges
-            .iter()
-            .fold((first, first), |(low, high), edge| (low.inf(&edge.from), high.sup(&edge.from)))
+    /// Whether this is the first test of a body in this cast.
+    pub(super) fn is_first(&mut self, index: u32) -> bool {
+        std::mem::replace(&mut self.last[index as usize], self.cast) != self.cast
     }
 }

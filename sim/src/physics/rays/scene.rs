@@ -2,32 +2,32 @@ use super::beams::{Beams, Hits};
 use super::circles::{Disc, Discs};
 use super::edges::{Edge, visible_edges};
 use super::index_lists::IndexLists;
-use super::polygons::{Polygons, Tested};
+use super::nearest::Nearest;
+use super::polygons::{Polygons, SortedPolygons, Tested};
 use super::visibility::PotentiallyVisibleSet;
 use crate::physics::shape::Rectangle;
 use nalgebra::{Isometry2, Point2};
-use std::sync::Arc;
+use std::cell::RefCell;
+use std::sync::{Arc, OnceLock};
 
-/// Memory for casting rays, kept from cast to cast.
-#[derive(Clone, Debug, Default)]
-pub(in crate::physics) struct Scratch {
+thread_local! {
+    /// Memory for casting rays, kept from cast to cast.
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+#[derive(Default)]
+struct Scratch {
     /// The result: one over the range for each beam, 1/m; 0 where there is no hit.
-    pub(in crate::physics) inverse: Vec<f64>,
+    inverse: Vec<f64>,
     discs: Discs,
     tested: Tested,
 }
 
-/// Everything that a laser can see.
+/// Everything that a laser can see. A clone shares everything until a body moves.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Scene {
     walls: Arc<Walls>,
-    /// The convex bodies that appear, disappear or move.
-    polygons: Polygons,
-    /// The robots, by index.
-    discs: Vec<Disc>,
-    /// The robots by the cell of their center; at the end those beyond the borders.
-    sorted: IndexLists<(u32, Disc)>,
-    is_sorted: bool,
+    moving: Arc<Moving>,
 }
 
 /// The bodies that never move.
@@ -36,6 +36,31 @@ struct Walls {
     solids: Vec<[Edge; 4]>,
     edges: Vec<Edge>,
     visible: PotentiallyVisibleSet,
+}
+
+/// The other bodies.
+#[derive(Debug)]
+struct Moving {
+    /// The convex bodies that appear, disappear or move.
+    polygons: Polygons,
+    /// The robots, by index.
+    discs: Vec<Disc>,
+    /// The same bodies by position, as soon as a ray is cast.
+    sorted: OnceLock<Sorted>,
+}
+
+impl Clone for Moving {
+    /// A clone is made because a body moves.
+    fn clone(&self) -> Self {
+        Self { polygons: self.polygons.clone(), discs: self.discs.clone(), sorted: OnceLock::new() }
+    }
+}
+
+#[derive(Debug)]
+struct Sorted {
+    /// The robots by the cell of their center; at the end those beyond the borders.
+    robots: IndexLists<(u32, Disc)>,
+    polygons: SortedPolygons,
 }
 
 impl Scene {
@@ -52,13 +77,8 @@ impl Scene {
         let radius_m = discs.iter().fold(0.0, |most: f64, disc| most.max(disc.radius_m));
         let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, range_m, radius_m);
         let solids = walls.iter().map(Edge::of_rectangle).collect();
-        Self {
-            walls: Arc::new(Walls { solids, edges, visible }),
-            polygons: Polygons::new(polygons),
-            discs,
-            sorted: IndexLists::default(),
-            is_sorted: false,
-        }
+        let moving = Moving { polygons: Polygons::new(polygons), discs, sorted: OnceLock::new() };
+        Self { walls: Arc::new(Walls { solids, edges, visible }), moving: Arc::new(moving) }
     }
 
     /// Sets the corners of the convex body with an index (counter-clockwise, m). No corners: the body is absent.
@@ -67,75 +87,152 @@ impl Scene {
         &mut self,
         index: usize,
         robot: Option<usize>,
-        corners: &[Point2<f64>],
+        corners: impl ExactSizeIterator<Item = Point2<f64>>,
     ) {
-        self.polygons.set(index, robot, corners);
+        let moving = Arc::make_mut(&mut self.moving);
+        moving.polygons.set(index, robot, corners);
+        moving.sorted.take();
     }
 
     /// Sets the center of a robot, m.
     pub(in crate::physics) fn move_disc(&mut self, robot: usize, center: Point2<f64>) {
-        self.discs[robot].center = center;
-        self.is_sorted = false;
+        let moving = Arc::make_mut(&mut self.moving);
+        moving.discs[robot].center = center;
+        moving.sorted.take();
     }
 
-    /// Sorts the moving bodies into cells, if any has moved. Must be called before [`Scene::cast`].
-    pub(in crate::physics) fn sort(&mut self) {
-        self.polygons.sort(&self.walls.visible);
-        if self.is_sorted {
-            return;
-        }
-        let visible = &self.walls.visible;
-        let robots = self.discs.iter().enumerate().map(|(robot, disc)| {
-            (visible.cell_at(&disc.center).unwrap_or(visible.len()), (robot as u32, *disc))
-        });
-        self.sorted.sort(visible.len() + 1, robots);
-        self.is_sorted = true;
+    /// The moving bodies, sorted into cells.
+    fn sorted(&self) -> &Sorted {
+        let Moving { polygons, discs, sorted } = &*self.moving;
+        sorted.get_or_init(|| {
+            let visible = &self.walls.visible;
+            // A disc of radius 0 stands for a robot with corners, whose polygon hides its center.
+            let round = discs.iter().enumerate().filter(|(_, disc)| disc.radius_m > 0.0);
+            let cells = round.map(|(robot, disc)| {
+                (visible.cell_at(&disc.center).unwrap_or(visible.len()), (robot as u32, *disc))
+            });
+            let mut robots = IndexLists::default();
+            robots.sort(visible.len() + 1, cells);
+            Sorted { robots, polygons: SortedPolygons::new(polygons, visible) }
+        })
     }
 
-    /// Computes what `beams` of a laser at the pose `laser` hit. The laser never sees the robot `own`.
-    pub(in crate::physics) fn cast(
+    /// Computes what `beams` of a laser at the pose `laser` hit. The laser never sees the robot `own`. `read` receives
+    /// one over the range for each beam, 1/m; 0 where there is no hit.
+    pub(in crate::physics) fn cast<T>(
         &self,
         beams: &Beams,
         laser: &Isometry2<f64>,
         own: usize,
-        scratch: &mut Scratch,
-    ) {
-        debug_assert!(self.is_sorted);
+        read: impl FnOnce(&[f64]) -> T,
+    ) -> T {
+        SCRATCH.with_borrow_mut(|scratch| {
+            self.cast_into(beams, laser, own, scratch);
+            read(&scratch.inverse)
+        })
+    }
+
+    fn cast_into(&self, beams: &Beams, laser: &Isometry2<f64>, own: usize, scratch: &mut Scratch) {
         let Walls { solids, edges, visible } = &*self.walls;
+        let Sorted { robots, polygons } = self.sorted();
         let Scratch { inverse, discs, tested } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);
-        discs.clear(self.sorted.all().len());
+        discs.clear(robots.all().len() + polygons.len());
         let at = Point2::from(laser.translation.vector);
-        let contains = |sides: &[Edge; 4]| sides.iter().all(|side| side.gap_m(&at) <= 0.0);
         let own_cell = visible.cell_at(&at);
-        let has_polygons = !self.polygons.is_empty();
-        let mut is_inside = has_polygons && self.polygons.contains(own_cell, own, &at);
-        self.polygons.begin(tested);
+        let has_polygons = polygons.len() > 0;
+        tested.begin(polygons.len());
         match own_cell {
             Some(cell) => {
-                is_inside |= visible.boxes(cell).iter().any(|&i| contains(&solids[i as usize]));
-                visible.edges(cell).iter().for_each(|&i| hits.add_edge(&edges[i as usize]));
+                visible.edges(cell).iter().for_each(|seen| hits.add_edge(&edges[seen.edge as usize]));
                 let cells = visible.cells(cell).iter().map(|&cell| cell as usize);
                 for cell in cells.chain([visible.len()]) {
-                    add_robots(discs, &mut hits, self.sorted.get(cell), own);
+                    add_robots(discs, &mut hits, robots.get(cell), own);
                     if has_polygons {
-                        self.polygons.add_cell(cell, own, tested, &mut hits);
+                        for &index in polygons.in_cell(cell).iter().filter(|index| tested.is_first(**index)) {
+                            discs.push_polygon(index, polygons, own, &mut hits);
+                        }
                     }
                 }
             }
             None => {
-                is_inside |= solids.iter().any(contains);
                 edges.iter().for_each(|edge| hits.add_edge(edge));
-                add_robots(discs, &mut hits, self.sorted.all(), own);
-                self.polygons.add_all(own, &mut hits);
+                add_robots(discs, &mut hits, robots.all(), own);
+                for index in 0..polygons.len() as u32 {
+                    discs.push_polygon(index, polygons, own, &mut hits);
+                }
             }
         }
         // Last, since other bodies hide most of them.
-        discs.add_to(&mut hits);
-        if is_inside {
+        discs.add_to(polygons, &mut hits);
+        if is_inside(solids, visible, polygons, own_cell, own, &at) {
             hits.add_inside();
         }
     }
+
+    /// One over the shortest range of all `beams` of a sensor at the pose `sensor` on the robot `own`, 1/m; 0 without a
+    /// hit. The value is the largest one of [`Scene::cast`].
+    pub(in crate::physics) fn nearest(&self, beams: &Beams, sensor: &Isometry2<f64>, own: usize) -> f64 {
+        let Walls { solids, edges, visible } = &*self.walls;
+        let Sorted { robots, polygons } = self.sorted();
+        let at = Point2::from(sensor.translation.vector);
+        let own_cell = visible.cell_at(&at);
+        if is_inside(solids, visible, polygons, own_cell, own, &at) {
+            return f64::INFINITY;
+        }
+        let mut nearest = Nearest::new(beams, sensor);
+        let add_cell = |cell: usize, nearest: &mut Nearest<'_>| {
+            for (_, disc) in robots.get(cell).iter().filter(|(robot, _)| *robot as usize != own) {
+                nearest.add_disc(disc);
+            }
+            for &index in polygons.in_cell(cell) {
+                let polygon = polygons.get(index);
+                if polygon.is_seen_by(own) && nearest.may_meet(&polygon.around) {
+                    polygons.edges(polygon).iter().for_each(|edge| nearest.add_edge(edge));
+                }
+            }
+        };
+        match own_cell {
+            Some(cell) => {
+                let edges_in_reach = visible.edges(cell).iter();
+                for seen in edges_in_reach {
+                    if f64::from(seen.nearest_m) > nearest.reach_m() {
+                        break;
+                    }
+                    nearest.add_edge(&edges[seen.edge as usize]);
+                }
+                for &other in visible.cells(cell) {
+                    if visible.apart_m(cell, other as usize) > nearest.reach_m() {
+                        break;
+                    }
+                    add_cell(other as usize, &mut nearest);
+                }
+                add_cell(visible.len(), &mut nearest);
+            }
+            None => {
+                edges.iter().for_each(|edge| nearest.add_edge(edge));
+                (0..=visible.len()).for_each(|cell| add_cell(cell, &mut nearest));
+            }
+        }
+        nearest.inverse()
+    }
+}
+
+/// Whether a point is inside of a solid that is not the body of the robot `own`.
+fn is_inside(
+    solids: &[[Edge; 4]],
+    visible: &PotentiallyVisibleSet,
+    polygons: &SortedPolygons,
+    cell: Option<usize>,
+    own: usize,
+    at: &Point2<f64>,
+) -> bool {
+    let contains = |sides: &[Edge; 4]| sides.iter().all(|side| side.gap_m(at) <= 0.0);
+    let is_in_wall = match cell {
+        Some(cell) => visible.boxes(cell).iter().any(|&wall| contains(&solids[wall as usize])),
+        None => solids.iter().any(contains),
+    };
+    is_in_wall || polygons.len() > 0 && polygons.contains(cell, own, at)
 }
 
 // Runs for every visible cell, most of which are empty: a call would cost 5 % of a simulated second.

@@ -21,6 +21,15 @@ const MIN_OCCLUDER_SIZE: f64 = 0.1;
 /// Points this near to a cell or an edge may count as being on it, m.
 const MARGIN_M: f64 = 1e-6;
 
+/// An edge that may be seen from a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SeenEdge {
+    /// Its index.
+    pub(super) edge: u32,
+    /// At most the shortest distance between a point of the cell and the edge, m.
+    pub(super) nearest_m: f32,
+}
+
 /// The cells, and what can be seen from each.
 #[derive(Clone, Debug)]
 pub(super) struct PotentiallyVisibleSet {
@@ -28,7 +37,9 @@ pub(super) struct PotentiallyVisibleSet {
     cell_m: f64,
     columns: usize,
     rows: usize,
-    edges: IndexLists,
+    /// The largest radius of any robot, m.
+    radius_m: f64,
+    edges: IndexLists<SeenEdge>,
     cells: IndexLists,
     /// The rectangles that overlap each cell.
     boxes: IndexLists,
@@ -53,6 +64,7 @@ impl PotentiallyVisibleSet {
             cell_m,
             columns: count(extent.x),
             rows: count(extent.y),
+            radius_m,
             edges: IndexLists::default(),
             cells: IndexLists::default(),
             boxes: IndexLists::default(),
@@ -68,7 +80,7 @@ impl PotentiallyVisibleSet {
             let own = set.square(cell, MARGIN_M);
             set.boxes.push(inside.into_iter());
             let view = View::new(&own, edges, range_m);
-            set.edges.push(view.edges(edges));
+            set.edges.push(view.edges(edges).into_iter());
             let robots = (0..set.len()).map(|i| set.square(i, radius_m + MARGIN_M));
             let visible = robots.enumerate().filter(|(_, square)| view.sees(square));
             let mut visible: Vec<u32> = visible.map(|(i, _)| i as u32).collect();
@@ -99,14 +111,25 @@ impl PotentiallyVisibleSet {
         }
     }
 
-    /// The edges that may be seen from a cell.
-    pub(super) fn edges(&self, cell: usize) -> &[u32] {
+    /// The edges that may be seen from a cell, the nearest first.
+    pub(super) fn edges(&self, cell: usize) -> &[SeenEdge] {
         self.edges.get(cell)
     }
 
     /// The cells in which a robot may be seen from a cell, the nearest first.
     pub(super) fn cells(&self, cell: usize) -> &[u32] {
         self.cells.get(cell)
+    }
+
+    /// At most the shortest distance between a point of one cell and a robot with its center in the other one, or a
+    /// part of a body that lies in the other one, m.
+    pub(super) fn apart_m(&self, cell: usize, other: usize) -> f64 {
+        let place = |cell: usize| {
+            let cell = cell as u32;
+            Vector2::new(f64::from(cell % self.columns as u32), f64::from(cell / self.columns as u32))
+        };
+        let cells = (place(cell) - place(other)).norm() - std::f64::consts::SQRT_2;
+        cells * self.cell_m - self.radius_m - MARGIN_M
     }
 
     /// The rectangles that overlap a cell.
@@ -182,13 +205,23 @@ impl View {
         Self { corners: cell.corners(), middle, half_m, range_m, near, occluders }
     }
 
-    /// The edges that may be seen.
-    fn edges(&self, edges: &[Edge]) -> impl Iterator<Item = u32> {
+    /// The edges that may be seen, the nearest first.
+    fn edges(&self, edges: &[Edge]) -> Vec<SeenEdge> {
         let is_seen = |edge: &Edge| {
             self.corners.iter().any(|corner| edge.gap_m(corner) > 0.0)
                 && !self.is_hidden(&[edge.from, edge.to])
         };
-        self.near.iter().filter(move |&&i| is_seen(&edges[i])).map(|&i| i as u32)
+        let seen = self.near.iter().filter(|&&i| is_seen(&edges[i]));
+        let mut seen: Vec<SeenEdge> = seen
+            .map(|&i| {
+                let middle_m = point_segment_m(&self.middle, &edges[i].from, &edges[i].to);
+                // Less than the true value, also in single precision.
+                let nearest_m = (middle_m - self.half_m - MARGIN_M) as f32 - 1e-5 * middle_m as f32;
+                SeenEdge { edge: i as u32, nearest_m }
+            })
+            .collect();
+        seen.sort_by(|a, b| a.nearest_m.total_cmp(&b.nearest_m).then(a.edge.cmp(&b.edge)));
+        seen
     }
 
     /// Whether some point of a square may be seen.

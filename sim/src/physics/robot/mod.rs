@@ -10,9 +10,8 @@ use super::bodies::Bodies;
 use super::command::{Command, Velocity};
 use super::drives::Drive;
 use super::form::Form;
-use super::rays::{Beams, Scratch};
 use super::report::Body;
-use super::sensors::{Platform, Sensor, SensorReading, Surroundings};
+use super::sensors::{Look, Platform, Sensor, SensorReading, SharedBeams, Surroundings};
 use super::snapshot::{Values, pose, value};
 use super::spec::RobotSpec;
 use interfaces::{LaserReading, Purpose, RandomStream};
@@ -46,16 +45,17 @@ pub(super) struct Robot {
 }
 
 impl Robot {
-    /// The robot with an index, at `pose`. `beams` are those of its lasers.
+    /// The robot with an index, at `pose`. `beams` are those of all robots.
     pub(super) fn new(
         spec: &RobotSpec,
         index: usize,
         pose: Isometry2<f64>,
         step_s: f64,
         seed: u64,
-        beams: Vec<Arc<Beams>>,
+        beams: &mut SharedBeams,
     ) -> Self {
         let random = |purpose| RandomStream::new(seed, purpose);
+        let laser_beams = beams.of_laser(&spec.laser);
         Self {
             index,
             pose,
@@ -67,7 +67,7 @@ impl Robot {
             command: Command::STOP,
             drive: Drive::new(spec.drive),
             odometry: Odometry::new(spec, random(Purpose::OdometryNoise(index)), pose),
-            behavior: Behavior::of(spec, step_s, &beams[0], random(Purpose::Behavior(index))),
+            behavior: Behavior::of(spec, step_s, &laser_beams, random(Purpose::Behavior(index))),
             sensors: Sensor::all(spec, beams, seed, index),
             spec: spec.clone(),
         }
@@ -99,6 +99,11 @@ impl Robot {
     /// The outline at the present pose.
     pub(super) fn form(&self) -> Form {
         self.spec.form(&self.pose)
+    }
+
+    /// Whether the robot moved in the last step.
+    pub(super) fn has_moved(&self) -> bool {
+        self.pose != self.previous_pose
     }
 
     /// Whether the robot obeys commands.
@@ -143,27 +148,38 @@ impl Robot {
     }
 
     /// Measures with the main laser scanner, and with all other sensors that are due.
-    pub(super) fn look(&mut self, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
-        self.sense(surroundings, scratch);
-        let platform = self.platform();
-        self.sensors[0].measure(&platform, surroundings, scratch);
+    pub(super) fn look(&mut self, surroundings: &Arc<Surroundings>) {
+        self.sense(surroundings, true);
     }
 
     /// Measures with all sensors that are due. A robot with a behavior then decides its velocity.
-    pub(super) fn think(&mut self, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
-        self.sense(surroundings, scratch);
-        if self.decides(surroundings.step)
-            && let SensorReading::Laser(Some(reading)) = self.sensors[0].reading()
-            && let Some(behavior) = &mut self.behavior
-        {
-            self.command = behavior.decide(reading).into();
+    pub(super) fn think(&mut self, surroundings: &Arc<Surroundings>) {
+        let decides = self.decides(surroundings.step);
+        let looks = decides && self.behavior.as_ref().is_some_and(Behavior::looks);
+        self.sense(surroundings, looks);
+        if decides && let Some(behavior) = &mut self.behavior {
+            let read = || match self.sensors[0].reading() {
+                SensorReading::Laser(reading) => reading,
+                SensorReading::Sonar(_) | SensorReading::Fiducials(_) => None,
+            };
+            if let Some(twist) = behavior.decide(read) {
+                self.command = twist.into();
+            }
         }
     }
 
-    fn sense(&mut self, surroundings: &Surroundings<'_>, scratch: &mut Scratch) {
-        let platform = self.platform();
-        for sensor in self.sensors.iter_mut().filter(|sensor| sensor.is_due(surroundings.step)) {
-            sensor.measure(&platform, surroundings, scratch);
+    /// Measures with all sensors that are due, and with the main laser scanner if its reading `is_needed` now.
+    fn sense(&mut self, surroundings: &Arc<Surroundings>, is_needed: bool) {
+        let look = Look { platform: self.platform(), surroundings: Arc::clone(surroundings) };
+        let others = if is_needed {
+            self.sensors[0].measure(&look);
+            &mut self.sensors[1..]
+        } else {
+            &mut self.sensors[..]
+        };
+        let mut shared = None;
+        for sensor in others.iter_mut().filter(|sensor| sensor.is_due(surroundings.step)) {
+            sensor.request(shared.get_or_insert_with(|| Arc::new(look.clone())));
         }
     }
 

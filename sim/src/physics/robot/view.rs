@@ -29,12 +29,16 @@ pub struct RobotView<'a> {
     pub is_stalled: bool,
     /// The bodies that the robot touches now.
     pub touching: &'a [Body],
-    /// The latest reading of the main laser scanner; `None` before the first measurement.
-    pub reading: Option<&'a LaserReading>,
     robot: &'a Robot,
 }
 
 impl<'a> RobotView<'a> {
+    /// The latest reading of the main laser scanner; `None` before the first measurement. As with all sensors, the
+    /// reading is computed when it is first read.
+    pub fn reading(&self) -> Option<&'a LaserReading> {
+        self.robot.reading()
+    }
+
     /// The latest readings of all sensors, the main laser scanner first.
     pub fn readings(&self) -> impl Iterator<Item = SensorReading<'a>> + use<'a> {
         self.robot.sensors.iter().map(Sensor::reading)
@@ -95,7 +99,6 @@ impl Robot {
             left_mps: self.velocity.left_mps,
             is_stalled: self.drive.is_stalled(),
             touching: &self.touching,
-            reading: self.reading(),
             robot: self,
         }
     }

@@ -1,6 +1,6 @@
-use super::{Platform, Surroundings};
+use super::on_demand::{Device, Look};
 use crate::physics::form::Form;
-use crate::physics::rays::{Beams, Scratch};
+use crate::physics::rays::Beams;
 use crate::physics::report::Body;
 use crate::physics::spec::FiducialSpec;
 use interfaces::rotation;
@@ -38,20 +38,26 @@ pub(in crate::physics) struct FiducialFinder {
     pub(super) spec: FiducialSpec,
     /// A single beam straight ahead.
     beam: Beams,
-    pub(super) found: Vec<Fiducial>,
 }
 
 impl FiducialFinder {
     pub(super) fn new(spec: &FiducialSpec) -> Self {
-        Self { spec: *spec, beam: Beams::new(0.0, 1.0, 1, spec.range_max_m), found: Vec::new() }
+        Self { spec: *spec, beam: Beams::new(0.0, 1.0, 1, spec.range_max_m) }
     }
+}
 
-    /// Measures, unless there is already a reading of this time. `scratch` is overwritten.
-    pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
+impl Device for FiducialFinder {
+    type Reading = Vec<Fiducial>;
+    type Streams = ();
+
+    fn measure(&self, look: &Look, (): &mut (), spare: Option<Vec<Fiducial>>) -> Vec<Fiducial> {
+        let Look { platform, surroundings } = look;
         let pose = platform.pose * self.spec.mount;
-        self.found.clear();
+        let mut bodies = spare.unwrap_or_default();
+        bodies.clear();
         let own = Body::Robot(platform.robot);
-        for &Tagged { tag, body, center, ref form } in now.tagged.iter().filter(|it| it.body != own) {
+        for &Tagged { tag, body, center, ref form } in surroundings.tagged.iter().filter(|it| it.body != own)
+        {
             let to = pose.inverse_transform_point(&center).coords;
             let (range_m, bearing_rad) = (to.norm(), libm::atan2(to.y, to.x));
             if range_m > self.spec.range_max_m || bearing_rad.abs() > self.spec.fov_rad / 2.0 + 1e-12 {
@@ -59,11 +65,17 @@ impl FiducialFinder {
             }
             // The first body that the ray to the center hits must be the body itself.
             let ray = pose * Isometry2::from_parts(nalgebra::Translation2::identity(), rotation(bearing_rad));
-            now.scene.cast(&self.beam, &ray, platform.robot, scratch);
-            let first_m = 1.0 / scratch.inverse[0];
+            let first_m = 1.0 / surroundings.scene.nearest(&self.beam, &ray, platform.robot);
             if first_m > range_m || form.gap_m_to(&(ray * Point2::new(first_m, 0.0))) < ON_SURFACE_M {
-                self.found.push(Fiducial { tag, body, bearing_rad, range_m });
+                bodies.push(Fiducial { tag, body, bearing_rad, range_m });
             }
         }
+        bodies
+    }
+
+    fn skip(&self, (): &mut ()) {}
+
+    fn time_s(_: &Vec<Fiducial>) -> Option<f64> {
+        None
     }
 }

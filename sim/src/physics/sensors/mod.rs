@@ -1,83 +1,112 @@
 //! The sensors of a robot.
 //!
+//! A sensor measures at fixed steps, but its reading is computed when it is first read ([`on_demand`]): sensors that
+//! nobody reads cost nothing.
+//!
 //! Stepping, snapshots and views use one list of sensors, [`Sensor::all`]. To add a sensor: write a file, and add a
 //! variant to [`Sensor`] and one to [`SensorReading`].
 
 pub(super) mod bumper;
 mod fiducial_finder;
 mod laser_scanner;
+mod on_demand;
+mod shared_beams;
 mod sonar;
 
 pub use fiducial_finder::Fiducial;
 use fiducial_finder::FiducialFinder;
 pub(super) use fiducial_finder::Tagged;
-pub(super) use laser_scanner::{LaserScanner, SharedBeams};
+pub(super) use laser_scanner::LaserScanner;
+use laser_scanner::LaserStreams;
+pub(super) use on_demand::{Look, OnDemand};
+pub(super) use shared_beams::SharedBeams;
 use sonar::Sonar;
 pub use sonar::SonarReading;
 
-use super::rays::{Beams, Scene, Scratch};
+use super::rays::Scene;
 use super::snapshot::{Values, value};
-use super::spec::RobotSpec;
-use interfaces::{LaserReading, Twist};
+use super::spec::{LaserSpec, RobotSpec};
+use interfaces::{LaserReading, Purpose, RandomStream, Twist};
 use nalgebra::Isometry2;
 use std::sync::Arc;
 
 /// A sensor on a robot, with its latest reading.
 #[derive(Clone)]
 pub(super) enum Sensor {
-    Laser(Box<LaserScanner>),
-    Sonar(Box<Sonar>),
-    Fiducials(FiducialFinder),
+    Laser(Box<OnDemand<LaserScanner>>),
+    Sonar(Box<OnDemand<Sonar>>),
+    Fiducials(Box<OnDemand<FiducialFinder>>),
 }
 
 impl Sensor {
-    /// All sensors of the robot with an index, the main laser scanner first. `beams` are those of its lasers.
-    pub(super) fn all(spec: &RobotSpec, beams: Vec<Arc<Beams>>, seed: u64, robot: usize) -> Vec<Self> {
+    /// All sensors of the robot with an index, the main laser scanner first.
+    pub(super) fn all(spec: &RobotSpec, beams: &mut SharedBeams, seed: u64, robot: usize) -> Vec<Self> {
         // Each sensor has streams of its own; the streams of the first sensor of a kind are those of the robot.
         let stream = |sensor: usize| robot + (sensor << 24);
-        let lasers = spec.lasers().zip(beams).enumerate().map(|(index, (laser, beams))| {
-            Self::Laser(Box::new(LaserScanner::new(laser, beams, seed, stream(index))))
-        });
-        let sonars = spec.sonars.iter().enumerate();
-        let sonars =
-            sonars.map(|(index, sonar)| Self::Sonar(Box::new(Sonar::new(sonar, seed, stream(index)))));
-        let finder = spec.fiducial.iter().map(|finder| Self::Fiducials(FiducialFinder::new(finder)));
-        lasers.chain(sonars).chain(finder).collect()
+        let mut sensors = Vec::new();
+        for (index, laser) in spec.lasers().enumerate() {
+            sensors.push(Self::laser(laser, beams, seed, stream(index)));
+        }
+        for (index, sonar) in spec.sonars.iter().enumerate() {
+            let noise = RandomStream::new(seed, Purpose::SonarNoise(stream(index)));
+            sensors.push(Self::Sonar(Box::new(OnDemand::new(Sonar::new(sonar, beams), noise))));
+        }
+        let finder = spec.fiducial.iter().map(|finder| OnDemand::new(FiducialFinder::new(finder), ()));
+        sensors.extend(finder.map(|finder| Self::Fiducials(Box::new(finder))));
+        sensors
+    }
+
+    /// A laser scanner with random streams with the index `stream`.
+    pub(super) fn laser(spec: &LaserSpec, beams: &mut SharedBeams, seed: u64, stream: usize) -> Self {
+        let streams = LaserStreams {
+            noise: RandomStream::new(seed, Purpose::LaserNoise(stream)),
+            dropout: RandomStream::new(seed, Purpose::LaserDropout(stream)),
+        };
+        Self::Laser(Box::new(OnDemand::new(LaserScanner::new(spec, beams), streams)))
     }
 
     /// Whether the sensor measures at a step.
     pub(super) fn is_due(&self, step: u64) -> bool {
         step.is_multiple_of(match self {
-            Self::Laser(laser) => laser.spec.period_steps,
-            Self::Sonar(sonar) => sonar.spec.period_steps,
-            Self::Fiducials(finder) => finder.spec.period_steps,
+            Self::Laser(laser) => laser.device.spec.period_steps,
+            Self::Sonar(sonar) => sonar.device.spec.period_steps,
+            Self::Fiducials(finder) => finder.device.spec.period_steps,
         })
     }
 
-    /// Measures, unless there is already a reading of this time. `scratch` is overwritten.
-    pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
+    /// The sensor measures now, but the reading is computed when it is read.
+    pub(super) fn request(&mut self, look: &Arc<Look>) {
         match self {
-            Self::Laser(laser) => laser.measure(platform, now, scratch),
-            Self::Sonar(sonar) => sonar.measure(platform, now, scratch),
-            Self::Fiducials(finder) => finder.measure(platform, now, scratch),
+            Self::Laser(laser) => laser.request(look),
+            Self::Sonar(sonar) => sonar.request(look),
+            Self::Fiducials(finder) => finder.request(look),
+        }
+    }
+
+    /// The sensor measures now, and the reading will be read: it is computed at once.
+    pub(super) fn measure(&mut self, look: &Look) {
+        match self {
+            Self::Laser(laser) => laser.measure(look),
+            Self::Sonar(sonar) => sonar.measure(look),
+            Self::Fiducials(finder) => finder.measure(look),
         }
     }
 
     /// The latest reading.
     pub(super) fn reading(&self) -> SensorReading<'_> {
         match self {
-            Self::Laser(laser) => SensorReading::Laser(laser.reading.as_ref()),
-            Self::Sonar(sonar) => SensorReading::Sonar(sonar.reading),
-            Self::Fiducials(finder) => SensorReading::Fiducials(&finder.found),
+            Self::Laser(laser) => SensorReading::Laser(laser.reading()),
+            Self::Sonar(sonar) => SensorReading::Sonar(sonar.reading().copied()),
+            Self::Fiducials(finder) => SensorReading::Fiducials(finder.reading().map_or(&[], Vec::as_slice)),
         }
     }
 
     /// Removes the latest reading.
     pub(super) fn clear(&mut self) {
         match self {
-            Self::Laser(laser) => laser.reading = None,
-            Self::Sonar(sonar) => sonar.reading = None,
-            Self::Fiducials(finder) => finder.found.clear(),
+            Self::Laser(laser) => laser.clear(),
+            Self::Sonar(sonar) => sonar.clear(),
+            Self::Fiducials(finder) => finder.clear(),
         }
     }
 
@@ -85,10 +114,14 @@ impl Sensor {
     pub(super) fn values(&mut self) -> Values<'_> {
         match self {
             Self::Laser(laser) => {
-                vec![value(&mut laser.noise), value(&mut laser.dropout), value(&mut laser.reading)]
+                let (LaserStreams { noise, dropout }, reading) = laser.state();
+                vec![value(noise), value(dropout), value(reading)]
             }
-            Self::Sonar(sonar) => vec![value(&mut sonar.noise), value(&mut sonar.reading)],
-            Self::Fiducials(finder) => vec![value(&mut finder.found)],
+            Self::Sonar(sonar) => {
+                let (noise, reading) = sonar.state();
+                vec![value(noise), value(reading)]
+            }
+            Self::Fiducials(finder) => vec![value(finder.state().1.get_or_insert_default())],
         }
     }
 }
@@ -105,6 +138,7 @@ pub enum SensorReading<'a> {
 }
 
 /// A robot at the moment of a measurement.
+#[derive(Clone)]
 pub(super) struct Platform {
     /// The index of the robot.
     pub(super) robot: usize,
@@ -115,13 +149,13 @@ pub(super) struct Platform {
     pub(super) odometry_twist: Twist,
 }
 
-/// The surroundings of a robot at the time of a measurement.
-pub(super) struct Surroundings<'a> {
+/// The surroundings of all robots at the time of a measurement.
+pub(super) struct Surroundings {
     /// The number of the physics step.
     pub(super) step: u64,
     pub(super) time_s: f64,
-    pub(super) scene: &'a Scene,
-    pub(super) tagged: &'a [Tagged],
+    pub(super) scene: Scene,
+    pub(super) tagged: Vec<Tagged>,
 }
 
 /// A measured range with the meaning of REP-117: too far is +∞, too close −∞.

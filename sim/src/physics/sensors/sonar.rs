@@ -1,8 +1,10 @@
-use super::{Platform, Surroundings, reported};
-use crate::physics::rays::{Beams, Scratch};
+use super::on_demand::{Device, Look};
+use super::{SharedBeams, reported};
+use crate::physics::rays::Beams;
 use crate::physics::spec::SonarSpec;
-use interfaces::{Purpose, RandomStream};
+use interfaces::RandomStream;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// The angle between two beams of the fan that fills the cone of a sonar, rad: half a degree.
 const BEAM_SPACING_RAD: f64 = std::f64::consts::PI / 360.0;
@@ -20,34 +22,35 @@ pub struct SonarReading {
 #[derive(Clone)]
 pub(in crate::physics) struct Sonar {
     pub(super) spec: SonarSpec,
-    beams: Beams,
-    pub(super) noise: RandomStream,
-    pub(super) reading: Option<SonarReading>,
+    beams: Arc<Beams>,
 }
 
 impl Sonar {
-    /// A sonar with a random stream with the index `stream`.
-    pub(super) fn new(spec: &SonarSpec, seed: u64, stream: usize) -> Self {
+    pub(super) fn new(spec: &SonarSpec, beams: &mut SharedBeams) -> Self {
         let gaps = (spec.cone_rad / BEAM_SPACING_RAD).ceil().max(2.0);
         let (first_rad, spacing_rad) = (-spec.cone_rad / 2.0, spec.cone_rad / gaps);
-        Self {
-            spec: *spec,
-            beams: Beams::new(first_rad, spacing_rad, gaps as usize + 1, spec.range_max_m),
-            noise: RandomStream::new(seed, Purpose::SonarNoise(stream)),
-            reading: None,
-        }
+        Self { spec: *spec, beams: beams.of(first_rad, spacing_rad, gaps as usize + 1, spec.range_max_m) }
+    }
+}
+
+impl Device for Sonar {
+    type Reading = SonarReading;
+    type Streams = RandomStream;
+
+    fn measure(&self, look: &Look, noise: &mut RandomStream, _: Option<SonarReading>) -> SonarReading {
+        let Look { platform, surroundings } = look;
+        let SonarSpec { range_min_m, range_max_m, noise_std_m, mount, .. } = self.spec;
+        let nearest = surroundings.scene.nearest(&self.beams, &(platform.pose * mount), platform.robot);
+        let measured_m = 1.0 / nearest + noise_std_m * noise.normal();
+        let range_m = reported(measured_m, range_min_m, range_max_m);
+        SonarReading { time_s: surroundings.time_s, range_m }
     }
 
-    /// Measures, unless there is already a reading of this time. `scratch` is overwritten.
-    pub(super) fn measure(&mut self, platform: &Platform, now: &Surroundings<'_>, scratch: &mut Scratch) {
-        let time_s = now.time_s;
-        if self.reading.is_some_and(|reading| reading.time_s == time_s) {
-            return;
-        }
-        now.scene.cast(&self.beams, &(platform.pose * self.spec.mount), platform.robot, scratch);
-        let nearest = scratch.inverse.iter().fold(0.0, |most: f64, inverse| most.max(*inverse));
-        let SonarSpec { range_min_m, range_max_m, noise_std_m, .. } = self.spec;
-        let measured_m = 1.0 / nearest + noise_std_m * self.noise.normal();
-        self.reading = Some(SonarReading { time_s, range_m: reported(measured_m, range_min_m, range_max_m) });
+    fn skip(&self, noise: &mut RandomStream) {
+        noise.normal();
+    }
+
+    fn time_s(reading: &SonarReading) -> Option<f64> {
+        Some(reading.time_s)
     }
 }

@@ -3,12 +3,13 @@
 use super::*;
 use crate::physics::bodies::Bodies;
 use crate::physics::fleet::corners;
-use crate::physics::rays::{Disc, Scene, Scratch};
-use crate::physics::sensors::{LaserScanner, Platform, Sensor, SensorReading, SharedBeams, Surroundings};
+use crate::physics::rays::{Disc, Scene};
+use crate::physics::sensors::{Look, Platform, Sensor, SensorReading, SharedBeams, Surroundings};
 use interfaces::{Scan, Twist, rotation};
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
 
 /// A beam is grazing if a rotation by this angle changes the body that it hits, rad.
 const GRAZE_RAD: f64 = 1e-6;
@@ -51,11 +52,10 @@ pub(super) struct Place {
 /// The scan of a laser at `at` on robot `own`.
 pub(super) fn scan(spec: &LaserSpec, at: &Isometry2<f64>, scene: &Scene, own: usize) -> Scan {
     let spec = LaserSpec { mount: Isometry2::identity(), ..*spec };
-    let laser = LaserScanner::new(&spec, SharedBeams::default().of(&spec), 0, 0);
-    let mut laser = Sensor::Laser(Box::new(laser));
+    let mut laser = Sensor::laser(&spec, &mut SharedBeams::default(), 0, 0);
     let platform = Platform { robot: own, pose: *at, odometry_pose: *at, odometry_twist: Twist::STOP };
-    let surroundings = Surroundings { step: 0, time_s: 0.0, scene, tagged: &[] };
-    laser.measure(&platform, &surroundings, &mut Scratch::default());
+    let surroundings = Surroundings { step: 0, time_s: 0.0, scene: scene.clone(), tagged: Vec::new() };
+    laser.measure(&Look { platform, surroundings: Arc::new(surroundings) });
     match laser.reading() {
         SensorReading::Laser(Some(reading)) => reading.scan.clone(),
         reading => panic!("{reading:?}"),
@@ -88,9 +88,8 @@ impl Place {
         let hulls = spec.obstacles.len();
         let mut scene = Scene::new(corners(&spec.frame), &spec.walls, round.collect(), hulls, 10.0);
         for (place, obstacle) in spec.obstacles.iter().enumerate() {
-            scene.set_polygon(place, None, &obstacle.shape.corners());
+            scene.set_polygon(place, None, obstacle.shape.corners().into_iter());
         }
-        scene.sort();
         let boxes = spec.walls.iter().chain(spec.obstacles.iter().map(|o| &o.shape)).copied().collect();
         Self { spec, scene, bodies, boxes, discs, cornered: Vec::new() }
     }
@@ -109,8 +108,7 @@ impl Place {
                     .push((robot.index, robot.corners.iter().map(|corner| robot.pose * corner).collect()));
             }
         }
-        let (mut scene, mut bodies) = fleet.into_parts();
-        scene.sort();
+        let (scene, mut bodies) = fleet.into_parts();
         bodies.find_again();
         Self { spec, scene, bodies, boxes, discs, cornered }
     }

@@ -9,7 +9,7 @@ use nalgebra::Isometry2;
 struct Say(Command);
 
 impl Controller for Say {
-    fn drive(&mut self, _: &RobotView<'_>, _: &LaserReading) -> Option<Command> {
+    fn drive(&mut self, _: &RobotView<'_>) -> Option<Command> {
         Some(self.0)
     }
 }
@@ -182,7 +182,7 @@ fn lasers_look_each_at_its_rate_and_from_its_place() {
     // The other lasers do not change the readings of the first one.
     let mut alone = Fleet::new(&with(laser), 7);
     alone.run_until(2.0, &mut Say(Command::STOP));
-    assert_eq!(alone.robots().next().unwrap().reading, robot.reading);
+    assert_eq!(alone.robots().next().unwrap().reading(), robot.reading());
     // A snapshot contains them all, too.
     let snapshot = fleet.snapshot();
     let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();

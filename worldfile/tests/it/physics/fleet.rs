@@ -51,7 +51,7 @@ pub(super) fn hash(fleet: &Fleet) -> u64 {
     for robot in fleet.robots() {
         let at = robot.pose.translation.vector;
         [at.x, at.y, robot.pose.rotation.im].iter().for_each(|value| eat(value.to_bits()));
-        let ranges_m = robot.reading.map(|reading| &reading.scan.ranges_m);
+        let ranges_m = robot.reading().map(|reading| &reading.scan.ranges_m);
         ranges_m.into_iter().flatten().for_each(|range_m| eat(u64::from(range_m.to_bits())));
     }
     hash
@@ -323,7 +323,7 @@ fn a_robot_is_set_down_where_there_is_room() {
     let pose = pose(&fleet, 0);
     assert!((pose.translation.vector - interfaces::pose(9.0, 9.0, 1.0).translation.vector).norm() < 1e-6);
     assert!((interfaces::heading_rad(&pose) - 1.0).abs() < 1e-6);
-    let reading = fleet.robots().next().and_then(|robot| robot.reading).unwrap();
+    let reading = fleet.robots().next().and_then(|robot| robot.reading()).unwrap();
     assert!((reading.pose.translation.x - 9.0).abs() < 1e-6);
     assert_eq!(fleet.contacts(), []);
 }

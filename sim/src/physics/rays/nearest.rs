@@ -1,0 +1,141 @@
+//! The shortest range of all beams of a sensor.
+//!
+//! The range of every beam that could be the shortest is computed as for a laser, so that the result is the same, bit
+//! for bit. What is farther away than the shortest range so far, and what lies beside the beams, is left out.
+
+use super::beams::{Beams, EDGE_ON_M};
+use super::circles::Disc;
+use super::edges::Edge;
+use interfaces::{APPROXIMATE_ATAN2_ERROR_RAD, approximate_atan2};
+use nalgebra::{Isometry2, Point2, Vector2};
+
+/// A body may be left out if it is farther away than the shortest range by this factor: far above rounding.
+const SAFE: f64 = 1.0 + 1e-5;
+
+/// The shortest range so far.
+pub(super) struct Nearest<'a> {
+    beams: &'a Beams,
+    sensor: Isometry2<f64>,
+    /// The first and the last beam, if the beams span less than half a turn.
+    borders: Option<[Vector2<f64>; 2]>,
+    /// One over the range, 1/m; 0 where there is no hit.
+    inverse: f64,
+    /// What is farther away cannot change the result, m.
+    reach_m: f64,
+}
+
+impl<'a> Nearest<'a> {
+    /// No hits yet.
+    pub(super) fn new(beams: &'a Beams, sensor: &Isometry2<f64>) -> Self {
+        let border = |beam: usize| Vector2::new(beams.x[beam], beams.y[beam]);
+        let [right, left] = [0, beams.count - 1].map(border);
+        let is_narrow = beams.count == 1 || right.perp(&left) > 1e-6;
+        Self {
+            beams,
+            sensor: *sensor,
+            borders: is_narrow.then_some([right, left]),
+            inverse: 0.0,
+            reach_m: beams.range_max_m * SAFE,
+        }
+    }
+
+    /// What is farther away cannot change the result, m.
+    pub(super) fn reach_m(&self) -> f64 {
+        self.reach_m
+    }
+
+    /// One over the shortest range, 1/m; 0 without a hit.
+    pub(super) fn inverse(&self) -> f64 {
+        self.inverse
+    }
+
+    fn take(&mut self, inverse: f64) {
+        if inverse > self.inverse {
+            self.inverse = inverse;
+            self.reach_m = self.reach_m.min(SAFE / inverse);
+        }
+    }
+
+    /// Whether two points in the frame of the sensor lie on the same outer side of the beams.
+    fn is_beside(&self, a: &Vector2<f64>, b: &Vector2<f64>) -> bool {
+        let Some([right, left]) = &self.borders else { return false };
+        right.perp(a) < 0.0 && right.perp(b) < 0.0 || left.perp(a) > 0.0 && left.perp(b) > 0.0
+    }
+
+    /// Adds an edge of a solid, if the edge faces the sensor and is within reach.
+    pub(super) fn add_edge(&mut self, edge: &Edge) {
+        let gap_m = edge.gap_m(&self.sensor.translation.vector.into());
+        if gap_m < EDGE_ON_M || gap_m > self.beams.range_max_m || gap_m > self.reach_m {
+            return;
+        }
+        let seen = |point: &Point2<f64>| self.sensor.inverse_transform_point(point).coords;
+        let (from, to) = (seen(&edge.from), seen(&edge.to));
+        if self.is_beside(&from, &to) {
+            return;
+        }
+        let normal = self.sensor.rotation.inverse() * edge.normal;
+        let (m, n) = (-normal.x / gap_m, -normal.y / gap_m);
+        let mut most = 0.0;
+        for run in self.beams.between(&to, &from) {
+            for (x, y) in self.beams.x[run.clone()].iter().zip(&self.beams.y[run]) {
+                let hit = m * x + n * y;
+                most = if hit > most { hit } else { most };
+            }
+        }
+        self.take(most);
+    }
+
+    /// The center of a disc in the frame of the sensor, m, and its distance, m, if the disc is within reach and not
+    /// beside the beams.
+    fn place(&self, disc: &Disc) -> Option<(Vector2<f64>, f64)> {
+        let to = disc.center.coords - self.sensor.translation.vector;
+        let (distance2, most_m) = (to.norm_squared(), self.reach_m + disc.radius_m);
+        if distance2 > most_m * most_m {
+            return None;
+        }
+        let center = self.sensor.rotation.inverse() * to;
+        let beside_m = disc.radius_m * SAFE;
+        let is_beside = self
+            .borders
+            .is_some_and(|[right, left]| right.perp(&center) < -beside_m || left.perp(&center) > beside_m);
+        (!is_beside).then(|| (center, distance2.sqrt()))
+    }
+
+    /// Whether a body within a disc could change the result.
+    pub(super) fn may_meet(&self, around: &Disc) -> bool {
+        self.place(around).is_some()
+    }
+
+    /// Adds a round body.
+    pub(super) fn add_disc(&mut self, disc: &Disc) {
+        let Some((center, distance_m)) = self.place(disc) else { return };
+        let power = center_power(&self.sensor, disc);
+        let most_m = self.beams.range_max_m + disc.radius_m;
+        if power > most_m * most_m {
+            return;
+        }
+        if power <= 0.0 {
+            return self.take(f64::INFINITY);
+        }
+        // asin(s) ≤ s + (π/2 − 1)·s³, and the margin of the approximate angle.
+        let s = (disc.radius_m / distance_m * SAFE).min(1.0);
+        let half_rad = s + 0.571 * s * s * s + 3.0 * APPROXIMATE_ATAN2_ERROR_RAD;
+        let (first, end) = self.beams.around(approximate_atan2(center.y, center.x), half_rad);
+        let (per_power, mut most) = (1.0 / power, 0.0);
+        for run in self.beams.runs(first, end) {
+            for (x, y) in self.beams.x[run.clone()].iter().zip(&self.beams.y[run]) {
+                let b = center.x * x + center.y * y;
+                let root2 = b * b - power;
+                let hit = if root2 >= 0.0 { (b + root2.max(0.0).sqrt()) * per_power } else { 0.0 };
+                most = if hit > most { hit } else { most };
+            }
+        }
+        self.take(most);
+    }
+}
+
+/// The power of the position of a sensor: distance squared less radius squared, m².
+fn center_power(sensor: &Isometry2<f64>, disc: &Disc) -> f64 {
+    let to = disc.center - sensor.translation.vector;
+    to.coords.norm_squared() - disc.radius_m * disc.radius_m
+}

@@ -1,0 +1,140 @@
+//! Readings that are computed when they are first read.
+
+use super::{Platform, Surroundings};
+use std::sync::{Arc, OnceLock};
+
+/// A robot and its surroundings at the time of a measurement.
+#[derive(Clone)]
+pub(in crate::physics) struct Look {
+    pub(in crate::physics) platform: Platform,
+    pub(in crate::physics) surroundings: Arc<Surroundings>,
+}
+
+/// A sensor without its readings.
+pub(in crate::physics) trait Device {
+    /// A reading of the sensor.
+    type Reading;
+    /// The random streams from which a measurement draws.
+    type Streams: Clone;
+
+    /// Measures. The memory of `spare`, an older reading, may be used again.
+    fn measure(
+        &self,
+        look: &Look,
+        streams: &mut Self::Streams,
+        spare: Option<Self::Reading>,
+    ) -> Self::Reading;
+
+    /// Draws what a measurement draws.
+    fn skip(&self, streams: &mut Self::Streams);
+
+    /// The time of a reading, s, if there need be no other reading of the same time.
+    fn time_s(reading: &Self::Reading) -> Option<f64>;
+}
+
+/// A sensor whose readings are computed when they are first read. A reading has the same bits, whether the readings
+/// before were read or not.
+#[derive(Clone)]
+pub(in crate::physics) struct OnDemand<D: Device> {
+    pub(super) device: D,
+    /// Before the draws of the pending measurement, and of those that were skipped.
+    streams: D::Streams,
+    /// The number of measurements since that nobody read.
+    skipped: u64,
+    /// The latest reading; an older one while a measurement is pending.
+    reading: Option<D::Reading>,
+    pending: Option<Arc<Look>>,
+    /// The result of the pending measurement, and the streams after it, as soon as it was read.
+    result: OnceLock<(D::Reading, D::Streams)>,
+}
+
+impl<D: Device> OnDemand<D> {
+    pub(super) fn new(device: D, streams: D::Streams) -> Self {
+        Self { device, streams, skipped: 0, reading: None, pending: None, result: OnceLock::new() }
+    }
+
+    /// The sensor is to measure, unless there is already a reading of this time.
+    pub(super) fn request(&mut self, look: &Arc<Look>) {
+        if self.is_new(look) {
+            self.settle();
+            self.pending = Some(Arc::clone(look));
+        }
+    }
+
+    /// Measures at once, unless there is already a reading of this time.
+    pub(super) fn measure(&mut self, look: &Look) {
+        if self.is_new(look) {
+            self.settle();
+            self.compute(look);
+        } else {
+            self.finish();
+        }
+    }
+
+    /// The latest reading; `None` before the first measurement.
+    pub(super) fn reading(&self) -> Option<&D::Reading> {
+        let Some(look) = &self.pending else { return self.reading.as_ref() };
+        let result = self.result.get_or_init(|| {
+            let mut streams = self.streams.clone();
+            (0..self.skipped).for_each(|_| self.device.skip(&mut streams));
+            let reading = self.device.measure(look, &mut streams, None);
+            (reading, streams)
+        });
+        Some(&result.0)
+    }
+
+    /// Removes the latest reading.
+    pub(super) fn clear(&mut self) {
+        self.settle();
+        self.reading = None;
+    }
+
+    /// The random streams and the latest reading, with nothing pending.
+    pub(super) fn state(&mut self) -> (&mut D::Streams, &mut Option<D::Reading>) {
+        self.finish();
+        (&mut self.streams, &mut self.reading)
+    }
+
+    fn is_new(&self, look: &Look) -> bool {
+        let time_s = match &self.pending {
+            Some(pending) => Some(pending.surroundings.time_s),
+            None => self.reading.as_ref().and_then(D::time_s),
+        };
+        time_s != Some(look.surroundings.time_s)
+    }
+
+    /// Nothing is pending any more: its result becomes the reading; if it was not read, it is skipped.
+    fn settle(&mut self) {
+        if self.pending.take().is_none() {
+            return;
+        }
+        match self.result.take() {
+            Some((reading, streams)) => {
+                (self.reading, self.streams, self.skipped) = (Some(reading), streams, 0);
+            }
+            None => self.skipped += 1,
+        }
+    }
+
+    /// Computes what is pending.
+    fn finish(&mut self) {
+        let Some(look) = self.pending.take() else { return self.catch_up() };
+        match self.result.take() {
+            Some((reading, streams)) => {
+                (self.reading, self.streams, self.skipped) = (Some(reading), streams, 0);
+            }
+            None => self.compute(&look),
+        }
+    }
+
+    fn compute(&mut self, look: &Look) {
+        self.catch_up();
+        let spare = self.reading.take();
+        self.reading = Some(self.device.measure(look, &mut self.streams, spare));
+    }
+
+    /// Makes the draws of the skipped measurements.
+    fn catch_up(&mut self) {
+        (0..std::mem::take(&mut self.skipped)).for_each(|_| self.device.skip(&mut self.streams));
+    }
+}
