@@ -6,7 +6,7 @@ mod patches;
 mod tests;
 
 use agent::{Stay, Travel};
-use expectation::Knowledge;
+use expectation::{Knowledge, gap_worth};
 use interfaces::GroundTruth;
 use mapper::Mapper;
 use nalgebra::Point2;
@@ -33,6 +33,8 @@ const LEAST_TRUST: f64 = 0.01;
 #[derive(Clone, Debug)]
 pub struct Oracle {
     patches: Patches,
+    /// Whether a look at a cell after a gap counts for what the gap tells. In grid worlds only time in view counts.
+    counts_gaps: bool,
     /// The true cycle rate of every cell.
     rates: Vec<f64>,
     /// The weight of every cell in the log error.
@@ -57,16 +59,17 @@ struct Expected {
 impl Oracle {
     /// An oracle for a robot in a grid world.
     pub fn in_grid(world: &GridSpec) -> Self {
-        Self::new(Patches::of_grid(world), world.frame().len())
+        Self::new(Patches::of_grid(world), world.frame().len(), false)
     }
 
     /// An oracle for the driven robot of a physics world.
     pub fn in_physics(world: &WorldSpec) -> Self {
-        Self::new(Patches::of_physics(world), world.frame.len())
+        Self::new(Patches::of_physics(world), world.frame.len(), true)
     }
 
-    fn new(patches: Patches, cells: usize) -> Self {
+    fn new(patches: Patches, cells: usize, counts_gaps: bool) -> Self {
         Self {
+            counts_gaps,
             rates: vec![0.0; cells],
             weights: vec![0.0; cells],
             learned_at: f64::NEG_INFINITY,
@@ -118,7 +121,8 @@ impl Oracle {
         let falls = self.changing(patch).map(|cell| {
             let (rate, weight) = (self.rates[cell], self.weights[cell]);
             let knowledge = knowledge(mapper, cell, rate);
-            STAYS.map(|stay| weight * knowledge.expected_fall(stay))
+            let gap = if self.counts_gaps { gap_worth(mapper.recency(cell), rate) } else { 0.0 };
+            STAYS.map(|stay| weight * knowledge.expected_fall(stay + gap))
         });
         falls.reduce(|sums, falls| std::array::from_fn(|stay| sums[stay] + falls[stay]))
     }

@@ -31,6 +31,8 @@ impl TrialWorld for GridSpec {
     type Truth = GridGroundTruth;
     type Robot = GridRobot;
     type Drive = CellDrive;
+    const VIEW_EVERY: usize = 1;
+    const COMPARE_EVERY: usize = 10;
 
     fn name(&self) -> &str {
         &self.name

@@ -37,6 +37,9 @@ impl TrialWorld for WorldSpec {
     type Truth = PhysicsGroundTruth;
     type Robot = PhysicsRobot;
     type Drive = DiffDrive;
+    // Each check is a pass over the map.
+    const VIEW_EVERY: usize = 50;
+    const COMPARE_EVERY: usize = 50;
 
     fn name(&self) -> &str {
         &self.name

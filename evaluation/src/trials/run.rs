@@ -89,7 +89,7 @@ fn run<W: TrialWorld, G: GoalSelector>(
             *collisions.get_or_insert(0) += count;
         }
         let is_complete = sampler.is_complete(belief.mapper.time());
-        let sample = sampler.update(belief.mapper, truth);
+        let sample = sampler.update::<W>(belief.mapper, truth);
         if is_complete {
             false_change_events = Some(rate_scores(belief.mapper, truth).false_change_events);
         }

@@ -1,3 +1,4 @@
+use super::TrialWorld;
 use crate::metrics::{ChangingAccuracy, Prediction, RateScores, map_scores, rate_scores};
 use crate::report::Sample;
 use interfaces::GroundTruth;
@@ -5,8 +6,6 @@ use mapper::Mapper;
 
 /// The number of samples of a trial.
 const SAMPLES: u64 = 80;
-/// The swept cells are compared once in this number of readings, and at every sample.
-const COMPARE_EVERY: usize = 10;
 /// Times are sums of steps of a physics world, s.
 const SLACK: f64 = 1e-6;
 
@@ -17,8 +16,9 @@ pub(super) struct Sampler {
     due: u64,
     samples: Vec<Sample>,
     readings: usize,
-    /// The readings with a swept cell in view.
-    readings_near_changes: usize,
+    /// The number of checks whether a swept cell is in view, and of those that found one.
+    views: usize,
+    views_of_changes: usize,
     /// Since the last sample.
     accuracy: ChangingAccuracy,
     /// Since the last sample.
@@ -33,22 +33,25 @@ impl Sampler {
             due: sample_time(0, length),
             samples: Vec::with_capacity(SAMPLES as usize),
             readings: 0,
-            readings_near_changes: 0,
+            views: 0,
+            views_of_changes: 0,
             accuracy: ChangingAccuracy::default(),
             prediction: Prediction::default(),
         }
     }
 
     /// Measures one reading. Returns the sample, if one is due.
-    pub(super) fn update(&mut self, mapper: &Mapper, truth: &impl GroundTruth) -> Option<&Sample> {
+    pub(super) fn update<W: TrialWorld>(&mut self, mapper: &Mapper, truth: &W::Truth) -> Option<&Sample> {
         let is_due = has_come(mapper.time(), self.due);
-        if is_due || self.readings.is_multiple_of(COMPARE_EVERY) {
+        if is_due || self.readings.is_multiple_of(W::COMPARE_EVERY) {
             self.accuracy.sample(mapper, truth);
             self.prediction.sample(mapper, truth);
         }
+        if self.readings.is_multiple_of(W::VIEW_EVERY) {
+            self.views += 1;
+            self.views_of_changes += usize::from(truth.swept().iter().any(|&index| mapper.is_in_view(index)));
+        }
         self.readings += 1;
-        self.readings_near_changes +=
-            usize::from(truth.swept().iter().any(|&index| mapper.is_in_view(index)));
         if !is_due {
             return None;
         }
@@ -81,7 +84,7 @@ impl Sampler {
             map_quality_changing: or_nan(std::mem::take(&mut self.accuracy).scores().all),
             coverage: map.coverage,
             false_rate: false_rate_hz,
-            changing_share: self.readings_near_changes as f64 / self.readings as f64,
+            changing_share: self.views_of_changes as f64 / self.views as f64,
             brier: or_nan(brier.model),
             brier_last_seen: or_nan(brier.last_seen),
             brier_mean: or_nan(brier.average),

@@ -18,6 +18,11 @@ pub trait TrialWorld: Sized + Sync {
     /// The drive of the robot.
     type Drive: Drive<Command = <Self::World as World>::Command>;
 
+    /// Whether a changing cell is in view is checked once in this number of readings.
+    const VIEW_EVERY: usize;
+    /// The swept cells are compared with the map once in this number of readings, and at every sample.
+    const COMPARE_EVERY: usize;
+
     /// The name of the world.
     fn name(&self) -> &str;
 

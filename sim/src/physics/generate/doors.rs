@@ -66,7 +66,7 @@ fn sliding(doorway: &Doorway, is_low: bool, plan: &Plan) -> (Rectangle, Leaf) {
 
 /// A leaf at one face of the wall, which swings into a room.
 fn hinged(doorway: &Doorway, plan: &Plan, rng: &mut RandomStream) -> (Rectangle, Leaf) {
-    let (is_low, into_upper) = (rng.random(), rng.random());
+    let (is_low, into_upper) = (doorway.is_hinge_low(), rng.random());
     let into_upper = match doorway.spaces {
         [CORRIDOR, _] => true,
         [_, CORRIDOR] => false,

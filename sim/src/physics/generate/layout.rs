@@ -12,8 +12,10 @@ pub(super) const WALL: i32 = 2;
 pub(super) const CORRIDOR: usize = 0;
 /// The wall between a doorway and the corner of a room.
 const CORNER: i32 = 5;
-/// Beside a doorway, and beyond the leaf of its open door, this much stays free of furniture.
-const DOORWAY_MARGIN: i32 = 3;
+/// Beside a doorway this much stays free of furniture.
+const BESIDE_DOORWAY: i32 = 3;
+/// Around the leaf of an open door this much stays free of furniture: with less, leaf and furniture could divide a room.
+const AROUND_LEAF: i32 = 14;
 /// The number of draws until a doorway has room.
 const MAX_TRIES: usize = 30;
 
@@ -80,6 +82,11 @@ impl Doorway {
         self.ends[1] - self.ends[0]
     }
 
+    /// Whether the hinge of a door is at the lower end: at the end near the corner of the room, as in most houses.
+    pub(super) fn is_hinge_low(&self) -> bool {
+        self.ends[0] - self.wall.ends[0] <= self.wall.ends[1] - self.ends[1]
+    }
+
     /// A position by its distance from the lower face of the wall, and by its place along the wall.
     pub(super) fn position(&self, from_face: f64, along: f64) -> [f64; 2] {
         let across = f64::from(self.wall.face) + from_face;
@@ -88,10 +95,12 @@ impl Doorway {
 
     /// The area on one side (0: lower) that stays free of furniture.
     pub(super) fn zone(&self, side: usize) -> Area {
-        let depth = self.width() + DOORWAY_MARGIN;
+        let depth = self.width() + AROUND_LEAF;
         let face = self.wall.face + if side == 0 { -depth } else { WALL };
         let faces = [face, face + depth];
-        let ends = [self.ends[0] - DOORWAY_MARGIN, self.ends[1] + DOORWAY_MARGIN];
+        let sides = [AROUND_LEAF, BESIDE_DOORWAY];
+        let [low, high] = if self.is_hinge_low() { sides } else { [sides[1], sides[0]] };
+        let ends = [self.ends[0] - low, self.ends[1] + high];
         if self.wall.across == 1 { Area::new(ends, faces) } else { Area::new(faces, ends) }
     }
 }

@@ -190,5 +190,11 @@ fn houses_are_what_they_always_were() {
         format!("{:016x} {}", hash(&text), house.description)
     };
     let lines: Vec<String> = [0, 1, 2, 3, u64::MAX].map(line).into();
-    insta::assert_snapshot!(lines.join("\n"), @"");
+    insta::assert_snapshot!(lines.join("\n"), @"
+    0d71553f8c835f1b 5 rooms at a corridor, doors: 3, people: 1; made at random from the seed 0.
+    245b78cfafd21d6f 5 rooms at a corridor, doors: 4, people: 2; made at random from the seed 1.
+    ed7c679d6df01d6c 5 rooms at a corridor, doors: 4, people: 1; made at random from the seed 2.
+    0fbc156553a5a43b 8 rooms at a corridor, doors: 7, people: 1; made at random from the seed 3.
+    85597a21d688b55b 6 rooms at a corridor, doors: 3, people: 1; made at random from the seed 18446744073709551615.
+    ");
 }
