@@ -4,11 +4,10 @@
 //! cargo run --example own_estimator
 //! ```
 
-use agent::{AgentSettings, Policy};
-use controller::CellDrive;
+use agent::Policy;
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
-use evaluation::trials::{Experiment, TrialStrategy};
-use mapper::{CellStatistics, Estimator, EstimatorChoice, MapperSettings};
+use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
+use mapper::{CellStatistics, Estimator, EstimatorChoice};
 
 /// Half of all events, divided by the time in view: a cycle has one block event and one free event.
 #[derive(Debug)]
@@ -39,10 +38,8 @@ fn main() -> anyhow::Result<()> {
         strategies: vec![TrialStrategy::Agent(Policy::default())],
         trials: 3,
         seed: 0,
-        steps: 5_000,
-        mapper: MapperSettings::default(),
-        agent: AgentSettings::default(),
-        controller: CellDrive::settings(),
+        length: 5_000,
+        robot: GridRobot::default(),
     };
     println!("{}", experiment.report()?.table());
     Ok(())

@@ -4,10 +4,9 @@
 //! cargo run --example own_strategy
 //! ```
 
-use agent::{AgentSettings, Policy, Situation, Strategy};
-use controller::CellDrive;
+use agent::{Policy, Situation, Strategy};
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
-use evaluation::trials::{Experiment, TrialStrategy};
+use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
 use mapper::MapperSettings;
 
 /// Goes to old cells, and prefers cells that changed before.
@@ -43,10 +42,8 @@ fn main() -> anyhow::Result<()> {
         strategies: [events, Policy::default()].map(TrialStrategy::Agent).to_vec(),
         trials: 3,
         seed: 0,
-        steps: 5_000,
-        mapper: MapperSettings::default(),
-        agent: AgentSettings::default(),
-        controller: CellDrive::settings(),
+        length: 5_000,
+        robot: GridRobot::default(),
     };
     println!("{}", experiment.report()?.table());
     Ok(())

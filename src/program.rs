@@ -94,3 +94,41 @@ where
 {
     PossibleValuesParser::new(all.iter().map(name)).try_map(|name| name.parse::<T>())
 }
+
+/// The longest run, s: 1000 hours.
+const MAX_DURATION_S: f64 = 3.6e6;
+
+/// A simulated time, s: a number of seconds, or with a unit.
+///
+/// # Errors
+///
+/// When the text is no time, or the time is not above 0 and at most 1000 hours.
+pub fn duration_s(text: &str) -> Result<f64, String> {
+    let (number, unit_s) = match text.char_indices().next_back() {
+        Some((at, 's')) => (&text[..at], 1.0),
+        Some((at, 'm')) => (&text[..at], 60.0),
+        Some((at, 'h')) => (&text[..at], 3600.0),
+        _ => (text, 1.0),
+    };
+    let time_s = number.trim().parse::<f64>().unwrap_or(f64::NAN) * unit_s;
+    if time_s > 0.0 && time_s <= MAX_DURATION_S {
+        Ok(time_s)
+    } else {
+        Err("must be a time above 0 and at most 1000h: seconds, or with a unit as in 90s, 20m, 1h".into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_units() {
+        assert_eq!(duration_s("1200"), Ok(1200.0));
+        assert_eq!(duration_s("20m"), Ok(1200.0));
+        assert_eq!(duration_s("0.5h"), Ok(1800.0));
+        for wrong in ["", "m", "-1", "0", "nan", "inf", "1001h", "ten"] {
+            assert!(duration_s(wrong).is_err(), "{wrong}");
+        }
+    }
+}

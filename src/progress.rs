@@ -251,7 +251,7 @@ mod tests {
             let of_trials = drawn(columns, OF_TRIALS, [3, 40], "");
             assert!(!of_time.is_empty() && !of_trials.is_empty());
             for line in of_time.iter().chain(&of_trials) {
-                assert!(line.chars().count() <= columns.into(), "{columns}: {line:?}");
+                assert!(line.chars().count() <= usize::from(columns), "{columns}: {line:?}");
                 assert!(line.contains(['█', '░']), "{columns}: {line:?}");
             }
         }

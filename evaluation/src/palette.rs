@@ -39,7 +39,7 @@ pub const BLOCKED_FAINT: Rgb = [158, 160, 165];
 /// A cell of a map that was never seen.
 pub const UNKNOWN: Rgb = [211, 219, 232];
 
-const STRATEGIES: [(&str, Rgb); 9] = [
+const STRATEGIES: [(&str, Rgb); 10] = [
     ("curious", CURIOUS),
     ("recency", OTHER_ROBOT),
     ("poisson", PATH),
@@ -49,6 +49,7 @@ const STRATEGIES: [(&str, Rgb); 9] = [
     ("optimal-revisiting", MOVING),
     ("frontier", [122, 92, 40]),
     ("oracle", [0, 0, 0]),
+    ("full-observation", [110, 110, 110]),
 ];
 
 /// For the other robots of a world: Paul Tol's muted scheme beside the colors above.

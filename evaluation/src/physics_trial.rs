@@ -24,7 +24,7 @@ const HIDING_S: f64 = 8.0;
 /// The maximum number of steps of local exploration. The paper's 42 steps suit a block that moves one cell per
 /// step. Here a step is a robot's diameter, and if the robot follows the dummy robot for longer, other rooms stay
 /// unseen.
-const LOCAL_STEPS: u32 = 15;
+pub const LOCAL_STEPS: u32 = 15;
 /// The maximum range noise that the mapper accepts, m.
 const MAX_NOISE_M: f64 = 0.5;
 

@@ -4,7 +4,7 @@ use agent::{AgentSettings, Reward};
 use controller::CellDrive;
 use curious::worlds::{SHIPPED_GRID, load_grid};
 use evaluation::report::{Report, ReportSettings};
-use evaluation::trials::{Experiment, TrialSettings, TrialStrategy};
+use evaluation::trials::{Experiment, GridRobot, TrialSettings, TrialStrategy};
 use mapper::{EstimatorChoice, MapperSettings, Paper, PaperAll};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::sync::atomic::AtomicBool;
@@ -85,12 +85,13 @@ impl Condition {
         Ok((report(&shipped, shipped.jobs())?, report(&generated, jobs)?))
     }
 
-    fn experiment(&self, worlds: Vec<GridSpec>, trials: u64) -> Experiment {
+    fn experiment(&self, worlds: Vec<GridSpec>, trials: u64) -> Experiment<GridSpec> {
         let set = |world: GridSpec| {
             world.with_sensor_radius(self.sensor_radius).with_probabilities(self.chance, self.chance)
         };
         let mut controller = CellDrive::settings();
         controller.exploration.max_steps = self.max_steps;
+        let agent = AgentSettings { reward: self.reward, ..Default::default() };
         Experiment {
             worlds: worlds.into_iter().map(set).collect(),
             estimators: vec![self.estimator.clone()],
@@ -99,15 +100,13 @@ impl Condition {
                 .to_vec(),
             trials,
             seed: 0,
-            steps: self.steps,
-            mapper: MapperSettings::default(),
-            agent: AgentSettings { reward: self.reward, ..Default::default() },
-            controller,
+            length: self.steps,
+            robot: GridRobot { mapper: MapperSettings::default(), agent, controller },
         }
     }
 }
 
-fn report(experiment: &Experiment, jobs: Vec<TrialSettings>) -> anyhow::Result<Report> {
+fn report(experiment: &Experiment<GridSpec>, jobs: Vec<TrialSettings<GridSpec>>) -> anyhow::Result<Report> {
     let trials = experiment.run(jobs, &AtomicBool::new(false), |_| ())?;
     let version = env!("CARGO_PKG_VERSION").to_owned();
     let settings = ReportSettings { version, ..experiment.report_settings() };

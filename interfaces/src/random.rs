@@ -38,8 +38,10 @@ pub enum Purpose {
     GridAgent,
     /// Controller in a grid world. Stream `2 << 32`.
     GridController,
-    /// Generator of random worlds. Stream 0.
+    /// Generator of random grid worlds. Stream 0.
     WorldGenerator,
+    /// Generator of random houses. Stream `3 << 48`.
+    HouseGenerator,
 }
 
 impl Purpose {
@@ -59,6 +61,7 @@ impl Purpose {
             Self::GridAgent => 1 << 32,
             Self::GridController => 2 << 32,
             Self::WorldGenerator => 0,
+            Self::HouseGenerator => 3 << 48,
         }
     }
 }
@@ -180,7 +183,8 @@ mod tests {
                 Purpose::SonarNoise(index),
             ]
         };
-        let physics = (0..1000).flat_map(per_index).chain([Purpose::Agent, Purpose::Controller]);
+        let once = [Purpose::Agent, Purpose::Controller, Purpose::HouseGenerator];
+        let physics = (0..1000).flat_map(per_index).chain(once);
         let blocks = (0..1000).map(Purpose::BlockTransition);
         let grid = blocks.chain([Purpose::RobotTransition, Purpose::GridAgent, Purpose::GridController]);
         for purposes in [physics.collect::<Vec<_>>(), grid.collect()] {

@@ -1,20 +1,20 @@
-//! A grid trial that is recorded while it runs.
+//! A trial that is recorded while it runs, in any kind of world.
 
 use crate::recording::{Recorder, RecordingError};
+use crate::scene::Visible;
 use crate::view::{Measured, View};
 use evaluation::metrics::{RateErrors, map_scores, rate_scores};
 use evaluation::report::Trial;
-use evaluation::trials::{TrialSettings, TrialStep, run_trial};
-use interfaces::SettingsError;
+use evaluation::trials::{TrialError, TrialSettings, TrialStep, TrialWorld, run_trial};
 use robot::{Level, Message};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Later steps are not recorded, so that the file stays a few megabytes large.
-pub const RECORDED_STEPS: u64 = 20_000;
+/// Later readings are not recorded, so that the file stays a few megabytes large.
+pub const RECORDED_READINGS: usize = 20_000;
 
-/// Scores take a pass over the map: once in this many steps in a map of up to [`SCORE_CELLS`] cells, and
+/// Scores take a pass over the map: once in this many readings in a map of up to [`SCORE_CELLS`] cells, and
 /// less often in a larger map.
-const SCORE_EVERY: u64 = 10;
+const SCORE_EVERY: usize = 10;
 /// See [`SCORE_EVERY`].
 const SCORE_CELLS: usize = 10_000;
 
@@ -28,21 +28,21 @@ pub struct Recorded {
     pub problem: Option<RecordingError>,
 }
 
-/// Runs one trial and records its first steps. When `is_canceled` is set, the trial stops, and the recording
+/// Runs one trial and records its first readings. When `is_canceled` is set, the trial stops, and the recording
 /// so far is kept.
 ///
 /// # Errors
 ///
-/// When settings are invalid.
-pub fn record(
-    settings: &TrialSettings,
+/// When the trial cannot run.
+pub fn record<W: TrialWorld<World: Visible>>(
+    settings: &TrialSettings<W>,
     mut recorder: Recorder,
     is_canceled: &AtomicBool,
-) -> Result<Recorded, SettingsError> {
+) -> Result<Recorded, TrialError> {
     let mut problem = None;
     let trial = run_trial(settings, |mut step| {
         let is_canceled = is_canceled.load(Ordering::Relaxed);
-        if problem.is_none() && step.reading.time as u64 <= RECORDED_STEPS {
+        if problem.is_none() && step.belief.mapper.readings() <= RECORDED_READINGS + 1 {
             problem = log(&mut recorder, settings, &mut step, is_canceled).err();
         }
         !is_canceled
@@ -50,25 +50,27 @@ pub fn record(
     Ok(Recorded { trial, problem })
 }
 
-/// Records one step, which is the last one if `is_canceled`.
-fn log(
+/// Records one reading, which is the last one if `is_canceled`.
+fn log<W: TrialWorld<World: Visible>>(
     recorder: &mut Recorder,
-    settings: &TrialSettings,
-    now: &mut TrialStep,
+    settings: &TrialSettings<W>,
+    now: &mut TrialStep<W>,
     is_canceled: bool,
 ) -> Result<(), RecordingError> {
-    let step = now.reading.time as u64;
-    let is_last = is_canceled || step >= settings.experiment.steps.min(RECORDED_STEPS);
+    let (mapper, truth) = (now.belief.mapper, W::truth(now.world));
+    // The first reading is that of the start.
+    let steps = mapper.readings() - 1;
+    let is_over = now.is_complete;
+    let is_last = is_canceled || is_over || steps >= RECORDED_READINGS;
     let mut messages = now.pilot.take_messages();
-    if is_last && !is_canceled && step < settings.experiment.steps {
-        let text =
-            format!("the recording ends here; the trial goes on to step {}", settings.experiment.steps);
+    if is_last && !is_canceled && !is_over {
+        let end = W::length(settings.experiment.length).end();
+        let text = format!("the recording ends here; the trial goes on to {end}");
         messages.push(Message { level: Level::Event, text });
     }
-    let score_every = SCORE_EVERY * settings.world.frame().len().div_ceil(SCORE_CELLS) as u64;
+    let score_every = SCORE_EVERY * mapper.frame().len().div_ceil(SCORE_CELLS);
     let mut measured = Measured { messages: &messages, ..Measured::default() };
-    if is_last || step.is_multiple_of(score_every) {
-        let (mapper, truth) = (now.belief.mapper, now.world.truth());
+    if is_last || steps.is_multiple_of(score_every) {
         measured.scores = Some(map_scores(mapper, truth));
         measured.rate_errors = Some(RateErrors::from(&rate_scores(mapper, truth)));
     }
@@ -78,14 +80,13 @@ fn log(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use agent::AgentSettings;
-    use controller::CellDrive;
-    use evaluation::trials::{Experiment, TrialStrategy};
-    use mapper::{MapperSettings, Paper};
+    use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
+    use mapper::Paper;
+    use sim::grid::GridSpec;
     use std::path::Path;
 
     /// The first trial of the shipped world, of `steps` steps.
-    fn experiment(steps: u64) -> Experiment {
+    fn experiment(steps: u64) -> Experiment<GridSpec> {
         Experiment {
             worlds: vec![
                 worldfile::grid::parse("two_blocks.toml", include_str!("../../worlds/two_blocks.toml"))
@@ -95,16 +96,14 @@ mod tests {
             strategies: vec![TrialStrategy::Agent("recency".parse().unwrap())],
             trials: 1,
             seed: 3,
-            steps,
-            mapper: MapperSettings::default(),
-            agent: AgentSettings::default(),
-            controller: CellDrive::settings(),
+            length: steps,
+            robot: GridRobot::default(),
         }
     }
 
     fn recorded(steps: u64, file: &Path, is_canceled: bool) -> Recorded {
         let experiment = experiment(steps);
-        let life = experiment.jobs()[0];
+        let life = experiment.jobs().remove(0);
         let recorder = Recorder::new(Some(file), &[], life.world.into()).unwrap();
         record(&life, recorder, &is_canceled.into()).unwrap()
     }

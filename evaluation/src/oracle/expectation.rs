@@ -52,6 +52,18 @@ impl Knowledge {
     }
 }
 
+/// The time in view that tells as much about a cell as a look after a gap does: both have the same Fisher information
+/// about the logarithm of the rate. `truth` is the cycle rate of the cell, and above 0.
+///
+/// A cell that leaves both of its states at the rate α = 2 · `truth` has another state after the gap with the probability
+/// p = (1 − exp(−x)) / 2, x = 2 α · gap. Its information is (dp / d ln α)² / (p (1 − p)) = x² / (exp(2 x) − 1); that of a
+/// time t in view is α t.
+pub(super) fn gap_worth(gap: f64, truth: f64) -> f64 {
+    let leave = 2.0 * truth;
+    let x = 2.0 * leave * gap;
+    if x > 0.0 { x * x / libm::expm1(2.0 * x) / leave } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,6 +123,24 @@ mod tests {
         let cell = Knowledge { truth: 0.1, estimate: 0.1, events: 4.0, watched: 20.0 };
         assert_eq!(cell.error(), 0.0);
         assert!(cell.expected_fall(8.0) < 0.0);
+    }
+
+    #[test]
+    fn a_gap_is_worth_its_time_if_it_is_short_and_nothing_if_it_is_long() {
+        let rate = 0.01;
+        assert!((gap_worth(0.1, rate) - 0.1).abs() < 1e-3);
+        assert!(
+            gap_worth(1e4, rate) < 1e-9 && gap_worth(0.0, rate) == 0.0 && gap_worth(f64::MAX, rate) == 0.0
+        );
+        // By differences of the probability that the state is another one.
+        let changed = |leave: f64, gap: f64| (1.0 - libm::exp(-2.0 * leave * gap)) / 2.0;
+        for gap in [5.0, 20.0, 60.0] {
+            let (leave, step) = (2.0 * rate, 1e-5);
+            let p = changed(leave, gap);
+            let slope = (changed(leave * libm::exp(step), gap) - p) / step;
+            let information = slope * slope / (p * (1.0 - p));
+            assert!((gap_worth(gap, rate) * leave - information).abs() < 1e-4 * information, "{gap}");
+        }
     }
 
     #[test]

@@ -1,7 +1,6 @@
 use super::*;
-use crate::trials::{Experiment, TrialStrategy};
-use agent::{AgentSettings, Features};
-use controller::CellDrive;
+use crate::trials::{Experiment, GridRobot, TrialStrategy};
+use agent::Features;
 use interfaces::{Cell, Step, World};
 use mapper::{EstimatorChoice, MapperSettings};
 use nalgebra::Isometry2;
@@ -43,7 +42,7 @@ impl Travel for Straight {
 fn after(steps: usize) -> (GridWorld, Mapper, Oracle) {
     let spec = worldfile::grid::parse("rooms.toml", ROOMS).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), *spec.frame()).unwrap();
-    let (mut world, mut oracle) = (GridWorld::new(&spec, 0), Oracle::new(&spec));
+    let (mut world, mut oracle) = (GridWorld::new(&spec, 0), Oracle::in_grid(&spec));
     for _ in 0..steps {
         mapper.update(&world.sense()).unwrap();
         oracle.learn(world.truth());
@@ -65,7 +64,7 @@ fn it_goes_to_a_cell_with_changing_cells_in_view() {
     let (mut world, mapper, mut oracle) = after(60);
     assert!(mapper.changed().next().is_none(), "nothing of it is seen from the start");
     let (goal, stay) = next_goal(&mut world, &mapper, &mut oracle);
-    let in_view = oracle.sights[goal].iter().filter(|&&cell| world.truth().is_swept(cell)).count();
+    let in_view = oracle.patches.in_view(goal).iter().filter(|&&cell| world.truth().is_swept(cell)).count();
     assert!(in_view >= 3, "{:?} {in_view}", mapper.frame().cell(goal));
     assert!(matches!(stay, Stay::Watch(steps) if steps > 1.0));
     assert!(oracle.reason().starts_with("oracle: "));
@@ -84,14 +83,14 @@ fn a_far_cell_is_worth_less() {
     let (_, mapper, oracle) = after(60);
     let mut times = vec![1.0; mapper.frame().len()];
     let first = oracle.best(&mapper, &times).unwrap();
-    times[first.cell] = 1000.0;
+    times[first.patch] = 1000.0;
     let second = oracle.best(&mapper, &times).unwrap();
-    assert_ne!(first.cell, second.cell);
+    assert_ne!(first.patch, second.patch);
     times.fill(f64::INFINITY);
     assert!(oracle.best(&mapper, &times).is_none());
-    times[first.cell] = 1000.0;
+    times[first.patch] = 1000.0;
     let far = oracle.best(&mapper, &times).unwrap();
-    assert!(far.cell == first.cell && far.stay >= first.stay, "a long journey is for a long stay");
+    assert!(far.patch == first.patch && far.stay >= first.stay, "a long journey is for a long stay");
 }
 
 #[test]
@@ -114,10 +113,8 @@ fn it_learns_faster_than_strategies_without_the_truth() {
             strategies: vec![TrialStrategy::Oracle, policy("recency"), policy("curious")],
             trials: 1,
             seed,
-            steps: 4000,
-            mapper: MapperSettings::default(),
-            agent: AgentSettings::default(),
-            controller: CellDrive::settings(),
+            length: 4000,
+            robot: GridRobot::default(),
         };
         let trials = experiment.run(experiment.jobs(), &false.into(), |_| ()).unwrap();
         let errors = trials.iter().map(|trial| {

@@ -3,7 +3,7 @@
 
 use super::Report;
 use super::claim::Claim;
-use super::metric::{Measure, Metric, Trial};
+use super::metric::{Measure, Metric};
 use super::run::Run;
 use super::strategy::StrategyResult;
 use serde::ser::SerializeMap;
@@ -29,18 +29,19 @@ pub(super) fn write_report(report: &Report, files: &[String], mut to: impl Write
 }
 
 /// Writes `trials.csv`: one row per trial and sample.
-pub(super) fn write_trials(trials: &[Trial], to: impl Write) -> io::Result<()> {
+pub(super) fn write_trials(report: &Report, to: impl Write) -> io::Result<()> {
     let mut file = csv::Writer::from_writer(to);
     let names = Metric::ALL.map(Metric::name);
-    file.write_record(["world", "estimator", "strategy", "seed", "step"].iter().chain(&names))?;
-    for trial in trials {
+    let time = report.settings.length.column();
+    file.write_record(["world", "estimator", "strategy", "seed", time].iter().chain(&names))?;
+    for trial in &report.trials {
         let seed = trial.seed.to_string();
         for sample in &trial.samples {
             for name in [&trial.world, &trial.estimator, &trial.strategy] {
                 file.write_field(no_formula(name).as_ref())?;
             }
             file.write_field(&seed)?;
-            file.write_field(sample.step.to_string())?;
+            file.write_field(sample.time.to_string())?;
             for value in Metric::ALL.map(|metric| metric.of(sample)) {
                 file.write_field(if value.is_nan() { String::new() } else { value.to_string() })?;
             }
@@ -77,10 +78,13 @@ impl Serialize for StrategyResult {
             object.serialize_entry(&measure, &self.value(measure))?;
         }
         object.serialize_entry("false_change_events", &self.false_change_events)?;
+        if let Some(collisions) = self.collisions {
+            object.serialize_entry("collisions", &collisions)?;
+        }
         object.serialize_entry("strategy_share", &Object(self.strategy_share.iter().cloned()))?;
         for metric in Metric::ALL {
-            let curve = self.steps.iter().zip(self.curve(metric));
-            let points: Vec<_> = curve.map(|(step, at)| (step, at.mean, at.low, at.high)).collect();
+            let curve = self.times.iter().zip(self.curve(metric));
+            let points: Vec<_> = curve.map(|(time, at)| (time, at.mean, at.low, at.high)).collect();
             object.serialize_entry(metric.name(), &points)?;
         }
         object.serialize_entry("map_hashes", &Object(self.map_hashes.iter().cloned()))?;

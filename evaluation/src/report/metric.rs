@@ -11,12 +11,12 @@ const NOT_NEGATIVE: RangeInclusive<f64> = 0.0..=f64::INFINITY;
 /// Defines [`Sample`] and [`Metric`] from one list of metrics.
 macro_rules! metrics {
     ($count:literal: $($(#[$doc:meta])+ $field:ident => $metric:ident in $range:expr,)+) => {
-        /// The metrics at the end of a step, see [`crate::metrics`]. A metric that is undefined at this step,
-        /// as the error of the rates before anything changed, is NaN.
+        /// The metrics at one time, see [`crate::metrics`]. A metric that is undefined at this time, as the error of
+        /// the rates before anything changed, is NaN.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Sample {
-            /// The number of steps so far.
-            pub step: u64,
+            /// The time: steps, or s in a physics world.
+            pub time: u64,
             $($(#[$doc])+ pub $field: f64,)+
         }
 
@@ -49,7 +49,7 @@ macro_rules! metrics {
 }
 
 metrics! {
-    10:
+    11:
     /// Mean relative error of the rates over the cells that truly changed.
     rate_error => RateError in NOT_NEGATIVE,
     /// The log error of the rates: per moving thing, then over the things.
@@ -60,9 +60,9 @@ metrics! {
     map_quality_changing => MapQualityChanging in SHARE,
     /// Share of the cells that can be seen that were seen.
     coverage => Coverage in SHARE,
-    /// Mean estimated rate over the observed static cells, 1/step.
+    /// Mean estimated rate over the observed static cells, 1/step or Hz.
     false_rate => FalseRate in NOT_NEGATIVE,
-    /// The share of the steps so far with a swept cell in view. A large share is the paper's lock-down.
+    /// The share of the readings so far with a swept cell in view. A large share is the paper's lock-down.
     changing_share => ChangingShare in SHARE,
     /// Brier score of the two-state model for swept cells out of view.
     brier => Brier in SHARE,
@@ -70,6 +70,8 @@ metrics! {
     brier_last_seen => BrierLastSeen in SHARE,
     /// Brier score of the share of the time in view during which the cell was blocked, for swept cells out of view.
     brier_mean => BrierMean in SHARE,
+    /// How well the estimated rates separate changing cells from static cells: the area under the ROC curve.
+    rate_auc => RateAuc in SHARE,
 }
 
 /// The result of one trial: a strategy with an estimator in a world.
@@ -83,12 +85,14 @@ pub struct Trial {
     pub strategy: String,
     /// The seed of all random streams. Trials of different strategies with the same seed are paired.
     pub seed: u64,
-    /// The samples in order of time: at the same steps in all trials of a report, the last at the end.
+    /// The samples in order of time: at the same times in all trials of a report, the last at the end.
     pub samples: Vec<Sample>,
     /// For each strategy of the agent, in the order of the chooser, the share of the goals that it selected.
     pub strategy_share: Vec<(String, f64)>,
     /// The number of change events on static cells.
     pub false_change_events: u64,
+    /// The number of contacts of the robot that began while it moved; `None` in a grid world.
+    pub collisions: Option<u64>,
     /// The hash of everything that was learned, see [`crate::map_hash`].
     pub map_hash: String,
 }
@@ -127,21 +131,21 @@ impl Measure {
     }
 }
 
-/// The area under the curve through `values` at `steps` (increasing), divided by its length.
+/// The area under the curve through `values` at `times` (increasing), divided by its length.
 ///
-/// Before the first step, the first value is used, so that a curve that begins at step 1 gives a mean over the
+/// Before the first time, the first value is used, so that a curve that begins at step 1 gives a mean over the
 /// whole run. Segments with NaN are left out of area and length. The result is NaN if there is no value.
-pub(super) fn area(steps: &[u64], values: &[f64]) -> f64 {
-    let (Some(&first_step), Some(&first)) = (steps.first(), values.first()) else { return f64::NAN };
+pub(super) fn area(times: &[u64], values: &[f64]) -> f64 {
+    let (Some(&first_time), Some(&first)) = (times.first(), values.first()) else { return f64::NAN };
     let (mut area, mut length) = (0.0, 0.0);
     if !first.is_nan() {
-        area = first * first_step as f64;
-        length = first_step as f64;
+        area = first * first_time as f64;
+        length = first_time as f64;
     }
-    for (steps, values) in steps.windows(2).zip(values.windows(2)) {
+    for (times, values) in times.windows(2).zip(values.windows(2)) {
         let height = (values[0] + values[1]) / 2.0;
         if !height.is_nan() {
-            let width = (steps[1] - steps[0]) as f64;
+            let width = (times[1] - times[0]) as f64;
             area += height * width;
             length += width;
         }

@@ -9,6 +9,7 @@ mod claim;
 mod comparison;
 mod figure;
 mod files;
+mod length;
 mod metric;
 mod run;
 mod statistics;
@@ -18,6 +19,8 @@ mod wording;
 
 pub use claim::{Claim, Verdict};
 pub use comparison::Comparison;
+pub use figure::Plan;
+pub use length::Length;
 pub use metric::{Measure, Metric, Sample, Trial};
 pub use run::Run;
 pub use statistics::Estimate;
@@ -26,15 +29,18 @@ pub use strategy::StrategyResult;
 use crate::drawing::PictureError;
 use crate::output::{RunFolder, write_file};
 use serde::Serialize;
-use sim::grid::GridSpec;
 use statistics::Quantiles;
 
 /// Up to this number of worlds, the table and the figures show single worlds.
 const ONE_BY_ONE: usize = 8;
 /// The name of the file with all results.
 pub const REPORT: &str = "report.json";
-/// A strategy that knows the ground truth: it is listed with the others, but cannot be the best one.
-const REFERENCE: &str = "oracle";
+/// The strategies that know the ground truth: they are listed with the others, but cannot be the best one.
+const REFERENCES: [&str; 2] = ["oracle", "full-observation"];
+
+fn is_reference(strategy: &str) -> bool {
+    REFERENCES.contains(&strategy)
+}
 
 /// The settings of an experiment.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -43,12 +49,14 @@ pub struct ReportSettings {
     pub version: String,
     /// The command line, without the name of the program.
     pub arguments: Vec<String>,
-    /// The length of a trial, in steps.
-    pub steps: u64,
+    /// The length of a trial.
+    #[serde(flatten)]
+    pub length: Length,
     /// The number of trials of every strategy with every estimator in every world.
     pub trials: u64,
-    /// The range of the sensor, in cells.
-    pub sensor_radius: u32,
+    /// The range of the sensor of a grid world, in cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_radius: Option<u32>,
     /// Whether the experiment was interrupted before all trials were finished.
     pub interrupted: bool,
     /// The names of the worlds, in the order of the report; other worlds come last, sorted by name. Estimators and
@@ -94,7 +102,7 @@ impl Report {
     ///
     /// # Panics
     ///
-    /// When the trials were not sampled at the same steps.
+    /// When the trials were not sampled at the same times.
     pub fn new(settings: ReportSettings, mut trials: Vec<Trial>) -> Self {
         let key = |trial: &Trial| {
             (
@@ -105,14 +113,14 @@ impl Report {
             )
         };
         trials.sort_by_cached_key(key);
-        let steps_of = |trial: &Trial| trial.samples.iter().map(|sample| sample.step).collect::<Vec<_>>();
-        let steps = trials.first().map(steps_of).unwrap_or_default();
-        assert!(trials.iter().all(|trial| steps_of(trial) == steps), "trials are sampled at the same steps");
+        let times_of = |trial: &Trial| trial.samples.iter().map(|sample| sample.time).collect::<Vec<_>>();
+        let times = trials.first().map(times_of).unwrap_or_default();
+        assert!(trials.iter().all(|trial| times_of(trial) == times), "trials are sampled at the same times");
 
         let quantiles = Quantiles::up_to(trials.len());
         let mut runs = Vec::new();
         for trials in trials.chunk_by(|a, b| a.estimator == b.estimator) {
-            runs.extend(runs_of_estimator(trials, &settings.strategies, &steps, &quantiles));
+            runs.extend(runs_of_estimator(trials, &settings.strategies, &times, &quantiles));
         }
         // World by world, each with all estimators; the entries over all worlds stay at the end.
         runs.sort_by_cached_key(|run| (run.worlds > 1, position(&settings.worlds, &run.world)));
@@ -132,18 +140,22 @@ impl Report {
     /// Writes `trials.csv`, the figures, and `report.json`, which lists all files of the run, into the folder of the
     /// unfinished run. Returns the names of the files.
     ///
-    /// `figure3` shows the first run; the other figures are `figure3-<world>-<estimator>`, without the estimator
-    /// if there is only one. With more than eight worlds, only the first world and all worlds together are drawn.
+    /// `figure3` (in physics worlds: `curves`) shows the first run; the other figures are `figure3-<world>-<estimator>`,
+    /// without the estimator if there is only one. With more than eight worlds, only the first world and all worlds together are drawn.
     /// The plans of `worlds`, in any order, are drawn beside the curves; the plan of a world that is not given is
     /// left out.
     ///
     /// # Errors
     ///
     /// When something cannot be drawn or written.
-    pub fn write(&self, folder: &RunFolder, worlds: &[GridSpec]) -> Result<Vec<String>, PictureError> {
+    pub fn write<'a, W>(&self, folder: &RunFolder, worlds: &'a [W]) -> Result<Vec<String>, PictureError>
+    where
+        Plan<'a>: From<&'a W>,
+    {
+        let plans: Vec<Plan> = worlds.iter().map(Plan::from).collect();
         let to = folder.unfinished();
-        write_file(&to.join("trials.csv"), |file| files::write_trials(&self.trials, file))?;
-        figure::write_all(to, self, worlds)?;
+        write_file(&to.join("trials.csv"), |file| files::write_trials(self, file))?;
+        figure::write_all(to, self, &plans)?;
         let mut names = folder.results()?;
         write_file(&to.join(REPORT), |file| files::write_report(self, &names, file))?;
         names.insert(0, REPORT.to_owned());
@@ -160,13 +172,13 @@ fn position(names: &[String], name: &str) -> (usize, String) {
 fn runs_of_estimator(
     trials: &[Trial],
     strategies: &[String],
-    steps: &[u64],
+    times: &[u64],
     quantiles: &Quantiles,
 ) -> Vec<Run> {
     let estimator = &trials[0].estimator;
     let in_world = |trials: &[Trial]| {
         let strategies = trials.chunk_by(|a, b| a.strategy == b.strategy);
-        let results = strategies.map(|trials| StrategyResult::in_world(trials, steps, quantiles)).collect();
+        let results = strategies.map(|trials| StrategyResult::in_world(trials, times, quantiles)).collect();
         Run::new(trials[0].world.clone(), 1, estimator, results, quantiles)
     };
     let mut runs: Vec<Run> = trials.chunk_by(|a, b| a.world == b.world).map(in_world).collect();

@@ -5,7 +5,6 @@ use super::comparison::{Comparison, compare_all};
 use super::metric::Measure;
 use super::statistics::Quantiles;
 use super::strategy::StrategyResult;
-use super::wording::thousands;
 
 /// The strategies with one estimator in one world, or over all worlds.
 #[derive(Clone, Debug)]
@@ -59,7 +58,8 @@ pub(super) fn conditions(run: &Run, settings: &ReportSettings) -> String {
         (least, most) if least == most => format!("{most} trials"),
         (least, most) => format!("{least} to {most} trials"),
     };
-    let ReportSettings { steps, sensor_radius, interrupted, .. } = settings;
-    let (steps, short) = (thousands(*steps), if *interrupted { " (interrupted)" } else { "" });
-    format!("{trials} of {steps} steps{short}, estimator {}, sensor radius {sensor_radius}", run.estimator)
+    let ReportSettings { length, sensor_radius, interrupted, .. } = settings;
+    let short = if *interrupted { " (interrupted)" } else { "" };
+    let sensor = sensor_radius.map_or(String::new(), |radius| format!(", sensor radius {radius}"));
+    format!("{trials} of {length}{short}, estimator {}{sensor}", run.estimator)
 }

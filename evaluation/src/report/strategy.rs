@@ -16,8 +16,10 @@ pub struct StrategyResult {
     pub strategy_share: Vec<(String, f64)>,
     /// The number of change events on static cells, in all trials.
     pub false_change_events: u64,
-    /// The steps of the samples.
-    pub steps: Vec<u64>,
+    /// The number of collisions while the robot moved, in all trials; `None` in grid worlds.
+    pub collisions: Option<u64>,
+    /// The times of the samples: steps, or s in physics worlds.
+    pub times: Vec<u64>,
     /// The trials (over all worlds: the worlds), in the order of their keys.
     pub(super) units: Vec<Unit>,
     /// One per metric and sample, in the order of [`Metric::ALL`].
@@ -48,11 +50,11 @@ impl Unit {
 
 impl StrategyResult {
     /// The trials of one strategy in one world, at least one, in the order of their seeds.
-    pub(super) fn in_world(trials: &[Trial], steps: &[u64], quantiles: &Quantiles) -> Self {
+    pub(super) fn in_world(trials: &[Trial], times: &[u64], quantiles: &Quantiles) -> Self {
         let unit = |trial: &Trial| {
             let curve = |metric: Metric| trial.samples.iter().map(|sample| metric.of(sample)).collect();
             let curves: Vec<Vec<f64>> = Metric::ALL.map(curve).into();
-            let areas = curves.iter().map(|curve| area(steps, curve)).collect();
+            let areas = curves.iter().map(|curve| area(times, curve)).collect();
             Unit { key: trial.seed, curves, areas }
         };
         Self {
@@ -60,7 +62,8 @@ impl StrategyResult {
             map_hashes: trials.iter().map(|trial| (trial.seed, trial.map_hash.clone())).collect(),
             strategy_share: mean_shares(trials.iter().map(|trial| &trial.strategy_share)),
             false_change_events: trials.iter().map(|trial| trial.false_change_events).sum(),
-            ..Self::of_units(&trials[0].strategy, steps, trials.iter().map(unit).collect(), quantiles)
+            collisions: trials.iter().map(|trial| trial.collisions).sum(),
+            ..Self::of_units(&trials[0].strategy, times, trials.iter().map(unit).collect(), quantiles)
         }
     }
 
@@ -77,24 +80,26 @@ impl StrategyResult {
         Self {
             trials: results.clone().map(|result| result.trials).sum(),
             strategy_share: mean_shares(results.clone().map(|result| &result.strategy_share)),
-            false_change_events: results.map(|result| result.false_change_events).sum(),
-            ..Self::of_units(&first.name, &first.steps, worlds.iter().map(unit).collect(), quantiles)
+            false_change_events: results.clone().map(|result| result.false_change_events).sum(),
+            collisions: results.map(|result| result.collisions).sum(),
+            ..Self::of_units(&first.name, &first.times, worlds.iter().map(unit).collect(), quantiles)
         }
     }
 
-    fn of_units(name: &str, steps: &[u64], units: Vec<Unit>, quantiles: &Quantiles) -> Self {
+    fn of_units(name: &str, times: &[u64], units: Vec<Unit>, quantiles: &Quantiles) -> Self {
         let at = |metric: Metric, sample: usize| {
             let values = units.iter().map(move |unit| unit.curves[metric as usize][sample]);
             quantiles.estimate(values).within(metric.range())
         };
-        let curve = |metric| (0..steps.len()).map(|sample| at(metric, sample)).collect();
+        let curve = |metric| (0..times.len()).map(|sample| at(metric, sample)).collect();
         Self {
             name: name.to_owned(),
             trials: 0,
             map_hashes: Vec::new(),
             strategy_share: Vec::new(),
             false_change_events: 0,
-            steps: steps.to_vec(),
+            collisions: None,
+            times: times.to_vec(),
             curves: Metric::ALL.map(curve).into(),
             areas: (0..Metric::ALL.len())
                 .map(|metric| mean(units.iter().map(|unit| unit.areas[metric])))

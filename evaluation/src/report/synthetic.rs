@@ -1,6 +1,6 @@
 //! Synthetic trials for tests: errors that fall and qualities that rise, with noise.
 
-use super::{ReportSettings, Sample, Trial};
+use super::{Length, ReportSettings, Sample, Trial};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use sim::grid::GridSpec;
@@ -41,7 +41,7 @@ pub(super) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
         let noise = 0.02 * normal(&mut chance);
         let log_error = 2.303 * (1.0 - learned) + floor * learned * (1.0 + own) + noise * learned;
         Sample {
-            step,
+            time: step,
             rate_error: 1.0 - learned + learned * floor * 1.3 + 3.0 * noise * learned,
             log_error,
             map_quality: (quality - (1.0 - learned) * 0.7 + 0.2 * noise).clamp(0.0, 1.0),
@@ -52,6 +52,7 @@ pub(super) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
             brier: if step < 30 { f64::NAN } else { 0.2 + noise },
             brier_last_seen: if step < 30 { f64::NAN } else { 0.3 + noise },
             brier_mean: if step < 30 { f64::NAN } else { 0.24 + noise },
+            rate_auc: if step < 30 { f64::NAN } else { 0.9 * quality },
         }
     });
     Trial {
@@ -62,6 +63,7 @@ pub(super) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
         samples: samples.collect(),
         strategy_share: vec![("recency".into(), 0.4), ("poisson".into(), 0.6)],
         false_change_events: 0,
+        collisions: None,
         map_hash: format!("{seed:032x}"),
     }
 }
@@ -89,9 +91,9 @@ pub(super) fn experiment(
     let settings = ReportSettings {
         version: "0.1.0".into(),
         arguments: vec!["--trials".into(), seeds.to_string()],
-        steps: HORIZON,
+        length: Length::Grid { steps: HORIZON },
         trials: seeds,
-        sensor_radius: 4,
+        sensor_radius: Some(4),
         interrupted: false,
         worlds: (0..worlds).map(world_name).collect(),
         estimators: owned(estimators),

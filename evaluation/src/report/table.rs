@@ -5,16 +5,22 @@ use super::metric::{Measure, Metric};
 use super::run::{Run, conditions};
 use super::strategy::StrategyResult;
 use super::wording::{difference, p_value, value};
-use super::{ONE_BY_ONE, REFERENCE, Report};
+use super::{ONE_BY_ONE, Report, is_reference};
 use crate::percent::percent;
 use tabled::Table;
 use tabled::settings::object::Columns;
 use tabled::settings::{Alignment, Padding, Span, Style};
 
-const HOW_TO_READ: &str = "\
+const HOW_TO_READ_GRID: &str = "\
 How to read it: errors are 0 and map quality is 1 at best; final is the value at
 the end, area the mean over the run, * the best; time at changes is the share of
 steps with a changing cell in view.
+";
+const HOW_TO_READ_PHYSICS: &str = "\
+How to read it: errors are 0, map quality and AUC are 1 at best; final is the
+value at the end, area the mean over the run, * the best; AUC tells how well the
+rates separate changing cells from static cells, seen is the share of the cells
+that can be seen.
 ";
 
 /// Longer names are broken at their hyphens beside the differences.
@@ -29,7 +35,9 @@ enum Kind {
 }
 
 /// The group, the name, the numbers and their meaning; a group continues where its name is empty.
-const COLUMNS: [(&str, &str, Measure, Kind); 7] = [
+type Column = (&'static str, &'static str, Measure, Kind);
+
+const GRID_COLUMNS: [Column; 7] = [
     ("log error", "final", Measure::Final(Metric::LogError), Kind::Error),
     ("", "area", Measure::Area(Metric::LogError), Kind::Error),
     ("rate error", "final", Measure::Final(Metric::RateError), Kind::Error),
@@ -37,6 +45,14 @@ const COLUMNS: [(&str, &str, Measure, Kind); 7] = [
     ("map quality", "all cells", Measure::Final(Metric::MapQuality), Kind::Quality),
     ("", "changing", Measure::Final(Metric::MapQualityChanging), Kind::Quality),
     ("time at", "changes", Measure::Final(Metric::ChangingShare), Kind::Share),
+];
+const PHYSICS_COLUMNS: [Column; 6] = [
+    ("log error", "final", Measure::Final(Metric::LogError), Kind::Error),
+    ("", "area", Measure::Area(Metric::LogError), Kind::Error),
+    ("rate", "AUC", Measure::Final(Metric::RateAuc), Kind::Quality),
+    ("map quality", "all cells", Measure::Final(Metric::MapQuality), Kind::Quality),
+    ("", "changing", Measure::Final(Metric::MapQualityChanging), Kind::Quality),
+    ("cells", "seen", Measure::Final(Metric::Coverage), Kind::Share),
 ];
 
 /// The columns of the differences, with their decimals.
@@ -51,6 +67,8 @@ pub(super) fn table(report: &Report) -> String {
     if report.runs.is_empty() {
         return "No trial was finished.\n".into();
     }
+    let length = report.settings.length;
+    let columns = length.choose(&GRID_COLUMNS[..], &PHYSICS_COLUMNS);
     let is_short = report.runs.iter().any(|run| run.worlds > ONE_BY_ONE);
     let mut text = String::new();
     if report.settings.interrupted {
@@ -59,10 +77,11 @@ pub(super) fn table(report: &Report) -> String {
             format!("Interrupted: {finished} of {} trials were finished.\n\n", report.settings.all_trials());
     }
     for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
-        let conclusions = [false_events(run), winner(run), Claim::of(run).map(|claim| claim.sentence())];
+        let claim = Claim::of(run).map(|claim| claim.sentence());
+        let conclusions = [false_events(run), collisions(run), winner(run), claim];
         let paragraphs = [
             format!("{}\n{}", run.world, conditions(run, &report.settings)),
-            values(&run.strategies).to_string(),
+            values(&run.strategies, columns).to_string(),
             differences(run).unwrap_or_default(),
             conclusions.into_iter().flatten().collect::<Vec<_>>().join("\n"),
         ];
@@ -72,7 +91,7 @@ pub(super) fn table(report: &Report) -> String {
             text.extend([line.trim_end(), "\n"]);
         }
     }
-    text.push_str(HOW_TO_READ);
+    text.push_str(length.choose(HOW_TO_READ_GRID, HOW_TO_READ_PHYSICS));
     if is_short {
         text.push_str("The worlds one by one are in report.json.\n");
     }
@@ -88,22 +107,22 @@ fn aligned(rows: Vec<Vec<String>>) -> Table {
 }
 
 /// A row per strategy.
-fn values(strategies: &[StrategyResult]) -> Table {
-    let head = |name: &str, of: fn(&(&str, &str, Measure, Kind)) -> String| {
-        [name.to_owned()].into_iter().chain(COLUMNS.iter().map(of)).collect()
+fn values(strategies: &[StrategyResult], columns: &[Column]) -> Table {
+    let head = |name: &str, of: fn(&Column) -> String| {
+        [name.to_owned()].into_iter().chain(columns.iter().map(of)).collect()
     };
     let mut rows = vec![
         head("", |(group, ..)| (*group).to_owned()),
         head("strategy", |(_, name, ..)| (*name).to_owned()),
     ];
     rows.extend(strategies.iter().map(|strategy| vec![strategy.name.clone()]));
-    for (_, _, measure, kind) in COLUMNS {
+    for &(_, _, measure, kind) in columns {
         let cells = cells(strategies, measure, kind);
         rows[2..].iter_mut().zip(cells).for_each(|(row, cell)| row.push(cell));
     }
     let mut table = aligned(rows);
     for (column, _) in
-        COLUMNS.iter().enumerate().filter(|(_, (_, name, ..))| ["final", "all cells"].contains(name))
+        columns.iter().enumerate().filter(|(_, (_, name, ..))| ["final", "all cells"].contains(name))
     {
         table.modify((0, column + 1), Span::column(2)).modify((0, column + 1), Alignment::center());
     }
@@ -118,7 +137,7 @@ fn cells(strategies: &[StrategyResult], measure: Measure, kind: Kind) -> impl It
         Kind::Share if number.is_nan() => "-".into(),
         Kind::Share => percent(number),
     };
-    let rivals = strategies.iter().filter(|strategy| strategy.name != REFERENCE);
+    let rivals = strategies.iter().filter(|strategy| !is_reference(&strategy.name));
     let numbers = rivals.map(|strategy| strategy.value(measure));
     let best = match kind {
         Kind::Error => numbers.fold(f64::NAN, f64::min),
@@ -128,7 +147,7 @@ fn cells(strategies: &[StrategyResult], measure: Measure, kind: Kind) -> impl It
     let best = (!best.is_nan()).then(|| text(best));
     strategies.iter().map(move |strategy| {
         let text = text(strategy.value(measure));
-        let is_best = best.as_ref() == Some(&text) && strategy.name != REFERENCE;
+        let is_best = best.as_ref() == Some(&text) && !is_reference(&strategy.name);
         text + if is_best { "*" } else { " " }
     })
 }
@@ -164,17 +183,28 @@ fn differences(run: &Run) -> Option<String> {
 
 /// The false changes, if there are any.
 fn false_events(run: &Run) -> Option<String> {
-    let those = run.strategies.iter().filter(|strategy| strategy.false_change_events > 0);
+    let counts = counts(run, |strategy| strategy.false_change_events)?;
+    Some(format!("False change events on cells that never change: {counts}."))
+}
+
+/// The collisions, if there are any.
+fn collisions(run: &Run) -> Option<String> {
+    let counts = counts(run, |strategy| strategy.collisions.unwrap_or(0))?;
+    Some(format!("Collisions while the robot moved: {counts}."))
+}
+
+/// The strategies with a count above zero.
+fn counts(run: &Run, count: impl Fn(&StrategyResult) -> u64) -> Option<String> {
+    let those = run.strategies.iter().filter(|strategy| count(strategy) > 0);
     let counts: Vec<String> =
-        those.map(|strategy| format!("{} {}", strategy.name, strategy.false_change_events)).collect();
-    (!counts.is_empty())
-        .then(|| format!("False change events on cells that never change: {}.", counts.join(", ")))
+        those.map(|strategy| format!("{} {}", strategy.name, count(strategy))).collect();
+    (!counts.is_empty()).then(|| counts.join(", "))
 }
 
 /// The strategy with the smallest error of the rates, and whether the next one is significantly worse.
 fn winner(run: &Run) -> Option<String> {
     let area = |strategy: &StrategyResult| strategy.value(Measure::PRIMARY);
-    let is_rival = |strategy: &&StrategyResult| strategy.name != REFERENCE && !area(strategy).is_nan();
+    let is_rival = |strategy: &&StrategyResult| !is_reference(&strategy.name) && !area(strategy).is_nan();
     let mut ranked: Vec<&StrategyResult> = run.strategies.iter().filter(is_rival).collect();
     ranked.sort_by(|a, b| area(a).total_cmp(&area(b)));
     let [winner, next, ..] = ranked.as_slice() else { return None };

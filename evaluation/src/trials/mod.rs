@@ -1,27 +1,35 @@
-//! Trials in grid worlds: every strategy with every estimator in every world, repeated with other seeds.
+//! Trials: every strategy with every estimator in every world, repeated with other seeds, in grid worlds or in
+//! physics worlds.
 //!
 //! Trials with the same world and seed are paired: the random streams of the world do not depend on the robot. A
 //! trial depends only on its own settings, so that the results are the same with any number of threads.
 
+mod full_observation;
+mod grid;
+mod physics;
 mod run;
+mod sampler;
 mod strategy;
+mod world;
 
+pub use grid::GridRobot;
+pub use physics::PhysicsRobot;
 pub use run::{TrialSettings, TrialStep, run_trial};
 pub use strategy::TrialStrategy;
+pub use world::TrialWorld;
 
+use crate::physics_trial::UnsupportedDrive;
 use crate::report::{Report, ReportSettings, Trial};
-use agent::AgentSettings;
 use interfaces::SettingsError;
-use mapper::{EstimatorChoice, MapperSettings};
+use mapper::{EstimatorChoice, ReadingError};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use sim::grid::GridSpec;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The trials of a comparison.
 #[derive(Clone, Debug)]
-pub struct Experiment {
+pub struct Experiment<W: TrialWorld> {
     /// The worlds.
-    pub worlds: Vec<GridSpec>,
+    pub worlds: Vec<W>,
     /// The estimators of rates.
     pub estimators: Vec<EstimatorChoice>,
     /// The strategies.
@@ -30,20 +38,30 @@ pub struct Experiment {
     pub trials: u64,
     /// The seed of the first trial; each further trial has the next seed.
     pub seed: u64,
-    /// The length of each trial, in steps; at least one.
-    pub steps: u64,
-    /// The settings of the mapper; the estimator in these settings is not used.
-    pub mapper: MapperSettings,
-    /// The settings of the agent.
-    pub agent: AgentSettings,
-    /// The settings of the controller.
-    pub controller: controller::Settings,
+    /// The length of each trial: steps in a grid world, s in a physics world; at least one.
+    pub length: u64,
+    /// The settings of the robot.
+    pub robot: W::Robot,
 }
 
-impl Experiment {
+/// The error for a trial that cannot run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TrialError {
+    /// A setting is out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The controller cannot drive the robot of a physics world.
+    #[error(transparent)]
+    Drive(#[from] UnsupportedDrive),
+    /// The mapper refuses a reading.
+    #[error(transparent)]
+    Reading(#[from] ReadingError),
+}
+
+impl<W: TrialWorld> Experiment<W> {
     /// All trials. Trials that are compared with each other are consecutive, so that after an interruption the
     /// finished trials can be compared.
-    pub fn jobs(&self) -> Vec<TrialSettings<'_>> {
+    pub fn jobs(&self) -> Vec<TrialSettings<'_, W>> {
         let mut jobs = Vec::new();
         for trial in 0..self.trials {
             let seed = self.seed.wrapping_add(trial);
@@ -62,15 +80,15 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// When a setting is out of range.
+    /// When a trial cannot run.
     pub fn run(
         &self,
-        jobs: Vec<TrialSettings>,
+        jobs: Vec<TrialSettings<W>>,
         is_canceled: &AtomicBool,
         observe: impl Fn(&Trial) + Sync,
-    ) -> Result<Vec<Trial>, SettingsError> {
+    ) -> Result<Vec<Trial>, TrialError> {
         let goes_on = || !is_canceled.load(Ordering::Relaxed);
-        let run = |job: TrialSettings| -> Result<Option<Trial>, SettingsError> {
+        let run = |job: TrialSettings<W>| -> Result<Option<Trial>, TrialError> {
             if !goes_on() {
                 return Ok(None);
             }
@@ -78,7 +96,7 @@ impl Experiment {
             trial.iter().for_each(&observe);
             Ok(trial)
         };
-        let trials: Result<Vec<Option<Trial>>, SettingsError> = jobs.into_par_iter().map(run).collect();
+        let trials: Result<Vec<Option<Trial>>, TrialError> = jobs.into_par_iter().map(run).collect();
         Ok(trials?.into_iter().flatten().collect())
     }
 
@@ -86,8 +104,8 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// When a setting is out of range.
-    pub fn report(&self) -> Result<Report, SettingsError> {
+    /// When a trial cannot run.
+    pub fn report(&self) -> Result<Report, TrialError> {
         let trials = self.run(self.jobs(), &AtomicBool::new(false), |_| ())?;
         Ok(Report::new(self.report_settings(), trials))
     }
@@ -95,10 +113,10 @@ impl Experiment {
     /// The settings of the report, without version and arguments.
     pub fn report_settings(&self) -> ReportSettings {
         ReportSettings {
-            steps: self.steps,
+            length: W::length(self.length),
             trials: self.trials,
-            sensor_radius: self.worlds.first().map_or(0, |world| world.sensor_radius),
-            worlds: self.worlds.iter().map(|world| world.name.clone()).collect(),
+            sensor_radius: self.worlds.first().and_then(W::sensor_radius),
+            worlds: self.worlds.iter().map(|world| world.name().to_owned()).collect(),
             estimators: self.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
             strategies: self.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
             ..ReportSettings::default()

@@ -7,12 +7,15 @@ pub enum TrialStrategy {
     Agent(Policy),
     /// By the oracle, which knows the true rates: a reference, not possible for a robot.
     Oracle,
+    /// Not at all: the robot stays where it starts, but observes the true state of every cell at every reading. A
+    /// reference: it has the errors of the estimator alone.
+    FullObservation,
 }
 
 impl TrialStrategy {
     /// All strategies.
     pub fn all() -> impl Iterator<Item = Self> {
-        Policy::built_in().iter().cloned().map(Self::Agent).chain([Self::Oracle])
+        Policy::built_in().iter().cloned().map(Self::Agent).chain([Self::Oracle, Self::FullObservation])
     }
 
     /// The name on the command line and in files.
@@ -20,6 +23,7 @@ impl TrialStrategy {
         match self {
             Self::Agent(policy) => policy.name(),
             Self::Oracle => "oracle",
+            Self::FullObservation => "full-observation",
         }
     }
 
@@ -28,6 +32,9 @@ impl TrialStrategy {
         match self {
             Self::Agent(policy) => policy.description(),
             Self::Oracle => "what the true rates promise most of: the reference, no robot knows them",
+            Self::FullObservation => {
+                "nowhere, but it sees every cell all the time: the bound of the estimator"
+            }
         }
     }
 }

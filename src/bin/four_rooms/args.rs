@@ -3,7 +3,7 @@
 use agent::Policy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use curious::program::one_of;
+use curious::program::{duration_s, one_of};
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
 use viewer::recording::Live;
@@ -124,24 +124,6 @@ fn strategies() -> impl TypedValueParser<Value = Policy> {
     PossibleValuesParser::new(Policy::built_in().iter().map(named)).try_map(|name| name.parse::<Policy>())
 }
 
-/// The longest run, s: 1000 hours.
-const MAX_DURATION_S: f64 = 3.6e6;
-
-fn duration_s(text: &str) -> Result<f64, String> {
-    let (number, unit_s) = match text.char_indices().next_back() {
-        Some((at, 's')) => (&text[..at], 1.0),
-        Some((at, 'm')) => (&text[..at], 60.0),
-        Some((at, 'h')) => (&text[..at], 3600.0),
-        _ => (text, 1.0),
-    };
-    let time_s = number.trim().parse::<f64>().unwrap_or(f64::NAN) * unit_s;
-    if time_s > 0.0 && time_s <= MAX_DURATION_S {
-        Ok(time_s)
-    } else {
-        Err("must be a time above 0 and at most 1000h: seconds, or with a unit as in 90s, 20m, 1h".into())
-    }
-}
-
 fn gif(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_gif = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gif"));
@@ -165,16 +147,6 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         assert_eq!(Args::parse_from(["four_rooms"]).strategy().name(), "curious");
-    }
-
-    #[test]
-    fn times_have_units() {
-        assert_eq!(duration_s("1200"), Ok(1200.0));
-        assert_eq!(duration_s("20m"), Ok(1200.0));
-        assert_eq!(duration_s("0.5h"), Ok(1800.0));
-        for wrong in ["", "m", "-1", "0", "nan", "inf", "1001h", "ten"] {
-            assert!(duration_s(wrong).is_err(), "{wrong}");
-        }
     }
 
     #[test]

@@ -1,9 +1,8 @@
 //! The command line.
 
-use agent::Reward;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use curious::program::one_of;
+use curious::trials::{TrialArgs, strategies};
 use evaluation::trials::TrialStrategy;
 use mapper::EstimatorChoice;
 use std::path::PathBuf;
@@ -36,10 +35,6 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME|FILE", help_heading = "World")]
     pub(crate) world: Vec<String>,
 
-    /// Generate N random worlds, from --seed on
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000), help_heading = "World")]
-    pub(crate) generate: Option<u64>,
-
     /// List the shipped worlds and exit
     #[arg(long, help_heading = "World")]
     pub(crate) list_worlds: bool,
@@ -69,63 +64,16 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000), help_heading = "Comparison")]
     pub(crate) steps: u64,
 
-    /// The seed of all random streams: equal seeds give equal results, on any number of threads
-    #[arg(long, default_value_t = 0, help_heading = "Comparison")]
-    pub(crate) seed: u64,
-
     /// The maximum number of steps of local exploration at a goal; 42 in the paper
     #[arg(long, value_name = "STEPS", default_value_t = 42, help_heading = "Comparison")]
     pub(crate) max_steps: u32,
-
-    /// The reward of the learner
-    #[arg(long, value_enum, default_value_t = RewardChoice::Changes, help_heading = "Comparison")]
-    pub(crate) reward: RewardChoice,
-
-    /// The number of threads [default: the number of cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Execution")]
-    pub(crate) threads: Option<u16>,
 
     /// The folder for all results
     #[arg(long, value_name = "DIR", default_value = "grid_world_out", help_heading = "Output")]
     pub(crate) out: PathBuf,
 
-    /// Record the first trial, at most 20,000 steps; open the recording with `rerun FILE`
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub(crate) rrd: Option<PathBuf>,
-
-    /// Save the generated worlds as TOML files in the output folder
-    #[arg(long, requires = "generate", help_heading = "Output")]
-    pub(crate) save_worlds: bool,
-
-    /// Print only errors
-    #[arg(long, short, help_heading = "Output")]
-    pub(crate) quiet: bool,
-}
-
-/// What counts as a map update when the learner is rewarded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum RewardChoice {
-    /// Cells that changed
-    Changes,
-    /// Cells that changed, and cells that were seen for the first time
-    ChangesAndDiscoveries,
-}
-
-impl From<RewardChoice> for Reward {
-    fn from(choice: RewardChoice) -> Self {
-        match choice {
-            RewardChoice::Changes => Self::Changes,
-            RewardChoice::ChangesAndDiscoveries => Self::ChangesAndDiscoveries,
-        }
-    }
-}
-
-fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
-    let named = |strategy: &TrialStrategy| PossibleValue::new(strategy.name()).help(strategy.description());
-    let all: Vec<_> = TrialStrategy::all().collect();
-    PossibleValuesParser::new(all.iter().map(named)).try_map(move |name| {
-        all.iter().find(|strategy| strategy.name() == name).cloned().ok_or("not one of the possible values")
-    })
+    #[command(flatten)]
+    pub(crate) shared: TrialArgs,
 }
 
 fn probability(text: &str) -> Result<f64, String> {

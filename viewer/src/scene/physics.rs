@@ -3,7 +3,9 @@
 use super::{Obstacle, Outline, Robot, RobotState, Scene, Sector, Sight, TimeUnit, Visible};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
-use sim::physics::{BehaviorSpec, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, RobotSpec};
+use sim::physics::{
+    BehaviorSpec, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, RobotSpec, WorldSpec,
+};
 
 /// The number of outlines that show the swing of a door.
 const SWING: u32 = 24;
@@ -18,6 +20,12 @@ impl From<&FleetSpec> for Scene {
             obstacles: spec.obstacles.iter().map(obstacle).collect(),
             robots: spec.robots.iter().map(robot).collect(),
         }
+    }
+}
+
+impl From<&WorldSpec> for Scene {
+    fn from(spec: &WorldSpec) -> Self {
+        spec.fleet().into()
     }
 }
 

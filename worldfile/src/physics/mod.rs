@@ -13,9 +13,11 @@ mod sensor;
 mod space;
 #[cfg(test)]
 mod tests;
+mod write;
 
 pub use floor_plan::MAX_PIECES;
 pub use sensor::MOST_OUT_M;
+pub use write::to_toml;
 
 use crate::error::{WorldError, read_text};
 use crate::files::{Disk, Files};

@@ -3,7 +3,8 @@
 use super::pen::{Pen, Sheet};
 use crate::drawing::{INK, ink, why};
 use crate::palette;
-use crate::report::REFERENCE;
+use crate::report::is_reference;
+use crate::report::length::Length;
 use crate::report::metric::Metric;
 use crate::report::statistics::Estimate;
 use crate::report::strategy::StrategyResult;
@@ -23,33 +24,34 @@ pub(super) const BAND: f64 = 0.16;
 const GRID: RGBColor = RGBColor(225, 228, 233);
 /// The axis of values ignores this first part of a run, in which nothing is known yet.
 const BEGINNING: f64 = 0.03;
-/// A logarithmic axis of steps starts at this part of a run.
+/// A logarithmic axis of times starts at this part of a run.
 const EARLIEST: f64 = 0.003;
 
 type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Draws the axes and the curves of `metric`: means over bands, the first strategy on top.
 ///
-/// Steps are on a line, as in the paper; for the log error on a logarithmic one, since most is
+/// Times are on a line, as in the paper; for the log error on a logarithmic one, since most is
 /// learned early.
 pub(super) fn draw<DB: DrawingBackend>(
     sheet: &Sheet<DB>,
     pen: &Pen,
     metric: Metric,
+    length: Length,
     strategies: &[StrategyResult],
 ) -> Result<(), String> {
-    let steps = strategies.first().map_or(&[][..], |strategy| &strategy.steps);
-    let horizon = steps.last().copied().unwrap_or(0).max(1) as f64;
-    let before = |part: f64| steps.iter().take_while(|&&step| (step as f64) < part * horizon).count();
+    let times = strategies.first().map_or(&[][..], |strategy| &strategy.times);
+    let horizon = times.last().copied().unwrap_or(0).max(1) as f64;
+    let before = |part: f64| times.iter().take_while(|&&time| (time as f64) < part * horizon).count();
     let is_log = metric == Metric::LogError;
     let (first, settled) = if is_log { (before(EARLIEST), before(EARLIEST)) } else { (0, before(BEGINNING)) };
-    let position = |step: f64| if is_log { libm::log10(step.max(1.0)) } else { step };
-    let positions: Vec<f64> = steps[first..].iter().map(|&step| position(step as f64)).collect();
+    let position = |time: f64| if is_log { libm::log10(time.max(1.0)) } else { time };
+    let positions: Vec<f64> = times[first..].iter().map(|&time| position(time as f64)).collect();
     let reach =
         if is_log { positions.first().copied().unwrap_or(0.0) } else { 0.0 }..position(horizon).max(1e-9);
     let curve = |strategy: &StrategyResult| strategy.curve(metric)[first..].to_vec();
     let shown = range(metric, strategies.iter().flat_map(|strategy| &strategy.curve(metric)[settled..]));
-    let step_label = |position: &f64| match is_log {
+    let time_label = |position: &f64| match is_log {
         false => thousands(*position as u64),
         // Between the powers of ten there are only lines.
         true if (position - position.round()).abs() > 1e-6 => String::new(),
@@ -71,13 +73,17 @@ pub(super) fn draw<DB: DrawingBackend>(
         .bold_line_style(pen.line(GRID, 1))
         .x_labels(6)
         .y_labels(6)
-        .x_label_formatter(&step_label)
+        .x_label_formatter(&time_label)
         .y_label_formatter(&|value| format!("{}", (value * 1e4).round() / 1e4))
         .label_style(pen.text(15))
         .axis_desc_style(pen.text(15))
         .axis_style(pen.line(INK, 1))
         .set_all_tick_mark_size(pen.px(4))
-        .x_desc(if is_log { "steps, logarithmic" } else { "steps" })
+        .x_desc(format!(
+            "{}{}",
+            length.choose("steps", "simulated time, s"),
+            if is_log { ", logarithmic" } else { "" }
+        ))
         .draw()
         .map_err(why)?;
     for strategy in strategies.iter().rev() {
@@ -98,7 +104,7 @@ pub(super) fn draw<DB: DrawingBackend>(
 
 /// Whether a strategy's curve is dashed: the strategies to compare with.
 pub(super) fn is_dashed(name: &str) -> bool {
-    ["random", "coin", REFERENCE].contains(&name)
+    ["random", "coin"].contains(&name) || is_reference(name)
 }
 
 /// Draws a line, dashed or not.
@@ -124,6 +130,7 @@ fn heading(metric: Metric) -> &'static str {
         Metric::RateError => "Relative error of the rates",
         Metric::LogError => "Log error of the rates: 0.69 is a factor of 2",
         Metric::MapQuality => "Map quality: share of cells that are correct",
+        Metric::RateAuc => "AUC of the rates: changing cells against static cells",
         other => other.name(),
     }
 }
@@ -137,7 +144,7 @@ fn range<'a>(metric: Metric, settled: impl Iterator<Item = &'a Estimate>) -> Ran
         return 0.0..1.0;
     }
     match metric {
-        Metric::MapQuality => {
+        Metric::MapQuality | Metric::RateAuc => {
             let span = (1.0 - low).max(0.001);
             1.0 - 1.15 * span..1.0 + 0.05 * span
         }

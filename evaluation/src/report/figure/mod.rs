@@ -1,5 +1,5 @@
-//! Figure 3 of the paper: the plan of the world, and the curves of the errors of the rates and of the map
-//! quality, one per strategy, with bands of 95 % confidence.
+//! Figure 3 of the paper, in grid worlds and in physics worlds: the plan of the world, and the curves of the errors of the
+//! rates and of the map quality, one per strategy, with bands of 95 % confidence.
 
 mod curves;
 mod pen;
@@ -12,9 +12,9 @@ use crate::drawing::{Canvas, PictureError, ink, why};
 use crate::output::write_file;
 use crate::palette;
 use pen::{Pen, Sheet, svg};
+pub use plan::Plan;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use sim::grid::GridSpec;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -27,7 +27,7 @@ const LEGEND_COLUMNS: usize = 5;
 const PANEL_HEIGHT: i32 = 360;
 
 /// Writes the figures as PNG and SVG.
-pub(super) fn write_all(folder: &Path, report: &Report, worlds: &[GridSpec]) -> Result<(), PictureError> {
+pub(super) fn write_all(folder: &Path, report: &Report, worlds: &[Plan]) -> Result<(), PictureError> {
     for (name, run) in chosen(report) {
         let figure = Figure { report, run, worlds: worlds_of(report, run, worlds) };
         let failed = |why| PictureError::Draw { name: name.clone(), why };
@@ -51,7 +51,7 @@ fn chosen(report: &Report) -> Vec<(String, &Run)> {
         if index > 0 && run.worlds == 1 && worlds > ONE_BY_ONE {
             continue;
         }
-        let mut name = String::from("figure3");
+        let mut name = String::from(report.settings.length.choose("figure3", "curves"));
         if index > 0 {
             name += &format!("-{}", in_file_name(if run.worlds > 1 { "all worlds" } else { &run.world }));
             if !has_one_estimator {
@@ -79,18 +79,18 @@ fn in_file_name(name: &str) -> String {
 }
 
 /// The plans of the worlds of `run`, in the report's order.
-fn worlds_of<'a>(report: &Report, run: &Run, worlds: &'a [GridSpec]) -> Vec<&'a GridSpec> {
+fn worlds_of<'a>(report: &Report, run: &Run, worlds: &[Plan<'a>]) -> Vec<Plan<'a>> {
     let has_trials = |one: &&Run| one.worlds == 1 && one.estimator == run.estimator;
     let is_wanted = |one: &&Run| run.worlds > 1 || one.world == run.world;
     let names = report.runs.iter().filter(has_trials).filter(is_wanted).map(|one| &one.world);
-    names.filter_map(|name| worlds.iter().find(|world| world.name == *name)).collect()
+    names.filter_map(|name| worlds.iter().find(|world| world.name() == *name).copied()).collect()
 }
 
 /// One figure.
 struct Figure<'a> {
     report: &'a Report,
     run: &'a Run,
-    worlds: Vec<&'a GridSpec>,
+    worlds: Vec<Plan<'a>>,
 }
 
 impl Figure<'_> {
@@ -119,11 +119,13 @@ impl Figure<'_> {
             [world] => plan::one(&panels[0], pen, world)?,
             worlds => plan::many(&panels[0], pen, worlds)?,
         }
-        let curves = [Metric::RateError, Metric::LogError, Metric::MapQuality];
+        let length = self.report.settings.length;
+        let second = length.choose(Metric::RateError, Metric::RateAuc);
+        let curves = [second, Metric::LogError, Metric::MapQuality];
         panels[1..]
             .iter()
             .zip(curves)
-            .try_for_each(|(panel, metric)| curves::draw(panel, pen, metric, &self.run.strategies))
+            .try_for_each(|(panel, metric)| curves::draw(panel, pen, metric, length, &self.run.strategies))
     }
 
     fn legend<DB: DrawingBackend>(&self, sheet: &Sheet<DB>, pen: &Pen) -> Result<(), String> {

@@ -146,10 +146,10 @@ fn a_name_is_no_formula_in_the_csv() {
         ("\tx", "'\tx"),
         ("two, \"blocks\"", "two, \"blocks\""),
     ] {
-        let (_, mut trials) = experiment(1, &["paper"], &["curious"], 1);
+        let (settings, mut trials) = experiment(1, &["paper"], &["curious"], 1);
         trials[0].world = name.into();
-        let mut bytes = Vec::new();
-        crate::report::files::write_trials(&trials, &mut bytes).unwrap();
+        let (report, mut bytes) = (Report::new(settings, trials), Vec::new());
+        crate::report::files::write_trials(&report, &mut bytes).unwrap();
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         assert!(rows.iter().all(|row| &row[0] == field), "{name:?}: {:?}", rows[0]);

@@ -8,6 +8,7 @@ use super::synthetic::{HORIZON, experiment, normal, uniform, world};
 use super::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use sim::grid::GridSpec;
 
 fn report(worlds: usize, estimators: &[&str], strategies: &[&str], seeds: u64) -> Report {
     let (settings, trials) = experiment(worlds, estimators, strategies, seeds);

@@ -6,8 +6,8 @@ const THREE: [&str; 3] = ["curious", "recency", "poisson"];
 
 /// A trial whose every metric is `value` at both of its samples.
 fn flat(world: &str, strategy: &str, seed: u64, value: f64) -> Trial {
-    let sample = |step| Sample {
-        step,
+    let sample = |time| Sample {
+        time,
         rate_error: value,
         log_error: value,
         map_quality: value,
@@ -18,6 +18,7 @@ fn flat(world: &str, strategy: &str, seed: u64, value: f64) -> Trial {
         brier: value,
         brier_last_seen: value,
         brier_mean: value,
+        rate_auc: value,
     };
     Trial {
         world: world.into(),
@@ -27,6 +28,7 @@ fn flat(world: &str, strategy: &str, seed: u64, value: f64) -> Trial {
         samples: vec![sample(1), sample(100)],
         strategy_share: vec![(strategy.into(), 1.0)],
         false_change_events: 1,
+        collisions: Some(2),
         map_hash: String::new(),
     }
 }
@@ -87,7 +89,7 @@ fn a_curve_is_the_mean_of_its_trials_with_what_is_undefined_left_out() {
     // 4.3027 √7 / √3 around 3.
     close(curve[1].high, 3.0 + 4.302_65 * (7.0_f64 / 3.0).sqrt(), 1e-4);
     assert_eq!(strategy.value(Measure::Final(Metric::RateError)), 3.0);
-    assert_eq!((strategy.trials, strategy.false_change_events), (3, 3));
+    assert_eq!((strategy.trials, strategy.false_change_events, strategy.collisions), (3, 3, Some(6)));
 }
 
 #[test]
@@ -166,8 +168,8 @@ fn one_world_is_not_all_worlds() {
 }
 
 #[test]
-#[should_panic(expected = "trials are sampled at the same steps")]
-fn trials_of_different_steps_are_refused() {
+#[should_panic(expected = "trials are sampled at the same times")]
+fn trials_of_different_times_are_refused() {
     let mut trials = vec![flat("a", "x", 0, 1.0), flat("a", "x", 1, 1.0)];
     trials[1].samples.pop();
     Report::new(ReportSettings::default(), trials);

@@ -8,6 +8,7 @@ mod extreme;
 mod fleet;
 mod floor_plan;
 mod footprint;
+mod houses;
 mod jams;
 mod keys;
 mod laser;

@@ -1,0 +1,84 @@
+use super::{TrialError, TrialWorld};
+use crate::oracle::Oracle;
+use crate::report::Length;
+use agent::{Agent, AgentSettings, Policy};
+use controller::{CellDrive, Controller};
+use interfaces::{Purpose, RandomStream};
+use mapper::MapperSettings;
+use robot::{Autonomous, GoalSelector};
+use sim::grid::{GridGroundTruth, GridSpec, GridWorld};
+
+/// The settings of the robot in grid worlds.
+#[derive(Clone, Debug)]
+pub struct GridRobot {
+    /// The settings of the mapper; the estimator in these settings is not used.
+    pub mapper: MapperSettings,
+    /// The settings of the agent; its sensor radius is that of the world.
+    pub agent: AgentSettings,
+    /// The settings of the controller.
+    pub controller: controller::Settings,
+}
+
+impl Default for GridRobot {
+    fn default() -> Self {
+        let (mapper, agent) = (MapperSettings::default(), AgentSettings::default());
+        Self { mapper, agent, controller: CellDrive::settings() }
+    }
+}
+
+impl TrialWorld for GridSpec {
+    type World = GridWorld;
+    type Truth = GridGroundTruth;
+    type Robot = GridRobot;
+    type Drive = CellDrive;
+    const VIEW_EVERY: usize = 1;
+    const COMPARE_EVERY: usize = 10;
+
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn length(length: u64) -> Length {
+        Length::Grid { steps: length }
+    }
+
+    fn sensor_radius(&self) -> Option<u32> {
+        Some(self.sensor_radius)
+    }
+
+    fn start(&self, seed: u64) -> GridWorld {
+        GridWorld::new(self, seed)
+    }
+
+    fn truth(world: &GridWorld) -> &GridGroundTruth {
+        world.truth()
+    }
+
+    fn collisions(_world: &GridWorld) -> Option<u64> {
+        None
+    }
+
+    fn mapper(&self, robot: &GridRobot) -> Result<MapperSettings, TrialError> {
+        Ok(robot.mapper.clone())
+    }
+
+    fn agent(&self, robot: &GridRobot, policy: &Policy, seed: u64) -> Result<Agent, TrialError> {
+        let sensor_radius_m = f64::from(self.sensor_radius) * self.frame().resolution_m();
+        let settings = AgentSettings { sensor_radius_m, ..robot.agent.clone() };
+        Ok(Agent::new(&settings, policy, RandomStream::new(seed, Purpose::GridAgent))?)
+    }
+
+    fn oracle(&self) -> Oracle {
+        Oracle::in_grid(self)
+    }
+
+    fn pilot<G: GoalSelector>(
+        &self,
+        robot: &GridRobot,
+        selector: G,
+        seed: u64,
+    ) -> Result<Autonomous<G, CellDrive>, TrialError> {
+        let stream = RandomStream::new(seed, Purpose::GridController);
+        Ok(Autonomous::new(selector, Controller::new(robot.controller, CellDrive, stream)?))
+    }
+}

@@ -1,0 +1,88 @@
+use super::{TrialError, TrialWorld};
+use crate::oracle::Oracle;
+use crate::physics_trial::{LOCAL_STEPS, PhysicsSettings, UnsupportedDrive};
+use crate::report::Length;
+use agent::{Agent, Policy, Reward};
+use controller::DiffDrive;
+use mapper::MapperSettings;
+use robot::{Autonomous, GoalSelector};
+use sim::physics::{PhysicsGroundTruth, PhysicsWorld, WorldSpec};
+
+/// The settings of the robot in physics worlds; all others are those of [`PhysicsSettings::of`].
+#[derive(Clone, Copy, Debug)]
+pub struct PhysicsRobot {
+    /// The reward of the learner.
+    pub reward: Reward,
+    /// The maximum number of steps of local exploration.
+    pub max_steps: u32,
+}
+
+impl Default for PhysicsRobot {
+    fn default() -> Self {
+        Self { reward: Reward::default(), max_steps: LOCAL_STEPS }
+    }
+}
+
+impl PhysicsRobot {
+    fn settings(&self, spec: &WorldSpec) -> Result<PhysicsSettings, UnsupportedDrive> {
+        let mut settings = PhysicsSettings::of(spec)?;
+        settings.agent.reward = self.reward;
+        settings.controller.exploration.max_steps = self.max_steps;
+        Ok(settings)
+    }
+}
+
+impl TrialWorld for WorldSpec {
+    type World = PhysicsWorld;
+    type Truth = PhysicsGroundTruth;
+    type Robot = PhysicsRobot;
+    type Drive = DiffDrive;
+    // Each check is a pass over the map.
+    const VIEW_EVERY: usize = 50;
+    const COMPARE_EVERY: usize = 50;
+
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn length(length: u64) -> Length {
+        Length::Physics { duration_s: length }
+    }
+
+    fn sensor_radius(&self) -> Option<u32> {
+        None
+    }
+
+    fn start(&self, seed: u64) -> PhysicsWorld {
+        PhysicsWorld::new(self, seed)
+    }
+
+    fn truth(world: &PhysicsWorld) -> &PhysicsGroundTruth {
+        world.truth()
+    }
+
+    fn collisions(world: &PhysicsWorld) -> Option<u64> {
+        Some(world.contacts().iter().filter(|contact| contact.moving).count() as u64)
+    }
+
+    fn mapper(&self, robot: &PhysicsRobot) -> Result<MapperSettings, TrialError> {
+        Ok(robot.settings(self)?.mapper)
+    }
+
+    fn agent(&self, robot: &PhysicsRobot, policy: &Policy, seed: u64) -> Result<Agent, TrialError> {
+        Ok(robot.settings(self)?.agent(policy, seed)?)
+    }
+
+    fn oracle(&self) -> Oracle {
+        Oracle::in_physics(self)
+    }
+
+    fn pilot<G: GoalSelector>(
+        &self,
+        robot: &PhysicsRobot,
+        selector: G,
+        seed: u64,
+    ) -> Result<Autonomous<G, DiffDrive>, TrialError> {
+        Ok(robot.settings(self)?.pilot(selector, seed)?)
+    }
+}

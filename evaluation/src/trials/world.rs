@@ -1,0 +1,72 @@
+use super::TrialError;
+use crate::oracle::Oracle;
+use crate::report::Length;
+use agent::{Agent, Policy};
+use controller::Drive;
+use interfaces::{GroundTruth, Reading, World};
+use mapper::MapperSettings;
+use robot::{Autonomous, GoalSelector};
+
+/// The specification of a world in which trials run, of one kind.
+pub trait TrialWorld: Sized + Sync {
+    /// The simulated world.
+    type World: World<Reading: Reading>;
+    /// The ground truth of the simulated world.
+    type Truth: GroundTruth;
+    /// The settings of the robot that are the same in all worlds.
+    type Robot: Sync;
+    /// The drive of the robot.
+    type Drive: Drive<Command = <Self::World as World>::Command>;
+
+    /// Whether a changing cell is in view is checked once in this number of readings.
+    const VIEW_EVERY: usize;
+    /// The swept cells are compared with the map once in this number of readings, and at every sample.
+    const COMPARE_EVERY: usize;
+
+    /// The name of the world.
+    fn name(&self) -> &str;
+
+    /// The length of a trial, from a number of steps or seconds.
+    fn length(length: u64) -> Length;
+
+    /// The range of the sensor of a grid world, in cells.
+    fn sensor_radius(&self) -> Option<u32>;
+
+    /// The world at its start.
+    fn start(&self, seed: u64) -> Self::World;
+
+    /// The ground truth of a world.
+    fn truth(world: &Self::World) -> &Self::Truth;
+
+    /// The number of collisions of the moving robot since the last reading; `None` where no robot can collide.
+    fn collisions(world: &Self::World) -> Option<u64>;
+
+    /// The settings of the mapper; the estimator in these settings is not used.
+    ///
+    /// # Errors
+    ///
+    /// When the controller cannot drive the robot.
+    fn mapper(&self, robot: &Self::Robot) -> Result<MapperSettings, TrialError>;
+
+    /// The agent that follows `policy`.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    fn agent(&self, robot: &Self::Robot, policy: &Policy, seed: u64) -> Result<Agent, TrialError>;
+
+    /// The oracle of the world.
+    fn oracle(&self) -> Oracle;
+
+    /// The pilot that drives to the goals of `selector`.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    fn pilot<G: GoalSelector>(
+        &self,
+        robot: &Self::Robot,
+        selector: G,
+        seed: u64,
+    ) -> Result<Autonomous<G, Self::Drive>, TrialError>;
+}

@@ -1,0 +1,139 @@
+//! Random houses, each from a seed: rooms at a corridor, furniture, doors, people who walk from room to room, and a
+//! robot that explores.
+
+mod doors;
+mod draw;
+mod furniture;
+mod layout;
+mod plan;
+mod ranges;
+mod routes;
+
+pub use ranges::{Furniture, HOUSE_RANGES, HouseRanges, Place};
+
+use super::shape::Rectangle;
+use super::spec::{
+    BehaviorSpec, DriveKind, DriveLimits, FleetSpec, Motion, ObstacleSpec, Repeat, RobotSpec, WanderSpec,
+    WaypointsSpec, WorldSpec,
+};
+use draw::{CELLS_PER_M, integer, value};
+use furniture::Piece;
+use interfaces::{GridFrame, Purpose, RandomStream, pose};
+use layout::Layout;
+use nalgebra::Point2;
+use plan::Plan;
+use rand::RngExt;
+use routes::Routes;
+
+/// The physics step, s.
+const STEP_S: f64 = 0.05;
+/// The largest number of draws until a house has a place for the explorer and a round for every person.
+const MAX_HOUSES: usize = 100;
+/// The number of draws until a robot has a place away from all others.
+const MAX_PLACES: usize = 50;
+/// The distance between two robots at the start, m.
+const APART_M: f64 = 0.8;
+/// The free space that a robot keeps ahead, m.
+const CLEARANCE_M: f64 = 0.15;
+
+impl WorldSpec {
+    /// A random house, named `house-` and the seed, with the parameters of [`HOUSE_RANGES`]. All rooms are connected
+    /// while the doors are open; nothing is inside another thing; every round of a person keeps off walls and
+    /// furniture. The same seed gives the same house, on every machine.
+    pub fn generate_house(seed: u64) -> Self {
+        let mut rng = RandomStream::new(seed, Purpose::HouseGenerator);
+        let mut houses = (0..MAX_HOUSES).filter_map(|_| draw_house(&HOUSE_RANGES, seed, &mut rng));
+        houses.next().expect("with these ranges, a house fails in less than one of ten draws")
+    }
+}
+
+/// A house, unless a robot found no place in it.
+fn draw_house(ranges: &HouseRanges, seed: u64, rng: &mut RandomStream) -> Option<WorldSpec> {
+    let layout = Layout::new(ranges, rng);
+    let plan = Plan { is_upright: rng.random() };
+    let walls: Vec<Rectangle> = layout.solid_walls().iter().map(|wall| plan.rectangle(wall)).collect();
+    let mut obstacles: Vec<ObstacleSpec> =
+        furniture::furniture(ranges, &layout, rng).iter().map(|piece| standing(piece, &plan)).collect();
+    obstacles.extend(doors::doors(ranges, &layout, &plan, rng));
+    let opened = obstacles.iter().map(|obstacle| match &obstacle.motion {
+        Motion::Door(door) => door.shape(&obstacle.shape, 1.0),
+        _ => obstacle.shape,
+    });
+    let solids: Vec<Rectangle> = walls.iter().copied().chain(opened).collect();
+    let routes = Routes::new(ranges, &layout, &solids, &plan, rng);
+    let robots = robots(ranges, &routes, rng)?;
+    let size = plan.point(layout.size.map(f64::from));
+    let frame = GridFrame::covering(Point2::origin(), size.x, size.y, 1.0 / CELLS_PER_M);
+    let count =
+        |kind: fn(&Motion) -> bool| obstacles.iter().filter(|obstacle| kind(&obstacle.motion)).count();
+    let doors = count(|motion| matches!(motion, Motion::Door(_)));
+    let people = robots.iter().filter(|robot| matches!(robot.behavior, BehaviorSpec::Waypoints(_))).count();
+    let description = format!(
+        "{} rooms at a corridor, doors: {doors}, people: {people}; made at random from the seed {seed}.",
+        layout.spaces.len() - 1
+    );
+    let name = format!("house-{seed}");
+    let fleet = FleetSpec { name, description, frame: frame?, step_s: STEP_S, walls, obstacles, robots };
+    WorldSpec::new(fleet).ok()
+}
+
+/// A piece of furniture as an obstacle.
+fn standing(piece: &Piece, plan: &Plan) -> ObstacleSpec {
+    let shape = match piece.turned {
+        None => plan.rectangle(&piece.area),
+        Some((side, heading_deg)) => plan.turned(&piece.area, side, f64::from(heading_deg).to_radians()),
+    };
+    let name = piece.name.clone();
+    ObstacleSpec { name, shape, motion: Motion::Fixed, tag: None, appears_s: None, disappears_s: None }
+}
+
+/// The explorer, the people, and perhaps a vacuum cleaner.
+fn robots(ranges: &HouseRanges, routes: &Routes, rng: &mut RandomStream) -> Option<Vec<RobotSpec>> {
+    let mut robots = vec![robot("curious", routes.place(rng)?, BehaviorSpec::Driven, 0.2, 0.8, rng)];
+    robots[0].laser.beams = 720;
+    for number in 1..=integer(ranges.people, rng) {
+        let mut rounds = (0..MAX_PLACES).filter_map(|_| routes.round(ranges, rng));
+        let points = rounds.find(|points| is_apart(&robots, &points[0]))?;
+        let speed_mps = value(ranges.person_speed_mps, rng);
+        let (start, repeat) = (points[0], Repeat::Loop);
+        let behavior =
+            BehaviorSpec::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m: CLEARANCE_M });
+        let radius_m = value(ranges.person_radius_m, rng);
+        robots.push(robot(&format!("person {number}"), start, behavior, radius_m, 1.0, rng));
+    }
+    if rng.bernoulli(ranges.vacuum_cleaner_probability) {
+        let start = (0..MAX_PLACES).filter_map(|_| routes.place(rng)).find(|at| is_apart(&robots, at))?;
+        let behavior = BehaviorSpec::Wander(WanderSpec { speed_mps: 0.3, clearance_m: CLEARANCE_M });
+        robots.push(robot("vacuum cleaner", start, behavior, 0.17, 0.4, rng));
+    }
+    Some(robots)
+}
+
+fn is_apart(robots: &[RobotSpec], at: &Point2<f64>) -> bool {
+    robots.iter().all(|other| (other.pose.translation.vector - at.coords).norm() >= APART_M)
+}
+
+/// A round robot with two wheels and a laser all around.
+fn robot(
+    name: &str,
+    at: Point2<f64>,
+    behavior: BehaviorSpec,
+    radius_m: f64,
+    max_linear_mps: f64,
+    rng: &mut RandomStream,
+) -> RobotSpec {
+    let heading_rad = f64::from(rng.random_range(-17..=18) * 10).to_radians();
+    let mut robot = RobotSpec::new(name, pose(at.x, at.y, heading_rad), behavior);
+    robot.radius_m = radius_m;
+    robot.drive = DriveLimits {
+        kind: DriveKind::Differential,
+        max_linear_mps,
+        max_angular_radps: 150.0_f64.to_radians(),
+        max_linear_acceleration_mps2: 1.5,
+        max_angular_acceleration_radps2: 600.0_f64.to_radians(),
+    };
+    if robot.behavior != BehaviorSpec::Driven {
+        (robot.laser.beams, robot.laser.range_max_m) = (120, 4.0);
+    }
+    robot
+}

@@ -1,0 +1,177 @@
+//! A world as the text of its file.
+
+use super::behavior::REPEATS;
+use interfaces::heading_rad;
+use nalgebra::{Isometry2, Point2};
+use sim::physics::{
+    BehaviorSpec, DoorSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle,
+    RobotSpec,
+};
+use toml::Value;
+
+/// The keys of a table with their values.
+type Keys = Vec<(&'static str, Value)>;
+
+/// The text of a world file that describes `spec`: [`super::parse_fleet`] reads the same spec from it. `None` for a
+/// world with parts that generated houses do not have: this function writes upright walls, obstacles that stand still,
+/// doors that open periodically or at random, and round robots with a differential drive and one laser, which are
+/// driven, walk along waypoints or wander.
+pub fn to_toml(spec: &FleetSpec) -> Option<String> {
+    let (frame, mut text) = (&spec.frame, String::new());
+    if frame.center(interfaces::Cell::new(0, 0)).coords
+        != nalgebra::Vector2::from([frame.resolution_m() / 2.0; 2])
+    {
+        return None; // a world that was turned
+    }
+    let mut table = |header: &str, keys: Keys| {
+        text += header;
+        text.extend(keys.into_iter().map(|(key, value)| format!("{key} = {value}\n")));
+    };
+    table("", vec![("name", spec.name.as_str().into()), ("description", spec.description.as_str().into())]);
+    let size_m = [frame.width(), frame.height()].map(|cells| number(cells as f64 * frame.resolution_m()));
+    table("\n[map]\n", vec![("size_m", size_m.to_vec().into()), ("cell_m", number(frame.resolution_m()))]);
+    table("\n[physics]\n", vec![("step_s", number(spec.step_s))]);
+    for wall in &spec.walls {
+        table("\n[[wall]]\n", upright(wall)?);
+    }
+    for obstacle in &spec.obstacles {
+        table("\n[[obstacle]]\n", self::obstacle(obstacle)?);
+    }
+    for robot in &spec.robots {
+        table("\n[[robot]]\n", body(robot)?);
+        table("\n[robot.drive]\n", drive(robot)?);
+        table("\n[robot.laser]\n", laser(&robot.laser)?);
+        table("\n[robot.behaviour]\n", behavior(&robot.behavior)?);
+    }
+    Some(text)
+}
+
+fn obstacle(obstacle: &ObstacleSpec) -> Option<Keys> {
+    let ObstacleSpec { name, shape, motion, tag: None, appears_s: None, disappears_s: None } = obstacle
+    else {
+        return None;
+    };
+    let mut keys: Keys = vec![("name", name.as_str().into())];
+    keys.extend(match motion {
+        Motion::Fixed => upright(shape).unwrap_or_else(|| turned(shape)),
+        Motion::Door(spec) => door(shape, spec)?,
+        Motion::Pushed(_) | Motion::Path(_) => return None,
+    });
+    Some(keys)
+}
+
+fn upright(shape: &Rectangle) -> Option<Keys> {
+    let (low, high) = shape.bounds();
+    let keys = || vec![("min_m", point(&low)), ("max_m", point(&high))];
+    (shape.pose.rotation.im == 0.0 && shape.pose.rotation.re > 0.0).then(keys)
+}
+
+fn turned(shape: &Rectangle) -> Keys {
+    let size = shape.half_m * 2.0;
+    vec![
+        ("center_m", point(&shape.pose.translation.vector.into())),
+        ("size_m", point(&size.into())),
+        ("heading_deg", heading(&shape.pose)),
+    ]
+}
+
+fn door(shape: &Rectangle, spec: &DoorSpec) -> Option<Keys> {
+    let ends = [-shape.half_m.x, shape.half_m.x].map(|x| point(&(shape.pose * Point2::new(x, 0.0))));
+    let [from, to] = ends;
+    let kind = match spec.leaf {
+        Leaf::Hinged { .. } => "hinged_door",
+        Leaf::Sliding { .. } => "sliding_door",
+    };
+    let mut keys: Keys = vec![("kind", kind.into()), ("from_m", from), ("to_m", to)];
+    keys.push(("thickness_m", number(2.0 * shape.half_m.y)));
+    match spec.leaf {
+        Leaf::Hinged { open_rad, .. } => keys.push(("open_deg", number(open_rad.to_degrees()))),
+        // By its length, as it is without the key.
+        Leaf::Sliding { by_m } if (by_m.norm() - 2.0 * shape.half_m.x).abs() < 1e-9 => {}
+        Leaf::Sliding { .. } => return None,
+    }
+    let (opening, [closed_s, open_s]) = match spec.opening {
+        Opening::Periodic { closed_s, open_s } => ("periodic", [closed_s, open_s]),
+        Opening::Random { closed_s, open_s } => ("random", [closed_s, open_s]),
+        Opening::Scripted { .. } => return None,
+    };
+    keys.extend([("opening", opening.into()), ("closed_s", number(closed_s)), ("open_s", number(open_s))]);
+    keys.extend([("move_s", number(spec.move_s)), ("starts_open", spec.starts_open.into())]);
+    Some(keys)
+}
+
+fn body(robot: &RobotSpec) -> Option<Keys> {
+    let is_plain = robot.corners.is_empty()
+        && robot.mass_kg.is_none()
+        && robot.odometry == sim::physics::OdometryError::default()
+        && (robot.more_lasers.is_empty() && robot.sonars.is_empty())
+        && (robot.bumper.is_none() && robot.fiducial.is_none() && robot.tag.is_none());
+    let keys = || {
+        vec![
+            ("name", robot.name.as_str().into()),
+            ("radius_m", number(robot.radius_m)),
+            ("pose_m", point(&robot.pose.translation.vector.into())),
+            ("heading_deg", heading(&robot.pose)),
+        ]
+    };
+    is_plain.then(keys)
+}
+
+fn drive(robot: &RobotSpec) -> Option<Keys> {
+    let drive = &robot.drive;
+    let keys = || {
+        vec![
+            ("max_linear_mps", number(drive.max_linear_mps)),
+            ("max_angular_degps", number(drive.max_angular_radps.to_degrees())),
+            ("max_linear_acceleration_mps2", number(drive.max_linear_acceleration_mps2)),
+            ("max_angular_acceleration_degps2", number(drive.max_angular_acceleration_radps2.to_degrees())),
+        ]
+    };
+    (drive.kind == DriveKind::Differential).then(keys)
+}
+
+fn laser(laser: &LaserSpec) -> Option<Keys> {
+    let keys = || {
+        vec![
+            ("beams", Value::from(laser.beams as i64)),
+            ("fov_deg", number(laser.fov_rad.to_degrees())),
+            ("range_min_m", number(laser.range_min_m)),
+            ("range_max_m", number(laser.range_max_m)),
+            ("rate_hz", number(laser.rate_hz)),
+            ("noise_std_m", number(laser.noise_std_m)),
+            ("dropout", number(laser.dropout)),
+        ]
+    };
+    (laser.mount == Isometry2::identity()).then(keys)
+}
+
+fn behavior(behavior: &BehaviorSpec) -> Option<Keys> {
+    let moving = |kind: &str, speed_mps, clearance_m| {
+        vec![("kind", kind.into()), ("speed_mps", number(speed_mps)), ("clearance_m", number(clearance_m))]
+    };
+    Some(match behavior {
+        BehaviorSpec::Driven => vec![("kind", "driven".into())],
+        BehaviorSpec::Wander(wander) => moving("wander", wander.speed_mps, wander.clearance_m),
+        BehaviorSpec::Waypoints(way) => {
+            let mut keys = moving("waypoints", way.speed_mps, way.clearance_m);
+            keys.push(("points_m", way.points.iter().map(point).collect::<Vec<Value>>().into()));
+            let (name, _) = REPEATS.iter().find(|(_, repeat)| *repeat == way.repeat)?;
+            keys.push(("repeat", (*name).into()));
+            keys
+        }
+        BehaviorSpec::Standing | BehaviorSpec::Circle(_) | BehaviorSpec::WallPatrol(_) => return None,
+    })
+}
+
+fn heading(pose: &Isometry2<f64>) -> Value {
+    number(heading_rad(pose).to_degrees())
+}
+
+fn point(point: &Point2<f64>) -> Value {
+    vec![number(point.x), number(point.y)].into()
+}
+
+/// To a billionth: without the rounding of sums and units.
+fn number(value: f64) -> Value {
+    ((value * 1e9).round() / 1e9).into()
+}

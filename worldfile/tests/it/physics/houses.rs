@@ -1,0 +1,200 @@
+//! Generated houses: all rooms connected, nothing inside another thing, and the same as ever.
+
+use nalgebra::Point2;
+use sim::physics::*;
+
+/// The number of houses in each test.
+const HOUSES: u64 = 300;
+/// The distance of the positions that are tried for the explorer, m.
+const GRID_M: f64 = 0.05;
+
+fn houses() -> impl Iterator<Item = WorldSpec> {
+    (0..HOUSES).map(WorldSpec::generate_house)
+}
+
+/// Walls and furniture, and the leaves of open doors if they are asked for.
+fn solids(house: &FleetSpec, with_doors: bool) -> Vec<Rectangle> {
+    let obstacles = house.obstacles.iter().filter_map(|obstacle| match leaf(obstacle, 1.0) {
+        Some(leaf) => with_doors.then_some(leaf),
+        None => Some(obstacle.shape),
+    });
+    house.walls.iter().copied().chain(obstacles).collect()
+}
+
+/// The leaf of a door; `None` for furniture.
+fn leaf(obstacle: &ObstacleSpec, openness: f64) -> Option<Rectangle> {
+    match &obstacle.motion {
+        Motion::Door(door) => Some(door.shape(&obstacle.shape, openness)),
+        _ => None,
+    }
+}
+
+/// The positions at which a disc is free, on a grid of points over the house.
+struct Positions {
+    columns: usize,
+    is_free: Vec<bool>,
+}
+
+impl Positions {
+    fn new(house: &FleetSpec, radius_m: f64, with_doors: bool) -> Self {
+        let (columns, rows) = (house.frame.width(), house.frame.height());
+        let mut positions = Self { columns, is_free: vec![true; columns * rows] };
+        for solid in solids(house, with_doors) {
+            let (low, high) = solid.bounds();
+            let indices = |low_m: f64, high_m: f64, count: usize| {
+                let from = ((low_m - radius_m) / GRID_M).floor().max(0.0) as usize;
+                from..(((high_m + radius_m) / GRID_M).ceil() as usize).min(count)
+            };
+            for row in indices(low.y, high.y, rows) {
+                for column in indices(low.x, high.x, columns) {
+                    let index = row * columns + column;
+                    positions.is_free[index] &= solid.distance_m(&positions.point(index)) >= radius_m;
+                }
+            }
+        }
+        positions
+    }
+
+    fn point(&self, index: usize) -> Point2<f64> {
+        let [x, y] = [index % self.columns, index / self.columns].map(|at| (at as f64 + 0.5) * GRID_M);
+        Point2::new(x, y)
+    }
+
+    /// The indices of the points of every connected part.
+    fn parts(&self) -> Vec<Vec<usize>> {
+        let mut is_new = self.is_free.clone();
+        let mut parts = Vec::new();
+        for start in 0..is_new.len() {
+            let (mut open, mut part) = (vec![start], Vec::new());
+            while let Some(index) = open.pop() {
+                if std::mem::replace(&mut is_new[index], false) {
+                    part.push(index);
+                    // The outer walls are blocked: no point is at the border.
+                    open.extend([index - 1, index + 1, index - self.columns, index + self.columns]);
+                }
+            }
+            if !part.is_empty() {
+                parts.push(part);
+            }
+        }
+        parts
+    }
+}
+
+/// Furniture never divides a house; an open door can hide a place behind it, but never a room or a robot.
+#[test]
+fn every_place_where_a_robot_fits_can_be_reached() {
+    for house in houses() {
+        let radius_m = HOUSE_RANGES.person_radius_m[1] + 0.03;
+        let parts = Positions::new(&house, radius_m, false).parts();
+        assert_eq!(parts.len(), 1, "{}", house.name);
+        let opened = Positions::new(&house, radius_m, true);
+        let mut parts = opened.parts();
+        parts.sort_by_key(Vec::len);
+        let (whole, pockets) = parts.split_last().unwrap();
+        let hidden: usize = pockets.iter().map(Vec::len).sum();
+        assert!(50 * hidden < whole.len(), "{}: {hidden} of {}", house.name, whole.len());
+        let points = house.robots.iter().flat_map(|robot| match &robot.behavior {
+            BehaviorSpec::Waypoints(way) => way.points.clone(),
+            _ => vec![robot.pose.translation.vector.into()],
+        });
+        for point in points {
+            let is_near = |index: &&usize| (opened.point(**index) - point).norm() < 2.0 * GRID_M;
+            assert!(whole.iter().any(|index| is_near(&index)), "{}: {point}", house.name);
+        }
+    }
+}
+
+/// The reader of world files checks that robots, rounds, furniture and walls do not overlap.
+#[test]
+fn a_file_has_the_same_house() {
+    for house in houses() {
+        let text = worldfile::physics::to_toml(house.fleet()).unwrap();
+        let read =
+            worldfile::physics::parse_world("house.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(read, house);
+    }
+}
+
+#[test]
+fn no_thing_is_inside_another() {
+    for house in houses() {
+        let (doors, furniture): (Vec<_>, Vec<_>) =
+            house.obstacles.iter().partition(|obstacle| leaf(obstacle, 0.0).is_some());
+        for (index, piece) in furniture.iter().enumerate() {
+            let mut others =
+                house.walls.iter().chain(furniture[index + 1..].iter().map(|other| &other.shape));
+            assert!(!others.any(|other| other.overlaps(&piece.shape)), "{}: {}", house.name, piece.name);
+            for part in 0..=10 {
+                let overlaps = |door: &&&ObstacleSpec| {
+                    leaf(door, f64::from(part) / 10.0).is_some_and(|leaf| leaf.overlaps(&piece.shape))
+                };
+                let door = doors.iter().find(overlaps).map(|door| &door.name);
+                assert_eq!(door, None, "{}: {}", house.name, piece.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn houses_have_what_their_ranges_say() {
+    let mut robots = [0_usize; 3];
+    let (mut rooms, mut doors, mut furniture) = (Vec::new(), 0, 0);
+    for house in houses() {
+        rooms.push(house.description.split(' ').next().unwrap().parse::<usize>().unwrap());
+        for obstacle in &house.obstacles {
+            match &obstacle.motion {
+                Motion::Door(DoorSpec { opening, .. }) => {
+                    doors += 1;
+                    let (Opening::Periodic { closed_s, open_s } | Opening::Random { closed_s, open_s }) =
+                        opening
+                    else {
+                        panic!("{opening:?}")
+                    };
+                    let [closed, open] = [HOUSE_RANGES.closed_s, HOUSE_RANGES.open_s];
+                    assert!(
+                        (closed[0]..=closed[1]).contains(closed_s) && (open[0]..=open[1]).contains(open_s)
+                    );
+                }
+                _ => furniture += 1,
+            }
+        }
+        for robot in &house.robots {
+            let kind = match robot.behavior {
+                BehaviorSpec::Driven => 0,
+                BehaviorSpec::Waypoints(_) => 1,
+                _ => 2,
+            };
+            robots[kind] += 1;
+        }
+    }
+    let houses = HOUSES as usize;
+    assert!(rooms.iter().all(|rooms| (2..=9).contains(rooms)) && rooms.iter().sum::<usize>() > 4 * houses);
+    assert!(doors > 3 * houses && furniture > 7 * houses, "{doors} {furniture}");
+    assert_eq!(robots[0], houses);
+    assert!(robots[1] > 3 * houses / 2 && robots[2] > houses / 3, "{robots:?}");
+}
+
+/// Results on houses depend on every number in them: a change must be intended.
+#[test]
+fn houses_are_what_they_always_were() {
+    // FNV-1a.
+    let hash = |text: &str| {
+        text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        })
+    };
+    let line = |seed: u64| {
+        let house = WorldSpec::generate_house(seed);
+        let text = worldfile::physics::to_toml(house.fleet()).unwrap();
+        format!("{:016x} {}", hash(&text), house.description)
+    };
+    let lines: Vec<String> = [0, 1, 2, 3, u64::MAX].map(line).into();
+    insta::assert_snapshot!(lines.join("\n"), @"
+    0d71553f8c835f1b 5 rooms at a corridor, doors: 3, people: 1; made at random from the seed 0.
+    245b78cfafd21d6f 5 rooms at a corridor, doors: 4, people: 2; made at random from the seed 1.
+    ed7c679d6df01d6c 5 rooms at a corridor, doors: 4, people: 1; made at random from the seed 2.
+    0fbc156553a5a43b 8 rooms at a corridor, doors: 7, people: 1; made at random from the seed 3.
+    85597a21d688b55b 6 rooms at a corridor, doors: 3, people: 1; made at random from the seed 18446744073709551615.
+    ");
+}
