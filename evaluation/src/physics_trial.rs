@@ -221,7 +221,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
 
 /// The longest standstills of the robots that can move, by name.
 fn longest_standstill_s(world: &PhysicsWorld, observer: &Observer) -> BTreeMap<String, f64> {
-    let robots = world.spec().robots.iter().zip(observer.standstills.longest_s());
+    let robots = world.spec().robots.iter().zip(observer.standstills.longest());
     let moving = robots.filter(|(robot, _)| robot.behavior != BehaviorSpec::Standing);
-    moving.map(|(robot, longest_s)| (robot.name.clone(), *longest_s)).collect()
+    moving.map(|(robot, (longest_s, _))| (robot.name.clone(), *longest_s)).collect()
 }

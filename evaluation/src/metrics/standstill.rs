@@ -10,7 +10,8 @@ const STILL_M: f64 = 0.1;
 pub struct Standstills {
     /// For each robot, the position and the time of the beginning of the present standstill, m and s.
     since: Vec<(Point2<f64>, f64)>,
-    longest_s: Vec<f64>,
+    /// For each robot, the duration and the position of the longest standstill, s and m.
+    longest: Vec<(f64, Point2<f64>)>,
 }
 
 impl Standstills {
@@ -19,20 +20,21 @@ impl Standstills {
         for (robot, at) in robots.enumerate() {
             if robot == self.since.len() {
                 self.since.push((at, time_s));
-                self.longest_s.push(0.0);
+                self.longest.push((0.0, at));
             }
             let (from, since_s) = self.since[robot];
             if (at - from).norm() > STILL_M {
                 self.since[robot] = (at, time_s);
-            } else {
-                self.longest_s[robot] = self.longest_s[robot].max(time_s - since_s);
+            } else if time_s - since_s > self.longest[robot].0 {
+                self.longest[robot] = (time_s - since_s, from);
             }
         }
     }
 
-    /// For each robot, the longest time for which it did not move farther than 0.1 m from a position, s.
-    pub fn longest_s(&self) -> &[f64] {
-        &self.longest_s
+    /// For each robot, the longest time for which it did not move farther than 0.1 m from a position, and this position,
+    /// s and m.
+    pub fn longest(&self) -> &[(f64, Point2<f64>)] {
+        &self.longest
     }
 }
 
@@ -50,6 +52,7 @@ mod tests {
             let pausing = Point2::new(if second < 30 { 0.0 } else { time_s }, 0.0);
             standstills.observe(time_s, [slow, trembling, pausing].into_iter());
         }
-        assert_eq!(standstills.longest_s(), [5.0, 99.0, 29.0]);
+        let longest_s: Vec<f64> = standstills.longest().iter().map(|(longest_s, _)| *longest_s).collect();
+        assert_eq!(longest_s, [5.0, 99.0, 29.0]);
     }
 }
