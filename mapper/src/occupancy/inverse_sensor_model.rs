@@ -21,8 +21,8 @@ pub(super) const NOISE_STDS: f64 = 4.0;
 
 /// The point to which a hit belongs: `depth_m` behind the surface along its normal. At the edge of the visible
 /// surface, the point is also equally far inward along the surface, since the body may end right behind the edge.
-/// If a neighboring beam passes through that point (the normal led out of a corner), the point is half as deep
-/// along the beam.
+/// If a neighboring beam passes through that point (the normal led out of a corner), or if the surface has no normal
+/// there, the point is half as deep along the beam.
 pub(super) fn hit_point(
     beam: usize,
     end: &Point2<f64>,
@@ -30,10 +30,12 @@ pub(super) fn hit_point(
     segmentation: &Segmentation,
     scan: &ProjectedScan,
 ) -> Point2<f64> {
-    let normal = segmentation.normal(beam, end, scan);
+    let along_beam = scan.directions[beam];
+    let Some(normal) = segmentation.normal(beam, end, scan) else {
+        return end + along_beam * (depth_m / 2.0);
+    };
     let inward = segmentation.inward(beam, end, scan);
     let direction = inward.map_or(-normal, |inward| (inward - normal) * FRAC_1_SQRT_2);
-    let along_beam = scan.directions[beam];
     let distance_m = scan.returns[beam].clear_m() + direction.dot(&along_beam) * depth_m;
     // From the beam to the direction of the point, in beams; the angle is small.
     let turn = along_beam.perp(&direction) * depth_m / (distance_m * scan.increment_rad);

@@ -8,6 +8,8 @@ use nalgebra::{Point2, Vector2};
 const CHORD_M: f64 = 0.075;
 /// A surface whose two sides meet at more than 25° turns a corner.
 const CORNER_COS: f64 = 0.9;
+/// Beside a corner, a side that is bent by more than this, m, goes round the corner.
+const BEND_M: f64 = 0.01;
 
 /// The end points of one scan, joined to surfaces.
 #[derive(Clone, Debug, Default)]
@@ -42,12 +44,6 @@ impl Segmentation {
         }
     }
 
-    /// Whether a hit is the first or the last of its surface, where the normal is uncertain.
-    pub(super) fn is_edge(&self, beam: usize) -> bool {
-        let (first, last) = self.surfaces[beam];
-        beam == first || beam == last
-    }
-
     /// At an edge, where a neighboring beam passes the hit: the direction along the surface, away from
     /// the edge.
     pub(super) fn inward(
@@ -71,8 +67,13 @@ impl Segmentation {
     }
 
     /// The normal of the surface at a hit, toward the sensor. At a corner of the surface, the normal of the
-    /// straighter side: a normal across the corner would point out of the body.
-    pub(super) fn normal(&self, beam: usize, end: &Point2<f64>, scan: &ProjectedScan) -> Vector2<f64> {
+    /// straighter side: a normal across the corner would point out of the body. `None` without a straight side.
+    pub(super) fn normal(
+        &self,
+        beam: usize,
+        end: &Point2<f64>,
+        scan: &ProjectedScan,
+    ) -> Option<Vector2<f64>> {
         let range_m = scan.returns[beam].clear_m();
         let step = 1 + ((CHORD_M / (range_m * scan.spacing_rad)) as u32 as usize).min(scan.len());
         let (first, last) = self.surfaces[beam];
@@ -85,28 +86,28 @@ impl Segmentation {
             || along * along < CORNER_COS * CORNER_COS * ahead.norm_squared() * back.norm_squared();
         let tangent = if !turns_corner {
             ahead - back
-        } else if self.bend_m(beam, after) <= self.bend_m(beam, before) {
-            ahead
         } else {
-            -back
+            match (self.bend_m(beam, before), self.bend_m(beam, after)) {
+                (before_m, after_m) if before_m.min(after_m) > BEND_M => return None,
+                (before_m, after_m) if after_m <= before_m => ahead,
+                _ => -back,
+            }
         };
-        let length_m = tangent.norm();
-        if length_m < 1e-6 {
-            return -scan.directions[beam];
-        }
-        let normal = Vector2::new(-tangent.y, tangent.x) / length_m;
-        if normal.dot(&scan.directions[beam]) > 0.0 { -normal } else { normal }
+        let tangent = tangent.try_normalize(1e-6)?;
+        let normal = Vector2::new(-tangent.y, tangent.x);
+        Some(if normal.dot(&scan.directions[beam]) > 0.0 { -normal } else { normal })
     }
 
-    /// The distance of the surface from the chord between two of its hits, m; ∞ without a hit
-    /// between them.
+    /// The distance of the surface from the chord between two of its hits, m. [`BEND_M`] for neighboring hits: a side
+    /// that is known to be straight is better. ∞ for a side without a hit.
     fn bend_m(&self, from: usize, to: usize) -> f64 {
         let middle = from.midpoint(to);
         match (self.ends[from], self.ends[middle], self.ends[to]) {
+            _ if from == to => f64::INFINITY,
             (Some(a), Some(b), Some(c)) if middle != from && middle != to => {
                 (b - a).perp(&(c - a)).abs() / (c - a).norm()
             }
-            _ => f64::INFINITY,
+            _ => BEND_M,
         }
     }
 }

@@ -258,11 +258,10 @@ fn a_map_that_needs_too_much_memory_is_refused_before_it_is_allocated() {
 
 #[test]
 fn lawful_settings_are_lived_with() {
-    let edits: [fn(&mut SurfaceGridSettings); 9] = [
+    let edits: [fn(&mut SurfaceGridSettings); 8] = [
         |s| s.range_noise_std_m = 0.0,
         |s| s.surface_depth_m = 0.0,
         |s| (s.range_noise_std_m, s.surface_depth_m) = (0.5, 0.5),
-        |s| s.body_m = 10.0,
         |s| (s.join_m, s.max_gap_m) = (0.0, 0.0),
         |s| (s.join_m, s.max_gap_m) = (10.0, 10.0),
         |s| (s.hits_to_block, s.misses_to_free, s.misses_to_free_fresh) = (1, 1, 1),

@@ -4,6 +4,7 @@
 mod house;
 
 mod bad_readings;
+mod bodies;
 mod bookkeeping;
 mod chains;
 mod estimators;

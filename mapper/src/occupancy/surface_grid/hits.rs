@@ -1,6 +1,6 @@
 //! Hits: the evidence that a cell is blocked.
 
-use super::{SURFACE_MEMORY, Surface, SurfaceGrid, SurfaceGridSettings};
+use super::{SURFACE_MEMORY, SurfaceGrid, SurfaceGridSettings};
 use crate::change::CellMap;
 use crate::occupancy::footprint::cells_along;
 use crate::occupancy::inverse_sensor_model::{NOISE_STDS, hit_point};
@@ -22,6 +22,7 @@ impl SurfaceGrid {
         let ahead = end + scan.directions[beam] * (self.settings.surface_depth_m / 4.0);
         if let Some(index) = index_at(ahead).filter(|&index| self.has_settled(index, cells)) {
             self.support(index, None, cells);
+            self.note_new(beam, index, cells);
             if self.segmentation.joined[beam] {
                 self.support_between(beam, ahead, scan, cells);
             }
@@ -39,10 +40,7 @@ impl SurfaceGrid {
         } else {
             self.hit_open(index, &end, point, cells);
         }
-        let has_come = self.surfaces[index].came && self.surfaces[index].hits < self.settings.hits_to_stand;
-        if has_come && !self.segmentation.is_edge(beam) {
-            self.fill_body(&end, &point, cells);
-        }
+        self.note_new(beam, index, cells);
         if self.segmentation.joined[beam] {
             self.support_between(beam, point, scan, cells);
         }
@@ -96,28 +94,6 @@ impl SurfaceGrid {
         })
         .min_by(|(a, _), (b, _)| a.total_cmp(b))
         .map(|(_, index)| index)
-    }
-
-    /// A new obstacle has a body (rule 4): the free cells behind a hit become blocked, to the depth `body_m`. These
-    /// cells are hidden now, and no beam can show their state.
-    fn fill_body(&mut self, end: &Point2<f64>, point: &Point2<f64>, cells: &mut CellMap) {
-        let frame = *cells.frame();
-        let Some(inward) = (point - end).try_normalize(1e-9) else { return };
-        let layers = (self.settings.body_m / frame.resolution_m() + 1e-6) as usize;
-        for layer in 1..=layers {
-            let inside = point + inward * (layer as f64 * frame.resolution_m());
-            let Some(index) = frame.index(frame.cell_at(&inside)) else { return };
-            if cells.state(index) == CellState::Free && !cells.is_seen_now(index) {
-                let in_view = cells.is_in_view(index);
-                self.surfaces[index] = Surface {
-                    hit_at: cells.reading(),
-                    evidence: self.settings.misses_to_free_fresh as i8,
-                    ..Surface::default()
-                };
-                self.remember(index, inside, cells);
-                cells.set_state(index, CellState::Blocked, cells.reading(), in_view);
-            }
-        }
     }
 
     /// A blocked cell was hit, or lies on a surface that was hit.
@@ -189,7 +165,7 @@ impl SurfaceGrid {
     }
 
     /// Moves the remembered surface point toward a hit.
-    fn remember(&mut self, index: usize, point: Point2<f64>, cells: &CellMap) {
+    pub(super) fn remember(&mut self, index: usize, point: Point2<f64>, cells: &CellMap) {
         let surface = &mut self.surfaces[index];
         let at = point - cells.frame().origin();
         let weight = 1.0 / f32::from(surface.hits.clamp(1, SURFACE_MEMORY));

@@ -12,11 +12,16 @@
 //!    always ends before the point, at any angle.
 //! 3. **Noise belongs to the nearest surface.** A hit within four standard deviations of a standing surface is a hit on
 //!    that surface, not a new obstacle beside it.
-//! 4. **A new obstacle has a body.** The cells that the body hides at once are blocked too, a little behind the surface.
+//! 4. **A new obstacle has the body that it shows.** Its visible outline, from one end to the other, is turned by 180°
+//!    about the middle between the two ends: between both outlines is the body. This is a part of every convex body
+//!    with a center of symmetry, however much of the body is visible: most of a disc, all of a box whose corner is seen,
+//!    but only the surface of a door leaf or of a single flat side. The free cells in the body become blocked. All
+//!    other hidden cells are not seen, and keep their states.
 //!
 //! A cell that was hit receives no miss from the same scan. A first observation from far away can be wrong: if a
 //! state is contradicted before it was confirmed, the state is corrected, which does not count as a change.
 
+mod bodies;
 mod hits;
 mod misses;
 mod settings;
@@ -26,7 +31,9 @@ use super::footprint::Footprint;
 use super::projection::ProjectedScan;
 use super::segmentation::Segmentation;
 use crate::change::{CellMap, ReadingIndex};
+use bodies::Body;
 use interfaces::CellState;
+use nalgebra::Point2;
 pub use settings::SurfaceGridSettings;
 
 /// The mean of the hit points is taken over about this number of hits.
@@ -62,6 +69,11 @@ pub(super) struct SurfaceGrid {
     segmentation: Segmentation,
     /// Scratch memory: the cells of a scan that are not settled.
     unsettled: Vec<u32>,
+    /// Scratch memory: the beams of a scan that hit new obstacles (true), or that can have hit new obstacles (false).
+    new_hits: Vec<(usize, bool)>,
+    /// Scratch memory: the hits on one body, and the body.
+    body_hits: Vec<Point2<f64>>,
+    body: Body,
 }
 
 impl SurfaceGrid {
@@ -92,6 +104,9 @@ impl SurfaceGrid {
             footprint: Footprint::default(),
             segmentation: Segmentation::default(),
             unsettled: Vec::new(),
+            new_hits: Vec::new(),
+            body_hits: Vec::new(),
+            body: Body::default(),
         }
     }
 }
@@ -99,9 +114,11 @@ impl SurfaceGrid {
 impl OccupancyModel for SurfaceGrid {
     fn update(&mut self, scan: &ProjectedScan, cells: &mut CellMap) {
         self.segmentation.segment(scan, self.settings.join_m);
+        self.new_hits.clear();
         for beam in 0..scan.len() {
             self.hit(beam, scan, cells);
         }
         self.misses(scan, cells);
+        self.bodies(scan, cells);
     }
 }

@@ -10,12 +10,10 @@ pub struct SurfaceGridSettings {
     /// The distance behind the surface, along its normal, at which a hit counts, m: a surface on the border of two
     /// cells belongs to the solid cell.
     pub surface_depth_m: f64,
-    /// The assumed thickness of new obstacles, m: cells behind a hit become blocked to this depth. With 0, only
-    /// surfaces are marked.
-    pub body_m: f64,
     /// Hits nearer to each other than this, m, belong to one surface: no beam passes the cells between them.
     pub join_m: f64,
-    /// Where neighboring beams are farther apart than this, m, the space between them counts as not observed.
+    /// Where neighboring beams are farther apart than this, m, the space between them counts as not observed, and hits
+    /// of new obstacles as hits on different bodies.
     pub max_gap_m: f64,
     /// The number of scans with a hit after which a free or unknown cell becomes blocked.
     pub hits_to_block: u8,
@@ -44,7 +42,6 @@ impl Default for SurfaceGridSettings {
         Self {
             range_noise_std_m: 0.01,
             surface_depth_m: 0.02,
-            body_m: 0.2,
             join_m: 1.0,
             max_gap_m: 0.15,
             hits_to_block: 2,
@@ -70,7 +67,6 @@ impl SurfaceGridSettings {
         // Every hit searches as far as the range noise reaches.
         check.within("steady.range_noise_std_m", self.range_noise_std_m, 0.0..=0.5, "from 0 to 0.5 m")?;
         check.within("steady.surface_depth_m", self.surface_depth_m, 0.0..=0.5, "from 0 to 0.5 m")?;
-        check.within("steady.body_m", self.body_m, 0.0..=10.0, "from 0 to 10 m")?;
         check.within("steady.join_m", self.join_m, 0.0..=10.0, "from 0 to 10 m")?;
         check.within("steady.max_gap_m", self.max_gap_m, 0.0..=10.0, "from 0 to 10 m")?;
         check.within("steady.confirm_s", self.confirm_s, 0.0..=3600.0, "from 0 to 3600 s")?;
