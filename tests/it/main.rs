@@ -15,6 +15,7 @@ mod ending;
 mod flicker;
 mod folder;
 mod grid;
+mod houses;
 mod keyboard;
 mod memory;
 mod output;

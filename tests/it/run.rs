@@ -9,6 +9,8 @@ use tempfile::TempDir;
 const FOUR_ROOMS: &str = env!("CARGO_BIN_EXE_four_rooms");
 /// The program for the grid worlds.
 const GRID_WORLD: &str = env!("CARGO_BIN_EXE_grid_world");
+/// The program for trials in physics worlds.
+const HOUSE_TRIALS: &str = env!("CARGO_BIN_EXE_house_trials");
 
 /// A folder in which a program runs. All output goes to the subfolder `out`, unless the arguments name another
 /// folder.
@@ -41,6 +43,11 @@ impl Run {
     /// A run of `grid_world`.
     pub(crate) fn grid() -> Self {
         Self { folder: tempfile::tempdir().unwrap(), program: GRID_WORLD }
+    }
+
+    /// A run of `house_trials`.
+    pub(crate) fn houses() -> Self {
+        Self { folder: tempfile::tempdir().unwrap(), program: HOUSE_TRIALS }
     }
 
     /// A finished run of `four_rooms` without a recording, which must succeed; arguments are separated by spaces.

@@ -130,7 +130,7 @@ mod tests {
         let rate = 0.01;
         assert!((gap_worth(0.1, rate) - 0.1).abs() < 1e-3);
         assert!(
-            gap_worth(1e4, rate) < 1e-9 && gap_worth(0.0, rate) == 0.0 && gap_worth(f64::MAX, rate) == 0.0
+            gap_worth(1e4, rate) < 1e-9 && gap_worth(0.0, rate) == 0.0 && gap_worth(1e100, rate) == 0.0
         );
         // By differences of the probability that the state is another one.
         let changed = |leave: f64, gap: f64| (1.0 - libm::exp(-2.0 * leave * gap)) / 2.0;

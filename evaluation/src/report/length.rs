@@ -51,6 +51,7 @@ impl fmt::Display for Length {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Grid { steps } => write!(f, "{} steps", thousands(steps)),
+            Self::Physics { duration_s: 60 } => f.write_str("1 simulated minute"),
             Self::Physics { duration_s } if duration_s % 60 == 0 => {
                 write!(f, "{} simulated minutes", thousands(duration_s / 60))
             }

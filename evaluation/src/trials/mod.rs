@@ -10,6 +10,8 @@ mod physics;
 mod run;
 mod sampler;
 mod strategy;
+#[cfg(test)]
+mod tests;
 mod world;
 
 pub use grid::GridRobot;

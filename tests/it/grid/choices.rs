@@ -26,10 +26,13 @@ fn every_strategy_explores_a_grid_world() {
 }
 
 #[test]
-fn a_grid_world_has_the_strategies_of_a_physics_world_and_the_oracle() {
-    let (in_physics, in_grid) = (values(&Run::new(), "--strategy"), values(&Run::grid(), "--strategy"));
-    // The oracle needs the ground truth of a grid world.
-    assert_eq!(in_grid, [in_physics, vec!["oracle".to_owned()]].concat());
+fn trials_have_the_strategies_of_a_run_and_the_references() {
+    let of_run = values(&Run::new(), "--strategy");
+    // The references need the ground truth, and are compared with other strategies.
+    let references = ["oracle", "full-observation"].map(str::to_owned).to_vec();
+    for of_trials in [Run::grid(), Run::houses()].map(|run| values(&run, "--strategy")) {
+        assert_eq!(of_trials, [&of_run[..], &references].concat());
+    }
 }
 
 #[test]

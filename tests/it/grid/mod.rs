@@ -7,7 +7,7 @@ mod files;
 mod golden;
 mod recording;
 mod report;
-mod same;
+pub(crate) mod same;
 mod screen;
 mod walls;
 mod worlds;
@@ -23,29 +23,29 @@ fn ran(arguments: &str) -> Run {
 }
 
 /// `report.json`.
-fn report(run: &Run) -> Value {
+pub(crate) fn report(run: &Run) -> Value {
     serde_json::from_slice(&std::fs::read(run.out("report.json")).unwrap()).unwrap()
 }
 
 /// The result of one strategy with one estimator in one world.
-struct Result {
-    world: String,
+pub(crate) struct Result {
+    pub(crate) world: String,
     estimator: String,
-    strategy: String,
+    pub(crate) strategy: String,
     /// The entry in `report.json`.
-    entry: Value,
+    pub(crate) entry: Value,
 }
 
 impl Result {
     /// The hash of everything that was learned, by seed.
-    fn hashes(&self) -> Vec<(String, String)> {
+    pub(crate) fn hashes(&self) -> Vec<(String, String)> {
         let hashes = self.entry["map_hashes"].as_object().unwrap().iter();
         hashes.map(|(seed, hash)| (seed.clone(), hash.as_str().unwrap().to_owned())).collect()
     }
 }
 
 /// All results, except those over all worlds.
-fn results(run: &Run) -> Vec<Result> {
+pub(crate) fn results(run: &Run) -> Vec<Result> {
     let report = report(run);
     let mut results = Vec::new();
     for run in report["runs"].as_array().unwrap() {
@@ -89,7 +89,7 @@ fn rows(run: &Run) -> Vec<Row> {
 }
 
 /// The possible values of an option, as the program's `-h` lists them.
-fn values(run: &Run, option: &str) -> Vec<String> {
+pub(crate) fn values(run: &Run, option: &str) -> Vec<String> {
     let help = run.goes_well("-h").stdout;
     let (_, about) = help.split_once(&format!("\n      {option} <")).unwrap();
     let (_, list) = about.split_once("[possible values: ").unwrap();

@@ -8,7 +8,7 @@ const ARGUMENTS: &str =
     "--steps 800 --trials 2 --world two_blocks --generate 2 --strategy curious --strategy coin";
 
 /// All output files of a run; in the report the arguments are left out.
-fn files(run: &Run) -> Vec<(String, Vec<u8>)> {
+pub(crate) fn files(run: &Run) -> Vec<(String, Vec<u8>)> {
     let content = |name: String| {
         let bytes = std::fs::read(run.out(&name)).unwrap();
         if name != "report.json" {

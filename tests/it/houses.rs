@@ -1,0 +1,142 @@
+//! Trials in physics worlds, and their report.
+
+use crate::bad_input::refuses;
+use crate::grid::{report, results, same};
+use crate::recording::Recording;
+use crate::run::{Run, names};
+
+/// Two houses and two strategies for a simulated minute.
+const SHORT: &str = "--generate 2 --seed 3 --duration 1m --strategy curious --strategy random";
+
+/// A finished run without output on the screen.
+fn ran(arguments: &str) -> Run {
+    let run = Run::houses();
+    let ended = run.goes_well(&format!("--quiet {arguments}"));
+    assert_eq!((ended.stdout.as_str(), ended.stderr.as_str()), ("", ""));
+    run
+}
+
+#[test]
+fn the_report_has_every_key_and_every_trial() {
+    let run = Run::houses();
+    let ended = run.goes_well(&format!("{SHORT} --strategy full-observation"));
+    for says in [
+        "all worlds (2)\n2 trials of 1 simulated minute",
+        "curious ",
+        "AUC",
+        "Paired differences over worlds",
+    ] {
+        assert!(ended.stdout.contains(says), "{says}: {}", ended.stdout);
+    }
+    let table = ended.stdout.lines().filter(|line| !line.starts_with("written to "));
+    assert!(table.clone().all(|line| line.chars().count() <= 80), "{}", ended.stdout);
+
+    let report = report(&run);
+    let keys = ["version", "arguments", "duration_s", "trials", "interrupted", "runs", "files"];
+    assert_eq!(report.as_object().unwrap().len(), keys.len());
+    assert!(keys.iter().all(|key| report.get(key).is_some()), "{report}");
+    assert_eq!([&report["duration_s"], &report["trials"]], [60, 1]);
+    let worlds: Vec<_> = report["runs"].as_array().unwrap().iter().map(|run| run["world"].as_str()).collect();
+    assert_eq!(worlds, [Some("house-3"), Some("house-4"), Some("all worlds (2)")]);
+    for result in results(&run) {
+        let number =
+            |key: &str| result.entry[key].as_f64().unwrap_or_else(|| panic!("{key}: {}", result.entry));
+        assert!(number("collisions") >= 0.0 && number("false_change_events") >= 0.0);
+        assert!((0.0..=1.0).contains(&number("final_rate_auc")));
+        let is_full = result.strategy == "full-observation";
+        assert!(
+            !is_full || (number("final_map_quality"), number("final_coverage")) == (1.0, 1.0),
+            "{}",
+            result.world
+        );
+        // Whole seconds, the last at the end.
+        let curve = result.entry["log_error"].as_array().unwrap();
+        let times: Vec<u64> = curve.iter().map(|point| point[0].as_u64().unwrap()).collect();
+        assert!(times.is_sorted_by(|a, b| a < b) && times.last() == Some(&60), "{times:?}");
+    }
+    let mut table = csv::Reader::from_path(run.out("trials.csv")).unwrap();
+    assert_eq!(table.headers().unwrap().iter().nth(4), Some("time_s"));
+    assert_eq!(table.records().count() % (2 * 3), 0);
+    assert!(run.out("curves.svg").exists() && run.out("curves-all-worlds.png").exists());
+}
+
+#[test]
+fn results_are_the_same_on_any_number_of_threads() {
+    let reference = same::files(&ran(&format!("{SHORT} --threads 1")));
+    let (again, recorded) = (ran(&format!("{SHORT} --threads 3")), Run::houses());
+    recorded.goes_well(&format!("{SHORT} --rrd first.rrd"));
+    for other in [again, recorded] {
+        assert!(same::files(&other) == reference);
+        if other.path("first.rrd").exists() {
+            assert!((Recording::read(&other.path("first.rrd")).end_s() - 60.0).abs() < 0.1);
+        }
+    }
+}
+
+#[test]
+fn a_saved_house_is_the_one_that_was_made_and_runs_in_four_rooms() {
+    let common = "--duration 20s --strategy random";
+    let run = ran(&format!("{common} --generate 2 --seed 11 --save-worlds"));
+    let saved: Vec<String> =
+        names(&run.path("out")).into_iter().filter(|name| name.ends_with(".toml")).collect();
+    assert_eq!(saved, ["house-11.toml", "house-12.toml"]);
+    for (result, name) in results(&run).iter().zip(saved) {
+        let file = run.out(&name).display().to_string();
+        let again = results(&ran(&format!("{common} --seed 11 --world {file}")));
+        assert_eq!(again[0].hashes(), result.hashes());
+        let alone = Run::quiet(&format!("{common} --seed 11 --world {file}"));
+        assert_eq!(alone.summary().hash(), result.hashes()[0].1);
+    }
+}
+
+#[test]
+fn help_names_every_choice() {
+    let help = Run::houses().goes_well("--help").stdout;
+    let choices = "--world --generate --strategy --estimator --trials --seeds --duration --seed --threads --out --rrd \
+                   --quiet --list-worlds --save-worlds --max-steps --reward";
+    for choice in choices.split_whitespace() {
+        assert!(help.contains(choice), "{choice} is not in\n{help}");
+    }
+    assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
+    let listed = Run::houses().goes_well("--list-worlds").stdout;
+    assert!(listed.lines().any(|line| line.starts_with("house ")), "{listed}");
+}
+
+#[test]
+fn invalid_input_is_refused() {
+    for (arguments, says) in [
+        ("--duration 0.5", "must be whole seconds"),
+        ("--duration 0", "must be a time above 0"),
+        ("--strategy clever", "[possible values: curious, recency"),
+        ("--save-worlds", "--generate <N>"),
+        ("--seeds 0", "0 is not in 1..="),
+        ("--world two_blocks", "`two_blocks` is a grid world"),
+    ] {
+        let message = refuses(&Run::houses(), arguments, &[]);
+        assert!(message.contains(says), "{arguments}: {message}");
+    }
+    let run = Run::houses();
+    let world = include_str!("../../worlds/house.toml");
+    run.write("twin.toml", world);
+    insta::assert_snapshot!(refuses(&run, "--world house --world twin.toml", &["twin.toml"]), @"error: two worlds have the name `house`: results are listed by name, so give each world its own name");
+}
+
+#[test]
+#[cfg(unix)]
+fn ctrl_c_keeps_the_finished_trials() {
+    use crate::run::Ended;
+    use nix::sys::signal::Signal;
+    use std::io::{BufRead, BufReader};
+
+    let run = Run::houses();
+    let mut child =
+        run.starts("--trials 100000 --generate 1 --duration 20s --strategy random --strategy recency");
+    let mut line = String::new();
+    BufReader::new(child.stderr.take().unwrap()).read_line(&mut line).unwrap();
+    assert!(line.contains(" of 200000 trials, "), "{line:?}");
+    crate::ending::send(Signal::SIGINT, &child);
+    let ended = Ended::from(child.wait_with_output().unwrap());
+    assert_eq!(ended.code, Some(130), "{ended:?}");
+    assert_eq!(report(&run)["interrupted"], true);
+    assert!(ended.stdout.starts_with("Interrupted: "), "{}", ended.stdout);
+}
