@@ -6,14 +6,18 @@
 //!
 //! Four rooms of 12 × 12 m (`--tiles 4`: 4 × 4 of these), walls of 0.05 m. Robot 1 drives in a circle, the others
 //! wander; each has a radius of 0.15 m and a laser with 360 beams (`--rays`) over 360°, with a range of 10 m, at 10
-//! Hz. The physics runs at 20 Hz, as in the shipped worlds. See docs/performance.md.
+//! Hz. The physics runs at 20 Hz, as in the shipped worlds. With `--sonars`, every robot has a ring of sonars at 10 Hz
+//! instead and drives by them: its laser is never read. With `--corners`, its footprint is a polygon. See
+//! docs/performance.md.
 
 mod place;
+mod sonars;
 mod usage;
 
 use clap::Parser;
 use place::Wish;
-use sim::physics::Fleet;
+use sim::physics::{Controller, Fleet};
+use sonars::BySonars;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -29,6 +33,12 @@ struct Args {
     /// The number of beams of each laser
     #[arg(long, default_value_t = 360, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     rays: u32,
+    /// The number of sonars of each robot, which then drives by them; 0: by the laser
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=64))]
+    sonars: u32,
+    /// The number of corners of each robot; 0: round
+    #[arg(long, default_value_t = 0, value_parser = corners)]
+    corners: u32,
     /// The number of houses along each side
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
     tiles: u32,
@@ -43,6 +53,14 @@ struct Args {
     json: bool,
 }
 
+/// A number of corners.
+fn corners(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(corners @ (0 | 3..=64)) => Ok(corners),
+        _ => Err("a robot has 3 to 64 corners, or 0 if it is round".to_owned()),
+    }
+}
+
 /// Progress is reported if a run takes longer than this.
 const SILENCE: Duration = Duration::from_secs(2);
 
@@ -51,6 +69,8 @@ fn main() -> ExitCode {
     let wish = Wish {
         robots: args.robots as usize,
         rays: args.rays as usize,
+        sonars: args.sonars,
+        corners: args.corners,
         tiles: args.tiles as usize,
         seed: args.seed,
     };
@@ -84,13 +104,17 @@ fn main() -> ExitCode {
     let load_s = start.elapsed().as_secs_f64();
     let cpu_before_s = usage::cpu_s();
     let start = Instant::now();
-    pool.install(|| run(&mut fleet, args.seconds));
+    pool.install(|| match args.sonars {
+        0 => run(&mut fleet, args.seconds, &mut ()),
+        _ => run(&mut fleet, args.seconds, &mut BySonars),
+    });
     let wall_s = start.elapsed().as_secs_f64();
     let cpu_s = usage::cpu_s().zip(cpu_before_s).map_or(f64::NAN, |(after, before)| after - before);
 
     // A scan every 0.1 s from time 0 on, the last before the end.
     let scans = (fleet.time_s() / 0.1 - 1e-6).ceil() * f64::from(args.robots);
-    let rays_per_s = scans * f64::from(args.rays) / wall_s;
+    let readings = if args.sonars > 0 { args.sonars } else { args.rays };
+    let rays_per_s = scans * f64::from(readings) / wall_s;
     let figures = [
         ("robots", f64::from(args.robots), 0),
         ("simulated_s", fleet.time_s(), 1),
@@ -117,11 +141,11 @@ fn main() -> ExitCode {
 }
 
 /// Simulates the robots for some seconds.
-fn run(fleet: &mut Fleet, seconds: f64) {
+fn run(fleet: &mut Fleet, seconds: f64, controller: &mut impl Controller) {
     let mut told = Instant::now();
     // As many steps as `run_until` the end would take.
     while fleet.time_s() < seconds - 5e-7 {
-        fleet.step(&mut ());
+        fleet.step(controller);
         if told.elapsed() > SILENCE {
             eprintln!("{:.2} of {seconds} s", fleet.time_s());
             told = Instant::now();

@@ -32,6 +32,10 @@ type Wall = [f64; 4];
 pub(crate) struct Wish {
     pub(crate) robots: usize,
     pub(crate) rays: usize,
+    /// The number of sonars of each robot; it is then driven.
+    pub(crate) sonars: u32,
+    /// The number of corners of each robot; 0: round.
+    pub(crate) corners: u32,
     pub(crate) tiles: usize,
     pub(crate) seed: u64,
 }
@@ -72,21 +76,50 @@ fn text(wish: &Wish) -> String {
     }
     for (robot, [x, y, heading_deg]) in starts(wish).into_iter().enumerate() {
         // Robot 1 drives a circle, the others wander.
-        let behaviour = if robot == 1 {
+        let behaviour = if wish.sonars > 0 {
+            "kind = \"driven\""
+        } else if robot == 1 {
             "kind = \"circle\"\nspeed_mps = 0.4\nturn_radius_m = 0.8"
         } else {
             "kind = \"wander\"\nspeed_mps = 0.4"
         };
         let _ = write!(
             text,
-            "\n[[robot]]\nname = \"robot {robot}\"\nradius_m = {RADIUS_M}\npose_m = [{x:?}, {y:?}]\nheading_deg = {heading_deg:?}\n\n\
+            "\n[[robot]]\nname = \"robot {robot}\"\n{}\npose_m = [{x:?}, {y:?}]\nheading_deg = {heading_deg:?}\n\n\
              [robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 120.0\n\
              max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\n\
-             [robot.laser]\nbeams = {}\nrange_max_m = 10.0\nrate_hz = 10.0\n\n[robot.behaviour]\n{behaviour}\n",
-            wish.rays
+             [robot.laser]\nbeams = {}\nrange_max_m = 10.0\nrate_hz = 10.0\n\n{}[robot.behaviour]\n{behaviour}\n",
+            body(wish.corners),
+            wish.rays,
+            ring(wish.sonars)
         );
     }
     text
+}
+
+/// The outline of a robot.
+fn body(corners: u32) -> String {
+    if corners == 0 {
+        return format!("radius_m = {RADIUS_M}");
+    }
+    let corner = |i: u32| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * (f64::from(i) + 0.5) / f64::from(corners));
+        [cos * RADIUS_M, sin * RADIUS_M]
+    };
+    format!("footprint_m = {:?}", (0..corners).map(corner).collect::<Vec<_>>())
+}
+
+/// A ring of sonars that leaves no gap.
+fn ring(sonars: u32) -> String {
+    let step_deg = 360.0 / f64::from(sonars.max(1));
+    let sonar = |i: u32| {
+        format!(
+            "[[robot.sonar]]\ncone_deg = {:?}\nrange_max_m = 5.0\nrate_hz = 10.0\nmount_deg = {:?}\n\n",
+            step_deg.min(30.0),
+            f64::from(i) * step_deg
+        )
+    };
+    (0..sonars).map(sonar).collect()
 }
 
 /// The walls of one house: around it, and a cross with doors.

@@ -85,12 +85,20 @@ impl Extent {
     }
 }
 
+/// The column at a place along x, but for rounding.
 fn column(frame: &GridFrame, x_m: f64) -> i32 {
-    frame.cell_at(&Point2::new(x_m, 0.0)).x
+    floor((x_m - frame.origin().x) / frame.resolution_m())
 }
 
+/// The row at a place along y, but for rounding.
 fn row(frame: &GridFrame, y_m: f64) -> i32 {
-    frame.cell_at(&Point2::new(0.0, y_m)).y
+    floor((y_m - frame.origin().y) / frame.resolution_m())
+}
+
+/// The largest whole number that is not above a number, limited to the range of `i32`.
+fn floor(value: f64) -> i32 {
+    let toward_zero = value as i32;
+    toward_zero.saturating_sub(i32::from(value < f64::from(toward_zero)))
 }
 
 /// A line between two rows of cells, and the row above it.

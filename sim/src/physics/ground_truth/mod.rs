@@ -37,8 +37,9 @@ pub struct PhysicsGroundTruth {
     covered: Vec<u16>,
     /// The cells under each robot, by index, and whether the robot covers all of the cell.
     under: Vec<Vec<(u32, bool)>>,
-    /// Scratch memory for such a list.
+    /// Scratch memory for such a list, and for the differences of two.
     spare: Vec<(u32, bool)>,
+    under_changes: Vec<UnderChange>,
     /// Whether the cell has been free since it was last blocked, so that the next time is a new event.
     armed: Vec<bool>,
     block_events: Vec<u32>,
@@ -62,6 +63,7 @@ impl PhysicsGroundTruth {
             covered: vec![0; frame.len()],
             under: Vec::new(),
             spare: Vec::new(),
+            under_changes: Vec::new(),
             armed: fixed.iter().map(|state| *state != TrueState::Blocked).collect(),
             block_events: vec![0; frame.len()],
             movers: vec![None; frame.len()],
@@ -90,36 +92,34 @@ impl PhysicsGroundTruth {
 
     /// Puts the robot with an index at its start, or moves the robot.
     pub(super) fn move_robot(&mut self, robot: usize, to: &Form) {
-        let mut under = std::mem::take(&mut self.spare);
-        under.clear();
-        cover::form_cells(&self.frame, to, |index, whole| under.push((index as u32, whole)));
+        let mut after = std::mem::take(&mut self.spare);
+        after.clear();
+        cover::form_cells(&self.frame, to, |index, whole| after.push((index as u32, whole)));
         if self.under.len() <= robot {
             self.under.resize_with(robot + 1, Vec::new);
         }
-        let before = std::mem::replace(&mut self.under[robot], under);
-        if before != self.under[robot] {
-            self.cover_cells(robot, &before);
+        let before = std::mem::replace(&mut self.under[robot], after);
+        let mut changes = std::mem::take(&mut self.under_changes);
+        differences(&before, &self.under[robot], &mut changes);
+        for &UnderChange { index, before, after } in &changes {
+            if let Some(whole) = after {
+                self.overlapped[index] += 1;
+                self.covered[index] += u16::from(whole);
+                if before.is_none() {
+                    self.sweep(index, Body::Robot(robot));
+                }
+            }
         }
-        self.spare = before;
-    }
-
-    /// Moves a robot from the cells `before` to the cells that are now under it.
-    fn cover_cells(&mut self, robot: usize, before: &[(u32, bool)]) {
-        let after = std::mem::take(&mut self.under[robot]);
-        for &(index, whole) in &after {
-            let index = index as usize;
-            self.overlapped[index] += 1;
-            self.covered[index] += u16::from(whole);
-            self.sweep(index, Body::Robot(robot));
+        // First the cells that the robot was on.
+        for &UnderChange { index, before, .. } in &changes {
+            if let Some(whole) = before {
+                self.overlapped[index] -= 1;
+                self.covered[index] -= u16::from(whole);
+                self.settle(index);
+            }
         }
-        for &(index, whole) in before {
-            let index = index as usize;
-            self.overlapped[index] -= 1;
-            self.covered[index] -= u16::from(whole);
-            self.settle(index);
-        }
-        after.iter().for_each(|&(index, _)| self.settle(index as usize));
-        self.under[robot] = after;
+        changes.iter().filter(|change| change.before.is_none()).for_each(|change| self.settle(change.index));
+        (self.spare, self.under_changes) = (before, changes);
     }
 
     /// Updates the cells of an obstacle that has appeared or disappeared. `boxes` are the walls and obstacles that
@@ -185,9 +185,10 @@ impl PhysicsGroundTruth {
 
     /// A moving thing touches a cell.
     fn sweep(&mut self, index: usize, body: Body) {
-        if self.movers[index].is_none() {
+        let (word, bit) = (&mut self.swept[index / 64], 1 << (index % 64));
+        if *word & bit == 0 {
+            *word |= bit;
             self.movers[index] = Some(body);
-            self.swept[index / 64] |= 1 << (index % 64);
         }
     }
 
@@ -283,6 +284,32 @@ impl GroundTruth for PhysicsGroundTruth {
 
     fn changes(&self) -> &[TrueChange] {
         &self.changes
+    }
+}
+
+/// A cell under a robot before a step or after it: each time, whether the robot covers all of the cell.
+#[derive(Clone, Copy, Debug)]
+struct UnderChange {
+    index: usize,
+    before: Option<bool>,
+    after: Option<bool>,
+}
+
+/// The cells that differ between two lists of cells under a robot, both in order of the index.
+fn differences(before: &[(u32, bool)], after: &[(u32, bool)], changes: &mut Vec<UnderChange>) {
+    changes.clear();
+    let (mut before, mut after) = (before.iter().copied().peekable(), after.iter().copied().peekable());
+    loop {
+        let next = [before.peek(), after.peek()].map(|next| next.map_or(u32::MAX, |(index, _)| *index));
+        let index = next[0].min(next[1]);
+        let [was, is] = [before.next_if(|(own, _)| *own == index), after.next_if(|(own, _)| *own == index)]
+            .map(|cell| cell.map(|(_, whole)| whole));
+        if was.is_none() && is.is_none() {
+            return;
+        }
+        if was != is {
+            changes.push(UnderChange { index: index as usize, before: was, after: is });
+        }
     }
 }
 

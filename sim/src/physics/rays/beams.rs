@@ -48,37 +48,45 @@ impl Beams {
         self.x.iter().copied().zip(self.y.iter().copied()).take(self.count)
     }
 
-    /// The index of the first beam that lies counter-clockwise of `v`, whose direction is about `angle_rad`. A
-    /// beam along `v` itself counts if `inclusive`. Beam 0 of a full turn counts once more at the end.
+    /// The place of the direction of `v` among the beams. Beam 0 of a full turn counts once more at the end.
     ///
     /// Cross products decide the side, alike for every edge that ends in `v`: no beam passes between two edges.
-    fn first_after(&self, v: &Vector2<f64>, angle_rad: f64, inclusive: bool) -> usize {
-        let is_after = |i: usize| {
-            let cross = v.x * self.y[i] - v.y * self.x[i];
-            if inclusive { cross >= 0.0 } else { cross > 0.0 }
-        };
+    #[inline]
+    fn bearing(&self, v: &Vector2<f64>) -> Bearing {
+        let angle_rad = approximate_atan2(v.y, v.x);
+        let cross = |i: usize| v.x * self.y[i] - v.y * self.x[i];
         let index = (angle_rad - self.angle_min_rad) * self.per_rad;
-        let mut i = if index < 0.0 { 0 } else { (index as usize + 1).min(self.x.len()) };
+        let mut first = if index < 0.0 { 0 } else { (index as usize + 1).min(self.x.len()) };
         // The approximate angle may be wrong about beams as near as this, and about no other.
         let near = APPROXIMATE_ATAN2_ERROR_RAD * self.per_rad;
-        while i > 0 && index - ((i - 1) as f64) < near && is_after(i - 1) {
-            i -= 1;
+        while first > 0 && index - ((first - 1) as f64) < near && cross(first - 1) >= 0.0 {
+            first -= 1;
         }
-        while i < self.x.len() && i as f64 - index < near && !is_after(i) {
-            i += 1;
+        let is_near = |i: usize| i < self.x.len() && i as f64 - index < near;
+        while is_near(first) && cross(first) < 0.0 {
+            first += 1;
         }
-        i
+        let mut end = first;
+        while is_near(end) && cross(end) <= 0.0 {
+            end += 1;
+        }
+        Bearing { angle_rad, first, end }
     }
 
     /// The beams from `from` to `to`, counter-clockwise, less than half a turn apart, both included: one range,
     /// or two where the beams pass the back.
+    #[inline]
     pub(super) fn between(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> [Range<usize>; 2] {
-        let (from_rad, to_rad) = (approximate_atan2(from.y, from.x), approximate_atan2(to.y, to.x));
-        let mut first = self.first_after(from, from_rad, true);
-        let mut end = self.first_after(to, to_rad, false);
-        if to_rad - from_rad < -PI {
+        self.runs_between(&self.bearing(from), &self.bearing(to))
+    }
+
+    /// See [`Beams::between`].
+    #[inline]
+    fn runs_between(&self, from: &Bearing, to: &Bearing) -> [Range<usize>; 2] {
+        let (mut first, mut end) = (from.first, to.end);
+        if to.angle_rad - from.angle_rad < -PI {
             end += self.count;
-        } else if to_rad - from_rad > PI {
+        } else if to.angle_rad - from.angle_rad > PI {
             // Both are at the back, on one line of sight except for rounding.
             first += self.count;
         }
@@ -87,10 +95,13 @@ impl Beams {
 
     /// The beams that are less than `half_rad` away from `angle_rad`, and perhaps a few more: the index of the
     /// first, and the index after the last. Indices continue after the last beam of all.
+    #[inline]
     pub(super) fn around(&self, angle_rad: f64, half_rad: f64) -> (usize, usize) {
-        // By way of 32 bits, since that takes three instructions and not ten.
-        let index =
-            |angle_rad: f64| (((angle_rad - self.angle_min_rad) * self.per_rad) as i32).max(0) as usize;
+        // By way of 32 bits, since that takes three instructions and not ten. In a narrow view, directions beyond the
+        // last beam count as the end.
+        let index = |angle_rad: f64| {
+            ((((angle_rad - self.angle_min_rad) * self.per_rad) as i32).max(0) as usize).min(self.count)
+        };
         let (low, high) = (angle_rad - half_rad, angle_rad + half_rad);
         if low < -PI {
             // The back, seen from the right: the end of the beams.
@@ -103,6 +114,7 @@ impl Beams {
     }
 
     /// The beams of `first..end`, where indices continue after the last beam.
+    #[inline]
     pub(super) fn runs(&self, first: usize, end: usize) -> [Range<usize>; 2] {
         let count = self.count;
         let (low, high) = (first.min(count), end.min(count));
@@ -111,6 +123,16 @@ impl Beams {
         let last = end.saturating_sub(count).min(count);
         [low..high.max(low), again..last.max(again)]
     }
+}
+
+/// The place of a direction among the beams.
+struct Bearing {
+    /// The direction, approximately.
+    angle_rad: f64,
+    /// The first beam that lies along the direction or counter-clockwise of it, and the first one that lies
+    /// counter-clockwise of it.
+    first: usize,
+    end: usize,
 }
 
 /// The nearest hit on each beam of a laser.
@@ -136,15 +158,44 @@ impl<'a> Hits<'a> {
 
     /// Adds an edge of a solid, if the edge faces the laser and is within range.
     pub(super) fn add_edge(&mut self, edge: &Edge) {
-        let gap_m = edge.gap_m(&self.laser.translation.vector.into());
-        if gap_m < EDGE_ON_M || gap_m > self.beams.range_max_m {
-            return;
+        if let Some(gap_m) = self.gap_m(edge) {
+            let [from, to] = [&edge.from, &edge.to].map(|point| self.bearing(point));
+            self.add_between(edge, gap_m, &from, &to);
         }
-        let seen = |point: &Point2<f64>| self.laser.inverse_transform_point(point).coords;
+    }
+
+    /// Adds all sides of a convex body, in order: two sides share a corner.
+    pub(super) fn add_polygon(&mut self, edges: &[Edge]) {
+        let mut shared: Option<Bearing> = None;
+        for edge in edges {
+            let from = shared.take();
+            if let Some(gap_m) = self.gap_m(edge) {
+                let from = from.unwrap_or_else(|| self.bearing(&edge.from));
+                let to = self.bearing(&edge.to);
+                self.add_between(edge, gap_m, &from, &to);
+                shared = Some(to);
+            }
+        }
+    }
+
+    /// The distance from the laser to the line of an edge, m; `None` if the edge faces away or is out of range.
+    #[inline]
+    fn gap_m(&self, edge: &Edge) -> Option<f64> {
+        let gap_m = edge.gap_m(&self.laser.translation.vector.into());
+        (gap_m >= EDGE_ON_M && gap_m <= self.beams.range_max_m).then_some(gap_m)
+    }
+
+    #[inline]
+    fn bearing(&self, point: &Point2<f64>) -> Bearing {
+        self.beams.bearing(&self.laser.inverse_transform_point(point).coords)
+    }
+
+    #[inline]
+    fn add_between(&mut self, edge: &Edge, gap_m: f64, from: &Bearing, to: &Bearing) {
         let normal = self.laser.rotation.inverse() * edge.normal;
         let (m, n) = (-normal.x / gap_m, -normal.y / gap_m);
         // Seen from outside, the sides of a counter-clockwise polygon run clockwise.
-        for run in self.beams.between(&seen(&edge.to), &seen(&edge.from)) {
+        for run in self.beams.runs_between(to, from) {
             let directions = self.beams.x[run.clone()].iter().zip(&self.beams.y[run.clone()]);
             for (inverse, (x, y)) in self.inverse[run].iter_mut().zip(directions) {
                 let hit = m * x + n * y;
@@ -191,7 +242,7 @@ impl<'a> Hits<'a> {
     }
 
     #[inline]
-    fn add_disc_to(&mut self, run: Range<usize>, center: &Vector2<f64>, power: f64, nearest: f64) {
+    pub(super) fn add_disc_to(&mut self, run: Range<usize>, center: &Vector2<f64>, power: f64, nearest: f64) {
         let inverse = &mut self.inverse[run.clone()];
         if inverse.iter().all(|&inverse| inverse >= nearest) {
             return;

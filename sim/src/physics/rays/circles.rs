@@ -74,7 +74,7 @@ impl Discs {
     ) {
         let polygon = polygons.get(index);
         if polygon.is_seen_by(own) && self.is_around(&polygon.around, Some(index), hits) {
-            polygons.edges(polygon).iter().for_each(|edge| hits.add_edge(edge));
+            hits.add_polygon(polygons.edges(polygon));
         }
     }
 
@@ -104,9 +104,7 @@ impl Discs {
             match disc.polygon {
                 None => hits.add_disc(&disc.center, disc.power, angle_rad, half_rad, nearest),
                 Some(_) if hits.is_hidden(angle_rad, half_rad, nearest) => {}
-                Some(index) => {
-                    polygons.edges(polygons.get(index)).iter().for_each(|edge| hits.add_edge(edge));
-                }
+                Some(index) => hits.add_polygon(polygons.edges(polygons.get(index))),
             }
         }
     }

@@ -37,8 +37,10 @@ pub(super) struct PotentiallyVisibleSet {
     cell_m: f64,
     columns: usize,
     rows: usize,
-    /// The largest radius of any robot, m.
-    radius_m: f64,
+    /// The column and the row of each cell.
+    places: Vec<[u16; 2]>,
+    /// See [`PotentiallyVisibleSet::apart_m`]: by the difference of the columns and of the rows, like cells.
+    apart_m: Vec<f32>,
     edges: IndexLists<SeenEdge>,
     cells: IndexLists,
     /// The rectangles that overlap each cell.
@@ -64,11 +66,20 @@ impl PotentiallyVisibleSet {
             cell_m,
             columns: count(extent.x),
             rows: count(extent.y),
-            radius_m,
+            places: Vec::new(),
+            apart_m: Vec::new(),
             edges: IndexLists::default(),
             cells: IndexLists::default(),
             boxes: IndexLists::default(),
         };
+        set.places = (0..set.len()).map(|cell| set.place(cell).map(|index| index as u16)).collect();
+        let apart_m = |cell: usize| {
+            let cells =
+                Vector2::from(set.place(cell).map(|index| index as f64)).norm() - std::f64::consts::SQRT_2;
+            // Less than the true value, also in single precision.
+            (cells * cell_m - radius_m - MARGIN_M) as f32 - 1e-5 * (cells * cell_m).abs() as f32
+        };
+        set.apart_m = (0..set.len()).map(apart_m).collect();
         let mut boxes_in = vec![Vec::new(); set.len()];
         for (i, shape) in boxes.iter().enumerate() {
             let (low, high) = shape.bounds();
@@ -124,12 +135,14 @@ impl PotentiallyVisibleSet {
     /// At most the shortest distance between a point of one cell and a robot with its center in the other one, or a
     /// part of a body that lies in the other one, m.
     pub(super) fn apart_m(&self, cell: usize, other: usize) -> f64 {
-        let place = |cell: usize| {
-            let cell = cell as u32;
-            Vector2::new(f64::from(cell % self.columns as u32), f64::from(cell / self.columns as u32))
-        };
-        let cells = (place(cell) - place(other)).norm() - std::f64::consts::SQRT_2;
-        cells * self.cell_m - self.radius_m - MARGIN_M
+        let ([x, y], [other_x, other_y]) = (self.places[cell], self.places[other]);
+        let across = usize::from(x.abs_diff(other_x));
+        f64::from(self.apart_m[usize::from(y.abs_diff(other_y)) * self.columns + across])
+    }
+
+    /// The column and the row of a cell.
+    fn place(&self, cell: usize) -> [usize; 2] {
+        [cell % self.columns, cell / self.columns]
     }
 
     /// The rectangles that overlap a cell.
@@ -161,7 +174,7 @@ impl PotentiallyVisibleSet {
 
     /// A cell with a border around it.
     fn square(&self, cell: usize, border_m: f64) -> Rectangle {
-        let index = Vector2::new((cell % self.columns) as f64, (cell / self.columns) as f64);
+        let index = Vector2::from(self.place(cell).map(|index| index as f64));
         let low = self.low + index * self.cell_m;
         let border = Vector2::repeat(border_m);
         Rectangle::between(low - border, low + Vector2::repeat(self.cell_m) + border)
@@ -175,8 +188,8 @@ struct View {
     /// From the middle to a corner, m.
     half_m: f64,
     range_m: f64,
-    /// The edges within the range of some point of the cell.
-    near: Vec<usize>,
+    /// The edges within the range of some point of the cell, with their distances from the middle, m.
+    near: Vec<(usize, f64)>,
     occluders: Vec<Edge>,
 }
 
@@ -184,17 +197,18 @@ impl View {
     fn new(cell: &Rectangle, edges: &[Edge], range_m: f64) -> Self {
         let (middle, half_m) = (Point2::from(cell.pose.translation.vector), cell.half_m.norm());
         let far_m = range_m + half_m + MARGIN_M;
-        let is_near = |edge: &Edge| {
+        let near_m = |edge: &Edge| {
             let (along, to) = (edge.to - edge.from, middle - edge.from);
             // Most edges lie beyond a circle around the edge and the cell: the test needs no root.
-            to.norm_squared() <= 2.0 * (far_m * far_m + along.norm_squared())
-                && point_segment_m(&middle, &edge.from, &edge.to) <= far_m
+            let may_be_near = to.norm_squared() <= 2.0 * (far_m * far_m + along.norm_squared());
+            may_be_near.then(|| point_segment_m(&middle, &edge.from, &edge.to)).filter(|m| *m <= far_m)
         };
-        let near: Vec<usize> = (0..edges.len()).filter(|&i| is_near(&edges[i])).collect();
+        let near: Vec<(usize, f64)> =
+            edges.iter().enumerate().filter_map(|(i, edge)| Some((i, near_m(edge)?))).collect();
         let mut occluders: Vec<(f64, usize)> = Vec::new();
-        for &i in &near {
-            let (edge, length_m) = (&edges[i], (edges[i].to - edges[i].from).norm());
-            let size = length_m / (point_segment_m(&middle, &edge.from, &edge.to) + half_m);
+        for &(i, distance_m) in &near {
+            let length_m = (edges[i].to - edges[i].from).norm();
+            let size = length_m / (distance_m + half_m);
             // An edge smaller than half a cell hides almost nothing from the whole cell.
             if length_m > half_m && size > MIN_OCCLUDER_SIZE {
                 occluders.push((-size, i));
@@ -211,16 +225,15 @@ impl View {
             self.corners.iter().any(|corner| edge.gap_m(corner) > 0.0)
                 && !self.is_hidden(&[edge.from, edge.to])
         };
-        let seen = self.near.iter().filter(|&&i| is_seen(&edges[i]));
+        let seen = self.near.iter().filter(|(i, _)| is_seen(&edges[*i]));
         let mut seen: Vec<SeenEdge> = seen
-            .map(|&i| {
-                let middle_m = point_segment_m(&self.middle, &edges[i].from, &edges[i].to);
+            .map(|&(i, middle_m)| {
                 // Less than the true value, also in single precision.
                 let nearest_m = (middle_m - self.half_m - MARGIN_M) as f32 - 1e-5 * middle_m as f32;
                 SeenEdge { edge: i as u32, nearest_m }
             })
             .collect();
-        seen.sort_by(|a, b| a.nearest_m.total_cmp(&b.nearest_m).then(a.edge.cmp(&b.edge)));
+        seen.sort_unstable_by(|a, b| a.nearest_m.total_cmp(&b.nearest_m).then(a.edge.cmp(&b.edge)));
         seen
     }
 

@@ -11,7 +11,7 @@ use super::command::{Command, Velocity};
 use super::drives::Drive;
 use super::form::Form;
 use super::report::Body;
-use super::sensors::{Look, Platform, Sensor, SensorReading, SharedBeams, Surroundings};
+use super::sensors::{Look, Platform, Sensor, SharedBeams, Surroundings};
 use super::snapshot::{Values, pose, value};
 use super::spec::RobotSpec;
 use interfaces::{LaserReading, Purpose, RandomStream};
@@ -42,6 +42,8 @@ pub(super) struct Robot {
     behavior: Option<Behavior>,
     /// All sensors, the main laser scanner first.
     sensors: Vec<Sensor>,
+    /// The different numbers of steps from one measurement of a sensor to the next.
+    periods: Vec<u64>,
 }
 
 impl Robot {
@@ -55,6 +57,10 @@ impl Robot {
         beams: &mut SharedBeams,
     ) -> Self {
         let random = |purpose| RandomStream::new(seed, purpose);
+        let sensors = Sensor::all(spec, beams, seed, index);
+        let mut periods: Vec<u64> = sensors.iter().map(Sensor::period_steps).collect();
+        periods.sort_unstable();
+        periods.dedup();
         let laser_beams = beams.of_laser(&spec.laser);
         Self {
             index,
@@ -68,7 +74,8 @@ impl Robot {
             drive: Drive::new(spec.drive),
             odometry: Odometry::new(spec, random(Purpose::OdometryNoise(index)), pose),
             behavior: Behavior::of(spec, step_s, &laser_beams, random(Purpose::Behavior(index))),
-            sensors: Sensor::all(spec, beams, seed, index),
+            sensors,
+            periods,
             spec: spec.clone(),
         }
     }
@@ -118,15 +125,12 @@ impl Robot {
 
     /// Whether any sensor measures at a step.
     pub(super) fn senses(&self, step: u64) -> bool {
-        self.sensors.iter().any(|sensor| sensor.is_due(step))
+        self.periods.iter().any(|period| step.is_multiple_of(*period))
     }
 
     /// The latest reading of the main laser scanner.
     pub(super) fn reading(&self) -> Option<&LaserReading> {
-        match self.sensors[0].reading() {
-            SensorReading::Laser(reading) => reading,
-            SensorReading::Sonar(_) | SensorReading::Fiducials(_) => None,
-        }
+        self.sensors[0].laser_reading()?
     }
 
     /// Sets the command of the robot.
@@ -158,11 +162,7 @@ impl Robot {
         let looks = decides && self.behavior.as_ref().is_some_and(Behavior::looks);
         self.sense(surroundings, looks);
         if decides && let Some(behavior) = &mut self.behavior {
-            let read = || match self.sensors[0].reading() {
-                SensorReading::Laser(reading) => reading,
-                SensorReading::Sonar(_) | SensorReading::Fiducials(_) => None,
-            };
-            if let Some(twist) = behavior.decide(read) {
+            if let Some(twist) = behavior.decide(|| self.sensors[0].laser_reading()?) {
                 self.command = twist.into();
             }
         }

@@ -46,26 +46,17 @@ impl<'a> RobotView<'a> {
 
     /// The latest reading of each laser scanner, in the order of the spec.
     pub fn lasers(&self) -> impl Iterator<Item = Option<&'a LaserReading>> + use<'a> {
-        self.readings().filter_map(|reading| match reading {
-            SensorReading::Laser(reading) => Some(reading),
-            _ => None,
-        })
+        self.robot.sensors.iter().filter_map(Sensor::laser_reading)
     }
 
     /// The latest reading of each sonar, in the order of the spec.
     pub fn sonars(&self) -> impl Iterator<Item = Option<SonarReading>> + use<'a> {
-        self.readings().filter_map(|reading| match reading {
-            SensorReading::Sonar(reading) => Some(reading),
-            _ => None,
-        })
+        self.robot.sensors.iter().filter_map(Sensor::sonar_reading)
     }
 
     /// The latest detections of the fiducial finder, robots first, each in the order of the spec.
     pub fn fiducials(&self) -> impl Iterator<Item = &'a Fiducial> + use<'a> {
-        self.readings().flat_map(|reading| match reading {
-            SensorReading::Fiducials(found) => found,
-            _ => &[],
-        })
+        self.robot.sensors.iter().filter_map(Sensor::detections).flatten()
     }
 
     /// For each bumper, from right to left, whether it touches something now.

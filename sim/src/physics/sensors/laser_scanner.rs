@@ -40,16 +40,19 @@ impl Device for LaserScanner {
             mount,
             scan,
         };
-        let reported = |measured_m: f64| reported(measured_m, range_min_m, range_max_m);
+        let reported = move |measured_m: f64| reported(measured_m, range_min_m, range_max_m);
         let ranges_m = &mut reading.scan.ranges_m;
-        surroundings.scene.cast(&self.beams, &(platform.pose * mount), platform.robot, |inverses| {
+        let (scene, noise) = (&surroundings.scene, &mut streams.noise);
+        // By value: the limits cannot be among the ranges that are written, so that the loops below need not read them
+        // again for every beam.
+        scene.cast(&self.beams, &(platform.pose * mount), platform.robot, move |inverses| {
             ranges_m.resize(inverses.len(), 0.0);
             let beams = ranges_m.iter_mut().zip(inverses);
             if noise_std_m > 0.0 {
                 for (range_m, inverse) in beams {
                     // One draw per beam, whether or not the beam hits anything: the result of one beam never changes
                     // the noise of another.
-                    *range_m = reported(1.0 / inverse + noise_std_m * streams.noise.normal());
+                    *range_m = reported(1.0 / inverse + noise_std_m * noise.normal());
                 }
             } else {
                 // A separate loop without a state: the compiler processes several beams at once.
@@ -59,7 +62,7 @@ impl Device for LaserScanner {
             }
         });
         if dropout > 0.0 {
-            for range_m in ranges_m {
+            for range_m in &mut reading.scan.ranges_m {
                 // REP-117: a missing measurement is NaN. One draw per beam, as above.
                 if streams.dropout.bernoulli(dropout) {
                     *range_m = f32::NAN;

@@ -65,13 +65,18 @@ impl Sensor {
         Self::Laser(Box::new(OnDemand::new(LaserScanner::new(spec, beams), streams)))
     }
 
-    /// Whether the sensor measures at a step.
-    pub(super) fn is_due(&self, step: u64) -> bool {
-        step.is_multiple_of(match self {
+    /// The number of steps from one measurement to the next.
+    pub(super) fn period_steps(&self) -> u64 {
+        match self {
             Self::Laser(laser) => laser.device.spec.period_steps,
             Self::Sonar(sonar) => sonar.device.spec.period_steps,
             Self::Fiducials(finder) => finder.device.spec.period_steps,
-        })
+        }
+    }
+
+    /// Whether the sensor measures at a step.
+    pub(super) fn is_due(&self, step: u64) -> bool {
+        step.is_multiple_of(self.period_steps())
     }
 
     /// The sensor measures now, but the reading is computed when it is read.
@@ -99,6 +104,24 @@ impl Sensor {
             Self::Sonar(sonar) => SensorReading::Sonar(sonar.reading().copied()),
             Self::Fiducials(finder) => SensorReading::Fiducials(finder.reading().map_or(&[], Vec::as_slice)),
         }
+    }
+
+    /// The latest reading, if the sensor is a laser scanner.
+    pub(super) fn laser_reading(&self) -> Option<Option<&LaserReading>> {
+        let Self::Laser(laser) = self else { return None };
+        Some(laser.reading())
+    }
+
+    /// The latest reading, if the sensor is a sonar.
+    pub(super) fn sonar_reading(&self) -> Option<Option<SonarReading>> {
+        let Self::Sonar(sonar) = self else { return None };
+        Some(sonar.reading().copied())
+    }
+
+    /// The latest detections, if the sensor is a fiducial finder.
+    pub(super) fn detections(&self) -> Option<&[Fiducial]> {
+        let Self::Fiducials(finder) = self else { return None };
+        Some(finder.reading().map_or(&[], Vec::as_slice))
     }
 
     /// Removes the latest reading.
