@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// Compares exploration strategies in houses with doors, people and furniture: physics worlds, with statistics.
 ///
-/// Without options, five strategies are compared in eight generated houses, for 20 simulated minutes each: about two
+/// Without options, five strategies are compared in eight generated houses, for 20 simulated minutes each: about four
 /// minutes on two cores. The folder house_trials_out contains the results: the curves (curves.svg, curves.png, and with
 /// several worlds curves-all-worlds.svg and .png), every number (report.json), and every trial (trials.csv). The table
 /// at the end shows which strategy learned the rates of change best, and whether the difference is significant.
