@@ -7,7 +7,7 @@
 use agent::Policy;
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
-use mapper::{CellStatistics, Estimator, EstimatorChoice, MapperSettings};
+use mapper::{CellStatistics, Estimator, EstimatorChoice};
 
 /// Half of all events, divided by the time in view: a cycle has one block event and one free event.
 #[derive(Debug)]
