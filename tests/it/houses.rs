@@ -42,7 +42,9 @@ fn the_report_has_every_key_and_every_trial() {
         let number =
             |key: &str| result.entry[key].as_f64().unwrap_or_else(|| panic!("{key}: {}", result.entry));
         assert!(number("collisions") >= 0.0 && number("false_change_events") >= 0.0);
-        assert!((0.0..=1.0).contains(&number("final_rate_auc")));
+        // Nothing may have changed within a minute.
+        let auc = result.entry["final_rate_auc"].as_f64();
+        assert!(auc.is_none_or(|auc| (0.0..=1.0).contains(&auc)) && result.entry["rate_auc"].is_array());
         let is_full = result.strategy == "full-observation";
         assert!(
             !is_full || (number("final_map_quality"), number("final_coverage")) == (1.0, 1.0),

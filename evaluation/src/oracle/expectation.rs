@@ -129,9 +129,7 @@ mod tests {
     fn a_gap_is_worth_its_time_if_it_is_short_and_nothing_if_it_is_long() {
         let rate = 0.01;
         assert!((gap_worth(0.1, rate) - 0.1).abs() < 1e-3);
-        assert!(
-            gap_worth(1e4, rate) < 1e-9 && gap_worth(0.0, rate) == 0.0 && gap_worth(1e100, rate) == 0.0
-        );
+        assert!(gap_worth(1e4, rate) < 1e-9 && gap_worth(0.0, rate) == 0.0 && gap_worth(1e100, rate) == 0.0);
         // By differences of the probability that the state is another one.
         let changed = |leave: f64, gap: f64| (1.0 - libm::exp(-2.0 * leave * gap)) / 2.0;
         for gap in [5.0, 20.0, 60.0] {
