@@ -29,8 +29,8 @@ struct Run {
 }
 
 impl Run {
-    fn new() -> Self {
-        let spec = worldfile::shipped::load("four_rooms").expect("the shipped world is valid");
+    fn new(world: &str) -> Self {
+        let spec = worldfile::shipped::load(world).expect("the shipped world is valid");
         let settings = PhysicsSettings::of(&spec).expect("the robot has a differential drive");
         let agent = settings.agent(&Policy::default(), 0).expect("the default settings are valid");
         let pilot = settings.pilot(agent, 0).expect("the default settings are valid");
@@ -67,7 +67,7 @@ impl Run {
 /// One tick, averaged over 500 simulated seconds, of a robot that has explored for 300 s.
 #[divan::bench(sample_count = 10, sample_size = 500)]
 fn tick(bencher: divan::Bencher) {
-    let mut run = Run::new();
+    let mut run = Run::new("four_rooms");
     run.explore(300.0, None);
     bencher.bench_local(|| run.tick());
 }
@@ -76,17 +76,24 @@ fn tick(bencher: divan::Bencher) {
 #[divan::bench(args = [false, true], sample_count = 10, sample_size = 1)]
 fn explore_60_s(bencher: divan::Bencher, with_metrics: bool) {
     let prepared = || {
-        let run = Run::new();
+        let run = Run::new("four_rooms");
         let observer = with_metrics.then(Observer::default);
         (run, observer)
     };
     bencher.with_inputs(prepared).bench_local_values(|(mut run, observer)| run.explore(60.0, observer));
 }
 
+/// The first 60 simulated seconds of the worlds in which much moves, with the metrics.
+#[divan::bench(args = ["house", "office", "cave", "warehouse", "yard"], sample_count = 5, sample_size = 1)]
+fn explore_60_s_of(bencher: divan::Bencher, world: &str) {
+    let prepared = || (Run::new(world), Observer::default());
+    bencher.with_inputs(prepared).bench_local_values(|(mut run, observer)| run.explore(60.0, Some(observer)));
+}
+
 /// The hash of every map and statistic, as at the end of every run.
 #[divan::bench(sample_count = 20)]
 fn hash_of_the_map(bencher: divan::Bencher) {
-    let mut run = Run::new();
+    let mut run = Run::new("four_rooms");
     run.explore(60.0, None);
     bencher.bench_local(|| map_hash(&run.mapper));
 }

@@ -161,10 +161,11 @@ impl Robot {
         let decides = self.decides(surroundings.step);
         let looks = decides && self.behavior.as_ref().is_some_and(Behavior::looks);
         self.sense(surroundings, looks);
-        if decides && let Some(behavior) = &mut self.behavior {
-            if let Some(twist) = behavior.decide(|| self.sensors[0].laser_reading()?) {
-                self.command = twist.into();
-            }
+        if decides
+            && let Some(behavior) = &mut self.behavior
+            && let Some(twist) = behavior.decide(|| self.sensors[0].laser_reading()?)
+        {
+            self.command = twist.into();
         }
     }
 

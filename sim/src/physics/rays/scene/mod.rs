@@ -1,3 +1,6 @@
+#[cfg(test)]
+mod tests;
+
 use super::beams::{Beams, Hits};
 use super::circles::{Disc, Discs};
 use super::edges::{Edge, visible_edges};
@@ -242,116 +245,5 @@ fn add_robots(discs: &mut Discs, hits: &mut Hits<'_>, robots: &[(u32, Disc)], ow
         if *robot as usize != own {
             discs.push(disc, hits);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use interfaces::{Purpose, RandomStream, pose};
-    use nalgebra::{Rotation2, Vector2};
-    use std::f64::consts::TAU;
-
-    /// Without any culling: every edge and every disc is compared with all beams that could hit it.
-    fn slow(scene: &Scene, beams: &Beams, laser: &Isometry2<f64>, own: usize) -> Vec<f64> {
-        let (Walls { solids, edges, visible }, Sorted { polygons, .. }) = (&*scene.walls, scene.sorted());
-        let mut inverse = Vec::new();
-        let mut hits = Hits::new(beams, laser, &mut inverse);
-        edges.iter().for_each(|edge| hits.add_edge(edge));
-        let seen = (0..polygons.len() as u32).map(|index| polygons.get(index));
-        for polygon in seen.filter(|polygon| polygon.is_seen_by(own)) {
-            polygons.edges(polygon).iter().for_each(|edge| hits.add_edge(edge));
-        }
-        let discs = scene.moving.discs.iter().enumerate().filter(|(robot, _)| *robot != own);
-        for (_, disc) in discs.filter(|(_, disc)| disc.radius_m > 0.0) {
-            let to = disc.center - laser.translation.vector;
-            let power = to.coords.norm_squared() - disc.radius_m * disc.radius_m;
-            if power <= 0.0 {
-                hits.add_inside();
-                continue;
-            }
-            let center = laser.rotation.inverse() * to.coords;
-            hits.add_disc_to(0..beams.count, &center, power, f64::INFINITY);
-        }
-        let at = Point2::from(laser.translation.vector);
-        if is_inside(solids, visible, polygons, visible.cell_at(&at), own, &at) {
-            hits.add_inside();
-        }
-        inverse
-    }
-
-    /// A hall with walls at any angle, round robots, and convex bodies, some of them of robots; some reach beyond the
-    /// border.
-    fn scene(random: &mut RandomStream, range_m: f64) -> Scene {
-        let mut point = || Point2::new(random.uniform(-0.2..12.2), random.uniform(-0.2..9.2));
-        let places: Vec<_> = (0..60).map(|_| point()).collect();
-        let (walls, discs, bodies) = (&places[..12], &places[12..30], &places[30..]);
-        let mut walls: Vec<Rectangle> = walls
-            .iter()
-            .map(|at| {
-                Rectangle::around(*at, Vector2::new(random.uniform(0.1..3.0), 0.1), random.uniform(0.0..3.0))
-            })
-            .collect();
-        walls.push(Rectangle::between(Point2::new(0.0, 4.0), Point2::new(7.0, 4.1)));
-        let discs = discs.iter().enumerate().map(|(robot, center)| {
-            // The last six robots have corners.
-            Disc { center: *center, radius_m: if robot < 12 { random.uniform(0.05..0.4) } else { 0.0 } }
-        });
-        let discs: Vec<Disc> = discs.collect();
-        let mut scene =
-            Scene::new((Point2::origin(), Point2::new(12.0, 9.0)), &walls, discs, bodies.len() + 6, range_m);
-        for (index, at) in bodies.iter().chain(&places[24..30]).enumerate() {
-            let robot = index.checked_sub(bodies.len()).map(|robot| robot + 12);
-            let (corners, radius_m) = (random.uniform(3.0..21.0) as usize, random.uniform(0.05..0.8));
-            let (turn_rad, flat) = (random.uniform(0.0..TAU), random.uniform(0.3..1.0));
-            let corner = |i: usize| {
-                let (sin, cos) = libm::sincos(TAU * i as f64 / corners as f64);
-                at + Rotation2::new(turn_rad) * Vector2::new(cos, flat * sin) * radius_m
-            };
-            scene.set_polygon(index, robot, (0..corners).map(corner));
-        }
-        // An absent body.
-        scene.set_polygon(3, None, [].into_iter());
-        scene
-    }
-
-    #[test]
-    fn what_is_left_out_changes_no_bit() {
-        let mut random = RandomStream::new(11, Purpose::Agent);
-        let (mut inside, mut nothing) = (0, 0);
-        for _ in 0..40 {
-            let range_m = random.uniform(0.5..12.0);
-            let scene = scene(&mut random, range_m);
-            for place in 0..120 {
-                let count = random.uniform(1.0..200.0) as usize;
-                let is_full = place % 3 == 0 && count > 1;
-                let fov_rad = if is_full { TAU } else { random.uniform(0.01..6.2) };
-                let gaps = if is_full { count } else { count.max(2) - 1 };
-                let first_rad = if is_full { -std::f64::consts::PI } else { -fov_rad / 2.0 };
-                let first_rad = if count == 1 { 0.0 } else { first_rad };
-                let beams = Beams::new(first_rad, fov_rad / gaps as f64, count, range_m);
-                let own = place % 18;
-                // In a robot, anywhere in the hall, or beyond its border.
-                let center = scene.moving.discs[own].center;
-                let at = match place % 4 {
-                    0 => Point2::new(random.uniform(-1.0..13.0), random.uniform(-1.0..10.0)),
-                    _ => center + Vector2::new(random.uniform(-0.2..0.2), random.uniform(-0.2..0.2)),
-                };
-                let laser = pose(at.x, at.y, random.uniform(-4.0..4.0));
-                // Beyond the range of the sensor everything counts as nothing.
-                let counted = |inverse: f64| if inverse * range_m < 1.0 { 0.0 } else { inverse };
-                let expected: Vec<f64> = slow(&scene, &beams, &laser, own).into_iter().map(counted).collect();
-                scene.cast(&beams, &laser, own, |inverse| {
-                    let found: Vec<f64> = inverse.iter().copied().map(counted).collect();
-                    assert_eq!(found, expected, "at {laser}");
-                });
-                let most = expected.iter().fold(0.0, |most: f64, inverse| most.max(*inverse));
-                let nearest = counted(scene.nearest(&beams, &laser, own));
-                assert_eq!(nearest, most, "at {laser}, {count} beams over {fov_rad} rad");
-                inside += usize::from(most == f64::INFINITY);
-                nothing += usize::from(most == 0.0);
-            }
-        }
-        assert!(inside > 100 && nothing > 100, "{inside} inside, {nothing} saw nothing");
     }
 }
