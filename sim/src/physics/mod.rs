@@ -26,6 +26,7 @@ mod snapshot;
 mod spec;
 #[cfg(test)]
 mod tests;
+mod visible_cells;
 mod world;
 
 pub use box_tree::BoxTree;

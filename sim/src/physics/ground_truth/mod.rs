@@ -4,10 +4,9 @@ mod convex_cells;
 pub(super) mod cover;
 mod open_share;
 mod robots;
-mod start;
+pub(super) mod start;
 #[cfg(test)]
 mod tests;
-mod visible;
 
 use super::report::Body;
 use super::shape::Rectangle;

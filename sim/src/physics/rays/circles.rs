@@ -4,23 +4,15 @@
 //! without branches; only bodies that may be visible are then computed exactly.
 
 use super::beams::Hits;
+use super::disc::Disc;
 use super::polygons::SortedPolygons;
 use interfaces::APPROXIMATE_ATAN2_ERROR_RAD;
-use nalgebra::{Point2, Vector2};
+use nalgebra::Vector2;
 use std::f32::consts::{FRAC_PI_2, PI};
 
 /// The margins of approximate values: for single precision, and for the approximate angle.
 const SAFE_RAD: f32 = 3.0 * APPROXIMATE_ATAN2_ERROR_RAD as f32;
 const SAFE: f32 = 1.0 + 1e-5;
-
-/// A round body.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in crate::physics) struct Disc {
-    /// The center, m.
-    pub(in crate::physics) center: Point2<f64>,
-    /// The radius, m.
-    pub(in crate::physics) radius_m: f64,
-}
 
 /// A disc within the range of a laser, in the frame of the laser.
 #[derive(Clone, Copy, Debug, Default)]

@@ -9,6 +9,7 @@
 
 mod beams;
 mod circles;
+mod disc;
 mod edges;
 mod index_lists;
 mod nearest;
@@ -17,5 +18,5 @@ mod scene;
 mod visibility;
 
 pub(super) use beams::Beams;
-pub(super) use circles::Disc;
+pub(super) use disc::Disc;
 pub(super) use scene::Scene;

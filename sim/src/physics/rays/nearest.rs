@@ -4,7 +4,7 @@
 //! for bit. What is farther away than the shortest range so far, and what lies beside the beams, is left out.
 
 use super::beams::{Beams, EDGE_ON_M};
-use super::circles::Disc;
+use super::disc::Disc;
 use super::edges::Edge;
 use interfaces::{APPROXIMATE_ATAN2_ERROR_RAD, approximate_atan2};
 use nalgebra::{Isometry2, Point2, Vector2};

@@ -1,7 +1,7 @@
 //! Convex bodies that appear, disappear and move. Each body is listed in the cells that it overlaps, so that a
 //! laser tests only the bodies in the cells that it may see.
 
-use super::circles::Disc;
+use super::disc::Disc;
 use super::edges::Edge;
 use super::index_lists::IndexLists;
 use super::visibility::PotentiallyVisibleSet;

@@ -2,7 +2,8 @@
 mod tests;
 
 use super::beams::{Beams, Hits};
-use super::circles::{Disc, Discs};
+use super::circles::Discs;
+use super::disc::Disc;
 use super::edges::{Edge, visible_edges};
 use super::index_lists::IndexLists;
 use super::nearest::Nearest;

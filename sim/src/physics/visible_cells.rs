@@ -1,10 +1,10 @@
 //! The cells that the driven robot could see, wherever it drives.
 
-use super::start;
-use crate::physics::free_space::{FreeSpace, solids};
-use crate::physics::rays::{Beams, Scene};
-use crate::physics::shape::Rectangle;
-use crate::physics::spec::WorldSpec;
+use super::free_space::{FreeSpace, solids};
+use super::ground_truth::start;
+use super::rays::{Beams, Scene};
+use super::shape::Rectangle;
+use super::spec::WorldSpec;
 use interfaces::{Cell, GridFrame, TrueState};
 use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 use std::f64::consts::{PI, TAU};
