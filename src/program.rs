@@ -1,6 +1,7 @@
 //! Code that the command-line programs share: exit codes, Ctrl-C, the list of worlds, parsers of arguments.
 
 use crate::terminal::{check_printed, print, say};
+use crate::worlds;
 use anyhow::Context;
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -85,6 +86,15 @@ pub fn list<E: Display>(
         }
     }
     Ok(())
+}
+
+/// Prints the shipped physics worlds.
+///
+/// # Errors
+///
+/// When the standard output cannot be written.
+pub fn list_physics_worlds() -> anyhow::Result<()> {
+    list(&worlds::SHIPPED, 18, |name| worlds::load(name).map(|world| world.spec.description.clone()))
 }
 
 /// A parser of the name of one of `all`.

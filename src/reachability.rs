@@ -15,21 +15,23 @@ const MAX_NAMED: usize = 5;
 pub fn warnings(spec: &FleetSpec) -> Vec<String> {
     let movers: Vec<&RobotSpec> =
         spec.robots.iter().filter(|robot| robot.behavior != BehaviorSpec::Standing).collect();
-    let mut radii_m: Vec<f64> = movers.iter().map(|robot| robot.radius_m).collect();
-    radii_m.sort_unstable_by(f64::total_cmp);
-    radii_m.dedup();
-    let mut warnings = Vec::new();
-    for (index, radius_m) in radii_m.iter().enumerate() {
-        let space = FreeSpace::new(spec, *radius_m);
-        let alike: Vec<&RobotSpec> =
-            movers.iter().filter(|robot| robot.radius_m == *radius_m).copied().collect();
-        if index == 0 {
-            // Wherever a larger robot can drive, the smallest one can.
-            let all = movers.iter().filter_map(|robot| own_region(&space, robot)).collect();
-            warnings.extend(open_wall(spec, &space, &all));
-            warnings.extend(rooms(spec, &space, &all));
-        }
-        warnings.extend(alike.iter().filter_map(|robot| waypoints(spec, &space, robot)));
+    let Some(least_m) = movers.iter().map(|robot| robot.radius_m).min_by(f64::total_cmp) else {
+        return Vec::new();
+    };
+    // Wherever a larger robot can drive, the smallest one can.
+    let space = FreeSpace::new(spec, least_m);
+    let inhabited = movers.iter().filter_map(|robot| own_region(&space, robot)).collect();
+    let mut warnings = Vec::from_iter(open_wall(spec, &space, &inhabited));
+    warnings.extend(rooms(spec, &space, &inhabited));
+    // Robots of the same size share a free space.
+    let mut with_waypoints: Vec<&RobotSpec> =
+        movers.into_iter().filter(|robot| matches!(robot.behavior, BehaviorSpec::Waypoints(_))).collect();
+    with_waypoints.sort_by(|a, b| a.radius_m.total_cmp(&b.radius_m));
+    for alike in with_waypoints.chunk_by(|a, b| a.radius_m == b.radius_m) {
+        let radius_m = alike[0].radius_m;
+        let larger = (radius_m > least_m).then(|| FreeSpace::new(spec, radius_m));
+        let space = larger.as_ref().unwrap_or(&space);
+        warnings.extend(alike.iter().filter_map(|robot| waypoints(spec, space, robot)));
     }
     warnings
 }

@@ -91,7 +91,7 @@ impl Observer {
         let mut log = |level, text| self.messages.push(Message { level, text });
         self.things.take_messages().into_iter().for_each(|text| log(Level::Event, text));
         for contact in world.contacts() {
-            let is_own = contact.speed_mps > OWN_MPS;
+            let is_own = contact.own_speed_mps > OWN_MPS;
             self.contacts[usize::from(contact.moving)] += 1;
             self.own_contacts += usize::from(is_own);
             let how = if is_own { "drove into" } else { "was hit by" };

@@ -1,7 +1,7 @@
 //! What the physics cannot do, reported at the line of the Stage file.
 
 use super::sources::Sources;
-use super::to_toml::{STEER_DEG, is_upright, short};
+use super::to_toml::{STEER_DEG, is_upright};
 use super::{Drive, StageRobot, StageWall, StageWorld, fastest};
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{BoxTree, Form, Rectangle};
@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 use worldfile::Severity;
 use worldfile::physics::{MAX_PIECES, MOST_OUT_M};
+use worldfile::toml_value::short;
 
 /// The maximum number of lasers of a robot, and of sonars.
 const MAX_SENSORS: usize = 100;

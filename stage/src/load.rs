@@ -3,12 +3,12 @@
 use super::StageWorld;
 use super::check::check;
 use super::sources::Sources;
-use super::to_toml::short;
 use nalgebra::Point2;
 use sim::physics::FleetSpec;
 use std::path::Path;
 use worldfile::Severity;
 use worldfile::physics::parse_fleet;
+use worldfile::toml_value::short;
 
 /// Makes a fleet of a Stage world. An error names the line of the Stage file.
 pub(super) fn load(sources: &mut Sources<'_>, path: &Path, world: &StageWorld) -> Option<FleetSpec> {

@@ -2,11 +2,11 @@
 
 use super::polygon::bounds;
 use super::{Bounds, Drive, StageRobot, StageSensor, StageWall, StageWorld, fastest};
-use interfaces::heading_rad;
-use nalgebra::{Isometry2, Point2, Vector2};
+use nalgebra::{Point2, Vector2};
 use sim::physics::{OdometryError, Rectangle};
 use toml::Value;
 use worldfile::physics::MOST_OUT_M;
+use worldfile::toml_value::{degrees, heading, number, point};
 
 /// The side of a cell of the truth grid, m, where the map is not too large for it.
 const CELL_M: f64 = 0.05;
@@ -221,27 +221,4 @@ fn behavior(robot: &StageRobot) -> Keys {
 pub(super) fn is_upright(rectangle: &Rectangle) -> bool {
     let turn = rectangle.pose.rotation;
     turn.re.abs() < 1e-12 || turn.im.abs() < 1e-12
-}
-
-fn number(value: f64) -> Value {
-    Value::from(short(value))
-}
-
-fn degrees(angle_rad: f64) -> Value {
-    number(angle_rad.to_degrees())
-}
-
-fn heading(pose: &Isometry2<f64>) -> Value {
-    degrees(heading_rad(pose))
-}
-
-fn point(point: &Point2<f64>) -> Value {
-    Value::from(vec![short(point.x), short(point.y)])
-}
-
-/// To a billionth: without the rounding of sums and units.
-pub(super) fn short(value: f64) -> f64 {
-    let rounded = (value * 1e9).round() / 1e9;
-    // No −0.0.
-    if rounded == 0.0 { 0.0 } else { rounded }
 }

@@ -105,7 +105,7 @@ impl Layer {
             (Self::Recency, TimeUnit::Second) => (1.0, 1000.0, &[1.0, 10.0, 100.0, 1000.0]),
             (Self::Recency, TimeUnit::Step) => (1.0, 5000.0, &[1.0, 10.0, 100.0, 1000.0]),
         };
-        Some(Scale { low, high, is_log: high > 1.0, ticks })
+        Some(Scale { low, high, is_log: !matches!(self, Self::ChangeProbability | Self::Predicted), ticks })
     }
 
     /// The class of every cell of the mapper's frame, in row-major order.

@@ -32,6 +32,7 @@ pub mod physics;
 mod reader;
 pub mod ros_map;
 pub mod shipped;
+pub mod toml_value;
 mod tour;
 
 pub use error::WorldError;

@@ -75,14 +75,9 @@ impl FreeSpace {
 
 /// The walls, and the obstacles that stand there when the robots start, unless they move away by themselves.
 pub(super) fn solids(spec: &FleetSpec) -> Vec<Rectangle> {
-    spec.walls.iter().copied().chain(spec.obstacles.iter().filter_map(standing)).collect()
-}
-
-fn standing(obstacle: &ObstacleSpec) -> Option<Rectangle> {
-    match &obstacle.motion {
-        _ if obstacle.appears_s.is_some() => None,
-        Motion::Door(door) => Some(door.shape(&obstacle.shape, 1.0)),
-        Motion::Fixed | Motion::Pushed(_) => Some(obstacle.shape),
-        Motion::Path(_) => None,
-    }
+    let stays = |obstacle: &&ObstacleSpec| {
+        obstacle.appears_s.is_none() && !matches!(obstacle.motion, Motion::Path(_))
+    };
+    let standing = spec.obstacles.iter().filter(stays).map(ObstacleSpec::opened);
+    spec.walls.iter().copied().chain(standing).collect()
 }

@@ -31,7 +31,7 @@ pub struct Contact {
     pub moving: bool,
     /// The speed at which the drive of the robot moved the point of contact towards the other body in the step before,
     /// m/s: positive if the robot drove into the body, else the body ran into the robot.
-    pub speed_mps: f64,
+    pub own_speed_mps: f64,
     /// The impulse of the first step of the contact, N·s.
     pub impulse_ns: f64,
 }

@@ -7,10 +7,9 @@ mod parts;
 
 use anyhow::{Context, anyhow};
 use args::{Args, DriveChoice};
-use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, list, start};
+use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, list_physics_worlds, start};
 use curious::progress::Progress;
 use curious::terminal::{print, say};
-use curious::worlds;
 use evaluation::file_name;
 use evaluation::metrics::map_scores;
 use evaluation::output::{RunFolder, UnfinishedFile, is_another_kind};
@@ -36,8 +35,7 @@ const NAP: Duration = Duration::from_millis(50);
 fn main() -> ExitCode {
     start(|args: &Args| {
         if args.list_worlds {
-            let describe = |name: &str| worlds::load(name).map(|world| world.spec.description.clone());
-            list(&worlds::SHIPPED, 18, describe)?;
+            list_physics_worlds()?;
             return Ok(ExitCode::SUCCESS);
         }
         run(args)

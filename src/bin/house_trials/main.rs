@@ -4,7 +4,7 @@ mod args;
 
 use anyhow::Context;
 use args::Args;
-use curious::program::{Failure, interrupt_flag, list, start};
+use curious::program::{Failure, interrupt_flag, list_physics_worlds, start};
 use curious::terminal::say;
 use curious::trials::{distinct, run};
 use curious::{trials, worlds};
@@ -20,8 +20,7 @@ const HOUSES: u64 = 8;
 fn main() -> ExitCode {
     start(|args: &Args| {
         if args.list_worlds {
-            let describe = |name: &str| worlds::load(name).map(|world| world.spec.description.clone());
-            list(&worlds::SHIPPED, 18, describe)?;
+            list_physics_worlds()?;
             return Ok(ExitCode::SUCCESS);
         }
         let experiment = experiment(args).map_err(Failure::Input)?;

@@ -1,7 +1,7 @@
 //! A world as the text of its file.
 
 use super::behavior::REPEATS;
-use interfaces::heading_rad;
+use crate::toml_value::{degrees, heading, number, point};
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{
     BehaviorSpec, DoorSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle,
@@ -85,7 +85,7 @@ fn door(shape: &Rectangle, spec: &DoorSpec) -> Option<Keys> {
     let mut keys: Keys = vec![("kind", kind.into()), ("from_m", from), ("to_m", to)];
     keys.push(("thickness_m", number(2.0 * shape.half_m.y)));
     match spec.leaf {
-        Leaf::Hinged { open_rad, .. } => keys.push(("open_deg", number(open_rad.to_degrees()))),
+        Leaf::Hinged { open_rad, .. } => keys.push(("open_deg", degrees(open_rad))),
         // By its length, as it is without the key.
         Leaf::Sliding { by_m } if (by_m.norm() - 2.0 * shape.half_m.x).abs() < 1e-9 => {}
         Leaf::Sliding { .. } => return None,
@@ -122,9 +122,9 @@ fn drive(robot: &RobotSpec) -> Option<Keys> {
     let keys = || {
         vec![
             ("max_linear_mps", number(drive.max_linear_mps)),
-            ("max_angular_degps", number(drive.max_angular_radps.to_degrees())),
+            ("max_angular_degps", degrees(drive.max_angular_radps)),
             ("max_linear_acceleration_mps2", number(drive.max_linear_acceleration_mps2)),
-            ("max_angular_acceleration_degps2", number(drive.max_angular_acceleration_radps2.to_degrees())),
+            ("max_angular_acceleration_degps2", degrees(drive.max_angular_acceleration_radps2)),
         ]
     };
     (drive.kind == DriveKind::Differential).then(keys)
@@ -134,7 +134,7 @@ fn laser(laser: &LaserSpec) -> Option<Keys> {
     let keys = || {
         vec![
             ("beams", Value::from(laser.beams as i64)),
-            ("fov_deg", number(laser.fov_rad.to_degrees())),
+            ("fov_deg", degrees(laser.fov_rad)),
             ("range_min_m", number(laser.range_min_m)),
             ("range_max_m", number(laser.range_max_m)),
             ("rate_hz", number(laser.rate_hz)),
@@ -161,17 +161,4 @@ fn behavior(behavior: &BehaviorSpec) -> Option<Keys> {
         }
         BehaviorSpec::Standing | BehaviorSpec::Circle(_) | BehaviorSpec::WallPatrol(_) => return None,
     })
-}
-
-fn heading(pose: &Isometry2<f64>) -> Value {
-    number(heading_rad(pose).to_degrees())
-}
-
-fn point(point: &Point2<f64>) -> Value {
-    vec![number(point.x), number(point.y)].into()
-}
-
-/// To a billionth: without the rounding of sums and units.
-fn number(value: f64) -> Value {
-    ((value * 1e9).round() / 1e9).into()
 }

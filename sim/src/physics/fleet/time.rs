@@ -132,8 +132,9 @@ impl Fleet {
                 }
                 if !touched_before {
                     let moving = robot.driven != Velocity::STOP;
-                    let speed_mps = robot.speed_mps(&at, &towards);
-                    let contact = Contact { time_s, robot: index, with, at, moving, speed_mps, impulse_ns };
+                    let own_speed_mps = robot.speed_mps(&at, &towards);
+                    let contact =
+                        Contact { time_s, robot: index, with, at, moving, own_speed_mps, impulse_ns };
                     self.contacts.push(contact);
                 }
                 touching.push(with);

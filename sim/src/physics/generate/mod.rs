@@ -55,11 +55,8 @@ fn draw_house(ranges: &HouseRanges, seed: u64, rng: &mut RandomStream) -> Option
     let mut obstacles: Vec<ObstacleSpec> =
         furniture::furniture(ranges, &layout, rng).iter().map(|piece| standing(piece, &plan)).collect();
     obstacles.extend(doors::doors(ranges, &layout, &plan, rng));
-    let opened = obstacles.iter().map(|obstacle| match &obstacle.motion {
-        Motion::Door(door) => door.shape(&obstacle.shape, 1.0),
-        _ => obstacle.shape,
-    });
-    let solids: Vec<Rectangle> = walls.iter().copied().chain(opened).collect();
+    let solids: Vec<Rectangle> =
+        walls.iter().copied().chain(obstacles.iter().map(ObstacleSpec::opened)).collect();
     let routes = Routes::new(ranges, &layout, &solids, &plan, rng);
     let robots = robots(ranges, &routes, rng)?;
     let size = plan.point(layout.size.map(f64::from));

@@ -34,6 +34,14 @@ impl ObstacleSpec {
         }
     }
 
+    /// The shape at the start, but with a door open.
+    pub fn opened(&self) -> Rectangle {
+        match &self.motion {
+            Motion::Door(door) => door.shape(&self.shape, 1.0),
+            Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) => self.shape,
+        }
+    }
+
     /// Rotates the obstacle with the world about `middle` (m).
     pub(super) fn turn(&mut self, turn: &UnitComplex<f64>, middle: &Point2<f64>) {
         self.shape = self.shape.turned(turn, middle);

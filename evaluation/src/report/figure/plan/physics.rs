@@ -6,7 +6,7 @@ use crate::palette;
 use crate::report::figure::pen::{Pen, Sheet};
 use nalgebra::Point2;
 use plotters::prelude::*;
-use sim::physics::{BehaviorSpec, Motion, Repeat, WorldSpec};
+use sim::physics::{BehaviorSpec, Repeat, WorldSpec};
 
 const FURNITURE: RGBColor = ink(palette::FURNITURE);
 const MOVING: RGBColor = ink(palette::MOVING);
@@ -53,11 +53,7 @@ pub(super) fn draw<DB: DrawingBackend>(
         fill(wall.corners(), INK)?;
     }
     for obstacle in &world.obstacles {
-        let shape = match &obstacle.motion {
-            Motion::Door(door) => door.shape(&obstacle.shape, 1.0),
-            _ => obstacle.shape,
-        };
-        fill(shape.corners(), if obstacle.is_mover() { MOVING } else { FURNITURE })?;
+        fill(obstacle.opened().corners(), if obstacle.is_mover() { MOVING } else { FURNITURE })?;
     }
     dot(sheet, pen, at(&world.driven().pose.translation.vector.into()), 4)?;
     Ok((cells[0] * side).round() as i32)
