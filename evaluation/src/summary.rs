@@ -226,8 +226,15 @@ impl RunResults {
 
     /// The errors of the estimated rates, in words; empty if nothing changed.
     fn rates(&self) -> Vec<(&'static str, String)> {
-        let RateScores { rate_error, rate_error_cells, rate_error_all, log_error, rate_auc, .. } =
-            &self.rates;
+        let RateScores {
+            rate_error,
+            rate_error_cells,
+            rate_error_all,
+            log_error,
+            log_error_of_range,
+            rate_auc,
+            ..
+        } = &self.rates;
         let mut lines = Vec::new();
         if let Some(all) = rate_error_all {
             let well_seen = rate_error.map_or("none was in view for 3 cycles".into(), |error| {
@@ -239,6 +246,10 @@ impl RunResults {
         if let Some(error) = log_error {
             let meaning = "0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate";
             lines.push(("", format!("log error {error:.2}, mean over moving things: {meaning}")));
+            if let Some(of_range) = log_error_of_range.filter(|of_range| of_range < error) {
+                let meaning = "a pass that covers only a part of a cell may count or not";
+                lines.push(("", format!("log error {of_range:.2} where {meaning}")));
+            }
         }
         if let Some(auc) = rate_auc {
             let meaning =
@@ -311,6 +322,7 @@ mod tests {
             rate_error_cells: 43,
             rate_error_all: Some(2.51),
             log_error: Some(0.912),
+            log_error_of_range: Some(0.534),
             rate_auc: Some(0.83),
             static_cells: 50_000,
             ..RateScores::default()
@@ -322,6 +334,7 @@ mod tests {
           changes   none seen
           rates     mean error 251.0 % over all changing cells, 29.0 % over the 43 in view for 3 cycles or more
                     log error 0.91, mean over moving things: 0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate
+                    log error 0.53 where a pass that covers only a part of a cell may count or not
                     AUC 0.83: how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance
           stood     longest time without moving 0.1 m: cat 312 s
           contacts  1 by its own motion, 2 in which something ran into it

@@ -50,8 +50,18 @@ pub trait GroundTruth {
 
     /// The true cycle rate of a cell so far: block events per unit of time; 0 at time 0.
     fn cycle_rate(&self, index: usize) -> f64 {
-        let elapsed = self.elapsed();
-        if elapsed > 0.0 { f64::from(self.block_events(index)) / elapsed } else { 0.0 }
+        per_time(self.block_events(index), self.elapsed())
+    }
+
+    /// The number of times that a free cell was covered so far, completely or partly: the block events, and the
+    /// passes that covered only a part of the cell. A sensor may count such a pass or not.
+    fn pass_events(&self, index: usize) -> u32 {
+        self.block_events(index)
+    }
+
+    /// The largest cycle rate of a cell that is right: every pass counts, see [`GroundTruth::pass_events`].
+    fn pass_rate(&self, index: usize) -> f64 {
+        per_time(self.pass_events(index), self.elapsed())
     }
 
     /// Whether any moving thing has touched a cell (physics world) or can enter it (grid world).
@@ -69,4 +79,9 @@ pub trait GroundTruth {
 
     /// The changes since the last command, in order of time.
     fn changes(&self) -> &[TrueChange];
+}
+
+/// Events per unit of time; 0 at time 0.
+fn per_time(events: u32, elapsed: f64) -> f64 {
+    if elapsed > 0.0 { f64::from(events) / elapsed } else { 0.0 }
 }

@@ -18,7 +18,9 @@ pub use changing::{ChangingAccuracy, ChangingScores};
 pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
 pub use prediction::{PredictedScores, Prediction};
-pub use rates::{MAX_LOG_ERROR, RateErrors, RateScores, log_error, mean_log_error, rate_scores};
+pub use rates::{
+    MAX_LOG_ERROR, RateErrors, RateScores, log_error, mean_log_error, mean_log_error_of_range, rate_scores,
+};
 pub use standstill::Standstills;
 pub use things::{ThingReport, Things};
 

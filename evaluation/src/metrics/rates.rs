@@ -20,6 +20,9 @@ pub struct RateScores {
     pub rate_error_all: Option<f64>,
     /// The log error of the rates, averaged per moving thing and then over the things; see [`mean_log_error`].
     pub log_error: Option<f64>,
+    /// The part of the log error that does not depend on how a pass counts that covers only a part of a cell; see
+    /// [`mean_log_error_of_range`].
+    pub log_error_of_range: Option<f64>,
     /// How well the estimated rates separate changing cells from static cells: the area under the ROC curve (1:
     /// completely, 0.5: not better than chance). Cells within one cell of the border of the swept area are left
     /// out.
@@ -70,6 +73,7 @@ pub fn rate_scores(mapper: &Mapper, truth: &impl GroundTruth) -> RateScores {
         rate_error_cells: in_view.count,
         rate_error_all: all.get(),
         log_error: mean_log_error(mapper, truth),
+        log_error_of_range: mean_log_error_of_range(mapper, truth),
         rate_auc: rate_auc(mapper, truth),
         static_cells: false_rate.count,
         false_change_events,
@@ -88,13 +92,32 @@ pub fn log_error(estimate: f64, truth: f64) -> f64 {
 /// Too high and too low estimates count equally, no error is unbounded, and a long path counts as much as a short
 /// one.
 pub fn mean_log_error(mapper: &Mapper, truth: &impl GroundTruth) -> Option<f64> {
+    mean_over_things(truth, |index, true_rate| log_error(mapper.rate(index), true_rate))
+}
+
+/// As [`mean_log_error`], but the error of a cell is the distance of the estimate to the range between two true rates:
+/// that of the block events, where only a cell that is covered completely counts as blocked, and that of all passes,
+/// see [`GroundTruth::pass_rate`].
+///
+/// A thing that is thinner than the diagonal of a cell, such as a swinging door, covers most of the cells that it
+/// passes only in part. A robot that sees the door pass is right, although few of the passes are block events.
+pub fn mean_log_error_of_range(mapper: &Mapper, truth: &impl GroundTruth) -> Option<f64> {
+    mean_over_things(truth, |index, true_rate| {
+        let estimate = mapper.rate(index);
+        log_error(estimate, estimate.min(truth.pass_rate(index)).max(true_rate))
+    })
+}
+
+/// The mean of `error` over the cells of a thing that truly changed, given the true rate of the cell; then the mean over
+/// the things.
+fn mean_over_things(truth: &impl GroundTruth, error: impl Fn(usize, f64) -> f64) -> Option<f64> {
     let mut things = Mean::default();
     for thing in truth.moving_things().iter() {
         let mut cells = Mean::default();
         for &index in thing {
             let true_rate = truth.cycle_rate(index);
             if true_rate > 0.0 {
-                cells.add(log_error(mapper.rate(index), true_rate));
+                cells.add(error(index, true_rate));
             }
         }
         things.add_mean(&cells);

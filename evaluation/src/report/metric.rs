@@ -49,11 +49,13 @@ macro_rules! metrics {
 }
 
 metrics! {
-    11:
+    12:
     /// Mean relative error of the rates over the cells that truly changed.
     rate_error => RateError in NOT_NEGATIVE,
     /// The log error of the rates: per moving thing, then over the things.
     log_error => LogError in 0.0..=MAX_LOG_ERROR,
+    /// The log error, where a pass that covers only a part of a cell may count or not.
+    log_error_of_range => LogErrorOfRange in 0.0..=MAX_LOG_ERROR,
     /// The share of the cells that can be seen whose mapped state is the true state.
     map_quality => MapQuality in SHARE,
     /// Balanced accuracy of the map on swept cells.

@@ -44,6 +44,7 @@ pub(super) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
             time: step,
             rate_error: 1.0 - learned + learned * floor * 1.3 + 3.0 * noise * learned,
             log_error,
+            log_error_of_range: 0.8 * log_error,
             map_quality: (quality - (1.0 - learned) * 0.7 + 0.2 * noise).clamp(0.0, 1.0),
             map_quality_changing: if step < 30 { f64::NAN } else { 0.9 * quality + noise },
             coverage: learned,

@@ -73,13 +73,14 @@ impl Sampler {
 
     fn sample(&mut self, mapper: &Mapper, truth: &impl GroundTruth) -> Sample {
         let (rates, map) = (rate_scores(mapper, truth), map_scores(mapper, truth));
-        let RateScores { rate_error_all, log_error, rate_auc, false_rate_hz, .. } = rates;
+        let RateScores { rate_error_all, log_error, log_error_of_range, rate_auc, false_rate_hz, .. } = rates;
         let brier = std::mem::take(&mut self.prediction).scores();
         let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
         Sample {
             time: self.due,
             rate_error: or_nan(rate_error_all),
             log_error: or_nan(log_error),
+            log_error_of_range: or_nan(log_error_of_range),
             map_quality: map.map_quality,
             map_quality_changing: or_nan(std::mem::take(&mut self.accuracy).scores().all),
             coverage: map.coverage,

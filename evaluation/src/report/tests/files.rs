@@ -116,7 +116,7 @@ fn the_csv_has_a_row_per_trial_and_sample_and_gives_the_report_again() {
     for row in &rows {
         let key = [0, 1, 2, 3].map(|column| row[column].to_owned());
         curves.entry(key).or_default().push((row[4].parse().unwrap(), row[6].parse().unwrap()));
-        assert_eq!(row[12].is_empty(), row[4].parse::<u64>().unwrap() < 30, "undefined is empty");
+        assert_eq!(row[13].is_empty(), row[4].parse::<u64>().unwrap() < 30, "undefined is empty");
     }
     for run in report.runs.iter().filter(|run| run.worlds == 1) {
         for strategy in &run.strategies {

@@ -10,6 +10,7 @@ fn flat(world: &str, strategy: &str, seed: u64, value: f64) -> Trial {
         time,
         rate_error: value,
         log_error: value,
+        log_error_of_range: value,
         map_quality: value,
         map_quality_changing: value,
         coverage: value,

@@ -43,6 +43,8 @@ pub struct PhysicsGroundTruth {
     /// Whether the cell has been free since it was last blocked, so that the next time is a new event.
     armed: Vec<bool>,
     block_events: Vec<u32>,
+    /// How often each cell was free and then overlapped.
+    pass_events: Vec<u32>,
     movers: Vec<Option<Body>>,
     /// The cells that have a mover, one bit each.
     swept: Vec<u64>,
@@ -66,6 +68,7 @@ impl PhysicsGroundTruth {
             under_changes: Vec::new(),
             armed: fixed.iter().map(|state| *state != TrueState::Blocked).collect(),
             block_events: vec![0; frame.len()],
+            pass_events: vec![0; frame.len()],
             movers: vec![None; frame.len()],
             swept: vec![0; frame.len().div_ceil(64)],
             reachable: start::reachable(&frame, &fixed, frame.cell_at(start)),
@@ -164,6 +167,7 @@ impl PhysicsGroundTruth {
     pub(super) fn begin(&mut self) {
         self.changes.clear();
         self.block_events.fill(0);
+        self.pass_events.fill(0);
         for (armed, state) in self.armed.iter_mut().zip(&self.states) {
             *armed = *state != TrueState::Blocked;
         }
@@ -182,6 +186,7 @@ impl PhysicsGroundTruth {
             return;
         }
         self.states[index] = after;
+        self.pass_events[index] += u32::from(before == TrueState::Free);
         match after {
             TrueState::Free => self.armed[index] = true,
             TrueState::Blocked if self.armed[index] => {
@@ -223,6 +228,11 @@ impl GroundTruth for PhysicsGroundTruth {
     /// blocked once.
     fn block_events(&self, index: usize) -> u32 {
         self.block_events[index]
+    }
+
+    fn pass_events(&self, index: usize) -> u32 {
+        // A cell that was partly covered at the start can be blocked without having been free.
+        self.pass_events[index].max(self.block_events[index])
     }
 
     fn is_swept(&self, index: usize) -> bool {

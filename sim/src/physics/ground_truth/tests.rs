@@ -39,6 +39,22 @@ fn what_can_be_seen_is_this_side_of_the_wall_and_has_a_free_side() {
 }
 
 #[test]
+fn a_thin_thing_passes_cells_that_it_never_covers_completely() {
+    let mut truth = small();
+    let leaf = |x_m: f64| Rectangle::between(Point2::new(x_m, 0.2), Point2::new(x_m + 0.05, 0.3));
+    truth.change_box(&leaf(0.1), &[leaf(0.1)], Some(Body::Obstacle(0)));
+    truth.begin();
+    for (from, to) in [(0.1, 0.22), (0.22, 0.32), (0.32, 0.22)] {
+        truth.move_box(&leaf(from), &leaf(to), &[leaf(to)], Body::Obstacle(0));
+    }
+    let events = |x| {
+        let index = truth.frame().index(Cell::new(x, 2)).unwrap();
+        [truth.block_events(index), truth.pass_events(index)]
+    };
+    assert_eq!([1, 2, 3, 4].map(events), [[0, 0], [0, 2], [0, 1], [0, 0]]);
+}
+
+#[test]
 fn a_disc_that_passes_blocks_every_cell_once() {
     let mut truth = small();
     let robot = Body::Robot(1);
@@ -55,7 +71,7 @@ fn a_disc_that_passes_blocks_every_cell_once() {
     // The robot was on the first cell, left it only partly, and returned.
     assert_eq!(truth.block_events(index(0, 3)), 1);
     assert_eq!(truth.block_events(index(3, 3)), 1);
-    assert_eq!(truth.block_events(index(3, 4)), 0);
+    assert_eq!([truth.block_events(index(3, 4)), truth.pass_events(index(3, 4))], [0, 2]);
     assert_eq!(truth.movers()[index(3, 3)], Some(robot));
     assert_eq!(truth.movers()[index(7, 3)], None);
     assert_eq!(truth.state(index(3, 3)), TrueState::Free);

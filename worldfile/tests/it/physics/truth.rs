@@ -15,17 +15,21 @@ const TURNED: &str = include_str!("../../../../worlds/turned_house.toml");
 fn changes_lead_from_one_truth_to_the_next() {
     let mut world = PhysicsWorld::new(&worldfile::physics::parse_world("t", TURNED).unwrap(), 0);
     let mut expected = states(world.truth());
+    let mut passes = vec![0; expected.len()];
     for _ in 0..3100 {
         world.act(&Twist::STOP);
         for change in world.truth().changes() {
             let index = world.truth().frame().index(change.cell).unwrap();
             assert_eq!(std::mem::replace(&mut expected[index], change.after), change.before);
+            passes[index] += u32::from(change.before == TrueState::Free);
         }
         assert_eq!(states(world.truth()), expected);
     }
     assert_eq!(world.obstacle_events().len(), 1);
     let truth = world.truth();
     assert!((0..truth.frame().len()).any(|index| truth.block_events(index) > 10));
+    let counted = |index: usize| truth.pass_events(index) == passes[index].max(truth.block_events(index));
+    assert!((0..passes.len()).all(counted));
 }
 
 /// Points spread over a cell; its border is left out, where slivers count as nothing.
