@@ -1,9 +1,9 @@
 use super::*;
-use interfaces::{Cell, CellReading, CellState, Grid, GroundTruth, Step, TrueState, World};
+use interfaces::{Cell, CellReading, CellState, Grid, GroundTruth, Step, TrueState, Twist, World};
 use mapper::{Mapper, MapperSettings, Paper};
 use nalgebra::Isometry2;
 use sim::grid::GridWorld;
-use sim::physics::{PhysicsGroundTruth, PhysicsWorld};
+use sim::physics::{PhysicsGroundTruth, PhysicsWorld, WorldSpec};
 
 fn physics_world() -> PhysicsWorld {
     let text = include_str!("../../../worlds/four_rooms.toml");
@@ -143,6 +143,25 @@ fn things_count_alike_however_many_cells_they_have() {
     let scores = rate_scores(&mapper, world.truth());
     assert!((scores.log_error.unwrap() - 10.0_f64.ln() / 2.0).abs() < 0.02, "{scores:?}");
     assert!((scores.rate_error_all.unwrap() - 2.0 / 5.0).abs() < 0.02, "{scores:?}");
+}
+
+#[test]
+fn a_pass_over_a_part_of_a_cell_may_count() {
+    // Three swinging doors, thinner than the diagonal of a cell.
+    let mut world = PhysicsWorld::new(&WorldSpec::generate_house(1004), 0);
+    let settings = MapperSettings { estimator: Paper.into(), ..Default::default() };
+    let frame = *world.truth().frame();
+    let mut mapper = Mapper::new(&settings, frame).unwrap();
+    while world.truth().elapsed() < 240.0 {
+        let truth = world.truth();
+        let is_touched = |index| (frame.cell(index), truth.state(index) != TrueState::Free);
+        let cells = (0..frame.len()).map(is_touched).collect();
+        mapper.update(&CellReading { time: truth.elapsed(), pose: *world.true_pose(), cells }).unwrap();
+        world.act(&Twist::STOP);
+    }
+    let RateScores { log_error, log_error_of_range, .. } = rate_scores(&mapper, world.truth());
+    let (strict, of_range) = (log_error.unwrap(), log_error_of_range.unwrap());
+    assert!(of_range < 0.2 && strict > 2.0 * of_range, "{strict} {of_range}");
 }
 
 #[test]
