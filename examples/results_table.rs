@@ -40,6 +40,7 @@ const ROWS: [Row; 26] = [
     ("rate error, cells in view for 3 cycles or more", "/rate_error", 1.0, 2, "", Largest),
     ("rate error, all changing cells", "/rate_error_all", 1.0, 2, "", Largest),
     ("log error of the rates", "/log_error", 1.0, 2, "", Largest),
+    ("the same, where a pass over a part of a cell may count", OF_RANGE, 1.0, 2, "", Largest),
     ("rate AUC, changing against static cells", "/rate_auc", 1.0, 3, "", Smallest),
     ("block event to map, median", "/block_latency/median_s", 1.0, 1, " s", Largest),
     ("block events never noticed", "/block_latency/never_noticed", 100.0, 1, " %", Largest),
@@ -53,6 +54,7 @@ const ROWS: [Row; 26] = [
     ("goals given up", "/goals/given_up", 1.0, 0, "", Largest),
     ("times real time, without recording", "/real_time_factor", 1.0, 0, "", Smallest),
 ];
+const OF_RANGE: &str = "/log_error_of_range";
 const QUALITY_REACHABLE: &str = "/map_quality_reachable";
 const PREDICTED: &str = "/predicted/balanced_accuracy_out_of_view";
 const OUT_OF_VIEW: &str = "/map_quality_changing_out_of_view";
