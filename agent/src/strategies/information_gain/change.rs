@@ -20,9 +20,6 @@ const END: f64 = 0.5;
 /// θ of a cell that has been blocked since it was first seen: nearly all such cells are walls.
 const BLOCKED: f64 = 0.003;
 
-/// The number of cells in which an undiscovered moving thing could have been seen: an observation without an event,
-/// far from all clusters, counts this many times.
-const PATH_IN_VIEW: f64 = 5.0;
 /// The length of the path of a moving thing: the thing leaves its present cell this many times faster than it
 /// returns.
 const PATH: f64 = 10.0;
@@ -67,31 +64,28 @@ impl Change {
         Self { far: FAR[0], middle: MIDDLE[0], distribution: [1.0 / RATES as f64; RATES] }
     }
 
-    /// The distribution of the rates of a cell that changes, given the rate of its own cluster or of the cluster
-    /// beside it.
-    pub(super) fn distribution(&self, rates: &Rates, cluster_rate: Option<f64>) -> Distribution {
-        let Some(cluster_rate) = cluster_rate else { return self.distribution };
+    /// The distribution of the rates of a cell that changes, given the rate of the cluster beside it.
+    fn distribution(&self, rates: &Rates, cluster_rate: f64) -> Distribution {
         let around = rates.around(cluster_rate);
         std::array::from_fn(|rate| SAME_RATE * around[rate] + (1.0 - SAME_RATE) * self.distribution[rate])
     }
 
-    /// Learns the distribution of the rates from the rates of all cells that changed.
-    pub(super) fn learn_rates<'a>(&mut self, changed: impl Iterator<Item = &'a Distribution>) {
-        let mut sums = [FLAT / RATES as f64; RATES];
-        for distribution in changed {
-            sums.iter_mut().zip(distribution).for_each(|(sum, probability)| *sum += probability);
-        }
+    /// Learns the distribution of the rates from the number of changed cells with each rate.
+    pub(super) fn learn_rates(&mut self, cells: [u32; RATES]) {
+        let sums = cells.map(|cells| f64::from(cells) + FLAT / RATES as f64);
         let total: f64 = sums.iter().sum();
         self.distribution = sums.map(|sum| sum / total);
     }
 
-    /// Calls `take` with each cell that never changed and can be worth a visit, and with the gains of observing it.
+    /// Calls `take` with each cell that never changed and can be worth a visit, and with the gains of observing it. An
+    /// observation without an event counts `path_in_view` times far from all clusters.
     /// Learns how likely such cells are to change. One pass over the map.
     pub(super) fn gains_of_unchanged(
         &mut self,
         mapper: &Mapper,
         clusters: &Clusters,
         rates: &Rates,
+        path_in_view: f64,
         mut take: impl FnMut(usize, &Gains),
     ) {
         let table: Vec<(f64, Gains)> = (0..BINS).map(|bin| rates.silent(&self.distribution, bin)).collect();
@@ -112,7 +106,7 @@ impl Change {
             let (probability, watched, factor) = match (state, position) {
                 (CellState::Unknown, _) => (self.probability(position), 0.0, UNKNOWN),
                 (CellState::Free, Position::Far) => {
-                    (self.far, PATH_IN_VIEW * since_first_seen(mapper, cell), 1.0)
+                    (self.far, path_in_view * mapper.statistics(cell).watched_free, 1.0)
                 }
                 (CellState::Free, _) => {
                     (self.probability(position), mapper.statistics(cell).watched_free, 1.0)
@@ -121,7 +115,7 @@ impl Change {
             };
             let bin = Rates::bin(watched);
             let (silent, gains) = if cluster_rate.is_finite() && *state != CellState::Blocked {
-                rates.silent(&self.distribution(rates, Some(cluster_rate)), bin)
+                rates.silent(&self.distribution(rates, cluster_rate), bin)
             } else {
                 table[bin]
             };

@@ -82,11 +82,6 @@ impl Clusters {
         self.degrees[cell]
     }
 
-    /// The rate of the cluster of a changed cell; `None` for other cells.
-    pub(super) fn rate(&self, cell: usize) -> Option<f64> {
-        self.rates.get(self.of[cell] as usize).copied()
-    }
-
     /// The position of a cell relative to the cells that changed, and the lowest rate of the clusters beside it (∞
     /// far from all clusters).
     pub(super) fn position(&self, frame: &GridFrame, cell: usize) -> (Position, f64) {

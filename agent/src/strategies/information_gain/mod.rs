@@ -4,7 +4,6 @@ mod change;
 mod clusters;
 mod occlusion;
 mod rates;
-mod runs;
 mod travel_times;
 mod view_reliability;
 
@@ -17,8 +16,7 @@ use clusters::{Clusters, Position};
 use interfaces::{Cell, CellState};
 use mapper::Mapper;
 use occlusion::Occlusion;
-use rates::{Gains, Rates, WATCHES};
-use runs::Runs;
+use rates::{Gains, RATES, Rates, WATCHES};
 use view_reliability::ViewReliability;
 
 /// The maximum duration of an observation before the next decision, in the time unit of the readings. New
@@ -26,10 +24,11 @@ use view_reliability::ViewReliability;
 const LONGEST_WATCH: f64 = 5.0;
 /// The time that every visit takes in addition to travel and observation.
 const OVERHEAD: f64 = 1.0;
+/// The number of cells in which an undiscovered moving thing of one cell could have been seen: an observation without an
+/// event, far from all clusters, counts this many times.
+const PATH_IN_VIEW: f64 = 5.0;
 /// The factor on the value of a region beside a cluster, where the robot may block the path of a moving thing.
 const IN_THE_WAY: f64 = 0.5;
-/// If a region is nearer than this, the cells in view stay in view on the way there.
-const STILL_IN_VIEW: f64 = 3.0;
 
 /// Goes to the region where a visit reduces the error of the rates most, per time to get there and to observe.
 ///
@@ -50,22 +49,19 @@ const STILL_IN_VIEW: f64 = 3.0;
 /// - *Whether a cell changes.* The distribution of the rate has a spike at zero. The share of cells that change is
 ///   learned from the cells seen so far, and is larger beside the end of a cluster; a cell that was observed for
 ///   long without an event is probably static (empirical Bayes).
-/// - *The gain of an observation.* After n cycles with variance V the error is √(2 V / π) / n. With fewer than
-///   three cycles the error is averaged over the rates that the cell may have. An uninterrupted observation has
-///   less variance than the same time in pieces, so that it is better to stay.
+/// - *The gain of an observation.* After n cycles in view the error is about 0.9 / √(n + ½), so that each further cycle
+///   gains less.
 /// - *What is really seen.* A moving thing hides the cells behind it. Some cells should not be observed from a
 ///   region at all: cells that things enter from their own shadow. The events of such a cell are missed, but its
 ///   time counts.
 ///
 /// Each file of this folder describes one estimate. All times are in the time unit of the readings. All constants
-/// were set on worlds that are not among those of the reported results.
-/// constants were set on other worlds than those of the reported results.
+/// were set on other worlds than those of the reported results.
 #[derive(Clone, Debug)]
 pub struct InformationGain {
     visibility: Visibility,
     rates: Rates,
     change: Change,
-    runs: Runs,
     reliability: ViewReliability,
     plan: Option<Plan>,
 }
@@ -94,32 +90,28 @@ impl InformationGain {
             visibility: Visibility::new(settings.sensor_radius_m),
             rates: Rates::new(),
             change: Change::new(),
-            runs: Runs::default(),
             reliability: ViewReliability::default(),
             plan: None,
         }
     }
 
-    /// The gains of a new observation, and of one that continues without a gap.
-    fn gains(&mut self, mapper: &Mapper, clusters: &Clusters, regions: &Regions) -> [RegionGains; 2] {
-        let mut anew = vec![[0.0; WATCHES.len()]; regions.count()];
-        let mut continued = anew.clone();
-        let Self { change, runs, rates, .. } = self;
-        runs.update(mapper, |cell, seen| {
-            rates.of_changed(seen, &change.distribution(rates, clusters.rate(cell)))
-        });
-        change.learn_rates(runs.expected().map(|(_, expected)| &expected.distribution));
-        for (cell, expected) in runs.expected() {
-            let region = regions.of(cell);
-            add(&mut anew[region], &expected.anew);
-            let is_in_view = mapper.is_in_view(cell);
-            add(&mut continued[region], if is_in_view { &expected.continued } else { &expected.anew });
+    /// The gains of an observation of each region.
+    fn gains(&mut self, mapper: &Mapper, clusters: &Clusters, regions: &Regions) -> RegionGains {
+        let mut sums = vec![[0.0; WATCHES.len()]; regions.count()];
+        let mut cells_with_rate = [0; RATES];
+        for cell in mapper.changed() {
+            let seen = mapper.statistics(cell);
+            let cycles = 0.5 * f64::from(seen.block_events + seen.free_events);
+            let (rate, gains) = self.rates.of_changed(cycles, seen.watched_free + seen.watched_blocked);
+            cells_with_rate[rate] += 1;
+            add(&mut sums[regions.of(cell)], &gains);
         }
-        change.gains_of_unchanged(mapper, clusters, rates, |cell, gains| {
-            add(&mut anew[regions.of(cell)], gains);
-            add(&mut continued[regions.of(cell)], gains);
+        self.change.learn_rates(cells_with_rate);
+        let path_in_view = if regions.are_cells() { PATH_IN_VIEW } else { 1.0 };
+        self.change.gains_of_unchanged(mapper, clusters, &self.rates, path_in_view, |cell, gains| {
+            add(&mut sums[regions.of(cell)], gains);
         });
-        [anew, continued]
+        sums
     }
 
     /// The gain of each duration of an observation from a region: the sum over the regions in view, weighted by the
@@ -154,25 +146,26 @@ impl Strategy for InformationGain {
         let regions = self.visibility.update(mapper);
         self.reliability.end(mapper, &mut self.visibility, &regions, situation.cell());
         let clusters = Clusters::new(mapper);
-        let [anew, continued] = self.gains(mapper, &clusters, &regions);
+        let gains = self.gains(mapper, &clusters, &regions);
         let travel = travel_times::times(situation);
-        // Occlusion is modeled for things of one cell; a thing that covers many cells hides others in another way.
-        let occlusion = regions.are_cells().then(|| Occlusion::new(mapper, &clusters));
+        // Where things are as large as a cell, a robot on a path blocks the path, and a thing hides the cells behind it.
+        // Where things cover many cells, most of the free space is on some path, and the robot can be passed.
+        let is_in_the_way = regions.are_cells();
+        let occlusion = is_in_the_way.then(|| Occlusion::new(mapper, &clusters));
         let mut watches = vec![0.0; regions.count()];
         for (region, chosen) in watches.iter_mut().enumerate() {
             let may_stand = |&cell: &usize| {
                 mapper.states().cells()[cell] == CellState::Free
-                    && !clusters.has(cell)
+                    && !(is_in_the_way && clusters.has(cell))
                     && travel[cell] < f64::INFINITY
             };
             let nearest = |one: &usize, other: &usize| travel[*one].total_cmp(&travel[*other]);
             let Some(cell) = regions.cells(region).filter(may_stand).min_by(nearest) else { continue };
-            let gains = if travel[cell] <= STILL_IN_VIEW { &continued } else { &anew };
-            let sums = self.in_view(region, gains, |seen| match &occlusion {
+            let sums = self.in_view(region, &gains, |seen| match &occlusion {
                 Some(occlusion) if clusters.has(seen) => occlusion.visible_share(region, seen),
                 _ => 1.0,
             });
-            let is_beside = clusters.position(frame, cell).0 != Position::Far;
+            let is_beside = is_in_the_way && clusters.position(frame, cell).0 != Position::Far;
             let factor = if is_beside { IN_THE_WAY } else { 1.0 };
             for (sum, watch) in sums.into_iter().zip(WATCHES) {
                 let worth = factor * f64::from(sum) / (travel[cell] + watch + OVERHEAD);
