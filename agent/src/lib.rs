@@ -18,6 +18,7 @@ mod sampling;
 mod settings;
 mod situation;
 mod strategies;
+mod unseen;
 mod visibility;
 
 pub use agent::Agent;
