@@ -21,7 +21,7 @@ const WATCH: f64 = 1.0;
 const RETRY: f64 = 30.0;
 /// The minimum number of frontier cells in a region that are worth a goal: single cells at corners and edges often stay
 /// unknown from everywhere.
-const MIN_CELLS: usize = 3;
+const MIN_CELLS: usize = 2;
 /// The number of directions in which a line of sight is searched.
 const DIRECTIONS: u32 = 360;
 
@@ -38,8 +38,8 @@ struct Looks {
 #[derive(Clone, Copy, Debug)]
 struct Target {
     region: usize,
-    /// The frontier cells in the region when the goal was selected.
-    cells: usize,
+    /// A frontier cell in the region.
+    cell: usize,
 }
 
 /// Selects goals from which the frontier of unseen space can be seen.
@@ -69,9 +69,9 @@ impl UnseenSpace {
         for cell in (0..mapper.frame().len()).filter(|&cell| is_frontier(mapper, cell)) {
             self.frontier[regions.of(cell)] += 1;
         }
-        if let Some(Target { region, cells }) = self.target.take() {
+        if let Some(Target { region, cell }) = self.target.take() {
             let looks = &mut self.looks[region];
-            if 2 * self.frontier[region] <= cells {
+            if mapper.states().cells()[cell] != CellState::Unknown {
                 looks.failed = 0;
             } else {
                 looks.not_before = mapper.time() + RETRY * libm::exp2(f64::from(looks.failed));
@@ -86,24 +86,25 @@ impl UnseenSpace {
     pub(crate) fn goal(&mut self, situation: &Situation) -> Option<Goal> {
         let mapper = situation.mapper;
         let regions = self.regions(mapper);
-        let mut best: Option<(f64, usize, Cell)> = None;
+        let mut best: Option<(f64, Target, Cell)> = None;
         for region in (0..regions.count()).filter(|&region| self.is_due(region, mapper.time())) {
-            let Some((time, cell)) = self.viewpoint(situation, &regions, region) else { continue };
+            let Some(target) = self.target_in(mapper, &regions, region) else { continue };
+            let Some((time, cell)) = self.viewpoint(situation, target.cell) else { continue };
             let worth = self.frontier[region] as f64 / (time + WATCH);
             if best.is_none_or(|(most, ..)| worth > most) {
-                best = Some((worth, region, cell));
+                best = Some((worth, target, cell));
             }
         }
-        let (_, region, cell) = best?;
-        self.target = Some(Target { region, cells: self.frontier[region] });
+        let (_, target, cell) = best?;
+        self.target = Some(target);
         Some(Goal { cell, stay: Stay::Watch(WATCH) })
     }
 
     /// Whether the last goal has shown what the robot went to look at.
     pub(crate) fn is_seen(&self, mapper: &Mapper) -> bool {
         let Some((target, frame)) = self.target.zip(self.frame) else { return false };
-        let mut cells = Regions::with_side(frame, self.region_cells).cells(target.region);
-        !cells.any(|cell| is_frontier(mapper, cell))
+        let regions = Regions::with_side(frame, self.region_cells);
+        !regions.cells(target.region).any(|cell| is_frontier(mapper, cell))
     }
 
     fn is_due(&self, region: usize, time: f64) -> bool {
@@ -120,13 +121,17 @@ impl UnseenSpace {
         regions
     }
 
-    /// The cell nearest in travel time from which a frontier cell of the region can be seen, and the travel time.
-    fn viewpoint(&self, situation: &Situation, regions: &Regions, region: usize) -> Option<(f64, Cell)> {
+    /// A frontier cell of a region; another one after a look that showed nothing new.
+    fn target_in(&self, mapper: &Mapper, regions: &Regions, region: usize) -> Option<Target> {
+        let nth = (self.frontier[region] / 2 + self.looks[region].failed as usize) % self.frontier[region].max(1);
+        let cell = regions.cells(region).filter(|&cell| is_frontier(mapper, cell)).nth(nth)?;
+        Some(Target { region, cell })
+    }
+
+    /// The cell nearest in travel time from which `target` can be seen, and the travel time.
+    fn viewpoint(&self, situation: &Situation, target: usize) -> Option<(f64, Cell)> {
         let (mapper, frame) = (situation.mapper, situation.mapper.frame());
-        let frontier: Vec<usize> = regions.cells(region).filter(|&cell| is_frontier(mapper, cell)).collect();
-        // A second look is at another cell.
-        let middle = frontier.len() / 2 + self.looks[region].failed as usize;
-        let target = frame.center(frame.cell(*frontier.get(middle % frontier.len().max(1))?));
+        let target = frame.center(frame.cell(target));
         let step_m = frame.resolution_m() / 2.0;
         let steps = (self.range_m / step_m) as u32;
         let along = |direction: u32| {
@@ -136,8 +141,8 @@ impl UnseenSpace {
                 let state = mapper.states().get(cell)?;
                 (*state != CellState::Blocked).then_some(cell)
             });
-            let times = cells.filter_map(|cell| Some((situation.travel_to(frame.index(cell)?), cell)));
-            times.into_iter().find(|(time, _)| time.is_finite())
+            let mut times = cells.filter_map(|cell| Some((situation.travel_to(frame.index(cell)?), cell)));
+            times.find(|(time, _)| time.is_finite())
         };
         (0..DIRECTIONS).filter_map(along).min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
