@@ -114,7 +114,8 @@ impl Agent {
             travel.times(mapper, pose, &mut self.travel);
         }
         let situation = Situation::new(mapper, pose, self.features).with_travel(&self.travel);
-        if let Some(goal) = self.unseen.as_mut().filter(|_| looks).and_then(|unseen| unseen.goal(&situation)) {
+        if let Some(goal) = self.unseen.as_mut().filter(|_| looks).and_then(|unseen| unseen.goal(&situation))
+        {
             self.current = None;
             return goal;
         }

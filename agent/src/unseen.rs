@@ -23,7 +23,10 @@ const RETRY: f64 = 30.0;
 /// unknown from everywhere.
 const MIN_CELLS: usize = 2;
 /// The number of directions in which a line of sight is searched.
-const DIRECTIONS: u32 = 360;
+const DIRECTIONS: u32 = 720;
+/// The number of directions on each side of a line of sight that should be free as well, since the robot does not stop
+/// exactly at its goal.
+const MARGIN: usize = 8;
 
 /// The looks at a region of the map.
 #[derive(Clone, Copy, Debug, Default)]
@@ -123,7 +126,8 @@ impl UnseenSpace {
 
     /// A frontier cell of a region; another one after a look that showed nothing new.
     fn target_in(&self, mapper: &Mapper, regions: &Regions, region: usize) -> Option<Target> {
-        let nth = (self.frontier[region] / 2 + self.looks[region].failed as usize) % self.frontier[region].max(1);
+        let nth =
+            (self.frontier[region] / 2 + self.looks[region].failed as usize) % self.frontier[region].max(1);
         let cell = regions.cells(region).filter(|&cell| is_frontier(mapper, cell)).nth(nth)?;
         Some(Target { region, cell })
     }
@@ -144,7 +148,16 @@ impl UnseenSpace {
             let mut times = cells.filter_map(|cell| Some((situation.travel_to(frame.index(cell)?), cell)));
             times.find(|(time, _)| time.is_finite())
         };
-        (0..DIRECTIONS).filter_map(along).min_by(|(a, _), (b, _)| a.total_cmp(b))
+        let seen: Vec<Option<(f64, Cell)>> = (0..DIRECTIONS).map(along).collect();
+        let margin = |direction: usize| {
+            let at = |offset: usize| seen[(direction + offset) % seen.len()].is_some();
+            (0..MARGIN).take_while(|&off| at(off) && at(seen.len() - off)).count()
+        };
+        let order = |(a, from): &(usize, (f64, Cell)), (b, other): &(usize, (f64, Cell))| {
+            margin(*b).cmp(&margin(*a)).then(from.0.total_cmp(&other.0))
+        };
+        let views = seen.iter().enumerate().filter_map(|(direction, view)| Some((direction, (*view)?)));
+        views.min_by(order).map(|(_, view)| view)
     }
 }
 

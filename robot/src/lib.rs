@@ -10,6 +10,7 @@
 mod autonomous;
 mod messages;
 mod pilot;
+mod planning_map;
 mod tour;
 
 pub use autonomous::{Autonomous, Destination, GoalSelector};
