@@ -15,10 +15,11 @@ use mapper::Mapper;
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 
-/// The duration of a look, in the time unit of the readings.
-const WATCH: f64 = 1.0;
+/// The maximum duration of a look, in the time unit of the readings. A map can need some readings before it takes a cell
+/// beside a surface for free.
+const WATCH: f64 = 3.0;
 /// The time after which a look that showed nothing new is repeated for the first time, in the time unit of the readings.
-const RETRY: f64 = 30.0;
+const RETRY: f64 = 60.0;
 /// The minimum number of frontier cells in a region that are worth a goal: single cells at corners and edges often stay
 /// unknown from everywhere.
 const MIN_CELLS: usize = 2;

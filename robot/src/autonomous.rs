@@ -117,7 +117,7 @@ impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
         match self.controller.status() {
             Status::Idle if !self.is_done => self.start_next(belief, situation, None),
             Status::Finished(outcome) => self.start_next(belief, situation, Some(outcome)),
-            Status::Travelling if self.selector.is_obsolete(belief) => {
+            Status::Travelling | Status::Exploring if self.selector.is_obsolete(belief) => {
                 self.start_next(belief, situation, Some(Outcome::Reached));
             }
             _ => return command,
