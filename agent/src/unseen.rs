@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 /// beside a surface for free.
 const WATCH: f64 = 2.5;
 /// The time after which a look that showed nothing new is repeated for the first time, in the time unit of the readings.
-const RETRY: f64 = 60.0;
+const RETRY: f64 = 30.0;
 /// The minimum number of frontier cells in a region that are worth a goal: single cells at corners and edges often stay
 /// unknown from everywhere.
 const MIN_CELLS: usize = 2;
@@ -65,8 +65,7 @@ impl UnseenSpace {
         Self { region_cells, range_m, frame, looks: Vec::new(), frontier: Vec::new(), target }
     }
 
-    /// Ends the last look. Returns whether the next goal is a look: some frontier is due, and the last look has shown
-    /// something new. After a look that did not, the strategies decide once.
+    /// Ends the last look. Returns whether any frontier is due for a look now.
     pub(crate) fn update(&mut self, mapper: &Mapper) -> bool {
         let regions = self.regions(mapper);
         self.frontier.clear();
@@ -74,7 +73,6 @@ impl UnseenSpace {
         for cell in (0..mapper.frame().len()).filter(|&cell| is_frontier(mapper, cell)) {
             self.frontier[regions.of(cell)] += 1;
         }
-        let mut has_failed = false;
         if let Some(Target { region, cell }) = self.target.take() {
             let looks = &mut self.looks[region];
             if mapper.states().cells()[cell] != CellState::Unknown {
@@ -82,10 +80,9 @@ impl UnseenSpace {
             } else {
                 looks.not_before = mapper.time() + RETRY * libm::exp2(f64::from(looks.failed));
                 looks.failed += 1;
-                has_failed = true;
             }
         }
-        !has_failed && (0..regions.count()).any(|region| self.is_due(region, mapper.time()))
+        (0..regions.count()).any(|region| self.is_due(region, mapper.time()))
     }
 
     /// The goal from which most frontier can be seen per time to get there, which must be known; `None` if none of the
