@@ -103,7 +103,9 @@ impl Agent {
         }
     }
 
-    /// Ends the trajectory to the last goal, learns from the trajectory, chooses a strategy and samples the next
+    /// Ends the trajectory to the last goal, and learns from the trajectory. With
+    /// [`looks_at_unseen`](AgentSettings::looks_at_unseen), and while unseen space can be looked at, the next goal is a
+    /// look, which belongs to no strategy. Otherwise the agent chooses a strategy and samples the next
     /// goal: a cell that [can be a goal](Mapper::is_candidate). If there is no such cell, the goal is the cell of
     /// the robot.
     pub fn next_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, travel: &mut impl Travel) -> Goal {
@@ -150,7 +152,8 @@ impl Agent {
         self.strategies.iter().map(|strategy| strategy.name())
     }
 
-    /// The index of the strategy that selected the present goal; `None` before the first goal.
+    /// The index of the strategy that selected the present goal; `None` before the first goal, and for a look into
+    /// unseen space.
     pub fn current(&self) -> Option<usize> {
         self.current
     }
