@@ -85,8 +85,8 @@ impl UnseenSpace {
         (0..regions.count()).any(|region| self.is_due(region, mapper.time()))
     }
 
-    /// The goal from which most frontier can be seen per time to get there, which must be known; `None` if none of the
-    /// frontier that is due can be seen from a cell that the robot can reach.
+    /// The goal for the region with most frontier cells per time to get a view of it; `None` if none of the frontier that
+    /// is due can be seen from a cell that the robot can reach. The situation must have travel times.
     pub(crate) fn goal(&mut self, situation: &Situation) -> Option<Goal> {
         let mapper = situation.mapper;
         let regions = self.regions(mapper);
@@ -133,7 +133,8 @@ impl UnseenSpace {
         Some(Target { region, cell })
     }
 
-    /// The cell nearest in travel time from which `target` can be seen, and the travel time.
+    /// The cell from which `target` can be seen, and the travel time to the cell: a cell with a margin for the view, and
+    /// of these the nearest. Unknown cells are taken for transparent.
     fn viewpoint(&self, situation: &Situation, target: usize) -> Option<(f64, Cell)> {
         let (mapper, frame) = (situation.mapper, situation.mapper.frame());
         let target = frame.center(frame.cell(target));
@@ -150,6 +151,7 @@ impl UnseenSpace {
             times.find(|(time, _)| time.is_finite())
         };
         let seen: Vec<Option<(f64, Cell)>> = (0..DIRECTIONS).map(along).collect();
+        // Whether the directions beside are free as well: in a gap, the middle of the view.
         let margin = |direction: usize| {
             let at = |offset: usize| seen[(direction + offset) % seen.len()].is_some();
             (0..MARGIN).take_while(|&off| at(off) && at(seen.len() - off)).count()
