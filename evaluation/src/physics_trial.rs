@@ -108,7 +108,7 @@ impl PhysicsSettings {
     ) -> Result<Autonomous<G, DiffDrive>, SettingsError> {
         let stream = RandomStream::new(seed, Purpose::Controller);
         let controller = Controller::new(self.controller, DiffDrive::new(self.drive)?, stream)?;
-        Ok(Autonomous::new(selector, controller).trying_again())
+        Ok(Autonomous::new(selector, controller))
     }
 
     /// The agent that follows `policy`.

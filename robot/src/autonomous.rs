@@ -1,4 +1,3 @@
-use crate::planning_map::PlanningMap;
 use crate::{Belief, GoalCount, Level, Message, Pilot, StrategyState};
 use agent::{Agent, Features, Goal, Stay, Travel};
 use controller::{Controller, Drive, Outcome, Situation, Status};
@@ -45,29 +44,12 @@ pub struct Autonomous<G, D: Drive> {
     goals: GoalCount,
     messages: Vec<Message>,
     is_done: bool,
-    /// Whether paths lead through what is probably open again.
-    tries_again: bool,
-    planning_map: Option<PlanningMap>,
 }
 
 impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
     /// A pilot that has no goal yet.
     pub fn new(selector: G, controller: Controller<D>) -> Self {
-        Self {
-            selector,
-            controller,
-            goals: GoalCount::default(),
-            messages: Vec::new(),
-            is_done: false,
-            tries_again: false,
-            planning_map: None,
-        }
-    }
-
-    /// The same pilot, whose paths also lead through cells that were last seen blocked, but were probably free since
-    /// then by what the mapper knows of their changes: a closed door is tried again.
-    pub fn trying_again(self) -> Self {
-        Self { tries_again: true, ..self }
+        Self { selector, controller, goals: GoalCount::default(), messages: Vec::new(), is_done: false }
     }
 
     /// The goal selector.
@@ -80,7 +62,7 @@ impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
     }
 
     /// Counts the outcome of the last goal, and selects the next one.
-    fn start_next(&mut self, belief: &Belief, situation: &Situation, last: Option<Outcome>) {
+    fn start_next(&mut self, belief: &Belief, last: Option<Outcome>) {
         match last {
             Some(Outcome::GivenUp) => {
                 self.goals.given_up += 1;
@@ -90,7 +72,7 @@ impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
             Some(Outcome::Nearest) => self.goals.approached += 1,
             None => {}
         }
-        let mut travel = TravelTimes { controller: &mut self.controller, situation };
+        let mut travel = TravelTimes { controller: &mut self.controller };
         let Some(Destination { position, stay }) = self.selector.next_goal(belief, &mut travel) else {
             self.controller.cancel();
             self.is_done = true;
@@ -103,28 +85,6 @@ impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
         let reason = self.selector.reason();
         self.log(Level::Decision, format!("{reason}: to ({:.2}, {:.2})", position.x, position.y));
     }
-
-    /// The map for planning with the last reading; `None` to plan on the map as last seen.
-    fn update_planning_map(&mut self, mapper: &Mapper) -> Option<PlanningMap> {
-        let known = self.planning_map.take().filter(|known| known.map().frame() == mapper.frame());
-        let Some(mut known) = known else { return self.tries_again.then(|| PlanningMap::new(mapper)) };
-        known.update(mapper);
-        Some(known)
-    }
-
-    fn decide(&mut self, belief: &Belief, situation: &Situation) -> D::Command {
-        let command = self.controller.drive(situation);
-        match self.controller.status() {
-            Status::Idle if !self.is_done => self.start_next(belief, situation, None),
-            Status::Finished(outcome) => self.start_next(belief, situation, Some(outcome)),
-            Status::Travelling | Status::Exploring if self.selector.is_obsolete(belief) => {
-                self.start_next(belief, situation, Some(Outcome::Reached));
-            }
-            _ => return command,
-        }
-        // Drive to the new goal in the same tick. The controller already has the transitions of this reading.
-        self.controller.drive(&Situation { transitions: &[], ..*situation })
-    }
 }
 
 impl<G: GoalSelector, D: Drive> Pilot for Autonomous<G, D> {
@@ -132,11 +92,18 @@ impl<G: GoalSelector, D: Drive> Pilot for Autonomous<G, D> {
 
     fn command(&mut self, belief: &Belief) -> D::Command {
         self.selector.observe(belief);
-        let planning_map = self.update_planning_map(belief.mapper);
-        let situation = situation(belief, planning_map.as_ref());
-        let command = self.decide(belief, &situation);
-        self.planning_map = planning_map;
-        command
+        let situation = situation(belief.mapper, belief.pose);
+        let command = self.controller.drive(&situation);
+        match self.controller.status() {
+            Status::Idle if !self.is_done => self.start_next(belief, None),
+            Status::Finished(outcome) => self.start_next(belief, Some(outcome)),
+            Status::Travelling | Status::Exploring if self.selector.is_obsolete(belief) => {
+                self.start_next(belief, Some(Outcome::Reached));
+            }
+            _ => return command,
+        }
+        // Drive to the new goal in the same tick. The controller already has the transitions of this reading.
+        self.controller.drive(&Situation { transitions: &[], ..situation })
     }
 
     fn path(&self) -> &[Point2<f64>] {
@@ -164,24 +131,24 @@ impl<G: GoalSelector, D: Drive> Pilot for Autonomous<G, D> {
     }
 }
 
-fn situation<'a>(belief: &Belief<'a>, planning_map: Option<&'a PlanningMap>) -> Situation<'a> {
-    let Belief { pose, mapper, .. } = *belief;
-    let (map, transitions) = match planning_map {
-        Some(planning_map) => (planning_map.map(), planning_map.transitions()),
-        None => (mapper.states(), mapper.transitions()),
-    };
-    Situation { time: mapper.time(), pose, map, transitions, points: mapper.points() }
+fn situation<'a>(mapper: &'a Mapper, pose: &'a Isometry2<f64>) -> Situation<'a> {
+    Situation {
+        time: mapper.time(),
+        pose,
+        map: mapper.states(),
+        transitions: mapper.transitions(),
+        points: mapper.points(),
+    }
 }
 
 /// The travel times along the paths that the controller would plan.
 struct TravelTimes<'a, D: Drive> {
     controller: &'a mut Controller<D>,
-    situation: &'a Situation<'a>,
 }
 
 impl<D: Drive> Travel for TravelTimes<'_, D> {
-    fn times(&mut self, _mapper: &Mapper, _pose: &Isometry2<f64>, times: &mut Vec<f64>) {
-        self.controller.travel_times(self.situation, times);
+    fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
+        self.controller.travel_times(&situation(mapper, pose), times);
     }
 }
 

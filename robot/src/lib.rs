@@ -10,7 +10,6 @@
 mod autonomous;
 mod messages;
 mod pilot;
-mod planning_map;
 mod tour;
 
 pub use autonomous::{Autonomous, Destination, GoalSelector};
