@@ -5,6 +5,7 @@ use crate::policy::Policy;
 use crate::settings::{AgentSettings, Reward};
 use crate::situation::{Situation, Travel};
 use crate::strategies::Strategy;
+use crate::unseen::UnseenSpace;
 use interfaces::{RandomStream, SettingsError, Transition};
 use mapper::Mapper;
 use nalgebra::Isometry2;
@@ -19,11 +20,13 @@ pub struct Agent {
     strategies: Vec<Box<dyn Strategy>>,
     chooser: Box<dyn Chooser>,
     goals: GoalSampler,
+    /// Looks into unseen space before the strategies decide; `None`: the strategies decide alone.
+    unseen: Option<UnseenSpace>,
     /// The travel time to each cell, for strategies that need it.
     travel: Vec<f64>,
     reward: Reward,
     rng: RandomStream,
-    /// The index of the strategy that sampled the present goal.
+    /// The index of the strategy that sampled the present goal; `None` for a look into unseen space.
     current: Option<usize>,
     /// The features of every reading since the present goal was sampled, T of section 4.
     trajectory: Vec<Features>,
@@ -75,6 +78,9 @@ impl Agent {
             strategies,
             chooser,
             goals: GoalSampler::new(settings.patch_cells),
+            unseen: settings
+                .looks_at_unseen
+                .then(|| UnseenSpace::new(settings.patch_cells, settings.sensor_radius_m)),
             travel: Vec::new(),
             reward: settings.reward,
             rng,
@@ -97,20 +103,34 @@ impl Agent {
         }
     }
 
-    /// Ends the trajectory to the last goal, learns from the trajectory, chooses a strategy and samples the next
+    /// Ends the trajectory to the last goal, and learns from the trajectory. With
+    /// [`looks_at_unseen`](AgentSettings::looks_at_unseen), and while unseen space can be looked at, the next goal is a
+    /// look, which belongs to no strategy. Otherwise the agent chooses a strategy and samples the next
     /// goal: a cell that [can be a goal](Mapper::is_candidate). If there is no such cell, the goal is the cell of
     /// the robot.
     pub fn next_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, travel: &mut impl Travel) -> Goal {
         self.learn(mapper);
         self.travel.clear();
-        if self.strategies.iter().any(|strategy| strategy.needs_travel()) {
+        let looks = self.unseen.as_mut().is_some_and(|unseen| unseen.update(mapper));
+        if looks || self.strategies.iter().any(|strategy| strategy.needs_travel()) {
             travel.times(mapper, pose, &mut self.travel);
         }
         let situation = Situation::new(mapper, pose, self.features).with_travel(&self.travel);
+        if let Some(goal) = self.unseen.as_mut().filter(|_| looks).and_then(|unseen| unseen.goal(&situation))
+        {
+            self.current = None;
+            return goal;
+        }
         let strategy = self.chooser.choose(&situation, &mut self.rng).min(self.strategies.len() - 1);
         self.current = Some(strategy);
         self.goal_counts[strategy] += 1;
         self.goals.sample(&mut *self.strategies[strategy], &situation, &mut self.rng)
+    }
+
+    /// Whether the present goal has served its purpose before the robot is there: a look into unseen space whose
+    /// target is in view already.
+    pub fn is_goal_obsolete(&self, mapper: &Mapper) -> bool {
+        self.current.is_none() && self.unseen.as_ref().is_some_and(|unseen| unseen.is_seen(mapper))
     }
 
     fn learn(&mut self, mapper: &Mapper) {
@@ -132,7 +152,8 @@ impl Agent {
         self.strategies.iter().map(|strategy| strategy.name())
     }
 
-    /// The index of the strategy that selected the present goal; `None` before the first goal.
+    /// The index of the strategy that selected the present goal; `None` before the first goal, and for a look into
+    /// unseen space.
     pub fn current(&self) -> Option<usize> {
         self.current
     }

@@ -2,7 +2,8 @@
 //!
 //! A [`Strategy`] gives each cell a weight: how much a visit of the cell is worth. A [`Chooser`] selects the
 //! strategy for the next goal. The [`Agent`] combines both: it processes every reading, and when the controller has
-//! finished a goal, the agent learns from the trajectory and samples the next goal. This crate knows the map; it
+//! finished a goal, the agent learns from the trajectory and samples the next goal. If the settings say so, the agent
+//! looks into unseen space before its strategies decide. This crate knows the map; it
 //! must not know a simulator, a controller or the true rates of change.
 //!
 //! A [`Policy`] names strategies and a chooser. A new policy in this crate is one file under `strategies` or
@@ -18,6 +19,7 @@ mod sampling;
 mod settings;
 mod situation;
 mod strategies;
+mod unseen;
 mod visibility;
 
 pub use agent::Agent;

@@ -34,6 +34,9 @@ pub struct AgentSettings {
     pub sensor_radius_m: f64,
     /// The events that count as map updates.
     pub reward: Reward,
+    /// Whether the robot looks into unseen space that it can reach before its strategies decide. The paper's robot
+    /// does not: in its worlds everything comes into view soon.
+    pub looks_at_unseen: bool,
     /// Settings of the paper's chooser.
     pub curious: CuriousSettings,
 }
@@ -44,6 +47,7 @@ impl Default for AgentSettings {
             patch_cells: 5,
             sensor_radius_m: 10.0,
             reward: Reward::default(),
+            looks_at_unseen: false,
             curious: CuriousSettings::default(),
         }
     }
@@ -73,7 +77,7 @@ impl Default for CuriousSettings {
 
 impl AgentSettings {
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
-        let Self { patch_cells, sensor_radius_m, reward: _, ref curious } = *self;
+        let Self { patch_cells, sensor_radius_m, reward: _, looks_at_unseen: _, ref curious } = *self;
         let check = SettingsCheck { part: "agent" };
         check.within("patch_cells", patch_cells as f64, 1.0..=1e3, "from 1 to 1000")?;
         check.within("sensor_radius_m", sensor_radius_m, 1e-3..=1e6, "from 0.001 to 1000000")?;
@@ -142,7 +146,8 @@ mod tests {
         }
         assert_eq!(
             unreadable("patches", "3"),
-            "unknown field `patches`, expected one of `patch_cells`, `sensor_radius_m`, `reward`, `curious`"
+            "unknown field `patches`, expected one of `patch_cells`, `sensor_radius_m`, `reward`, \
+             `looks_at_unseen`, `curious`"
         );
         assert_eq!(
             unreadable("reward", "joy"),

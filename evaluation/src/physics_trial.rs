@@ -75,6 +75,7 @@ impl PhysicsSettings {
         let mut agent = AgentSettings {
             patch_cells: (PATCH_M / cell_m).round().max(1.0) as _,
             sensor_radius_m: robot.laser.range_max_m,
+            looks_at_unseen: true,
             ..AgentSettings::default()
         };
         // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many cells wide, and

@@ -19,6 +19,11 @@ pub trait GoalSelector {
     /// gives the travel time to every cell.
     fn next_goal(&mut self, belief: &Belief, travel: &mut impl Travel) -> Option<Destination>;
 
+    /// Whether the present goal has served its purpose before the robot is there.
+    fn is_obsolete(&self, _belief: &Belief) -> bool {
+        false
+    }
+
     /// Called at every reading.
     fn observe(&mut self, _belief: &Belief) {}
 
@@ -92,6 +97,9 @@ impl<G: GoalSelector, D: Drive> Pilot for Autonomous<G, D> {
         match self.controller.status() {
             Status::Idle if !self.is_done => self.start_next(belief, None),
             Status::Finished(outcome) => self.start_next(belief, Some(outcome)),
+            Status::Travelling | Status::Exploring if self.selector.is_obsolete(belief) => {
+                self.start_next(belief, Some(Outcome::Reached));
+            }
             _ => return command,
         }
         // Drive to the new goal in the same tick. The controller already has the transitions of this reading.
@@ -150,13 +158,19 @@ impl GoalSelector for Agent {
         Some(Destination { position: belief.mapper.frame().center(cell), stay })
     }
 
+    fn is_obsolete(&self, belief: &Belief) -> bool {
+        self.is_goal_obsolete(belief.mapper)
+    }
+
     fn observe(&mut self, belief: &Belief) {
         Agent::watch(self, belief.features, belief.mapper.transitions());
     }
 
     fn reason(&self) -> String {
-        let name = self.current().and_then(|current| Agent::strategies(self).nth(current));
-        format!("{} (last reward {:.2})", name.unwrap_or("none"), self.last_reward())
+        match self.current().and_then(|current| Agent::strategies(self).nth(current)) {
+            Some(name) => format!("{name} (last reward {:.2})", self.last_reward()),
+            None => "unseen space".into(),
+        }
     }
 
     fn strategies(&self, features: Features) -> Vec<StrategyState> {

@@ -50,3 +50,9 @@ fn targets_hold_with_seed_1() {
 fn targets_hold_with_seed_2() {
     holds(2);
 }
+
+#[test]
+fn a_large_building_is_seen_soon() {
+    let summary = Run::quiet("--world warehouse --seed 100 --duration 5m").summary();
+    at_least("coverage", summary.number("/coverage_reachable"), 0.7);
+}

@@ -5,3 +5,4 @@ mod drawing;
 mod goals;
 mod information_gain;
 mod looking;
+mod unseen;

@@ -1,0 +1,170 @@
+//! Looks into space that was never seen, before the strategy of the agent decides.
+//!
+//! A strategy weighs places by what it knows of them, so that space behind furniture or at the far end of a large
+//! building can stay unseen for ever. The *frontier* of unseen space is the unknown cells beside free cells (Yamauchi
+//! 1997). While some of the frontier can be looked at from a cell that the robot can reach, that cell is the next goal.
+//! A look that shows nothing new is repeated after a time that doubles with every such look: what hides the frontier
+//! may be a door, or a body that moves away.
+
+use crate::goal_sampler::Goal;
+use crate::situation::Situation;
+use crate::strategies::Stay;
+use crate::visibility::Regions;
+use interfaces::{Cell, CellState, GridFrame};
+use mapper::Mapper;
+use nalgebra::Vector2;
+use std::f64::consts::TAU;
+
+/// The maximum duration of a look, in the time unit of the readings. A map can need some readings before it takes a cell
+/// beside a surface for free.
+const WATCH: f64 = 2.5;
+/// The time after which a look that showed nothing new is repeated for the first time, in the time unit of the readings.
+const RETRY: f64 = 30.0;
+/// The minimum number of frontier cells in a region that are worth a goal: single cells at corners and edges often stay
+/// unknown from everywhere.
+const MIN_CELLS: usize = 2;
+/// The number of directions in which a line of sight is searched.
+const DIRECTIONS: u32 = 720;
+/// The number of directions on each side of a line of sight that should be free as well, since the robot does not stop
+/// exactly at its goal.
+const MARGIN: usize = 8;
+
+/// The looks at a region of the map.
+#[derive(Clone, Copy, Debug, Default)]
+struct Looks {
+    /// The looks in a row that showed nothing new.
+    failed: u32,
+    /// The next look is not before this time.
+    not_before: f64,
+}
+
+/// The region that the robot goes to look at.
+#[derive(Clone, Copy, Debug)]
+struct Target {
+    region: usize,
+    /// A frontier cell in the region.
+    cell: usize,
+}
+
+/// Selects goals from which the frontier of unseen space can be seen.
+#[derive(Clone, Debug)]
+pub(crate) struct UnseenSpace {
+    region_cells: usize,
+    range_m: f64,
+    frame: Option<GridFrame>,
+    looks: Vec<Looks>,
+    /// The number of frontier cells of each region.
+    frontier: Vec<usize>,
+    target: Option<Target>,
+}
+
+impl UnseenSpace {
+    /// For regions of `region_cells` × `region_cells` cells, and a sensor with the range `range_m`.
+    pub(crate) fn new(region_cells: usize, range_m: f64) -> Self {
+        let (frame, target) = (None, None);
+        Self { region_cells, range_m, frame, looks: Vec::new(), frontier: Vec::new(), target }
+    }
+
+    /// Ends the last look. Returns whether any frontier is due for a look now.
+    pub(crate) fn update(&mut self, mapper: &Mapper) -> bool {
+        let regions = self.regions(mapper);
+        self.frontier.clear();
+        self.frontier.resize(regions.count(), 0);
+        for cell in (0..mapper.frame().len()).filter(|&cell| is_frontier(mapper, cell)) {
+            self.frontier[regions.of(cell)] += 1;
+        }
+        if let Some(Target { region, cell }) = self.target.take() {
+            let looks = &mut self.looks[region];
+            if mapper.states().cells()[cell] != CellState::Unknown {
+                looks.failed = 0;
+            } else {
+                looks.not_before = mapper.time() + RETRY * libm::exp2(f64::from(looks.failed));
+                looks.failed += 1;
+            }
+        }
+        (0..regions.count()).any(|region| self.is_due(region, mapper.time()))
+    }
+
+    /// The goal for the region with most frontier cells per time to get a view of it; `None` if none of the frontier that
+    /// is due can be seen from a cell that the robot can reach. The situation must have travel times.
+    pub(crate) fn goal(&mut self, situation: &Situation) -> Option<Goal> {
+        let mapper = situation.mapper;
+        let regions = self.regions(mapper);
+        let mut best: Option<(f64, Target, Cell)> = None;
+        for region in (0..regions.count()).filter(|&region| self.is_due(region, mapper.time())) {
+            let Some(target) = self.target_in(mapper, &regions, region) else { continue };
+            let Some((time, cell)) = self.viewpoint(situation, target.cell) else { continue };
+            let worth = self.frontier[region] as f64 / (time + WATCH);
+            if best.is_none_or(|(most, ..)| worth > most) {
+                best = Some((worth, target, cell));
+            }
+        }
+        let (_, target, cell) = best?;
+        self.target = Some(target);
+        Some(Goal { cell, stay: Stay::Watch(WATCH) })
+    }
+
+    /// Whether the last goal has shown what the robot went to look at.
+    pub(crate) fn is_seen(&self, mapper: &Mapper) -> bool {
+        let Some((target, frame)) = self.target.zip(self.frame) else { return false };
+        let regions = Regions::with_side(frame, self.region_cells);
+        !regions.cells(target.region).any(|cell| is_frontier(mapper, cell))
+    }
+
+    fn is_due(&self, region: usize, time: f64) -> bool {
+        self.frontier[region] >= MIN_CELLS && time >= self.looks[region].not_before
+    }
+
+    fn regions(&mut self, mapper: &Mapper) -> Regions {
+        let frame = *mapper.frame();
+        let regions = Regions::with_side(frame, self.region_cells);
+        if self.frame != Some(frame) {
+            (self.frame, self.target) = (Some(frame), None);
+            self.looks = vec![Looks::default(); regions.count()];
+        }
+        regions
+    }
+
+    /// A frontier cell of a region; another one after a look that showed nothing new.
+    fn target_in(&self, mapper: &Mapper, regions: &Regions, region: usize) -> Option<Target> {
+        let nth =
+            (self.frontier[region] / 2 + self.looks[region].failed as usize) % self.frontier[region].max(1);
+        let cell = regions.cells(region).filter(|&cell| is_frontier(mapper, cell)).nth(nth)?;
+        Some(Target { region, cell })
+    }
+
+    /// The cell from which `target` can be seen, and the travel time to the cell: a cell with a margin for the view, and
+    /// of these the nearest. Unknown cells are taken for transparent.
+    fn viewpoint(&self, situation: &Situation, target: usize) -> Option<(f64, Cell)> {
+        let (mapper, frame) = (situation.mapper, situation.mapper.frame());
+        let target = frame.center(frame.cell(target));
+        let step_m = frame.resolution_m() / 2.0;
+        let steps = (self.range_m / step_m) as u32;
+        let along = |direction: u32| {
+            let (sin, cos) = libm::sincos(TAU * f64::from(direction) / f64::from(DIRECTIONS));
+            let cells = (0..steps).map_while(|step| {
+                let cell = frame.cell_at(&(target + Vector2::new(cos, sin) * (step_m * f64::from(step))));
+                let state = mapper.states().get(cell)?;
+                (*state != CellState::Blocked).then_some(cell)
+            });
+            let mut times = cells.filter_map(|cell| Some((situation.travel_to(frame.index(cell)?), cell)));
+            times.find(|(time, _)| time.is_finite())
+        };
+        let seen: Vec<Option<(f64, Cell)>> = (0..DIRECTIONS).map(along).collect();
+        // Whether the directions beside are free as well: in a gap, the middle of the view.
+        let margin = |direction: usize| {
+            let at = |offset: usize| seen[(direction + offset) % seen.len()].is_some();
+            (0..MARGIN).take_while(|&off| at(off) && at(seen.len() - off)).count()
+        };
+        let order = |(a, from): &(usize, (f64, Cell)), (b, other): &(usize, (f64, Cell))| {
+            margin(*b).cmp(&margin(*a)).then(from.0.total_cmp(&other.0))
+        };
+        let views = seen.iter().enumerate().filter_map(|(direction, view)| Some((direction, (*view)?)));
+        views.min_by(order).map(|(_, view)| view)
+    }
+}
+
+/// Whether a cell is unknown and beside a free cell.
+fn is_frontier(mapper: &Mapper, cell: usize) -> bool {
+    mapper.is_candidate(cell) && mapper.states().cells()[cell] == CellState::Unknown
+}
