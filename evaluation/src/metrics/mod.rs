@@ -13,6 +13,7 @@ mod prediction;
 mod rates;
 mod standstill;
 mod things;
+mod true_chains;
 
 pub use changing::{ChangingAccuracy, ChangingScores};
 pub use latency::{Delays, Latency};
@@ -21,6 +22,7 @@ pub use prediction::{PredictedScores, Prediction};
 pub use rates::{MAX_LOG_ERROR, RateErrors, RateScores, log_error, mean_log_error, rate_scores};
 pub use standstill::Standstills;
 pub use things::{ThingReport, Things};
+pub use true_chains::TrueChains;
 
 #[cfg(test)]
 mod tests;

@@ -70,8 +70,11 @@ mod tests {
         }
         let later = (elapsed_s / STEP_S) as usize;
         [false, true].map(|seen| {
-            let looks: Vec<bool> =
-                states.windows(later + 1).filter(|looks| looks[0] == seen).map(|looks| looks[later]).collect();
+            let looks: Vec<bool> = states
+                .windows(later + 1)
+                .filter(|looks| looks[0] == seen)
+                .map(|looks| looks[later])
+                .collect();
             looks.iter().filter(|is_blocked| **is_blocked).count() as f64 / looks.len() as f64
         })
     }
