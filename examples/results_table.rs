@@ -25,7 +25,7 @@ use Worst::{Largest, Smallest};
 /// A row: its title, where the value is in `summary.json`, a factor, the number of decimals, the unit.
 type Row = (&'static str, &'static str, f64, usize, &'static str, Worst);
 
-const ROWS: [Row; 26] = [
+const ROWS: [Row; 27] = [
     ("seen, of the cells in sight of reachable places", "/coverage_reachable", 100.0, 1, " %", Smallest),
     ("seen, of all free cells and their borders", "/coverage", 100.0, 1, " %", Smallest),
     ("map right, of the cells in sight of reachable places", QUALITY_REACHABLE, 100.0, 1, " %", Smallest),
@@ -36,6 +36,7 @@ const ROWS: [Row; 26] = [
     ("Brier score out of view, predicted", "/predicted/brier", 1.0, 3, "", Largest),
     ("Brier score out of view, as last seen", "/predicted/brier_last_seen", 1.0, 3, "", Largest),
     ("Brier score out of view, share of time blocked", "/predicted/brier_mean", 1.0, 3, "", Largest),
+    ("Brier score out of view, true chains", "/predicted/brier_true_chains", 1.0, 3, "", Largest),
     ("false change events on static cells", "/false_change_events", 1.0, 0, "", Largest),
     ("rate error, cells in view for 3 cycles or more", "/rate_error", 1.0, 2, "", Largest),
     ("rate error, all changing cells", "/rate_error_all", 1.0, 2, "", Largest),

@@ -1,6 +1,8 @@
 //! Measures a run in the physics world against the ground truth, from outside the loop.
 
-use crate::metrics::{ChangingAccuracy, Latency, MapScores, Prediction, Standstills, Things, map_scores};
+use crate::metrics::{
+    ChangingAccuracy, Latency, MapScores, Prediction, Standstills, Things, TrueChains, map_scores,
+};
 use crate::summary::CurvePoint;
 use crate::thinned::Thinned;
 use interfaces::{GroundTruth, LaserReading, Twist};
@@ -34,6 +36,8 @@ pub struct Observer {
     pub changing: ChangingAccuracy,
     /// The quality of the predicted map on swept cells out of view.
     pub prediction: Prediction,
+    /// The true chains of all cells.
+    pub true_chains: TrueChains,
     /// The longest standstill of every robot.
     pub standstills: Standstills,
     /// Coverage and map quality over time.
@@ -71,13 +75,14 @@ impl Observer {
         let (truth, laser) = (world.truth(), world.true_pose() * reading.mount);
         self.latency.observe(truth, mapper, reading, &laser);
         self.things.observe(world.obstacle_events(), truth.frame(), mapper, reading, &laser);
+        self.true_chains.observe(truth);
         if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
             self.changing.sample(mapper, truth);
         }
         self.standstills
             .observe(reading.time_s, world.robots().map(|robot| robot.pose.translation.vector.into()));
         if mapper.readings() % SCORE_EVERY == 1 {
-            self.prediction.sample(mapper, truth);
+            self.prediction.sample(mapper, truth, Some(&self.true_chains));
             self.curve.push(CurvePoint { time_s: reading.time_s, scores: map_scores(mapper, truth) });
         }
     }

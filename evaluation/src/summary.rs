@@ -180,6 +180,7 @@ impl fmt::Display for RunResults {
             ("changes", self.liveliest.as_ref().map_or("none seen".into(), Liveliest::to_string)),
         ];
         lines.extend(self.rates());
+        lines.extend(self.prediction().map(|text| ("predicted", text)));
         lines.extend(self.things.iter().map(|thing| ("thing", line_of(thing))));
         let GoalCount { reached, approached, given_up } = goals;
         let all = reached + approached + given_up;
@@ -222,6 +223,17 @@ impl RunResults {
         let stood = self.longest_standstill_s.iter().filter(|(_, longest_s)| **longest_s >= 60.0);
         let stood: Vec<String> = stood.map(|(name, longest_s)| format!("{name} {longest_s:.0} s")).collect();
         (!stood.is_empty()).then(|| format!("longest time without moving 0.1 m: {}", stood.join(", ")))
+    }
+
+    /// The quality of the predicted map beside that of simpler predictions; `None` if nothing changed out of view.
+    fn prediction(&self) -> Option<String> {
+        let PredictedScores { brier, brier_last_seen, brier_mean, brier_true_chains, .. } = self.predicted;
+        let (last_seen, mean, chains) = (brier_last_seen?, brier_mean?, brier_true_chains?);
+        Some(format!(
+            "Brier score {:.4} on changing cells out of view; as last seen {last_seen:.4}, share of time blocked \
+             {mean:.4}, true chains {chains:.4}",
+            brier?
+        ))
     }
 
     /// The errors of the estimated rates, in words; empty if nothing changed.
@@ -328,7 +340,14 @@ mod tests {
             ..RateScores::default()
         };
         let age = Age { mean_s: 60.0, max_s: 600.0, never_seen: 2 };
-        insta::assert_snapshot!(results(0.99999, age, rates), @"
+        let predicted = PredictedScores {
+            balanced_accuracy_out_of_view: None,
+            brier: Some(0.0159),
+            brier_last_seen: Some(0.02702),
+            brier_mean: Some(0.01612),
+            brier_true_chains: Some(0.014),
+        };
+        insta::assert_snapshot!(RunResults { predicted, ..results(0.99999, age, rates) }, @"
           seen      >99.9 % of the cells in sight of reachable places, >99.9 % of free cells and their borders; 2 cells were never seen
           map       >99.9 % correct now; 0 false changes on 50000 static cells
           changes   none seen
@@ -336,6 +355,7 @@ mod tests {
                     log error 0.91, mean over moving things: 0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate
                     log error 0.53 where a pass that covers only a part of a cell may count or not
                     AUC 0.83: how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance
+          predicted Brier score 0.0159 on changing cells out of view; as last seen 0.0270, share of time blocked 0.0161, true chains 0.0140
           stood     longest time without moving 0.1 m: cat 312 s
           contacts  1 by its own motion, 2 in which something ran into it
         ");

@@ -13,6 +13,7 @@ mod prediction;
 mod rates;
 mod standstill;
 mod things;
+mod true_chains;
 
 pub use changing::{ChangingAccuracy, ChangingScores};
 pub use latency::{Delays, Latency};
@@ -23,6 +24,7 @@ pub use rates::{
 };
 pub use standstill::Standstills;
 pub use things::{ThingReport, Things};
+pub use true_chains::TrueChains;
 
 #[cfg(test)]
 mod tests;

@@ -1,3 +1,4 @@
+use super::TrueChains;
 use super::mean::Mean;
 use interfaces::{CellState, GroundTruth, TrueState};
 use mapper::Mapper;
@@ -9,6 +10,7 @@ pub struct Prediction {
     model: Mean,
     last_seen: Mean,
     average: Mean,
+    true_chains: Mean,
     /// The accuracy on truly free and on truly blocked cells.
     correct: [Mean; 2],
 }
@@ -20,19 +22,22 @@ pub struct PredictedScores {
     /// The mean of the accuracy on truly free cells and the accuracy on truly blocked cells, for known cells that can
     /// be seen: is the more probable state the true one? `None` unless there are free and blocked ones.
     pub balanced_accuracy_out_of_view: Option<f64>,
-    /// The Brier score of the two-state model, [`Mapper::blocked_probability`].
+    /// The Brier score of the map as predicted, [`Mapper::blocked_probability`].
     pub brier: Option<f64>,
     /// The Brier score of the state that was last seen; 0.5 for a cell that was never seen.
     pub brier_last_seen: Option<f64>,
     /// The Brier score of the share of the time in view during which the cell was blocked; of the state that was last
     /// seen if the cell was not in view for any time.
     pub brier_mean: Option<f64>,
+    /// The Brier score of a Markov chain with the true rates so far and the true share of the time that the cell is
+    /// blocked, after the same observations; 0.5 for a cell that was never seen. `None` where it was not measured.
+    pub brier_true_chains: Option<f64>,
 }
 
 impl Prediction {
     /// Compares the predictions for swept cells out of view with the ground truth now. Partly covered cells are
-    /// ignored.
-    pub fn sample(&mut self, mapper: &Mapper, truth: &impl GroundTruth) {
+    /// ignored. `chains` are the true chains, if they are to be compared.
+    pub fn sample(&mut self, mapper: &Mapper, truth: &impl GroundTruth, chains: Option<&TrueChains>) {
         for &index in truth.swept().iter().filter(|&&index| !mapper.is_in_view(index)) {
             let is_blocked = match truth.state(index) {
                 TrueState::PartlyCovered => continue,
@@ -55,6 +60,11 @@ impl Prediction {
             self.model.add(square(model));
             self.last_seen.add(square(last_seen));
             self.average.add(square(average));
+            if let Some(chains) = chains {
+                let is_known = mapped != CellState::Unknown;
+                let of_chain = || chains.blocked_probability(truth, index, last_seen, mapper.recency(index));
+                self.true_chains.add(square(if is_known { of_chain() } else { last_seen }));
+            }
             if mapped != CellState::Unknown && truth.can_be_seen(index) {
                 self.correct[usize::from(is_blocked)].add_bool((model > 0.5) == is_blocked);
             }
@@ -69,6 +79,7 @@ impl Prediction {
             brier: self.model.get(),
             brier_last_seen: self.last_seen.get(),
             brier_mean: self.average.get(),
+            brier_true_chains: self.true_chains.get(),
         }
     }
 }

@@ -109,7 +109,7 @@ fn a_robot_that_sees_everything_is_correct() {
     assert_eq!(map_scores(&mapper, world.truth()), MapScores { coverage: 1.0, map_quality: 1.0 });
     let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
     accuracy.sample(&mapper, world.truth());
-    prediction.sample(&mapper, world.truth());
+    prediction.sample(&mapper, world.truth(), None);
     assert_eq!(accuracy.scores().all, Some(1.0));
     assert!(prediction.scores().brier.is_none(), "nothing is out of view");
 }
@@ -125,7 +125,7 @@ fn a_robot_that_sees_nothing_is_incorrect_by_definition() {
     assert_eq!(map_scores(&mapper, world.truth()), MapScores { coverage: 0.0, map_quality: 0.0 });
     let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
     accuracy.sample(&mapper, world.truth());
-    prediction.sample(&mapper, world.truth());
+    prediction.sample(&mapper, world.truth(), None);
     let scores = prediction.scores();
     assert_eq!(accuracy.scores().all, Some(0.0));
     assert_eq!((scores.brier, scores.brier_last_seen), (Some(0.25), Some(0.25)));
@@ -176,7 +176,7 @@ fn an_old_map_is_incorrect_where_things_have_moved() {
     assert!((scores.map_quality - (visible - 2.0) / visible).abs() < 1e-12, "{scores:?}");
     let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
     accuracy.sample(&mapper, world.truth());
-    prediction.sample(&mapper, world.truth());
+    prediction.sample(&mapper, world.truth(), None);
     // Of three free changing cells two are right, of two blocked ones one.
     assert_eq!(accuracy.scores().all, Some((2.0 / 3.0 + 0.5) / 2.0));
     assert_eq!(prediction.scores().brier_last_seen, Some(2.0 / 5.0));

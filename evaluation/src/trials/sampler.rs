@@ -45,7 +45,7 @@ impl Sampler {
         let is_due = has_come(mapper.time(), self.due);
         if is_due || self.readings.is_multiple_of(W::COMPARE_EVERY) {
             self.accuracy.sample(mapper, truth);
-            self.prediction.sample(mapper, truth);
+            self.prediction.sample(mapper, truth, None);
         }
         if self.readings.is_multiple_of(W::VIEW_EVERY) {
             self.views += 1;

@@ -1,7 +1,6 @@
 //! A cell as a two-state Markov chain that takes one step per reading.
 
 use super::CellStatistics;
-use interfaces::CellState;
 
 /// The rates at which a cell leaves its states, per unit of time.
 ///
@@ -41,17 +40,20 @@ impl TransitionRates {
         Self { block: bounded(self.block), free: bounded(self.free), ..self }
     }
 
-    /// The probability that the cell is blocked at a time `elapsed` after an observation of `state`.
-    pub(crate) fn blocked_probability(self, state: CellState, elapsed: f64) -> f64 {
-        let share = self.block / (self.block + self.free);
-        let seen = f64::from(u8::from(state == CellState::Blocked));
-        let memory = if self.period > 0.0 {
+    /// The share of the time that the cell is blocked.
+    pub(crate) fn share_blocked(self) -> f64 {
+        self.block / (self.block + self.free)
+    }
+
+    /// The remaining influence of the observed state at a time `elapsed` after the observation: 1 at first, 0 at
+    /// last. The memory fades `pace` times as fast as that of a chain.
+    pub(crate) fn memory(self, elapsed: f64, pace: f64) -> f64 {
+        if self.period > 0.0 {
             let leave = |rate: f64| (rate * self.period).min(1.0);
-            Step { block: leave(self.block), free: leave(self.free) }.memory(elapsed / self.period)
+            Step { block: leave(self.block), free: leave(self.free) }.memory(elapsed / self.period, pace)
         } else {
-            libm::exp(-(self.block + self.free) * elapsed)
-        };
-        (share + (seen - share) * memory).clamp(0.0, 1.0)
+            libm::exp(-(self.block + self.free) * pace * elapsed)
+        }
     }
 }
 
@@ -82,10 +84,12 @@ impl Step {
     /// If a cell changes at nearly every step, it alternates, and λ is below 0. Such an alternation is never
     /// regular for long, and gaps of even lengths alone could not distinguish it from standing still. After more
     /// than one step, the influence therefore counts as 0.
-    pub(crate) fn memory(self, steps: f64) -> f64 {
+    ///
+    /// With a `pace` other than 1, the memory of a chain that does not alternate fades this many times as fast.
+    pub(crate) fn memory(self, steps: f64, pace: f64) -> f64 {
         let lost = self.block + self.free;
         if lost < 1.0 {
-            libm::exp(steps * libm::log1p(-lost))
+            libm::exp(pace * steps * libm::log1p(-lost))
         } else if steps < ONE_STEP {
             1.0 - lost
         } else {
@@ -134,7 +138,7 @@ impl TransitionKernel {
             let memory = libm::exp(steps * self.log_memory);
             [memory, steps * memory / (1.0 - sum)]
         } else {
-            [step.memory(steps), f64::from(u8::from(steps < ONE_STEP))]
+            [step.memory(steps, 1.0), f64::from(u8::from(steps < ONE_STEP))]
         };
         let (mut memory, mut fades, mut grows) = (chain, chain_fades, 0.0);
         let was = if blocked { [0.0, 1.0] } else { [1.0, 0.0] };
@@ -183,8 +187,9 @@ mod tests {
                     assert!((found - stepped(step, blocked, steps)).abs() < 1e-12, "{step:?} after {steps}");
                     let chain =
                         TransitionRates { block: step.block / 0.1, free: step.free / 0.1, period: 0.1 };
-                    let state = if blocked { CellState::Blocked } else { CellState::Free };
-                    let predicted = chain.blocked_probability(state, f64::from(steps) * 0.1);
+                    let memory = chain.memory(f64::from(steps) * 0.1, 1.0);
+                    let share = chain.share_blocked();
+                    let predicted = share + (f64::from(u8::from(blocked)) - share) * memory;
                     assert!((predicted - found).abs() < 1e-9, "{predicted}, not {found}");
                 }
             }
@@ -221,14 +226,13 @@ mod tests {
     #[test]
     fn without_a_period_time_is_continuous() {
         let chain = TransitionRates { block: 0.2, free: 0.3, period: 0.0 };
-        let expected = 0.4 - 0.4 * (-0.5f64 * 3.0).exp();
-        assert!((chain.blocked_probability(CellState::Free, 3.0) - expected).abs() < 1e-12);
+        assert!((chain.memory(3.0, 1.0) - (-0.5f64 * 3.0).exp()).abs() < 1e-12);
+        assert!((chain.memory(3.0, 2.0) - (-0.5f64 * 6.0).exp()).abs() < 1e-12);
     }
 
     #[test]
     fn a_cell_that_changes_at_every_step_alternates_for_one_step() {
         let chain = TransitionRates { block: 1.0, free: 1.0, period: 1.0 };
-        assert_eq!(chain.blocked_probability(CellState::Free, 1.0), 1.0);
-        assert_eq!(chain.blocked_probability(CellState::Free, 2.0), 0.5);
+        assert_eq!([1.0, 2.0].map(|elapsed| chain.memory(elapsed, 2.0)), [-1.0, 0.0]);
     }
 }

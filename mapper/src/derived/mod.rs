@@ -1,12 +1,14 @@
 //! The maps that are computed from the states and the change statistics: cycle time, rate, change probability,
 //! recency, credible interval, probability of being blocked.
 
+mod blocked_probability;
 mod change_probability;
 mod credible_interval;
 mod expected_changes;
 mod gamma;
 
 use crate::Mapper;
+use blocked_probability::blocked_probability;
 use change_probability::change_probability;
 pub(crate) use expected_changes::ExpectedChanges;
 use interfaces::CellState;
@@ -68,14 +70,18 @@ impl Mapper {
         self.cells.transition_rates(index).map(|rates| (rates.block, rates.free))
     }
 
-    /// The probability that the cell is blocked now. A cell in view is as observed. Out of view, the probability
-    /// for a cell that changes goes from the last observed state to the mean of the two-state chain, π + (x₀ − π)
-    /// λ^t. A cell that never changed stays as last observed, and an unknown cell has 0.5.
+    /// The probability that the cell is blocked now: the map as predicted. A cell in view is as observed. Out of view,
+    /// the probability for a cell that changes goes from the last observed state to the share of the time that the cell
+    /// is blocked; the faster, the more regular the stays of the whole map are. A cell that never changed stays as
+    /// last observed, and an unknown cell has 0.5.
     pub fn blocked_probability(&self, index: usize) -> f64 {
         let state = self.cells.state(index);
         let is_certain = self.is_in_view(index) && state != CellState::Unknown;
         match self.cells.transition_rates(index).filter(|_| !is_certain) {
-            Some(rates) => rates.blocked_probability(state, self.recency(index)),
+            Some(rates) => {
+                let (seen, variation) = (self.statistics(index), self.cells.variation());
+                blocked_probability(rates, &seen, variation, state, self.recency(index))
+            }
             None => match state {
                 CellState::Unknown => 0.5,
                 CellState::Free => 0.0,

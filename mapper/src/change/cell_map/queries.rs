@@ -92,6 +92,12 @@ impl CellMap {
         self.estimator.transition_rates(&self.statistics(index))
     }
 
+    /// For free and for blocked stays, the squared coefficient of variation over the whole map; 1, as in a chain, until
+    /// stays were seen, and under an estimator without a model of gaps.
+    pub(crate) fn variation(&self) -> [f64; 2] {
+        self.regularity.variation()
+    }
+
     /// The belief about the transition probabilities of a cell, and the time of a step; `None` before the second
     /// reading.
     pub(crate) fn belief(&self, index: usize) -> Option<(Belief, f64)> {
