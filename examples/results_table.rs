@@ -25,7 +25,7 @@ use Worst::{Largest, Smallest};
 /// A row: its title, where the value is in `summary.json`, a factor, the number of decimals, the unit.
 type Row = (&'static str, &'static str, f64, usize, &'static str, Worst);
 
-const ROWS: [Row; 27] = [
+const ROWS: [Row; 28] = [
     ("seen, of the cells in sight of reachable places", "/coverage_reachable", 100.0, 1, " %", Smallest),
     ("seen, of all free cells and their borders", "/coverage", 100.0, 1, " %", Smallest),
     ("map right, of the cells in sight of reachable places", QUALITY_REACHABLE, 100.0, 1, " %", Smallest),
