@@ -13,6 +13,7 @@ use crate::visibility::Regions;
 use interfaces::{Cell, CellState, GridFrame};
 use mapper::Mapper;
 use nalgebra::Vector2;
+use std::cmp::Reverse;
 use std::f64::consts::TAU;
 
 /// The maximum duration of a look, in the time unit of the readings. A map can need some readings before it takes a cell
@@ -90,13 +91,20 @@ impl UnseenSpace {
     pub(crate) fn goal(&mut self, situation: &Situation) -> Option<Goal> {
         let mapper = situation.mapper;
         let regions = self.regions(mapper);
+        let mut due: Vec<usize> =
+            (0..regions.count()).filter(|&region| self.is_due(region, mapper.time())).collect();
+        due.sort_by_key(|&region| Reverse(self.frontier[region]));
         let mut best: Option<(f64, Target, Cell)> = None;
-        for region in (0..regions.count()).filter(|&region| self.is_due(region, mapper.time())) {
+        for region in due {
+            let worth = |time: f64| self.frontier[region] as f64 / (time + WATCH);
+            // The regions that follow have no more frontier. To find a viewpoint takes much longer than all else here.
+            if best.is_some_and(|(most, ..)| worth(0.0) <= most) {
+                break;
+            }
             let Some(target) = self.target_in(mapper, &regions, region) else { continue };
             let Some((time, cell)) = self.viewpoint(situation, target.cell) else { continue };
-            let worth = self.frontier[region] as f64 / (time + WATCH);
-            if best.is_none_or(|(most, ..)| worth > most) {
-                best = Some((worth, target, cell));
+            if best.is_none_or(|(most, ..)| worth(time) > most) {
+                best = Some((worth(time), target, cell));
             }
         }
         let (_, target, cell) = best?;
@@ -136,7 +144,7 @@ impl UnseenSpace {
     /// The cell from which `target` can be seen, and the travel time to the cell: a cell with a margin for the view, and
     /// of these the nearest. Unknown cells are taken for transparent.
     fn viewpoint(&self, situation: &Situation, target: usize) -> Option<(f64, Cell)> {
-        let (mapper, frame) = (situation.mapper, situation.mapper.frame());
+        let (states, frame) = (situation.mapper.states(), situation.mapper.frame());
         let target = frame.center(frame.cell(target));
         let step_m = frame.resolution_m() / 2.0;
         let steps = (self.range_m / step_m) as u32;
@@ -144,10 +152,10 @@ impl UnseenSpace {
             let (sin, cos) = libm::sincos(TAU * f64::from(direction) / f64::from(DIRECTIONS));
             let cells = (0..steps).map_while(|step| {
                 let cell = frame.cell_at(&(target + Vector2::new(cos, sin) * (step_m * f64::from(step))));
-                let state = mapper.states().get(cell)?;
-                (*state != CellState::Blocked).then_some(cell)
+                let index = frame.index(cell)?;
+                (states.cells()[index] != CellState::Blocked).then_some((index, cell))
             });
-            let mut times = cells.filter_map(|cell| Some((situation.travel_to(frame.index(cell)?), cell)));
+            let mut times = cells.map(|(index, cell)| (situation.travel_to(index), cell));
             times.find(|(time, _)| time.is_finite())
         };
         let seen: Vec<Option<(f64, Cell)>> = (0..DIRECTIONS).map(along).collect();
