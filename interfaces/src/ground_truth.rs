@@ -59,7 +59,8 @@ pub trait GroundTruth {
         self.block_events(index)
     }
 
-    /// The largest cycle rate of a cell that is right: every pass counts, see [`GroundTruth::pass_events`].
+    /// The cycle rate of a cell so far if every pass counts, see [`GroundTruth::pass_events`]: not below
+    /// [`GroundTruth::cycle_rate`].
     fn pass_rate(&self, index: usize) -> f64 {
         per_time(self.pass_events(index), self.elapsed())
     }

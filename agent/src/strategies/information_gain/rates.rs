@@ -46,7 +46,7 @@ pub(super) struct Rates {
 impl Rates {
     pub(super) fn new() -> Self {
         let rates: Distribution = std::array::from_fn(|rate| FASTEST * libm::pow(RATIO, rate as f64));
-        let first = |rate: f64| WATCHES.map(|watch| LN_10 - error_after_first(rate, 0.0, watch));
+        let first = |rate: f64| WATCHES.map(|watch| LN_10 - error_after_first(rate, watch));
         let time = |bin: usize| match bin.checked_sub(FINE_BINS) {
             Some(step) => FINE_BINS as f64 * libm::pow(BIN_RATIO, step as f64),
             None => bin as f64,
@@ -104,14 +104,14 @@ fn nearest(rate: f64) -> usize {
     (index.round().max(0.0) as usize).min(RATES - 1)
 }
 
-/// The expected error of a cell without an event so far, after another observation of duration `watch`: ln 10 if
+/// The expected error of a cell without an event so far, after an observation of duration `watch`: ln 10 if
 /// there is still no event (probability e^(−x) for x expected cycles), otherwise bias and scatter of the first few
 /// cycles.
-fn error_after_first(rate: f64, time: f64, watch: f64) -> f64 {
+fn error_after_first(rate: f64, watch: f64) -> f64 {
     let expected = rate * watch;
     let none = libm::exp(-expected);
     let some = expected / (1.0 - none).max(1e-9);
-    let bias = libm::log(some / (time + watch) / rate);
+    let bias = libm::log(some / watch / rate);
     let squared = bias * bias + MEAN_OF_NORMAL * expected / (some * some);
     none * LN_10 + (1.0 - none) * libm::sqrt(squared).min(LN_10)
 }
