@@ -12,7 +12,6 @@ use crate::strategies::Stay;
 use crate::visibility::Regions;
 use interfaces::{Cell, CellState, GridFrame};
 use mapper::Mapper;
-use nalgebra::Vector2;
 use std::cmp::Reverse;
 use std::f64::consts::TAU;
 
@@ -24,11 +23,12 @@ const RETRY: f64 = 30.0;
 /// The minimum number of frontier cells in a region that are worth a goal: single cells at corners and edges often stay
 /// unknown from everywhere.
 const MIN_CELLS: usize = 2;
-/// The number of directions in which a line of sight is searched.
-const DIRECTIONS: u32 = 720;
+/// The number of directions in which a line of sight is searched. With more directions the search takes longer than the
+/// mapper and the controller together.
+const DIRECTIONS: u32 = 240;
 /// The number of directions on each side of a line of sight that should be free as well, since the robot does not stop
 /// exactly at its goal.
-const MARGIN: usize = 8;
+const MARGIN: usize = 3;
 
 /// The looks at a region of the map.
 #[derive(Clone, Copy, Debug, Default)]
@@ -145,13 +145,13 @@ impl UnseenSpace {
     /// of these the nearest. Unknown cells are taken for transparent.
     fn viewpoint(&self, situation: &Situation, target: usize) -> Option<(f64, Cell)> {
         let (states, frame) = (situation.mapper.states(), situation.mapper.frame());
-        let target = frame.center(frame.cell(target));
-        let step_m = frame.resolution_m() / 2.0;
-        let steps = (self.range_m / step_m) as u32;
+        let target = frame.cell(target);
+        let steps = (self.range_m / frame.resolution_m()) as u32;
         let along = |direction: u32| {
             let (sin, cos) = libm::sincos(TAU * f64::from(direction) / f64::from(DIRECTIONS));
             let cells = (0..steps).map_while(|step| {
-                let cell = frame.cell_at(&(target + Vector2::new(cos, sin) * (step_m * f64::from(step))));
+                let offset = |slope: f64| (slope * f64::from(step)).round() as i32;
+                let cell = Cell { x: target.x + offset(cos), y: target.y + offset(sin) };
                 let index = frame.index(cell)?;
                 (states.cells()[index] != CellState::Blocked).then_some((index, cell))
             });

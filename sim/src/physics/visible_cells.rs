@@ -19,7 +19,8 @@ impl WorldSpec {
     /// its start, within the range of its main laser: with doors open, obstacles at their start, and other moving things
     /// away. Cells that are partly covered then are left out.
     ///
-    /// Lines of sight are searched in 360 directions from each cell, against the exact geometry.
+    /// Lines of sight are searched in 360 directions from each cell that no pose of the robot is beside, against the exact
+    /// geometry.
     pub fn visible_cells(&self) -> Vec<bool> {
         let (frame, robot) = (&self.frame, self.driven());
         let (solids, space) = (solids(self), FreeSpace::new(self, robot.radius_m));
@@ -28,7 +29,7 @@ impl WorldSpec {
         let reached: Vec<bool> =
             space.regions().iter().map(|region| region.is_some() && *region == own).collect();
         let range_m = robot.laser.range_max_m;
-        let sight = Sight::new(frame, &solids, range_m, &reached);
+        let sight = Sight::new(frame, &solids, range_m, robot.radius_m, &reached);
         let is_visible = |index: usize| match states[index] {
             _ if reached[index] => true,
             TrueState::Free => sight.reaches(frame.center(frame.cell(index))),
@@ -53,23 +54,47 @@ fn before(frame: &GridFrame, cell: Cell, side: usize) -> Point2<f64> {
 struct Sight<'a> {
     frame: &'a GridFrame,
     reached: &'a [bool],
+    radius_m: f64,
     range_m: f64,
     beams: Beams,
     scene: Scene,
 }
 
 impl<'a> Sight<'a> {
-    fn new(frame: &'a GridFrame, solids: &[Rectangle], range_m: f64, reached: &'a [bool]) -> Self {
+    fn new(
+        frame: &'a GridFrame,
+        solids: &[Rectangle],
+        range_m: f64,
+        radius_m: f64,
+        reached: &'a [bool],
+    ) -> Self {
         let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
         let corners = (frame.origin(), frame.origin() + size);
         let scene = Scene::new(corners, solids, Vec::new(), 0, range_m);
         let beams = Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m);
-        Self { frame, reached, range_m, beams, scene }
+        Self { frame, reached, radius_m: radius_m.min(range_m), range_m, beams, scene }
     }
 
     /// Whether a straight line from a point to a reached cell meets nothing.
     fn reaches(&self, from: Point2<f64>) -> bool {
-        let Self { frame, reached, range_m, beams, scene } = self;
+        self.is_near(from) || self.finds_a_line(from)
+    }
+
+    /// Whether the robot's disc in a reached cell covers a point. Nothing is between the point and the center then. This
+    /// is so for most points, and much faster than a search.
+    fn is_near(&self, point: Point2<f64>) -> bool {
+        let Self { frame, reached, radius_m, .. } = self;
+        let (low, high) = (point - Vector2::repeat(*radius_m), point + Vector2::repeat(*radius_m));
+        let (low, high) = (frame.cell_at(&low), frame.cell_at(&high));
+        let mut cells = (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| Cell::new(x, y)));
+        cells.any(|cell| {
+            let is_reached = frame.index(cell).is_some_and(|index| reached[index]);
+            is_reached && nalgebra::distance(&frame.center(cell), &point) <= *radius_m
+        })
+    }
+
+    fn finds_a_line(&self, from: Point2<f64>) -> bool {
+        let Self { frame, reached, range_m, beams, scene, .. } = self;
         let step_m = frame.resolution_m() / 2.0;
         let is_reached = |at: Point2<f64>| frame.index(frame.cell_at(&at)).is_some_and(|cell| reached[cell]);
         let meets_one = |((x, y), inverse): ((f64, f64), &f64)| {
