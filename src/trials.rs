@@ -1,11 +1,11 @@
 //! Code that the programs of trials share: options, and the way from trials to results.
 
-use crate::program::INTERRUPTED;
+use crate::program::{INTERRUPTED, strategy_of};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
 use agent::Reward;
 use anyhow::{Context, bail};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
 use evaluation::output::{RunFolder, write_file};
 use evaluation::report::{Plan, REPORT, Report, ReportSettings, Trial};
@@ -71,11 +71,7 @@ impl From<RewardChoice> for Reward {
 
 /// A parser of the name of a strategy, or of a reference.
 pub fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
-    let named = |strategy: &TrialStrategy| PossibleValue::new(strategy.name()).help(strategy.description());
-    let all: Vec<_> = TrialStrategy::all().collect();
-    PossibleValuesParser::new(all.iter().map(named)).try_map(move |name| {
-        all.iter().find(|strategy| strategy.name() == name).cloned().ok_or("not one of the possible values")
-    })
+    strategy_of(TrialStrategy::all().collect(), |strategy| (strategy.name(), strategy.description()))
 }
 
 /// Every value once, in the order of first occurrence.

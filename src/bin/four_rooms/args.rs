@@ -1,9 +1,9 @@
 //! The command line.
 
 use agent::Policy;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
-use curious::program::{duration_s, one_of};
+use curious::program::{duration_s, one_of, strategy_of};
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
 use viewer::recording::Live;
@@ -120,8 +120,7 @@ pub(crate) enum DriveChoice {
 }
 
 fn strategies() -> impl TypedValueParser<Value = Policy> {
-    let named = |policy: &Policy| PossibleValue::new(policy.name()).help(policy.description());
-    PossibleValuesParser::new(Policy::built_in().iter().map(named)).try_map(|name| name.parse::<Policy>())
+    strategy_of(Policy::built_in().to_vec(), |policy| (policy.name(), policy.description()))
 }
 
 fn gif(text: &str) -> Result<PathBuf, String> {
@@ -147,6 +146,8 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         assert_eq!(Args::parse_from(["four_rooms"]).strategy().name(), "curious");
+        let best = Args::parse_from(["four_rooms", "--strategy", "best"]);
+        assert_eq!(best.strategy().name(), "information-gain");
     }
 
     #[test]

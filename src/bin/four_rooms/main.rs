@@ -5,9 +5,12 @@ mod combination;
 mod output;
 mod parts;
 
+use agent::Policy;
 use anyhow::{Context, anyhow};
 use args::{Args, DriveChoice};
-use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, list_physics_worlds, start};
+use curious::program::{
+    BEST_STRATEGY_GAIN, Failure, INTERRUPTED, input, interrupt_flag, list_physics_worlds, start,
+};
 use curious::progress::Progress;
 use curious::terminal::{print, say};
 use evaluation::file_name;
@@ -124,7 +127,9 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
         say(stderr(), format_args!("error: {problem}"));
     }
     if !args.quiet {
-        print(format_args!("{summary}\n  files     {}", args.out.display()))?;
+        let is_default = args.drive == DriveChoice::Agent && args.strategy() == Policy::default();
+        let hint = if is_default { format!("\n  hint      {BEST_STRATEGY_GAIN}") } else { String::new() };
+        print(format_args!("{summary}{hint}\n  files     {}", args.out.display()))?;
     }
     Ok(match ended {
         _ if !is_shown => ExitCode::FAILURE,
