@@ -63,7 +63,13 @@ impl Fleet {
     /// What sensors that measure now can see.
     pub(super) fn surroundings(&self) -> Arc<Surroundings> {
         let (scene, tagged) = (self.scene.clone(), self.tagged());
-        Arc::new(Surroundings { step: self.step, time_s: self.time_s(), scene, tagged })
+        let obstacles = self.obstacles.iter();
+        let recent = self.past.recent(
+            &self.spec,
+            self.robots.iter().map(|robot| robot.pose),
+            obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose)),
+        );
+        Arc::new(Surroundings { step: self.step, time_s: self.time_s(), scene, tagged, recent })
     }
 
     /// Moves robots and obstacles by one physics step.
@@ -73,23 +79,31 @@ impl Fleet {
         }
         let before: Vec<Rectangle> = self.obstacles.iter().map(|obstacle| obstacle.shape).collect();
         self.step += 1;
+        let time_s = self.time_s();
         self.start_obstacles();
         self.bodies.step();
         for index in 0..self.robots.len() {
-            self.robots[index].end_step(&self.bodies);
+            self.robots[index].end_step(&self.bodies, time_s, self.spec.step_s);
             if self.robots[index].has_moved() {
                 self.show_robot(index);
             }
         }
         self.moved.clear();
-        for (index, before) in before.into_iter().enumerate() {
+        for (index, before) in before.iter().enumerate() {
             self.obstacles[index].end_step(&mut self.bodies);
-            if self.obstacles[index].shape != before {
-                self.moved.push((index, before));
+            if self.obstacles[index].shape != *before {
+                self.moved.push((index, *before));
                 self.show_obstacle(index);
             }
         }
+        self.past.note(
+            self.robots.iter().map(|robot| [robot.previous_pose, robot.pose]),
+            self.obstacles.iter().zip(&before).map(|(obstacle, before)| {
+                obstacle.is_standing().then_some([before.pose, obstacle.shape.pose])
+            }),
+        );
         self.update_contacts();
+        self.carry_robots();
     }
 
     /// Starts the motion of doors and blocks for the step that has begun.
