@@ -75,9 +75,6 @@ impl Past {
         robots: impl Iterator<Item = Isometry2<f64>>,
         obstacles: impl Iterator<Item = Option<Isometry2<f64>>>,
     ) -> Recent {
-        if self.kept == 0 {
-            return Recent::default();
-        }
         let now = PastStep {
             robots: robots.map(|pose| [SavedPose(pose); 2]).collect(),
             obstacles: obstacles.map(|pose| pose.map(|pose| [SavedPose(pose); 2])).collect(),

@@ -156,7 +156,7 @@ impl Fleet {
     /// Measures with the sensors of a robot now: with its main laser scanner, and with all other sensors that are
     /// due.
     pub(super) fn look(&mut self, robot: usize) -> &Robot {
-        let surroundings = self.surroundings();
+        let surroundings = self.surroundings(self.robots[robot].sweeps());
         self.robots[robot].look(&surroundings);
         &self.robots[robot]
     }

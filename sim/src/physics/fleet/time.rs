@@ -5,6 +5,7 @@ use crate::physics::bodies::Touch;
 use crate::physics::command::Velocity;
 use crate::physics::form::Form;
 use crate::physics::obstacles::{Blockers, Obstacle};
+use crate::physics::past::Recent;
 use crate::physics::report::Contact;
 use crate::physics::robot::Robot;
 use crate::physics::sensors::{Surroundings, bumper};
@@ -50,7 +51,8 @@ impl Fleet {
         if !self.robots.iter_mut().any(|robot| is_due(&robot)) {
             return;
         }
-        let surroundings = &self.surroundings();
+        let sweeps = self.robots.iter_mut().any(|robot| is_due(&robot) && robot.sweeps());
+        let surroundings = &self.surroundings(sweeps);
         if self.parallel_lasers {
             let due = self.robots.par_iter_mut().filter(is_due);
             due.for_each(|robot| robot.think(surroundings));
@@ -60,15 +62,13 @@ impl Fleet {
         }
     }
 
-    /// What sensors that measure now can see.
-    pub(super) fn surroundings(&self) -> Arc<Surroundings> {
+    /// What sensors that measure now can see. `sweeps`: a laser of theirs sweeps.
+    pub(super) fn surroundings(&self, sweeps: bool) -> Arc<Surroundings> {
         let (scene, tagged) = (self.scene.clone(), self.tagged());
+        let robots = self.robots.iter().map(|robot| robot.pose);
         let obstacles = self.obstacles.iter();
-        let recent = self.past.recent(
-            &self.spec,
-            self.robots.iter().map(|robot| robot.pose),
-            obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose)),
-        );
+        let obstacles = obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose));
+        let recent = if sweeps { self.past.recent(&self.spec, robots, obstacles) } else { Recent::default() };
         Arc::new(Surroundings { step: self.step, time_s: self.time_s(), scene, tagged, recent })
     }
 

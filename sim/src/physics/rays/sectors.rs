@@ -68,30 +68,45 @@ impl<'a> Sector<'a> {
         self.add(|ray| if is_inside(&ray.from) { f64::INFINITY } else { 0.0 });
     }
 
+    /// Whether a ray may hit an edge of a solid that does not move.
+    fn may_hit(&self, edge: &Edge) -> bool {
+        let gap_m = edge.gap_m(&self.origins.center);
+        let is_in_reach = gap_m >= -self.origins.radius_m && gap_m <= self.reach_m + self.origins.radius_m;
+        is_in_reach && !self.is_beside(&edge.from, &edge.to, 0.0)
+    }
+
     /// Adds an edge of a solid that does not move.
     pub(super) fn add_edge(&mut self, edge: &Edge) {
-        let gap_m = edge.gap_m(&self.origins.center);
-        let is_far = gap_m > self.reach_m + self.origins.radius_m;
-        if gap_m >= -self.origins.radius_m && !is_far && !self.is_beside(&edge.from, &edge.to, 0.0) {
+        if self.may_hit(edge) {
             let range_max_m = self.range_max_m;
             self.add(|ray| edge_hit(ray, edge, range_max_m));
         }
     }
 
-    /// Adds a body that moves.
-    pub(super) fn add_passing(&mut self, body: &Passing) {
+    /// Whether a ray may hit a body that moves.
+    fn may_meet(&self, body: &Passing) -> bool {
         let Disc { center, radius_m } = body.around;
         let most_m = self.reach_m + self.origins.radius_m + radius_m;
-        if (center - self.origins.center).norm_squared() > most_m * most_m
-            || self.is_beside(&center, &center, radius_m)
-        {
+        (center - self.origins.center).norm_squared() <= most_m * most_m
+            && !self.is_beside(&center, &center, radius_m)
+    }
+
+    /// Adds a body that moves.
+    pub(super) fn add_passing(&mut self, body: &Passing) {
+        if !self.may_meet(body) {
             return;
         }
         let range_max_m = self.range_max_m;
-        self.add(|ray| match body.disc(ray.share) {
-            Some(disc) => disc_hit(ray, &disc),
-            None => polygon_hit(ray, body.corners(ray.share), range_max_m),
-        });
+        match body.still_sides() {
+            [] => self.add(|ray| match body.disc(ray.share) {
+                Some(disc) => disc_hit(ray, &disc),
+                None => polygon_hit(ray, body.sides(ray.share), range_max_m),
+            }),
+            sides => {
+                self.add_inside(|at| sides.iter().all(|side| side.gap_m(at) <= 0.0));
+                sides.iter().for_each(|side| self.add_edge(side));
+            }
+        }
     }
 
     /// Whether everything within `around_m` of the line from `a` to `b` lies on one outer side of all rays.
@@ -145,13 +160,11 @@ fn disc_hit(ray: &Ray, disc: &Disc) -> f64 {
 }
 
 /// The same for a convex body.
-fn polygon_hit(ray: &Ray, corners: impl Iterator<Item = Point2<f64>> + Clone, range_max_m: f64) -> f64 {
-    let next = corners.clone().cycle().skip(1);
+fn polygon_hit(ray: &Ray, sides: impl Iterator<Item = Edge>, range_max_m: f64) -> f64 {
     let (mut most, mut is_inside) = (0.0_f64, true);
-    for (from, to) in corners.zip(next) {
-        let edge = Edge::new(from, to);
-        is_inside &= edge.gap_m(&ray.from) <= 0.0;
-        most = most.max(edge_hit(ray, &edge, range_max_m));
+    for side in sides {
+        is_inside &= side.gap_m(&ray.from) <= 0.0;
+        most = most.max(edge_hit(ray, &side, range_max_m));
     }
     if is_inside { f64::INFINITY } else { most }
 }

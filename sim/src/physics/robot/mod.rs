@@ -145,6 +145,11 @@ impl Robot {
         self.periods.iter().any(|period| step.is_multiple_of(*period))
     }
 
+    /// Whether a laser of the robot sweeps.
+    pub(super) fn sweeps(&self) -> bool {
+        self.spec.lasers().any(|laser| laser.sweep_s > 0.0)
+    }
+
     /// The latest reading of the main laser scanner.
     pub(super) fn reading(&self) -> Option<&LaserReading> {
         self.sensors[0].laser_reading()?
