@@ -26,6 +26,10 @@ pub enum Purpose {
     LaserDropout(usize),
     /// Physics world: range noise of the sonars of a robot. Stream `5 << 32 | index`.
     SonarNoise(usize),
+    /// Physics world: times and sizes of the jumps of the odometry of a robot. Stream `6 << 32 | index`.
+    OdometryJump(usize),
+    /// Physics world: times at which a robot is carried away, and where to. Stream `7 << 32 | index`.
+    Carried(usize),
     /// Grid world: whether an action of the robot succeeds. Stream `1 << 60`.
     RobotTransition,
     /// Grid world: whether a due move of a block happens. Stream `(1 << 60) + 1 + index`.
@@ -54,6 +58,8 @@ impl Purpose {
             Self::Door(index) => 3 << 32 | index as u64,
             Self::LaserDropout(index) => 4 << 32 | index as u64,
             Self::SonarNoise(index) => 5 << 32 | index as u64,
+            Self::OdometryJump(index) => 6 << 32 | index as u64,
+            Self::Carried(index) => 7 << 32 | index as u64,
             Self::RobotTransition => 1 << 60,
             Self::BlockTransition(index) => (1 << 60) + 1 + index as u64,
             Self::Agent => 1 << 48,
@@ -104,6 +110,12 @@ impl RandomStream {
                 return u * scale;
             }
         }
+    }
+
+    /// A number of the exponential distribution with the mean `mean`, by inversion.
+    #[inline]
+    pub fn exponential(&mut self, mean: f64) -> f64 {
+        -mean * libm::log(1.0 - self.unit())
     }
 
     /// A Bernoulli draw: true with `probability`. If `probability` is 1 or more, the result is true and no number
@@ -181,6 +193,8 @@ mod tests {
                 Purpose::Door(index),
                 Purpose::LaserDropout(index),
                 Purpose::SonarNoise(index),
+                Purpose::OdometryJump(index),
+                Purpose::Carried(index),
             ]
         };
         let once = [Purpose::Agent, Purpose::Controller, Purpose::HouseGenerator];

@@ -43,6 +43,7 @@ fn worlds_are_listed() {
     toy_on_the_floor   The four rooms; one box appears after 5 minutes, another disappears after 10 minutes.
     turned_house       The four rooms rotated by 10 degrees, with 1 cm of range noise; a box disappears after 5 minutes. A test for false changes.
     house              Six rooms around a hallway, with furniture and six doors that open and close. A vacuum cleaner wanders, a cat walks from room to room.
+    drifting_house     The house, for a robot with bad odometry and a laser that takes 0.1 s for a scan. Six rooms around a hallway, with furniture and six doors that open and close. A vacuum cleaner wanders, a cat walks from room to room.
     office             Ten rooms with desks along a corridor; the walls come from a picture. Two cleaning robots wander.
     warehouse          Long shelves with aisles of about 2 m. Thirty-two carriers drive around the shelves, eight wander.
     cave               A cave with pillars and dead ends; the walls come from a picture. Three robots wander.

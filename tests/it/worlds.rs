@@ -62,7 +62,7 @@ fn a_world_file_runs_as_the_shipped_world_does() {
 }
 
 #[test]
-fn odometry_that_drifts_is_reported() {
+fn odometry_that_drifts_and_scans_that_sweep_are_reported() {
     let run = Run::new();
     let world = include_str!("../../worlds/four_rooms.toml");
     let (exact, drifting) = ("# [robot.odometry] makes", "[robot.odometry]\nturn_gain = 0.01 # makes");
@@ -72,5 +72,12 @@ fn odometry_that_drifts_is_reported() {
     insta::assert_snapshot!(ended.stderr.trim_end(), @"
     warning: the odometry of `curious` drifts, and poses are taken as exact: this map will be wrong
       = help: without `[robot.odometry]` the poses are exact
+    ");
+    let sweeping = world.replacen("rate_hz = 10.0", "rate_hz = 10.0\nsweep_s = 0.05", 1);
+    run.write("sweep.toml", &sweeping);
+    let ended = run.goes_well("--quiet --no-rrd --duration 1 --world sweep.toml");
+    insta::assert_snapshot!(ended.stderr.trim_end(), @"
+    warning: a scan of the laser of `curious` takes 0.05 s, and all beams are taken as simultaneous: scans of a moving robot are distorted
+      = help: without `sweep_s` all beams measure at once
     ");
 }

@@ -8,11 +8,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The name and the text of every shipped physics world; the first is the default.
-pub const PHYSICS: [(&str, &str); 8] = [
+pub const PHYSICS: [(&str, &str); 9] = [
     ("four_rooms", include_str!("../../worlds/four_rooms.toml")),
     ("toy_on_the_floor", include_str!("../../worlds/toy_on_the_floor.toml")),
     ("turned_house", include_str!("../../worlds/turned_house.toml")),
     ("house", include_str!("../../worlds/house.toml")),
+    ("drifting_house", include_str!("../../worlds/drifting_house.toml")),
     ("office", include_str!("../../worlds/office.toml")),
     ("warehouse", include_str!("../../worlds/warehouse.toml")),
     ("cave", include_str!("../../worlds/cave.toml")),
@@ -143,6 +144,18 @@ mod tests {
             assert!(world.warnings().is_empty(), "{:?}", world.warnings());
         }
         assert!(matches!(load("map.yaml"), Err(LoadError::Map { .. })));
+    }
+
+    #[test]
+    fn the_drifting_house_differs_from_the_house_only_in_what_the_robot_senses() {
+        let spec = |name| load(name).unwrap_or_else(|error| panic!("{error}")).fleet().clone();
+        let (house, mut drifting) = (spec("house"), spec("drifting_house"));
+        let (exact, robot) = (&house.robots[0], &mut drifting.robots[0]);
+        assert!(exact.odometry.is_exact() && !robot.odometry.is_exact());
+        assert_eq!((robot.laser.sweep_s, robot.laser.noise_std_m), (0.1, 0.01));
+        (robot.odometry, robot.laser) = (exact.odometry, exact.laser);
+        (drifting.name, drifting.description) = (house.name.clone(), house.description.clone());
+        assert_eq!(drifting, house);
     }
 
     #[test]

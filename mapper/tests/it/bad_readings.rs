@@ -27,6 +27,7 @@ fn reading(time_s: f64) -> LaserReading {
             angle_increment_rad: TAU / BEAMS as f64,
             range_min_m: 0.1,
             range_max_m: 5.0,
+            sweep_s: 0.0,
             ranges_m: vec![1.5; BEAMS],
         },
     }
@@ -83,6 +84,7 @@ fn nonsense_is_refused_and_changes_nothing() {
         (edited(|r| r.scan.range_max_m = 0.05), "limits"),
         (edited(|r| r.scan.range_min_m = -1.0), "limits"),
         (edited(|r| r.scan.range_min_m = f64::NAN), "limits"),
+        (edited(|r| r.scan.sweep_s = -0.1), "duration"),
     ];
     for occupancy in [OccupancyChoice::steady(), OccupancyChoice::naive()] {
         let mut mapper = learned(occupancy);
@@ -94,6 +96,7 @@ fn nonsense_is_refused_and_changes_nothing() {
                 Err(ReadingError::Scan(ScanError::Angle { .. })) => "angle",
                 Err(ReadingError::Scan(ScanError::Sweep { .. })) => "sweep",
                 Err(ReadingError::Scan(ScanError::Limits { .. })) => "limits",
+                Err(ReadingError::Scan(ScanError::Duration { .. })) => "duration",
                 Ok(()) => "taken",
             };
             assert_eq!(found, *why, "case {number}");
@@ -346,7 +349,14 @@ proptest! {
         for (number, ranges_m) in scans.into_iter().enumerate() {
             let mut reading = reading(10.0 + number as f64);
             let [range_min_m, range_max_m] = limits_m;
-            reading.scan = Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m };
+            reading.scan = Scan {
+                angle_min_rad,
+                angle_increment_rad,
+                range_min_m,
+                range_max_m,
+                sweep_s: 0.0,
+                ranges_m,
+            };
             let before = mapper.readings();
             let is_taken = mapper.update(&reading).is_ok();
             prop_assert_eq!(mapper.readings(), before + usize::from(is_taken));

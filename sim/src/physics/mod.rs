@@ -17,6 +17,7 @@ mod free_space;
 mod generate;
 mod ground_truth;
 mod obstacles;
+mod past;
 mod rays;
 mod report;
 mod robot;
@@ -42,8 +43,8 @@ pub use sensors::{Fiducial, SensorReading, SonarReading};
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
-    BehaviorSpec, BumperSpec, CircleSpec, DoorSpec, DriveKind, DriveLimits, DrivenError, FiducialSpec,
-    FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec, PatrolSpec,
-    PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
+    BehaviorSpec, BumperSpec, CircleSpec, DisplacementSpec, DoorSpec, DriveKind, DriveLimits, DrivenError,
+    FiducialSpec, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec,
+    PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
 };
 pub use world::PhysicsWorld;

@@ -7,7 +7,7 @@ use nalgebra::Isometry2;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 /// The first eight bytes of a snapshot: the kind of data, and the version of the format.
-const MAGIC: u64 = u64::from_le_bytes(*b"fleet\0\0\x05");
+const MAGIC: u64 = u64::from_le_bytes(*b"fleet\0\0\x06");
 
 /// The error for bytes that are not a snapshot of the fleet.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -51,22 +51,22 @@ pub(super) fn value<'a, T: Serialize + DeserializeOwned>(value: &'a mut T) -> Bo
     Box::new(value)
 }
 
+/// A pose that serde can write and read: nalgebra is built without serde.
+#[derive(Clone, Copy, Deserialize, Serialize)]
+pub(super) struct SavedPose(#[serde(with = "interfaces::serde_pose")] pub(super) Isometry2<f64>);
+
 /// A pose.
 pub(super) fn pose(pose: &mut Isometry2<f64>) -> Box<dyn Value + '_> {
-    /// nalgebra is built without serde.
     struct Pose<'a>(&'a mut Isometry2<f64>);
-
-    #[derive(Deserialize, Serialize)]
-    struct Saved(#[serde(with = "interfaces::serde_pose")] Isometry2<f64>);
 
     impl Value for Pose<'_> {
         fn write(&self, bytes: &mut Vec<u8>) -> postcard::Result<()> {
-            let saved = &mut Saved(*self.0);
+            let saved = &mut SavedPose(*self.0);
             saved.write(bytes)
         }
 
         fn read(&mut self, bytes: &mut &[u8]) -> postcard::Result<()> {
-            let mut saved = Saved(*self.0);
+            let mut saved = SavedPose(*self.0);
             (&mut saved).read(bytes)?;
             *self.0 = saved.0;
             Ok(())

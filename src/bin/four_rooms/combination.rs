@@ -3,7 +3,7 @@
 
 use interfaces::{Cell, CellState, GroundTruth, TrueState};
 use nalgebra::Point2;
-use sim::physics::{OdometryError, PhysicsWorld, WorldSpec};
+use sim::physics::{PhysicsWorld, WorldSpec};
 use worldfile::ros_map::RosMap;
 
 /// A map with a smaller share of walls, or of free space, that is right in the world is probably of another place.
@@ -11,16 +11,24 @@ use worldfile::ros_map::RosMap;
 const MIN_WALLS: f64 = 0.55;
 const MIN_FREE: f64 = 0.95;
 
-/// What the odometry of the driven robot does to the map.
-pub(crate) fn odometry(spec: &WorldSpec) -> Option<String> {
+/// What the odometry and the laser of the driven robot do to the map.
+pub(crate) fn senses(spec: &WorldSpec) -> Vec<String> {
     let robot = spec.driven();
-    (robot.odometry != OdometryError::default()).then(|| {
+    let odometry = (!robot.odometry.is_exact()).then(|| {
         format!(
             "warning: the odometry of `{}` drifts, and poses are taken as exact: this map will be wrong\n  = help: \
              without `[robot.odometry]` the poses are exact",
             robot.name
         )
-    })
+    });
+    let sweep = (robot.laser.sweep_s > 0.0).then(|| {
+        format!(
+            "warning: a scan of the laser of `{}` takes {} s, and all beams are taken as simultaneous: scans of a \
+             moving robot are distorted\n  = help: without `sweep_s` all beams measure at once",
+            robot.name, robot.laser.sweep_s
+        )
+    });
+    odometry.into_iter().chain(sweep).collect()
 }
 
 /// Which waypoints the robot cannot reach.

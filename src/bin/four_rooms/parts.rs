@@ -36,7 +36,7 @@ impl Parts {
             return Err(input(anyhow!("--strategy is for the agent: leave out --drive, or --strategy")));
         }
         let Loaded { spec, warnings } = worlds::load(&args.world).map_err(input)?;
-        warnings.iter().chain(&combination::odometry(&spec)).for_each(warn);
+        warnings.iter().chain(&combination::senses(&spec)).for_each(warn);
         reachability::warnings(spec.fleet()).iter().for_each(warn);
         let settings = PhysicsSettings::of(&spec).with_context(|| format!("cannot run `{}`", args.world));
         let mut settings = settings.map_err(input)?;

@@ -8,6 +8,7 @@ mod drive;
 mod floor_plan;
 mod footprint;
 mod obstacle;
+mod odometry;
 mod robot;
 mod sensor;
 mod space;

@@ -1,15 +1,16 @@
-//! A robot: its body, its pose and its odometry.
+//! A robot: its body and its pose.
 
 use super::behavior::{self, Driver};
 use super::drive::{self, drive};
 use super::footprint::{Footprint, footprint};
+use super::odometry::odometry;
 use super::sensor::{Carrier, bumper};
 use super::space::Space;
 use crate::reader::Table;
 use interfaces::pose;
 use nalgebra::Isometry2;
 use sim::physics::shape::TOUCH_M;
-use sim::physics::{DriveKind, DriveLimits, Form, OdometryError, Rectangle, RobotSpec, convex};
+use sim::physics::{DriveKind, DriveLimits, Form, Rectangle, RobotSpec, convex};
 
 pub(super) const KEYS: &str = "name, radius_m, footprint_m, mass_kg, pose_m, heading_deg, drive, odometry, laser, \
                                bumper, sonar, fiducial, tag, behaviour";
@@ -100,21 +101,4 @@ fn body(
         return table.error(&what, (table.at("pose_m"), "stands here"), &others, &help);
     }
     Some((body, pose))
-}
-
-fn odometry(robot: &Table<'_>) -> Option<OdometryError> {
-    let keys = "distance_gain, turn_gain, turn_per_m_deg, distance_noise_m, turn_noise_deg";
-    let table = robot.table_or_empty("odometry", keys)?;
-    let distance_gain = table.number_or("distance_gain", 0.0, -0.5..=0.5);
-    let turn_gain = table.number_or("turn_gain", 0.0, -0.5..=0.5);
-    let turn_per_m_deg = table.number_or("turn_per_m_deg", 0.0, -90.0..=90.0);
-    let distance_noise_m = table.number_or("distance_noise_m", 0.0, 0.0..=1.0);
-    let turn_noise_deg = table.number_or("turn_noise_deg", 0.0, 0.0..=90.0);
-    table.sound(OdometryError {
-        distance_gain: distance_gain?,
-        turn_gain: turn_gain?,
-        turn_radpm: turn_per_m_deg?.to_radians(),
-        distance_noise_m: distance_noise_m?,
-        turn_noise_rad: turn_noise_deg?.to_radians(),
-    })
 }

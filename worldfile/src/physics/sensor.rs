@@ -1,6 +1,6 @@
 //! The sensors of a robot: lasers, bumpers, sonars, fiducial finders.
 
-use crate::reader::Table;
+use crate::reader::{Figure, Table};
 use interfaces::pose;
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{BumperSpec, FiducialSpec, LaserSpec, SonarSpec};
@@ -13,7 +13,7 @@ const MOST_LASERS: usize = 100;
 const MOST_SONARS: usize = 100;
 
 const LASER_KEYS: &str =
-    "beams, fov_deg, range_min_m, range_max_m, rate_hz, mount_m, mount_deg, noise_std_m, dropout";
+    "beams, fov_deg, range_min_m, range_max_m, rate_hz, sweep_s, mount_m, mount_deg, noise_std_m, dropout";
 const SONAR_KEYS: &str = "cone_deg, range_min_m, range_max_m, rate_hz, mount_m, mount_deg, noise_std_m";
 
 /// The properties of a robot to which its sensors must fit: the physics step (s) and the radius of the body (m).
@@ -42,6 +42,7 @@ impl Carrier {
         let fov_deg = table.number_or("fov_deg", 360.0, 1.0..=360.0);
         let range = range(table, "a laser sees nothing");
         let rate = self.rate(table);
+        let sweep_s = sweep(table, rate);
         let mount = self.mount(table, "a laser");
         let noise_std_m = table.number_or("noise_std_m", 0.0, 0.0..=1.0);
         let dropout = table.number_or("dropout", 0.0, 0.0..=1.0);
@@ -53,6 +54,7 @@ impl Carrier {
             range_max_m,
             rate_hz,
             period_steps,
+            sweep_s: sweep_s?,
             mount: mount?,
             noise_std_m: noise_std_m?,
             dropout: dropout?,
@@ -140,6 +142,23 @@ pub(super) fn bumper(robot: &Table<'_>) -> Option<Option<BumperSpec>> {
     let sectors = table.count("sectors", 1..=64);
     let fov_rad = table.number_or("fov_deg", 360.0, 1.0..=360.0)?.to_radians();
     table.sound(Some(BumperSpec { sectors: sectors?, fov_rad }))
+}
+
+/// The time from the first to the last beam of a laser, s, for a rate (Hz) with the physics steps between scans.
+fn sweep(laser: &Table<'_>, rate: Option<(f64, u64)>) -> Option<f64> {
+    let sweep_s = laser.number_or("sweep_s", 0.0, 0.0..=100.0)?;
+    let period_s = 1.0 / rate?.0;
+    // The period may be rounded: 0.333333 s at 3 Hz, and 0.333333 Hz for 3 s.
+    if sweep_s > period_s * (1.0 + 1e-5) {
+        let what = format!(
+            "`{}` is {sweep_s}: a sweep takes longer than from one scan to the next",
+            laser.path("sweep_s")
+        );
+        let others = [(laser.at("rate_hz"), "the time between scans")];
+        let help = format!("it must be at most 1 / `rate_hz`, which is {}", Figure(period_s));
+        return laser.error(&what, (laser.at("sweep_s"), "too long"), &others, &help);
+    }
+    Some(sweep_s)
 }
 
 /// The least and the greatest range, m; `what`: the message if there is no range between them.

@@ -103,7 +103,7 @@ fn door(shape: &Rectangle, spec: &DoorSpec) -> Option<Keys> {
 fn body(robot: &RobotSpec) -> Option<Keys> {
     let is_plain = robot.corners.is_empty()
         && robot.mass_kg.is_none()
-        && robot.odometry == sim::physics::OdometryError::default()
+        && robot.odometry.is_exact()
         && (robot.more_lasers.is_empty() && robot.sonars.is_empty())
         && (robot.bumper.is_none() && robot.fiducial.is_none() && robot.tag.is_none());
     let keys = || {
@@ -131,8 +131,9 @@ fn drive(robot: &RobotSpec) -> Option<Keys> {
 }
 
 fn laser(laser: &LaserSpec) -> Option<Keys> {
+    let sweep = (laser.sweep_s > 0.0).then(|| ("sweep_s", number(laser.sweep_s)));
     let keys = || {
-        vec![
+        let keys = vec![
             ("beams", Value::from(laser.beams as i64)),
             ("fov_deg", degrees(laser.fov_rad)),
             ("range_min_m", number(laser.range_min_m)),
@@ -140,7 +141,8 @@ fn laser(laser: &LaserSpec) -> Option<Keys> {
             ("rate_hz", number(laser.rate_hz)),
             ("noise_std_m", number(laser.noise_std_m)),
             ("dropout", number(laser.dropout)),
-        ]
+        ];
+        keys.into_iter().chain(sweep).collect()
     };
     (laser.mount == Isometry2::identity()).then(keys)
 }

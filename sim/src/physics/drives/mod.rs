@@ -93,6 +93,11 @@ impl Drive {
         self.velocity
     }
 
+    /// The present velocity.
+    pub(super) fn velocity(&self) -> &Velocity {
+        &self.velocity
+    }
+
     /// Whether contacts changed the velocity in the last step.
     pub(super) fn is_stalled(&self) -> bool {
         self.is_stalled

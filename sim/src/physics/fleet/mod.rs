@@ -1,5 +1,6 @@
 //! Any number of robots in one world.
 
+mod carry;
 mod controller;
 mod snapshots;
 mod teleport;
@@ -12,14 +13,17 @@ use super::bodies::Bodies;
 use super::command::Command;
 use super::form::Form;
 use super::obstacles::Obstacle;
+use super::past::Past;
 use super::rays::{Disc, Scene};
 use super::report::{Body, Contact, ObstacleView};
 use super::robot::{Robot, RobotView};
 use super::sensors::{SharedBeams, Tagged};
 use super::shape::Rectangle;
 use super::spec::{FleetSpec, RobotSpec};
+use carry::Carrying;
 use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
+use std::sync::Arc;
 
 /// A world with any number of robots.
 ///
@@ -39,6 +43,8 @@ pub struct Fleet {
     /// Whether any robot has a fiducial finder.
     has_fiducial_finders: bool,
     scene: Scene,
+    past: Past,
+    carrying: Arc<Carrying>,
     contacts: Vec<Contact>,
     /// The obstacles that moved in the last step, with the shape before the step.
     moved: Vec<(usize, Rectangle)>,
@@ -81,6 +87,8 @@ impl Fleet {
             cornered,
             has_fiducial_finders: spec.robots.iter().any(|robot| robot.fiducial.is_some()),
             scene,
+            past: Past::new(spec),
+            carrying: Arc::new(Carrying::new(spec)),
             contacts: Vec::new(),
             moved: Vec::new(),
             parallel_lasers: false,
@@ -148,7 +156,7 @@ impl Fleet {
     /// Measures with the sensors of a robot now: with its main laser scanner, and with all other sensors that are
     /// due.
     pub(super) fn look(&mut self, robot: usize) -> &Robot {
-        let surroundings = self.surroundings();
+        let surroundings = self.surroundings(self.robots[robot].sweeps());
         self.robots[robot].look(&surroundings);
         &self.robots[robot]
     }

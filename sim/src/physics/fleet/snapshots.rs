@@ -44,6 +44,7 @@ impl Fleet {
     fn values(&mut self) -> Values<'_> {
         let mut values = vec![value(&mut self.step)];
         values.extend(self.bodies.values());
+        values.extend(self.past.values());
         values.extend(self.robots.iter_mut().flat_map(|robot| robot.values()));
         values.extend(self.obstacles.iter_mut().flat_map(|obstacle| obstacle.values()));
         values

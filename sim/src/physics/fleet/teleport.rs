@@ -43,6 +43,21 @@ impl Fleet {
     ///
     /// When there is no such robot, or when the robot does not fit at the pose. The state is then unchanged.
     pub fn teleport(&mut self, robot: usize, pose: &Isometry2<f64>) -> Result<(), TeleportError> {
+        self.check_fit(robot, pose)?;
+        let at = pose.translation.vector;
+        self.bodies.put(robot, &interfaces::pose(at.x, at.y, heading_rad(pose)));
+        self.robots[robot].put(self.bodies.pose(robot));
+        self.past.put(robot, &self.robots[robot].pose);
+        self.show_robot(robot);
+        Ok(())
+    }
+
+    /// Checks that a robot fits at `pose`.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Fleet::teleport`].
+    pub(super) fn check_fit(&self, robot: usize, pose: &Isometry2<f64>) -> Result<(), TeleportError> {
         let Some(spec) = self.spec.robots.get(robot) else {
             return Err(TeleportError::NoSuchRobot { robot, robots: self.robots.len() });
         };
@@ -50,8 +65,7 @@ impl Fleet {
         let ((low, high), form) = (corners(&self.spec.frame), spec.form(pose));
         let (least, most) = form.bounds();
         let inside_m = (least - low).min().min((high - most).min());
-        let heading_rad = heading_rad(pose);
-        let is_finite = at.x.is_finite() && at.y.is_finite() && heading_rad.is_finite();
+        let is_finite = at.x.is_finite() && at.y.is_finite() && heading_rad(pose).is_finite();
         if !is_finite || inside_m < -TOUCH_M {
             return Err(TeleportError::Outside { x_m: at.x, y_m: at.y });
         }
@@ -61,9 +75,6 @@ impl Fleet {
         if self.standing_boxes().iter().any(is_in) || others.any(meets) {
             return Err(TeleportError::Occupied { x_m: at.x, y_m: at.y });
         }
-        self.bodies.put(robot, &interfaces::pose(at.x, at.y, heading_rad));
-        self.robots[robot].put(self.bodies.pose(robot));
-        self.show_robot(robot);
         Ok(())
     }
 }

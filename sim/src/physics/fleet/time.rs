@@ -5,6 +5,7 @@ use crate::physics::bodies::Touch;
 use crate::physics::command::Velocity;
 use crate::physics::form::Form;
 use crate::physics::obstacles::{Blockers, Obstacle};
+use crate::physics::past::Recent;
 use crate::physics::report::Contact;
 use crate::physics::robot::Robot;
 use crate::physics::sensors::{Surroundings, bumper};
@@ -50,7 +51,8 @@ impl Fleet {
         if !self.robots.iter_mut().any(|robot| is_due(&robot)) {
             return;
         }
-        let surroundings = &self.surroundings();
+        let sweeps = self.robots.iter_mut().any(|robot| is_due(&robot) && robot.sweeps());
+        let surroundings = &self.surroundings(sweeps);
         if self.parallel_lasers {
             let due = self.robots.par_iter_mut().filter(is_due);
             due.for_each(|robot| robot.think(surroundings));
@@ -60,10 +62,14 @@ impl Fleet {
         }
     }
 
-    /// What sensors that measure now can see.
-    pub(super) fn surroundings(&self) -> Arc<Surroundings> {
+    /// What sensors that measure now can see. `sweeps`: a laser of theirs sweeps.
+    pub(super) fn surroundings(&self, sweeps: bool) -> Arc<Surroundings> {
         let (scene, tagged) = (self.scene.clone(), self.tagged());
-        Arc::new(Surroundings { step: self.step, time_s: self.time_s(), scene, tagged })
+        let robots = self.robots.iter().map(|robot| robot.pose);
+        let obstacles = self.obstacles.iter();
+        let obstacles = obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose));
+        let recent = if sweeps { self.past.recent(&self.spec, robots, obstacles) } else { Recent::default() };
+        Arc::new(Surroundings { step: self.step, time_s: self.time_s(), scene, tagged, recent })
     }
 
     /// Moves robots and obstacles by one physics step.
@@ -73,23 +79,31 @@ impl Fleet {
         }
         let before: Vec<Rectangle> = self.obstacles.iter().map(|obstacle| obstacle.shape).collect();
         self.step += 1;
+        let time_s = self.time_s();
         self.start_obstacles();
         self.bodies.step();
         for index in 0..self.robots.len() {
-            self.robots[index].end_step(&self.bodies);
+            self.robots[index].end_step(&self.bodies, time_s, self.spec.step_s);
             if self.robots[index].has_moved() {
                 self.show_robot(index);
             }
         }
         self.moved.clear();
-        for (index, before) in before.into_iter().enumerate() {
+        for (index, before) in before.iter().enumerate() {
             self.obstacles[index].end_step(&mut self.bodies);
-            if self.obstacles[index].shape != before {
-                self.moved.push((index, before));
+            if self.obstacles[index].shape != *before {
+                self.moved.push((index, *before));
                 self.show_obstacle(index);
             }
         }
+        self.past.note(
+            self.robots.iter().map(|robot| [robot.previous_pose, robot.pose]),
+            self.obstacles.iter().zip(&before).map(|(obstacle, before)| {
+                obstacle.is_standing().then_some([before.pose, obstacle.shape.pose])
+            }),
+        );
         self.update_contacts();
+        self.carry_robots();
     }
 
     /// Starts the motion of doors and blocks for the step that has begun.

@@ -123,10 +123,9 @@ impl Door {
     /// The time until the next change of a door that opens at random, s.
     fn stay_s(&mut self, spec: &DoorSpec) -> f64 {
         match spec.opening {
-            // The exponential distribution by inversion.
             Opening::Random { closed_s, open_s } => {
                 let mean_s = if self.is_to_open { open_s } else { closed_s };
-                -mean_s * libm::log(1.0 - self.random.uniform(0.0..1.0))
+                self.random.exponential(mean_s)
             }
             Opening::Periodic { .. } | Opening::Scripted { .. } => f64::INFINITY,
         }

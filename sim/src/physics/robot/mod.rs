@@ -1,7 +1,9 @@
 //! A robot at work: its sensors, behavior, drive and odometry. Its body belongs to `bodies`.
 
+mod displacements;
 mod odometry;
 mod view;
+mod wheels;
 
 pub use view::RobotView;
 
@@ -14,10 +16,12 @@ use super::report::Body;
 use super::sensors::{Look, Platform, Sensor, SharedBeams, Surroundings};
 use super::snapshot::{Values, pose, value};
 use super::spec::RobotSpec;
-use interfaces::{LaserReading, Purpose, RandomStream};
+use displacements::Displacements;
+use interfaces::{LaserReading, Purpose, RandomStream, Twist};
 use nalgebra::{Isometry2, Point2, Vector2};
 use odometry::Odometry;
 use std::sync::Arc;
+use wheels::Wheels;
 
 #[derive(Clone)]
 pub(super) struct Robot {
@@ -37,7 +41,11 @@ pub(super) struct Robot {
     pub(super) pressed_bumpers: u64,
     command: Command,
     drive: Drive,
+    wheels: Wheels,
     odometry: Odometry,
+    /// When the odometry jumps, and when the robot is carried away.
+    jumps: Option<Displacements>,
+    pub(super) carried: Option<Displacements>,
     /// `None` if the robot executes commands.
     behavior: Option<Behavior>,
     /// All sensors, the main laser scanner first.
@@ -61,6 +69,9 @@ impl Robot {
         let mut periods: Vec<u64> = sensors.iter().map(Sensor::period_steps).collect();
         periods.sort_unstable();
         periods.dedup();
+        let displacements =
+            |spec: Option<_>, purpose| spec.map(|spec| Displacements::new(spec, random(purpose)));
+        let drive = Drive::new(spec.drive);
         let laser_beams = beams.of_laser(&spec.laser);
         Self {
             index,
@@ -71,8 +82,11 @@ impl Robot {
             touching: Vec::new(),
             pressed_bumpers: 0,
             command: Command::STOP,
-            drive: Drive::new(spec.drive),
+            drive,
+            wheels: Wheels::new(spec.odometry.slip, drive),
             odometry: Odometry::new(spec, random(Purpose::OdometryNoise(index)), pose),
+            jumps: displacements(spec.odometry.jump, Purpose::OdometryJump(index)),
+            carried: displacements(spec.odometry.carried, Purpose::Carried(index)),
             behavior: Behavior::of(spec, step_s, &laser_beams, random(Purpose::Behavior(index))),
             sensors,
             periods,
@@ -92,7 +106,10 @@ impl Robot {
             value(&mut self.command),
         ];
         values.extend(self.drive.values());
+        values.extend(self.wheels.values());
         values.extend(self.odometry.values());
+        let displacements = self.jumps.iter_mut().chain(&mut self.carried);
+        values.extend(displacements.flat_map(Displacements::values));
         values.extend(self.behavior.iter_mut().flat_map(Behavior::values));
         values.extend(self.sensors.iter_mut().flat_map(Sensor::values));
         values
@@ -128,6 +145,11 @@ impl Robot {
         self.periods.iter().any(|period| step.is_multiple_of(*period))
     }
 
+    /// Whether a laser of the robot sweeps.
+    pub(super) fn sweeps(&self) -> bool {
+        self.spec.lasers().any(|laser| laser.sweep_s > 0.0)
+    }
+
     /// The latest reading of the main laser scanner.
     pub(super) fn reading(&self) -> Option<&LaserReading> {
         self.sensors[0].laser_reading()?
@@ -138,13 +160,19 @@ impl Robot {
         self.command = *command;
     }
 
+    /// Carries the robot to `pose`, at rest. The robot keeps its command, and the odometry does not notice.
+    pub(super) fn carry(&mut self, pose: Isometry2<f64>) {
+        self.pose = pose;
+        self.velocity = Velocity::STOP;
+        self.drive = Drive::new(self.spec.drive);
+        self.wheels = Wheels::new(self.spec.odometry.slip, self.drive);
+    }
+
     /// Moves the robot to `pose`, at rest. The odometry starts again there.
     pub(super) fn put(&mut self, pose: Isometry2<f64>) {
-        self.pose = pose;
+        self.carry(pose);
         self.previous_pose = pose;
-        self.velocity = Velocity::STOP;
         self.command = Command::STOP;
-        self.drive = Drive::new(self.spec.drive);
         self.odometry.restart(pose);
         self.touching.clear();
         self.pressed_bumpers = 0;
@@ -185,17 +213,24 @@ impl Robot {
     }
 
     fn platform(&self) -> Platform {
+        let (velocity, slipping) = (self.velocity.twist(), self.wheels.slipping().twist());
+        let measured = Twist {
+            linear_mps: velocity.linear_mps + slipping.linear_mps,
+            angular_radps: velocity.angular_radps + slipping.angular_radps,
+        };
         Platform {
             robot: self.index,
             pose: self.pose,
             odometry_pose: *self.odometry.pose(),
-            odometry_twist: self.odometry.twist(&self.velocity.twist()),
+            odometry_twist: self.odometry.twist(&measured),
         }
     }
 
     /// Gives the body the velocity of the next step.
     pub(super) fn start_step(&mut self, bodies: &mut Bodies, step_s: f64) {
-        self.velocity = self.drive.step(&self.command, self.odometry.pose(), step_s);
+        let at = self.odometry.pose();
+        self.wheels.start_step(&self.drive, &self.command, at, step_s);
+        self.velocity = self.drive.step(&self.command, at, step_s);
         self.driven = self.velocity;
         bodies.set_velocity(self.index, &self.velocity, step_s);
     }
@@ -209,10 +244,17 @@ impl Robot {
         velocity.dot(direction)
     }
 
-    /// Takes over the pose and the velocity of the body after the step.
-    pub(super) fn end_step(&mut self, bodies: &Bodies) {
+    /// Takes over the pose and the velocity of the body after the step, which ends at `time_s`.
+    pub(super) fn end_step(&mut self, bodies: &Bodies, time_s: f64, step_s: f64) {
         self.previous_pose = std::mem::replace(&mut self.pose, bodies.pose(self.index));
-        self.velocity = self.drive.settle(&bodies.velocity(self.index));
-        self.odometry.update(&self.previous_pose, &self.pose);
+        let solved = bodies.velocity(self.index);
+        self.velocity = self.drive.settle(&solved);
+        self.wheels.end_step(&self.drive, &solved);
+        self.odometry.update(&self.previous_pose, &self.pose, self.wheels.slipping(), step_s);
+        if let Some(jumps) = &mut self.jumps
+            && jumps.is_due(time_s)
+        {
+            self.odometry.jump(jumps);
+        }
     }
 }

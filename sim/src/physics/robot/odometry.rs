@@ -1,3 +1,5 @@
+use super::displacements::Displacements;
+use crate::physics::command::Velocity;
 use crate::physics::snapshot::{self, Values, value};
 use crate::physics::spec::{DriveKind, OdometryError, RobotSpec};
 use interfaces::{RandomStream, Twist, pose, wrap_rad};
@@ -52,24 +54,41 @@ impl Odometry {
         }
     }
 
-    /// Measures the motion from pose `before` to pose `after` in one physics step.
-    pub(super) fn update(&mut self, before: &Isometry2<f64>, after: &Isometry2<f64>) {
-        if self.error == OdometryError::default() {
+    /// Changes the pose, although the robot did not move.
+    pub(super) fn jump(&mut self, jumps: &mut Displacements) {
+        let (at, heading_rad) = jumps.draw(&self.pose.translation.vector.into(), self.heading_rad);
+        self.heading_rad = wrap_rad(heading_rad);
+        self.pose = pose(at.x, at.y, self.heading_rad);
+    }
+
+    /// Measures the motion from pose `before` to pose `after` in one physics step, and in addition wheels that slip at
+    /// the velocity `slipping`.
+    pub(super) fn update(
+        &mut self,
+        before: &Isometry2<f64>,
+        after: &Isometry2<f64>,
+        slipping: &Velocity,
+        step_s: f64,
+    ) {
+        if self.error.is_exact() {
             self.pose = *after;
             return;
         }
-        let OdometryError { distance_gain, turn_gain, turn_radpm, distance_noise_m, turn_noise_rad } =
+        let OdometryError { distance_gain, turn_gain, turn_radpm, distance_noise_m, turn_noise_rad, .. } =
             self.error;
         let turn_rad = wrap_rad(interfaces::heading_rad(after) - interfaces::heading_rad(before));
         let moved = interfaces::rotation(-interfaces::heading_rad(before) - turn_rad / 2.0)
             * (after.translation.vector - before.translation.vector);
+        // Of the wheels, not of the robot. Without slip not a bit changes.
+        let turn_rad = turn_rad + slipping.turn_radps * step_s;
+        let moved = moved + Vector2::new(slipping.forward_mps, slipping.left_mps) * step_s;
         let distance_m = moved.norm();
         // A random walk: the variance grows with the distance, whatever the length of the steps.
-        let slip_m = distance_noise_m * distance_m.sqrt() * self.noise.normal();
+        let noise_m = distance_noise_m * distance_m.sqrt() * self.noise.normal();
         let swerve_rad = turn_noise_rad * turn_rad.abs().sqrt() * self.noise.normal();
-        // Wheel slip acts in the direction in which the wheels roll.
+        // The noise acts in the direction in which the wheels roll.
         let along = if self.is_omni && distance_m > 0.0 { moved / distance_m } else { Vector2::x() };
-        let measured = moved * (1.0 + distance_gain) + along * slip_m;
+        let measured = moved * (1.0 + distance_gain) + along * noise_m;
         let measured_turn_rad = turn_rad * (1.0 + turn_gain) + moved.x * turn_radpm + swerve_rad;
         let at = self.pose.translation.vector
             + interfaces::rotation(self.heading_rad + measured_turn_rad / 2.0) * measured;
@@ -97,7 +116,7 @@ mod tests {
             let mut odometry = Odometry::new(&robot, noise, Isometry2::identity());
             for step in 0..10 {
                 let at = |step: i32| Isometry2::new(towards * f64::from(step) * 0.1, 0.0);
-                odometry.update(&at(step), &at(step + 1));
+                odometry.update(&at(step), &at(step + 1), &Velocity::STOP, 0.05);
             }
             let error = odometry.pose().translation.vector - towards;
             [error.dot(&towards), error.perp(&towards)]

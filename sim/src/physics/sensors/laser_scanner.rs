@@ -1,8 +1,9 @@
 use super::on_demand::{Device, Look};
 use super::{SharedBeams, reported};
-use crate::physics::rays::Beams;
+use crate::physics::rays::{Beams, Ray};
 use crate::physics::spec::LaserSpec;
-use interfaces::{LaserReading, RandomStream};
+use interfaces::{LaserReading, RandomStream, Scan};
+use nalgebra::Vector2;
 use std::sync::Arc;
 
 /// A planar laser scanner.
@@ -23,6 +24,23 @@ impl LaserScanner {
     pub(in crate::physics) fn new(spec: &LaserSpec, beams: &mut SharedBeams) -> Self {
         Self { spec: *spec, beams: beams.of_laser(spec) }
     }
+
+    /// The beams of a scan that sweeps.
+    fn rays(&self, look: &Look, scan: &Scan) -> Vec<Ray> {
+        let (robot, recent) = (look.platform.robot, &look.surroundings.recent);
+        let mut motion = (usize::MAX, recent.motion(robot, 0));
+        let directions = self.beams.directions().enumerate();
+        let rays = directions.map(|(beam, (x, y))| {
+            let (interval, share) = recent.at(scan.age_s(beam));
+            if motion.0 != interval {
+                motion = (interval, recent.motion(robot, interval));
+            }
+            let laser = motion.1.pose(share) * self.spec.mount;
+            let (from, along) = (laser.translation.vector.into(), laser.rotation * Vector2::new(x, y));
+            Ray { from, along, interval, share }
+        });
+        rays.collect()
+    }
 }
 
 impl Device for LaserScanner {
@@ -31,7 +49,7 @@ impl Device for LaserScanner {
 
     fn measure(&self, look: &Look, streams: &mut LaserStreams, spare: Option<LaserReading>) -> LaserReading {
         let Look { platform, surroundings } = look;
-        let LaserSpec { range_min_m, range_max_m, noise_std_m, dropout, mount, .. } = self.spec;
+        let LaserSpec { range_min_m, range_max_m, noise_std_m, dropout, mount, sweep_s, .. } = self.spec;
         let scan = spare.map_or_else(|| self.spec.empty_scan(), |spare| spare.scan);
         let mut reading = LaserReading {
             time_s: surroundings.time_s,
@@ -40,12 +58,13 @@ impl Device for LaserScanner {
             mount,
             scan,
         };
+        let rays = if sweep_s > 0.0 { self.rays(look, &reading.scan) } else { Vec::new() };
         let reported = move |measured_m: f64| reported(measured_m, range_min_m, range_max_m);
         let ranges_m = &mut reading.scan.ranges_m;
         let (scene, noise) = (&surroundings.scene, &mut streams.noise);
         // By value: the limits cannot be among the ranges that are written, so that the loops below need not read them
         // again for every beam.
-        scene.cast(&self.beams, &(platform.pose * mount), platform.robot, move |inverses| {
+        let report = move |inverses: &[f64]| {
             ranges_m.resize(inverses.len(), 0.0);
             let beams = ranges_m.iter_mut().zip(inverses);
             if noise_std_m > 0.0 {
@@ -60,7 +79,12 @@ impl Device for LaserScanner {
                     *range_m = reported(1.0 / inverse);
                 }
             }
-        });
+        };
+        if rays.is_empty() {
+            scene.cast(&self.beams, &(platform.pose * mount), platform.robot, report);
+        } else {
+            scene.sweep(&rays, &surroundings.recent.bodies, range_max_m, platform.robot, report);
+        }
         if dropout > 0.0 {
             for range_m in &mut reading.scan.ranges_m {
                 // REP-117: a missing measurement is NaN. One draw per beam, as above.

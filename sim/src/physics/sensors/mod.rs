@@ -23,6 +23,7 @@ pub(super) use shared_beams::SharedBeams;
 use sonar::Sonar;
 pub use sonar::SonarReading;
 
+use super::past::Recent;
 use super::rays::Scene;
 use super::snapshot::{Values, value};
 use super::spec::{LaserSpec, RobotSpec};
@@ -179,6 +180,8 @@ pub(super) struct Surroundings {
     pub(super) time_s: f64,
     pub(super) scene: Scene,
     pub(super) tagged: Vec<Tagged>,
+    /// For lasers that sweep.
+    pub(super) recent: Recent,
 }
 
 /// A measured range with the meaning of REP-117: too far is +∞, too close −∞.

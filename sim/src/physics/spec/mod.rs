@@ -5,12 +5,14 @@
 
 mod behavior;
 mod obstacle;
+mod odometry;
 mod robot;
 mod senses;
 
 pub use behavior::{BehaviorSpec, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
 pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
-pub use robot::{DriveKind, DriveLimits, LaserSpec, OdometryError, RobotSpec};
+pub use odometry::{DisplacementSpec, OdometryError};
+pub use robot::{DriveKind, DriveLimits, LaserSpec, RobotSpec};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
 use super::shape::{Rectangle, turned};

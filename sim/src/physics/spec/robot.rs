@@ -1,6 +1,6 @@
 //! A robot and its parts.
 
-use super::{BehaviorSpec, BumperSpec, FiducialSpec, SonarSpec};
+use super::{BehaviorSpec, BumperSpec, FiducialSpec, OdometryError, SonarSpec};
 use crate::physics::form::Form;
 use interfaces::Scan;
 use nalgebra::{Isometry2, Point2};
@@ -65,6 +65,7 @@ impl RobotSpec {
                 range_max_m: 10.0,
                 rate_hz: 10.0,
                 period_steps: 2,
+                sweep_s: 0.0,
                 mount: Isometry2::identity(),
                 noise_std_m: 0.0,
                 dropout: 0.0,
@@ -145,21 +146,6 @@ impl DriveLimits {
     }
 }
 
-/// The errors of odometry. With all values 0 the odometry is exact.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct OdometryError {
-    /// Error of the distance per meter traveled.
-    pub distance_gain: f64,
-    /// Error of the heading per radian turned.
-    pub turn_gain: f64,
-    /// Error of the heading per meter traveled, rad/m.
-    pub turn_radpm: f64,
-    /// Standard deviation of the distance after 1 m, m; it grows with the square root of the distance.
-    pub distance_noise_m: f64,
-    /// Standard deviation of the heading after a turn of 1 rad, rad; it grows with the square root of the turn.
-    pub turn_noise_rad: f64,
-}
-
 /// A planar laser scanner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserSpec {
@@ -175,6 +161,12 @@ pub struct LaserSpec {
     pub rate_hz: f64,
     /// The number of physics steps from one scan to the next; at least 1.
     pub period_steps: u64,
+    /// The time from the measurement of the first beam to that of the last beam, s; at most the time from one scan to
+    /// the next. 0: all beams measure at once.
+    ///
+    /// Each beam measures from the pose of the robot, and against the bodies, at its own time. Within a physics step
+    /// robots and bodies move straight and turn evenly. Beams that measure before the start see the start.
+    pub sweep_s: f64,
     /// The pose of the laser in the frame of the robot, m and rad.
     pub mount: Isometry2<f64>,
     /// The standard deviation of the range noise, m.
@@ -203,6 +195,7 @@ impl LaserSpec {
             angle_increment_rad: self.angle_increment_rad(),
             range_min_m: self.range_min_m,
             range_max_m: self.range_max_m,
+            sweep_s: self.sweep_s,
             ranges_m: vec![f32::INFINITY; self.beams],
         }
     }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::physics::bodies::Bodies;
 use crate::physics::fleet::corners;
+use crate::physics::past::Recent;
 use crate::physics::rays::{Disc, Scene};
 use crate::physics::sensors::{Look, Platform, Sensor, SensorReading, SharedBeams, Surroundings};
 use interfaces::{Scan, Twist, rotation};
@@ -51,10 +52,11 @@ pub(super) struct Place {
 
 /// The scan of a laser at `at` on robot `own`.
 pub(super) fn scan(spec: &LaserSpec, at: &Isometry2<f64>, scene: &Scene, own: usize) -> Scan {
-    let spec = LaserSpec { mount: Isometry2::identity(), ..*spec };
+    let spec = LaserSpec { mount: Isometry2::identity(), sweep_s: 0.0, ..*spec };
     let mut laser = Sensor::laser(&spec, &mut SharedBeams::default(), 0, 0);
     let platform = Platform { robot: own, pose: *at, odometry_pose: *at, odometry_twist: Twist::STOP };
-    let surroundings = Surroundings { step: 0, time_s: 0.0, scene: scene.clone(), tagged: Vec::new() };
+    let (scene, recent) = (scene.clone(), Recent::default());
+    let surroundings = Surroundings { step: 0, time_s: 0.0, scene, tagged: Vec::new(), recent };
     laser.measure(&Look { platform, surroundings: Arc::new(surroundings) });
     match laser.reading() {
         SensorReading::Laser(Some(reading)) => reading.scan.clone(),

@@ -4,8 +4,8 @@ use super::{Content, FLOOR_PLAN};
 use interfaces::{GridFrame, printable};
 use nalgebra::Point2;
 use sim::physics::{
-    BehaviorSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening,
-    Rectangle, RobotSpec,
+    BehaviorSpec, DisplacementSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec,
+    OdometryError, Opening, Rectangle, RobotSpec,
 };
 use std::path::Path;
 use viewer::scene::{Scene, TimeUnit};
@@ -185,7 +185,11 @@ fn range_errors(laser: &LaserSpec) -> String {
         0.0 => "no dropout".to_owned(),
         dropout => format!("dropout {} %", short(100.0 * dropout)),
     };
-    format!("{noise}, {dropout}")
+    let sweep = match laser.sweep_s {
+        0.0 => String::new(),
+        sweep_s => format!(", sweep {} s", short(sweep_s)),
+    };
+    format!("{noise}, {dropout}{sweep}")
 }
 
 fn odometry_errors(error: &OdometryError) -> String {
@@ -195,9 +199,17 @@ fn odometry_errors(error: &OdometryError) -> String {
         (error.turn_radpm.to_degrees(), "° per metre"),
         (error.distance_noise_m, " m of noise after 1 m"),
         (error.turn_noise_rad.to_degrees(), "° of noise after a turn of 1 rad"),
+        (100.0 * error.slip, " % slip in contacts"),
     ];
     let errors = errors.into_iter().filter(|(value, _)| *value != 0.0);
-    let errors: Vec<String> = errors.map(|(value, what)| format!("{}{what}", short(value))).collect();
+    let errors = errors.map(|(value, what)| format!("{}{what}", short(value)));
+    let displacements = [("a jump", error.jump), ("carried", error.carried)];
+    let displacements = displacements.into_iter().filter_map(|(what, displacement)| {
+        let DisplacementSpec { every_s, distance_m, turn_rad } = displacement?;
+        let [distance, turn, every] = [distance_m, turn_rad.to_degrees(), every_s].map(short);
+        Some(format!("{what} up to {distance} m and {turn}° every {every} s"))
+    });
+    let errors: Vec<String> = errors.chain(displacements).collect();
     match errors.is_empty() {
         true => "poses are exact".to_owned(),
         false => format!("odometry errors: {}", errors.join(", ")),

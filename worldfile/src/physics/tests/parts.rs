@@ -50,6 +50,26 @@ fn things_that_move() {
 }
 
 #[test]
+fn odometry() {
+    let with = |keys: &str| format!("[robot.odometry]\n{keys}\n\n[robot.drive]");
+    let cases = [
+        ("wheels that slip backwards", with("slip = -0.5")),
+        ("wheels that slip more than they turn", with("slip = 1.5")),
+        ("slip that is no number", with("slip = nan")),
+        ("jumps without a time", with("jump = { distance_m = 1.0 }")),
+        ("jumps of nothing", with("jump = { every_s = 20.0 }")),
+        ("jumps back", with("jump = { every_s = 20.0, distance_m = -1.0 }")),
+        ("carried all the time", with("carried = { every_s = 0.0, distance_m = 1.0 }")),
+        ("carried at no time", with("carried = { every_s = nan, distance_m = 1.0 }")),
+        ("turned too far", with("carried = { every_s = 20.0, turn_deg = 270.0 }")),
+        ("unknown key of a jump", with("jump = { every_s = 20.0, distance = 1.0 }")),
+        ("not a table", with("jump = 3")),
+    ];
+    let cases: Vec<_> = cases.iter().map(|(case, to)| (*case, "[robot.drive]", to.as_str())).collect();
+    compare("odometry", &cases);
+}
+
+#[test]
 fn drives_and_lasers() {
     let drive = "max_linear_mps = 0.5";
     let with = |keys: &str| format!("{drive}\n{keys}");
@@ -72,6 +92,9 @@ fn drives_and_lasers() {
         ),
         ("no table of a laser", &both, format!("laser = 3\n\n{drive_table}")),
         ("dropout of more than all", "rate_hz = 10.0", "rate_hz = 10.0\ndropout = 1.5".to_owned()),
+        ("sweep back in time", "rate_hz = 10.0", "rate_hz = 10.0\nsweep_s = -0.1".to_owned()),
+        ("sweep that is no number", "rate_hz = 10.0", "rate_hz = 10.0\nsweep_s = nan".to_owned()),
+        ("sweep longer than a scan", "rate_hz = 10.0", "rate_hz = 10.0\nsweep_s = 0.11".to_owned()),
     ];
     let cases: Vec<_> = cases.iter().map(|(case, from, to)| (*case, *from, to.as_str())).collect();
     compare("drives_and_lasers", &cases);

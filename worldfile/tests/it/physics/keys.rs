@@ -62,6 +62,11 @@ const GOOD: &[(&str, &str, &str)] = &[
          max_angular_acceleration_degps2 = 360.0",
     ),
     ("`robot.odometry`", "robot.odometry", ""),
+    (
+        "`robot.odometry.jump` and `robot.odometry.carried`",
+        "robot.odometry.jump",
+        "every_s = 10.0\ndistance_m = 1.0\nturn_deg = 10.0",
+    ),
     ("`robot.laser`", "robot.laser", "beams = 10\nrange_max_m = 5.0\nrate_hz = 10.0"),
     ("`robot.behaviour`", "robot.behaviour", "kind = \"driven\""),
     ("`robot.bumper`", "robot.bumper", "sectors = 4"),
@@ -91,8 +96,15 @@ fn world(heading: &str, changed: &str) -> String {
     let table_of = |heading: &str| GOOD.iter().find(|(known, _, _)| *known == heading).unwrap().1;
     for (known, table, good) in GOOD {
         // These exist only where they are asked for.
-        let is_optional =
-            matches!(*table, "floor_plan" | "obstacle" | "robot.bumper" | "robot.sonar" | "robot.fiducial");
+        let is_optional = matches!(
+            *table,
+            "floor_plan"
+                | "obstacle"
+                | "robot.odometry.jump"
+                | "robot.bumper"
+                | "robot.sonar"
+                | "robot.fiducial"
+        );
         if (is_optional || table_of(heading) == *table) && *known != heading {
             continue;
         }

@@ -13,11 +13,13 @@ mod jams;
 mod keys;
 mod laser;
 mod obstacles;
+mod odometry;
 mod patrol;
 mod random;
 mod senses;
 mod snapshot;
 mod standstill;
+mod sweep;
 mod things;
 mod truth;
 

@@ -1,3 +1,4 @@
+mod sweep;
 #[cfg(test)]
 mod tests;
 
@@ -231,12 +232,21 @@ fn is_inside(
     own: usize,
     at: &Point2<f64>,
 ) -> bool {
+    is_in_wall(solids, visible, cell, at) || polygons.len() > 0 && polygons.contains(cell, own, at)
+}
+
+/// Whether a point in a cell (none: beyond the borders) is inside of a wall.
+fn is_in_wall(
+    solids: &[[Edge; 4]],
+    visible: &PotentiallyVisibleSet,
+    cell: Option<usize>,
+    at: &Point2<f64>,
+) -> bool {
     let contains = |sides: &[Edge; 4]| sides.iter().all(|side| side.gap_m(at) <= 0.0);
-    let is_in_wall = match cell {
+    match cell {
         Some(cell) => visible.boxes(cell).iter().any(|&wall| contains(&solids[wall as usize])),
         None => solids.iter().any(contains),
-    };
-    is_in_wall || polygons.len() > 0 && polygons.contains(cell, own, at)
+    }
 }
 
 // Runs for every visible cell, most of which are empty: a call would cost 5 % of a simulated second.
