@@ -22,10 +22,10 @@ pub enum Observation<'a> {
     Cells(&'a CellReading),
 }
 
-/// A laser scan, and the pose of the robot at the same time.
+/// A laser scan, and the pose of the robot at the same time. A scan that sweeps ([`Scan::sweep_s`]) ends at this time.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct LaserReading {
-    /// The time of the scan and of the pose, s.
+    /// The time of the last beam of the scan and of the pose, s.
     pub time_s: f64,
     /// The pose of the robot in the frame of the map, by odometry, m and rad.
     #[serde(with = "crate::serde_pose")]

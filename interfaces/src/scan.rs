@@ -10,6 +10,9 @@ pub struct Scan {
     pub range_min_m: f64,
     /// The maximum range of the laser, m.
     pub range_max_m: f64,
+    /// The time from the measurement of the first beam to that of the last beam, s. 0: all beams were measured at once.
+    /// The beams are measured in order and at equal intervals; the time of the reading is that of the last beam.
+    pub sweep_s: f64,
     /// One range per beam, m: +∞ no return, −∞ too close, NaN invalid measurement.
     pub ranges_m: Vec<f32>,
 }
@@ -20,6 +23,12 @@ impl Scan {
         self.angle_min_rad + index as f64 * self.angle_increment_rad
     }
 
+    /// The time from the measurement of beam `index` to that of the last beam, which is the time of the reading, s.
+    pub fn age_s(&self, index: usize) -> f64 {
+        let last = self.ranges_m.len().saturating_sub(1);
+        self.sweep_s * (last.saturating_sub(index) as f64 / last.max(1) as f64)
+    }
+
     /// Whether the beams cover a full turn, so that the last beam is a neighbor of the first. The tolerance is a
     /// thousandth of the angle between beams, more than the accumulated rounding of an angle in 32 bits.
     pub fn is_full_turn(&self) -> bool {
@@ -27,15 +36,16 @@ impl Scan {
         (sweep_rad - std::f64::consts::TAU).abs() < 1e-3 * self.angle_increment_rad.abs()
     }
 
-    /// Checks the parameters of the scan: the angles, the number of beams and the range limits. Single ranges are
+    /// Checks the parameters of the scan: the angles, the number of beams, the range limits and the duration. Single ranges are
     /// never an error: REP-117 defines the meaning of each value.
     ///
     /// # Errors
     ///
     /// When an angle is not finite, when the beams cover more than one turn, or when the range limits do not
-    /// satisfy `0 <= range_min_m < range_max_m` or are not finite.
+    /// satisfy `0 <= range_min_m < range_max_m` or are not finite, or when the duration is negative or not finite.
     pub fn check(&self) -> Result<(), ScanError> {
-        let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ref ranges_m } = *self;
+        let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, sweep_s, ref ranges_m } =
+            *self;
         if !angle_min_rad.is_finite() || !angle_increment_rad.is_finite() {
             return Err(ScanError::Angle { angle_min_rad, angle_increment_rad });
         }
@@ -45,6 +55,9 @@ impl Scan {
         }
         if !(range_min_m >= 0.0 && range_min_m < range_max_m && range_max_m.is_finite()) {
             return Err(ScanError::Limits { range_min_m, range_max_m });
+        }
+        if !(sweep_s >= 0.0 && sweep_s.is_finite()) {
+            return Err(ScanError::Duration { sweep_s });
         }
         Ok(())
     }
@@ -77,6 +90,12 @@ pub enum ScanError {
         /// The maximum range of the scan, m.
         range_max_m: f64,
     },
+    /// The duration of the scan is negative, NaN or infinite.
+    #[error("the duration of a scan must be 0 or more, finite: {sweep_s} s")]
+    Duration {
+        /// The time from the measurement of the first beam to that of the last beam, s.
+        sweep_s: f64,
+    },
 }
 
 #[cfg(test)]
@@ -90,6 +109,7 @@ mod tests {
             angle_increment_rad,
             range_min_m: 0.0,
             range_max_m: 10.0,
+            sweep_s: 0.0,
             ranges_m: vec![1.0; beams],
         }
     }
@@ -108,5 +128,18 @@ mod tests {
         assert!(matches!(scan(2, f64::NAN).check(), Err(ScanError::Angle { .. })));
         let limits = Scan { range_min_m: 11.0, ..scan(2, 0.1) };
         assert!(matches!(limits.check(), Err(ScanError::Limits { .. })));
+        for sweep_s in [-0.1, f64::NAN, f64::INFINITY] {
+            let sweeping = Scan { sweep_s, ..scan(2, 0.1) };
+            assert!(matches!(sweeping.check(), Err(ScanError::Duration { .. })));
+        }
+    }
+
+    #[test]
+    fn beams_are_measured_at_equal_intervals() {
+        let sweeping = Scan { sweep_s: 0.1, ..scan(5, 0.1) };
+        assert_eq!([0, 1, 3, 4].map(|beam| sweeping.age_s(beam)), [0.1, 0.1 * 0.75, 0.1 * 0.25, 0.0]);
+        assert_eq!(scan(5, 0.1).age_s(0), 0.0);
+        // A single beam is the last one.
+        assert_eq!(Scan { sweep_s: 0.1, ..scan(1, 0.1) }.age_s(0), 0.0);
     }
 }

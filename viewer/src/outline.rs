@@ -96,6 +96,7 @@ mod tests {
                 angle_increment_rad: sweep_rad / ranges_m.len() as f64,
                 range_min_m: 0.05,
                 range_max_m: 10.0,
+                sweep_s: 0.0,
                 ranges_m,
             },
         }

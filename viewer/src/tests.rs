@@ -172,6 +172,7 @@ impl FakeRun {
             angle_increment_rad: TAU / 720.0,
             range_min_m: 0.02,
             range_max_m: 10.0,
+            sweep_s: 0.0,
             ranges_m: (0..720).map(range_m).collect(),
         }
     }

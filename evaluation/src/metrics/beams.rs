@@ -113,8 +113,14 @@ mod tests {
                 .collect();
             let angle_increment_rad = std::f64::consts::TAU / ranges_m.len() as f64;
             let angle_min_rad = -std::f64::consts::PI;
-            let scan =
-                Scan { angle_min_rad, angle_increment_rad, range_min_m: 0.0, range_max_m: 3.0, ranges_m };
+            let scan = Scan {
+                angle_min_rad,
+                angle_increment_rad,
+                range_min_m: 0.0,
+                range_max_m: 3.0,
+                sweep_s: 0.0,
+                ranges_m,
+            };
             let mount = Isometry2::identity();
             let reading = LaserReading { time_s: 0.0, pose: laser, twist: Twist::STOP, mount, scan };
             let beams = Beams::new(&reading, &laser, &frame);

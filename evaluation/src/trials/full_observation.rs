@@ -43,6 +43,10 @@ impl<W: TrialWorld> World for FullyObserved<W> {
         FullReading { of_sensors, cells }
     }
 
+    fn poses_are_exact(&self) -> bool {
+        self.0.poses_are_exact()
+    }
+
     fn act(&mut self, command: &Self::Command) {
         self.0.act(command);
     }

@@ -156,6 +156,7 @@ mod tests {
                 angle_increment_rad: TAU / ranges_m.len() as f64,
                 range_min_m: 0.1,
                 range_max_m: 5.0,
+                sweep_s: 0.0,
                 ranges_m,
             },
         }

@@ -207,6 +207,7 @@ impl House {
                 angle_increment_rad: increment,
                 range_min_m: 0.05,
                 range_max_m: 10.0,
+                sweep_s: 0.0,
                 ranges_m,
             },
         }

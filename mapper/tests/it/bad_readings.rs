@@ -27,6 +27,7 @@ fn reading(time_s: f64) -> LaserReading {
             angle_increment_rad: TAU / BEAMS as f64,
             range_min_m: 0.1,
             range_max_m: 5.0,
+            sweep_s: 0.0,
             ranges_m: vec![1.5; BEAMS],
         },
     }
@@ -346,7 +347,14 @@ proptest! {
         for (number, ranges_m) in scans.into_iter().enumerate() {
             let mut reading = reading(10.0 + number as f64);
             let [range_min_m, range_max_m] = limits_m;
-            reading.scan = Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m };
+            reading.scan = Scan {
+                angle_min_rad,
+                angle_increment_rad,
+                range_min_m,
+                range_max_m,
+                sweep_s: 0.0,
+                ranges_m,
+            };
             let before = mapper.readings();
             let is_taken = mapper.update(&reading).is_ok();
             prop_assert_eq!(mapper.readings(), before + usize::from(is_taken));

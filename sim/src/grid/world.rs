@@ -89,6 +89,10 @@ impl World for GridWorld {
         }
     }
 
+    fn poses_are_exact(&self) -> bool {
+        true
+    }
+
     fn act(&mut self, command: &Step) {
         let target = command.target(self.robot);
         let is_obeyed = self.random.bernoulli(self.spec.robot_probability);

@@ -3,7 +3,7 @@
 
 use interfaces::{Cell, CellState, GroundTruth, TrueState};
 use nalgebra::Point2;
-use sim::physics::{OdometryError, PhysicsWorld, WorldSpec};
+use sim::physics::{PhysicsWorld, WorldSpec};
 use worldfile::ros_map::RosMap;
 
 /// A map with a smaller share of walls, or of free space, that is right in the world is probably of another place.
@@ -14,7 +14,7 @@ const MIN_FREE: f64 = 0.95;
 /// What the odometry of the driven robot does to the map.
 pub(crate) fn odometry(spec: &WorldSpec) -> Option<String> {
     let robot = spec.driven();
-    (robot.odometry != OdometryError::default()).then(|| {
+    (!robot.odometry.is_exact()).then(|| {
         format!(
             "warning: the odometry of `{}` drifts, and poses are taken as exact: this map will be wrong\n  = help: \
              without `[robot.odometry]` the poses are exact",

@@ -103,7 +103,7 @@ fn door(shape: &Rectangle, spec: &DoorSpec) -> Option<Keys> {
 fn body(robot: &RobotSpec) -> Option<Keys> {
     let is_plain = robot.corners.is_empty()
         && robot.mass_kg.is_none()
-        && robot.odometry == sim::physics::OdometryError::default()
+        && robot.odometry.is_exact()
         && (robot.more_lasers.is_empty() && robot.sonars.is_empty())
         && (robot.bumper.is_none() && robot.fiducial.is_none() && robot.tag.is_none());
     let keys = || {

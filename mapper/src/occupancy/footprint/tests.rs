@@ -61,6 +61,7 @@ impl Case {
                 angle_increment_rad: self.increment_rad,
                 range_min_m: RANGE_MIN_M,
                 range_max_m: RANGE_MAX_M,
+                sweep_s: 0.0,
                 ranges_m: self.ranges_m.clone(),
             },
         });

@@ -54,7 +54,7 @@ impl Odometry {
 
     /// Measures the motion from pose `before` to pose `after` in one physics step.
     pub(super) fn update(&mut self, before: &Isometry2<f64>, after: &Isometry2<f64>) {
-        if self.error == OdometryError::default() {
+        if self.error.is_exact() {
             self.pose = *after;
             return;
         }

@@ -160,6 +160,13 @@ pub struct OdometryError {
     pub turn_noise_rad: f64,
 }
 
+impl OdometryError {
+    /// Whether the odometry is exact.
+    pub fn is_exact(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// A planar laser scanner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserSpec {
@@ -203,6 +210,7 @@ impl LaserSpec {
             angle_increment_rad: self.angle_increment_rad(),
             range_min_m: self.range_min_m,
             range_max_m: self.range_max_m,
+            sweep_s: 0.0,
             ranges_m: vec![f32::INFINITY; self.beams],
         }
     }
