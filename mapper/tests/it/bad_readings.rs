@@ -84,6 +84,7 @@ fn nonsense_is_refused_and_changes_nothing() {
         (edited(|r| r.scan.range_max_m = 0.05), "limits"),
         (edited(|r| r.scan.range_min_m = -1.0), "limits"),
         (edited(|r| r.scan.range_min_m = f64::NAN), "limits"),
+        (edited(|r| r.scan.sweep_s = -0.1), "duration"),
     ];
     for occupancy in [OccupancyChoice::steady(), OccupancyChoice::naive()] {
         let mut mapper = learned(occupancy);
@@ -95,6 +96,7 @@ fn nonsense_is_refused_and_changes_nothing() {
                 Err(ReadingError::Scan(ScanError::Angle { .. })) => "angle",
                 Err(ReadingError::Scan(ScanError::Sweep { .. })) => "sweep",
                 Err(ReadingError::Scan(ScanError::Limits { .. })) => "limits",
+                Err(ReadingError::Scan(ScanError::Duration { .. })) => "duration",
                 Ok(()) => "taken",
             };
             assert_eq!(found, *why, "case {number}");
