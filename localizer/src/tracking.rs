@@ -1,0 +1,105 @@
+//! From the predicted pose to the pose of the scan, and the question whether the robot or the things moved.
+
+use crate::changing_map::ChangingMap;
+use crate::matcher::{Match, Prior, difference};
+use crate::scene::Scene;
+use crate::support::Support;
+use interfaces::heading_rad;
+use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// The innovation (squared, over its covariance) above which odometry did not tell the truth: 1 in 10⁵ by chance.
+const SURPRISE: f64 = 26.0;
+/// The farthest that a match may start from the pose, m: robots that slip or stand still against their odometry.
+const WIDE_GATE_M: f64 = 0.3;
+/// The least gain of support with which another pose replaces the predicted one.
+const BETTER: f64 = 0.05;
+/// Where this share of the points stayed exactly in place and stands against every motion of the robot, it did not
+/// move.
+const STAYED_SHARE: f64 = 0.08;
+/// Shifts below this are no coherent motion of things, m.
+const COHERENT_M: f64 = 0.03;
+/// Errors of the model that do not average out: surfaces that are not straight, surfels that are off. Per scan.
+const MODEL_STD_M: f64 = 5e-4;
+const MODEL_STD_RAD: f64 = 1.5e-4;
+/// The least weight of unchanged surfaces against every motion with which changing surfaces may be weighed down.
+const UNCHANGED_WEIGHT: f64 = 15.0;
+
+/// The pose of a scan by tracking.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tracked {
+    pub(crate) pose: Isometry2<f64>,
+    pub(crate) covariance: Matrix3<f64>,
+    pub(crate) support: Support,
+    /// Much of the view moved, and the robot did not: what stayed in place fixes the pose.
+    pub(crate) things_moved: bool,
+}
+
+/// Finds the pose of a scan near the predicted pose. `others` are other guesses: the pose at rest, the pose at constant
+/// velocity. The first result is that of the predicted pose, if none is good.
+pub(crate) fn track<M: ChangingMap>(
+    scene: &Scene<M>,
+    predicted: &Isometry2<f64>,
+    covariance: &Matrix3<f64>,
+    others: &[Isometry2<f64>],
+) -> Tracked {
+    let (by_odometry, is_surprise) = with_prior(scene, predicted, covariance);
+    let is_good = |tracked: &Tracked| tracked.support.share() >= scene.settings.min_support;
+    if is_good(&by_odometry) && !is_surprise {
+        return by_odometry;
+    }
+    let mut best = by_odometry;
+    for start in std::iter::once(predicted).chain(others) {
+        let Some(found) = scene.align(start, None, WIDE_GATE_M, false) else { continue };
+        let candidate = tracked(scene, &found);
+        if candidate.support.confirmed > best.support.confirmed + BETTER * by_odometry.support.weight() {
+            best = candidate;
+        }
+    }
+    let things_moved = things_moved(scene, &by_odometry, &best);
+    if is_good(&best) && !things_moved { best } else { Tracked { things_moved, ..by_odometry } }
+}
+
+/// The match with the prior of odometry, and whether the motion by odometry was not true.
+fn with_prior<M: ChangingMap>(
+    scene: &Scene<M>,
+    predicted: &Isometry2<f64>,
+    covariance: &Matrix3<f64>,
+) -> (Tracked, bool) {
+    let stay = || {
+        let support = scene.judge(predicted);
+        (Tracked { pose: *predicted, covariance: *covariance, support, things_moved: false }, false)
+    };
+    let Some(information) = covariance.try_inverse() else { return stay() };
+    let prior = Prior { pose: *predicted, information };
+    let first_m = scene.gate_m() + 2.0 * (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
+    let by_rates = unchanged_fix_pose(scene, predicted);
+    let Some(found) = scene.align(predicted, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else { return stay() };
+    let innovation = difference(&found.pose, predicted);
+    let is_surprise = (innovation.transpose() * information * innovation)[0] > SURPRISE;
+    (tracked(scene, &found), is_surprise)
+}
+
+/// The result of a match, with an honest covariance: inflated where the residuals are larger than the noise, and by the
+/// errors that all points share.
+fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
+    let inverse = found.information.try_inverse().unwrap_or_else(|| Matrix3::identity() * 1e3);
+    let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD);
+    let covariance =
+        inverse * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model));
+    Tracked { pose: found.pose, covariance, support: scene.judge(&found.pose), things_moved: false }
+}
+
+/// Whether changing surfaces may be weighed down: the others alone fix the pose. Otherwise a wrong pose could declare
+/// all that contradicts it as changing.
+fn unchanged_fix_pose<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>) -> bool {
+    scene.settings.rate_horizon_s > 0.0 && scene.judge(pose).steady.symmetric_eigenvalues().min() >= UNCHANGED_WEIGHT
+}
+
+/// Whether the things moved, and not the robot: at the pose by odometry, enough surfaces are exactly where they were to
+/// fix that pose alone. If the robot had moved, none would.
+fn things_moved<M: ChangingMap>(scene: &Scene<M>, stayed: &Tracked, moved: &Tracked) -> bool {
+    let shift = stayed.pose.inv_mul(&moved.pose);
+    let is_coherent = shift.translation.vector.norm() + heading_rad(&shift).abs() >= COHERENT_M;
+    let in_place = scene.judge_within(&stayed.pose, scene.gate_m() / 2.0);
+    is_coherent && in_place.fixes_pose(STAYED_SHARE * in_place.weight())
+}
