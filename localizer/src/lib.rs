@@ -23,6 +23,7 @@
 //! This crate knows readings, and of the map its states and rates. It must not know worlds, simulators, goals, drives,
 //! recordings or files.
 
+mod calibration;
 mod changing_map;
 mod estimate;
 mod faults;
@@ -39,6 +40,8 @@ mod support;
 mod surfel_map;
 mod sweep;
 mod tracking;
+#[allow(missing_docs)]
+mod tune;
 
 pub use changing_map::ChangingMap;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};

@@ -1,3 +1,4 @@
+use crate::calibration::Calibration;
 use crate::changing_map::ChangingMap;
 use crate::estimate::{Localized, PoseEstimate, PoseState, Start};
 use crate::faults::{Fault, FaultFinder, mirrored};
@@ -41,6 +42,7 @@ pub struct Localizer {
     points: ScanPoints,
     clear: ClearBeams,
     faults: FaultFinder,
+    calibration: Calibration,
     scores: Option<(u64, ScoreGrid)>,
     hypotheses: Hypotheses,
     /// The last estimate: its pose and covariance.
@@ -50,6 +52,8 @@ pub struct Localizer {
     /// The last valid odometry pose, its time, and the estimated motion to it.
     odometry: Option<Isometry2<f64>>,
     last_motion: Isometry2<f64>,
+    /// The last motion by odometry.
+    measured: Isometry2<f64>,
     time_s: f64,
     certain_s: Option<f64>,
     start_s: Option<f64>,
@@ -114,6 +118,7 @@ impl Localizer {
             points: ScanPoints::default(),
             clear: ClearBeams::default(),
             faults: FaultFinder::default(),
+            calibration: Calibration::new(&settings.odometry),
             scores: None,
             hypotheses: Hypotheses::default(),
             pose,
@@ -121,6 +126,7 @@ impl Localizer {
             state,
             odometry: None,
             last_motion: Isometry2::identity(),
+            measured: Isometry2::identity(),
             time_s: 0.0,
             certain_s: None,
             start_s: None,
@@ -162,8 +168,12 @@ impl Localizer {
         self.points.update(&reading, self.settings.range_noise_std_m, self.settings.weigh_by_arc_length);
         self.clear.update(&reading.scan);
         let before = self.pose;
+        let was_tracking = self.state == PoseState::Tracking;
         let support = self.estimate(&reading, &motion, map, fault);
         self.last_motion = before.inv_mul(&self.pose);
+        if was_tracking && self.state == PoseState::Tracking {
+            self.calibration.learn(&self.measured, &self.last_motion);
+        }
         if fault.is_some() && self.state == PoseState::Tracking {
             self.state = PoseState::Uncertain;
         }
@@ -178,7 +188,9 @@ impl Localizer {
     /// The motion since the last valid reading, by odometry.
     fn motion(&mut self, reading: &LaserReading) -> Motion {
         let before = self.odometry.replace(reading.pose).unwrap_or(reading.pose);
-        Motion::between(&before, &reading.pose, &self.settings.odometry)
+        self.measured = before.inv_mul(&reading.pose);
+        let corrected = if *crate::tune::CAL > 0.0 { self.calibration.correct(&self.measured) } else { self.measured };
+        Motion::new(corrected, &self.settings.odometry)
     }
 
     /// The scan without its sweep. `delta` is the motion since the last reading.

@@ -57,6 +57,8 @@ struct NormalEquations {
     gradient: Vector3<f64>,
     squares: f64,
     weight: f64,
+    /// The sum of the weights of the points alone.
+    points: f64,
 }
 
 /// The residual of a point and its derivative with respect to a shift of the pose in x and y and to a turn about the
@@ -79,12 +81,13 @@ fn accumulate(
     gate_m: f64,
     gates: &Gates,
 ) -> NormalEquations {
-    let variance = gates.noise_m * gates.noise_m + SURFEL_STD_M * SURFEL_STD_M;
+    let variance = gates.noise_m * gates.noise_m + *crate::tune::SURFSTD * *crate::tune::SURFSTD;
     let mut sums = NormalEquations {
         hessian: Matrix3::zeros(),
         gradient: Vector3::zeros(),
         squares: 0.0,
         weight: 0.0,
+        points: 0.0,
     };
     for point in points {
         let arm = pose.rotation * point.at.coords;
@@ -101,6 +104,15 @@ fn accumulate(
         sums.gradient += j * (off_m * certain);
         sums.squares += off_m * off_m * certain;
         sums.weight += weight * kernel(off_m, gate_m);
+        sums.points += point.weight * kernel(off_m, gate_m);
+    }
+    // Trust decides between surfels; it does not make a scan worth less than the odometry.
+    if sums.weight > 0.0 {
+        let scale = sums.points / sums.weight;
+        sums.hessian *= scale;
+        sums.gradient *= scale;
+        sums.squares *= scale;
+        sums.weight = sums.points;
     }
     sums
 }

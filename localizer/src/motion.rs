@@ -17,11 +17,6 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// The motion from one odometry pose to the next.
-    pub(crate) fn between(before: &Isometry2<f64>, after: &Isometry2<f64>, trust: &OdometryTrust) -> Self {
-        Self::new(before.inv_mul(after), trust)
-    }
-
     /// A measured motion.
     pub(crate) fn new(delta: Isometry2<f64>, trust: &OdometryTrust) -> Self {
         let square = |x: f64| x * x;
@@ -39,7 +34,7 @@ impl Motion {
             across + square(0.02 * distance_m) + slip,
             heading + square(REST_STD_RAD),
         ));
-        Self { delta, covariance }
+        Self { delta, covariance: covariance * *crate::tune::PRIOR * *crate::tune::PRIOR }
     }
 
     /// The pose after the motion.

@@ -47,7 +47,7 @@ pub(crate) struct Surfel {
 impl Surfel {
     /// The weight of the surfel in matching, from 0 to 1. What was seen only a few times may be a passer-by.
     pub(crate) fn weight(&self) -> f64 {
-        if self.hits < 5 { 0.0 } else { (f64::from(self.hits) / 20.0).min(1.0) }
+        if self.hits < 5 { 0.0 } else { (f64::from(self.hits) / *crate::tune::RAMP).min(1.0) }
     }
 
     fn is_removed(&self) -> bool {
@@ -106,16 +106,19 @@ impl SurfelMap {
     #[inline]
     pub(crate) fn nearest(&self, at: &Point2<f64>, normal: &Vector2<f64>, gate_m: f64) -> Option<(u32, f64)> {
         let mut best: Option<(u32, f64)> = None;
-        let mut best_m = gate_m;
+        let mut best_m = REACH_M;
+        let select = *crate::tune::ALONG > 0.0;
+        if !select { best_m = gate_m; }
         self.around(at, gate_m.max(CELL_M / 2.0), |index, surfel| {
-            if surfel.normal.dot(normal) < SAME_NORMAL {
+            if surfel.normal.dot(normal) < *crate::tune::SAME {
                 return;
             }
             let to = at - surfel.at;
             let (off_m, along_m) = (surfel.normal.dot(&to), surfel.normal.perp(&to));
             // Of two equally near ones, the first in the order of the cells.
-            if off_m.abs() < best_m && along_m.abs() <= REACH_M {
-                best_m = off_m.abs();
+            let better = if select { off_m.abs() < gate_m && along_m.abs() < best_m } else { off_m.abs() < best_m && along_m.abs() <= REACH_M };
+            if better {
+                best_m = if select { along_m.abs() } else { off_m.abs() };
                 best = Some((index, off_m));
             }
         });

@@ -29,7 +29,7 @@ impl SurfelMap {
     fn hit(&mut self, index: u32, at: &nalgebra::Point2<f64>, normal: &nalgebra::Vector2<f64>) {
         let surfel = &mut self.surfels[index as usize];
         surfel.misses = 0;
-        if surfel.hits >= FROZEN_HITS {
+        if f64::from(surfel.hits) >= *crate::tune::FROZEN {
             return;
         }
         let was_usable = surfel.weight() > 0.0;
