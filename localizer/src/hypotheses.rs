@@ -60,9 +60,9 @@ impl Hypotheses {
         self.list.first()
     }
 
-    /// Whether a pose is the only one.
-    pub(crate) fn confirms(&self, pose: &Isometry2<f64>) -> bool {
-        matches!(self.list.as_slice(), [only] if is_same(&only.pose, pose))
+    /// Whether a pose is one of them.
+    pub(crate) fn contains(&self, pose: &Isometry2<f64>) -> bool {
+        self.list.iter().any(|hypothesis| is_same(&hypothesis.pose, pose))
     }
 
     /// The covariance of the differences between the poses.

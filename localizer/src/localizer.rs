@@ -256,7 +256,7 @@ impl Localizer {
     /// Whether the scan supports a tracked pose.
     fn is_supported(&self, tracked: &Tracked) -> bool {
         let support = &tracked.support;
-        let is_enough = support.share() >= self.accepted_support || tracked.things_moved;
+        let is_enough = support.share() >= self.accepted_support || tracked.stayed;
         self.state != PoseState::Lost && is_enough && support.confirmed >= LEAST_CONFIRMED
     }
 
@@ -308,9 +308,9 @@ impl Localizer {
             found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
         }
         self.scores = Some((revision, grid));
-        let is_confirmed = is_near && found.confirms(&tracked.pose);
+        let is_confirmed = is_near && found.contains(&tracked.pose);
         if is_confirmed && tracked.support.confirmed >= LEAST_CONFIRMED {
-            // Much has changed here, but the pose is the only one that fits.
+            // Much has changed here, but no other pose fits better.
             self.accepted_support = tracked.support.share() - 0.1;
             self.accept(tracked);
         } else {
@@ -333,7 +333,7 @@ impl Localizer {
                     pose: decided.pose,
                     covariance: decided.covariance,
                     support: decided.support,
-                    things_moved: false,
+                    stayed: false,
                 };
                 self.accepted_support = self.settings.min_support.min(support.share() - 0.1);
                 self.hypotheses = Hypotheses::default();

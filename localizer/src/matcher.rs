@@ -12,8 +12,8 @@ use nalgebra::{Isometry2, Matrix3, UnitComplex, Vector2, Vector3};
 /// The largest number of steps at one gate.
 const MAX_STEPS: usize = 8;
 /// Steps below these sizes end the iteration: far below the errors of every sensor.
-const STEP_M: f64 = 2e-5;
-const STEP_RAD: f64 = 5e-6;
+const STEP_M: f64 = 1e-4;
+const STEP_RAD: f64 = 2e-5;
 /// The error of a surfel beyond the noise of its hits, m: surfaces are not perfectly straight, and were learned at
 /// poses with an error.
 const SURFEL_STD_M: f64 = 0.003;

@@ -1,7 +1,7 @@
 //! The line map: short straight pieces of surface (surfels), found by their cell.
 //!
-//! A surfel is the mean of the points that hit it, and the mean of their normals. After [`FROZEN_HITS`] hits it never
-//! moves again: a map that follows its robot, which follows its map, drifts.
+//! A surfel is the mean of the points that hit it, and the mean of their normals. After [`FROZEN_SCANS`] scans it
+//! never moves again: a map that follows its robot, which follows its map, drifts.
 
 mod checking;
 mod learning;
@@ -18,8 +18,10 @@ use nalgebra::{Point2, Vector2};
 pub(crate) const CELL_M: f64 = 0.1;
 /// The number of surfels in one cell: two sides of a thin wall, and a corner.
 const PER_CELL: usize = 4;
-/// The number of hits after which a surfel never moves again.
-const FROZEN_HITS: u32 = 400;
+/// The number of scans after which a surfel never moves again.
+const FROZEN_SCANS: u32 = 400;
+/// The number of scans after which a surfel takes part in matching.
+const USABLE_SCANS: u32 = 5;
 /// Points count as hits of a surfel up to this far along the surface, m.
 const REACH_M: f64 = 0.1;
 /// The least cosine of the angle between the normals of a point and of its surfel.
@@ -34,8 +36,12 @@ pub(crate) struct Surfel {
     pub(crate) at: Point2<f64>,
     /// The unit normal, toward the free side.
     pub(crate) normal: Vector2<f64>,
-    /// The number of hits, up to [`FROZEN_HITS`].
-    pub(crate) hits: u32,
+    /// The number of points that made the surfel.
+    hits: u32,
+    /// The number of scans that hit the surfel, up to [`FROZEN_SCANS`].
+    scans: u32,
+    /// The number of the last scan that hit the surfel.
+    last_scan: u32,
     /// The number of consecutive checks that contradicted the surfel.
     misses: u32,
     /// The weight by the learned rate of change, from 0 (changes often) to 1 (never changed).
@@ -47,7 +53,7 @@ pub(crate) struct Surfel {
 impl Surfel {
     /// The weight of the surfel in matching, from 0 to 1. What was seen only a few times may be a passer-by.
     pub(crate) fn weight(&self) -> f64 {
-        if self.hits < 5 { 0.0 } else { (f64::from(self.hits) / *crate::tune::RAMP).min(1.0) }
+        if self.scans < USABLE_SCANS { 0.0 } else { (f64::from(self.scans) / *crate::tune::RAMP).min(1.0) }
     }
 
     fn is_removed(&self) -> bool {
@@ -65,6 +71,10 @@ pub(crate) struct SurfelMap {
     removed: Vec<u32>,
     /// Counts the surfels that were added, removed or became usable.
     revision: u64,
+    /// The number of scans that were learned.
+    scan: u32,
+    /// Whether the learned rates make any surfel count less.
+    knows_rates: bool,
 }
 
 impl SurfelMap {
@@ -72,7 +82,7 @@ impl SurfelMap {
     pub(crate) fn new(frame: &GridFrame) -> Self {
         let frame = coarse(frame);
         let cells = vec![[NONE; PER_CELL]; frame.len()];
-        Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), revision: 0 }
+        Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), revision: 0, scan: 0, knows_rates: false }
     }
 
     /// The grid of the cells.
@@ -83,6 +93,11 @@ impl SurfelMap {
     /// Changes whenever the surfels that take part in matching change.
     pub(crate) fn revision(&self) -> u64 {
         self.revision
+    }
+
+    /// Whether the learned rates make any surfel count less.
+    pub(crate) fn knows_rates(&self) -> bool {
+        self.knows_rates
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].
@@ -144,10 +159,19 @@ impl SurfelMap {
     }
 
     /// Adds a surfel, unless it is outside of the map or its cell is full.
-    fn add(&mut self, at: Point2<f64>, normal: Vector2<f64>, hits: u32) {
+    fn add(&mut self, at: Point2<f64>, normal: Vector2<f64>, scans: u32) {
         let Some(cell) = self.frame.index(self.frame.cell_at(&at)) else { return };
         let Some(place) = self.cells[cell].iter().position(|&index| index == NONE) else { return };
-        let surfel = Surfel { at, normal, hits, misses: 0, steadiness: 1.0, cell: cell as u32 };
+        let surfel = Surfel {
+            at,
+            normal,
+            hits: scans,
+            scans,
+            last_scan: self.scan,
+            misses: 0,
+            steadiness: 1.0,
+            cell: cell as u32,
+        };
         let index = match self.removed.pop() {
             Some(index) => {
                 self.surfels[index as usize] = surfel;

@@ -13,9 +13,9 @@ const SURPRISE: f64 = 26.0;
 const WIDE_GATE_M: f64 = 0.3;
 /// The least gain of support with which another pose replaces the predicted one.
 const BETTER: f64 = 0.05;
-/// Where this share of the points stayed exactly in place and stands against every motion of the robot, it did not
-/// move.
-const STAYED_SHARE: f64 = 0.08;
+/// Where this share of the points lies exactly in place and stands against every motion of the robot, the pose is that
+/// of the odometry, whatever else has moved.
+const STAYED_SHARE: f64 = 0.1;
 /// Shifts below this are no coherent motion of things, m.
 const COHERENT_M: f64 = 0.03;
 /// Errors of the model that do not average out: surfaces that are not straight, surfels that are off. Per scan.
@@ -30,8 +30,8 @@ pub(crate) struct Tracked {
     pub(crate) pose: Isometry2<f64>,
     pub(crate) covariance: Matrix3<f64>,
     pub(crate) support: Support,
-    /// Much of the view moved, and the robot did not: what stayed in place fixes the pose.
-    pub(crate) things_moved: bool,
+    /// Much of the view may have moved, but the robot moved as its odometry says: what stayed in place fixes the pose.
+    pub(crate) stayed: bool,
 }
 
 /// Finds the pose of a scan near the predicted pose. `others` are other guesses: the pose at rest, the pose at constant
@@ -55,8 +55,11 @@ pub(crate) fn track<M: ChangingMap>(
             best = candidate;
         }
     }
-    let things_moved = things_moved(scene, &by_odometry, &best);
-    if is_good(&best) && !things_moved { best } else { Tracked { things_moved, ..by_odometry } }
+    let in_place = scene.judge_within(&by_odometry.pose, scene.gate_m() / 2.0);
+    let stayed = in_place.fixes_pose(STAYED_SHARE * in_place.weight());
+    let things_moved = stayed && is_coherent(&by_odometry, &best);
+    let is_other = is_good(&best) && !things_moved;
+    if is_other { best } else { Tracked { stayed: stayed && (things_moved || !is_surprise), ..by_odometry } }
 }
 
 /// The match with the prior of odometry, and whether the motion by odometry was not true.
@@ -67,7 +70,7 @@ fn with_prior<M: ChangingMap>(
 ) -> (Tracked, bool) {
     let stay = || {
         let support = scene.judge(predicted);
-        (Tracked { pose: *predicted, covariance: *covariance, support, things_moved: false }, false)
+        (Tracked { pose: *predicted, covariance: *covariance, support, stayed: false }, false)
     };
     let Some(information) = covariance.try_inverse() else { return stay() };
     let prior = Prior { pose: *predicted, information };
@@ -86,20 +89,17 @@ fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
     let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD) * *crate::tune::MODEL;
     let covariance =
         inverse * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model));
-    Tracked { pose: found.pose, covariance, support: scene.judge(&found.pose), things_moved: false }
+    Tracked { pose: found.pose, covariance, support: scene.judge(&found.pose), stayed: false }
 }
 
 /// Whether changing surfaces may be weighed down: the others alone fix the pose. Otherwise a wrong pose could declare
 /// all that contradicts it as changing.
 fn unchanged_fix_pose<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>) -> bool {
-    scene.settings.rate_horizon_s > 0.0 && scene.judge(pose).steady.symmetric_eigenvalues().min() >= UNCHANGED_WEIGHT
+    scene.surfels.knows_rates() && scene.judge(pose).steady.symmetric_eigenvalues().min() >= UNCHANGED_WEIGHT
 }
 
-/// Whether the things moved, and not the robot: at the pose by odometry, enough surfaces are exactly where they were to
-/// fix that pose alone. If the robot had moved, none would.
-fn things_moved<M: ChangingMap>(scene: &Scene<M>, stayed: &Tracked, moved: &Tracked) -> bool {
+/// Whether two poses are as far apart as things that move together: then either the things moved, or the robot.
+fn is_coherent(stayed: &Tracked, moved: &Tracked) -> bool {
     let shift = stayed.pose.inv_mul(&moved.pose);
-    let is_coherent = shift.translation.vector.norm() + heading_rad(&shift).abs() >= COHERENT_M;
-    let in_place = scene.judge_within(&stayed.pose, scene.gate_m() / 2.0);
-    is_coherent && in_place.fixes_pose(STAYED_SHARE * in_place.weight())
+    shift.translation.vector.norm() + heading_rad(&shift).abs() >= COHERENT_M
 }

@@ -70,7 +70,7 @@ impl SurfelMap {
     fn contradict(&mut self, index: u32, is_passed: bool, is_displaced: bool) {
         let surfel = &mut self.surfels[index as usize];
         surfel.misses += if is_passed { 4 } else { u32::from(is_displaced) };
-        if surfel.misses > 4 * (2 + surfel.hits / 20) {
+        if surfel.misses > 4 * (2 + surfel.scans / 20) {
             self.remove(index);
         }
     }

@@ -4,8 +4,8 @@ use super::SurfelMap;
 use interfaces::{CellState, Grid};
 use nalgebra::{Point2, Vector2};
 
-/// The number of hits that a surfel of a known map counts as. Scans correct it soon.
-const PRIOR_HITS: u32 = 20;
+/// The number of scans that a surfel of a known map counts as. Scans correct it soon.
+const PRIOR_SCANS: u32 = 20;
 /// A surface is fitted to the borders within this distance, m.
 const FIT_M: f64 = 0.15;
 
@@ -39,7 +39,7 @@ impl SurfelMap {
             // On the line through the middle, at the foot of the border.
             let foot = at - normal * normal.dot(&(at - middle));
             if map.nearest(&foot, &normal, 0.05).is_none() {
-                map.add(foot, normal, PRIOR_HITS);
+                map.add(foot, normal, PRIOR_SCANS);
             }
         }
         map
