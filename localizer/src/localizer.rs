@@ -20,7 +20,7 @@ use nalgebra::{Isometry2, Matrix3, Vector3};
 const WINDOW_M: f64 = 1.3;
 const WINDOW_RAD: f64 = 1.2;
 /// The least score of a pose in a search.
-const LEAST_FOUND: f64 = 0.45;
+const LEAST_FOUND: f64 = 0.55;
 /// The least score of a refined pose.
 const LEAST_SCORE: f64 = 0.5;
 /// The number of scans between two searches in the whole map.
@@ -29,6 +29,11 @@ const SEARCH_EVERY: u32 = 5;
 const RATES_EVERY: u32 = 100;
 /// The least confirmed weight of a certain pose: about a metre of wall.
 const LEAST_CONFIRMED: f64 = 8.0;
+/// The number of scans for which the odometry is not trusted after it did not tell the truth.
+const DISTRUST_SCANS: u32 = 20;
+/// The range noise for which the limits of the standard deviations hold, m. A map of a laser with more noise tolerates
+/// larger errors of the pose.
+const NOISE_M: f64 = 0.01;
 /// The uncertainty of a pose that is lost, m and rad.
 const LOST_STD_M: f64 = 5.0;
 const LOST_STD_RAD: f64 = 3.0;
@@ -55,10 +60,12 @@ pub struct Localizer {
     /// The last motion by odometry.
     measured: Isometry2<f64>,
     time_s: f64,
-    certain_s: Option<f64>,
+    supported_s: Option<f64>,
     start_s: Option<f64>,
     /// Whether the robot started without a map.
     from_nothing: bool,
+    /// The number of scans for which the odometry is not trusted.
+    distrust: u32,
     /// The number of readings.
     readings: u32,
     /// The number of scans since the last search in the whole map.
@@ -128,9 +135,10 @@ impl Localizer {
             last_motion: Isometry2::identity(),
             measured: Isometry2::identity(),
             time_s: 0.0,
-            certain_s: None,
+            supported_s: None,
             start_s: None,
             from_nothing,
+            distrust: 0,
             readings: 0,
             since_search: SEARCH_EVERY,
             accepted_support: settings.min_support,
@@ -190,7 +198,8 @@ impl Localizer {
         let before = self.odometry.replace(reading.pose).unwrap_or(reading.pose);
         self.measured = before.inv_mul(&reading.pose);
         let corrected = if *crate::tune::CAL > 0.0 { self.calibration.correct(&self.measured) } else { self.measured };
-        Motion::new(corrected, &self.settings.odometry)
+        let motion = Motion::new(corrected, &self.settings.odometry);
+        if self.distrust > 0 { motion.distrusted() } else { motion }
     }
 
     /// The scan without its sweep. `delta` is the motion since the last reading.
@@ -230,6 +239,7 @@ impl Localizer {
         let tracked = track(&scene, &predicted, &covariance, &others);
         if self.is_supported(&tracked) {
             let support = tracked.support;
+            self.distrust = if tracked.is_other { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
             self.accept(&tracked);
             return support;
         }
@@ -267,21 +277,18 @@ impl Localizer {
             self.accepted_support = self.settings.min_support;
         }
         let estimate = self.pose_estimate(1.0);
-        let is_certain = estimate.position_std_m() <= self.settings.max_position_std_m
-            && estimate.heading_std_rad() <= self.settings.max_heading_std_rad;
-        if is_certain {
-            self.state = PoseState::Tracking;
-            self.certain_s = Some(self.time_s);
-        } else {
-            self.doubt();
-        }
+        let scale = (self.settings.range_noise_std_m / NOISE_M).max(1.0);
+        let is_certain = estimate.position_std_m() <= scale * self.settings.max_position_std_m
+            && estimate.heading_std_rad() <= scale * self.settings.max_heading_std_rad;
+        self.state = if is_certain { PoseState::Tracking } else { PoseState::Uncertain };
+        self.supported_s = Some(self.time_s);
     }
 
     /// The pose is not certain; after some time, it is lost.
     fn doubt(&mut self) {
         let limit_s = self.settings.lost_after_s;
-        let is_lost = self.certain_s.map_or(self.state == PoseState::Lost, |certain_s| {
-            self.time_s - certain_s > limit_s
+        let is_lost = self.supported_s.map_or(self.state == PoseState::Lost, |supported_s| {
+            self.time_s - supported_s > limit_s
         });
         self.state = if is_lost { PoseState::Lost } else { PoseState::Uncertain };
     }
@@ -305,6 +312,7 @@ impl Localizer {
         if found.is_empty() && self.since_search >= SEARCH_EVERY {
             self.since_search = 0;
             let candidates = search(&grid, self.points.points(), None, LEAST_FOUND, ratio);
+        if std::env::var("DBG").is_ok() { for c in &candidates {eprintln!("   cand {:.3} at {:.2} {:.2}", c.score, c.pose.translation.x, c.pose.translation.y); }}
             found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
         }
         self.scores = Some((revision, grid));
@@ -324,6 +332,7 @@ impl Localizer {
         let mut hypotheses = std::mem::take(&mut self.hypotheses);
         let ratio = self.settings.ambiguity_ratio;
         hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
+        if std::env::var("DBG").is_ok() { eprintln!("{}", hypotheses.debug()); }
         self.hypotheses = hypotheses;
         self.since_search = self.since_search.saturating_add(1);
         let support = self.hypotheses.best().map_or(Support::default(), |best| best.support);
@@ -334,6 +343,7 @@ impl Localizer {
                     covariance: decided.covariance,
                     support: decided.support,
                     stayed: false,
+                    is_other: false,
                 };
                 self.accepted_support = self.settings.min_support.min(support.share() - 0.1);
                 self.hypotheses = Hypotheses::default();

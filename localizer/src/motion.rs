@@ -8,6 +8,10 @@ use nalgebra::{Isometry2, Matrix3};
 const REST_STD_M: f64 = 2e-4;
 const REST_STD_RAD: f64 = 1e-4;
 
+/// The uncertainty of a motion between two scans, of an odometry that did not tell the truth.
+const DISTRUSTED_STD_M: f64 = 0.05;
+const DISTRUSTED_STD_RAD: f64 = 0.1;
+
 /// A motion in the frame of the robot before the motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
@@ -35,6 +39,13 @@ impl Motion {
             heading + square(REST_STD_RAD),
         ));
         Self { delta, covariance: covariance * *crate::tune::PRIOR * *crate::tune::PRIOR }
+    }
+
+    /// The same motion, of an odometry that cannot be trusted.
+    pub(crate) fn distrusted(mut self) -> Self {
+        let spread = nalgebra::Vector3::new(DISTRUSTED_STD_M, DISTRUSTED_STD_M, DISTRUSTED_STD_RAD);
+        self.covariance += Matrix3::from_diagonal(&spread.component_mul(&spread));
+        self
     }
 
     /// The pose after the motion.

@@ -87,11 +87,12 @@ impl ScoreGrid {
     /// The largest score in the square of 2^`level` cells whose lower left cell is `(x, y)`.
     #[inline]
     pub(crate) fn bound(&self, level: usize, x: i32, y: i32) -> u8 {
-        let is_inside = x >= -self.margin
-            && y >= -self.margin
-            && x < self.frame.width() as i32
-            && y < self.frame.height() as i32;
-        if is_inside { self.levels[level][self.padded(x, y)] } else { 0 }
+        // A negative number becomes a large one: one comparison per axis.
+        let (column, row) = ((x + self.margin) as u32 as usize, (y + self.margin) as u32 as usize);
+        if column >= self.width {
+            return 0;
+        }
+        self.levels[level].get(row * self.width + column).copied().unwrap_or(0)
     }
 
     /// Whether the square of `side` cells at `(x, y)` contains a cell where a robot can be.

@@ -18,6 +18,9 @@ const BETTER: f64 = 0.05;
 const STAYED_SHARE: f64 = 0.1;
 /// Shifts below this are no coherent motion of things, m.
 const COHERENT_M: f64 = 0.03;
+/// Errors of the map, which change where other surfaces come into view.
+const MAP_STD_M: f64 = 0.002;
+const MAP_STD_RAD: f64 = 7e-4;
 /// Errors of the model that do not average out: surfaces that are not straight, surfels that are off. Per scan.
 const MODEL_STD_M: f64 = 5e-4;
 const MODEL_STD_RAD: f64 = 1.5e-4;
@@ -32,6 +35,8 @@ pub(crate) struct Tracked {
     pub(crate) support: Support,
     /// Much of the view may have moved, but the robot moved as its odometry says: what stayed in place fixes the pose.
     pub(crate) stayed: bool,
+    /// The robot did not move as its odometry says.
+    pub(crate) is_other: bool,
 }
 
 /// Finds the pose of a scan near the predicted pose. `others` are other guesses: the pose at rest, the pose at constant
@@ -59,7 +64,7 @@ pub(crate) fn track<M: ChangingMap>(
     let stayed = in_place.fixes_pose(STAYED_SHARE * in_place.weight());
     let things_moved = stayed && is_coherent(&by_odometry, &best);
     let is_other = is_good(&best) && !things_moved;
-    if is_other { best } else { Tracked { stayed: stayed && (things_moved || !is_surprise), ..by_odometry } }
+    if is_other { Tracked { is_other, ..best } } else { Tracked { stayed: stayed && (things_moved || !is_surprise), ..by_odometry } }
 }
 
 /// The match with the prior of odometry, and whether the motion by odometry was not true.
@@ -70,16 +75,24 @@ fn with_prior<M: ChangingMap>(
 ) -> (Tracked, bool) {
     let stay = || {
         let support = scene.judge(predicted);
-        (Tracked { pose: *predicted, covariance: *covariance, support, stayed: false }, false)
+        (Tracked { pose: *predicted, covariance: *covariance, support, stayed: false, is_other: false }, false)
     };
     let Some(information) = covariance.try_inverse() else { return stay() };
     let prior = Prior { pose: *predicted, information };
     let first_m = scene.gate_m() + 2.0 * (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
     let by_rates = unchanged_fix_pose(scene, predicted);
     let Some(found) = scene.align(predicted, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else { return stay() };
-    let innovation = difference(&found.pose, predicted);
-    let is_surprise = (innovation.transpose() * information * innovation)[0] > SURPRISE;
-    (tracked(scene, &found), is_surprise)
+    (tracked(scene, &found), surprise(&found, predicted, covariance) > SURPRISE)
+}
+
+/// How far the pose of the scan alone lies from the predicted pose: squared, over the covariance of both.
+fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>) -> f64 {
+    let Some(scan) = found.scan_information.try_inverse() else { return 0.0 };
+    // The match with the prior went only a part of the way that the scan alone would have gone.
+    let whole_way = scan * found.information * difference(&found.pose, predicted);
+    let map = Vector3::new(MAP_STD_M, MAP_STD_M, MAP_STD_RAD);
+    let spread = covariance + scan + Matrix3::from_diagonal(&map.component_mul(&map));
+    spread.try_inverse().map_or(0.0, |inverse| (whole_way.transpose() * inverse * whole_way)[0])
 }
 
 /// The result of a match, with an honest covariance: inflated where the residuals are larger than the noise, and by the
@@ -89,7 +102,7 @@ fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
     let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD) * *crate::tune::MODEL;
     let covariance =
         inverse * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model));
-    Tracked { pose: found.pose, covariance, support: scene.judge(&found.pose), stayed: false }
+    Tracked { pose: found.pose, covariance, support: scene.judge(&found.pose), stayed: false, is_other: false }
 }
 
 /// Whether changing surfaces may be weighed down: the others alone fix the pose. Otherwise a wrong pose could declare

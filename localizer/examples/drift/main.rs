@@ -80,7 +80,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
     }
     score.finish(world.truth());
     if options.relocate {
-        relocations::run(options, &spec, &exact, seed)?;
+        relocations::run(options, &spec, seed)?;
     }
     Ok(score)
 }

@@ -2,9 +2,8 @@
 
 use crate::options::Options;
 use crate::score::{error, quantile};
-use interfaces::{Cell, CellState, Grid, Purpose, RandomStream, SettingsError, Twist, World};
+use interfaces::{Cell, CellState, Grid, GroundTruth, Purpose, RandomStream, SettingsError, TrueState, Twist, World};
 use localizer::{Localizer, PoseState, Start};
-use mapper::Mapper;
 use nalgebra::Isometry2;
 use sim::physics::{PhysicsWorld, WorldSpec};
 use std::time::Instant;
@@ -13,12 +12,16 @@ const TRIALS: u64 = 60;
 /// The number of scans at rest until the answer.
 const SCANS: usize = 8;
 
-/// Starts at random places of the map that the run has learned, and prints the results.
-pub(crate) fn run(options: &Options, spec: &WorldSpec, map: &Mapper, seed: u64) -> Result<(), SettingsError> {
+/// Starts at random places of the true map at the start, and prints the results.
+pub(crate) fn run(options: &Options, spec: &WorldSpec, seed: u64) -> Result<(), SettingsError> {
+    let map = &true_map(&PhysicsWorld::new(spec, seed));
     let (mut right, mut wrong, mut open, mut elapsed_ms) = (0, 0, 0, Vec::new());
     for trial in 0..TRIALS {
-        let Some((mut world, pose)) = somewhere(spec, map.states(), seed + trial) else { continue };
-        let mut localizer = Localizer::in_map(&options.localizer(spec), map.states(), Start::Unknown)?;
+        let Some((mut world, pose)) = somewhere(spec, map, seed + trial) else { continue };
+        let mut localizer = Localizer::in_map(&options.localizer(spec), map, Start::Unknown)?;
+        for _ in 0..(trial % 10) * 30 {
+            world.act(&Twist::STOP); // people walk and doors move
+        }
         let mut slowest_ms: f64 = 0.0;
         let mut estimate = None;
         for _ in 0..SCANS {
@@ -45,6 +48,18 @@ pub(crate) fn run(options: &Options, spec: &WorldSpec, map: &Mapper, seed: u64) 
         quantile(&elapsed_ms, 1.0),
     );
     Ok(())
+}
+
+/// The map of all that stands at the start.
+fn true_map(world: &PhysicsWorld) -> Grid<CellState> {
+    let truth = world.truth();
+    let mut map = Grid::filled(*truth.frame(), CellState::Free);
+    for (index, state) in map.cells_mut().iter_mut().enumerate() {
+        if truth.state(index) != TrueState::Free {
+            *state = CellState::Blocked;
+        }
+    }
+    map
 }
 
 /// The world with the robot at a random place that is free in the map, and its pose.
