@@ -1,0 +1,86 @@
+//! How well a robot with bad odometry finds its place, and how many false changes its map gains.
+//!
+//! A robot drives to random goals in a world. Two maps learn from the same scans: one with the true poses, one with the
+//! estimated poses. Printed: the error of the pose, the time without a certain pose, the false changes of both maps
+//! (changes of cells that nothing ever touched), and the time per scan.
+//!
+//! ```text
+//! cargo run -p localizer --example drift -- generate=1000 seed=1000 minutes=20 beams=360 noise=0.01
+//! cargo run -p localizer --example drift -- world=worlds/house.toml closed=1
+//! ```
+
+mod driver;
+mod options;
+mod relocations;
+mod score;
+
+use driver::Driver;
+use interfaces::{LaserReading, World};
+use localizer::{Localizer, PoseState};
+use mapper::{Mapper, MapperSettings};
+use options::Options;
+use score::Score;
+use sim::physics::PhysicsWorld;
+use std::time::Instant;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let options = Options::parse(std::env::args().skip(1))?;
+    let mut total = Score::default();
+    for seed in options.seeds() {
+        let score = run(&options, seed)?;
+        score.print(&format!("{} seed {seed}", options.name()));
+        total.add(&score);
+    }
+    if options.trials > 1 {
+        total.print("all");
+    }
+    Ok(())
+}
+
+/// One run.
+fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>> {
+    let spec = options.spec(seed)?;
+    let mut world = PhysicsWorld::new(&spec, seed);
+    let mut settings = MapperSettings { max_gap: 8.0, ..MapperSettings::default() };
+    settings.steady.range_noise_std_m = spec.driven().laser.noise_std_m.max(0.01);
+    let mut exact = Mapper::new(&settings, spec.frame)?;
+    let mut estimated = Mapper::new(&settings, spec.frame)?;
+    let start = *world.true_pose();
+    let mut localizer = Localizer::from_nothing(&options.localizer(&spec), &spec.frame, start)?;
+    let mut driver = Driver::new(&spec, seed)?;
+    let mut score = Score::new(&spec.frame);
+    let first_odometry = world.sense().pose;
+    while world.time_s() < options.minutes * 60.0 {
+        let reading = options.distort(world.sense());
+        let true_pose = *world.true_pose();
+        exact.update(&LaserReading { pose: true_pose, ..reading.clone() })?;
+        let begin = Instant::now();
+        let localized = if options.odometry_only {
+            score::by_odometry(start * first_odometry.inv_mul(&reading.pose), reading)
+        } else {
+            localizer.localize(&reading, &estimated)
+        };
+        let elapsed = begin.elapsed();
+        let estimate = &localized.estimate;
+        let enters_map = estimate.state == PoseState::Tracking || options.no_gate;
+        if enters_map {
+            estimated.update(&localized.reading)?;
+        }
+        score.observe(estimate, &true_pose, &exact, enters_map.then_some(&estimated), elapsed);
+        if options.trace {
+            score::trace(world.time_s(), estimate, &true_pose);
+        }
+        let rests = localizer.wants_rest() || options.closed && estimate.state == PoseState::Lost;
+        let command = if options.closed {
+            driver.command(&estimated, &estimate.pose, rests)
+        } else {
+            driver.command(&exact, &true_pose, rests)
+        };
+        world.act(&command);
+    }
+    score.finish(world.truth());
+    if options.relocate {
+        relocations::run(options, &spec, seed)?;
+    }
+    Ok(score)
+}

@@ -1,0 +1,144 @@
+use interfaces::LaserReading;
+use localizer::LocalizerSettings;
+use sim::physics::{Motion, OdometryError, WorldSpec};
+
+/// The arguments, each of the form `key=value`.
+#[derive(Clone, Debug)]
+pub(crate) struct Options {
+    world: Option<String>,
+    generate: u64,
+    seed: u64,
+    pub(crate) trials: u64,
+    beams: usize,
+    noise_m: f64,
+    dropout: f64,
+    fov_rad: f64,
+    /// Nothing moves in the world.
+    still: bool,
+    /// The sign of the errors of the odometry, and their size in hard drifts.
+    drift: f64,
+    pub(crate) minutes: f64,
+    /// The robot drives by its estimate.
+    pub(crate) closed: bool,
+    /// One line per scan.
+    pub(crate) trace: bool,
+    pub(crate) odometry_only: bool,
+    pub(crate) no_gate: bool,
+    /// Unknown starts in the map of the run.
+    pub(crate) relocate: bool,
+    no_rates: bool,
+    no_arc: bool,
+    /// The odometry never moves.
+    no_odometry: bool,
+}
+
+impl Options {
+    pub(crate) fn parse(
+        arguments: impl Iterator<Item = String>,
+    ) -> Result<Self, Box<dyn std::error::Error>> {
+        let mut options = Self {
+            world: None,
+            generate: 1000,
+            seed: 1000,
+            trials: 1,
+            beams: 360,
+            noise_m: 0.01,
+            dropout: 0.0,
+            fov_rad: std::f64::consts::TAU,
+            still: false,
+            drift: 1.0,
+            minutes: 20.0,
+            closed: false,
+            trace: false,
+            odometry_only: false,
+            no_gate: false,
+            relocate: false,
+            no_rates: false,
+            no_arc: false,
+            no_odometry: false,
+        };
+        for argument in arguments {
+            let (key, value) = argument.split_once('=').ok_or("arguments have the form key=value")?;
+            let number = || value.parse::<f64>().map_err(|_| format!("{argument}: not a number"));
+            let is_on = value == "1";
+            match key {
+                "world" => options.world = Some(value.to_owned()),
+                "generate" => options.generate = number()? as u64,
+                "seed" => options.seed = number()? as u64,
+                "trials" => options.trials = number()? as u64,
+                "beams" => options.beams = number()? as usize,
+                "noise" => options.noise_m = number()?,
+                "dropout" => options.dropout = number()?,
+                "fov_deg" => options.fov_rad = number()?.to_radians(),
+                "still" => options.still = is_on,
+                "drift" => options.drift = number()?,
+                "minutes" => options.minutes = number()?,
+                "closed" => options.closed = is_on,
+                "trace" => options.trace = is_on,
+                "odometry-only" => options.odometry_only = is_on,
+                "no-gate" => options.no_gate = is_on,
+                "relocate" => options.relocate = is_on,
+                "no-rates" => options.no_rates = is_on,
+                "no-arc" => options.no_arc = is_on,
+                "no-odometry" => options.no_odometry = is_on,
+                _ => return Err(format!("{key}: no such option").into()),
+            }
+        }
+        Ok(options)
+    }
+
+    pub(crate) fn seeds(&self) -> impl Iterator<Item = u64> + use<> {
+        self.seed..self.seed + self.trials
+    }
+
+    pub(crate) fn name(&self) -> String {
+        self.world.clone().unwrap_or_else(|| "generated".to_owned())
+    }
+
+    /// The world, with a robot whose odometry drifts hard. Without a file, each trial has a house of its own.
+    pub(crate) fn spec(&self, seed: u64) -> Result<WorldSpec, Box<dyn std::error::Error>> {
+        let spec = match &self.world {
+            Some(path) => worldfile::physics::parse_world(path, &std::fs::read_to_string(path)?)?,
+            None => WorldSpec::generate_house(self.generate + seed - self.seed),
+        };
+        let mut driven = spec.driven_index();
+        let mut fleet = spec.fleet().clone();
+        if self.still {
+            fleet.obstacles.retain(|obstacle| obstacle.motion == Motion::Fixed);
+            fleet.robots = vec![fleet.robots.swap_remove(driven)];
+            driven = 0;
+        }
+        let robot = &mut fleet.robots[driven];
+        robot.odometry = OdometryError {
+            distance_gain: 0.05 * self.drift,
+            turn_gain: -0.05 * self.drift,
+            turn_radpm: 3.0_f64.to_radians() * self.drift,
+            distance_noise_m: 0.05 * self.drift.abs(),
+            turn_noise_rad: 0.05 * self.drift.abs(),
+        };
+        let laser = &mut robot.laser;
+        (laser.beams, laser.noise_std_m, laser.dropout) = (self.beams, self.noise_m, self.dropout);
+        laser.fov_rad = self.fov_rad;
+        WorldSpec::driving(fleet, driven).ok_or_else(|| "no robot".into())
+    }
+
+    /// The reading with the faults of the sensors.
+    pub(crate) fn distort(&self, mut reading: LaserReading) -> LaserReading {
+        if self.no_odometry {
+            reading.pose = nalgebra::Isometry2::identity();
+        }
+        reading
+    }
+
+    /// The settings of the localizer in this world.
+    pub(crate) fn localizer(&self, spec: &WorldSpec) -> LocalizerSettings {
+        let defaults = LocalizerSettings::default();
+        LocalizerSettings {
+            range_noise_std_m: spec.driven().laser.noise_std_m.max(defaults.range_noise_std_m),
+            weigh_by_arc_length: !self.no_arc,
+            gate: !self.no_gate,
+            rate_horizon_s: if self.no_rates { 0.0 } else { defaults.rate_horizon_s },
+            ..defaults
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Unknown starts in a known map.
+
+use crate::options::Options;
+use crate::score::{error, quantile};
+use interfaces::{Cell, CellState, Grid, GroundTruth, Purpose, RandomStream, SettingsError, TrueState, Twist, World};
+use localizer::{Localizer, PoseState, Start};
+use nalgebra::Isometry2;
+use sim::physics::{PhysicsWorld, WorldSpec};
+use std::time::Instant;
+
+const TRIALS: u64 = 60;
+/// The number of scans at rest until the answer.
+const SCANS: usize = 8;
+
+/// Starts at random places of the true map at the start, and prints the results.
+pub(crate) fn run(options: &Options, spec: &WorldSpec, seed: u64) -> Result<(), SettingsError> {
+    let map = &true_map(&PhysicsWorld::new(spec, seed));
+    let (mut right, mut wrong, mut open, mut elapsed_ms) = (0, 0, 0, Vec::new());
+    for trial in 0..TRIALS {
+        let Some((mut world, pose)) = somewhere(spec, map, seed + trial) else { continue };
+        let mut localizer = Localizer::in_map(&options.localizer(spec), map, Start::Unknown)?;
+        for _ in 0..(trial % 10) * 30 {
+            world.act(&Twist::STOP); // people walk and doors move
+        }
+        let mut slowest_ms: f64 = 0.0;
+        let mut estimate = None;
+        for _ in 0..SCANS {
+            let begin = Instant::now();
+            estimate = Some(localizer.localize(&world.sense(), map).estimate);
+            slowest_ms = slowest_ms.max(begin.elapsed().as_secs_f64() * 1e3);
+            world.act(&Twist::STOP);
+        }
+        elapsed_ms.push(slowest_ms);
+        let Some(estimate) = estimate else { continue };
+        let (error_m, error_rad) = error(&estimate.pose, &pose);
+        match estimate.state {
+            PoseState::Tracking if error_m < 0.1 && error_rad < 0.05 => right += 1,
+            PoseState::Tracking => wrong += 1,
+            _ => open += 1,
+        }
+        if options.trace {
+            println!("{:?} {error_m:.2} m {error_rad:.2} rad, {slowest_ms:.1} ms, support {:.2}", estimate.state, estimate.support);
+        }
+    }
+    println!(
+        "unknown start: {right} right, {wrong} wrong, {open} not certain; {:.1} ms in the median, {:.1} ms at most",
+        quantile(&elapsed_ms, 0.5),
+        quantile(&elapsed_ms, 1.0),
+    );
+    Ok(())
+}
+
+/// The map of all that stands at the start.
+fn true_map(world: &PhysicsWorld) -> Grid<CellState> {
+    let truth = world.truth();
+    let mut map = Grid::filled(*truth.frame(), CellState::Free);
+    for (index, state) in map.cells_mut().iter_mut().enumerate() {
+        if truth.state(index) != TrueState::Free {
+            *state = CellState::Blocked;
+        }
+    }
+    map
+}
+
+/// The world with the robot at a random place that is free in the map, and its pose.
+fn somewhere(
+    spec: &WorldSpec,
+    map: &Grid<CellState>,
+    seed: u64,
+) -> Option<(PhysicsWorld, Isometry2<f64>)> {
+    let mut random = RandomStream::new(seed, Purpose::HouseGenerator);
+    let frame = map.frame();
+    let is_free = |cell: Cell| {
+        let mut around = (-4..=4).flat_map(|x| (-4..=4).map(move |y| Cell::new(cell.x + x, cell.y + y)));
+        around.all(|cell| map.get(cell) == Some(&CellState::Free))
+    };
+    let mut draws = (0..1000).map(|_| frame.cell(random.uniform(0.0..frame.len() as f64) as usize));
+    let center = frame.center(draws.find(|cell| is_free(*cell))?);
+    let pose = interfaces::pose(center.x, center.y, random.uniform(-3.0..3.0));
+    let driven = spec.driven_index();
+    let mut fleet = spec.fleet().clone();
+    fleet.robots[driven].pose = pose;
+    Some((PhysicsWorld::new(&WorldSpec::driving(fleet, driven)?, seed), pose))
+}

@@ -1,0 +1,121 @@
+//! Learns the systematic errors of odometry from the estimated motions: the gains of distance and turn, and the turn per
+//! metre. A prior with a bias bends the map that grows ahead of the robot.
+//!
+//! Recursive least squares with forgetting (Ljung 1999, section 11.2): the errors of wheels change with the floor, the
+//! load and the air in the tyres.
+
+use crate::settings::OdometryTrust;
+use interfaces::heading_rad;
+use nalgebra::{Isometry2, Matrix2, Vector2};
+
+/// What is remembered of the past per motion: about 300 motions count.
+const MEMORY: f64 = 1.0 - 1.0 / 300.0;
+/// The error of an estimated motion, m and rad: that of two matches.
+const MOTION_STD_M: f64 = 0.004;
+const MOTION_STD_RAD: f64 = 0.002;
+/// Motions below this say nothing about gains, m and rad.
+const LEAST_M: f64 = 0.01;
+const LEAST_RAD: f64 = 0.005;
+
+/// The learned systematic errors.
+#[derive(Clone, Debug)]
+pub(crate) struct Calibration {
+    /// The true distance per measured distance, and its variance.
+    distance: (f64, f64),
+    /// The true turn per measured turn, and per measured distance (rad/m), and their covariance.
+    turn: (Vector2<f64>, Matrix2<f64>),
+    trust: OdometryTrust,
+}
+
+impl Calibration {
+    pub(crate) fn new(trust: &OdometryTrust) -> Self {
+        let square = |x: f64| x * x;
+        let spread = Vector2::new(square(trust.turn_gain), square(trust.turn_radpm));
+        Self {
+            distance: (1.0, square(trust.distance_gain)),
+            turn: (Vector2::new(1.0, 0.0), Matrix2::from_diagonal(&spread)),
+            trust: *trust,
+        }
+    }
+
+    /// The motion that a measured motion stands for.
+    pub(crate) fn correct(&self, measured: &Isometry2<f64>) -> Isometry2<f64> {
+        let at = measured.translation.vector * self.distance.0;
+        let turn_rad = self.features(measured).dot(&self.turn.0);
+        // The motion is an arc: a turn that was missed bends it, half of the turn at its middle.
+        let bend = interfaces::rotation((turn_rad - heading_rad(measured)) / 2.0) * at;
+        interfaces::pose(bend.x, bend.y, turn_rad)
+    }
+
+    /// The measured turn, and the measured distance forward.
+    fn features(&self, measured: &Isometry2<f64>) -> Vector2<f64> {
+        Vector2::new(heading_rad(measured), measured.translation.x)
+    }
+
+    /// Learns from a measured motion, and the motion that was estimated with the help of scans.
+    pub(crate) fn learn(&mut self, measured: &Isometry2<f64>, estimated: &Isometry2<f64>) {
+        let square = |x: f64| x * x;
+        let (distance_m, turn_rad) = (measured.translation.vector.norm(), heading_rad(measured).abs());
+        if distance_m >= LEAST_M {
+            let noise = square(MOTION_STD_M) + square(self.trust.distance_noise_m) * distance_m;
+            let (gain, variance) = &mut self.distance;
+            *variance = (*variance / MEMORY).min(square(self.trust.distance_gain));
+            let k = *variance * distance_m / (noise + *variance * square(distance_m));
+            let along_m = estimated.translation.vector.dot(&measured.translation.vector) / distance_m;
+            *gain += k * (along_m - *gain * distance_m);
+            *variance *= 1.0 - k * distance_m;
+        }
+        if distance_m >= LEAST_M || turn_rad >= LEAST_RAD {
+            let x = self.features(measured);
+            let noise = square(MOTION_STD_RAD) + square(self.trust.turn_noise_rad) * turn_rad;
+            let (gains, covariance) = &mut self.turn;
+            *covariance /= MEMORY;
+            // What was never excited must not grow without a limit.
+            let spread = [self.trust.turn_gain, self.trust.turn_radpm].map(square);
+            for (index, most) in spread.into_iter().enumerate() {
+                if covariance[(index, index)] > most && most > 0.0 {
+                    let scale = (most / covariance[(index, index)]).sqrt();
+                    for other in 0..2 {
+                        covariance[(index, other)] *= scale;
+                        covariance[(other, index)] *= scale;
+                    }
+                }
+            }
+            let spread = *covariance * x;
+            let k = spread / (noise + x.dot(&spread));
+            *gains += k * (heading_rad(estimated) - gains.dot(&x));
+            *covariance -= k * spread.transpose();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::pose;
+
+    #[test]
+    fn systematic_errors_are_learned_and_undone() {
+        let mut calibration = Calibration::new(&OdometryTrust::default());
+        let truth = |step: u32| pose(0.05, 0.0, if step % 40 < 20 { 0.03 } else { -0.06 });
+        let measured = |step: u32| {
+            let turn = heading_rad(&truth(step)) * 0.95 + 0.05 * 0.05;
+            pose(0.05 * 1.05, 0.0, turn)
+        };
+        for step in 0..1000 {
+            calibration.learn(&measured(step), &truth(step));
+        }
+        for step in [0, 30] {
+            let error = truth(step).inv_mul(&calibration.correct(&measured(step)));
+            assert!(error.translation.vector.norm() < 1e-3, "{error}");
+            assert!(heading_rad(&error).abs() < 2e-4, "{error}");
+        }
+    }
+
+    #[test]
+    fn rest_stays_rest() {
+        let mut calibration = Calibration::new(&OdometryTrust::default());
+        calibration.learn(&Isometry2::identity(), &pose(0.001, 0.0, 0.001));
+        assert_eq!(calibration.correct(&Isometry2::identity()), Isometry2::identity());
+    }
+}

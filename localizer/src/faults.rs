@@ -1,0 +1,76 @@
+//! Readings that a localizer must not believe.
+
+use crate::scan_points::ScanPoint;
+use interfaces::{LaserReading, heading_rad};
+use nalgebra::Isometry2;
+
+/// The limit of coordinates, m: beyond, they lose precision.
+const FARTHEST_M: f64 = 1e6;
+/// A scan that repeats bit by bit while the odometry moves by more than this is frozen, m and rad.
+const FROZEN_M: f64 = 0.01;
+const FROZEN_RAD: f64 = 0.01;
+
+/// A fault of a reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fault {
+    /// The scan or a pose is not valid: nothing can be learned from the reading.
+    Invalid,
+    /// The scan is that of an earlier reading, though the robot moved.
+    Frozen,
+    /// The time is not after that of the last reading.
+    Time,
+}
+
+/// Remembers what is needed to find faults.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FaultFinder {
+    time_s: Option<f64>,
+    ranges_m: Vec<f32>,
+    /// The odometry when the present scan was first seen.
+    odometry: Option<Isometry2<f64>>,
+}
+
+impl FaultFinder {
+    /// The fault of a reading, if it has one.
+    pub(crate) fn find(&mut self, reading: &LaserReading) -> Option<Fault> {
+        let LaserReading { time_s, pose, mount, scan, .. } = reading;
+        if scan.check().is_err() || !is_pose(pose) || !is_pose(mount) || !time_s.is_finite() {
+            return Some(Fault::Invalid);
+        }
+        let is_old = self.time_s.is_some_and(|last| *time_s <= last);
+        if !is_old {
+            self.time_s = Some(*time_s);
+        }
+        let ranges = scan.ranges_m.iter().map(|range_m| range_m.to_bits());
+        let is_same = ranges.eq(self.ranges_m.iter().map(|range_m| range_m.to_bits()));
+        if !is_same {
+            self.ranges_m.clone_from(&scan.ranges_m);
+            self.odometry = Some(*pose);
+        }
+        let moved = self.odometry.map_or(Isometry2::identity(), |first| first.inv_mul(pose));
+        let has_moved = moved.translation.vector.norm() > FROZEN_M || heading_rad(&moved).abs() > FROZEN_RAD;
+        if is_same && has_moved && scan.ranges_m.iter().any(|range_m| range_m.is_finite()) {
+            Some(Fault::Frozen)
+        } else {
+            is_old.then_some(Fault::Time)
+        }
+    }
+}
+
+/// Whether every number of a pose is finite, its rotation valid, and its position in the plane of a map.
+fn is_pose(pose: &Isometry2<f64>) -> bool {
+    let is_near = [pose.translation.x, pose.translation.y].iter().all(|at| at.abs() <= FARTHEST_M);
+    is_near && (pose.rotation.norm_sqr() - 1.0).abs() < 1e-3
+}
+
+/// The points as a laser that hangs upside down would see them.
+pub(crate) fn mirrored(points: &[ScanPoint], mount: &Isometry2<f64>) -> Vec<ScanPoint> {
+    let mirror = |point: &ScanPoint| {
+        let (mut at, mut normal) =
+            (mount.inverse_transform_point(&point.at), mount.rotation.inverse() * point.normal);
+        at.y = -at.y;
+        normal.y = -normal.y;
+        ScanPoint { at: mount * at, normal: mount.rotation * normal, ..*point }
+    };
+    points.iter().map(mirror).collect()
+}

@@ -1,0 +1,132 @@
+//! Several poses that the robot may have. Driving on decides between them.
+
+use crate::changing_map::ChangingMap;
+use crate::matcher::{Prior, difference};
+use crate::motion::Motion;
+use crate::scene::Scene;
+use crate::search::Candidate;
+use crate::support::Support;
+use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// The uncertainty of a pose that a search has found: the size of its cells.
+const FOUND_STD_M: f64 = 0.1;
+const FOUND_STD_RAD: f64 = 0.03;
+/// A match starts up to this far from the found pose, m.
+const FIRST_GATE_M: f64 = 0.3;
+/// Poses that come closer than this are the same, m and rad.
+const SAME_M: f64 = 0.1;
+const SAME_RAD: f64 = 0.1;
+
+/// A pose that the robot may have.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hypothesis {
+    pub(crate) pose: Isometry2<f64>,
+    pub(crate) covariance: Matrix3<f64>,
+    /// The agreement of the last scan.
+    pub(crate) support: Support,
+    /// The sum of the scores of all scans.
+    score: f64,
+}
+
+/// All poses that the robot may have, the best first.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Hypotheses {
+    list: Vec<Hypothesis>,
+    /// The number of scans since the search.
+    scans: u32,
+}
+
+impl Hypotheses {
+    /// Refines the poses that a search has found. Poses below `least_score` are dropped.
+    pub(crate) fn start<M: ChangingMap>(scene: &Scene<M>, found: &[Candidate], least_score: f64, ratio: f64) -> Self {
+        let spread = Vector3::new(FOUND_STD_M, FOUND_STD_M, FOUND_STD_RAD);
+        let covariance = Matrix3::from_diagonal(&spread.component_mul(&spread));
+        let mut hypotheses = Self::default();
+        hypotheses.list = found
+            .iter()
+            .filter_map(|candidate| refine(scene, &candidate.pose, &covariance, FIRST_GATE_M, 0.0))
+            .filter(|hypothesis| hypothesis.score >= least_score)
+            .collect();
+        hypotheses.sort_out(ratio);
+        hypotheses
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The best pose.
+    pub(crate) fn best(&self) -> Option<&Hypothesis> {
+        self.list.first()
+    }
+
+    /// Whether a pose is one of them.
+    pub(crate) fn contains(&self, pose: &Isometry2<f64>) -> bool {
+        self.list.iter().any(|hypothesis| is_same(&hypothesis.pose, pose))
+    }
+
+    /// The covariance of the differences between the poses.
+    pub(crate) fn spread(&self) -> Matrix3<f64> {
+        let Some(best) = self.best() else { return Matrix3::zeros() };
+        let square = |hypothesis: &Hypothesis| {
+            let off = difference(&hypothesis.pose, &best.pose);
+            off * off.transpose() / self.list.len() as f64
+        };
+        self.list.iter().map(square).sum()
+    }
+
+    pub(crate) fn debug(&self) -> String {
+        self.list.iter().map(|h| format!("[{:.3} score {:.2} at {:.2} {:.2}]", h.score / f64::from(self.scans + 1), h.support.score(), h.pose.translation.x, h.pose.translation.y)).collect()
+    }
+
+    /// The only pose, once it has agreed with this number of scans after the search.
+    pub(crate) fn decided(&self, scans: u32) -> Option<&Hypothesis> {
+        if self.scans >= scans && self.list.len() == 1 { self.list.first() } else { None }
+    }
+
+    /// Moves all poses and compares them with the next scan. Poses below `least_score` are dropped.
+    pub(crate) fn advance<M: ChangingMap>(&mut self, scene: &Scene<M>, motion: &Motion, least_score: f64, ratio: f64) {
+        self.scans += 1;
+        let next = |hypothesis: &Hypothesis| {
+            let covariance = motion.propagate(&hypothesis.pose, &hypothesis.covariance);
+            let pose = motion.apply(&hypothesis.pose);
+            refine(scene, &pose, &covariance, 2.0 * scene.gate_m(), hypothesis.score)
+                .filter(|next| next.support.score() >= least_score)
+        };
+        self.list = self.list.iter().filter_map(next).collect();
+        self.sort_out(ratio);
+    }
+
+    /// Sorts by the score, and drops what is much worse than the best, or the same as a better one.
+    fn sort_out(&mut self, ratio: f64) {
+        self.list.sort_by(|a, b| b.score.total_cmp(&a.score));
+        let least = self.list.first().map_or(0.0, |best| best.score * ratio);
+        let mut kept: Vec<Hypothesis> = Vec::new();
+        for hypothesis in self.list.drain(..).filter(|hypothesis| hypothesis.score >= least) {
+            if !kept.iter().any(|better| is_same(&better.pose, &hypothesis.pose)) {
+                kept.push(hypothesis);
+            }
+        }
+        self.list = kept;
+    }
+}
+
+fn is_same(a: &Isometry2<f64>, b: &Isometry2<f64>) -> bool {
+    let between = a.inv_mul(b);
+    between.translation.vector.norm() <= SAME_M && interfaces::heading_rad(&between).abs() <= SAME_RAD
+}
+
+/// Matches the scan near a pose.
+fn refine<M: ChangingMap>(
+    scene: &Scene<M>,
+    pose: &Isometry2<f64>,
+    covariance: &Matrix3<f64>,
+    first_m: f64,
+    score: f64,
+) -> Option<Hypothesis> {
+    let prior = Prior { pose: *pose, information: covariance.try_inverse()? };
+    let found = scene.align(pose, Some(&prior), first_m, true)?;
+    let support = scene.judge(&found.pose);
+    let covariance = found.information.try_inverse()?;
+    Some(Hypothesis { pose: found.pose, covariance, support, score: score + support.score() })
+}

@@ -1,0 +1,49 @@
+//! Odometry + scan + line map → pose, with its uncertainty: the part between the source of readings and the mapper.
+//!
+//! ```text
+//! reading ─▶ undo the sweep ─▶ predict by odometry ─▶ match with the line map ─▶ pose ─▶ learn the line map
+//!                                                      └─ low support: search, hypotheses ─┘
+//! ```
+//!
+//! [`Localizer::localize`] is this line. The localizer never mistakes its own error for a change of the place, because
+//! a scan enters a map only while the state of the estimate is [`PoseState::Tracking`]; all other time counts as not
+//! observed.
+//!
+//! - Scans are matched with a map of short straight surfaces (surfels) that stop to move after a number of hits, by
+//!   point-to-line Gauss-Newton with a prior from odometry: Censi (2008), Segal, Haehnel & Thrun (2009).
+//! - Points count by the length of surface that they stand for.
+//! - Where the scan does not support the pose, it is searched for: correlative matching in a window (Olson 2009) and
+//!   in the whole map are one branch and bound over a pyramid of maxima (Hess, Kohler, Rapp & Andor 2016). Several
+//!   poses that fit about as well are kept as hypotheses, and driving on decides.
+//! - If most of the view shifts at once, either the robot moved and its odometry missed it, or the things moved: what
+//!   still lies exactly where it was decides.
+//! - Learned rates of change ([`ChangingMap`]) lower the weight of surfaces in a search; in tracking only where the
+//!   unchanged surfaces alone fix the pose.
+//!
+//! This crate knows readings, and of the map its states and rates. It must not know worlds, simulators, goals, drives,
+//! recordings or files.
+
+mod calibration;
+mod changing_map;
+mod estimate;
+mod faults;
+mod hypotheses;
+mod localizer;
+mod matcher;
+mod motion;
+mod scan_points;
+mod scene;
+mod score_grid;
+mod search;
+mod settings;
+mod support;
+mod surfel_map;
+mod sweep;
+mod tracking;
+#[allow(missing_docs)]
+mod tune;
+
+pub use changing_map::ChangingMap;
+pub use estimate::{Localized, PoseEstimate, PoseState, Start};
+pub use localizer::Localizer;
+pub use settings::{LocalizerSettings, OdometryTrust};

@@ -1,0 +1,401 @@
+use crate::calibration::Calibration;
+use crate::changing_map::ChangingMap;
+use crate::estimate::{Localized, PoseEstimate, PoseState, Start};
+use crate::faults::{Fault, FaultFinder, mirrored};
+use crate::hypotheses::Hypotheses;
+use crate::motion::Motion;
+use crate::scan_points::ScanPoints;
+use crate::scene::Scene;
+use crate::score_grid::ScoreGrid;
+use crate::search::{Window, search};
+use crate::settings::LocalizerSettings;
+use crate::support::{ClearBeams, Support};
+use crate::surfel_map::{Checker, SurfelMap};
+use crate::sweep;
+use crate::tracking::{Tracked, track};
+use interfaces::{CellState, Grid, GridFrame, LaserReading, Scan, SettingsError};
+use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// The window of the first search: a glitch of the odometry, or a robot that was carried a little.
+const WINDOW_M: f64 = 1.3;
+const WINDOW_RAD: f64 = 1.2;
+/// The least score of a pose in a search.
+const LEAST_FOUND: f64 = 0.55;
+/// The least score of a refined pose.
+const LEAST_SCORE: f64 = 0.5;
+/// The number of scans between two searches in the whole map.
+const SEARCH_EVERY: u32 = 5;
+/// The number of scans between two updates of the weights by rates.
+const RATES_EVERY: u32 = 100;
+/// The least confirmed weight of a certain pose: about a metre of wall.
+const LEAST_CONFIRMED: f64 = 8.0;
+/// The number of scans for which the odometry is not trusted after it did not tell the truth.
+const DISTRUST_SCANS: u32 = 20;
+/// The range noise for which the limits of the standard deviations hold, m. A map of a laser with more noise tolerates
+/// larger errors of the pose.
+const NOISE_M: f64 = 0.01;
+/// The uncertainty of a pose that is lost, m and rad.
+const LOST_STD_M: f64 = 5.0;
+const LOST_STD_RAD: f64 = 3.0;
+
+/// Estimates the pose of a robot from odometry and scans. The same readings give the same bits.
+#[derive(Clone, Debug)]
+pub struct Localizer {
+    settings: LocalizerSettings,
+    surfels: SurfelMap,
+    checker: Checker,
+    points: ScanPoints,
+    clear: ClearBeams,
+    faults: FaultFinder,
+    calibration: Calibration,
+    scores: Option<(u64, ScoreGrid)>,
+    hypotheses: Hypotheses,
+    /// The last estimate: its pose and covariance.
+    pose: Isometry2<f64>,
+    covariance: Matrix3<f64>,
+    state: PoseState,
+    /// The last valid odometry pose, its time, and the estimated motion to it.
+    odometry: Option<Isometry2<f64>>,
+    last_motion: Isometry2<f64>,
+    /// The last motion by odometry.
+    measured: Isometry2<f64>,
+    time_s: f64,
+    supported_s: Option<f64>,
+    start_s: Option<f64>,
+    /// Whether the robot started without a map.
+    from_nothing: bool,
+    /// The number of scans for which the odometry is not trusted.
+    distrust: u32,
+    /// The number of readings.
+    readings: u32,
+    /// The number of scans since the last search in the whole map.
+    since_search: u32,
+    /// The support below which the pose is searched for: lower where a search has confirmed a low support.
+    accepted_support: f64,
+}
+
+impl Localizer {
+    /// A localizer without a map: the first scans make one, in the frame in which `pose` is the pose of the first
+    /// reading. `frame` covers the place.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn from_nothing(
+        settings: &LocalizerSettings,
+        frame: &GridFrame,
+        pose: Isometry2<f64>,
+    ) -> Result<Self, SettingsError> {
+        Self::new(settings, SurfelMap::new(frame), Start::At(pose), true)
+    }
+
+    /// A localizer in a known map.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn in_map(
+        settings: &LocalizerSettings,
+        map: &Grid<CellState>,
+        start: Start,
+    ) -> Result<Self, SettingsError> {
+        Self::new(settings, SurfelMap::from_grid(map), start, false)
+    }
+
+    fn new(
+        settings: &LocalizerSettings,
+        surfels: SurfelMap,
+        start: Start,
+        from_nothing: bool,
+    ) -> Result<Self, SettingsError> {
+        settings.check()?;
+        let (pose, state) = match start {
+            Start::At(pose) => (pose, PoseState::Tracking),
+            Start::Unknown => (Isometry2::identity(), PoseState::Lost),
+        };
+        let std = match (start, from_nothing) {
+            (Start::At(_), true) => Vector3::zeros(),
+            (Start::At(_), false) => Vector3::new(0.05, 0.05, 0.02),
+            (Start::Unknown, _) => Vector3::new(LOST_STD_M, LOST_STD_M, LOST_STD_RAD),
+        };
+        Ok(Self {
+            settings: settings.clone(),
+            surfels,
+            checker: Checker::default(),
+            points: ScanPoints::default(),
+            clear: ClearBeams::default(),
+            faults: FaultFinder::default(),
+            calibration: Calibration::new(&settings.odometry),
+            scores: None,
+            hypotheses: Hypotheses::default(),
+            pose,
+            covariance: Matrix3::from_diagonal(&std.component_mul(&std)),
+            state,
+            odometry: None,
+            last_motion: Isometry2::identity(),
+            measured: Isometry2::identity(),
+            time_s: 0.0,
+            supported_s: None,
+            start_s: None,
+            from_nothing,
+            distrust: 0,
+            readings: 0,
+            since_search: SEARCH_EVERY,
+            accepted_support: settings.min_support,
+        })
+    }
+
+    /// Whether the robot should rest: at a start without a map, the first scans decide the heading of all that
+    /// follows, and should all be made from one pose.
+    pub fn wants_rest(&self) -> bool {
+        let elapsed_s = self.start_s.map_or(0.0, |start_s| self.time_s - start_s);
+        self.from_nothing && elapsed_s < self.settings.settle_s
+    }
+
+    /// Estimates the pose of a reading. `map` has learned changes from the readings so far whose pose was certain.
+    ///
+    /// A reading that cannot be true (an invalid scan, a frozen scan, a time that goes back) is never an error: its
+    /// estimate is the prediction by odometry, and is not certain.
+    pub fn localize(&mut self, reading: &LaserReading, map: &impl ChangingMap) -> Localized {
+        let fault = self.faults.find(reading);
+        if fault == Some(Fault::Invalid) {
+            return self.skip(reading);
+        }
+        let motion = self.motion(reading);
+        let elapsed_s = reading.time_s - self.time_s;
+        if fault.is_none() {
+            self.time_s = reading.time_s;
+        }
+        self.start_s.get_or_insert(self.time_s);
+        self.readings = self.readings.wrapping_add(1);
+        if self.readings.is_multiple_of(RATES_EVERY) && self.settings.rate_horizon_s > 0.0 {
+            self.surfels.weigh_by_rates(map, self.settings.rate_horizon_s);
+        }
+        let mut reading = reading.clone();
+        reading.scan = self.unswept(&reading, &motion.delta, elapsed_s);
+        self.points.update(&reading, self.settings.range_noise_std_m, self.settings.weigh_by_arc_length);
+        self.clear.update(&reading.scan);
+        let before = self.pose;
+        let was_tracking = self.state == PoseState::Tracking;
+        let support = self.estimate(&reading, &motion, map, fault);
+        self.last_motion = before.inv_mul(&self.pose);
+        if was_tracking && self.state == PoseState::Tracking {
+            self.calibration.learn(&self.measured, &self.last_motion);
+        }
+        if fault.is_some() && self.state == PoseState::Tracking {
+            self.state = PoseState::Uncertain;
+        }
+        if self.state == PoseState::Tracking || !self.settings.gate {
+            self.learn(&reading);
+        }
+        self.localized(reading, support.share())
+    }
+}
+
+impl Localizer {
+    /// The motion since the last valid reading, by odometry.
+    fn motion(&mut self, reading: &LaserReading) -> Motion {
+        let before = self.odometry.replace(reading.pose).unwrap_or(reading.pose);
+        self.measured = before.inv_mul(&reading.pose);
+        let corrected = if *crate::tune::CAL > 0.0 { self.calibration.correct(&self.measured) } else { self.measured };
+        let motion = Motion::new(corrected, &self.settings.odometry);
+        if self.distrust > 0 { motion.distrusted() } else { motion }
+    }
+
+    /// The scan without its sweep. `delta` is the motion since the last reading.
+    fn unswept(&self, reading: &LaserReading, delta: &Isometry2<f64>, elapsed_s: f64) -> Scan {
+        let scan = &reading.scan;
+        if scan.sweep_s == 0.0 || elapsed_s <= 0.0 {
+            return scan.clone();
+        }
+        let share = scan.sweep_s / elapsed_s;
+        let back = delta.inverse();
+        let (at, turn_rad) = (back.translation.vector * share, interfaces::heading_rad(&back) * share);
+        let start = interfaces::pose(at.x, at.y, turn_rad);
+        sweep::undo(scan, &(reading.mount.inverse() * start * reading.mount))
+    }
+
+    /// Estimates the pose, and the state that follows; returns the agreement of the scan with the maps.
+    fn estimate(
+        &mut self,
+        reading: &LaserReading,
+        motion: &Motion,
+        map: &impl ChangingMap,
+        fault: Option<Fault>,
+    ) -> Support {
+        let predicted = motion.apply(&self.pose);
+        let covariance = motion.propagate(&self.pose, &self.covariance);
+        let is_first = self.from_nothing && self.surfels.is_empty();
+        if fault == Some(Fault::Frozen) || is_first {
+            (self.pose, self.covariance) = (predicted, covariance);
+            self.state = if is_first { PoseState::Tracking } else { PoseState::Uncertain };
+            return Support::default();
+        }
+        if !self.hypotheses.is_empty() {
+            return self.follow(reading, motion, map);
+        }
+        let others = [self.pose, self.pose * self.last_motion];
+        let scene = self.scene(reading, map);
+        let tracked = track(&scene, &predicted, &covariance, &others);
+        if self.is_supported(&tracked) {
+            let support = tracked.support;
+            self.distrust = if tracked.is_other { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
+            self.accept(&tracked);
+            return support;
+        }
+        let is_mirrored = is_mirrored(&scene, &predicted, reading);
+        (self.pose, self.covariance) = (predicted, covariance);
+        self.doubt();
+        if !is_mirrored {
+            self.search(reading, map, &tracked);
+        }
+        tracked.support
+    }
+
+    fn scene<'a, M: ChangingMap>(&'a self, reading: &LaserReading, map: &'a M) -> Scene<'a, M> {
+        Scene {
+            surfels: &self.surfels,
+            map,
+            points: self.points.points(),
+            clear: &self.clear,
+            mount: reading.mount,
+            settings: &self.settings,
+        }
+    }
+
+    /// Whether the scan supports a tracked pose.
+    fn is_supported(&self, tracked: &Tracked) -> bool {
+        let support = &tracked.support;
+        let is_enough = support.share() >= self.accepted_support || tracked.stayed;
+        self.state != PoseState::Lost && is_enough && support.confirmed >= LEAST_CONFIRMED
+    }
+
+    /// Takes over a supported pose.
+    fn accept(&mut self, tracked: &Tracked) {
+        (self.pose, self.covariance) = (tracked.pose, tracked.covariance);
+        if tracked.support.share() >= self.settings.min_support {
+            self.accepted_support = self.settings.min_support;
+        }
+        let estimate = self.pose_estimate(1.0);
+        let scale = (self.settings.range_noise_std_m / NOISE_M).max(1.0);
+        let is_certain = estimate.position_std_m() <= scale * self.settings.max_position_std_m
+            && estimate.heading_std_rad() <= scale * self.settings.max_heading_std_rad;
+        self.state = if is_certain { PoseState::Tracking } else { PoseState::Uncertain };
+        self.supported_s = Some(self.time_s);
+    }
+
+    /// The pose is not certain; after some time, it is lost.
+    fn doubt(&mut self) {
+        let limit_s = self.settings.lost_after_s;
+        let is_lost = self.supported_s.map_or(self.state == PoseState::Lost, |supported_s| {
+            self.time_s - supported_s > limit_s
+        });
+        self.state = if is_lost { PoseState::Lost } else { PoseState::Uncertain };
+    }
+
+    /// Searches for the pose: around the predicted pose, and in the whole map.
+    fn search(&mut self, reading: &LaserReading, map: &impl ChangingMap, tracked: &Tracked) {
+        self.since_search = self.since_search.saturating_add(1);
+        let revision = self.surfels.revision();
+        let grid = match self.scores.take() {
+            Some((known, grid)) if known == revision => grid,
+            _ => ScoreGrid::new(&self.surfels, map.states()),
+        };
+        let ratio = self.settings.ambiguity_ratio;
+        let is_near = self.state != PoseState::Lost;
+        let window = Window { pose: self.pose, reach_m: WINDOW_M, reach_rad: WINDOW_RAD };
+        let mut found = Hypotheses::default();
+        if is_near {
+            let candidates = search(&grid, self.points.points(), Some(&window), LEAST_FOUND, ratio);
+            found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
+        }
+        if found.is_empty() && self.since_search >= SEARCH_EVERY {
+            self.since_search = 0;
+            let candidates = search(&grid, self.points.points(), None, LEAST_FOUND, ratio);
+        if std::env::var("DBG").is_ok() { for c in &candidates {eprintln!("   cand {:.3} at {:.2} {:.2}", c.score, c.pose.translation.x, c.pose.translation.y); }}
+            found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
+        }
+        self.scores = Some((revision, grid));
+        let is_confirmed = is_near && found.contains(&tracked.pose);
+        if is_confirmed && tracked.support.confirmed >= LEAST_CONFIRMED {
+            // Much has changed here, but no other pose fits better.
+            self.accepted_support = tracked.support.share() - 0.1;
+            self.accept(tracked);
+        } else {
+            self.hypotheses = found;
+            self.take_best();
+        }
+    }
+
+    /// Compares all hypotheses with the scan; the last one that is left becomes the pose.
+    fn follow(&mut self, reading: &LaserReading, motion: &Motion, map: &impl ChangingMap) -> Support {
+        let mut hypotheses = std::mem::take(&mut self.hypotheses);
+        let ratio = self.settings.ambiguity_ratio;
+        hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
+        if std::env::var("DBG").is_ok() { eprintln!("{}", hypotheses.debug()); }
+        self.hypotheses = hypotheses;
+        self.since_search = self.since_search.saturating_add(1);
+        let support = self.hypotheses.best().map_or(Support::default(), |best| best.support);
+        match self.hypotheses.decided(self.settings.scans_to_confirm) {
+            Some(decided) => {
+                let tracked = Tracked {
+                    pose: decided.pose,
+                    covariance: decided.covariance,
+                    support: decided.support,
+                    stayed: false,
+                    is_other: false,
+                };
+                self.accepted_support = self.settings.min_support.min(support.share() - 0.1);
+                self.hypotheses = Hypotheses::default();
+                self.accept(&tracked);
+            }
+            None if self.hypotheses.is_empty() => {
+                self.pose = motion.apply(&self.pose);
+                self.covariance = motion.propagate(&self.pose, &self.covariance);
+                self.doubt();
+            }
+            None => {
+                self.take_best();
+                self.doubt();
+            }
+        }
+        support
+    }
+
+    /// Reports the best hypothesis, with the spread of all.
+    fn take_best(&mut self) {
+        if let Some(best) = self.hypotheses.best() {
+            self.pose = best.pose;
+            self.covariance = best.covariance + self.hypotheses.spread();
+        }
+    }
+
+    /// Learns the line map from a scan with a certain pose.
+    fn learn(&mut self, reading: &LaserReading) {
+        let noise_m = self.settings.range_noise_std_m;
+        self.surfels.learn(self.points.points(), &self.pose, noise_m);
+        self.checker.check(&mut self.surfels, reading, &self.pose);
+    }
+
+    /// The answer to an invalid reading: the last pose.
+    fn skip(&mut self, reading: &LaserReading) -> Localized {
+        self.doubt();
+        self.localized(reading.clone(), 0.0)
+    }
+
+    fn pose_estimate(&self, support: f64) -> PoseEstimate {
+        PoseEstimate { pose: self.pose, covariance: self.covariance, support, state: self.state }
+    }
+
+    fn localized(&self, mut reading: LaserReading, support: f64) -> Localized {
+        reading.pose = self.pose;
+        Localized { reading, estimate: self.pose_estimate(support) }
+    }
+}
+
+/// Whether the scan fits much better upside down: the laser hangs the wrong way around.
+fn is_mirrored<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>, reading: &LaserReading) -> bool {
+    let points = mirrored(scene.points, &reading.mount);
+    let scene = Scene { points: &points, ..*scene };
+    scene.judge(pose).share() >= scene.settings.min_support
+}

@@ -1,0 +1,97 @@
+//! The motion between two readings by odometry, and how far it can be trusted.
+
+use crate::settings::OdometryTrust;
+use interfaces::heading_rad;
+use nalgebra::{Isometry2, Matrix3};
+
+/// The uncertainty of a motion of zero length: vibration, and rounding in the odometry.
+const REST_STD_M: f64 = 2e-4;
+const REST_STD_RAD: f64 = 1e-4;
+
+/// The uncertainty of a motion between two scans, of an odometry that did not tell the truth.
+const DISTRUSTED_STD_M: f64 = 0.05;
+const DISTRUSTED_STD_RAD: f64 = 0.1;
+
+/// A motion in the frame of the robot before the motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion {
+    pub(crate) delta: Isometry2<f64>,
+    /// The covariance of x, y and heading, in the frame of the robot before the motion.
+    covariance: Matrix3<f64>,
+}
+
+impl Motion {
+    /// A measured motion.
+    pub(crate) fn new(delta: Isometry2<f64>, trust: &OdometryTrust) -> Self {
+        let square = |x: f64| x * x;
+        let (distance_m, turn_rad) = (delta.translation.vector.norm(), heading_rad(&delta).abs());
+        let along = square(trust.distance_gain * distance_m) + square(trust.distance_noise_m) * distance_m;
+        let heading = square(trust.turn_gain * turn_rad)
+            + square(trust.turn_radpm * distance_m)
+            + square(trust.turn_noise_rad) * (turn_rad + distance_m * trust.turn_radpm);
+        // An error of the heading on the way shifts the end of the way to the side.
+        let across = heading * square(distance_m) / 3.0;
+        // A robot that turns in place slips a little in every direction.
+        let slip = square(REST_STD_M + 0.02 * trust.turn_gain * turn_rad);
+        let covariance = Matrix3::from_diagonal(&nalgebra::Vector3::new(
+            along + slip,
+            across + square(0.02 * distance_m) + slip,
+            heading + square(REST_STD_RAD),
+        ));
+        Self { delta, covariance: covariance * *crate::tune::PRIOR * *crate::tune::PRIOR }
+    }
+
+    /// The same motion, of an odometry that cannot be trusted.
+    pub(crate) fn distrusted(mut self) -> Self {
+        let spread = nalgebra::Vector3::new(DISTRUSTED_STD_M, DISTRUSTED_STD_M, DISTRUSTED_STD_RAD);
+        self.covariance += Matrix3::from_diagonal(&spread.component_mul(&spread));
+        self
+    }
+
+    /// The pose after the motion.
+    pub(crate) fn apply(&self, pose: &Isometry2<f64>) -> Isometry2<f64> {
+        let mut moved = pose * self.delta;
+        moved.rotation.renormalize();
+        moved
+    }
+
+    /// The covariance after the motion from a pose with the given covariance; both in the frame of the map.
+    pub(crate) fn propagate(&self, pose: &Isometry2<f64>, covariance: &Matrix3<f64>) -> Matrix3<f64> {
+        let shift = pose.rotation * self.delta.translation.vector;
+        // A heading error of the pose turns the motion.
+        let by_heading = Matrix3::new(1.0, 0.0, -shift.y, 0.0, 1.0, shift.x, 0.0, 0.0, 1.0);
+        let (cos, sin) = (pose.rotation.re, pose.rotation.im);
+        let to_map = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+        by_heading * covariance * by_heading.transpose() + to_map * self.covariance * to_map.transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::pose;
+
+    #[test]
+    fn the_covariance_of_a_pose_turns_with_the_motion() {
+        // The derivative of the pose after the motion, by finite differences.
+        let (at, delta) = (pose(1.0, -2.0, 0.7), pose(0.4, 0.1, 0.3));
+        let exact = OdometryTrust {
+            distance_gain: 0.0,
+            turn_gain: 0.0,
+            turn_radpm: 0.0,
+            distance_noise_m: 0.0,
+            turn_noise_rad: 0.0,
+        };
+        let motion = Motion::new(delta, &exact);
+        let covariance = Matrix3::new(2.0, 0.3, 0.1, 0.3, 1.0, -0.2, 0.1, -0.2, 0.5);
+        let values = |pose: &Isometry2<f64>| [pose.translation.x, pose.translation.y, heading_rad(pose)];
+        let moved = |x, y, heading| values(&motion.apply(&pose(1.0 + x, -2.0 + y, 0.7 + heading)));
+        let step = 1e-6;
+        let columns = [moved(step, 0.0, 0.0), moved(0.0, step, 0.0), moved(0.0, 0.0, step)];
+        let origin = values(&motion.apply(&at));
+        let jacobian = Matrix3::from_fn(|row, column| (columns[column][row] - origin[row]) / step);
+        let expected = jacobian * covariance * jacobian.transpose();
+        let error = motion.propagate(&at, &covariance) - expected;
+        assert!(error.abs().max() < 1e-4, "{error}"); // the noise at rest is below 1e-7
+    }
+}

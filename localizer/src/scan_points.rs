@@ -1,0 +1,260 @@
+//! Scan → points on surfaces, with normals, and weights by arc length.
+//!
+//! A point counts by the length of the surface that it stands for: a door leaf beside the robot fills a third of all
+//! beams, and yet is only one metre of surface.
+
+use interfaces::{LaserReading, Scan};
+use nalgebra::{Isometry2, Point2, Vector2};
+
+/// A normal is fitted to the points up to this far away on either side, m.
+const NORMAL_REACH_M: f64 = 0.2;
+/// The surface length with the weight 1, m. Longer stretches between two beams count the same: a beam that grazes a
+/// wall does not confirm all of it.
+pub(crate) const FULL_WEIGHT_M: f64 = 0.1;
+/// Neighboring end points that are farther apart than this, and than the spacing of beams explains, are on different
+/// surfaces, m.
+const JOIN_M: f64 = 0.1;
+/// The number of beam spacings (range · increment) up to which neighboring end points are on one surface: below an
+/// angle of incidence of about 20° a beam grazes the surface, and its point is not used.
+const JOIN_SPACINGS: f64 = 3.0;
+
+/// A point on a surface, in the frame of the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ScanPoint {
+    /// The position, m.
+    pub(crate) at: Point2<f64>,
+    /// The unit normal of the surface, toward the laser.
+    pub(crate) normal: Vector2<f64>,
+    /// The weight, from 0 to 1.
+    pub(crate) weight: f64,
+    /// The number of the beam.
+    pub(crate) beam: usize,
+}
+
+/// The points of one scan. Its buffers are used again for the next scan.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ScanPoints {
+    points: Vec<ScanPoint>,
+    directions: Directions,
+    hits: Vec<Option<Point2<f64>>>,
+    /// Whether the end point of a beam lies on the same surface as that of the next beam.
+    joined: Vec<bool>,
+    sums: Vec<Moments>,
+}
+
+/// The directions of the beams in the frame of the robot, for the last geometry that was asked for.
+#[derive(Clone, Debug, Default)]
+struct Directions {
+    geometry: Option<(f64, f64, usize, Isometry2<f64>)>,
+    units: Vec<Vector2<f64>>,
+}
+
+impl Directions {
+    fn update(&mut self, scan: &Scan, mount: &Isometry2<f64>) {
+        let geometry = Some((scan.angle_min_rad, scan.angle_increment_rad, scan.ranges_m.len(), *mount));
+        if self.geometry != geometry {
+            let unit = |beam| mount.rotation * (interfaces::rotation(scan.angle_rad(beam)) * Vector2::x());
+            self.units = (0..scan.ranges_m.len()).map(unit).collect();
+            self.geometry = geometry;
+        }
+    }
+}
+
+/// The sums of the coordinates, and of their products, of a run of points.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    count: f64,
+    x: f64,
+    y: f64,
+    xx: f64,
+    xy: f64,
+    yy: f64,
+}
+
+impl Moments {
+    fn plus(mut self, point: &Point2<f64>) -> Self {
+        self.count += 1.0;
+        self.x += point.x;
+        self.y += point.y;
+        self.xx += point.x * point.x;
+        self.xy += point.x * point.y;
+        self.yy += point.y * point.y;
+        self
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        Self {
+            count: self.count - other.count,
+            x: self.x - other.x,
+            y: self.y - other.y,
+            xx: self.xx - other.xx,
+            xy: self.xy - other.xy,
+            yy: self.yy - other.yy,
+        }
+    }
+
+    /// The variance of the direction of the line through the points, rad².
+    fn direction_variance(&self, noise_m: f64) -> f64 {
+        let (mean_x, mean_y) = (self.x / self.count, self.y / self.count);
+        let spread = self.xx + self.yy - self.count * (mean_x * mean_x + mean_y * mean_y);
+        noise_m * noise_m / spread.max(1e-9)
+    }
+
+    /// The unit normal of the line through the points (total least squares), and the mean square distance from it.
+    fn line(&self) -> Option<(Vector2<f64>, f64)> {
+        let (mean_x, mean_y) = (self.x / self.count, self.y / self.count);
+        let xx = self.xx / self.count - mean_x * mean_x;
+        let xy = self.xy / self.count - mean_x * mean_y;
+        let yy = self.yy / self.count - mean_y * mean_y;
+        let (half_sum, half_difference) = ((xx + yy) / 2.0, (xx - yy) / 2.0);
+        let root = (half_difference * half_difference + xy * xy).sqrt();
+        // The direction along the line is the eigenvector of the larger eigenvalue, half_sum + root.
+        let along = if half_difference >= 0.0 {
+            Vector2::new(half_difference + root, xy)
+        } else {
+            Vector2::new(xy, root - half_difference)
+        };
+        let length = along.norm();
+        (length > 1e-12).then(|| (Vector2::new(-along.y, along.x) / length, (half_sum - root).max(0.0)))
+    }
+}
+
+impl ScanPoints {
+    /// The points of the scan, in the order of the beams.
+    pub(crate) fn points(&self) -> &[ScanPoint] {
+        &self.points
+    }
+
+    /// Replaces the points by those of `reading`. Beams without a return, and points where no straight surface can be
+    /// recognised (edges, single points, surfaces that the beams graze) are left out.
+    pub(crate) fn update(&mut self, reading: &LaserReading, range_noise_std_m: f64, by_arc_length: bool) {
+        let LaserReading { scan, mount, .. } = reading;
+        self.directions.update(scan, mount);
+        let beams = scan.ranges_m.len();
+        let origin = Point2::from(mount.translation.vector);
+        self.hits.clear();
+        self.hits.extend(scan.ranges_m.iter().zip(&self.directions.units).map(|(&range_m, unit)| {
+            let range_m = f64::from(range_m);
+            let is_hit = range_m >= scan.range_min_m && range_m <= scan.range_max_m && range_m > 0.0;
+            is_hit.then(|| origin + unit * range_m)
+        }));
+        self.join(scan);
+        self.sum();
+        self.points.clear();
+        let is_closed = scan.is_full_turn() && beams > 2;
+        for beam in 0..beams {
+            if let Some(point) = self.point(beam, scan, is_closed, range_noise_std_m, by_arc_length) {
+                self.points.push(point);
+            }
+        }
+    }
+
+    /// Finds neighboring end points on one surface.
+    fn join(&mut self, scan: &Scan) {
+        let beams = self.hits.len();
+        self.joined.clear();
+        self.joined.resize(beams, false);
+        let last = if scan.is_full_turn() && beams > 2 { beams } else { beams.saturating_sub(1) };
+        for beam in 0..last {
+            let next = if beam + 1 == beams { 0 } else { beam + 1 };
+            if let (Some(a), Some(b)) = (self.hits[beam], self.hits[next]) {
+                let nearer_m = f64::from(scan.ranges_m[beam].min(scan.ranges_m[next]));
+                let limit_m = JOIN_M.max(JOIN_SPACINGS * nearer_m * scan.angle_increment_rad.abs());
+                self.joined[beam] = (b - a).norm_squared() <= limit_m * limit_m;
+            }
+        }
+    }
+
+    /// Running sums, so that a line through any run of points costs the same. Twice around, so that a run may pass the
+    /// last beam.
+    fn sum(&mut self) {
+        self.sums.clear();
+        self.sums.push(Moments::default());
+        let mut sum = Moments::default();
+        for hit in self.hits.iter().chain(&self.hits) {
+            if let Some(point) = hit {
+                sum = sum.plus(point);
+            }
+            self.sums.push(sum);
+        }
+    }
+
+    fn point(
+        &self,
+        beam: usize,
+        scan: &Scan,
+        is_closed: bool,
+        noise_m: f64,
+        by_arc_length: bool,
+    ) -> Option<ScanPoint> {
+        let at = self.hits[beam]?;
+        let beams = self.hits.len();
+        let range_m = f64::from(scan.ranges_m[beam]);
+        let spacing_m = (range_m * scan.angle_increment_rad.abs()).max(1e-6);
+        let reach = ((*crate::tune::REACH / spacing_m) as usize).clamp(1, beams / 4 + 1);
+        // How far the surface goes on to both sides. As the beams hit it aslant, the reach in beams is less.
+        let before = self.run(beam, reach, is_closed, &at, false);
+        let after = self.run(beam, reach, is_closed, &at, true);
+        if before == 0 || after == 0 {
+            return None; // an edge
+        }
+        // In the doubled list of sums, `beam + beams` is the same beam.
+        let middle = if beam >= before { beam } else { beam + beams };
+        let moments = self.sums[middle + after + 1].minus(&self.sums[middle - before]);
+        let (normal, mean_square) = moments.line()?;
+        let tolerance_m = *crate::tune::RMS * noise_m + 0.002;
+        if mean_square > tolerance_m * tolerance_m {
+            return None; // a corner, or a curved or rough surface
+        }
+        if *crate::tune::HALF > 0.0 {
+            let first = self.sums[middle + 1].minus(&self.sums[middle - before]);
+            let second = self.sums[middle + after + 1].minus(&self.sums[middle]);
+            if before >= 2 && after >= 2 && !continues(&first, &second, noise_m) {
+                return None;
+            }
+        }
+        let toward = -(at - Point2::from(self.origin()));
+        let normal = if normal.dot(&toward) < 0.0 { -normal } else { normal };
+        let incidence = normal.dot(&toward) / range_m;
+        let arc_m = spacing_m / incidence.max(0.2);
+        let weight = if by_arc_length { (arc_m / *crate::tune::FULL).min(1.0) } else { 1.0 };
+        Some(ScanPoint { at, normal, weight, beam })
+    }
+
+    fn origin(&self) -> Vector2<f64> {
+        self.directions.geometry.map_or(Vector2::zeros(), |(.., mount)| mount.translation.vector)
+    }
+
+    /// The number of neighbors on the same surface in one direction, up to `reach` and up to the reach of normals.
+    fn run(&self, beam: usize, reach: usize, is_closed: bool, at: &Point2<f64>, forward: bool) -> usize {
+        let beams = self.hits.len();
+        let mut here = beam;
+        for steps in 0..reach {
+            let next = match forward {
+                true if here + 1 < beams => here + 1,
+                true if is_closed => 0,
+                false if here > 0 => here - 1,
+                false if is_closed => beams - 1,
+                _ => return steps,
+            };
+            let is_joined = self.joined[if forward { here } else { next }];
+            let is_near = self.hits[next].is_some_and(|hit| (hit - at).norm_squared() <= *crate::tune::REACH * *crate::tune::REACH);
+            if !is_joined || steps > 0 && !is_near {
+                return steps;
+            }
+            here = next;
+        }
+        reach
+    }
+}
+
+/// Whether two runs of points lie on one line, as far as the noise of the ranges can tell.
+fn continues(first: &Moments, second: &Moments, noise_m: f64) -> bool {
+    let (Some((a, _)), Some((b, _))) = (first.line(), second.line()) else { return true };
+    let variance = first.direction_variance(noise_m) + second.direction_variance(noise_m);
+    let sine = a.perp(&b);
+    sine * sine <= *crate::tune::HALF * *crate::tune::HALF * variance
+}
+
+/// The square of [`NORMAL_REACH_M`], m².
+const REACH_SQUARED: f64 = NORMAL_REACH_M * NORMAL_REACH_M;

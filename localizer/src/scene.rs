@@ -1,0 +1,65 @@
+//! All that one scan is compared with.
+
+use crate::changing_map::ChangingMap;
+use crate::matcher::{Gates, Match, Prior, align};
+use crate::scan_points::ScanPoint;
+use crate::settings::LocalizerSettings;
+use crate::support::{ClearBeams, Support, judge};
+use crate::surfel_map::SurfelMap;
+use nalgebra::{Isometry2, Point2};
+
+/// Points match a surfel within this many standard deviations of the range noise and of the surfel.
+const GATE_STDS: f64 = 3.5;
+/// The error of surfels in the gate, m.
+const SURFEL_STD_M: f64 = 0.003;
+
+/// One scan, and the maps.
+pub(crate) struct Scene<'a, M> {
+    pub(crate) surfels: &'a SurfelMap,
+    pub(crate) map: &'a M,
+    pub(crate) points: &'a [ScanPoint],
+    pub(crate) clear: &'a ClearBeams,
+    /// The pose of the laser in the frame of the robot.
+    pub(crate) mount: Isometry2<f64>,
+    pub(crate) settings: &'a LocalizerSettings,
+}
+
+impl<M: ChangingMap> Scene<'_, M> {
+    /// The distance up to which a point confirms a surfel, m.
+    pub(crate) fn gate_m(&self) -> f64 {
+        let noise_m = self.settings.range_noise_std_m;
+        GATE_STDS * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt()
+    }
+
+    /// Matches the scan from `start`; points belong to surfels up to `first_m` away in the first steps.
+    pub(crate) fn align(
+        &self,
+        start: &Isometry2<f64>,
+        prior: Option<&Prior>,
+        first_m: f64,
+        by_rates: bool,
+    ) -> Option<Match> {
+        let last_m = self.gate_m();
+        let gates = Gates {
+            noise_m: self.settings.range_noise_std_m.max(0.002),
+            first_m: first_m.max(last_m),
+            last_m,
+            by_rates,
+        };
+        align(self.surfels, self.points, start, prior, &gates)
+    }
+
+    /// The agreement of the scan with the maps at a pose.
+    pub(crate) fn judge(&self, pose: &Isometry2<f64>) -> Support {
+        self.judge_within(pose, self.gate_m())
+    }
+
+    /// The same, where points must lie within `gate_m` of a surfel.
+    pub(crate) fn judge_within(&self, pose: &Isometry2<f64>, gate_m: f64) -> Support {
+        let laser = pose * self.mount;
+        let origin = Point2::from(laser.translation.vector);
+        let mut support = judge(self.surfels, self.map, self.points, pose, &origin, gate_m);
+        support.contradicted += self.clear.contradicted(self.map, &laser);
+        support
+    }
+}

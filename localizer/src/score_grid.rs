@@ -1,0 +1,140 @@
+//! How well a point fits at each place of the line map, and the maxima over squares of growing size: the bounds of the
+//! branch and bound of Hess, Kohler, Rapp & Andor (2016), section V.
+
+use crate::surfel_map::SurfelMap;
+use interfaces::{Cell, CellState, Grid, GridFrame};
+use nalgebra::{Point2, Vector2};
+
+/// The side of the cells, m.
+pub(crate) const CELL_M: f64 = 0.05;
+/// The largest squares have sides of 2 to this power, in cells.
+pub(crate) const TOP: usize = 6;
+/// A point scores up to this far from a surfel, m.
+const REACH_M: f64 = 0.15;
+/// A surfel reaches this far along its surface, m.
+const ALONG_M: f64 = 0.08;
+/// Even a surface that always changes counts a little.
+const LEAST_WEIGHT: f64 = 0.1;
+
+/// The scores, from 0 to 255, at all levels.
+#[derive(Clone, Debug)]
+pub(crate) struct ScoreGrid {
+    frame: GridFrame,
+    /// The margin on the low sides, in cells: a square may begin outside of the map and end inside.
+    margin: i32,
+    width: usize,
+    levels: Vec<Vec<u8>>,
+    /// For every cell of the frame, the number of free cells to the left of and below it: where a robot can be.
+    free: Vec<u32>,
+}
+
+impl ScoreGrid {
+    /// The scores of the line map. The robot can only be where `states` are free.
+    pub(crate) fn new(surfels: &SurfelMap, states: &Grid<CellState>) -> Self {
+        let coarse = surfels.frame();
+        let cells = |count: usize| (count as f64 * coarse.resolution_m() / CELL_M).ceil() as usize;
+        let (columns, rows) = (cells(coarse.width()), cells(coarse.height()));
+        let frame = GridFrame::new(coarse.origin(), CELL_M, columns, rows).unwrap_or(*coarse);
+        let margin = 1_usize << TOP;
+        let (width, height) = (frame.width() + margin, frame.height() + margin);
+        let mut grid = Self {
+            frame,
+            margin: margin as i32,
+            width,
+            levels: vec![vec![0; width * height]],
+            free: free_cells(&frame, states),
+        };
+        grid.splat(surfels);
+        for level in 0..TOP {
+            let finer = &grid.levels[level];
+            grid.levels.push(maxima(finer, width, 1 << level));
+        }
+        grid
+    }
+
+    fn splat(&mut self, surfels: &SurfelMap) {
+        let reach = Vector2::new(REACH_M, REACH_M);
+        for surfel in surfels.usable() {
+            let (low, high) = (self.frame.cell_at(&(surfel.at - reach)), self.frame.cell_at(&(surfel.at + reach)));
+            for (x, y) in (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| (x, y))) {
+                let cell = Cell::new(x, y);
+                if !self.frame.contains(cell) {
+                    continue;
+                }
+                let to = self.frame.center(cell) - surfel.at;
+                let (off_m, along_m) = (surfel.normal.dot(&to).abs(), surfel.normal.perp(&to).abs());
+                if along_m > ALONG_M {
+                    continue;
+                }
+                let share = (1.0 - (off_m - CELL_M / 2.0).max(0.0) / REACH_M).max(0.0);
+                let score = (255.0 * share * surfel.steadiness.max(LEAST_WEIGHT)) as u8;
+                let index = self.padded(x, y);
+                let here = &mut self.levels[0][index];
+                *here = (*here).max(score);
+            }
+        }
+    }
+
+    fn padded(&self, x: i32, y: i32) -> usize {
+        (y + self.margin) as usize * self.width + (x + self.margin) as usize
+    }
+
+    /// The grid of the scores.
+    pub(crate) fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    /// The largest score in the square of 2^`level` cells whose lower left cell is `(x, y)`.
+    #[inline]
+    pub(crate) fn bound(&self, level: usize, x: i32, y: i32) -> u8 {
+        // A negative number becomes a large one: one comparison per axis.
+        let (column, row) = ((x + self.margin) as u32 as usize, (y + self.margin) as u32 as usize);
+        if column >= self.width {
+            return 0;
+        }
+        self.levels[level].get(row * self.width + column).copied().unwrap_or(0)
+    }
+
+    /// Whether the square of `side` cells at `(x, y)` contains a cell where a robot can be.
+    pub(crate) fn has_free(&self, x: i32, y: i32, side: i32) -> bool {
+        let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
+        let (low_x, low_y) = (x.clamp(0, width), y.clamp(0, height));
+        let (high_x, high_y) = ((x + side).clamp(0, width), (y + side).clamp(0, height));
+        let sum = |x: i32, y: i32| self.free[y as usize * (width as usize + 1) + x as usize];
+        sum(high_x, high_y) + sum(low_x, low_y) > sum(low_x, high_y) + sum(high_x, low_y)
+    }
+}
+
+/// The maxima over squares of twice the side, from those over squares of `side` cells.
+fn maxima(finer: &[u8], width: usize, side: usize) -> Vec<u8> {
+    let height = finer.len() / width;
+    let mut coarser = finer.to_vec();
+    for row in coarser.chunks_exact_mut(width) {
+        for x in 0..width - side {
+            row[x] = row[x].max(row[x + side]);
+        }
+    }
+    for y in 0..height - side {
+        let (low, high) = coarser.split_at_mut((y + side) * width);
+        for (here, above) in low[y * width..(y + 1) * width].iter_mut().zip(&high[..width]) {
+            *here = (*here).max(*above);
+        }
+    }
+    coarser
+}
+
+/// Sums of the free cells, with one more column and row than the frame.
+fn free_cells(frame: &GridFrame, states: &Grid<CellState>) -> Vec<u32> {
+    let (width, height) = (frame.width(), frame.height());
+    let mut sums = vec![0; (width + 1) * (height + 1)];
+    for y in 0..height {
+        let mut row = 0;
+        for x in 0..width {
+            let center: Point2<f64> = frame.center(Cell::new(x as i32, y as i32));
+            let state = states.get(states.frame().cell_at(&center));
+            row += u32::from(state == Some(&CellState::Free));
+            sums[(y + 1) * (width + 1) + x + 1] = sums[y * (width + 1) + x + 1] + row;
+        }
+    }
+    sums
+}

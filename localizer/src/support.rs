@@ -1,0 +1,135 @@
+//! How well a scan at a pose agrees with the maps.
+
+use crate::changing_map::ChangingMap;
+use crate::matcher::derivative;
+use crate::scan_points::ScanPoint;
+use crate::surfel_map::SurfelMap;
+use interfaces::{CellState, Scan};
+use nalgebra::{Isometry2, Matrix3, Point2, Vector2};
+
+/// A beam may pass blocked cells this close to its two ends, m.
+const END_MARGIN_M: f64 = 0.2;
+/// The weight of a beam without a return: about that of a point of a room.
+const CLEAR_WEIGHT: f64 = 0.5;
+
+/// The length of the surface that a scan saw, in weights of points.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Support {
+    /// On surfels.
+    pub(crate) confirmed: f64,
+    /// In space that the map knows as free, or behind something that the map knows as blocked.
+    pub(crate) contradicted: f64,
+    /// In regions that were never seen, or where no surfel was learned.
+    pub(crate) new: f64,
+    /// The information about x, y and heading of the confirmed points (1/m² and 1 per rad², per unit of weight).
+    pub(crate) geometry: Matrix3<f64>,
+    /// The same, of surfaces that never changed.
+    pub(crate) steady: Matrix3<f64>,
+}
+
+impl Support {
+    /// The share of what the map confirms, of what it can judge; 1 if it can judge nothing.
+    pub(crate) fn share(&self) -> f64 {
+        let judged = self.confirmed + self.contradicted;
+        if judged > 0.0 { self.confirmed / judged } else { 1.0 }
+    }
+
+    /// The share of what the map confirms, of all. For the choice between poses in a known map: where the map does not
+    /// know anything, nothing speaks for the pose.
+    pub(crate) fn score(&self) -> f64 {
+        let all = self.weight();
+        if all > 0.0 { self.confirmed / all } else { 0.0 }
+    }
+
+    /// The weight of all points.
+    pub(crate) fn weight(&self) -> f64 {
+        self.confirmed + self.contradicted + self.new
+    }
+
+    /// Whether the confirmed points alone fix x, y and heading: seen from the robot, `least` units of weight stand
+    /// against a shift in every direction, and against a turn at an arm of one metre.
+    pub(crate) fn fixes_pose(&self, least: f64) -> bool {
+        self.geometry.symmetric_eigenvalues().min() >= least
+    }
+}
+
+/// Judges the points of a scan at a pose. A point within `gate_m` of a surfel is confirmed.
+pub(crate) fn judge(
+    surfels: &SurfelMap,
+    map: &impl ChangingMap,
+    points: &[ScanPoint],
+    pose: &Isometry2<f64>,
+    laser: &Point2<f64>,
+    gate_m: f64,
+) -> Support {
+    let mut support = Support::default();
+    for point in points {
+        let arm = pose.rotation * point.at.coords;
+        let at = Point2::from(pose.translation.vector + arm);
+        let normal = pose.rotation * point.normal;
+        match surfels.nearest(&at, &normal, gate_m) {
+            Some((index, _)) if surfels.surfel(index).weight() > 0.0 => {
+                support.confirmed += point.weight;
+                let surfel = surfels.surfel(index);
+                let j = derivative(&arm, &surfel.normal);
+                let information = j * j.transpose() * point.weight;
+                support.geometry += information;
+                support.steady += information * surfel.steadiness;
+            }
+            Some(_) => support.new += point.weight,
+            None if is_contradicted(map, laser, &at) => support.contradicted += point.weight,
+            None => support.new += point.weight,
+        }
+    }
+    support
+}
+
+/// Whether a point on a surface contradicts the map: the map knows its cell as free, or something in front.
+fn is_contradicted(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>) -> bool {
+    let states = map.states();
+    let state = |point: &Point2<f64>| states.get(states.frame().cell_at(point)).copied().unwrap_or_default();
+    state(at) == CellState::Free || passes_blocked(map, laser, at)
+}
+
+/// Whether something blocked lies between the laser and a point.
+fn passes_blocked(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>) -> bool {
+    let states = map.states();
+    let state = |point: &Point2<f64>| states.get(states.frame().cell_at(point)).copied().unwrap_or_default();
+    let way = at - laser;
+    let length_m = way.norm();
+    let step_m = states.frame().resolution_m();
+    let steps = ((length_m - 2.0 * END_MARGIN_M) / step_m).max(0.0) as usize;
+    let along = way / length_m;
+    (0..steps).any(|step| state(&(laser + along * (END_MARGIN_M + step as f64 * step_m))) == CellState::Blocked)
+}
+
+/// Some of the beams without a return. Where such a beam passes something blocked, the map contradicts the scan: the
+/// laser is covered, or the pose is wrong.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ClearBeams {
+    /// Unit vectors in the frame of the laser.
+    directions: Vec<Vector2<f64>>,
+    range_m: f64,
+}
+
+impl ClearBeams {
+    /// One of this many beams without a return is looked at.
+    const STRIDE: usize = 6;
+
+    /// Replaces the beams by those of `scan`.
+    pub(crate) fn update(&mut self, scan: &Scan) {
+        self.range_m = scan.range_max_m;
+        self.directions.clear();
+        let beams = (0..scan.ranges_m.len()).step_by(Self::STRIDE);
+        let clear = beams.filter(|&beam| scan.ranges_m[beam] == f32::INFINITY);
+        self.directions.extend(clear.map(|beam| interfaces::rotation(scan.angle_rad(beam)) * Vector2::x()));
+    }
+
+    /// The weight of the beams that pass something blocked.
+    pub(crate) fn contradicted(&self, map: &impl ChangingMap, laser: &Isometry2<f64>) -> f64 {
+        let origin = Point2::from(laser.translation.vector);
+        let ends = self.directions.iter().map(|along| origin + laser.rotation * along * self.range_m);
+        let passing = ends.filter(|end| passes_blocked(map, &origin, end)).count();
+        passing as f64 * Self::STRIDE as f64 * CLEAR_WEIGHT
+    }
+}

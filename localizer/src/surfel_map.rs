@@ -1,0 +1,210 @@
+//! The line map: short straight pieces of surface (surfels), found by their cell.
+//!
+//! A surfel is the mean of the points that hit it, and the mean of their normals. After [`FROZEN_SCANS`] scans it
+//! never moves again: a map that follows its robot, which follows its map, drifts.
+
+mod checking;
+mod learning;
+mod prior;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use checking::Checker;
+
+use interfaces::GridFrame;
+use nalgebra::{Point2, Vector2};
+
+/// The side of the cells, m.
+pub(crate) const CELL_M: f64 = 0.1;
+/// The number of surfels in one cell: two sides of a thin wall, and a corner.
+const PER_CELL: usize = 4;
+/// The number of scans after which a surfel never moves again.
+const FROZEN_SCANS: u32 = 400;
+/// The number of scans after which a surfel takes part in matching.
+const USABLE_SCANS: u32 = 5;
+/// Points count as hits of a surfel up to this far along the surface, m.
+const REACH_M: f64 = 0.1;
+/// The least cosine of the angle between the normals of a point and of its surfel.
+const SAME_NORMAL: f64 = 0.8;
+/// No surfel at this place in a cell.
+const NONE: u32 = u32::MAX;
+
+/// A short piece of a straight surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Surfel {
+    /// A point on the surface, m.
+    pub(crate) at: Point2<f64>,
+    /// The unit normal, toward the free side.
+    pub(crate) normal: Vector2<f64>,
+    /// The number of points that made the surfel.
+    hits: u32,
+    /// The number of scans that hit the surfel, up to [`FROZEN_SCANS`].
+    scans: u32,
+    /// The number of the last scan that hit the surfel.
+    last_scan: u32,
+    /// The number of consecutive checks that contradicted the surfel.
+    misses: u32,
+    /// The weight by the learned rate of change, from 0 (changes often) to 1 (never changed).
+    pub(crate) steadiness: f64,
+    /// The cell in which the surfel is listed, or `NONE` for a removed surfel.
+    cell: u32,
+}
+
+impl Surfel {
+    /// The weight of the surfel in matching, from 0 to 1. What was seen only a few times may be a passer-by.
+    pub(crate) fn weight(&self) -> f64 {
+        if self.scans < USABLE_SCANS { 0.0 } else { (f64::from(self.scans) / *crate::tune::RAMP).min(1.0) }
+    }
+
+    fn is_removed(&self) -> bool {
+        self.cell == NONE
+    }
+}
+
+/// The line map.
+#[derive(Clone, Debug)]
+pub(crate) struct SurfelMap {
+    frame: GridFrame,
+    cells: Vec<[u32; PER_CELL]>,
+    surfels: Vec<Surfel>,
+    /// Places in `surfels` that can be used again.
+    removed: Vec<u32>,
+    /// Counts the surfels that were added, removed or became usable.
+    revision: u64,
+    /// The number of scans that were learned.
+    scan: u32,
+    /// Whether the learned rates make any surfel count less.
+    knows_rates: bool,
+}
+
+impl SurfelMap {
+    /// A map without a surfel, that covers the rectangle of `frame` and a cell around it.
+    pub(crate) fn new(frame: &GridFrame) -> Self {
+        let frame = coarse(frame);
+        let cells = vec![[NONE; PER_CELL]; frame.len()];
+        Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), revision: 0, scan: 0, knows_rates: false }
+    }
+
+    /// The grid of the cells.
+    pub(crate) fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    /// Changes whenever the surfels that take part in matching change.
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Whether the learned rates make any surfel count less.
+    pub(crate) fn knows_rates(&self) -> bool {
+        self.knows_rates
+    }
+
+    /// The surfel at an index from [`SurfelMap::nearest`].
+    #[inline]
+    pub(crate) fn surfel(&self, index: u32) -> &Surfel {
+        &self.surfels[index as usize]
+    }
+
+    /// All surfels that take part in matching.
+    pub(crate) fn usable(&self) -> impl Iterator<Item = &Surfel> {
+        self.surfels.iter().filter(|surfel| !surfel.is_removed() && surfel.weight() > 0.0)
+    }
+
+    /// Whether no surfel takes part in matching.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.usable().next().is_none()
+    }
+
+    /// The nearest surfel, along its normal, to a point of a surface, and the signed distance (m); at most `gate_m`
+    /// away. Surfels that do not take part in matching yet are found as well.
+    #[inline]
+    pub(crate) fn nearest(&self, at: &Point2<f64>, normal: &Vector2<f64>, gate_m: f64) -> Option<(u32, f64)> {
+        let mut best: Option<(u32, f64)> = None;
+        let mut best_m = REACH_M;
+        let select = *crate::tune::ALONG > 0.0;
+        if !select { best_m = gate_m; }
+        self.around(at, gate_m.max(CELL_M / 2.0), |index, surfel| {
+            if surfel.normal.dot(normal) < *crate::tune::SAME {
+                return;
+            }
+            let to = at - surfel.at;
+            let (off_m, along_m) = (surfel.normal.dot(&to), surfel.normal.perp(&to));
+            // Of two equally near ones, the first in the order of the cells.
+            let better = if select { off_m.abs() < gate_m && along_m.abs() < best_m } else { off_m.abs() < best_m && along_m.abs() <= REACH_M };
+            if better {
+                best_m = if select { along_m.abs() } else { off_m.abs() };
+                best = Some((index, off_m));
+            }
+        });
+        best
+    }
+
+    /// Calls `visit` with every surfel in the cells within `reach_m` of a point.
+    #[inline]
+    fn around(&self, at: &Point2<f64>, reach_m: f64, mut visit: impl FnMut(u32, &Surfel)) {
+        let reach = Vector2::new(reach_m, reach_m);
+        let (low, high) = (self.frame.cell_at(&(at - reach)), self.frame.cell_at(&(at + reach)));
+        let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
+        for y in low.y.max(0)..=high.y.min(height - 1) {
+            for x in low.x.max(0)..=high.x.min(width - 1) {
+                for &index in &self.cells[(y * width + x) as usize] {
+                    if index == NONE {
+                        break;
+                    }
+                    visit(index, &self.surfels[index as usize]);
+                }
+            }
+        }
+    }
+
+    /// Adds a surfel, unless it is outside of the map or its cell is full.
+    fn add(&mut self, at: Point2<f64>, normal: Vector2<f64>, scans: u32) {
+        let Some(cell) = self.frame.index(self.frame.cell_at(&at)) else { return };
+        let Some(place) = self.cells[cell].iter().position(|&index| index == NONE) else { return };
+        let surfel = Surfel {
+            at,
+            normal,
+            hits: scans,
+            scans,
+            last_scan: self.scan,
+            misses: 0,
+            steadiness: 1.0,
+            cell: cell as u32,
+        };
+        let index = match self.removed.pop() {
+            Some(index) => {
+                self.surfels[index as usize] = surfel;
+                index
+            }
+            None => {
+                self.surfels.push(surfel);
+                (self.surfels.len() - 1) as u32
+            }
+        };
+        self.cells[cell][place] = index;
+        self.revision += u64::from(surfel.weight() > 0.0);
+    }
+
+    fn remove(&mut self, index: u32) {
+        let cell = self.surfels[index as usize].cell as usize;
+        let list = &mut self.cells[cell];
+        if let Some(place) = list.iter().position(|&other| other == index) {
+            list.copy_within(place + 1.., place);
+            list[PER_CELL - 1] = NONE;
+        }
+        self.surfels[index as usize].cell = NONE;
+        self.removed.push(index);
+        self.revision += 1;
+    }
+}
+
+/// The frame of cells of [`CELL_M`] that covers a frame and a cell around it.
+fn coarse(frame: &GridFrame) -> GridFrame {
+    let cells = |count: usize| (count as f64 * frame.resolution_m() / CELL_M).ceil() as usize + 2;
+    let origin = frame.origin() - Vector2::new(CELL_M, CELL_M);
+    let (width, height) = (cells(frame.width()), cells(frame.height()));
+    // A frame of coarser cells can be too large only where the cells of the map are finer than a tenth of a metre can
+    // cover; then the map is cut.
+    GridFrame::new(origin, CELL_M, width, height).unwrap_or(*frame)
+}

@@ -1,0 +1,66 @@
+//! How surfels are learned from scans with a certain pose.
+
+use super::{CELL_M, FROZEN_SCANS, USABLE_SCANS, SurfelMap};
+use crate::changing_map::ChangingMap;
+use crate::scan_points::ScanPoint;
+use nalgebra::Isometry2;
+
+/// A hit lies within this many standard deviations of the range noise, and this much more, m.
+const HIT_STDS: f64 = 3.0;
+const HIT_MARGIN_M: f64 = 0.01;
+/// No new surfel is made nearer to a known one with the same normal than this, m: a copy of a wall beside the wall is
+/// how a wrong pose becomes a wrong map.
+const CLEARANCE_M: f64 = 0.25;
+
+impl SurfelMap {
+    /// Updates the map with a scan at a certain pose.
+    pub(crate) fn learn(&mut self, points: &[ScanPoint], pose: &Isometry2<f64>, range_noise_std_m: f64) {
+        let gate_m = HIT_STDS * range_noise_std_m + HIT_MARGIN_M;
+        self.scan = self.scan.wrapping_add(1);
+        // All that follows is matched with the first scan.
+        let scans = if self.surfels.is_empty() { USABLE_SCANS } else { 1 };
+        for point in points {
+            let (at, normal) = (pose * point.at, pose.rotation * point.normal);
+            match self.nearest(&at, &normal, gate_m) {
+                Some((index, _)) => self.hit(index, &at, &normal),
+                None if self.nearest(&at, &normal, CLEARANCE_M).is_none() => self.add(at, normal, scans),
+                None => {}
+            }
+        }
+    }
+
+    fn hit(&mut self, index: u32, at: &nalgebra::Point2<f64>, normal: &nalgebra::Vector2<f64>) {
+        let surfel = &mut self.surfels[index as usize];
+        surfel.misses = 0;
+        if f64::from(surfel.scans) >= *crate::tune::FROZEN {
+            return;
+        }
+        let was_usable = surfel.weight() > 0.0;
+        surfel.scans += u32::from(surfel.last_scan != self.scan);
+        surfel.last_scan = self.scan;
+        surfel.hits += 1;
+        let share = 1.0 / f64::from(surfel.hits);
+        surfel.at += (at - surfel.at) * share;
+        let mean = surfel.normal + (normal - surfel.normal) * share;
+        let length = mean.norm();
+        if length > 0.0 {
+            surfel.normal = mean / length;
+        }
+        self.revision += u64::from(!was_usable && surfel.weight() > 0.0);
+    }
+
+    /// Takes over the learned rates of change as weights.
+    pub(crate) fn weigh_by_rates(&mut self, map: &impl ChangingMap, horizon_s: f64) {
+        let states = map.states();
+        self.knows_rates = false;
+        for surfel in self.surfels.iter_mut().filter(|surfel| !surfel.is_removed()) {
+            // The map counts a hit a little behind the surface.
+            let behind = surfel.at - surfel.normal * (0.2 * CELL_M);
+            let cell = states.frame().index(states.frame().cell_at(&behind));
+            let rate = cell.map_or(0.0, |index| map.rate(index));
+            surfel.steadiness = libm::exp(-rate * horizon_s).clamp(0.0, 1.0);
+            self.knows_rates |= surfel.steadiness < 1.0;
+        }
+        self.revision += 1;
+    }
+}

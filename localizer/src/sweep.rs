@@ -1,0 +1,96 @@
+//! Undoes the sweep of a scan: a laser that turns measures each beam from a pose of its own. The result is a scan whose
+//! beams all start at the pose of its end.
+
+use interfaces::{Scan, approximate_atan2, heading_rad, wrap_rad};
+use nalgebra::{Isometry2, Point2, Vector2};
+
+/// Neighboring end points nearer than this are joined by a straight surface, m.
+const JOIN_M: f64 = 0.15;
+
+/// The end point of a beam in the frame of the laser at the end of the sweep.
+#[derive(Clone, Copy)]
+struct End {
+    at: Point2<f64>,
+    angle_rad: f64,
+    range_m: f32,
+}
+
+/// The scan as the laser would measure it at once, at the end of the sweep. `start` is the pose of the laser at the
+/// start of the sweep, in the frame of the laser at the end of the sweep. Directions that no beam covers are NaN.
+pub(crate) fn undo(scan: &Scan, start: &Isometry2<f64>) -> Scan {
+    let beams = scan.ranges_m.len();
+    if beams < 3 {
+        return scan.clone();
+    }
+    let turn_rad = heading_rad(start);
+    let end = |beam: usize| {
+        let left = 1.0 - beam as f64 / (beams - 1) as f64;
+        let at = interfaces::pose(start.translation.x * left, start.translation.y * left, turn_rad * left);
+        let range_m = scan.ranges_m[beam];
+        // A beam without a return is a direction.
+        let length_m = if range_m.is_finite() { f64::from(range_m).max(1e-3) } else { scan.range_max_m };
+        let at = at * Point2::from(interfaces::rotation(scan.angle_rad(beam)) * Vector2::x() * length_m);
+        End { at, angle_rad: approximate_atan2(at.y, at.x), range_m }
+    };
+    let mut ranges_m = vec![f32::NAN; beams];
+    let mut before = end(0);
+    for beam in 1..beams {
+        let after = end(beam);
+        cover(scan, &before, &after, &mut ranges_m);
+        before = after;
+    }
+    if scan.is_full_turn() {
+        close(scan, &before, &end(0), &mut ranges_m);
+    }
+    Scan { ranges_m, ..*scan }
+}
+
+/// Between the last and the first beam of a full turn lie a gap or an overlap, by the turn of the robot. The neighbors
+/// of a gap of one beam fill it.
+fn close(scan: &Scan, last: &End, first: &End, ranges_m: &mut [f32]) {
+    let gap_rad = wrap_rad(first.angle_rad - last.angle_rad).abs();
+    if gap_rad < 2.0 * scan.angle_increment_rad.abs() {
+        cover(scan, last, first, ranges_m);
+    }
+}
+
+/// Writes the ranges of the directions from one end point to the next.
+fn cover(scan: &Scan, from: &End, to: &End, ranges_m: &mut [f32]) {
+    let (increment, beams) = (scan.angle_increment_rad, ranges_m.len());
+    let sign = increment.signum();
+    let span = sign * wrap_rad(to.angle_rad - from.angle_rad) / increment.abs();
+    if span <= 0.0 {
+        return; // hidden behind the point before
+    }
+    let turns = std::f64::consts::TAU / increment.abs();
+    let first = sign * (from.angle_rad - scan.angle_min_rad) / increment.abs();
+    let first = first - turns * libm::floor(first / turns);
+    // The approximate angle of a beam that did not move may be a little beside its direction.
+    let (low, high) = (libm::ceil(first - 0.02), first + span + 0.02);
+    let mut direction = low;
+    while direction <= high {
+        let index = direction as usize;
+        let index = if index >= beams && scan.is_full_turn() { index - beams } else { index };
+        if let Some(range_m) = ranges_m.get_mut(index) {
+            let share = (direction - first) / span;
+            *range_m = between(scan, from, to, share, index);
+        }
+        direction += 1.0;
+    }
+}
+
+/// The range in a direction between two end points.
+fn between(scan: &Scan, from: &End, to: &End, share: f64, index: usize) -> f32 {
+    let nearer = if share < 0.5 { from } else { to };
+    let are_hits = from.range_m.is_finite() && to.range_m.is_finite();
+    let edge = to.at - from.at;
+    if are_hits && edge.norm_squared() < JOIN_M * JOIN_M {
+        let along = interfaces::rotation(scan.angle_rad(index)) * Vector2::x();
+        let range_m = from.at.coords.perp(&edge) / along.perp(&edge);
+        let middle_m = from.at.coords.norm().midpoint(to.at.coords.norm());
+        if (range_m - middle_m).abs() < JOIN_M {
+            return range_m as f32;
+        }
+    }
+    if nearer.range_m.is_finite() { nearer.at.coords.norm() as f32 } else { nearer.range_m }
+}

@@ -1,0 +1,118 @@
+//! From the predicted pose to the pose of the scan, and the question whether the robot or the things moved.
+
+use crate::changing_map::ChangingMap;
+use crate::matcher::{Match, Prior, difference};
+use crate::scene::Scene;
+use crate::support::Support;
+use interfaces::heading_rad;
+use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// The innovation (squared, over its covariance) above which odometry did not tell the truth: 1 in 10⁵ by chance.
+const SURPRISE: f64 = 26.0;
+/// The farthest that a match may start from the pose, m: robots that slip or stand still against their odometry.
+const WIDE_GATE_M: f64 = 0.3;
+/// The least gain of support with which another pose replaces the predicted one.
+const BETTER: f64 = 0.05;
+/// Where this share of the points lies exactly in place and stands against every motion of the robot, the pose is that
+/// of the odometry, whatever else has moved.
+const STAYED_SHARE: f64 = 0.1;
+/// Shifts below this are no coherent motion of things, m.
+const COHERENT_M: f64 = 0.03;
+/// Errors of the map, which change where other surfaces come into view.
+const MAP_STD_M: f64 = 0.002;
+const MAP_STD_RAD: f64 = 7e-4;
+/// Errors of the model that do not average out: surfaces that are not straight, surfels that are off. Per scan.
+const MODEL_STD_M: f64 = 5e-4;
+const MODEL_STD_RAD: f64 = 1.5e-4;
+/// The least weight of unchanged surfaces against every motion with which changing surfaces may be weighed down.
+const UNCHANGED_WEIGHT: f64 = 15.0;
+
+/// The pose of a scan by tracking.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tracked {
+    pub(crate) pose: Isometry2<f64>,
+    pub(crate) covariance: Matrix3<f64>,
+    pub(crate) support: Support,
+    /// Much of the view may have moved, but the robot moved as its odometry says: what stayed in place fixes the pose.
+    pub(crate) stayed: bool,
+    /// The robot did not move as its odometry says.
+    pub(crate) is_other: bool,
+}
+
+/// Finds the pose of a scan near the predicted pose. `others` are other guesses: the pose at rest, the pose at constant
+/// velocity. The first result is that of the predicted pose, if none is good.
+pub(crate) fn track<M: ChangingMap>(
+    scene: &Scene<M>,
+    predicted: &Isometry2<f64>,
+    covariance: &Matrix3<f64>,
+    others: &[Isometry2<f64>],
+) -> Tracked {
+    let (by_odometry, is_surprise) = with_prior(scene, predicted, covariance);
+    let is_good = |tracked: &Tracked| tracked.support.share() >= scene.settings.min_support;
+    if is_good(&by_odometry) && !is_surprise {
+        return by_odometry;
+    }
+    let mut best = by_odometry;
+    for start in std::iter::once(predicted).chain(others) {
+        let Some(found) = scene.align(start, None, WIDE_GATE_M, false) else { continue };
+        let candidate = tracked(scene, &found);
+        if candidate.support.confirmed > best.support.confirmed + BETTER * by_odometry.support.weight() {
+            best = candidate;
+        }
+    }
+    let in_place = scene.judge_within(&by_odometry.pose, scene.gate_m() / 2.0);
+    let stayed = in_place.fixes_pose(STAYED_SHARE * in_place.weight());
+    let things_moved = stayed && is_coherent(&by_odometry, &best);
+    let is_other = is_good(&best) && !things_moved;
+    if is_other { Tracked { is_other, ..best } } else { Tracked { stayed: stayed && (things_moved || !is_surprise), ..by_odometry } }
+}
+
+/// The match with the prior of odometry, and whether the motion by odometry was not true.
+fn with_prior<M: ChangingMap>(
+    scene: &Scene<M>,
+    predicted: &Isometry2<f64>,
+    covariance: &Matrix3<f64>,
+) -> (Tracked, bool) {
+    let stay = || {
+        let support = scene.judge(predicted);
+        (Tracked { pose: *predicted, covariance: *covariance, support, stayed: false, is_other: false }, false)
+    };
+    let Some(information) = covariance.try_inverse() else { return stay() };
+    let prior = Prior { pose: *predicted, information };
+    let first_m = scene.gate_m() + 2.0 * (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
+    let by_rates = unchanged_fix_pose(scene, predicted);
+    let Some(found) = scene.align(predicted, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else { return stay() };
+    (tracked(scene, &found), surprise(&found, predicted, covariance) > SURPRISE)
+}
+
+/// How far the pose of the scan alone lies from the predicted pose: squared, over the covariance of both.
+fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>) -> f64 {
+    let Some(scan) = found.scan_information.try_inverse() else { return 0.0 };
+    // The match with the prior went only a part of the way that the scan alone would have gone.
+    let whole_way = scan * found.information * difference(&found.pose, predicted);
+    let map = Vector3::new(MAP_STD_M, MAP_STD_M, MAP_STD_RAD);
+    let spread = covariance + scan + Matrix3::from_diagonal(&map.component_mul(&map));
+    spread.try_inverse().map_or(0.0, |inverse| (whole_way.transpose() * inverse * whole_way)[0])
+}
+
+/// The result of a match, with an honest covariance: inflated where the residuals are larger than the noise, and by the
+/// errors that all points share.
+fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
+    let inverse = found.information.try_inverse().unwrap_or_else(|| Matrix3::identity() * 1e3);
+    let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD) * *crate::tune::MODEL;
+    let covariance =
+        inverse * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model));
+    Tracked { pose: found.pose, covariance, support: scene.judge(&found.pose), stayed: false, is_other: false }
+}
+
+/// Whether changing surfaces may be weighed down: the others alone fix the pose. Otherwise a wrong pose could declare
+/// all that contradicts it as changing.
+fn unchanged_fix_pose<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>) -> bool {
+    scene.surfels.knows_rates() && scene.judge(pose).steady.symmetric_eigenvalues().min() >= UNCHANGED_WEIGHT
+}
+
+/// Whether two poses are as far apart as things that move together: then either the things moved, or the robot.
+fn is_coherent(stayed: &Tracked, moved: &Tracked) -> bool {
+    let shift = stayed.pose.inv_mul(&moved.pose);
+    shift.translation.vector.norm() + heading_rad(&shift).abs() >= COHERENT_M
+}
