@@ -17,7 +17,7 @@ use divan::counter::ItemsCount;
 use generated::generated;
 use interfaces::{Purpose, RandomStream, Step};
 use mapper::{Mapper, MapperSettings, ReadingError};
-use robot::{Autonomous, Belief, Destination, GoalSelector, Pilot, explore};
+use robot::{Autonomous, Belief, Destination, ExactPoses, GoalSelector, Pilot, explore};
 use sim::grid::{GridSpec, GridWorld};
 use std::ops::ControlFlow;
 
@@ -63,11 +63,17 @@ impl<P: Pilot<Command = Step>> Run<P> {
     fn run(self) -> Self {
         let Self { mut world, mut mapper, mut pilot } = self;
         let mut step = 0;
-        explore(&mut world, &mut mapper, &mut pilot, |_, _, _, pilot| -> Result<_, ReadingError> {
-            pilot.take_messages();
-            step += 1;
-            Ok(if step < STEPS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
-        })
+        explore(
+            &mut world,
+            &mut ExactPoses,
+            &mut mapper,
+            &mut pilot,
+            |_, _, _, pilot| -> Result<_, ReadingError> {
+                pilot.take_messages();
+                step += 1;
+                Ok(if step < STEPS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+            },
+        )
         .expect("a grid world's readings make sense");
         Self { world, mapper, pilot }
     }

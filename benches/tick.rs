@@ -13,7 +13,7 @@ use evaluation::observer::Observer;
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use interfaces::World;
 use mapper::{Mapper, ReadingError};
-use robot::{Autonomous, Belief, Pilot, explore};
+use robot::{Autonomous, Belief, ExactPoses, Pilot, explore};
 use sim::physics::PhysicsWorld;
 use std::ops::ControlFlow;
 
@@ -34,7 +34,7 @@ impl Run {
         let settings = PhysicsSettings::of(&spec).expect("the robot has a differential drive");
         let agent = settings.agent(&Policy::default(), 0).expect("the default settings are valid");
         let pilot = settings.pilot(agent, 0).expect("the default settings are valid");
-        let trial = PhysicsTrial::new(&spec, 0, &settings.mapper, None, pilot);
+        let trial = PhysicsTrial::new(&spec, 0, &settings, None, pilot);
         let PhysicsTrial { world, mapper, pilot, .. } = trial.expect("the default settings are valid");
         Self { world, mapper, pilot }
     }
@@ -42,8 +42,7 @@ impl Run {
     fn tick(&mut self) {
         let reading = self.world.sense();
         self.mapper.update(&reading).expect("the physics world gives readings that are valid");
-        let belief =
-            Belief { pose: &reading.pose, features: Features::of(&mut self.mapper), mapper: &self.mapper };
+        let belief = Belief::exact(&reading.pose, Features::of(&mut self.mapper), &self.mapper);
         let command = self.pilot.command(&belief);
         self.pilot.take_messages();
         self.world.act(&command);
@@ -52,14 +51,20 @@ impl Run {
     /// Runs until `end_s`, with the metrics or without.
     fn explore(&mut self, end_s: f64, mut observer: Option<Observer>) {
         let Self { world, mapper, pilot } = self;
-        explore(world, mapper, pilot, |world, reading, belief, pilot| -> Result<_, ReadingError> {
-            match &mut observer {
-                Some(observer) => observer.observe(world, reading, belief, pilot),
-                None => drop(pilot.take_messages()),
-            }
-            let is_over = reading.time_s >= end_s;
-            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        })
+        explore(
+            world,
+            &mut ExactPoses,
+            mapper,
+            pilot,
+            |world, reading, belief, pilot| -> Result<_, ReadingError> {
+                match &mut observer {
+                    Some(observer) => observer.observe(world, reading, belief, pilot),
+                    None => drop(pilot.take_messages()),
+                }
+                let is_over = reading.time_s >= end_s;
+                Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+            },
+        )
         .expect("the physics world gives readings that are valid");
     }
 }

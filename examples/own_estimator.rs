@@ -28,7 +28,7 @@ fn main() -> anyhow::Result<()> {
     let mut settings = PhysicsSettings::of(&world)?;
     settings.mapper.estimator = HalfOfEvents.into();
     let pilot = settings.pilot(settings.agent(&Policy::default(), 0)?, 0)?;
-    let mut trial = PhysicsTrial::new(&world, 0, &settings.mapper, None, pilot)?;
+    let mut trial = PhysicsTrial::new(&world, 0, &settings, None, pilot)?;
     trial.run(300.0)?;
     println!("four rooms, 5 minutes\n{}\n", trial.results());
 

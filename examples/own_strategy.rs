@@ -32,7 +32,7 @@ fn main() -> anyhow::Result<()> {
     let world = curious::worlds::load("four_rooms")?.spec;
     let settings = PhysicsSettings::of(&world)?;
     let pilot = settings.pilot(settings.agent(&events, 0)?, 0)?;
-    let mut trial = PhysicsTrial::new(&world, 0, &settings.mapper, None, pilot)?;
+    let mut trial = PhysicsTrial::new(&world, 0, &settings, None, pilot)?;
     trial.run(300.0)?;
     println!("four rooms, 5 minutes\n{}\n", trial.results());
 

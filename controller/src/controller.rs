@@ -191,6 +191,19 @@ impl<D: Drive> Controller<D> {
         command
     }
 
+    /// Returns the command for a tick in which the robot does not drive to its goal: it rests, or looks around.
+    pub fn pause(&mut self, situation: &Situation, looks_around: bool) -> D::Command {
+        let mut surroundings = self.update_surroundings(situation);
+        let settings = self.settings.navigation;
+        let scene = Tick { settings: &settings, situation, surroundings: &mut surroundings };
+        let command = match looks_around {
+            true => self.drive.look_around(&scene.scene()),
+            false => self.drive.rest(&scene.scene()),
+        };
+        self.surroundings = Some(surroundings);
+        command
+    }
+
     /// Applies the changes of the map. Reads the whole map at the first tick, and when the frame of the map has
     /// changed.
     fn update_surroundings(&mut self, situation: &Situation) -> Surroundings {

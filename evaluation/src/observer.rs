@@ -1,7 +1,7 @@
 //! Measures a run in the physics world against the ground truth, from outside the loop.
 
 use crate::metrics::{
-    ChangingAccuracy, Latency, MapScores, Prediction, Standstills, Things, TrueChains, map_scores,
+    ChangingAccuracy, Latency, MapScores, PoseErrors, Prediction, Standstills, Things, TrueChains, map_scores,
 };
 use crate::summary::CurvePoint;
 use crate::thinned::Thinned;
@@ -38,6 +38,8 @@ pub struct Observer {
     pub prediction: Prediction,
     /// The true chains of all cells.
     pub true_chains: TrueChains,
+    /// The errors of the poses that the robot used.
+    pub poses: PoseErrors,
     /// The longest standstill of every robot.
     pub standstills: Standstills,
     /// Coverage and map quality over time.
@@ -62,6 +64,7 @@ impl Observer {
         belief: &Belief,
         pilot: &mut impl Pilot<Command = Twist>,
     ) {
+        self.poses.observe(reading.time_s, &reading.pose, world.true_pose(), belief.estimate);
         self.measure(world, reading, belief.mapper);
         self.collect_messages(world, pilot);
     }

@@ -7,9 +7,10 @@ use crate::observer::Observer;
 use crate::summary::{Contacts, Liveliest, RunResults};
 use agent::{Agent, AgentSettings, Features, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
-use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, SettingsError, Twist};
+use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, SettingsError, Twist, World};
+use localizer::{GivenPoses, Localizer, LocalizerSettings, Start};
 use mapper::{Mapper, MapperSettings, ReadingError};
-use robot::{Autonomous, Belief, GoalSelector, Pilot, explore};
+use robot::{Autonomous, Belief, GoalSelector, Localization, Pilot, explore};
 use serde::Serialize;
 use sim::physics::{BehaviorSpec, DriveKind, PhysicsWorld, WorldSpec};
 use std::collections::BTreeMap;
@@ -28,6 +29,35 @@ pub const LOCAL_STEPS: u32 = 15;
 /// The maximum range noise that the mapper accepts, m.
 const MAX_NOISE_M: f64 = 0.5;
 
+/// How the robot knows its pose.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PoseChoice {
+    /// The true pose: odometry without any error.
+    #[default]
+    Exact,
+    /// The pose by odometry, with its errors.
+    Odometry,
+    /// The pose that the localizer estimates.
+    Localized,
+}
+
+impl PoseChoice {
+    /// Exact poses where the world says that its poses are exact, otherwise a localizer.
+    pub fn of(spec: &WorldSpec) -> Self {
+        if PhysicsWorld::new(spec, 0).poses_are_exact() { Self::Exact } else { Self::Localized }
+    }
+
+    /// The name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Odometry => "odometry",
+            Self::Localized => "localized",
+        }
+    }
+}
+
 /// All settings of a robot in a physics world.
 #[derive(Clone, Debug, Serialize)]
 pub struct PhysicsSettings {
@@ -39,6 +69,10 @@ pub struct PhysicsSettings {
     pub controller: controller::Settings,
     /// The settings of the drive.
     pub drive: DiffDriveSettings,
+    /// How the robot knows its pose.
+    pub pose: PoseChoice,
+    /// The settings of the localizer.
+    pub localizer: LocalizerSettings,
 }
 
 /// The error for a driven robot that the controller cannot drive.
@@ -93,7 +127,9 @@ impl PhysicsSettings {
             reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s,
             ..defaults
         };
-        Ok(Self { mapper, agent, controller, drive })
+        let noise = mapper.steady.range_noise_std_m;
+        let localizer = LocalizerSettings { range_noise_std_m: noise, ..LocalizerSettings::default() };
+        Ok(Self { mapper, agent, controller, drive, pose: PoseChoice::of(spec), localizer })
     }
 
     /// The pilot that drives to the goals of `selector`.
@@ -125,6 +161,10 @@ impl PhysicsSettings {
 pub struct PhysicsTrial<P> {
     /// The world.
     pub world: PhysicsWorld,
+    /// How the robot knows its pose.
+    pub pose: PoseChoice,
+    /// What gives readings their poses.
+    pub localization: Box<dyn Localization<LaserReading>>,
     /// The map and the change statistics.
     pub mapper: Mapper,
     /// The pilot.
@@ -142,15 +182,30 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     pub fn new(
         spec: &WorldSpec,
         seed: u64,
-        mapper: &MapperSettings,
+        settings: &PhysicsSettings,
         prior: Option<Grid<CellState>>,
         pilot: P,
     ) -> Result<Self, SettingsError> {
-        let mapper = match prior {
-            None => Mapper::new(mapper, spec.frame)?,
-            Some(map) => Mapper::with_prior(mapper, map)?,
+        let mut world = PhysicsWorld::new(spec, seed);
+        if settings.pose == PoseChoice::Exact {
+            world.correct_odometry();
+        }
+        let localization: Box<dyn Localization<LaserReading>> = match (settings.pose, &prior) {
+            (PoseChoice::Exact | PoseChoice::Odometry, _) => Box::new(GivenPoses::default()),
+            (PoseChoice::Localized, None) => {
+                let start = *world.true_pose();
+                Box::new(Localizer::from_nothing(&settings.localizer, &spec.frame, start)?)
+            }
+            (PoseChoice::Localized, Some(map)) => {
+                Box::new(Localizer::in_map(&settings.localizer, map, Start::Unknown)?)
+            }
         };
-        Ok(Self { world: PhysicsWorld::new(spec, seed), mapper, pilot, observer: Observer::default() })
+        let mapper = match prior {
+            None => Mapper::new(&settings.mapper, spec.frame)?,
+            Some(map) => Mapper::with_prior(&settings.mapper, map)?,
+        };
+        let (pose, observer) = (settings.pose, Observer::default());
+        Ok(Self { world, pose, localization, mapper, pilot, observer })
     }
 
     /// Runs until `watch` breaks. `watch` is called once per reading, after the measurement.
@@ -168,8 +223,8 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             &Observer,
         ) -> Result<ControlFlow<()>, E>,
     ) -> Result<(), E> {
-        let Self { world, mapper, pilot, observer } = self;
-        explore(world, mapper, pilot, |world, reading, belief, pilot| {
+        let Self { world, localization, mapper, pilot, observer, .. } = self;
+        explore(world, localization.as_mut(), mapper, pilot, |world, reading, belief, pilot| {
             observer.observe(world, reading, belief, pilot);
             watch(world, reading, belief, pilot, observer)
         })
@@ -189,7 +244,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
 
     /// The results so far.
     pub fn results(&self) -> RunResults {
-        let Self { world, mapper, pilot, observer } = self;
+        let Self { world, pose, mapper, pilot, observer, .. } = self;
         let truth = world.truth();
         let [block_latency, free_latency] = observer.latency.delays();
         let [contacts_while_standing, collisions] = observer.contacts;
@@ -210,6 +265,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
                 run_into: contacts_while_standing + collisions - observer.own_contacts,
             },
             longest_standstill_s: longest_standstill_s(world, observer),
+            pose: observer.poses.scores(pose.name()),
             goals: pilot.goals(),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
             things: observer.things.reports().cloned().collect(),

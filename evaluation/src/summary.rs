@@ -1,7 +1,8 @@
 //! The results of a run in a physics world: `summary.json`, and a few lines for the terminal.
 
 use crate::metrics::{
-    Age, ChangingScores, Delays, MapScores, PredictedScores, RateScores, ReachableScores, ThingReport,
+    Age, ChangingScores, Delays, MapScores, PoseScores, PredictedScores, RateScores, ReachableScores,
+    ThingReport,
 };
 use crate::percent::percent;
 use mapper::Mapper;
@@ -88,6 +89,8 @@ pub struct RunResults {
     /// For each robot that can move, by name, the longest time for which it did not move farther than 0.1 m from a
     /// position, s.
     pub longest_standstill_s: BTreeMap<String, f64>,
+    /// The errors of the poses that the robot used.
+    pub pose: PoseScores,
     /// The goals by outcome.
     pub goals: GoalCount,
     /// For each strategy, the share of the goals that it selected.
@@ -194,6 +197,7 @@ impl fmt::Display for RunResults {
             let shares: Vec<String> = self.strategy_share.iter().map(share).collect();
             lines.push(("chosen", shares.join(", ")));
         }
+        lines.extend(self.pose().map(|text| ("pose", text)));
         lines.extend(self.standstills().map(|text| ("stood", text)));
         for (name, text) in lines {
             writeln!(f, "  {name:<9} {text}")?;
@@ -216,6 +220,20 @@ impl RunResults {
             1 => format!("{seen}; 1 cell was never seen"),
             cells => format!("{seen}; {cells} cells were never seen"),
         }
+    }
+
+    /// The errors of the poses; `None` if they are exact.
+    fn pose(&self) -> Option<String> {
+        let PoseScores { mode, median_m, p95_m, max_m, uncertain_s, lost_s, lock_ins, .. } = self.pose;
+        let (median, p95) = (median_m? * 1e3, p95_m? * 1e3);
+        (mode != "exact").then(|| {
+            format!(
+                "{mode}: error {median:.1} mm in the median, {p95:.1} mm for 95 %, {:.0} mm at most; {:.1}° for 95 %; \
+                 uncertain for {uncertain_s:.1} s, lost for {lost_s:.1} s, certain but wrong {lock_ins} times",
+                max_m * 1e3,
+                self.pose.heading_p95_deg.unwrap_or_default(),
+            )
+        })
     }
 
     /// The robots that stood still for a minute or longer; `None` if no robot did.
@@ -315,6 +333,7 @@ mod tests {
             collisions: 0,
             contacts_while_standing: 0,
             contacts: Contacts { own_motion: 1, run_into: 2 },
+            pose: PoseScores { mode: "exact", ..PoseScores::default() },
             longest_standstill_s: [("cat", 312.4), ("dummy", 3.0)]
                 .map(|(name, s)| (name.to_owned(), s))
                 .into(),

@@ -38,7 +38,12 @@ pub(crate) struct Hypotheses {
 
 impl Hypotheses {
     /// Refines the poses that a search has found. Poses below `least_score` are dropped.
-    pub(crate) fn start<M: ChangingMap>(scene: &Scene<M>, found: &[Candidate], least_score: f64, ratio: f64) -> Self {
+    pub(crate) fn start<M: ChangingMap>(
+        scene: &Scene<M>,
+        found: &[Candidate],
+        least_score: f64,
+        ratio: f64,
+    ) -> Self {
         let spread = Vector3::new(FOUND_STD_M, FOUND_STD_M, FOUND_STD_RAD);
         let covariance = Matrix3::from_diagonal(&spread.component_mul(&spread));
         let mut hypotheses = Self::default();
@@ -76,7 +81,18 @@ impl Hypotheses {
     }
 
     pub(crate) fn debug(&self) -> String {
-        self.list.iter().map(|h| format!("[{:.3} score {:.2} at {:.2} {:.2}]", h.score / f64::from(self.scans + 1), h.support.score(), h.pose.translation.x, h.pose.translation.y)).collect()
+        self.list
+            .iter()
+            .map(|h| {
+                format!(
+                    "[{:.3} score {:.2} at {:.2} {:.2}]",
+                    h.score / f64::from(self.scans + 1),
+                    h.support.score(),
+                    h.pose.translation.x,
+                    h.pose.translation.y
+                )
+            })
+            .collect()
     }
 
     /// The only pose, once it has agreed with this number of scans after the search.
@@ -85,7 +101,13 @@ impl Hypotheses {
     }
 
     /// Moves all poses and compares them with the next scan. Poses below `least_score` are dropped.
-    pub(crate) fn advance<M: ChangingMap>(&mut self, scene: &Scene<M>, motion: &Motion, least_score: f64, ratio: f64) {
+    pub(crate) fn advance<M: ChangingMap>(
+        &mut self,
+        scene: &Scene<M>,
+        motion: &Motion,
+        least_score: f64,
+        ratio: f64,
+    ) {
         self.scans += 1;
         let next = |hypothesis: &Hypothesis| {
             let covariance = motion.propagate(&hypothesis.pose, &hypothesis.covariance);

@@ -27,6 +27,7 @@ mod calibration;
 mod changing_map;
 mod estimate;
 mod faults;
+mod given_poses;
 mod hypotheses;
 mod localizer;
 mod matcher;
@@ -45,5 +46,6 @@ mod tune;
 
 pub use changing_map::ChangingMap;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};
+pub use given_poses::GivenPoses;
 pub use localizer::Localizer;
 pub use settings::{LocalizerSettings, OdometryTrust};

@@ -13,7 +13,7 @@ use crate::support::{ClearBeams, Support};
 use crate::surfel_map::{Checker, SurfelMap};
 use crate::sweep;
 use crate::tracking::{Tracked, track};
-use interfaces::{CellState, Grid, GridFrame, LaserReading, Scan, SettingsError};
+use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError};
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
 /// The window of the first search: a glitch of the odometry, or a robot that was carried a little.
@@ -172,7 +172,7 @@ impl Localizer {
             self.surfels.weigh_by_rates(map, self.settings.rate_horizon_s);
         }
         let mut reading = reading.clone();
-        reading.scan = self.unswept(&reading, &motion.delta, elapsed_s);
+        reading.scan = sweep::unswept(&reading, &motion.delta, elapsed_s);
         self.points.update(&reading, self.settings.range_noise_std_m, self.settings.weigh_by_arc_length);
         self.clear.update(&reading.scan);
         let before = self.pose;
@@ -197,22 +197,10 @@ impl Localizer {
     fn motion(&mut self, reading: &LaserReading) -> Motion {
         let before = self.odometry.replace(reading.pose).unwrap_or(reading.pose);
         self.measured = before.inv_mul(&reading.pose);
-        let corrected = if *crate::tune::CAL > 0.0 { self.calibration.correct(&self.measured) } else { self.measured };
+        let corrected =
+            if *crate::tune::CAL > 0.0 { self.calibration.correct(&self.measured) } else { self.measured };
         let motion = Motion::new(corrected, &self.settings.odometry);
         if self.distrust > 0 { motion.distrusted() } else { motion }
-    }
-
-    /// The scan without its sweep. `delta` is the motion since the last reading.
-    fn unswept(&self, reading: &LaserReading, delta: &Isometry2<f64>, elapsed_s: f64) -> Scan {
-        let scan = &reading.scan;
-        if scan.sweep_s == 0.0 || elapsed_s <= 0.0 {
-            return scan.clone();
-        }
-        let share = scan.sweep_s / elapsed_s;
-        let back = delta.inverse();
-        let (at, turn_rad) = (back.translation.vector * share, interfaces::heading_rad(&back) * share);
-        let start = interfaces::pose(at.x, at.y, turn_rad);
-        sweep::undo(scan, &(reading.mount.inverse() * start * reading.mount))
     }
 
     /// Estimates the pose, and the state that follows; returns the agreement of the scan with the maps.
@@ -287,9 +275,9 @@ impl Localizer {
     /// The pose is not certain; after some time, it is lost.
     fn doubt(&mut self) {
         let limit_s = self.settings.lost_after_s;
-        let is_lost = self.supported_s.map_or(self.state == PoseState::Lost, |supported_s| {
-            self.time_s - supported_s > limit_s
-        });
+        let is_lost = self
+            .supported_s
+            .map_or(self.state == PoseState::Lost, |supported_s| self.time_s - supported_s > limit_s);
         self.state = if is_lost { PoseState::Lost } else { PoseState::Uncertain };
     }
 
@@ -312,7 +300,14 @@ impl Localizer {
         if found.is_empty() && self.since_search >= SEARCH_EVERY {
             self.since_search = 0;
             let candidates = search(&grid, self.points.points(), None, LEAST_FOUND, ratio);
-        if std::env::var("DBG").is_ok() { for c in &candidates {eprintln!("   cand {:.3} at {:.2} {:.2}", c.score, c.pose.translation.x, c.pose.translation.y); }}
+            if std::env::var("DBG").is_ok() {
+                for c in &candidates {
+                    eprintln!(
+                        "   cand {:.3} at {:.2} {:.2}",
+                        c.score, c.pose.translation.x, c.pose.translation.y
+                    );
+                }
+            }
             found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
         }
         self.scores = Some((revision, grid));
@@ -332,7 +327,9 @@ impl Localizer {
         let mut hypotheses = std::mem::take(&mut self.hypotheses);
         let ratio = self.settings.ambiguity_ratio;
         hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
-        if std::env::var("DBG").is_ok() { eprintln!("{}", hypotheses.debug()); }
+        if std::env::var("DBG").is_ok() {
+            eprintln!("{}", hypotheses.debug());
+        }
         self.hypotheses = hypotheses;
         self.since_search = self.since_search.saturating_add(1);
         let support = self.hypotheses.best().map_or(Support::default(), |best| best.support);

@@ -92,7 +92,9 @@ fn accumulate(
     for point in points {
         let arm = pose.rotation * point.at.coords;
         let at = (pose.translation.vector + arm).into();
-        let Some((index, off_m)) = map.nearest(&at, &(pose.rotation * point.normal), gate_m) else { continue };
+        let Some((index, off_m)) = map.nearest(&at, &(pose.rotation * point.normal), gate_m) else {
+            continue;
+        };
         let surfel = map.surfel(index);
         let mut weight = point.weight * surfel.weight();
         if gates.by_rates {

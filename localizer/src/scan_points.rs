@@ -238,7 +238,8 @@ impl ScanPoints {
                 _ => return steps,
             };
             let is_joined = self.joined[if forward { here } else { next }];
-            let is_near = self.hits[next].is_some_and(|hit| (hit - at).norm_squared() <= *crate::tune::REACH * *crate::tune::REACH);
+            let is_near = self.hits[next]
+                .is_some_and(|hit| (hit - at).norm_squared() <= *crate::tune::REACH * *crate::tune::REACH);
             if !is_joined || steps > 0 && !is_near {
                 return steps;
             }

@@ -206,7 +206,9 @@ impl Search<'_> {
                 continue;
             }
             if node.level == 0 {
-                least = least.max((ratio * f64::from(found.first().unwrap_or(&(node, Point2::origin())).0.bound)) as u32);
+                least = least.max(
+                    (ratio * f64::from(found.first().unwrap_or(&(node, Point2::origin())).0.bound)) as u32,
+                );
                 found.push((node, self.grid.frame().center(Cell::new(node.x, node.y))));
                 continue;
             }

@@ -82,7 +82,15 @@ impl SurfelMap {
     pub(crate) fn new(frame: &GridFrame) -> Self {
         let frame = coarse(frame);
         let cells = vec![[NONE; PER_CELL]; frame.len()];
-        Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), revision: 0, scan: 0, knows_rates: false }
+        Self {
+            frame,
+            cells,
+            surfels: Vec::new(),
+            removed: Vec::new(),
+            revision: 0,
+            scan: 0,
+            knows_rates: false,
+        }
     }
 
     /// The grid of the cells.
@@ -123,7 +131,9 @@ impl SurfelMap {
         let mut best: Option<(u32, f64)> = None;
         let mut best_m = REACH_M;
         let select = *crate::tune::ALONG > 0.0;
-        if !select { best_m = gate_m; }
+        if !select {
+            best_m = gate_m;
+        }
         self.around(at, gate_m.max(CELL_M / 2.0), |index, surfel| {
             if surfel.normal.dot(normal) < *crate::tune::SAME {
                 return;
@@ -131,7 +141,11 @@ impl SurfelMap {
             let to = at - surfel.at;
             let (off_m, along_m) = (surfel.normal.dot(&to), surfel.normal.perp(&to));
             // Of two equally near ones, the first in the order of the cells.
-            let better = if select { off_m.abs() < gate_m && along_m.abs() < best_m } else { off_m.abs() < best_m && along_m.abs() <= REACH_M };
+            let better = if select {
+                off_m.abs() < gate_m && along_m.abs() < best_m
+            } else {
+                off_m.abs() < best_m && along_m.abs() <= REACH_M
+            };
             if better {
                 best_m = if select { along_m.abs() } else { off_m.abs() };
                 best = Some((index, off_m));

@@ -1,7 +1,7 @@
 //! Undoes the sweep of a scan: a laser that turns measures each beam from a pose of its own. The result is a scan whose
 //! beams all start at the pose of its end.
 
-use interfaces::{Scan, approximate_atan2, heading_rad, wrap_rad};
+use interfaces::{LaserReading, Scan, approximate_atan2, heading_rad, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 
 /// Neighboring end points nearer than this are joined by a straight surface, m.
@@ -13,6 +13,20 @@ struct End {
     at: Point2<f64>,
     angle_rad: f64,
     range_m: f32,
+}
+
+/// The scan of a reading, with all beams from its pose. `motion` is the motion of the robot in the time `elapsed_s` since
+/// the last reading.
+pub(crate) fn unswept(reading: &LaserReading, motion: &Isometry2<f64>, elapsed_s: f64) -> Scan {
+    let scan = &reading.scan;
+    if scan.sweep_s == 0.0 || elapsed_s <= 0.0 {
+        return scan.clone();
+    }
+    let share = scan.sweep_s / elapsed_s;
+    let back = motion.inverse();
+    let (at, turn_rad) = (back.translation.vector * share, heading_rad(&back) * share);
+    let start = interfaces::pose(at.x, at.y, turn_rad);
+    undo(scan, &(reading.mount.inverse() * start * reading.mount))
 }
 
 /// The scan as the laser would measure it at once, at the end of the sweep. `start` is the pose of the laser at the

@@ -64,7 +64,11 @@ pub(crate) fn track<M: ChangingMap>(
     let stayed = in_place.fixes_pose(STAYED_SHARE * in_place.weight());
     let things_moved = stayed && is_coherent(&by_odometry, &best);
     let is_other = is_good(&best) && !things_moved;
-    if is_other { Tracked { is_other, ..best } } else { Tracked { stayed: stayed && (things_moved || !is_surprise), ..by_odometry } }
+    if is_other {
+        Tracked { is_other, ..best }
+    } else {
+        Tracked { stayed: stayed && (things_moved || !is_surprise), ..by_odometry }
+    }
 }
 
 /// The match with the prior of odometry, and whether the motion by odometry was not true.
@@ -75,13 +79,18 @@ fn with_prior<M: ChangingMap>(
 ) -> (Tracked, bool) {
     let stay = || {
         let support = scene.judge(predicted);
-        (Tracked { pose: *predicted, covariance: *covariance, support, stayed: false, is_other: false }, false)
+        (
+            Tracked { pose: *predicted, covariance: *covariance, support, stayed: false, is_other: false },
+            false,
+        )
     };
     let Some(information) = covariance.try_inverse() else { return stay() };
     let prior = Prior { pose: *predicted, information };
     let first_m = scene.gate_m() + 2.0 * (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
     let by_rates = unchanged_fix_pose(scene, predicted);
-    let Some(found) = scene.align(predicted, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else { return stay() };
+    let Some(found) = scene.align(predicted, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else {
+        return stay();
+    };
     (tracked(scene, &found), surprise(&found, predicted, covariance) > SURPRISE)
 }
 
@@ -102,7 +111,13 @@ fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
     let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD) * *crate::tune::MODEL;
     let covariance =
         inverse * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model));
-    Tracked { pose: found.pose, covariance, support: scene.judge(&found.pose), stayed: false, is_other: false }
+    Tracked {
+        pose: found.pose,
+        covariance,
+        support: scene.judge(&found.pose),
+        stayed: false,
+        is_other: false,
+    }
 }
 
 /// Whether changing surfaces may be weighed down: the others alone fix the pose. Otherwise a wrong pose could declare

@@ -1,6 +1,8 @@
 //! TEMPORARY
 use std::sync::LazyLock;
-fn get(name: &str, default: f64) -> f64 { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
+fn get(name: &str, default: f64) -> f64 {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
 pub static FULL: LazyLock<f64> = LazyLock::new(|| get("FULL", 0.04));
 pub static RAMP: LazyLock<f64> = LazyLock::new(|| get("RAMP", 50.0));
 pub static FROZEN: LazyLock<f64> = LazyLock::new(|| get("FROZEN", 400.0));

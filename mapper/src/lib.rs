@@ -27,7 +27,8 @@ pub use occupancy::{
 
 use derived::ExpectedChanges;
 use interfaces::{
-    CellState, Grid, GridFrame, Observation, Reading, ScanError, SettingsCheck, SettingsError, Transition,
+    CellState, Grid, GridFrame, LaserReading, Observation, Reading, ScanError, SettingsCheck, SettingsError,
+    Transition,
 };
 use nalgebra::{Isometry2, Point2};
 use occupancy::FARTHEST_M;
@@ -162,9 +163,7 @@ impl Mapper {
             Observation::Scan(laser) => {
                 check_pose(&laser.mount, time)?;
                 laser.scan.check()?;
-                self.scan.project(laser);
-                self.points.clear();
-                self.points.extend((0..self.scan.len()).filter_map(|beam| self.scan.hit(beam)));
+                self.project(laser);
                 self.cells.open(time);
                 self.occupancy.update(&self.scan, &mut self.cells);
             }
@@ -176,6 +175,28 @@ impl Mapper {
         }
         self.expected_changes.note(&self.cells);
         Ok(())
+    }
+
+    /// Records a reading that must not enter the map, because its pose is not certain: for every cell, the time since the
+    /// reading before counts as not observed. An invalid reading is no error.
+    pub fn skip(&mut self, reading: &impl Reading) {
+        let last = self.cells.time();
+        let time = Some(reading.time()).filter(|time| time.is_finite()).map_or(last, |time| time.max(last));
+        self.points.clear();
+        if let Observation::Scan(laser) = reading.observation() {
+            let is_pose = [&laser.pose, &laser.mount].iter().all(|pose| check_pose(pose, time).is_ok());
+            if is_pose && laser.scan.check().is_ok() {
+                self.project(laser);
+            }
+        }
+        self.cells.interrupt(time);
+        self.expected_changes.note(&self.cells);
+    }
+
+    fn project(&mut self, laser: &LaserReading) {
+        self.scan.project(laser);
+        self.points.clear();
+        self.points.extend((0..self.scan.len()).filter_map(|beam| self.scan.hit(beam)));
     }
 
     /// The position and the size of the map.

@@ -1,4 +1,4 @@
-use crate::{Belief, GoalCount, Level, Message, Pilot, StrategyState};
+use crate::{Belief, GoalCount, Level, Message, Permission, Pilot, StrategyState};
 use agent::{Agent, Features, Goal, Stay, Travel};
 use controller::{Controller, Drive, Outcome, Situation, Status};
 use mapper::Mapper;
@@ -93,6 +93,9 @@ impl<G: GoalSelector, D: Drive> Pilot for Autonomous<G, D> {
     fn command(&mut self, belief: &Belief) -> D::Command {
         self.selector.observe(belief);
         let situation = situation(belief.mapper, belief.pose);
+        if belief.permission != Permission::Drive {
+            return self.controller.pause(&situation, belief.permission == Permission::LookAround);
+        }
         let command = self.controller.drive(&situation);
         match self.controller.status() {
             Status::Idle if !self.is_done => self.start_next(belief, None),

@@ -1,5 +1,7 @@
 use crate::Message;
+use crate::Permission;
 use agent::Features;
+use localizer::PoseEstimate;
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use serde::Serialize;
@@ -9,10 +11,21 @@ use serde::Serialize;
 pub struct Belief<'a> {
     /// The pose that the robot uses, in the frame of the map, m and rad.
     pub pose: &'a Isometry2<f64>,
+    /// The uncertainty of the pose; `None` if the source says that its poses are exact.
+    pub estimate: Option<&'a PoseEstimate>,
+    /// What the robot may do with this pose.
+    pub permission: Permission,
     /// The features by which the agent chooses a strategy.
     pub features: Features,
     /// The map and the change statistics, with the latest reading included.
     pub mapper: &'a Mapper,
+}
+
+impl<'a> Belief<'a> {
+    /// The belief of a robot with an exact pose.
+    pub fn exact(pose: &'a Isometry2<f64>, features: Features, mapper: &'a Mapper) -> Self {
+        Self { pose, estimate: None, permission: Permission::Drive, features, mapper }
+    }
 }
 
 /// Decides the next command of the robot.

@@ -3,7 +3,7 @@
 use interfaces::{CellState, Twist};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::Point2;
-use robot::{Belief, Pilot, explore};
+use robot::{Belief, ExactPoses, Pilot, explore};
 use sim::physics::PhysicsWorld;
 use std::ops::ControlFlow;
 
@@ -36,18 +36,24 @@ fn it_waits_and_goes_on() {
     let mut mapper = Mapper::new(&MapperSettings::default(), world.spec().frame).unwrap();
     let mut way: Vec<(f64, f64)> = Vec::new();
     let mut seen_waiting = Vec::new();
-    explore(&mut world, &mut mapper, &mut Visitor, |world, reading, belief, _| -> anyhow::Result<_> {
-        let dummy = world.robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
-        way.push((reading.time_s, dummy.x));
-        assert_eq!(world.contacts(), []);
-        if reading.time_s < STANDS_UNTIL_S {
-            // The front of the dummy's body, which the robot observes.
-            let front = Point2::new(dummy.x + 0.18, dummy.y);
-            seen_waiting.push(belief.mapper.states().get(belief.mapper.frame().cell_at(&front)).copied());
-        }
-        let is_over = reading.time_s >= END_S;
-        Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-    })
+    explore(
+        &mut world,
+        &mut ExactPoses,
+        &mut mapper,
+        &mut Visitor,
+        |world, reading, belief, _| -> anyhow::Result<_> {
+            let dummy = world.robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
+            way.push((reading.time_s, dummy.x));
+            assert_eq!(world.contacts(), []);
+            if reading.time_s < STANDS_UNTIL_S {
+                // The front of the dummy's body, which the robot observes.
+                let front = Point2::new(dummy.x + 0.18, dummy.y);
+                seen_waiting.push(belief.mapper.states().get(belief.mapper.frame().cell_at(&front)).copied());
+            }
+            let is_over = reading.time_s >= END_S;
+            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        },
+    )
     .unwrap();
 
     let x_at = |time_s: f64| way.iter().find(|(at_s, _)| *at_s >= time_s).unwrap().1;

@@ -19,6 +19,7 @@ mod houses;
 mod keyboard;
 mod memory;
 mod output;
+mod pose;
 mod prior;
 mod screen;
 mod targets;

@@ -60,24 +60,3 @@ fn a_world_file_runs_as_the_shipped_world_does() {
         .map(|world| Run::quiet(&format!("--duration 20 --world {world}")).summary().hash().to_owned());
     assert_eq!(by_name, by_path);
 }
-
-#[test]
-fn odometry_that_drifts_and_scans_that_sweep_are_reported() {
-    let run = Run::new();
-    let world = include_str!("../../worlds/four_rooms.toml");
-    let (exact, drifting) = ("# [robot.odometry] makes", "[robot.odometry]\nturn_gain = 0.01 # makes");
-    assert!(world.contains(exact));
-    run.write("drift.toml", &world.replacen(exact, drifting, 1));
-    let ended = run.goes_well("--quiet --no-rrd --duration 1 --world drift.toml");
-    insta::assert_snapshot!(ended.stderr.trim_end(), @"
-    warning: the odometry of `curious` drifts, and poses are taken as exact: this map will be wrong
-      = help: without `[robot.odometry]` the poses are exact
-    ");
-    let sweeping = world.replacen("rate_hz = 10.0", "rate_hz = 10.0\nsweep_s = 0.05", 1);
-    run.write("sweep.toml", &sweeping);
-    let ended = run.goes_well("--quiet --no-rrd --duration 1 --world sweep.toml");
-    insta::assert_snapshot!(ended.stderr.trim_end(), @"
-    warning: a scan of the laser of `curious` takes 0.05 s, and all beams are taken as simultaneous: scans of a moving robot are distorted
-      = help: without `sweep_s` all beams measure at once
-    ");
-}

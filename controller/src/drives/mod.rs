@@ -58,6 +58,11 @@ pub trait Drive {
     /// The command to stay at the present position.
     fn rest(&mut self, scene: &Scene) -> Self::Command;
 
+    /// The command to look around at the present position.
+    fn look_around(&mut self, scene: &Scene) -> Self::Command {
+        self.rest(scene)
+    }
+
     /// The next command of a recovery that may free a stuck robot, `elapsed_s` after the recovery began;
     /// `None` when the recovery is over.
     fn recover(&mut self, scene: &Scene, elapsed_s: f64) -> Option<Self::Command>;

@@ -1,9 +1,9 @@
 use super::beams::Beams;
+use super::counts::Counts;
 use interfaces::{CellState, Event, GridFrame, GroundTruth, LaserReading, TrueState};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use serde::Serialize;
-use std::collections::BTreeMap;
 
 /// The delays of one kind of change: the time until the map follows a true change that a beam has shown.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -48,33 +48,11 @@ pub struct Latency {
 }
 
 /// Delays longer than this count as this long, s: the number of different delays is bounded.
-const MAX_DELAY_S: f64 = 3600.0;
+const MAX_DELAY_S: u32 = 3600;
 
-/// How often each delay occurred. Delays are multiples of the time between two readings, so that few of them differ;
-/// in whole microseconds, since the differences of two times are not exact.
-#[derive(Clone, Debug, Default)]
-struct DelayCounts(BTreeMap<u64, usize>);
-
-impl DelayCounts {
-    fn add(&mut self, delay_s: f64) {
-        *self.0.entry((delay_s.clamp(0.0, MAX_DELAY_S) * 1e6).round() as u64).or_default() += 1;
-    }
-
-    fn count(&self) -> usize {
-        self.0.values().sum()
-    }
-
-    /// The delay within which this share of the changes was noticed, s; `None` without a delay.
-    fn quantile(&self, share: f64) -> Option<f64> {
-        let rank = (share * self.count().saturating_sub(1) as f64) as usize;
-        let mut up_to = 0;
-        let reaches_rank = |&(_, count): &(_, &usize)| {
-            up_to += count;
-            up_to > rank
-        };
-        self.0.iter().find(reaches_rank).map(|(&delay_us, _)| delay_us as f64 / 1e6)
-    }
-}
+/// How often each delay occurred, s. Delays are multiples of the time between two readings, so that few of them differ; in
+/// whole microseconds, since the differences of two times are not exact.
+type DelayCounts = Counts<1_000_000, MAX_DELAY_S>;
 
 const EVENTS: [Event; 2] = [Event::Block, Event::Free];
 
@@ -205,8 +183,8 @@ mod tests {
             let shown_s = 0.05 * f64::from(reading * 2);
             counts.add(0.05 * f64::from(reading * 2 + reading % 7 * 2) - shown_s);
         }
-        assert_eq!(counts.0.len(), 7);
+        assert_eq!(counts.len(), 7);
         (0..100_000).for_each(|delay_s| counts.add(f64::from(delay_s)));
-        assert!(counts.0.len() <= 3608 && counts.quantile(1.0) == Some(MAX_DELAY_S));
+        assert!(counts.len() <= 3608 && counts.quantile(1.0) == Some(f64::from(MAX_DELAY_S)));
     }
 }

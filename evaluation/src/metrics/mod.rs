@@ -6,9 +6,11 @@
 
 mod beams;
 mod changing;
+mod counts;
 mod latency;
 mod map;
 mod mean;
+mod pose;
 mod prediction;
 mod rates;
 mod standstill;
@@ -18,6 +20,7 @@ mod true_chains;
 pub use changing::{ChangingAccuracy, ChangingScores};
 pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
+pub use pose::{PoseErrors, PoseScores};
 pub use prediction::{PredictedScores, Prediction};
 pub use rates::{
     MAX_LOG_ERROR, RateErrors, RateScores, log_error, mean_log_error, mean_log_error_of_range, rate_scores,

@@ -1,9 +1,11 @@
 //! Files that are either complete or absent, and the folder of a run.
 
 mod folder;
+mod trajectory;
 mod unfinished;
 
 pub use folder::RunFolder;
+pub use trajectory::TrajectoryFile;
 pub use unfinished::{UnfinishedFile, is_another_kind};
 
 use std::fs::{self, File, TryLockError};

@@ -8,7 +8,7 @@ use crate::report::{Sample, Trial};
 use agent::Features;
 use interfaces::World;
 use mapper::{EstimatorChoice, Mapper, MapperSettings};
-use robot::{Autonomous, Belief, GoalSelector, Pilot, Tour, explore};
+use robot::{Autonomous, Belief, ExactPoses, GoalSelector, Pilot, Tour, explore};
 use std::ops::ControlFlow;
 
 /// Everything that determines a trial.
@@ -103,11 +103,11 @@ fn run<W: TrialWorld, G: GoalSelector>(
     };
     if *trial.strategy == TrialStrategy::FullObservation {
         let mut world = FullyObserved::<W>(world);
-        explore(&mut world, &mut mapper, &mut pilot, |world, reading, belief, pilot| {
+        explore(&mut world, &mut ExactPoses, &mut mapper, &mut pilot, |world, reading, belief, pilot| {
             step(&world.0, &reading.of_sensors, belief, pilot)
         })?;
     } else {
-        explore(&mut world, &mut mapper, &mut pilot, step)?;
+        explore(&mut world, &mut ExactPoses, &mut mapper, &mut pilot, step)?;
     }
     Ok(false_change_events.map(|false_change_events| Trial {
         world: trial.world.name().to_owned(),

@@ -1,6 +1,6 @@
 //! How surfels are learned from scans with a certain pose.
 
-use super::{CELL_M, FROZEN_SCANS, USABLE_SCANS, SurfelMap};
+use super::{CELL_M, FROZEN_SCANS, SurfelMap, USABLE_SCANS};
 use crate::changing_map::ChangingMap;
 use crate::scan_points::ScanPoint;
 use nalgebra::Isometry2;

@@ -10,5 +10,6 @@ mod chains;
 mod estimators;
 mod observed;
 mod prior;
+mod skipped;
 mod things;
 mod walls;

@@ -4,6 +4,7 @@ use agent::Policy;
 use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
 use curious::program::{duration_s, one_of, strategy_of};
+use evaluation::physics_trial::PoseChoice;
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
 use viewer::recording::Live;
@@ -56,6 +57,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", help_heading = "Pilot")]
     pub(crate) tour: Option<PathBuf>,
 
+    /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
+    #[arg(long, value_enum, help_heading = "Robot")]
+    pub(crate) pose: Option<PoseArg>,
+
     /// The strategy of the agent [default: curious]
     #[arg(long, value_parser = strategies(), help_heading = "Pilot")]
     pub(crate) strategy: Option<Policy>,
@@ -105,6 +110,27 @@ impl Args {
     /// The strategy of the agent.
     pub(crate) fn strategy(&self) -> Policy {
         self.strategy.clone().unwrap_or_default()
+    }
+}
+
+/// How the robot knows its pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PoseArg {
+    /// The true pose
+    Exact,
+    /// The pose by odometry, with its drift: the map becomes wrong
+    Odometry,
+    /// The pose that fits the scan to the map
+    Localized,
+}
+
+impl From<PoseArg> for PoseChoice {
+    fn from(pose: PoseArg) -> Self {
+        match pose {
+            PoseArg::Exact => Self::Exact,
+            PoseArg::Odometry => Self::Odometry,
+            PoseArg::Localized => Self::Localized,
+        }
     }
 }
 

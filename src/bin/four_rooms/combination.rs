@@ -1,6 +1,7 @@
 //! A world, a tour and a map that do not fit together: warnings where the run is possible, but not what a user
 //! expects, and an error where it makes no sense.
 
+use evaluation::physics_trial::PoseChoice;
 use interfaces::{Cell, CellState, GroundTruth, TrueState};
 use nalgebra::Point2;
 use sim::physics::{PhysicsWorld, WorldSpec};
@@ -11,24 +12,16 @@ use worldfile::ros_map::RosMap;
 const MIN_WALLS: f64 = 0.55;
 const MIN_FREE: f64 = 0.95;
 
-/// What the odometry and the laser of the driven robot do to the map.
-pub(crate) fn senses(spec: &WorldSpec) -> Vec<String> {
+/// What the odometry of the driven robot does to the map, if nothing corrects it.
+pub(crate) fn odometry(spec: &WorldSpec, pose: PoseChoice) -> Option<String> {
     let robot = spec.driven();
-    let odometry = (!robot.odometry.is_exact()).then(|| {
+    (pose == PoseChoice::Odometry && !robot.odometry.is_exact()).then(|| {
         format!(
-            "warning: the odometry of `{}` drifts, and poses are taken as exact: this map will be wrong\n  = help: \
-             without `[robot.odometry]` the poses are exact",
+            "warning: the odometry of `{}` drifts, and `--pose odometry` takes its poses as exact: this map will be \
+             wrong\n  = help: `--pose localized` corrects them",
             robot.name
         )
-    });
-    let sweep = (robot.laser.sweep_s > 0.0).then(|| {
-        format!(
-            "warning: a scan of the laser of `{}` takes {} s, and all beams are taken as simultaneous: scans of a \
-             moving robot are distorted\n  = help: without `sweep_s` all beams measure at once",
-            robot.name, robot.laser.sweep_s
-        )
-    });
-    odometry.into_iter().chain(sweep).collect()
+    })
 }
 
 /// Which waypoints the robot cannot reach.

@@ -15,7 +15,7 @@ use curious::progress::Progress;
 use curious::terminal::{print, say};
 use evaluation::file_name;
 use evaluation::metrics::map_scores;
-use evaluation::output::{RunFolder, UnfinishedFile, is_another_kind};
+use evaluation::output::{RunFolder, TrajectoryFile, UnfinishedFile, is_another_kind};
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::{Reading, Twist};
 use mapper::ReadingError;
@@ -65,11 +65,13 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
 /// Runs the robot in the world, and writes the results.
 fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Result<ExitCode, Failure> {
     let Parts { spec, settings, prior } = parts;
-    let trial = PhysicsTrial::new(spec, args.seed, &settings.mapper, prior.clone(), pilot);
+    let trial = PhysicsTrial::new(spec, args.seed, settings, prior.clone(), pilot);
     let mut trial = trial.context("cannot make the mapper").map_err(input)?;
     let is_interrupted = interrupt_flag()?; // before any file is made
     let mut folder = RunFolder::open(&args.out).map_err(anyhow::Error::from)?;
     let mut show = show(args, Scene::from(spec.fleet()), &mut folder)?;
+    let file = |name| TrajectoryFile::create(&folder.unfinished().join(name));
+    let (mut used, mut truth) = (file("trajectory.tum"), file("trajectory_true.tum"));
     let reported = show.live_problem();
     reported.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
 
@@ -85,6 +87,8 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
         let show_progress =
             || progress.show(reading.time(), || map_scores(belief.mapper, world.truth()).coverage);
         show_progress();
+        used.add(reading.time_s, belief.pose);
+        truth.add(reading.time_s, world.true_pose());
         let end = match () {
             () if is_interrupted.load(Ordering::Relaxed) => Some(Ended::Interrupted),
             () if pilot.is_done() => Some(Ended::Pilot),
@@ -116,6 +120,11 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     progress.finish();
     if let Some(problem) = show.live_problem().filter(|problem| Some(problem) != reported.as_ref()) {
         say(stderr(), format_args!("note: {problem}"));
+    }
+
+    for problem in [used, truth].into_iter().filter_map(|file| file.finish().err()) {
+        is_shown = false;
+        say(stderr(), format_args!("error: cannot write a trajectory: {problem}"));
     }
 
     let mut summary = output::summary(args, settings, &trial, ended, wall_s);

@@ -36,12 +36,14 @@ impl Parts {
             return Err(input(anyhow!("--strategy is for the agent: leave out --drive, or --strategy")));
         }
         let Loaded { spec, warnings } = worlds::load(&args.world).map_err(input)?;
-        warnings.iter().chain(&combination::senses(&spec)).for_each(warn);
+        warnings.iter().for_each(warn);
         reachability::warnings(spec.fleet()).iter().for_each(warn);
         let settings = PhysicsSettings::of(&spec).with_context(|| format!("cannot run `{}`", args.world));
         let mut settings = settings.map_err(input)?;
         settings.mapper.estimator = args.estimator.clone();
         settings.mapper.occupancy = args.occupancy.clone();
+        settings.pose = args.pose.map_or(settings.pose, Into::into);
+        combination::odometry(&spec, settings.pose).iter().for_each(warn);
         let prior = args.map.as_deref().map(|path| known_map(path, &spec)).transpose()?;
         Ok(Self { spec, settings, prior })
     }

@@ -20,6 +20,8 @@ const CREEP_MPS: f64 = 0.05;
 const RECOVERY_S: f64 = 2.0;
 /// The maximum duration of a tick, s, that is used to limit the change of speed.
 const LONGEST_TICK_S: f64 = 0.2;
+/// The angular speed of a robot that looks around, rad/s.
+const LOOK_AROUND_RADPS: f64 = 0.5;
 
 /// Follows paths by pure pursuit (Coulter 1992) of the farthest visible point ahead, turns in place if the path is
 /// behind the robot, and brakes for sensed obstacles.
@@ -120,6 +122,12 @@ impl Drive for DiffDrive {
     fn rest(&mut self, scene: &Scene) -> Twist {
         self.is_turning = false;
         self.command(scene, Twist::STOP)
+    }
+
+    fn look_around(&mut self, scene: &Scene) -> Twist {
+        self.is_turning = false;
+        let turn_radps = LOOK_AROUND_RADPS.min(self.settings.max_angular_radps);
+        self.command(scene, Twist { linear_mps: 0.0, angular_radps: turn_radps })
     }
 
     /// Drives straight backward while that is safe, otherwise turns in place.

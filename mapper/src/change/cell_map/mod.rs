@@ -27,6 +27,8 @@ pub struct CellMap {
     pub(crate) estimator: EstimatorChoice,
     /// A cell stays in view during a time without an observation if this time is at most `max_gap`.
     max_gap: f64,
+    /// No cell was in view before this reading: the last one without an observation, because its pose was not certain.
+    interrupted: ReadingIndex,
     states: Grid<CellState>,
     times: ReadingTimes,
     /// For each cell the last reading that observed it, with the mark [`observing::UNSETTLED`].
@@ -61,6 +63,7 @@ impl CellMap {
         let mut map = Self {
             estimator,
             max_gap,
+            interrupted: NEVER,
             states: prior,
             times: ReadingTimes::default(),
             observed: vec![NEVER | observing::UNSETTLED; cells],
@@ -91,6 +94,12 @@ impl CellMap {
         }
         self.times.push(time);
         self.last_seen_counts.open();
+    }
+
+    /// Opens a reading that observes no cell, and ends the view of all cells.
+    pub(crate) fn interrupt(&mut self, time: f64) {
+        self.open(time);
+        self.interrupted = self.reading();
     }
 
     /// Forgets the times of readings that no cell refers to any more.

@@ -24,7 +24,8 @@ impl CellMap {
     }
 
     /// Whether the cell was in view when the open reading came: the last observation of the cell was made by the
-    /// reading before, or at most [`MapperSettings::max_gap`](crate::MapperSettings::max_gap) ago.
+    /// reading before, or at most [`MapperSettings::max_gap`](crate::MapperSettings::max_gap) ago, and all readings since
+    /// had a certain pose.
     #[inline]
     pub fn is_in_view(&self, index: usize) -> bool {
         let (now, last) = (self.reading(), self.last_reading(index));
@@ -32,7 +33,9 @@ impl CellMap {
             return self.records[index].since < now; // its view did not begin just now
         }
         last + 1 == now
-            || self.max_gap > 0.0 && last > PRIOR && self.time() - self.times.at(last) <= self.max_gap
+            || self.max_gap > 0.0
+                && last > PRIOR.max(self.interrupted)
+                && self.time() - self.times.at(last) <= self.max_gap
     }
 
     /// Marks a free cell as settled: [`observe_run`](Self::observe_run) then updates it at once. A cell that becomes

@@ -1,0 +1,20 @@
+use crate::sweep;
+use interfaces::LaserReading;
+use nalgebra::Isometry2;
+
+/// The poses of the source, taken as they are. The sweep of scans is undone with them.
+#[derive(Clone, Debug, Default)]
+pub struct GivenPoses {
+    /// The time and the pose of the last reading.
+    last: Option<(f64, Isometry2<f64>)>,
+}
+
+impl GivenPoses {
+    /// The reading with a scan whose beams all belong to its pose.
+    pub fn unswept(&mut self, mut reading: LaserReading) -> LaserReading {
+        let (last_s, last) =
+            self.last.replace((reading.time_s, reading.pose)).unwrap_or((reading.time_s, reading.pose));
+        reading.scan = sweep::unswept(&reading, &last.inv_mul(&reading.pose), reading.time_s - last_s);
+        reading
+    }
+}

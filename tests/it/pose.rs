@@ -1,0 +1,36 @@
+//! How the robot knows its pose: `--pose`.
+
+use crate::run::Run;
+
+/// The error of the position that 95 % of the readings do not exceed, m, and how poses were known.
+fn p95_m(run: &Run) -> (f64, String) {
+    let summary = run.summary();
+    let pose = &summary["pose"];
+    (pose["p95_m"].as_f64().unwrap(), pose["mode"].as_str().unwrap().to_owned())
+}
+
+#[test]
+fn a_localizer_corrects_odometry_that_drifts() {
+    let [localized, odometry, exact] = ["", "--pose odometry", "--pose exact"].map(|pose| {
+        let run = Run::new();
+        let ended = run.goes_well(&format!("--quiet --no-rrd --world drifting_house --duration 60 {pose}"));
+        assert_eq!(
+            ended.stderr.contains("this map will be wrong"),
+            pose == "--pose odometry",
+            "{}",
+            ended.stderr
+        );
+        let lines = |name| std::fs::read_to_string(run.out(name)).unwrap().lines().count();
+        assert_eq!([lines("trajectory.tum"), lines("trajectory_true.tum")], [601, 601]);
+        p95_m(&run)
+    });
+    assert_eq!(exact, (0.0, "exact".to_owned()));
+    assert!(localized.0 < 0.02 && localized.1 == "localized", "{localized:?}");
+    assert!(odometry.0 > 0.1 && odometry.1 == "odometry", "{odometry:?}");
+}
+
+#[test]
+fn exact_odometry_needs_no_localizer() {
+    let run = Run::quiet("--duration 5");
+    assert_eq!(p95_m(&run), (0.0, "exact".to_owned()));
+}
