@@ -5,7 +5,8 @@
 //! of bodies plus the number of beams that they cover, not on the product. Walls are reduced to the [`edges`] that
 //! a ray can hit, and a potentially visible set ([`visibility`]) lists for every position the few edges that can be
 //! seen from there. Moving bodies are sorted by position ([`polygons`], and round robots in [`scene`]). Where only the
-//! shortest range counts, the nearest walls and bodies come first, and what is farther away is left out ([`nearest`]). A scan that sweeps has a method of its
+//! shortest range counts, the nearest walls and bodies come first, and what is farther away is left out ([`nearest`]); the
+//! sensors of a robot share the list of what is near ([`vicinity`]). A scan that sweeps has a method of its
 //! own ([`sectors`]).
 
 mod beams;
@@ -18,6 +19,7 @@ mod passing;
 mod polygons;
 mod scene;
 mod sectors;
+mod vicinity;
 mod visibility;
 
 pub(super) use beams::Beams;
@@ -25,3 +27,4 @@ pub(super) use disc::Disc;
 pub(super) use passing::Passing;
 pub(super) use scene::Scene;
 pub(super) use sectors::Ray;
+pub(super) use vicinity::{Ring, Vicinity};

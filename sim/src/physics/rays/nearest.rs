@@ -1,7 +1,8 @@
 //! The shortest range of all beams of a sensor.
 //!
 //! The range of every beam that could be the shortest is computed as for a laser, so that the result is the same, bit
-//! for bit. What is farther away than the shortest range so far, and what lies beside the beams, is left out.
+//! for bit. What is farther away than the shortest range so far, and what lies beside the beams, is left out. The nearest
+//! things should be added first.
 
 use super::beams::{Beams, EDGE_ON_M};
 use super::disc::Disc;
@@ -11,12 +12,14 @@ use nalgebra::{Isometry2, Point2, Vector2};
 
 /// A body may be left out if it is farther away than the shortest range by this factor: far above rounding.
 const SAFE: f64 = 1.0 + 1e-5;
+/// A point counts as beside the beams if it is this far beyond their border, m: far above rounding.
+const BESIDE_M: f64 = 1e-6;
 
 /// The shortest range so far.
 pub(super) struct Nearest<'a> {
     beams: &'a Beams,
     sensor: Isometry2<f64>,
-    /// The first and the last beam, if the beams span less than half a turn.
+    /// The directions of the first and the last beam in the frame of the world, if the beams span less than half a turn.
     borders: Option<[Vector2<f64>; 2]>,
     /// One over the range, 1/m; 0 where there is no hit.
     inverse: f64,
@@ -33,7 +36,7 @@ impl<'a> Nearest<'a> {
         Self {
             beams,
             sensor: *sensor,
-            borders: is_narrow.then_some([right, left]),
+            borders: is_narrow.then(|| [right, left].map(|border| sensor.rotation * border)),
             inverse: 0.0,
             reach_m: beams.range_max_m * SAFE,
         }
@@ -56,23 +59,61 @@ impl<'a> Nearest<'a> {
         }
     }
 
-    /// Whether two points in the frame of the sensor lie on the same outer side of the beams.
+    /// Whether two points, as seen from the sensor, lie on the same outer side of the beams.
     fn is_beside(&self, a: &Vector2<f64>, b: &Vector2<f64>) -> bool {
         let Some([right, left]) = &self.borders else { return false };
-        right.perp(a) < 0.0 && right.perp(b) < 0.0 || left.perp(a) > 0.0 && left.perp(b) > 0.0
+        right.perp(a).max(right.perp(b)) < -BESIDE_M || left.perp(a).min(left.perp(b)) > BESIDE_M
+    }
+
+    /// The distance squared from the sensor to an edge, m², if the edge faces the sensor and a beam may hit it within
+    /// reach.
+    fn distance2_m2(&self, edge: &Edge) -> Option<f64> {
+        let at = Point2::from(self.sensor.translation.vector);
+        let gap_m = edge.gap_m(&at);
+        if gap_m < EDGE_ON_M || gap_m > self.beams.range_max_m || gap_m > self.reach_m {
+            return None;
+        }
+        let (from, to) = (edge.from - at, edge.to - at);
+        let along = to - from;
+        let distance2 = if along.dot(&from) > 0.0 {
+            from.norm_squared()
+        } else if along.dot(&to) < 0.0 {
+            to.norm_squared()
+        } else {
+            gap_m * gap_m
+        };
+        (distance2 <= self.reach_m * self.reach_m && !self.is_beside(&from, &to)).then_some(distance2)
     }
 
     /// Adds an edge of a solid, if the edge faces the sensor and is within reach.
     pub(super) fn add_edge(&mut self, edge: &Edge) {
-        let gap_m = edge.gap_m(&self.sensor.translation.vector.into());
-        if gap_m < EDGE_ON_M || gap_m > self.beams.range_max_m || gap_m > self.reach_m {
-            return;
+        if self.distance2_m2(edge).is_some() {
+            self.take_edge(edge);
         }
+    }
+
+    /// Adds the sides of a convex body.
+    pub(super) fn add_polygon(&mut self, sides: &[Edge]) {
+        // The nearest side first: most of the others are then out of reach.
+        let mut first = (f64::INFINITY, usize::MAX);
+        for (index, side) in sides.iter().enumerate() {
+            if let Some(distance2) = self.distance2_m2(side)
+                && distance2 < first.0
+            {
+                first = (distance2, index);
+            }
+        }
+        let Some(side) = sides.get(first.1) else { return };
+        self.take_edge(side);
+        let others = sides.iter().enumerate().filter(|(index, _)| *index != first.1);
+        others.for_each(|(_, side)| self.add_edge(side));
+    }
+
+    /// Takes the hits on an edge that faces the sensor.
+    fn take_edge(&mut self, edge: &Edge) {
+        let gap_m = edge.gap_m(&self.sensor.translation.vector.into());
         let seen = |point: &Point2<f64>| self.sensor.inverse_transform_point(point).coords;
         let (from, to) = (seen(&edge.from), seen(&edge.to));
-        if self.is_beside(&from, &to) {
-            return;
-        }
         let normal = self.sensor.rotation.inverse() * edge.normal;
         let (m, n) = (-normal.x / gap_m, -normal.y / gap_m);
         let mut most = 0.0;
@@ -93,12 +134,11 @@ impl<'a> Nearest<'a> {
         if distance2 > most_m * most_m {
             return None;
         }
-        let center = self.sensor.rotation.inverse() * to;
-        let beside_m = disc.radius_m * SAFE;
+        let beside_m = disc.radius_m * SAFE + BESIDE_M;
         let is_beside = self
             .borders
-            .is_some_and(|[right, left]| right.perp(&center) < -beside_m || left.perp(&center) > beside_m);
-        (!is_beside).then(|| (center, distance2.sqrt()))
+            .is_some_and(|[right, left]| right.perp(&to) < -beside_m || left.perp(&to) > beside_m);
+        (!is_beside).then(|| (self.sensor.rotation.inverse() * to, distance2.sqrt()))
     }
 
     /// Whether a body within a disc could change the result.

@@ -199,7 +199,7 @@ impl Robot {
 
     /// Measures with all sensors that are due, and with the main laser scanner if its reading `is_needed` now.
     fn sense(&mut self, surroundings: &Arc<Surroundings>, is_needed: bool) {
-        let look = Look { platform: self.platform(), surroundings: Arc::clone(surroundings) };
+        let look = Look::new(self.platform(), Arc::clone(surroundings));
         let others = if is_needed {
             self.sensors[0].measure(&look);
             &mut self.sensors[1..]

@@ -48,7 +48,7 @@ impl Device for LaserScanner {
     type Streams = LaserStreams;
 
     fn measure(&self, look: &Look, streams: &mut LaserStreams, spare: Option<LaserReading>) -> LaserReading {
-        let Look { platform, surroundings } = look;
+        let Look { platform, surroundings, .. } = look;
         let LaserSpec { range_min_m, range_max_m, noise_std_m, dropout, mount, sweep_s, .. } = self.spec;
         let scan = spare.map_or_else(|| self.spec.empty_scan(), |spare| spare.scan);
         let mut reading = LaserReading {

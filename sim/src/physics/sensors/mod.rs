@@ -24,7 +24,7 @@ use sonar::Sonar;
 pub use sonar::SonarReading;
 
 use super::past::Recent;
-use super::rays::Scene;
+use super::rays::{Ring, Scene};
 use super::snapshot::{Values, value};
 use super::spec::{LaserSpec, RobotSpec};
 use interfaces::{LaserReading, Purpose, RandomStream, Twist};
@@ -44,15 +44,16 @@ impl Sensor {
     pub(super) fn all(spec: &RobotSpec, beams: &mut SharedBeams, seed: u64, robot: usize) -> Vec<Self> {
         // Each sensor has streams of its own; the streams of the first sensor of a kind are those of the robot.
         let stream = |sensor: usize| robot + (sensor << 24);
+        let ring = ring(spec);
         let mut sensors = Vec::new();
         for (index, laser) in spec.lasers().enumerate() {
             sensors.push(Self::laser(laser, beams, seed, stream(index)));
         }
         for (index, sonar) in spec.sonars.iter().enumerate() {
             let noise = RandomStream::new(seed, Purpose::SonarNoise(stream(index)));
-            sensors.push(Self::Sonar(Box::new(OnDemand::new(Sonar::new(sonar, beams), noise))));
+            sensors.push(Self::Sonar(Box::new(OnDemand::new(Sonar::new(sonar, beams, ring), noise))));
         }
-        let finder = spec.fiducial.iter().map(|finder| OnDemand::new(FiducialFinder::new(finder), ()));
+        let finder = spec.fiducial.iter().map(|finder| OnDemand::new(FiducialFinder::new(finder, ring), ()));
         sensors.extend(finder.map(|finder| Self::Fiducials(Box::new(finder))));
         sensors
     }
@@ -148,6 +149,16 @@ impl Sensor {
             Self::Fiducials(finder) => vec![value(finder.state().1.get_or_insert_default())],
         }
     }
+}
+
+/// The ring of the sonars and of the fiducial finder of a robot.
+fn ring(spec: &RobotSpec) -> Ring {
+    let sonars = spec.sonars.iter().map(|sonar| (sonar.mount, sonar.range_max_m));
+    let finder = spec.fiducial.iter().map(|finder| (finder.mount, finder.range_max_m));
+    sonars.chain(finder).fold(Ring::default(), |ring, (mount, range_m)| Ring {
+        offset_m: ring.offset_m.max(mount.translation.vector.norm()),
+        range_m: ring.range_m.max(range_m),
+    })
 }
 
 /// The latest reading of a sensor; `None` before the first measurement.

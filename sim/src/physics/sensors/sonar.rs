@@ -1,6 +1,6 @@
 use super::on_demand::{Device, Look};
 use super::{SharedBeams, reported};
-use crate::physics::rays::Beams;
+use crate::physics::rays::{Beams, Ring};
 use crate::physics::spec::SonarSpec;
 use interfaces::RandomStream;
 use serde::{Deserialize, Serialize};
@@ -23,13 +23,16 @@ pub struct SonarReading {
 pub(in crate::physics) struct Sonar {
     pub(super) spec: SonarSpec,
     beams: Arc<Beams>,
+    /// Of all sensors of the robot.
+    ring: Ring,
 }
 
 impl Sonar {
-    pub(super) fn new(spec: &SonarSpec, beams: &mut SharedBeams) -> Self {
+    pub(super) fn new(spec: &SonarSpec, beams: &mut SharedBeams, ring: Ring) -> Self {
         let gaps = (spec.cone_rad / BEAM_SPACING_RAD).ceil().max(2.0);
         let (first_rad, spacing_rad) = (-spec.cone_rad / 2.0, spec.cone_rad / gaps);
-        Self { spec: *spec, beams: beams.of(first_rad, spacing_rad, gaps as usize + 1, spec.range_max_m) }
+        let beams = beams.of(first_rad, spacing_rad, gaps as usize + 1, spec.range_max_m);
+        Self { spec: *spec, beams, ring }
     }
 }
 
@@ -38,9 +41,10 @@ impl Device for Sonar {
     type Streams = RandomStream;
 
     fn measure(&self, look: &Look, noise: &mut RandomStream, _: Option<SonarReading>) -> SonarReading {
-        let Look { platform, surroundings } = look;
+        let Look { platform, surroundings, .. } = look;
         let SonarSpec { range_min_m, range_max_m, noise_std_m, mount, .. } = self.spec;
-        let nearest = surroundings.scene.nearest(&self.beams, &(platform.pose * mount), platform.robot);
+        let nearest =
+            surroundings.scene.nearest(&self.beams, &(platform.pose * mount), look.vicinity(&self.ring));
         let measured_m = 1.0 / nearest + noise_std_m * noise.normal();
         let range_m = reported(measured_m, range_min_m, range_max_m);
         SonarReading { time_s: surroundings.time_s, range_m }

@@ -57,7 +57,7 @@ pub(super) fn scan(spec: &LaserSpec, at: &Isometry2<f64>, scene: &Scene, own: us
     let platform = Platform { robot: own, pose: *at, odometry_pose: *at, odometry_twist: Twist::STOP };
     let (scene, recent) = (scene.clone(), Recent::default());
     let surroundings = Surroundings { step: 0, time_s: 0.0, scene, tagged: Vec::new(), recent };
-    laser.measure(&Look { platform, surroundings: Arc::new(surroundings) });
+    laser.measure(&Look::new(platform, Arc::new(surroundings)));
     match laser.reading() {
         SensorReading::Laser(Some(reading)) => reading.scan.clone(),
         reading => panic!("{reading:?}"),

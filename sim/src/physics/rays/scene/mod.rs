@@ -1,3 +1,4 @@
+mod ring;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -7,7 +8,6 @@ use super::circles::Discs;
 use super::disc::Disc;
 use super::edges::{Edge, visible_edges};
 use super::index_lists::IndexLists;
-use super::nearest::Nearest;
 use super::polygons::{Polygons, SortedPolygons, Tested};
 use super::visibility::PotentiallyVisibleSet;
 use crate::physics::shape::Rectangle;
@@ -173,53 +173,6 @@ impl Scene {
         if is_inside(solids, visible, polygons, own_cell, own, &at) {
             hits.add_inside();
         }
-    }
-
-    /// One over the shortest range of all `beams` of a sensor at the pose `sensor` on the robot `own`, 1/m; 0 without a
-    /// hit. The value is the largest one of [`Scene::cast`].
-    pub(in crate::physics) fn nearest(&self, beams: &Beams, sensor: &Isometry2<f64>, own: usize) -> f64 {
-        let Walls { solids, edges, visible } = &*self.walls;
-        let Sorted { robots, polygons } = self.sorted();
-        let at = Point2::from(sensor.translation.vector);
-        let own_cell = visible.cell_at(&at);
-        if is_inside(solids, visible, polygons, own_cell, own, &at) {
-            return f64::INFINITY;
-        }
-        let mut nearest = Nearest::new(beams, sensor);
-        let add_cell = |cell: usize, nearest: &mut Nearest<'_>| {
-            for (_, disc) in robots.get(cell).iter().filter(|(robot, _)| *robot as usize != own) {
-                nearest.add_disc(disc);
-            }
-            for &index in polygons.in_cell(cell) {
-                let polygon = polygons.get(index);
-                if polygon.is_seen_by(own) && nearest.may_meet(&polygon.around) {
-                    polygons.edges(polygon).iter().for_each(|edge| nearest.add_edge(edge));
-                }
-            }
-        };
-        match own_cell {
-            Some(cell) => {
-                let edges_in_reach = visible.edges(cell).iter();
-                for seen in edges_in_reach {
-                    if f64::from(seen.nearest_m) > nearest.reach_m() {
-                        break;
-                    }
-                    nearest.add_edge(&edges[seen.edge as usize]);
-                }
-                for &other in visible.cells(cell) {
-                    if visible.apart_m(cell, other as usize) > nearest.reach_m() {
-                        break;
-                    }
-                    add_cell(other as usize, &mut nearest);
-                }
-                add_cell(visible.len(), &mut nearest);
-            }
-            None => {
-                edges.iter().for_each(|edge| nearest.add_edge(edge));
-                (0..=visible.len()).for_each(|cell| add_cell(cell, &mut nearest));
-            }
-        }
-        nearest.inverse()
     }
 }
 

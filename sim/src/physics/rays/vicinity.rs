@@ -1,0 +1,108 @@
+//! The walls and bodies around a robot, for all sensors of the robot that only need the nearest of them.
+
+use super::disc::Disc;
+use nalgebra::Point2;
+
+/// A stored distance is at most the true one by this factor: the rounding of single precision.
+const SAFE: f64 = 1.0 - 1e-6;
+
+/// The positions and ranges of the sensors of a robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(in crate::physics) struct Ring {
+    /// The greatest distance of a sensor from the center of the robot, m.
+    pub(in crate::physics) offset_m: f64,
+    /// The longest range of a sensor, m.
+    pub(in crate::physics) range_m: f64,
+}
+
+/// A wall or a body, by its index.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Thing {
+    /// A visible edge of the walls.
+    Edge(usize),
+    /// A round robot.
+    Robot(usize),
+    /// A convex body.
+    Polygon(u32),
+}
+
+/// The walls and bodies that the sensors of a robot may detect, the nearest first.
+#[derive(Clone, Debug)]
+pub(in crate::physics) struct Vicinity {
+    /// The center of the robot and the distance of its sensors from the center, m.
+    pub(super) sensors: Disc,
+    /// The solid walls in which a sensor may be.
+    pub(super) solids: Vec<u32>,
+    /// For each thing its distance from the center of the robot, at most the true one, in 32 bits; its kind in 2 bits;
+    /// and its index in 30 bits. So the order of the numbers is that of the distances.
+    things: Vec<u64>,
+}
+
+impl Vicinity {
+    /// Nothing yet.
+    pub(super) fn new(center: Point2<f64>, ring: &Ring) -> Self {
+        // A little larger, because of rounding.
+        let sensors = Disc { center, radius_m: ring.offset_m * (1.0 + 1e-9) + 1e-9 };
+        Self { sensors, solids: Vec::new(), things: Vec::new() }
+    }
+
+    /// Adds a thing at a distance from the center of the robot, m.
+    pub(super) fn add(&mut self, distance_m: f64, thing: Thing) {
+        // The bits of positive numbers have the order of the numbers.
+        let distance = ((distance_m.max(0.0) * SAFE) as f32).to_bits();
+        let (kind, index) = match thing {
+            Thing::Edge(index) => (0, index as u64),
+            Thing::Robot(index) => (1, index as u64),
+            Thing::Polygon(index) => (2, u64::from(index)),
+        };
+        self.things.push(u64::from(distance) << 32 | kind << 30 | index);
+    }
+
+    /// Sorts the things by their distance, and removes those that were added twice.
+    pub(super) fn sort(&mut self) {
+        self.things.sort_unstable();
+        self.things.dedup();
+    }
+
+    /// The things, each with a distance from the center of the robot (m) that is at most the true one, the nearest first.
+    pub(super) fn things(&self) -> impl Iterator<Item = (f64, Thing)> {
+        self.things.iter().map(|thing| {
+            let index = thing & ((1 << 30) - 1);
+            let kind = match thing >> 30 & 3 {
+                0 => Thing::Edge(index as usize),
+                1 => Thing::Robot(index as usize),
+                _ => Thing::Polygon(index as u32),
+            };
+            (f64::from(f32::from_bits((thing >> 32) as u32)), kind)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn things_come_in_the_order_of_their_distance_and_once() {
+        let mut vicinity = Vicinity::new(Point2::origin(), &Ring::default());
+        let things = [
+            (3.5, Thing::Polygon(7)),
+            (-0.2, Thing::Polygon(1)),
+            (1e-3, Thing::Edge((1 << 30) - 1)),
+            (3.5, Thing::Polygon(7)),
+            (0.7, Thing::Robot(12)),
+            (1e3, Thing::Edge(0)),
+        ];
+        things.iter().for_each(|(distance_m, thing)| vicinity.add(*distance_m, *thing));
+        vicinity.sort();
+        let found: Vec<_> = vicinity.things().collect();
+        assert_eq!(
+            found.iter().map(|found| found.1).collect::<Vec<_>>(),
+            [1, 2, 4, 0, 5].map(|i| things[i].1)
+        );
+        for ((stored_m, _), index) in found.iter().zip([1, 2, 4, 0, 5]) {
+            let true_m = f64::max(things[index].0, 0.0);
+            assert!(*stored_m <= true_m && *stored_m >= true_m * (1.0 - 1e-5), "{stored_m} m, {true_m} m");
+        }
+    }
+}
