@@ -75,10 +75,6 @@ impl Hypotheses {
         self.list.iter().map(square).sum()
     }
 
-    pub(crate) fn debug(&self) -> String {
-        self.list.iter().map(|h| format!("[{:.3} score {:.2} at {:.2} {:.2}]", h.score / f64::from(self.scans + 1), h.support.score(), h.pose.translation.x, h.pose.translation.y)).collect()
-    }
-
     /// The only pose, once it has agreed with this number of scans after the search.
     pub(crate) fn decided(&self, scans: u32) -> Option<&Hypothesis> {
         if self.scans >= scans && self.list.len() == 1 { self.list.first() } else { None }

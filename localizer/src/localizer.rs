@@ -21,12 +21,16 @@ const WINDOW_M: f64 = 1.3;
 const WINDOW_RAD: f64 = 1.2;
 /// The least score of a pose in a search.
 const LEAST_FOUND: f64 = 0.55;
-/// The least score of a refined pose.
-const LEAST_SCORE: f64 = 0.5;
+/// The least score of a refined pose: around the predicted pose, and anywhere.
+const LEAST_SCORE_NEAR: f64 = 0.5;
+const LEAST_SCORE: f64 = 0.65;
 /// The number of scans between two searches in the whole map.
 const SEARCH_EVERY: u32 = 5;
 /// The number of scans between two updates of the weights by rates.
 const RATES_EVERY: u32 = 100;
+/// The line map also learns from scans whose pose is less certain than a map of changes tolerates, by this factor:
+/// otherwise a robot that turns into a new room with few beams would never see it with certainty.
+const LEARNING_LIMITS: f64 = 3.0;
 /// The least confirmed weight of a certain pose: about a metre of wall.
 const LEAST_CONFIRMED: f64 = 8.0;
 /// The number of scans for which the odometry is not trusted after it did not tell the truth.
@@ -64,6 +68,8 @@ pub struct Localizer {
     start_s: Option<f64>,
     /// Whether the robot started without a map.
     from_nothing: bool,
+    /// Whether the present scan may enter the line map.
+    learns: bool,
     /// The number of scans for which the odometry is not trusted.
     distrust: u32,
     /// The number of readings.
@@ -138,6 +144,7 @@ impl Localizer {
             supported_s: None,
             start_s: None,
             from_nothing,
+            learns: false,
             distrust: 0,
             readings: 0,
             since_search: SEARCH_EVERY,
@@ -177,6 +184,7 @@ impl Localizer {
         self.clear.update(&reading.scan);
         let before = self.pose;
         let was_tracking = self.state == PoseState::Tracking;
+        self.learns = false;
         let support = self.estimate(&reading, &motion, map, fault);
         self.last_motion = before.inv_mul(&self.pose);
         if was_tracking && self.state == PoseState::Tracking {
@@ -184,8 +192,9 @@ impl Localizer {
         }
         if fault.is_some() && self.state == PoseState::Tracking {
             self.state = PoseState::Uncertain;
+            self.learns = false;
         }
-        if self.state == PoseState::Tracking || !self.settings.gate {
+        if self.learns || !self.settings.gate {
             self.learn(&reading);
         }
         self.localized(reading, support.share())
@@ -197,7 +206,7 @@ impl Localizer {
     fn motion(&mut self, reading: &LaserReading) -> Motion {
         let before = self.odometry.replace(reading.pose).unwrap_or(reading.pose);
         self.measured = before.inv_mul(&reading.pose);
-        let corrected = if *crate::tune::CAL > 0.0 { self.calibration.correct(&self.measured) } else { self.measured };
+        let corrected = self.calibration.correct(&self.measured);
         let motion = Motion::new(corrected, &self.settings.odometry);
         if self.distrust > 0 { motion.distrusted() } else { motion }
     }
@@ -229,6 +238,7 @@ impl Localizer {
         if fault == Some(Fault::Frozen) || is_first {
             (self.pose, self.covariance) = (predicted, covariance);
             self.state = if is_first { PoseState::Tracking } else { PoseState::Uncertain };
+            self.learns = is_first;
             return Support::default();
         }
         if !self.hypotheses.is_empty() {
@@ -278,9 +288,11 @@ impl Localizer {
         }
         let estimate = self.pose_estimate(1.0);
         let scale = (self.settings.range_noise_std_m / NOISE_M).max(1.0);
-        let is_certain = estimate.position_std_m() <= scale * self.settings.max_position_std_m
-            && estimate.heading_std_rad() <= scale * self.settings.max_heading_std_rad;
-        self.state = if is_certain { PoseState::Tracking } else { PoseState::Uncertain };
+        let of_limits = (estimate.position_std_m() / self.settings.max_position_std_m)
+            .max(estimate.heading_std_rad() / self.settings.max_heading_std_rad)
+            / scale;
+        self.state = if of_limits <= 1.0 { PoseState::Tracking } else { PoseState::Uncertain };
+        self.learns = of_limits <= LEARNING_LIMITS;
         self.supported_s = Some(self.time_s);
     }
 
@@ -307,12 +319,11 @@ impl Localizer {
         let mut found = Hypotheses::default();
         if is_near {
             let candidates = search(&grid, self.points.points(), Some(&window), LEAST_FOUND, ratio);
-            found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
+            found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE_NEAR, ratio);
         }
         if found.is_empty() && self.since_search >= SEARCH_EVERY {
             self.since_search = 0;
             let candidates = search(&grid, self.points.points(), None, LEAST_FOUND, ratio);
-        if std::env::var("DBG").is_ok() { for c in &candidates {eprintln!("   cand {:.3} at {:.2} {:.2}", c.score, c.pose.translation.x, c.pose.translation.y); }}
             found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
         }
         self.scores = Some((revision, grid));
@@ -331,8 +342,7 @@ impl Localizer {
     fn follow(&mut self, reading: &LaserReading, motion: &Motion, map: &impl ChangingMap) -> Support {
         let mut hypotheses = std::mem::take(&mut self.hypotheses);
         let ratio = self.settings.ambiguity_ratio;
-        hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
-        if std::env::var("DBG").is_ok() { eprintln!("{}", hypotheses.debug()); }
+        hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE_NEAR, ratio);
         self.hypotheses = hypotheses;
         self.since_search = self.since_search.saturating_add(1);
         let support = self.hypotheses.best().map_or(Support::default(), |best| best.support);

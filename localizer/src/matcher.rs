@@ -16,7 +16,7 @@ const STEP_M: f64 = 1e-4;
 const STEP_RAD: f64 = 2e-5;
 /// The error of a surfel beyond the noise of its hits, m: surfaces are not perfectly straight, and were learned at
 /// poses with an error.
-const SURFEL_STD_M: f64 = 0.003;
+pub(crate) const SURFEL_STD_M: f64 = 0.003;
 
 /// A pose with the inverse of its covariance, in the frame of the map.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +81,7 @@ fn accumulate(
     gate_m: f64,
     gates: &Gates,
 ) -> NormalEquations {
-    let variance = gates.noise_m * gates.noise_m + *crate::tune::SURFSTD * *crate::tune::SURFSTD;
+    let variance = gates.noise_m * gates.noise_m + SURFEL_STD_M * SURFEL_STD_M;
     let mut sums = NormalEquations {
         hessian: Matrix3::zeros(),
         gradient: Vector3::zeros(),

@@ -1,7 +1,7 @@
 //! All that one scan is compared with.
 
 use crate::changing_map::ChangingMap;
-use crate::matcher::{Gates, Match, Prior, align};
+use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align};
 use crate::scan_points::ScanPoint;
 use crate::settings::LocalizerSettings;
 use crate::support::{ClearBeams, Support, judge};
@@ -10,8 +10,6 @@ use nalgebra::{Isometry2, Point2};
 
 /// Points match a surfel within this many standard deviations of the range noise and of the surfel.
 const GATE_STDS: f64 = 3.5;
-/// The error of surfels in the gate, m.
-const SURFEL_STD_M: f64 = 0.003;
 
 /// One scan, and the maps.
 pub(crate) struct Scene<'a, M> {

@@ -40,6 +40,7 @@ pub(crate) struct Window {
 pub(crate) struct Candidate {
     pub(crate) pose: Isometry2<f64>,
     /// The score, from 0 to 1.
+    #[cfg(test)]
     pub(crate) score: f64,
 }
 
@@ -217,6 +218,7 @@ impl Search<'_> {
         }
         let candidate = |(node, at): &(Node, Point2<f64>)| Candidate {
             pose: interfaces::pose(at.x, at.y, self.headings_rad[node.heading]),
+            #[cfg(test)]
             score: f64::from(node.bound) / f64::from(self.perfect),
         };
         found.iter().map(candidate).collect()

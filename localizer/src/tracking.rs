@@ -99,7 +99,7 @@ fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>
 /// errors that all points share.
 fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
     let inverse = found.information.try_inverse().unwrap_or_else(|| Matrix3::identity() * 1e3);
-    let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD) * *crate::tune::MODEL;
+    let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD);
     let covariance =
         inverse * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model));
     Tracked { pose: found.pose, covariance, support: scene.judge(&found.pose), stayed: false, is_other: false }

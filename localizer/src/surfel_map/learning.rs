@@ -32,7 +32,7 @@ impl SurfelMap {
     fn hit(&mut self, index: u32, at: &nalgebra::Point2<f64>, normal: &nalgebra::Vector2<f64>) {
         let surfel = &mut self.surfels[index as usize];
         surfel.misses = 0;
-        if f64::from(surfel.scans) >= *crate::tune::FROZEN {
+        if surfel.scans >= FROZEN_SCANS {
             return;
         }
         let was_usable = surfel.weight() > 0.0;
