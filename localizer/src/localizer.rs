@@ -29,6 +29,10 @@ const DISTRUST_SCANS: u32 = 20;
 /// The range noise for which the limits of the standard deviations hold, m. A map of a laser with more noise tolerates
 /// larger errors of the pose.
 const NOISE_M: f64 = 0.01;
+/// The match of a mirrored scan starts up to this far from the pose, m.
+const MIRRORED_GATE_M: f64 = 0.2;
+/// The largest share of a scan without a return where the map knows something blocked: beyond, the laser is covered.
+const MOST_BLIND: f64 = 0.1;
 /// The uncertainty of a pose that is lost, m and rad.
 const LOST_STD_M: f64 = 5.0;
 const LOST_STD_RAD: f64 = 3.0;
@@ -282,8 +286,10 @@ impl Localizer {
         let of_limits = (estimate.position_std_m() / self.settings.max_position_std_m)
             .max(estimate.heading_std_rad() / self.settings.max_heading_std_rad)
             / scale;
-        self.state = if of_limits <= 1.0 { PoseState::Tracking } else { PoseState::Uncertain };
-        self.learns = of_limits <= LEARNING_LIMITS;
+        let is_blind = tracked.support.blind > MOST_BLIND * tracked.support.weight();
+        let is_certain = of_limits <= 1.0 && !is_blind;
+        self.state = if is_certain { PoseState::Tracking } else { PoseState::Uncertain };
+        self.learns = of_limits <= LEARNING_LIMITS && !is_blind;
         self.supported_s = Some(self.time_s);
     }
 
@@ -323,5 +329,6 @@ impl Localizer {
 fn is_mirrored<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>, reading: &LaserReading) -> bool {
     let points = mirrored(scene.points, &reading.mount);
     let scene = Scene { points: &points, ..*scene };
-    scene.judge(pose).share() >= scene.settings.min_support
+    let found = scene.align(pose, None, MIRRORED_GATE_M, false);
+    found.is_some_and(|found| scene.judge(&found.pose).share() >= scene.settings.min_support)
 }

@@ -89,6 +89,8 @@ fn accumulate(
         weight: 0.0,
         points: 0.0,
     };
+    // Well inside of the gate: what moved by a little more than the noise must not pull.
+    let scale_m = gate_m / 2.0;
     for point in points {
         let arm = pose.rotation * point.at.coords;
         let at = (pose.translation.vector + arm).into();
@@ -98,13 +100,13 @@ fn accumulate(
         if gates.by_rates {
             weight *= surfel.steadiness;
         }
-        let certain = weight / variance * kernel(off_m, gate_m);
+        let certain = weight / variance * kernel(off_m, scale_m);
         let j = derivative(&arm, &surfel.normal);
         sums.hessian += j * j.transpose() * certain;
         sums.gradient += j * (off_m * certain);
         sums.squares += off_m * off_m * certain;
-        sums.weight += weight * kernel(off_m, gate_m);
-        sums.points += point.weight * kernel(off_m, gate_m);
+        sums.weight += weight * kernel(off_m, scale_m);
+        sums.points += point.weight * kernel(off_m, scale_m);
     }
     // Trust decides between surfels; it does not make a scan worth less than the odometry.
     if sums.weight > 0.0 {

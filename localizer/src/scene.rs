@@ -57,7 +57,8 @@ impl<M: ChangingMap> Scene<'_, M> {
         let laser = pose * self.mount;
         let origin = Point2::from(laser.translation.vector);
         let mut support = judge(self.surfels, self.map, self.points, pose, &origin, gate_m);
-        support.contradicted += self.clear.contradicted(self.map, &laser);
+        support.blind = self.clear.contradicted(self.map, &laser);
+        support.contradicted += support.blind;
         support
     }
 }

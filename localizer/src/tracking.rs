@@ -14,8 +14,11 @@ const WIDE_GATE_M: f64 = 0.3;
 /// The least gain of support with which another pose replaces the predicted one.
 const BETTER: f64 = 0.05;
 /// Where this share of the points lies exactly in place and stands against every motion of the robot, the pose is that
-/// of the odometry, whatever else has moved.
-const STAYED_SHARE: f64 = 0.1;
+/// of the odometry, though the rest moved as if the robot had moved.
+const STAYED_SHARE: f64 = 0.012;
+/// The same where the rest does not fit any other pose, and the least support.
+const ONLY_SHARE: f64 = 0.1;
+const ONLY_SUPPORT: f64 = 0.5;
 /// Shifts below this are no coherent motion of things, m.
 const COHERENT_M: f64 = 0.03;
 /// Errors of the map, which change where other surfaces come into view.
@@ -61,10 +64,17 @@ pub(crate) fn track<M: ChangingMap>(
         }
     }
     let in_place = scene.judge_within(&by_odometry.pose, scene.gate_m() / 2.0);
-    let stayed = in_place.fixes_pose(STAYED_SHARE * in_place.weight());
-    let things_moved = stayed && is_coherent(&by_odometry, &best);
-    let is_other = is_good(&best) && !things_moved;
-    if is_other { Tracked { is_other, ..best } } else { Tracked { stayed: stayed && (things_moved || !is_surprise), ..by_odometry } }
+    let fixes_pose = |share: f64| in_place.fixes_pose(share * in_place.weight());
+    if is_good(&best) {
+        let things_moved = is_coherent(&by_odometry, &best) && fixes_pose(STAYED_SHARE);
+        return if things_moved {
+            Tracked { stayed: true, ..by_odometry }
+        } else {
+            Tracked { is_other: true, ..best }
+        };
+    }
+    let is_enough = by_odometry.support.share() >= ONLY_SUPPORT && fixes_pose(ONLY_SHARE);
+    Tracked { stayed: is_enough && !is_surprise, ..by_odometry }
 }
 
 /// The match with the prior of odometry, and whether the motion by odometry was not true.

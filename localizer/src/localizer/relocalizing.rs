@@ -19,6 +19,8 @@ const LEAST_FOUND: f64 = 0.55;
 /// The least score of a refined pose: around the predicted pose, and anywhere.
 const LEAST_SCORE_NEAR: f64 = 0.5;
 const LEAST_SCORE: f64 = 0.65;
+/// A pose near the predicted pose with this score makes a search in the whole map needless.
+const CLEAR_SCORE: f64 = 0.85;
 /// The number of scans between two searches in the whole map.
 const SEARCH_EVERY: u32 = 5;
 impl Localizer {
@@ -38,10 +40,12 @@ impl Localizer {
             let candidates = search(&grid, self.points.points(), Some(&window), LEAST_FOUND, ratio);
             found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE_NEAR, ratio);
         }
-        if found.is_empty() && self.since_search >= SEARCH_EVERY {
+        let is_clear = found.best().is_some_and(|best| best.support.score() >= CLEAR_SCORE);
+        if !is_clear && self.since_search >= SEARCH_EVERY {
             self.since_search = 0;
             let candidates = search(&grid, self.points.points(), None, LEAST_FOUND, ratio);
-            found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
+            let anywhere = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
+            found = found.or(anywhere, ratio);
         }
         self.scores = Some((revision, grid));
         let is_confirmed = is_near && found.contains(&tracked.pose);
@@ -59,7 +63,7 @@ impl Localizer {
     pub(super) fn follow(&mut self, reading: &LaserReading, motion: &Motion, map: &impl ChangingMap) -> Support {
         let mut hypotheses = std::mem::take(&mut self.hypotheses);
         let ratio = self.settings.ambiguity_ratio;
-        hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE_NEAR, ratio);
+        hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
         self.hypotheses = hypotheses;
         self.since_search = self.since_search.saturating_add(1);
         let support = self.hypotheses.best().map_or(Support::default(), |best| best.support);
