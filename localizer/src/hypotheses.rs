@@ -40,7 +40,12 @@ pub(crate) struct Hypotheses {
 
 impl Hypotheses {
     /// Refines the poses that a search has found. Poses below `least_score` are dropped.
-    pub(crate) fn start<M: ChangingMap>(scene: &Scene<M>, found: &[Candidate], least_score: f64, ratio: f64) -> Self {
+    pub(crate) fn start<M: ChangingMap>(
+        scene: &Scene<M>,
+        found: &[Candidate],
+        least_score: f64,
+        ratio: f64,
+    ) -> Self {
         let spread = Vector3::new(FOUND_STD_M, FOUND_STD_M, FOUND_STD_RAD);
         let covariance = Matrix3::from_diagonal(&spread.component_mul(&spread));
         let mut hypotheses = Self::default();
@@ -90,7 +95,13 @@ impl Hypotheses {
     }
 
     /// Moves all poses and compares them with the next scan. Poses below `least_score` are dropped.
-    pub(crate) fn advance<M: ChangingMap>(&mut self, scene: &Scene<M>, motion: &Motion, least_score: f64, ratio: f64) {
+    pub(crate) fn advance<M: ChangingMap>(
+        &mut self,
+        scene: &Scene<M>,
+        motion: &Motion,
+        least_score: f64,
+        ratio: f64,
+    ) {
         self.scans += 1;
         let next = |hypothesis: &Hypothesis| {
             let covariance = motion.propagate(&hypothesis.pose, &hypothesis.covariance);

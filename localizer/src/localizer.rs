@@ -26,6 +26,8 @@ const LEARNING_LIMITS: f64 = 3.0;
 const LEAST_CONFIRMED: f64 = 8.0;
 /// The number of scans for which the odometry is not trusted after it did not tell the truth.
 const DISTRUST_SCANS: u32 = 20;
+/// The number of scans for which only what lies exactly in place counts, after much of the view has moved.
+const TIGHT_SCANS: u32 = 10;
 /// The range noise for which the limits of the standard deviations hold, m. A map of a laser with more noise tolerates
 /// larger errors of the pose.
 const NOISE_M: f64 = 0.01;
@@ -63,6 +65,8 @@ pub struct Localizer {
     start_s: Option<f64>,
     /// Whether the robot started without a map.
     from_nothing: bool,
+    /// The number of scans for which only what lies exactly in place counts.
+    tight: u32,
     /// Whether the present scan may enter the line map.
     learns: bool,
     /// The number of scans for which the odometry is not trusted.
@@ -139,6 +143,7 @@ impl Localizer {
             supported_s: None,
             start_s: None,
             from_nothing,
+            tight: 0,
             learns: false,
             distrust: 0,
             readings: 0,
@@ -242,13 +247,15 @@ impl Localizer {
         let others = [self.pose, self.pose * self.last_motion];
         let scene = self.scene(reading, map);
         let tracked = track(&scene, &predicted, &covariance, &others);
-        if self.is_supported(&tracked) {
+        let is_low = tracked.support.share() < self.settings.min_support;
+        let is_mirrored = is_low && is_mirrored(&scene, &predicted, reading);
+        if self.is_supported(&tracked) && !is_mirrored {
             let support = tracked.support;
+            self.tight = if tracked.stayed { TIGHT_SCANS } else { self.tight.saturating_sub(1) };
             self.distrust = if tracked.is_other { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
             self.accept(&tracked);
             return support;
         }
-        let is_mirrored = is_mirrored(&scene, &predicted, reading);
         (self.pose, self.covariance) = (predicted, covariance);
         self.doubt();
         if !is_mirrored {
@@ -265,6 +272,7 @@ impl Localizer {
             clear: &self.clear,
             mount: reading.mount,
             settings: &self.settings,
+            is_tight: self.tight > 0,
         }
     }
 
@@ -296,16 +304,19 @@ impl Localizer {
     /// The pose is not certain; after some time, it is lost.
     fn doubt(&mut self) {
         let limit_s = self.settings.lost_after_s;
-        let is_lost = self.supported_s.map_or(self.state == PoseState::Lost, |supported_s| {
-            self.time_s - supported_s > limit_s
-        });
+        let is_lost = self
+            .supported_s
+            .map_or(self.state == PoseState::Lost, |supported_s| self.time_s - supported_s > limit_s);
         self.state = if is_lost { PoseState::Lost } else { PoseState::Uncertain };
     }
 
     /// Learns the line map from a scan with a certain pose.
     fn learn(&mut self, reading: &LaserReading) {
-        let noise_m = self.settings.range_noise_std_m;
-        self.surfels.learn(self.points.points(), &self.pose, noise_m);
+        // While much is out of place, nothing is learned from what may have moved; what is gone is removed.
+        if self.tight == 0 {
+            let noise_m = self.settings.range_noise_std_m;
+            self.surfels.learn(self.points.points(), &self.pose, noise_m);
+        }
         self.checker.check(&mut self.surfels, reading, &self.pose);
     }
 

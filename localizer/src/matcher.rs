@@ -94,7 +94,9 @@ fn accumulate(
     for point in points {
         let arm = pose.rotation * point.at.coords;
         let at = (pose.translation.vector + arm).into();
-        let Some((index, off_m)) = map.nearest(&at, &(pose.rotation * point.normal), gate_m) else { continue };
+        let Some((index, off_m)) = map.nearest(&at, &(pose.rotation * point.normal), gate_m) else {
+            continue;
+        };
         let surfel = map.surfel(index);
         let mut weight = point.weight * surfel.weight();
         if gates.by_rates {
@@ -171,4 +173,37 @@ pub(crate) fn align(
         information,
         residual_ratio: if sums.weight > 0.0 { sums.squares / sums.weight } else { 1.0 },
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::pose;
+    use nalgebra::Point2;
+
+    #[test]
+    fn the_derivative_is_that_of_finite_differences() {
+        let (surfel, normal) = (Point2::new(2.0, 1.5), interfaces::rotation(0.4) * Vector2::x());
+        let (point, at) = (Point2::new(1.7, -0.6), [0.3, -0.2, 0.9]);
+        let residual = |x: f64, y: f64, turn: f64| {
+            let pose = pose(at[0] + x, at[1] + y, at[2] + turn);
+            (pose * point - surfel).dot(&normal)
+        };
+        let arm = interfaces::rotation(at[2]) * point.coords;
+        let expected = derivative(&arm, &normal);
+        let step = 1e-6;
+        let difference = |x: f64, y: f64, turn: f64| {
+            (residual(x * step, y * step, turn * step) - residual(-x * step, -y * step, -turn * step))
+                / (2.0 * step)
+        };
+        let found =
+            Vector3::new(difference(1.0, 0.0, 0.0), difference(0.0, 1.0, 0.0), difference(0.0, 0.0, 1.0));
+        assert!((found - expected).norm() < 1e-8, "{found} {expected}");
+    }
+
+    #[test]
+    fn the_difference_of_headings_is_the_short_way() {
+        let off = difference(&pose(1.0, 2.0, 3.1), &pose(0.5, 2.5, -3.1));
+        assert!((off - Vector3::new(0.5, -0.5, 6.2 - std::f64::consts::TAU)).norm() < 1e-9, "{off}");
+    }
 }

@@ -55,7 +55,8 @@ impl ScoreGrid {
     fn splat(&mut self, surfels: &SurfelMap) {
         let reach = Vector2::new(REACH_M, REACH_M);
         for surfel in surfels.usable() {
-            let (low, high) = (self.frame.cell_at(&(surfel.at - reach)), self.frame.cell_at(&(surfel.at + reach)));
+            let (low, high) =
+                (self.frame.cell_at(&(surfel.at - reach)), self.frame.cell_at(&(surfel.at + reach)));
             for (x, y) in (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| (x, y))) {
                 let cell = Cell::new(x, y);
                 if !self.frame.contains(cell) {

@@ -102,7 +102,8 @@ fn passes_blocked(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>)
     let step_m = states.frame().resolution_m();
     let steps = ((length_m - 2.0 * END_MARGIN_M) / step_m).max(0.0) as usize;
     let along = way / length_m;
-    (0..steps).any(|step| state(&(laser + along * (END_MARGIN_M + step as f64 * step_m))) == CellState::Blocked)
+    (0..steps)
+        .any(|step| state(&(laser + along * (END_MARGIN_M + step as f64 * step_m))) == CellState::Blocked)
 }
 
 /// Some of the beams without a return. Where such a beam passes something blocked, the map contradicts the scan: the

@@ -84,7 +84,15 @@ impl SurfelMap {
     pub(crate) fn new(frame: &GridFrame) -> Self {
         let frame = coarse(frame);
         let cells = vec![[NONE; PER_CELL]; frame.len()];
-        Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), revision: 0, scan: 0, knows_rates: false }
+        Self {
+            frame,
+            cells,
+            surfels: Vec::new(),
+            removed: Vec::new(),
+            revision: 0,
+            scan: 0,
+            knows_rates: false,
+        }
     }
 
     /// The grid of the cells.

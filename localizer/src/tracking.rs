@@ -63,15 +63,14 @@ pub(crate) fn track<M: ChangingMap>(
             best = candidate;
         }
     }
-    let in_place = scene.judge_within(&by_odometry.pose, scene.gate_m() / 2.0);
+    let in_place = scene.tight().judge(&by_odometry.pose);
     let fixes_pose = |share: f64| in_place.fixes_pose(share * in_place.weight());
+    if is_coherent(&by_odometry, &best) && fixes_pose(STAYED_SHARE) {
+        let (in_place, _) = with_prior(&scene.tight(), predicted, covariance);
+        return Tracked { stayed: true, ..in_place };
+    }
     if is_good(&best) {
-        let things_moved = is_coherent(&by_odometry, &best) && fixes_pose(STAYED_SHARE);
-        return if things_moved {
-            Tracked { stayed: true, ..by_odometry }
-        } else {
-            Tracked { is_other: true, ..best }
-        };
+        return Tracked { is_other: true, ..best };
     }
     let is_enough = by_odometry.support.share() >= ONLY_SUPPORT && fixes_pose(ONLY_SHARE);
     Tracked { stayed: is_enough && !is_surprise, ..by_odometry }
@@ -85,13 +84,20 @@ fn with_prior<M: ChangingMap>(
 ) -> (Tracked, bool) {
     let stay = || {
         let support = scene.judge(predicted);
-        (Tracked { pose: *predicted, covariance: *covariance, support, stayed: false, is_other: false }, false)
+        (
+            Tracked { pose: *predicted, covariance: *covariance, support, stayed: false, is_other: false },
+            false,
+        )
     };
     let Some(information) = covariance.try_inverse() else { return stay() };
     let prior = Prior { pose: *predicted, information };
-    let first_m = scene.gate_m() + 2.0 * (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
+    let spread_m = (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
+    // What has moved a little is out of reach from the start.
+    let first_m = if scene.is_tight { scene.gate_m() } else { scene.gate_m() + 2.0 * spread_m };
     let by_rates = unchanged_fix_pose(scene, predicted);
-    let Some(found) = scene.align(predicted, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else { return stay() };
+    let Some(found) = scene.align(predicted, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else {
+        return stay();
+    };
     (tracked(scene, &found), surprise(&found, predicted, covariance) > SURPRISE)
 }
 
@@ -112,7 +118,13 @@ fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
     let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD);
     let covariance =
         inverse * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model));
-    Tracked { pose: found.pose, covariance, support: scene.judge(&found.pose), stayed: false, is_other: false }
+    Tracked {
+        pose: found.pose,
+        covariance,
+        support: scene.judge(&found.pose),
+        stayed: false,
+        is_other: false,
+    }
 }
 
 /// Whether changing surfaces may be weighed down: the others alone fix the pose. Otherwise a wrong pose could declare

@@ -38,8 +38,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
 const RESERVED: &[(&str, &[&str])] = &[("rerun", &["viewer", "curious"]), ("rapier2d", &["sim"])];
 
 /// The libraries that must build without Rerun; the benches use them and nothing else.
-const WITHOUT_RERUN: &[&str] =
-    &["interfaces", "sim", "worldfile", "stage", "mapper", "localizer", "agent", "controller", "robot", "evaluation"];
+const WITHOUT_RERUN: &[&str] = &[
+    "interfaces",
+    "sim",
+    "worldfile",
+    "stage",
+    "mapper",
+    "localizer",
+    "agent",
+    "controller",
+    "robot",
+    "evaluation",
+];
 
 #[test]
 fn every_crate_uses_only_what_it_may() {

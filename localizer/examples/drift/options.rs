@@ -33,9 +33,7 @@ pub(crate) struct Options {
 }
 
 impl Options {
-    pub(crate) fn parse(
-        arguments: impl Iterator<Item = String>,
-    ) -> Result<Self, Box<dyn std::error::Error>> {
+    pub(crate) fn parse(arguments: impl Iterator<Item = String>) -> Result<Self, Box<dyn std::error::Error>> {
         let mut options = Self {
             world: None,
             generate: 1000,

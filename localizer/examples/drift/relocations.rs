@@ -2,7 +2,9 @@
 
 use crate::options::Options;
 use crate::score::{error, quantile};
-use interfaces::{Cell, CellState, Grid, GroundTruth, Purpose, RandomStream, SettingsError, TrueState, Twist, World};
+use interfaces::{
+    Cell, CellState, Grid, GroundTruth, Purpose, RandomStream, SettingsError, TrueState, Twist, World,
+};
 use localizer::{Localizer, PoseState, Start};
 use nalgebra::Isometry2;
 use sim::physics::{PhysicsWorld, WorldSpec};
@@ -39,7 +41,10 @@ pub(crate) fn run(options: &Options, spec: &WorldSpec, seed: u64) -> Result<(), 
             _ => open += 1,
         }
         if options.trace {
-            println!("{:?} {error_m:.2} m {error_rad:.2} rad, {slowest_ms:.1} ms, support {:.2}", estimate.state, estimate.support);
+            println!(
+                "{:?} {error_m:.2} m {error_rad:.2} rad, {slowest_ms:.1} ms, support {:.2}",
+                estimate.state, estimate.support
+            );
         }
     }
     println!(
@@ -63,11 +68,7 @@ fn true_map(world: &PhysicsWorld) -> Grid<CellState> {
 }
 
 /// The world with the robot at a random place that is free in the map, and its pose.
-fn somewhere(
-    spec: &WorldSpec,
-    map: &Grid<CellState>,
-    seed: u64,
-) -> Option<(PhysicsWorld, Isometry2<f64>)> {
+fn somewhere(spec: &WorldSpec, map: &Grid<CellState>, seed: u64) -> Option<(PhysicsWorld, Isometry2<f64>)> {
     let mut random = RandomStream::new(seed, Purpose::HouseGenerator);
     let frame = map.frame();
     let is_free = |cell: Cell| {

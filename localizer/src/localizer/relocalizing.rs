@@ -60,7 +60,12 @@ impl Localizer {
     }
 
     /// Compares all hypotheses with the scan; the last one that is left becomes the pose.
-    pub(super) fn follow(&mut self, reading: &LaserReading, motion: &Motion, map: &impl ChangingMap) -> Support {
+    pub(super) fn follow(
+        &mut self,
+        reading: &LaserReading,
+        motion: &Motion,
+        map: &impl ChangingMap,
+    ) -> Support {
         let mut hypotheses = std::mem::take(&mut self.hypotheses);
         let ratio = self.settings.ambiguity_ratio;
         hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);

@@ -44,7 +44,8 @@ impl Checker {
                 continue;
             }
             let toward = to_laser * to;
-            let turn = (approximate_atan2(toward.y, toward.x) - scan.angle_min_rad) / scan.angle_increment_rad;
+            let turn =
+                (approximate_atan2(toward.y, toward.x) - scan.angle_min_rad) / scan.angle_increment_rad;
             let turns = TAU / scan.angle_increment_rad.abs();
             let beam = (turn - turns * (turn / turns).floor()).round() as usize;
             let beam = if beam >= beams && scan.is_full_turn() { 0 } else { beam };

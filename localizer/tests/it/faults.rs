@@ -22,7 +22,11 @@ fn with_fault(mut fault: impl FnMut(&mut LaserReading, usize)) -> Robot {
 /// The robot works after the fault, and no wrong pose was ever certain.
 fn assert_works(robot: &Robot, what: &str) {
     let after = (17.0 / PERIOD_S) as usize;
-    assert!(robot.uncertain <= after / 10, "{what}: {} of {after} scans uncertain after the fault", robot.uncertain);
+    assert!(
+        robot.uncertain <= after / 10,
+        "{what}: {} of {after} scans uncertain after the fault",
+        robot.uncertain
+    );
     assert!(robot.error_m(1.0) < 0.03, "{what}: a pose off by {} m was certain", robot.error_m(1.0));
     let [exact, estimated] = robot.changes;
     assert!(estimated <= exact + 15, "{what}: {estimated} changes, {exact} with exact poses");

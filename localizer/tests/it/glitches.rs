@@ -20,8 +20,7 @@ fn recovers(robot: &mut Robot, pose: Isometry2<f64>) -> usize {
     let mut last_bad = 0;
     for scan in 1..=60 {
         let localized = robot.step(pose);
-        let is_good =
-            localized.estimate.state == PoseState::Tracking && error_m(&localized, &pose) < 0.015;
+        let is_good = localized.estimate.state == PoseState::Tracking && error_m(&localized, &pose) < 0.015;
         if !is_good {
             last_bad = scan;
         }

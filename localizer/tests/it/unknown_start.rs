@@ -37,7 +37,9 @@ fn is_right(estimate: &PoseEstimate, true_pose: &Isometry2<f64>) -> bool {
 fn a_robot_finds_itself_in_a_known_house() {
     let mut house = furnished(360, 130);
     let map = map_of(&house);
-    for (x, y, heading) in [(3.0, 3.0, 0.0), (9.0, 2.5, 1.0), (8.7, 9.0, -2.0), (2.0, 9.5, 3.0), (3.0, 6.0, 0.7)] {
+    for (x, y, heading) in
+        [(3.0, 3.0, 0.0), (9.0, 2.5, 1.0), (8.7, 9.0, -2.0), (2.0, 9.5, 3.0), (3.0, 6.0, 0.7)]
+    {
         let at = house.turned(Point2::new(x, y));
         let at = pose(at.x, at.y, heading);
         let estimate = found(&mut house, &map, at, 6);
@@ -90,8 +92,7 @@ fn a_known_pose_in_a_known_map_needs_no_search() {
     let map = map_of(&house);
     let at = house.turned(Point2::new(3.0, 3.0));
     let (at, guess) = (pose(at.x, at.y, 0.4), pose(at.x + 0.04, at.y - 0.03, 0.41));
-    let mut localizer =
-        Localizer::in_map(&LocalizerSettings::default(), &map, Start::At(guess)).unwrap();
+    let mut localizer = Localizer::in_map(&LocalizerSettings::default(), &map, Start::At(guess)).unwrap();
     let estimate = localizer.localize(&house.reading(0.0, at, &[]), &map).estimate;
     assert_eq!(estimate.state, PoseState::Tracking);
     assert!(is_right(&estimate, &at), "{}", estimate.pose);
