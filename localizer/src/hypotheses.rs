@@ -13,6 +13,8 @@ const FOUND_STD_M: f64 = 0.1;
 const FOUND_STD_RAD: f64 = 0.03;
 /// A match starts up to this far from the found pose, m.
 const FIRST_GATE_M: f64 = 0.3;
+/// What a score counts at the next scan: about five scans decide.
+const MEMORY: f64 = 0.8;
 /// Poses that come closer than this are the same, m and rad.
 const SAME_M: f64 = 0.1;
 const SAME_RAD: f64 = 0.1;
@@ -24,7 +26,7 @@ pub(crate) struct Hypothesis {
     pub(crate) covariance: Matrix3<f64>,
     /// The agreement of the last scan.
     pub(crate) support: Support,
-    /// The sum of the scores of all scans.
+    /// The sum of the scores of the last scans.
     score: f64,
 }
 
@@ -65,6 +67,13 @@ impl Hypotheses {
         self.list.first()
     }
 
+    /// These and others.
+    pub(crate) fn or(mut self, others: Self, ratio: f64) -> Self {
+        self.list.extend(others.list);
+        self.sort_out(ratio);
+        self
+    }
+
     /// Whether a pose is one of them.
     pub(crate) fn contains(&self, pose: &Isometry2<f64>) -> bool {
         self.list.iter().any(|hypothesis| is_same(&hypothesis.pose, pose))
@@ -78,21 +87,6 @@ impl Hypotheses {
             off * off.transpose() / self.list.len() as f64
         };
         self.list.iter().map(square).sum()
-    }
-
-    pub(crate) fn debug(&self) -> String {
-        self.list
-            .iter()
-            .map(|h| {
-                format!(
-                    "[{:.3} score {:.2} at {:.2} {:.2}]",
-                    h.score / f64::from(self.scans + 1),
-                    h.support.score(),
-                    h.pose.translation.x,
-                    h.pose.translation.y
-                )
-            })
-            .collect()
     }
 
     /// The only pose, once it has agreed with this number of scans after the search.
@@ -112,7 +106,7 @@ impl Hypotheses {
         let next = |hypothesis: &Hypothesis| {
             let covariance = motion.propagate(&hypothesis.pose, &hypothesis.covariance);
             let pose = motion.apply(&hypothesis.pose);
-            refine(scene, &pose, &covariance, 2.0 * scene.gate_m(), hypothesis.score)
+            refine(scene, &pose, &covariance, 2.0 * scene.gate_m(), MEMORY * hypothesis.score)
                 .filter(|next| next.support.score() >= least_score)
         };
         self.list = self.list.iter().filter_map(next).collect();

@@ -41,8 +41,6 @@ mod support;
 mod surfel_map;
 mod sweep;
 mod tracking;
-#[allow(missing_docs)]
-mod tune;
 
 pub use changing_map::ChangingMap;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};

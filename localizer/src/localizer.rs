@@ -1,3 +1,5 @@
+mod relocalizing;
+
 use crate::calibration::Calibration;
 use crate::changing_map::ChangingMap;
 use crate::estimate::{Localized, PoseEstimate, PoseState, Start};
@@ -7,7 +9,6 @@ use crate::motion::Motion;
 use crate::scan_points::ScanPoints;
 use crate::scene::Scene;
 use crate::score_grid::ScoreGrid;
-use crate::search::{Window, search};
 use crate::settings::LocalizerSettings;
 use crate::support::{ClearBeams, Support};
 use crate::surfel_map::{Checker, SurfelMap};
@@ -16,24 +17,24 @@ use crate::tracking::{Tracked, track};
 use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError};
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
-/// The window of the first search: a glitch of the odometry, or a robot that was carried a little.
-const WINDOW_M: f64 = 1.3;
-const WINDOW_RAD: f64 = 1.2;
-/// The least score of a pose in a search.
-const LEAST_FOUND: f64 = 0.55;
-/// The least score of a refined pose.
-const LEAST_SCORE: f64 = 0.5;
-/// The number of scans between two searches in the whole map.
-const SEARCH_EVERY: u32 = 5;
 /// The number of scans between two updates of the weights by rates.
 const RATES_EVERY: u32 = 100;
+/// The line map also learns from scans whose pose is less certain than a map of changes tolerates, by this factor:
+/// otherwise a robot that turns into a new room with few beams would never see it with certainty.
+const LEARNING_LIMITS: f64 = 3.0;
 /// The least confirmed weight of a certain pose: about a metre of wall.
 const LEAST_CONFIRMED: f64 = 8.0;
 /// The number of scans for which the odometry is not trusted after it did not tell the truth.
 const DISTRUST_SCANS: u32 = 20;
+/// The number of scans for which only what lies exactly in place counts, after much of the view has moved.
+const TIGHT_SCANS: u32 = 10;
 /// The range noise for which the limits of the standard deviations hold, m. A map of a laser with more noise tolerates
 /// larger errors of the pose.
 const NOISE_M: f64 = 0.01;
+/// The match of a mirrored scan starts up to this far from the pose, m.
+const MIRRORED_GATE_M: f64 = 0.2;
+/// The largest share of a scan without a return where the map knows something blocked: beyond, the laser is covered.
+const MOST_BLIND: f64 = 0.1;
 /// The uncertainty of a pose that is lost, m and rad.
 const LOST_STD_M: f64 = 5.0;
 const LOST_STD_RAD: f64 = 3.0;
@@ -64,6 +65,10 @@ pub struct Localizer {
     start_s: Option<f64>,
     /// Whether the robot started without a map.
     from_nothing: bool,
+    /// The number of scans for which only what lies exactly in place counts.
+    tight: u32,
+    /// Whether the present scan may enter the line map.
+    learns: bool,
     /// The number of scans for which the odometry is not trusted.
     distrust: u32,
     /// The number of readings.
@@ -138,9 +143,11 @@ impl Localizer {
             supported_s: None,
             start_s: None,
             from_nothing,
+            tight: 0,
+            learns: false,
             distrust: 0,
             readings: 0,
-            since_search: SEARCH_EVERY,
+            since_search: u32::MAX,
             accepted_support: settings.min_support,
         })
     }
@@ -177,6 +184,7 @@ impl Localizer {
         self.clear.update(&reading.scan);
         let before = self.pose;
         let was_tracking = self.state == PoseState::Tracking;
+        self.learns = false;
         let support = self.estimate(&reading, &motion, map, fault);
         self.last_motion = before.inv_mul(&self.pose);
         if was_tracking && self.state == PoseState::Tracking {
@@ -184,8 +192,9 @@ impl Localizer {
         }
         if fault.is_some() && self.state == PoseState::Tracking {
             self.state = PoseState::Uncertain;
+            self.learns = false;
         }
-        if self.state == PoseState::Tracking || !self.settings.gate {
+        if self.learns || !self.settings.gate {
             self.learn(&reading);
         }
         self.localized(reading, support.share())
@@ -197,8 +206,7 @@ impl Localizer {
     fn motion(&mut self, reading: &LaserReading) -> Motion {
         let before = self.odometry.replace(reading.pose).unwrap_or(reading.pose);
         self.measured = before.inv_mul(&reading.pose);
-        let corrected =
-            if *crate::tune::CAL > 0.0 { self.calibration.correct(&self.measured) } else { self.measured };
+        let corrected = self.calibration.correct(&self.measured);
         let motion = Motion::new(corrected, &self.settings.odometry);
         if self.distrust > 0 { motion.distrusted() } else { motion }
     }
@@ -217,6 +225,7 @@ impl Localizer {
         if fault == Some(Fault::Frozen) || is_first {
             (self.pose, self.covariance) = (predicted, covariance);
             self.state = if is_first { PoseState::Tracking } else { PoseState::Uncertain };
+            self.learns = is_first;
             return Support::default();
         }
         if !self.hypotheses.is_empty() {
@@ -225,13 +234,15 @@ impl Localizer {
         let others = [self.pose, self.pose * self.last_motion];
         let scene = self.scene(reading, map);
         let tracked = track(&scene, &predicted, &covariance, &others);
-        if self.is_supported(&tracked) {
+        let is_low = tracked.support.share() < self.settings.min_support;
+        let is_mirrored = is_low && is_mirrored(&scene, &predicted, reading);
+        if self.is_supported(&tracked) && !is_mirrored {
             let support = tracked.support;
+            self.tight = if tracked.stayed { TIGHT_SCANS } else { self.tight.saturating_sub(1) };
             self.distrust = if tracked.is_other { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
             self.accept(&tracked);
             return support;
         }
-        let is_mirrored = is_mirrored(&scene, &predicted, reading);
         (self.pose, self.covariance) = (predicted, covariance);
         self.doubt();
         if !is_mirrored {
@@ -248,6 +259,7 @@ impl Localizer {
             clear: &self.clear,
             mount: reading.mount,
             settings: &self.settings,
+            is_tight: self.tight > 0,
         }
     }
 
@@ -266,9 +278,13 @@ impl Localizer {
         }
         let estimate = self.pose_estimate(1.0);
         let scale = (self.settings.range_noise_std_m / NOISE_M).max(1.0);
-        let is_certain = estimate.position_std_m() <= scale * self.settings.max_position_std_m
-            && estimate.heading_std_rad() <= scale * self.settings.max_heading_std_rad;
+        let of_limits = (estimate.position_std_m() / self.settings.max_position_std_m)
+            .max(estimate.heading_std_rad() / self.settings.max_heading_std_rad)
+            / scale;
+        let is_blind = tracked.support.blind > MOST_BLIND * tracked.support.weight();
+        let is_certain = of_limits <= 1.0 && !is_blind;
         self.state = if is_certain { PoseState::Tracking } else { PoseState::Uncertain };
+        self.learns = of_limits <= LEARNING_LIMITS && !is_blind;
         self.supported_s = Some(self.time_s);
     }
 
@@ -281,96 +297,13 @@ impl Localizer {
         self.state = if is_lost { PoseState::Lost } else { PoseState::Uncertain };
     }
 
-    /// Searches for the pose: around the predicted pose, and in the whole map.
-    fn search(&mut self, reading: &LaserReading, map: &impl ChangingMap, tracked: &Tracked) {
-        self.since_search = self.since_search.saturating_add(1);
-        let revision = self.surfels.revision();
-        let grid = match self.scores.take() {
-            Some((known, grid)) if known == revision => grid,
-            _ => ScoreGrid::new(&self.surfels, map.states()),
-        };
-        let ratio = self.settings.ambiguity_ratio;
-        let is_near = self.state != PoseState::Lost;
-        let window = Window { pose: self.pose, reach_m: WINDOW_M, reach_rad: WINDOW_RAD };
-        let mut found = Hypotheses::default();
-        if is_near {
-            let candidates = search(&grid, self.points.points(), Some(&window), LEAST_FOUND, ratio);
-            found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
-        }
-        if found.is_empty() && self.since_search >= SEARCH_EVERY {
-            self.since_search = 0;
-            let candidates = search(&grid, self.points.points(), None, LEAST_FOUND, ratio);
-            if std::env::var("DBG").is_ok() {
-                for c in &candidates {
-                    eprintln!(
-                        "   cand {:.3} at {:.2} {:.2}",
-                        c.score, c.pose.translation.x, c.pose.translation.y
-                    );
-                }
-            }
-            found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
-        }
-        self.scores = Some((revision, grid));
-        let is_confirmed = is_near && found.contains(&tracked.pose);
-        if is_confirmed && tracked.support.confirmed >= LEAST_CONFIRMED {
-            // Much has changed here, but no other pose fits better.
-            self.accepted_support = tracked.support.share() - 0.1;
-            self.accept(tracked);
-        } else {
-            self.hypotheses = found;
-            self.take_best();
-        }
-    }
-
-    /// Compares all hypotheses with the scan; the last one that is left becomes the pose.
-    fn follow(&mut self, reading: &LaserReading, motion: &Motion, map: &impl ChangingMap) -> Support {
-        let mut hypotheses = std::mem::take(&mut self.hypotheses);
-        let ratio = self.settings.ambiguity_ratio;
-        hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
-        if std::env::var("DBG").is_ok() {
-            eprintln!("{}", hypotheses.debug());
-        }
-        self.hypotheses = hypotheses;
-        self.since_search = self.since_search.saturating_add(1);
-        let support = self.hypotheses.best().map_or(Support::default(), |best| best.support);
-        match self.hypotheses.decided(self.settings.scans_to_confirm) {
-            Some(decided) => {
-                let tracked = Tracked {
-                    pose: decided.pose,
-                    covariance: decided.covariance,
-                    support: decided.support,
-                    stayed: false,
-                    is_other: false,
-                };
-                self.accepted_support = self.settings.min_support.min(support.share() - 0.1);
-                self.hypotheses = Hypotheses::default();
-                self.accept(&tracked);
-            }
-            None if self.hypotheses.is_empty() => {
-                self.pose = motion.apply(&self.pose);
-                self.covariance = motion.propagate(&self.pose, &self.covariance);
-                self.doubt();
-            }
-            None => {
-                self.take_best();
-                self.doubt();
-            }
-        }
-        support
-    }
-
-    /// Reports the best hypothesis, with the spread of all.
-    fn take_best(&mut self) {
-        if let Some(best) = self.hypotheses.best() {
-            self.pose = best.pose;
-            self.covariance = best.covariance + self.hypotheses.spread();
-        }
-    }
-
     /// Learns the line map from a scan with a certain pose.
     fn learn(&mut self, reading: &LaserReading) {
-        let noise_m = self.settings.range_noise_std_m;
-        self.surfels.learn(self.points.points(), &self.pose, noise_m);
+        // While much is out of place, nothing is learned from what may have moved; what is gone is removed.
+        if self.tight == 0 {
+            let noise_m = self.settings.range_noise_std_m;
+            self.surfels.learn(self.points.points(), &self.pose, noise_m);
+        }
         self.checker.check(&mut self.surfels, reading, &self.pose);
     }
 
@@ -394,5 +327,6 @@ impl Localizer {
 fn is_mirrored<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>, reading: &LaserReading) -> bool {
     let points = mirrored(scene.points, &reading.mount);
     let scene = Scene { points: &points, ..*scene };
-    scene.judge(pose).share() >= scene.settings.min_support
+    let found = scene.align(pose, None, MIRRORED_GATE_M, false);
+    found.is_some_and(|found| scene.judge(&found.pose).share() >= scene.settings.min_support)
 }

@@ -16,7 +16,7 @@ const STEP_M: f64 = 1e-4;
 const STEP_RAD: f64 = 2e-5;
 /// The error of a surfel beyond the noise of its hits, m: surfaces are not perfectly straight, and were learned at
 /// poses with an error.
-const SURFEL_STD_M: f64 = 0.003;
+pub(crate) const SURFEL_STD_M: f64 = 0.003;
 
 /// A pose with the inverse of its covariance, in the frame of the map.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +81,7 @@ fn accumulate(
     gate_m: f64,
     gates: &Gates,
 ) -> NormalEquations {
-    let variance = gates.noise_m * gates.noise_m + *crate::tune::SURFSTD * *crate::tune::SURFSTD;
+    let variance = gates.noise_m * gates.noise_m + SURFEL_STD_M * SURFEL_STD_M;
     let mut sums = NormalEquations {
         hessian: Matrix3::zeros(),
         gradient: Vector3::zeros(),
@@ -89,6 +89,8 @@ fn accumulate(
         weight: 0.0,
         points: 0.0,
     };
+    // Well inside of the gate: what moved by a little more than the noise must not pull.
+    let scale_m = gate_m / 2.0;
     for point in points {
         let arm = pose.rotation * point.at.coords;
         let at = (pose.translation.vector + arm).into();
@@ -100,13 +102,13 @@ fn accumulate(
         if gates.by_rates {
             weight *= surfel.steadiness;
         }
-        let certain = weight / variance * kernel(off_m, gate_m);
+        let certain = weight / variance * kernel(off_m, scale_m);
         let j = derivative(&arm, &surfel.normal);
         sums.hessian += j * j.transpose() * certain;
         sums.gradient += j * (off_m * certain);
         sums.squares += off_m * off_m * certain;
-        sums.weight += weight * kernel(off_m, gate_m);
-        sums.points += point.weight * kernel(off_m, gate_m);
+        sums.weight += weight * kernel(off_m, scale_m);
+        sums.points += point.weight * kernel(off_m, scale_m);
     }
     // Trust decides between surfels; it does not make a scan worth less than the odometry.
     if sums.weight > 0.0 {
@@ -171,4 +173,37 @@ pub(crate) fn align(
         information,
         residual_ratio: if sums.weight > 0.0 { sums.squares / sums.weight } else { 1.0 },
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::pose;
+    use nalgebra::Point2;
+
+    #[test]
+    fn the_derivative_is_that_of_finite_differences() {
+        let (surfel, normal) = (Point2::new(2.0, 1.5), interfaces::rotation(0.4) * Vector2::x());
+        let (point, at) = (Point2::new(1.7, -0.6), [0.3, -0.2, 0.9]);
+        let residual = |x: f64, y: f64, turn: f64| {
+            let pose = pose(at[0] + x, at[1] + y, at[2] + turn);
+            (pose * point - surfel).dot(&normal)
+        };
+        let arm = interfaces::rotation(at[2]) * point.coords;
+        let expected = derivative(&arm, &normal);
+        let step = 1e-6;
+        let difference = |x: f64, y: f64, turn: f64| {
+            (residual(x * step, y * step, turn * step) - residual(-x * step, -y * step, -turn * step))
+                / (2.0 * step)
+        };
+        let found =
+            Vector3::new(difference(1.0, 0.0, 0.0), difference(0.0, 1.0, 0.0), difference(0.0, 0.0, 1.0));
+        assert!((found - expected).norm() < 1e-8, "{found} {expected}");
+    }
+
+    #[test]
+    fn the_difference_of_headings_is_the_short_way() {
+        let off = difference(&pose(1.0, 2.0, 3.1), &pose(0.5, 2.5, -3.1));
+        assert!((off - Vector3::new(0.5, -0.5, 6.2 - std::f64::consts::TAU)).norm() < 1e-9, "{off}");
+    }
 }

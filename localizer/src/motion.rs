@@ -8,6 +8,9 @@ use nalgebra::{Isometry2, Matrix3};
 const REST_STD_M: f64 = 2e-4;
 const REST_STD_RAD: f64 = 1e-4;
 
+/// The expected errors of odometry count as larger by this factor: the part of an error that stays the same from scan
+/// to scan would bend the map.
+const PRIOR_FACTOR: f64 = 1.5;
 /// The uncertainty of a motion between two scans, of an odometry that did not tell the truth.
 const DISTRUSTED_STD_M: f64 = 0.05;
 const DISTRUSTED_STD_RAD: f64 = 0.1;
@@ -38,7 +41,7 @@ impl Motion {
             across + square(0.02 * distance_m) + slip,
             heading + square(REST_STD_RAD),
         ));
-        Self { delta, covariance: covariance * *crate::tune::PRIOR * *crate::tune::PRIOR }
+        Self { delta, covariance: covariance * (PRIOR_FACTOR * PRIOR_FACTOR) }
     }
 
     /// The same motion, of an odometry that cannot be trusted.

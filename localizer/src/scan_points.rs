@@ -8,15 +8,22 @@ use nalgebra::{Isometry2, Point2, Vector2};
 
 /// A normal is fitted to the points up to this far away on either side, m.
 const NORMAL_REACH_M: f64 = 0.2;
+/// The square of [`NORMAL_REACH_M`], m².
+const REACH_SQUARED: f64 = NORMAL_REACH_M * NORMAL_REACH_M;
 /// The surface length with the weight 1, m. Longer stretches between two beams count the same: a beam that grazes a
 /// wall does not confirm all of it.
-pub(crate) const FULL_WEIGHT_M: f64 = 0.1;
+pub(crate) const FULL_WEIGHT_M: f64 = 0.04;
 /// Neighboring end points that are farther apart than this, and than the spacing of beams explains, are on different
 /// surfaces, m.
 const JOIN_M: f64 = 0.1;
 /// The number of beam spacings (range · increment) up to which neighboring end points are on one surface: below an
 /// angle of incidence of about 20° a beam grazes the surface, and its point is not used.
 const JOIN_SPACINGS: f64 = 3.0;
+
+/// Points lie on a straight surface if their mean square distance from the line is below that of this many standard
+/// deviations of the range noise, and this much more, m.
+const STRAIGHT_STDS: f64 = 1.3;
+const STRAIGHT_MARGIN_M: f64 = 0.002;
 
 /// A point on a surface, in the frame of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,13 +98,6 @@ impl Moments {
             xy: self.xy - other.xy,
             yy: self.yy - other.yy,
         }
-    }
-
-    /// The variance of the direction of the line through the points, rad².
-    fn direction_variance(&self, noise_m: f64) -> f64 {
-        let (mean_x, mean_y) = (self.x / self.count, self.y / self.count);
-        let spread = self.xx + self.yy - self.count * (mean_x * mean_x + mean_y * mean_y);
-        noise_m * noise_m / spread.max(1e-9)
     }
 
     /// The unit normal of the line through the points (total least squares), and the mean square distance from it.
@@ -191,7 +191,7 @@ impl ScanPoints {
         let beams = self.hits.len();
         let range_m = f64::from(scan.ranges_m[beam]);
         let spacing_m = (range_m * scan.angle_increment_rad.abs()).max(1e-6);
-        let reach = ((*crate::tune::REACH / spacing_m) as usize).clamp(1, beams / 4 + 1);
+        let reach = ((NORMAL_REACH_M / spacing_m) as usize).clamp(1, beams / 4 + 1);
         // How far the surface goes on to both sides. As the beams hit it aslant, the reach in beams is less.
         let before = self.run(beam, reach, is_closed, &at, false);
         let after = self.run(beam, reach, is_closed, &at, true);
@@ -202,22 +202,15 @@ impl ScanPoints {
         let middle = if beam >= before { beam } else { beam + beams };
         let moments = self.sums[middle + after + 1].minus(&self.sums[middle - before]);
         let (normal, mean_square) = moments.line()?;
-        let tolerance_m = *crate::tune::RMS * noise_m + 0.002;
+        let tolerance_m = STRAIGHT_STDS * noise_m + STRAIGHT_MARGIN_M;
         if mean_square > tolerance_m * tolerance_m {
             return None; // a corner, or a curved or rough surface
-        }
-        if *crate::tune::HALF > 0.0 {
-            let first = self.sums[middle + 1].minus(&self.sums[middle - before]);
-            let second = self.sums[middle + after + 1].minus(&self.sums[middle]);
-            if before >= 2 && after >= 2 && !continues(&first, &second, noise_m) {
-                return None;
-            }
         }
         let toward = -(at - Point2::from(self.origin()));
         let normal = if normal.dot(&toward) < 0.0 { -normal } else { normal };
         let incidence = normal.dot(&toward) / range_m;
         let arc_m = spacing_m / incidence.max(0.2);
-        let weight = if by_arc_length { (arc_m / *crate::tune::FULL).min(1.0) } else { 1.0 };
+        let weight = if by_arc_length { (arc_m / FULL_WEIGHT_M).min(1.0) } else { 1.0 };
         Some(ScanPoint { at, normal, weight, beam })
     }
 
@@ -238,8 +231,7 @@ impl ScanPoints {
                 _ => return steps,
             };
             let is_joined = self.joined[if forward { here } else { next }];
-            let is_near = self.hits[next]
-                .is_some_and(|hit| (hit - at).norm_squared() <= *crate::tune::REACH * *crate::tune::REACH);
+            let is_near = self.hits[next].is_some_and(|hit| (hit - at).norm_squared() <= REACH_SQUARED);
             if !is_joined || steps > 0 && !is_near {
                 return steps;
             }
@@ -248,14 +240,3 @@ impl ScanPoints {
         reach
     }
 }
-
-/// Whether two runs of points lie on one line, as far as the noise of the ranges can tell.
-fn continues(first: &Moments, second: &Moments, noise_m: f64) -> bool {
-    let (Some((a, _)), Some((b, _))) = (first.line(), second.line()) else { return true };
-    let variance = first.direction_variance(noise_m) + second.direction_variance(noise_m);
-    let sine = a.perp(&b);
-    sine * sine <= *crate::tune::HALF * *crate::tune::HALF * variance
-}
-
-/// The square of [`NORMAL_REACH_M`], m².
-const REACH_SQUARED: f64 = NORMAL_REACH_M * NORMAL_REACH_M;

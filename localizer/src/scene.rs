@@ -1,7 +1,7 @@
 //! All that one scan is compared with.
 
 use crate::changing_map::ChangingMap;
-use crate::matcher::{Gates, Match, Prior, align};
+use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align};
 use crate::scan_points::ScanPoint;
 use crate::settings::LocalizerSettings;
 use crate::support::{ClearBeams, Support, judge};
@@ -10,8 +10,6 @@ use nalgebra::{Isometry2, Point2};
 
 /// Points match a surfel within this many standard deviations of the range noise and of the surfel.
 const GATE_STDS: f64 = 3.5;
-/// The error of surfels in the gate, m.
-const SURFEL_STD_M: f64 = 0.003;
 
 /// One scan, and the maps.
 pub(crate) struct Scene<'a, M> {
@@ -22,13 +20,16 @@ pub(crate) struct Scene<'a, M> {
     /// The pose of the laser in the frame of the robot.
     pub(crate) mount: Isometry2<f64>,
     pub(crate) settings: &'a LocalizerSettings,
+    /// Whether only what lies exactly in place counts: much of the view has moved.
+    pub(crate) is_tight: bool,
 }
 
 impl<M: ChangingMap> Scene<'_, M> {
     /// The distance up to which a point confirms a surfel, m.
     pub(crate) fn gate_m(&self) -> f64 {
         let noise_m = self.settings.range_noise_std_m;
-        GATE_STDS * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt()
+        let stds = if self.is_tight { GATE_STDS / 2.0 } else { GATE_STDS };
+        stds * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt()
     }
 
     /// Matches the scan from `start`; points belong to surfels up to `first_m` away in the first steps.
@@ -49,17 +50,19 @@ impl<M: ChangingMap> Scene<'_, M> {
         align(self.surfels, self.points, start, prior, &gates)
     }
 
-    /// The agreement of the scan with the maps at a pose.
-    pub(crate) fn judge(&self, pose: &Isometry2<f64>) -> Support {
-        self.judge_within(pose, self.gate_m())
+    /// The same scene, in which only what lies exactly in place counts.
+    pub(crate) fn tight(&self) -> Self {
+        Scene { is_tight: true, ..*self }
     }
 
-    /// The same, where points must lie within `gate_m` of a surfel.
-    pub(crate) fn judge_within(&self, pose: &Isometry2<f64>, gate_m: f64) -> Support {
+    /// The agreement of the scan with the maps at a pose.
+    pub(crate) fn judge(&self, pose: &Isometry2<f64>) -> Support {
+        let gate_m = self.gate_m();
         let laser = pose * self.mount;
         let origin = Point2::from(laser.translation.vector);
         let mut support = judge(self.surfels, self.map, self.points, pose, &origin, gate_m);
-        support.contradicted += self.clear.contradicted(self.map, &laser);
+        support.blind = self.clear.contradicted(self.map, &laser);
+        support.contradicted += support.blind;
         support
     }
 }

@@ -3,8 +3,8 @@
 
 use crate::scan_points::ScanPoint;
 use crate::score_grid::{CELL_M, ScoreGrid, TOP};
-use interfaces::{Cell, heading_rad, wrap_rad};
-use nalgebra::{Isometry2, Point2};
+use interfaces::{Cell, GridFrame, heading_rad, wrap_rad};
+use nalgebra::{Isometry2, Point2, Vector2};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::f64::consts::PI;
@@ -40,6 +40,7 @@ pub(crate) struct Window {
 pub(crate) struct Candidate {
     pub(crate) pose: Isometry2<f64>,
     /// The score, from 0 to 1.
+    #[cfg(test)]
     pub(crate) score: f64,
 }
 
@@ -78,6 +79,8 @@ struct Search<'a> {
     turned: Vec<Turned>,
     /// The score of a perfect fit.
     perfect: u32,
+    /// The lower left and the upper right cell of the positions.
+    cells: (Cell, Cell),
 }
 
 /// The poses that fit best, the best first: all that differ and reach `ratio` of the best score, up to a number.
@@ -100,8 +103,21 @@ pub(crate) fn search(
         turned: headings_rad.iter().map(turn).collect(),
         headings_rad,
         perfect: 255 * chosen.iter().map(|(_, weight)| weight).sum::<u32>(),
+        cells: cells(grid.frame(), window),
     };
-    search.best_first(window, least_score, ratio)
+    // A window is small: large squares would not fit in it.
+    let level = if window.is_some() { TOP - 2 } else { TOP };
+    search.best_first(level, least_score, ratio)
+}
+
+/// The lower left and the upper right cell of a window, or of the whole map.
+fn cells(frame: &GridFrame, window: Option<&Window>) -> (Cell, Cell) {
+    let last = Cell::new(frame.width() as i32 - 1, frame.height() as i32 - 1);
+    let Some(window) = window else { return (Cell::new(0, 0), last) };
+    let middle = Point2::from(window.pose.translation.vector);
+    let reach = Vector2::new(window.reach_m, window.reach_m);
+    let (low, high) = (frame.cell_at(&(middle - reach)), frame.cell_at(&(middle + reach)));
+    (Cell::new(low.x.max(0), low.y.max(0)), Cell::new(high.x.min(last.x), high.y.min(last.y)))
 }
 
 /// At most [`POINTS`] points, evenly along the surfaces, each with a whole weight.
@@ -160,7 +176,10 @@ impl Search<'_> {
 
     /// A square of positions, if the robot can be in it and the bound of its score reaches `least`.
     fn node(&self, level: usize, heading: usize, x: i32, y: i32, least: u32) -> Option<Node> {
-        if !self.grid.has_free(x, y, 1 << level) {
+        let (low, high) = self.cells;
+        let side = 1 << level;
+        let is_inside = x <= high.x && y <= high.y && x + side > low.x && y + side > low.y;
+        if !is_inside || !self.grid.has_free(x, y, side) {
             return None;
         }
         let bound = self.bound(level, heading, x, y, least)?;
@@ -168,19 +187,8 @@ impl Search<'_> {
     }
 
     /// The squares that cover the window.
-    fn roots(&self, window: Option<&Window>, least: u32) -> BinaryHeap<Node> {
-        let frame = self.grid.frame();
-        let mut low = Cell::new(0, 0);
-        let mut high = Cell::new(frame.width() as i32 - 1, frame.height() as i32 - 1);
-        let mut level = TOP;
-        if let Some(window) = window {
-            let middle = Point2::from(window.pose.translation.vector);
-            let reach = nalgebra::Vector2::new(window.reach_m, window.reach_m);
-            let (from, to) = (frame.cell_at(&(middle - reach)), frame.cell_at(&(middle + reach)));
-            (low.x, low.y) = (low.x.max(from.x), low.y.max(from.y));
-            (high.x, high.y) = (high.x.min(to.x), high.y.min(to.y));
-            level = TOP - 2;
-        }
+    fn roots(&self, level: usize, least: u32) -> BinaryHeap<Node> {
+        let (low, high) = self.cells;
         let side = 1_usize << level;
         let mut roots = BinaryHeap::new();
         for heading in 0..self.headings_rad.len() {
@@ -193,10 +201,10 @@ impl Search<'_> {
         roots
     }
 
-    fn best_first(&self, window: Option<&Window>, least_score: f64, ratio: f64) -> Vec<Candidate> {
+    fn best_first(&self, level: usize, least_score: f64, ratio: f64) -> Vec<Candidate> {
         let mut found: Vec<(Node, Point2<f64>)> = Vec::new();
         let mut least = (least_score * f64::from(self.perfect)) as u32;
-        let mut nodes = self.roots(window, least);
+        let mut nodes = self.roots(level, least);
         for _ in 0..MAX_NODES {
             let Some(node) = nodes.pop().filter(|node| node.bound >= least.max(1)) else { break };
             if found.len() == MAX_CANDIDATES {
@@ -219,6 +227,7 @@ impl Search<'_> {
         }
         let candidate = |(node, at): &(Node, Point2<f64>)| Candidate {
             pose: interfaces::pose(at.x, at.y, self.headings_rad[node.heading]),
+            #[cfg(test)]
             score: f64::from(node.bound) / f64::from(self.perfect),
         };
         found.iter().map(candidate).collect()
@@ -234,5 +243,85 @@ impl Search<'_> {
             && corner(node.x + last, node.y)
             && corner(node.x, node.y + last)
             && corner(node.x + last, node.y + last)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surfel_map::SurfelMap;
+    use interfaces::{CellState, Grid, Purpose, RandomStream};
+
+    /// A map of random walls, and the points that a scan at a pose has of it.
+    fn random_room(seed: u64) -> (ScoreGrid, Vec<ScanPoint>) {
+        let mut random = RandomStream::new(seed, Purpose::WorldGenerator);
+        let frame = GridFrame::covering(Point2::origin(), 4.0, 3.0, 0.1).unwrap();
+        let mut grid = Grid::filled(frame, CellState::Free);
+        for _ in 0..6 {
+            let (x, y) = (random.uniform(0.0..35.0) as i32, random.uniform(0.0..25.0) as i32);
+            for cell in (0..8).map(|step| if x % 2 == 0 { (x + step, y) } else { (x, y + step) }) {
+                if let Some(state) = grid.get_mut(Cell::new(cell.0, cell.1)) {
+                    *state = CellState::Blocked;
+                }
+            }
+        }
+        let surfels = SurfelMap::from_grid(&grid);
+        let pose = interfaces::pose(2.0, 1.5, random.uniform(-3.0..3.0));
+        let point = |at: &Point2<f64>| ScanPoint {
+            at: pose.inverse_transform_point(at),
+            normal: Vector2::x(),
+            weight: 1.0,
+            beam: 0,
+        };
+        let points = surfels.usable().map(|surfel| point(&surfel.at)).collect();
+        (ScoreGrid::new(&surfels, &grid), points)
+    }
+
+    #[test]
+    fn branch_and_bound_finds_what_exhaustive_search_finds() {
+        for seed in 200..206 {
+            let (grid, points) = random_room(seed);
+            let window = Window { pose: interfaces::pose(1.8, 1.4, 0.3), reach_m: 0.8, reach_rad: 0.4 };
+            for window in [None, Some(&window)] {
+                let found = search(&grid, &points, window, 0.0, 1.0)[0];
+                let exhaustive = exhaustive(&grid, &points, window);
+                assert!((found.score - exhaustive).abs() < 1e-9, "{seed}: {} {exhaustive}", found.score);
+            }
+        }
+    }
+
+    /// The best score of all poses.
+    fn exhaustive(grid: &ScoreGrid, points: &[ScanPoint], window: Option<&Window>) -> f64 {
+        let chosen = spread(points);
+        let perfect: u32 = chosen.iter().map(|(_, weight)| 255 * weight).sum();
+        let frame = grid.frame();
+        let (low, high) = cells(frame, window);
+        let is_inside = |cell: Cell| (low.x..=high.x).contains(&cell.x) && (low.y..=high.y).contains(&cell.y);
+        let mut best = 0;
+        for heading in headings(window) {
+            let turned = turned(&chosen, heading);
+            for cell in (0..frame.len()).map(|index| frame.cell(index)).filter(|cell| is_inside(*cell)) {
+                if grid.has_free(cell.x, cell.y, 1) {
+                    let score = |&(dx, dy, weight): &(i32, i32, u32)| {
+                        weight * u32::from(grid.bound(0, cell.x + dx, cell.y + dy))
+                    };
+                    best = best.max(turned.iter().map(score).sum());
+                }
+            }
+        }
+        f64::from(best) / f64::from(perfect)
+    }
+
+    #[test]
+    fn every_bound_is_above_all_scores_in_its_square() {
+        let (grid, _) = random_room(210);
+        for level in 0..=TOP {
+            for (x, y) in [(-40, -30), (0, 0), (3, 17), (41, 29)] {
+                let side = 1 << level;
+                let most = (y..y + side).flat_map(|y| (x..x + side).map(move |x| (x, y)));
+                let most = most.map(|(x, y)| grid.bound(0, x, y)).max();
+                assert_eq!(Some(grid.bound(level, x, y)), most, "level {level} at {x}, {y}");
+            }
+        }
     }
 }

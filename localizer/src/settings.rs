@@ -70,7 +70,7 @@ impl Default for LocalizerSettings {
             odometry: OdometryTrust::default(),
             min_support: 0.85,
             max_position_std_m: 0.005,
-            max_heading_std_rad: 0.002,
+            max_heading_std_rad: 0.003,
             lost_after_s: 2.0,
             scans_to_confirm: 3,
             settle_s: 2.0,

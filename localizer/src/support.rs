@@ -19,6 +19,8 @@ pub(crate) struct Support {
     pub(crate) confirmed: f64,
     /// In space that the map knows as free, or behind something that the map knows as blocked.
     pub(crate) contradicted: f64,
+    /// The part of the contradicted weight whose beams did not return, though something blocked is in their way.
+    pub(crate) blind: f64,
     /// In regions that were never seen, or where no surfel was learned.
     pub(crate) new: f64,
     /// The information about x, y and heading of the confirmed points (1/m² and 1 per rad², per unit of weight).

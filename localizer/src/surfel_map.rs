@@ -20,6 +20,8 @@ pub(crate) const CELL_M: f64 = 0.1;
 const PER_CELL: usize = 4;
 /// The number of scans after which a surfel never moves again.
 const FROZEN_SCANS: u32 = 400;
+/// The number of scans after which a surfel has its full weight: a new room must not move the robot that maps it.
+const TRUSTED_SCANS: f64 = 50.0;
 /// The number of scans after which a surfel takes part in matching.
 const USABLE_SCANS: u32 = 5;
 /// Points count as hits of a surfel up to this far along the surface, m.
@@ -53,7 +55,7 @@ pub(crate) struct Surfel {
 impl Surfel {
     /// The weight of the surfel in matching, from 0 to 1. What was seen only a few times may be a passer-by.
     pub(crate) fn weight(&self) -> f64 {
-        if self.scans < USABLE_SCANS { 0.0 } else { (f64::from(self.scans) / *crate::tune::RAMP).min(1.0) }
+        if self.scans < USABLE_SCANS { 0.0 } else { (f64::from(self.scans) / TRUSTED_SCANS).min(1.0) }
     }
 
     fn is_removed(&self) -> bool {
@@ -124,30 +126,21 @@ impl SurfelMap {
         self.usable().next().is_none()
     }
 
-    /// The nearest surfel, along its normal, to a point of a surface, and the signed distance (m); at most `gate_m`
-    /// away. Surfels that do not take part in matching yet are found as well.
+    /// The surfel that is nearest along the surface to a point of a surface, and the signed distance of the point from
+    /// its line (m); at most `gate_m`. Surfels that do not take part in matching yet are found as well.
     #[inline]
     pub(crate) fn nearest(&self, at: &Point2<f64>, normal: &Vector2<f64>, gate_m: f64) -> Option<(u32, f64)> {
         let mut best: Option<(u32, f64)> = None;
         let mut best_m = REACH_M;
-        let select = *crate::tune::ALONG > 0.0;
-        if !select {
-            best_m = gate_m;
-        }
         self.around(at, gate_m.max(CELL_M / 2.0), |index, surfel| {
-            if surfel.normal.dot(normal) < *crate::tune::SAME {
+            if surfel.normal.dot(normal) < SAME_NORMAL {
                 return;
             }
             let to = at - surfel.at;
             let (off_m, along_m) = (surfel.normal.dot(&to), surfel.normal.perp(&to));
             // Of two equally near ones, the first in the order of the cells.
-            let better = if select {
-                off_m.abs() < gate_m && along_m.abs() < best_m
-            } else {
-                off_m.abs() < best_m && along_m.abs() <= REACH_M
-            };
-            if better {
-                best_m = if select { along_m.abs() } else { off_m.abs() };
+            if off_m.abs() < gate_m && along_m.abs() < best_m {
+                best_m = along_m.abs();
                 best = Some((index, off_m));
             }
         });

@@ -108,3 +108,65 @@ fn between(scan: &Scan, from: &End, to: &End, share: f64, index: usize) -> f32 {
     }
     if nearer.range_m.is_finite() { nearer.at.coords.norm() as f32 } else { nearer.range_m }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::pose;
+    use std::f64::consts::TAU;
+
+    /// The range from a pose to the walls of a square room of 6 m around the origin.
+    fn range_m(pose: &Isometry2<f64>, angle_rad: f64) -> f64 {
+        let along = pose.rotation * interfaces::rotation(angle_rad) * Vector2::x();
+        let to = |at: f64, along: f64| {
+            if along == 0.0 { f64::INFINITY } else { (3.0 * along.signum() - at) / along }
+        };
+        to(pose.translation.x, along.x).min(to(pose.translation.y, along.y))
+    }
+
+    fn scan(ranges_m: Vec<f32>) -> Scan {
+        Scan {
+            angle_min_rad: -TAU / 2.0,
+            angle_increment_rad: TAU / ranges_m.len() as f64,
+            range_min_m: 0.0,
+            range_max_m: 10.0,
+            sweep_s: 0.1,
+            ranges_m,
+        }
+    }
+
+    #[test]
+    fn a_swept_scan_becomes_one_from_the_end() {
+        let beams = 720;
+        for (x, y, turn) in [(-0.05, 0.0, 0.0), (-0.04, 0.01, 0.2), (0.0, 0.0, -0.25)] {
+            let start = pose(x, y, turn);
+            let at = |beam: usize| {
+                let left = 1.0 - beam as f64 / (beams - 1) as f64;
+                pose(x * left, y * left, turn * left)
+            };
+            let empty = scan(vec![0.0; beams]);
+            let range = |beam: usize| range_m(&at(beam), empty.angle_rad(beam)) as f32;
+            let undone = undo(&scan((0..beams).map(range).collect()), &start);
+            let missing = undone.ranges_m.iter().filter(|range_m| range_m.is_nan()).count();
+            assert!(missing <= (turn.abs() / TAU * beams as f64) as usize + 3, "{missing} missing");
+            for (beam, found_m) in undone.ranges_m.iter().enumerate().filter(|(_, range_m)| !range_m.is_nan())
+            {
+                let expected_m = range_m(&Isometry2::identity(), empty.angle_rad(beam));
+                let error_m = (f64::from(*found_m) - expected_m).abs();
+                // A corner between two beams is cut off.
+                assert!(error_m < 0.02, "beam {beam}: {found_m} m instead of {expected_m} m");
+            }
+        }
+    }
+
+    #[test]
+    fn a_robot_at_rest_keeps_its_scan() {
+        let ranges_m = [1.0, 2.0, f32::INFINITY, f32::NAN, f32::NEG_INFINITY, 3.0, 3.0, 3.0].to_vec();
+        let scan = scan(ranges_m.clone());
+        let undone = undo(&scan, &Isometry2::identity());
+        for (before, after) in ranges_m.iter().zip(&undone.ranges_m) {
+            let is_same = (before - after).abs() < 1e-5 || before.to_bits() == after.to_bits();
+            assert!(is_same, "{before} became {after}");
+        }
+    }
+}

@@ -14,8 +14,11 @@ const WIDE_GATE_M: f64 = 0.3;
 /// The least gain of support with which another pose replaces the predicted one.
 const BETTER: f64 = 0.05;
 /// Where this share of the points lies exactly in place and stands against every motion of the robot, the pose is that
-/// of the odometry, whatever else has moved.
-const STAYED_SHARE: f64 = 0.1;
+/// of the odometry, though the rest moved as if the robot had moved.
+const STAYED_SHARE: f64 = 0.012;
+/// The same where the rest does not fit any other pose, and the least support.
+const ONLY_SHARE: f64 = 0.1;
+const ONLY_SUPPORT: f64 = 0.5;
 /// Shifts below this are no coherent motion of things, m.
 const COHERENT_M: f64 = 0.03;
 /// Errors of the map, which change where other surfaces come into view.
@@ -60,15 +63,17 @@ pub(crate) fn track<M: ChangingMap>(
             best = candidate;
         }
     }
-    let in_place = scene.judge_within(&by_odometry.pose, scene.gate_m() / 2.0);
-    let stayed = in_place.fixes_pose(STAYED_SHARE * in_place.weight());
-    let things_moved = stayed && is_coherent(&by_odometry, &best);
-    let is_other = is_good(&best) && !things_moved;
-    if is_other {
-        Tracked { is_other, ..best }
-    } else {
-        Tracked { stayed: stayed && (things_moved || !is_surprise), ..by_odometry }
+    let in_place = scene.tight().judge(&by_odometry.pose);
+    let fixes_pose = |share: f64| in_place.fixes_pose(share * in_place.weight());
+    if is_coherent(&by_odometry, &best) && fixes_pose(STAYED_SHARE) {
+        let (in_place, _) = with_prior(&scene.tight(), predicted, covariance);
+        return Tracked { stayed: true, ..in_place };
     }
+    if is_good(&best) {
+        return Tracked { is_other: true, ..best };
+    }
+    let is_enough = by_odometry.support.share() >= ONLY_SUPPORT && fixes_pose(ONLY_SHARE);
+    Tracked { stayed: is_enough && !is_surprise, ..by_odometry }
 }
 
 /// The match with the prior of odometry, and whether the motion by odometry was not true.
@@ -86,7 +91,9 @@ fn with_prior<M: ChangingMap>(
     };
     let Some(information) = covariance.try_inverse() else { return stay() };
     let prior = Prior { pose: *predicted, information };
-    let first_m = scene.gate_m() + 2.0 * (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
+    let spread_m = (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
+    // What has moved a little is out of reach from the start.
+    let first_m = if scene.is_tight { scene.gate_m() } else { scene.gate_m() + 2.0 * spread_m };
     let by_rates = unchanged_fix_pose(scene, predicted);
     let Some(found) = scene.align(predicted, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else {
         return stay();
@@ -108,7 +115,7 @@ fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>
 /// errors that all points share.
 fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
     let inverse = found.information.try_inverse().unwrap_or_else(|| Matrix3::identity() * 1e3);
-    let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD) * *crate::tune::MODEL;
+    let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD);
     let covariance =
         inverse * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model));
     Tracked {

@@ -5,9 +5,10 @@ use crate::changing_map::ChangingMap;
 use crate::scan_points::ScanPoint;
 use nalgebra::Isometry2;
 
-/// A hit lies within this many standard deviations of the range noise, and this much more, m.
+/// A hit lies within this many standard deviations of the range noise: what moved by a little more must not pull.
 const HIT_STDS: f64 = 3.0;
-const HIT_MARGIN_M: f64 = 0.01;
+/// The least noise: surfaces are not perfectly straight, m.
+const LEAST_NOISE_M: f64 = 0.005;
 /// No new surfel is made nearer to a known one with the same normal than this, m: a copy of a wall beside the wall is
 /// how a wrong pose becomes a wrong map.
 const CLEARANCE_M: f64 = 0.25;
@@ -15,7 +16,7 @@ const CLEARANCE_M: f64 = 0.25;
 impl SurfelMap {
     /// Updates the map with a scan at a certain pose.
     pub(crate) fn learn(&mut self, points: &[ScanPoint], pose: &Isometry2<f64>, range_noise_std_m: f64) {
-        let gate_m = HIT_STDS * range_noise_std_m + HIT_MARGIN_M;
+        let gate_m = HIT_STDS * range_noise_std_m.max(LEAST_NOISE_M);
         self.scan = self.scan.wrapping_add(1);
         // All that follows is matched with the first scan.
         let scans = if self.surfels.is_empty() { USABLE_SCANS } else { 1 };
@@ -32,7 +33,7 @@ impl SurfelMap {
     fn hit(&mut self, index: u32, at: &nalgebra::Point2<f64>, normal: &nalgebra::Vector2<f64>) {
         let surfel = &mut self.surfels[index as usize];
         surfel.misses = 0;
-        if f64::from(surfel.scans) >= *crate::tune::FROZEN {
+        if surfel.scans >= FROZEN_SCANS {
             return;
         }
         let was_usable = surfel.weight() > 0.0;

@@ -1,0 +1,109 @@
+use super::*;
+use crate::scan_points::{ScanPoint, ScanPoints};
+use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, Scan, Twist};
+use nalgebra::Isometry2;
+
+fn frame() -> GridFrame {
+    GridFrame::new(Point2::new(-1.0, -5.0), 0.05, 200, 200).unwrap()
+}
+
+/// The scan of a straight wall: the line with the unit normal at `angle_rad`, `distance_m` from the laser.
+fn wall(angle_rad: f64, distance_m: f64, noise: &mut RandomStream) -> LaserReading {
+    let angle = |beam: usize| -1.0 + 0.01 * beam as f64;
+    let range = |beam: usize| (distance_m / (angle(beam) - angle_rad).cos() + 0.01 * noise.normal()) as f32;
+    LaserReading {
+        time_s: 0.0,
+        pose: Isometry2::identity(),
+        twist: Twist::STOP,
+        mount: Isometry2::identity(),
+        scan: Scan {
+            angle_min_rad: -1.0,
+            angle_increment_rad: 0.01,
+            range_min_m: 0.1,
+            range_max_m: 10.0,
+            sweep_s: 0.0,
+            ranges_m: (0..200).map(range).collect(),
+        },
+    }
+}
+
+#[test]
+fn surfels_lie_on_the_line_of_the_wall() {
+    let mut noise = RandomStream::new(200, Purpose::LaserNoise(0));
+    for (angle_rad, distance_m) in [(0.0, 2.0), (0.3, 3.0), (-0.5, 1.2)] {
+        let mut map = SurfelMap::new(&frame());
+        let mut points = ScanPoints::default();
+        for _ in 0..100 {
+            points.update(&wall(angle_rad, distance_m, &mut noise), 0.01, true);
+            map.learn(points.points(), &Isometry2::identity(), 0.01);
+        }
+        let normal = interfaces::rotation(angle_rad) * Vector2::x();
+        let seen: Vec<&Surfel> = map.usable().filter(|surfel| surfel.scans >= 50).collect();
+        assert!(seen.len() > 8, "{}", seen.len());
+        for surfel in seen {
+            let off_m = surfel.at.coords.dot(&normal) - distance_m;
+            assert!(off_m.abs() < 0.004, "{angle_rad}: {off_m} m");
+            assert!(surfel.normal.dot(&normal) < -0.9995, "{angle_rad}: {}", surfel.normal.transpose());
+        }
+    }
+}
+
+#[test]
+fn a_surfel_freezes() {
+    let mut map = SurfelMap::new(&frame());
+    let point = |off_m: f64| ScanPoint {
+        at: Point2::new(1.0 + off_m, 0.55),
+        normal: -Vector2::x(),
+        weight: 1.0,
+        beam: 0,
+    };
+    for _ in 0..FROZEN_SCANS {
+        map.learn(&[point(0.0)], &Isometry2::identity(), 0.01);
+    }
+    let before = *map.surfel(0);
+    for _ in 0..1000 {
+        map.learn(&[point(0.02)], &Isometry2::identity(), 0.01);
+    }
+    assert_eq!(map.surfel(0).at, before.at);
+    assert_eq!(map.usable().count(), 1, "a second wall beside the first is an error of the pose");
+}
+
+#[test]
+fn what_beams_pass_is_removed() {
+    let mut noise = RandomStream::new(201, Purpose::LaserNoise(0));
+    let (mut map, mut points, mut checker) =
+        (SurfelMap::new(&frame()), ScanPoints::default(), Checker::default());
+    let mut see = |map: &mut SurfelMap, distance_m: f64| {
+        let reading = wall(0.0, distance_m, &mut noise);
+        points.update(&reading, 0.01, true);
+        map.learn(points.points(), &Isometry2::identity(), 0.01);
+        checker.check(map, &reading, &Isometry2::identity());
+    };
+    for _ in 0..50 {
+        see(&mut map, 2.0);
+    }
+    let near = |map: &SurfelMap| map.usable().filter(|surfel| surfel.at.x < 2.5).count();
+    let stood = near(&map);
+    for _ in 0..300 {
+        see(&mut map, 4.0);
+    }
+    assert!(stood > 20 && near(&map) < stood / 5, "{} of {stood} are left", near(&map));
+}
+
+#[test]
+fn the_surfels_of_a_known_map_lie_on_its_borders() {
+    let mut grid = Grid::filled(frame(), CellState::Free);
+    let is_wall = |at: Point2<f64>| (at.y - 0.2 * at.x).abs() < 0.15;
+    for index in 0..grid.frame().len() {
+        if is_wall(grid.frame().center(grid.frame().cell(index))) {
+            grid.cells_mut()[index] = CellState::Blocked;
+        }
+    }
+    let map = SurfelMap::from_grid(&grid);
+    let normal = Vector2::new(-0.2, 1.0).normalize();
+    let offsets: Vec<f64> = map.usable().map(|surfel| surfel.at.coords.dot(&normal).abs()).collect();
+    assert!(offsets.len() > 100);
+    let half_m = 0.15 * normal.y;
+    let close = offsets.iter().filter(|off_m| (*off_m - half_m).abs() < 0.03).count();
+    assert!(close * 10 > offsets.len() * 9, "{close} of {}", offsets.len());
+}

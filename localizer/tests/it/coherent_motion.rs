@@ -1,0 +1,61 @@
+use crate::house::{House, Thing, rectangle};
+use crate::robot::{Robot, error_m};
+use interfaces::pose;
+use localizer::PoseState;
+
+/// A room with shelves along three walls, which all shift by `shift_m` at `time_s`, away from the robot or toward it.
+fn shelves(shift_m: f64, time_s: f64) -> House {
+    let mut house = House::new(0.1, 0.0, 0.01, 360, 120);
+    for (x0, y0, x1, y1) in [(0.5, 0.6, 4.2, 0.9), (0.5, 4.9, 4.2, 5.2), (0.4, 1.2, 0.8, 4.6)] {
+        let before = Thing { corners: rectangle(x0, y0, x1, y1), from_s: f64::NEG_INFINITY, until_s: time_s };
+        // All shelves move in the same direction, as if the robot had moved.
+        let after = Thing {
+            corners: rectangle(x0 + shift_m, y0 + shift_m, x1 + shift_m, y1 + shift_m),
+            from_s: time_s,
+            until_s: f64::INFINITY,
+        };
+        house.add(before);
+        house.add(after);
+    }
+    house
+}
+
+#[test]
+fn most_of_the_view_may_shift_at_once() {
+    for shift_m in [0.04, -0.05, 0.06, 0.08] {
+        let start = pose(2.6, 2.9, 0.3);
+        let mut robot = Robot::new(shelves(shift_m, 5.0), start, 120);
+        let mut off_m: f64 = 0.0;
+        for step in 0..150 {
+            // The robot rests, then the shelves move, then the robot drives away slowly.
+            let pose = pose(2.6 + 0.01 * f64::from((step - 80).max(0)), 2.9, 0.3);
+            let localized = robot.step(pose);
+            off_m = off_m.max(error_m(&localized, &pose));
+        }
+        assert!(off_m < 0.012, "shelves moved by {shift_m} m, and the robot by {off_m} m");
+        assert!(robot.uncertain <= 10, "{} scans uncertain after {shift_m} m", robot.uncertain);
+        let [exact, estimated] = robot.changes;
+        assert!(estimated <= exact + 50, "{estimated} changes, {exact} with exact poses");
+    }
+}
+
+#[test]
+fn a_robot_that_is_shifted_by_as_much_knows() {
+    // The counterpart: nothing stays in place, so the robot was moved.
+    for shift_m in [0.04, -0.06, 0.08] {
+        let start = pose(2.6, 2.9, 0.3);
+        let mut robot = Robot::new(shelves(0.0, 5.0), start, 121);
+        let there = pose(2.6 + shift_m, 2.9 + shift_m, 0.3);
+        for step in 0..80 {
+            let pose = if step < 50 { start } else { there };
+            if step == 50 {
+                robot.odometry.carried_to(&there);
+            }
+            let localized = robot.step(pose);
+            if step > 60 {
+                assert_eq!(localized.estimate.state, PoseState::Tracking);
+                assert!(error_m(&localized, &pose) < 0.01, "{shift_m}: {}", error_m(&localized, &pose));
+            }
+        }
+    }
+}
