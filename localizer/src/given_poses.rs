@@ -14,7 +14,9 @@ impl GivenPoses {
     pub fn unswept(&mut self, mut reading: LaserReading) -> LaserReading {
         let (last_s, last) =
             self.last.replace((reading.time_s, reading.pose)).unwrap_or((reading.time_s, reading.pose));
-        reading.scan = sweep::unswept(&reading, &last.inv_mul(&reading.pose), reading.time_s - last_s);
+        let elapsed_s = reading.time_s - last_s;
+        let travel = sweep::travel(&reading.twist, elapsed_s);
+        reading.scan = sweep::unswept(&reading, &last.inv_mul(&reading.pose), &travel, elapsed_s);
         reading
     }
 }

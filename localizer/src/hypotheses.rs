@@ -48,12 +48,12 @@ impl Hypotheses {
     ) -> Self {
         let spread = Vector3::new(FOUND_STD_M, FOUND_STD_M, FOUND_STD_RAD);
         let covariance = Matrix3::from_diagonal(&spread.component_mul(&spread));
-        let mut hypotheses = Self::default();
-        hypotheses.list = found
+        let list = found
             .iter()
             .filter_map(|candidate| refine(scene, &candidate.pose, &covariance, FIRST_GATE_M, 0.0))
             .filter(|hypothesis| hypothesis.score >= least_score)
             .collect();
+        let mut hypotheses = Self { list, scans: 0 };
         hypotheses.sort_out(ratio);
         hypotheses
     }

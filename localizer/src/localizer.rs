@@ -1,40 +1,23 @@
+mod estimating;
 mod relocalizing;
 
 use crate::calibration::Calibration;
 use crate::changing_map::ChangingMap;
 use crate::estimate::{Localized, PoseEstimate, PoseState, Start};
-use crate::faults::{Fault, FaultFinder, mirrored};
+use crate::faults::{Fault, FaultFinder};
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::scan_points::ScanPoints;
-use crate::scene::Scene;
 use crate::score_grid::ScoreGrid;
 use crate::settings::LocalizerSettings;
-use crate::support::{ClearBeams, Support};
+use crate::support::ClearBeams;
 use crate::surfel_map::{Checker, SurfelMap};
 use crate::sweep;
-use crate::tracking::{Tracked, track};
-use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError};
+use interfaces::{CellState, Grid, GridFrame, LaserReading, Scan, SettingsError};
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
 /// The number of scans between two updates of the weights by rates.
 const RATES_EVERY: u32 = 100;
-/// The line map also learns from scans whose pose is less certain than a map of changes tolerates, by this factor:
-/// otherwise a robot that turns into a new room with few beams would never see it with certainty.
-const LEARNING_LIMITS: f64 = 3.0;
-/// The least confirmed weight of a certain pose: about a metre of wall.
-const LEAST_CONFIRMED: f64 = 8.0;
-/// The number of scans for which the odometry is not trusted after it did not tell the truth.
-const DISTRUST_SCANS: u32 = 20;
-/// The number of scans for which only what lies exactly in place counts, after much of the view has moved.
-const TIGHT_SCANS: u32 = 10;
-/// The range noise for which the limits of the standard deviations hold, m. A map of a laser with more noise tolerates
-/// larger errors of the pose.
-const NOISE_M: f64 = 0.01;
-/// The match of a mirrored scan starts up to this far from the pose, m.
-const MIRRORED_GATE_M: f64 = 0.2;
-/// The largest share of a scan without a return where the map knows something blocked: beyond, the laser is covered.
-const MOST_BLIND: f64 = 0.1;
 /// The uncertainty of a pose that is lost, m and rad.
 const LOST_STD_M: f64 = 5.0;
 const LOST_STD_RAD: f64 = 3.0;
@@ -179,7 +162,7 @@ impl Localizer {
             self.surfels.weigh_by_rates(map, self.settings.rate_horizon_s);
         }
         let mut reading = reading.clone();
-        reading.scan = sweep::unswept(&reading, &motion.delta, elapsed_s);
+        reading.scan = self.unswept(&reading, &motion, elapsed_s);
         self.points.update(&reading, self.settings.range_noise_std_m, self.settings.weigh_by_arc_length);
         self.clear.update(&reading.scan);
         let before = self.pose;
@@ -211,90 +194,10 @@ impl Localizer {
         if self.distrust > 0 { motion.distrusted() } else { motion }
     }
 
-    /// Estimates the pose, and the state that follows; returns the agreement of the scan with the maps.
-    fn estimate(
-        &mut self,
-        reading: &LaserReading,
-        motion: &Motion,
-        map: &impl ChangingMap,
-        fault: Option<Fault>,
-    ) -> Support {
-        let predicted = motion.apply(&self.pose);
-        let covariance = motion.propagate(&self.pose, &self.covariance);
-        let is_first = self.from_nothing && self.surfels.is_empty();
-        if fault == Some(Fault::Frozen) || is_first {
-            (self.pose, self.covariance) = (predicted, covariance);
-            self.state = if is_first { PoseState::Tracking } else { PoseState::Uncertain };
-            self.learns = is_first;
-            return Support::default();
-        }
-        if !self.hypotheses.is_empty() {
-            return self.follow(reading, motion, map);
-        }
-        let others = [self.pose, self.pose * self.last_motion];
-        let scene = self.scene(reading, map);
-        let tracked = track(&scene, &predicted, &covariance, &others);
-        let is_low = tracked.support.share() < self.settings.min_support;
-        let is_mirrored = is_low && is_mirrored(&scene, &predicted, reading);
-        if self.is_supported(&tracked) && !is_mirrored {
-            let support = tracked.support;
-            self.tight = if tracked.stayed { TIGHT_SCANS } else { self.tight.saturating_sub(1) };
-            self.distrust = if tracked.is_other { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
-            self.accept(&tracked);
-            return support;
-        }
-        (self.pose, self.covariance) = (predicted, covariance);
-        self.doubt();
-        if !is_mirrored {
-            self.search(reading, map, &tracked);
-        }
-        tracked.support
-    }
-
-    fn scene<'a, M: ChangingMap>(&'a self, reading: &LaserReading, map: &'a M) -> Scene<'a, M> {
-        Scene {
-            surfels: &self.surfels,
-            map,
-            points: self.points.points(),
-            clear: &self.clear,
-            mount: reading.mount,
-            settings: &self.settings,
-            is_tight: self.tight > 0,
-        }
-    }
-
-    /// Whether the scan supports a tracked pose.
-    fn is_supported(&self, tracked: &Tracked) -> bool {
-        let support = &tracked.support;
-        let is_enough = support.share() >= self.accepted_support || tracked.stayed;
-        self.state != PoseState::Lost && is_enough && support.confirmed >= LEAST_CONFIRMED
-    }
-
-    /// Takes over a supported pose.
-    fn accept(&mut self, tracked: &Tracked) {
-        (self.pose, self.covariance) = (tracked.pose, tracked.covariance);
-        if tracked.support.share() >= self.settings.min_support {
-            self.accepted_support = self.settings.min_support;
-        }
-        let estimate = self.pose_estimate(1.0);
-        let scale = (self.settings.range_noise_std_m / NOISE_M).max(1.0);
-        let of_limits = (estimate.position_std_m() / self.settings.max_position_std_m)
-            .max(estimate.heading_std_rad() / self.settings.max_heading_std_rad)
-            / scale;
-        let is_blind = tracked.support.blind > MOST_BLIND * tracked.support.weight();
-        let is_certain = of_limits <= 1.0 && !is_blind;
-        self.state = if is_certain { PoseState::Tracking } else { PoseState::Uncertain };
-        self.learns = of_limits <= LEARNING_LIMITS && !is_blind;
-        self.supported_s = Some(self.time_s);
-    }
-
-    /// The pose is not certain; after some time, it is lost.
-    fn doubt(&mut self) {
-        let limit_s = self.settings.lost_after_s;
-        let is_lost = self
-            .supported_s
-            .map_or(self.state == PoseState::Lost, |supported_s| self.time_s - supported_s > limit_s);
-        self.state = if is_lost { PoseState::Lost } else { PoseState::Uncertain };
+    /// The scan without its sweep, and how the robot moved during it.
+    fn unswept(&self, reading: &LaserReading, motion: &Motion, elapsed_s: f64) -> Scan {
+        let travel = sweep::travel(&reading.twist, elapsed_s);
+        sweep::unswept(reading, &motion.delta, &self.calibration.correct(&travel), elapsed_s)
     }
 
     /// Learns the line map from a scan with a certain pose.
@@ -321,12 +224,4 @@ impl Localizer {
         reading.pose = self.pose;
         Localized { reading, estimate: self.pose_estimate(support) }
     }
-}
-
-/// Whether the scan fits much better upside down: the laser hangs the wrong way around.
-fn is_mirrored<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>, reading: &LaserReading) -> bool {
-    let points = mirrored(scene.points, &reading.mount);
-    let scene = Scene { points: &points, ..*scene };
-    let found = scene.align(pose, None, MIRRORED_GATE_M, false);
-    found.is_some_and(|found| scene.judge(&found.pose).share() >= scene.settings.min_support)
 }

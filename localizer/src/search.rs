@@ -1,6 +1,9 @@
 //! The search for a pose: branch and bound over x, y and heading, in a window (Olson 2009) or in the whole map (Hess et
 //! al. 2016).
 
+#[cfg(test)]
+mod tests;
+
 use crate::scan_points::ScanPoint;
 use crate::score_grid::{CELL_M, ScoreGrid, TOP};
 use interfaces::{Cell, GridFrame, heading_rad, wrap_rad};
@@ -243,85 +246,5 @@ impl Search<'_> {
             && corner(node.x + last, node.y)
             && corner(node.x, node.y + last)
             && corner(node.x + last, node.y + last)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::surfel_map::SurfelMap;
-    use interfaces::{CellState, Grid, Purpose, RandomStream};
-
-    /// A map of random walls, and the points that a scan at a pose has of it.
-    fn random_room(seed: u64) -> (ScoreGrid, Vec<ScanPoint>) {
-        let mut random = RandomStream::new(seed, Purpose::WorldGenerator);
-        let frame = GridFrame::covering(Point2::origin(), 4.0, 3.0, 0.1).unwrap();
-        let mut grid = Grid::filled(frame, CellState::Free);
-        for _ in 0..6 {
-            let (x, y) = (random.uniform(0.0..35.0) as i32, random.uniform(0.0..25.0) as i32);
-            for cell in (0..8).map(|step| if x % 2 == 0 { (x + step, y) } else { (x, y + step) }) {
-                if let Some(state) = grid.get_mut(Cell::new(cell.0, cell.1)) {
-                    *state = CellState::Blocked;
-                }
-            }
-        }
-        let surfels = SurfelMap::from_grid(&grid);
-        let pose = interfaces::pose(2.0, 1.5, random.uniform(-3.0..3.0));
-        let point = |at: &Point2<f64>| ScanPoint {
-            at: pose.inverse_transform_point(at),
-            normal: Vector2::x(),
-            weight: 1.0,
-            beam: 0,
-        };
-        let points = surfels.usable().map(|surfel| point(&surfel.at)).collect();
-        (ScoreGrid::new(&surfels, &grid), points)
-    }
-
-    #[test]
-    fn branch_and_bound_finds_what_exhaustive_search_finds() {
-        for seed in 200..206 {
-            let (grid, points) = random_room(seed);
-            let window = Window { pose: interfaces::pose(1.8, 1.4, 0.3), reach_m: 0.8, reach_rad: 0.4 };
-            for window in [None, Some(&window)] {
-                let found = search(&grid, &points, window, 0.0, 1.0)[0];
-                let exhaustive = exhaustive(&grid, &points, window);
-                assert!((found.score - exhaustive).abs() < 1e-9, "{seed}: {} {exhaustive}", found.score);
-            }
-        }
-    }
-
-    /// The best score of all poses.
-    fn exhaustive(grid: &ScoreGrid, points: &[ScanPoint], window: Option<&Window>) -> f64 {
-        let chosen = spread(points);
-        let perfect: u32 = chosen.iter().map(|(_, weight)| 255 * weight).sum();
-        let frame = grid.frame();
-        let (low, high) = cells(frame, window);
-        let is_inside = |cell: Cell| (low.x..=high.x).contains(&cell.x) && (low.y..=high.y).contains(&cell.y);
-        let mut best = 0;
-        for heading in headings(window) {
-            let turned = turned(&chosen, heading);
-            for cell in (0..frame.len()).map(|index| frame.cell(index)).filter(|cell| is_inside(*cell)) {
-                if grid.has_free(cell.x, cell.y, 1) {
-                    let score = |&(dx, dy, weight): &(i32, i32, u32)| {
-                        weight * u32::from(grid.bound(0, cell.x + dx, cell.y + dy))
-                    };
-                    best = best.max(turned.iter().map(score).sum());
-                }
-            }
-        }
-        f64::from(best) / f64::from(perfect)
-    }
-
-    #[test]
-    fn every_bound_is_above_all_scores_in_its_square() {
-        let (grid, _) = random_room(210);
-        for level in 0..=TOP {
-            for (x, y) in [(-40, -30), (0, 0), (3, 17), (41, 29)] {
-                let side = 1 << level;
-                let most = (y..y + side).flat_map(|y| (x..x + side).map(move |x| (x, y)));
-                let most = most.map(|(x, y)| grid.bound(0, x, y)).max();
-                assert_eq!(Some(grid.bound(level, x, y)), most, "level {level} at {x}, {y}");
-            }
-        }
     }
 }

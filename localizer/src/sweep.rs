@@ -1,11 +1,14 @@
 //! Undoes the sweep of a scan: a laser that turns measures each beam from a pose of its own. The result is a scan whose
 //! beams all start at the pose of its end.
 
-use interfaces::{LaserReading, Scan, approximate_atan2, heading_rad, wrap_rad};
-use nalgebra::{Isometry2, Point2, Vector2};
+use interfaces::{LaserReading, Scan, Twist, approximate_atan2, heading_rad, wrap_rad};
+use nalgebra::{Isometry2, Point2, Vector2, Vector3};
 
 /// Neighboring end points nearer than this are joined by a straight surface, m.
 const JOIN_M: f64 = 0.15;
+/// Half of the largest acceleration that is taken for true, forward and sideways (m/s²), and of the turn (rad/s²). Beyond
+/// it, the odometry has jumped, or its velocity is not that of its poses.
+const MAX_BEND: [f64; 3] = [2.0, 2.0, 6.0];
 
 /// The end point of a beam in the frame of the laser at the end of the sweep.
 #[derive(Clone, Copy)]
@@ -15,35 +18,53 @@ struct End {
     range_m: f32,
 }
 
+/// What a robot travels at a velocity.
+pub(crate) fn travel(velocity: &Twist, elapsed_s: f64) -> Isometry2<f64> {
+    interfaces::pose(velocity.linear_mps * elapsed_s, 0.0, velocity.angular_radps * elapsed_s)
+}
+
 /// The scan of a reading, with all beams from its pose. `motion` is the motion of the robot in the time `elapsed_s` since
-/// the last reading.
-pub(crate) fn unswept(reading: &LaserReading, motion: &Isometry2<f64>, elapsed_s: f64) -> Scan {
+/// the last reading, and `travel` what it would be at the velocity of the reading. The robot is taken to have accelerated
+/// evenly: at constant velocity, the first beams of a robot that starts to turn would be wrong by a degree.
+pub(crate) fn unswept(
+    reading: &LaserReading,
+    motion: &Isometry2<f64>,
+    travel: &Isometry2<f64>,
+    elapsed_s: f64,
+) -> Scan {
     let scan = &reading.scan;
     if scan.sweep_s == 0.0 || elapsed_s <= 0.0 {
         return scan.clone();
     }
-    let share = scan.sweep_s / elapsed_s;
-    let back = motion.inverse();
-    let (at, turn_rad) = (back.translation.vector * share, heading_rad(&back) * share);
-    let start = interfaces::pose(at.x, at.y, turn_rad);
-    undo(scan, &(reading.mount.inverse() * start * reading.mount))
+    let vector = |motion: &Isometry2<f64>| {
+        Vector3::new(motion.translation.x, motion.translation.y, heading_rad(motion))
+    };
+    let (back, velocity) = (vector(&motion.inverse()), vector(travel));
+    let bend = back + velocity;
+    let is_plausible = bend.iter().zip(MAX_BEND).all(|(bend, max)| bend.abs() <= max * elapsed_s * elapsed_s);
+    let (slope, bend) = if is_plausible { (-velocity, bend) } else { (back, Vector3::zeros()) };
+    let laser_before = |left: f64| {
+        let share = left * scan.sweep_s / elapsed_s;
+        let at = (slope + bend * share) * share;
+        reading.mount.inverse() * interfaces::pose(at.x, at.y, at.z) * reading.mount
+    };
+    undo(scan, laser_before)
 }
 
-/// The scan as the laser would measure it at once, at the end of the sweep. `start` is the pose of the laser at the
-/// start of the sweep, in the frame of the laser at the end of the sweep. Directions that no beam covers are NaN.
-pub(crate) fn undo(scan: &Scan, start: &Isometry2<f64>) -> Scan {
+/// The scan as the laser would measure it at once, at the end of the sweep. `laser_before` gives the pose of the laser in
+/// its frame at the end of the sweep, where a share of the sweep is left. Directions that no beam covers are NaN.
+fn undo(scan: &Scan, laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
     let beams = scan.ranges_m.len();
     if beams < 3 {
         return scan.clone();
     }
-    let turn_rad = heading_rad(start);
     let end = |beam: usize| {
         let left = 1.0 - beam as f64 / (beams - 1) as f64;
-        let at = interfaces::pose(start.translation.x * left, start.translation.y * left, turn_rad * left);
         let range_m = scan.ranges_m[beam];
         // A beam without a return is a direction.
         let length_m = if range_m.is_finite() { f64::from(range_m).max(1e-3) } else { scan.range_max_m };
-        let at = at * Point2::from(interfaces::rotation(scan.angle_rad(beam)) * Vector2::x() * length_m);
+        let at = laser_before(left)
+            * Point2::from(interfaces::rotation(scan.angle_rad(beam)) * Vector2::x() * length_m);
         End { at, angle_rad: approximate_atan2(at.y, at.x), range_m }
     };
     let mut ranges_m = vec![f32::NAN; beams];
@@ -139,14 +160,14 @@ mod tests {
     fn a_swept_scan_becomes_one_from_the_end() {
         let beams = 720;
         for (x, y, turn) in [(-0.05, 0.0, 0.0), (-0.04, 0.01, 0.2), (0.0, 0.0, -0.25)] {
-            let start = pose(x, y, turn);
             let at = |beam: usize| {
                 let left = 1.0 - beam as f64 / (beams - 1) as f64;
                 pose(x * left, y * left, turn * left)
             };
             let empty = scan(vec![0.0; beams]);
             let range = |beam: usize| range_m(&at(beam), empty.angle_rad(beam)) as f32;
-            let undone = undo(&scan((0..beams).map(range).collect()), &start);
+            let undone =
+                undo(&scan((0..beams).map(range).collect()), |left| pose(x * left, y * left, turn * left));
             let missing = undone.ranges_m.iter().filter(|range_m| range_m.is_nan()).count();
             assert!(missing <= (turn.abs() / TAU * beams as f64) as usize + 3, "{missing} missing");
             for (beam, found_m) in undone.ranges_m.iter().enumerate().filter(|(_, range_m)| !range_m.is_nan())
@@ -160,10 +181,46 @@ mod tests {
     }
 
     #[test]
+    fn an_accelerating_robot_has_a_scan_from_the_end() {
+        let (beams, elapsed_s, acceleration_mps2, acceleration_radps2) = (720, 0.1, 1.0, 4.0);
+        // The pose a time before the end, in the frame of the end: from rest at the last reading to full speed.
+        let before = |back_s: f64| {
+            let travelled = |acceleration: f64| 0.5 * acceleration * (elapsed_s - back_s).powi(2);
+            let back = |acceleration: f64| travelled(acceleration) - 0.5 * acceleration * elapsed_s.powi(2);
+            pose(back(acceleration_mps2), 0.0, back(acceleration_radps2))
+        };
+        let empty = scan(vec![0.0; beams]);
+        let range = |beam: usize| {
+            let left = 1.0 - beam as f64 / (beams - 1) as f64;
+            range_m(&before(left * empty.sweep_s), empty.angle_rad(beam)) as f32
+        };
+        let twist = Twist {
+            linear_mps: acceleration_mps2 * elapsed_s,
+            angular_radps: acceleration_radps2 * elapsed_s,
+        };
+        let reading = LaserReading {
+            time_s: 1.0,
+            pose: Isometry2::identity(),
+            twist,
+            mount: Isometry2::identity(),
+            scan: scan((0..beams).map(range).collect()),
+        };
+        let unswept = unswept(&reading, &before(elapsed_s).inverse(), &travel(&twist, elapsed_s), elapsed_s);
+        let errors_m = (0..beams).filter(|&beam| !unswept.ranges_m[beam].is_nan()).map(|beam| {
+            (f64::from(unswept.ranges_m[beam]) - range_m(&Isometry2::identity(), empty.angle_rad(beam))).abs()
+        });
+        let errors_m: Vec<f64> = errors_m.collect();
+        assert!(errors_m.len() > beams - 8, "{} beams", errors_m.len());
+        // The four corners between two beams are cut off.
+        let large = errors_m.iter().filter(|error_m| **error_m > 1e-5).count();
+        assert!(large <= 4 && errors_m.iter().all(|error_m| *error_m < 0.02), "{large} errors");
+    }
+
+    #[test]
     fn a_robot_at_rest_keeps_its_scan() {
         let ranges_m = [1.0, 2.0, f32::INFINITY, f32::NAN, f32::NEG_INFINITY, 3.0, 3.0, 3.0].to_vec();
         let scan = scan(ranges_m.clone());
-        let undone = undo(&scan, &Isometry2::identity());
+        let undone = undo(&scan, |_| Isometry2::identity());
         for (before, after) in ranges_m.iter().zip(&undone.ranges_m) {
             let is_same = (before - after).abs() < 1e-5 || before.to_bits() == after.to_bits();
             assert!(is_same, "{before} became {after}");

@@ -113,6 +113,7 @@ impl Options {
             turn_radpm: 3.0_f64.to_radians() * self.drift,
             distance_noise_m: 0.05 * self.drift.abs(),
             turn_noise_rad: 0.05 * self.drift.abs(),
+            ..OdometryError::default()
         };
         let laser = &mut robot.laser;
         (laser.beams, laser.noise_std_m, laser.dropout) = (self.beams, self.noise_m, self.dropout);

@@ -1,6 +1,7 @@
 //! The search for a pose that tracking has lost, and the choice between several poses.
 
-use super::{LEAST_CONFIRMED, Localizer};
+use super::Localizer;
+use super::estimating::LEAST_CONFIRMED;
 use crate::changing_map::ChangingMap;
 use crate::estimate::PoseState;
 use crate::hypotheses::Hypotheses;
