@@ -31,7 +31,8 @@ pub struct DiffDriveSettings {
     pub clearance_m: f64,
     /// The additional clearance per m/s of speed, s.
     pub clearance_s: f64,
-    /// The maximum speed of dynamic obstacles, m/s.
+    /// The maximum speed of dynamic obstacles, m/s. With 0.3 m/s, doors and robots reached a robot that was still braking
+    /// six times in five runs of 20 minutes; with 0.5 m/s once.
     pub max_obstacle_mps: f64,
     /// The backward speed in a recovery, m/s.
     pub reverse_mps: f64,
@@ -51,7 +52,7 @@ impl Default for DiffDriveSettings {
             reaction_s: 0.15,
             clearance_m: 0.015,
             clearance_s: 0.05,
-            max_obstacle_mps: 0.3,
+            max_obstacle_mps: 0.5,
             reverse_mps: 0.15,
         }
     }
