@@ -73,8 +73,7 @@ impl Fleet {
         let discs = robots.iter().map(|robot| Disc { center: robot.at(), radius_m: radius_m(robot) });
         let cornered = spec.robots.iter().enumerate().filter(|(_, robot)| !robot.corners.is_empty());
         let cornered: Vec<usize> = cornered.map(|(index, _)| index).collect();
-        let ranges_m = spec.robots.iter().flat_map(RobotSpec::lasers).map(|laser| laser.range_max_m);
-        let range_m = ranges_m.fold(0.0, f64::max);
+        let range_m = spec.robots.iter().map(RobotSpec::range_m).fold(0.0, f64::max);
         let polygons = spec.obstacles.len() + cornered.len();
         let scene = Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), polygons, range_m);
         let mut fleet = Self {

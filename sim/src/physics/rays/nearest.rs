@@ -15,6 +15,9 @@ const SAFE: f64 = 1.0 + 1e-5;
 /// A point counts as beside the beams if it is this far beyond their border, m: far above rounding.
 const BESIDE_M: f64 = 1e-6;
 
+/// The number of sides of a body that are compared at a time.
+const MOST_SIDES: usize = 32;
+
 /// The shortest range so far.
 pub(super) struct Nearest<'a> {
     beams: &'a Beams,
@@ -94,19 +97,23 @@ impl<'a> Nearest<'a> {
 
     /// Adds the sides of a convex body.
     pub(super) fn add_polygon(&mut self, sides: &[Edge]) {
-        // The nearest side first: most of the others are then out of reach.
-        let mut first = (f64::INFINITY, usize::MAX);
-        for (index, side) in sides.iter().enumerate() {
-            if let Some(distance2) = self.distance2_m2(side)
-                && distance2 < first.0
-            {
-                first = (distance2, index);
+        let mut distances2 = [f64::INFINITY; MOST_SIDES];
+        for sides in sides.chunks(MOST_SIDES) {
+            let mut nearest = 0;
+            for (index, side) in sides.iter().enumerate() {
+                distances2[index] = self.distance2_m2(side).unwrap_or(f64::INFINITY);
+                if distances2[index] < distances2[nearest] {
+                    nearest = index;
+                }
+            }
+            // The nearest side first: most of the others are then out of reach.
+            for index in [nearest].into_iter().chain(0..sides.len()) {
+                if distances2[index] <= self.reach_m * self.reach_m {
+                    self.take_edge(&sides[index]);
+                    distances2[index] = f64::INFINITY;
+                }
             }
         }
-        let Some(side) = sides.get(first.1) else { return };
-        self.take_edge(side);
-        let others = sides.iter().enumerate().filter(|(index, _)| *index != first.1);
-        others.for_each(|(_, side)| self.add_edge(side));
     }
 
     /// Takes the hits on an edge that faces the sensor.

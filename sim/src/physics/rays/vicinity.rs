@@ -1,6 +1,8 @@
 //! The walls and bodies around a robot, for all sensors of the robot that only need the nearest of them.
 
 use super::disc::Disc;
+use super::edges::Edge;
+use crate::physics::shape::point_segment_m;
 use nalgebra::Point2;
 
 /// A stored distance is at most the true one by this factor: the rounding of single precision.
@@ -31,6 +33,8 @@ pub(super) enum Thing {
 pub(in crate::physics) struct Vicinity {
     /// The center of the robot and the distance of its sensors from the center, m.
     pub(super) sensors: Disc,
+    /// What is farther away from the center is out of range of all sensors, m.
+    reach_m: f64,
     /// The solid walls in which a sensor may be.
     pub(super) solids: Vec<u32>,
     /// For each thing its distance from the center of the robot, at most the true one, in 32 bits; its kind in 2 bits;
@@ -43,11 +47,33 @@ impl Vicinity {
     pub(super) fn new(center: Point2<f64>, ring: &Ring) -> Self {
         // A little larger, because of rounding.
         let sensors = Disc { center, radius_m: ring.offset_m * (1.0 + 1e-9) + 1e-9 };
-        Self { sensors, solids: Vec::new(), things: Vec::new() }
+        let reach_m = ring.range_m + sensors.radius_m;
+        Self { sensors, reach_m, solids: Vec::new(), things: Vec::with_capacity(64) }
+    }
+
+    /// Adds an edge of the walls, if the edge faces a sensor and is in range.
+    pub(super) fn add_edge(&mut self, index: usize, edge: &Edge) {
+        let gap_m = edge.gap_m(&self.sensors.center);
+        if gap_m >= -self.sensors.radius_m && gap_m <= self.reach_m {
+            let distance_m = point_segment_m(&self.sensors.center, &edge.from, &edge.to);
+            self.add(distance_m, Thing::Edge(index));
+        }
+    }
+
+    /// Adds a body with a disc around it, if the body is in range.
+    pub(super) fn add_disc(&mut self, around: &Disc, thing: Thing) {
+        let (most_m, distance2) =
+            (self.reach_m + around.radius_m, (around.center - self.sensors.center).norm_squared());
+        if distance2 <= most_m * most_m {
+            self.add(distance2.sqrt() - around.radius_m, thing);
+        }
     }
 
     /// Adds a thing at a distance from the center of the robot, m.
-    pub(super) fn add(&mut self, distance_m: f64, thing: Thing) {
+    fn add(&mut self, distance_m: f64, thing: Thing) {
+        if distance_m > self.reach_m {
+            return;
+        }
         // The bits of positive numbers have the order of the numbers.
         let distance = ((distance_m.max(0.0) * SAFE) as f32).to_bits();
         let (kind, index) = match thing {
@@ -84,7 +110,7 @@ mod tests {
 
     #[test]
     fn things_come_in_the_order_of_their_distance_and_once() {
-        let mut vicinity = Vicinity::new(Point2::origin(), &Ring::default());
+        let mut vicinity = Vicinity::new(Point2::origin(), &Ring { offset_m: 0.0, range_m: 1e4 });
         let things = [
             (3.5, Thing::Polygon(7)),
             (-0.2, Thing::Polygon(1)),

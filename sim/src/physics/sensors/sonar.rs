@@ -45,13 +45,16 @@ impl Device for Sonar {
         let SonarSpec { range_min_m, range_max_m, noise_std_m, mount, .. } = self.spec;
         let nearest =
             surroundings.scene.nearest(&self.beams, &(platform.pose * mount), look.vicinity(&self.ring));
-        let measured_m = 1.0 / nearest + noise_std_m * noise.normal();
+        let noise_m = if noise_std_m > 0.0 { noise_std_m * noise.normal() } else { 0.0 };
+        let measured_m = 1.0 / nearest + noise_m;
         let range_m = reported(measured_m, range_min_m, range_max_m);
         SonarReading { time_s: surroundings.time_s, range_m }
     }
 
     fn skip(&self, noise: &mut RandomStream) {
-        noise.normal();
+        if self.spec.noise_std_m > 0.0 {
+            noise.normal();
+        }
     }
 
     fn time_s(reading: &SonarReading) -> Option<f64> {

@@ -84,6 +84,14 @@ impl RobotSpec {
         Form::new(&self.corners, self.radius_m, pose)
     }
 
+    /// The longest range of a laser scanner, a sonar or the fiducial finder, m.
+    pub(in crate::physics) fn range_m(&self) -> f64 {
+        let lasers = self.lasers().map(|laser| laser.range_max_m);
+        let sonars = self.sonars.iter().map(|sonar| sonar.range_max_m);
+        let finder = self.fiducial.iter().map(|finder| finder.range_max_m);
+        lasers.chain(sonars).chain(finder).fold(0.0, f64::max)
+    }
+
     /// All laser scanners, the main one first.
     pub fn lasers(&self) -> impl Iterator<Item = &LaserSpec> {
         [&self.laser].into_iter().chain(&self.more_lasers)

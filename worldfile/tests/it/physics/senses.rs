@@ -46,6 +46,18 @@ fn a_sonar_hears_the_nearest_thing_in_its_cone() {
 }
 
 #[test]
+fn a_sonar_hears_farther_than_the_laser_sees() {
+    let mut spec = place(&[], "");
+    spec.robots[0].laser.range_max_m = 0.5;
+    (spec.robots[0].sonars[0].range_max_m, spec.robots[0].sonars[0].cone_rad) = (10.0, 0.02);
+    let mut fleet = Fleet::new(&spec, 0);
+    fleet.step(&mut stop);
+    let reading = fleet.robots().next().unwrap().sonars().next().flatten().unwrap();
+    // From x = 1 to the wall between the rooms.
+    assert!((reading.range_m - 4.95).abs() < 1e-3, "{reading:?}");
+}
+
+#[test]
 fn bumpers_feel_where_they_are_touched() {
     for (turn_deg, sector) in [(0.0, 2), (30.0, 1), (-30.0, 2), (60.0, 0), (-60.0, 3)] {
         let text = place(&[], "");

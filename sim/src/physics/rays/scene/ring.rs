@@ -2,74 +2,40 @@
 
 use super::{Scene, Sorted, Walls};
 use crate::physics::rays::beams::Beams;
+use crate::physics::rays::edges::Edge;
 use crate::physics::rays::nearest::Nearest;
 use crate::physics::rays::vicinity::{Ring, Thing, Vicinity};
-use crate::physics::shape::point_segment_m;
 use nalgebra::{Isometry2, Point2, Vector2};
 
 impl Scene {
     /// What the sensors of the robot `own` may detect, whose center is at `center`.
     pub(in crate::physics) fn vicinity(&self, center: Point2<f64>, ring: &Ring, own: usize) -> Vicinity {
         let mut found = Vicinity::new(center, ring);
-        let visible = &self.walls.visible;
+        let (Walls { solids, edges, visible }, sorted) = (&*self.walls, self.sorted());
         let reach = Vector2::repeat(found.sensors.radius_m);
         let (low, high) = (center - reach, center + reach);
         if visible.reaches_out(&low, &high) {
-            (0..self.walls.edges.len()).for_each(|edge| self.add_edge(edge, ring, &mut found));
-            (0..=visible.len()).for_each(|cell| self.add_bodies(cell, ring, own, &mut found));
-            found.solids.extend(0..self.walls.solids.len() as u32);
+            (0..edges.len()).for_each(|edge| found.add_edge(edge, &edges[edge]));
+            (0..=visible.len()).for_each(|cell| sorted.add_to(&mut found, cell, own));
+            found.solids.extend(0..solids.len() as u32);
         } else {
             for cell in visible.around(&low, &high) {
-                visible
-                    .edges(cell)
-                    .iter()
-                    .for_each(|seen| self.add_edge(seen.edge as usize, ring, &mut found));
+                for seen in visible.edges(cell) {
+                    found.add_edge(seen.edge as usize, &edges[seen.edge as usize]);
+                }
                 let cells = visible.cells(cell).iter().map(|&other| other as usize);
                 cells
                     .take_while(|&other| visible.apart_m(cell, other) <= ring.range_m)
                     .chain([visible.len()])
-                    .for_each(|other| self.add_bodies(other, ring, own, &mut found));
+                    .for_each(|other| sorted.add_to(&mut found, other, own));
                 found.solids.extend(visible.boxes(cell));
             }
         }
-        let solids = &self.walls.solids;
-        let may_contain = |solid: &u32| {
-            solids[*solid as usize].iter().all(|side| side.gap_m(&center) <= found.sensors.radius_m)
-        };
-        found.solids.retain(may_contain);
+        let sensors = found.sensors;
+        let may_contain = |side: &Edge| side.gap_m(&sensors.center) <= sensors.radius_m;
+        found.solids.retain(|solid| solids[*solid as usize].iter().all(may_contain));
         found.sort();
         found
-    }
-
-    fn add_edge(&self, index: usize, ring: &Ring, found: &mut Vicinity) {
-        let (edge, sensors) = (&self.walls.edges[index], found.sensors);
-        let gap_m = edge.gap_m(&sensors.center);
-        // Else the edge faces away from all sensors.
-        if gap_m >= -sensors.radius_m && gap_m <= ring.range_m + sensors.radius_m {
-            let distance_m = point_segment_m(&sensors.center, &edge.from, &edge.to);
-            if distance_m <= ring.range_m + sensors.radius_m {
-                found.add(distance_m, Thing::Edge(index));
-            }
-        }
-    }
-
-    fn add_bodies(&self, cell: usize, ring: &Ring, own: usize, found: &mut Vicinity) {
-        let Sorted { robots, polygons } = self.sorted();
-        let center = found.sensors.center;
-        let most_m = ring.range_m + found.sensors.radius_m;
-        for (robot, disc) in robots.get(cell).iter().filter(|(robot, _)| *robot as usize != own) {
-            let distance_m = (disc.center - center).norm() - disc.radius_m;
-            if distance_m <= most_m {
-                found.add(distance_m, Thing::Robot(*robot as usize));
-            }
-        }
-        for &index in polygons.in_cell(cell) {
-            let polygon = polygons.get(index);
-            let distance_m = (polygon.around.center - center).norm() - polygon.around.radius_m;
-            if distance_m <= most_m && polygon.is_seen_by(own) {
-                found.add(distance_m, Thing::Polygon(index));
-            }
-        }
     }
 
     /// One over the shortest range of all `beams` of a sensor at the pose `sensor`, 1/m; 0 without a hit. The sensor is
@@ -110,5 +76,20 @@ impl Scene {
             }
         }
         nearest.inverse()
+    }
+}
+
+impl Sorted {
+    /// Adds the bodies of a cell to what the sensors of the robot `own` may detect.
+    fn add_to(&self, found: &mut Vicinity, cell: usize, own: usize) {
+        for (robot, disc) in self.robots.get(cell).iter().filter(|(robot, _)| *robot as usize != own) {
+            found.add_disc(disc, Thing::Robot(*robot as usize));
+        }
+        for &index in self.polygons.in_cell(cell) {
+            let polygon = self.polygons.get(index);
+            if polygon.is_seen_by(own) {
+                found.add_disc(&polygon.around, Thing::Polygon(index));
+            }
+        }
     }
 }
