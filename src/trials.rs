@@ -276,7 +276,8 @@ where
     }
     let settings = ReportSettings { interrupted, ..report_settings(experiment, experiment_arguments::<P>()) };
     settings.sort(&mut trials);
-    let results = Results { folder, out: program.out(), world_names: program.world_names(), quiet: args.quiet };
+    let results =
+        Results { folder, out: program.out(), world_names: program.world_names(), quiet: args.quiet };
     results.write(settings, trials.into_iter().map(Ok), &experiment.worlds)?;
     if let Some(problem) = problem {
         return Err(problem.into());

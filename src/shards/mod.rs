@@ -63,11 +63,7 @@ pub enum ShardCommand {
 }
 
 /// The header of the files of the shards of an experiment.
-fn header<P: TrialProgram>(
-    arguments: Vec<String>,
-    shard: Shard,
-    experiment: &Experiment<P::Spec>,
-) -> Header {
+fn header<P: TrialProgram>(arguments: Vec<String>, shard: Shard, experiment: &Experiment<P::Spec>) -> Header {
     let program = P::command().get_name().to_owned();
     let trials = experiment.jobs().len() as u64;
     Header::new(&program, env!("CARGO_PKG_VERSION"), arguments, experiment, trials, shard)
@@ -107,7 +103,10 @@ pub(crate) fn run<P: TrialProgram>(
     file.sync().context("start the shard again")?;
     if finished < all {
         let again = "start the shard again to go on";
-        say(stderr(), format_args!("interrupted: {finished} of {all} trials of shard {shard} are finished; {again}"));
+        say(
+            stderr(),
+            format_args!("interrupted: {finished} of {all} trials of shard {shard} are finished; {again}"),
+        );
         return Ok(ExitCode::from(INTERRUPTED));
     }
     if !args.quiet {
@@ -193,7 +192,8 @@ where
         return Err(input(anyhow!("the experiment of {shown} cannot be repeated: {why}")));
     }
     let settings = report_settings(&experiment, found.arguments.clone());
-    let results = Results { folder: RunFolder::open(out).map_err(input)?, out, world_names: args.world_names(), quiet };
+    let results =
+        Results { folder: RunFolder::open(out).map_err(input)?, out, world_names: args.world_names(), quiet };
     let trials = shards.trials().map_err(input)?.map(|trial| trial.map_err(Into::into));
     results.write(settings, trials, &experiment.worlds)?;
     Ok(ExitCode::SUCCESS)

@@ -21,6 +21,7 @@ mod memory;
 mod output;
 mod prior;
 mod screen;
+mod shards;
 mod targets;
 mod tour;
 mod worlds;

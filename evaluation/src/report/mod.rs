@@ -77,7 +77,7 @@ pub struct ReportSettings {
 
 impl ReportSettings {
     /// The number of trials of the whole experiment.
-    fn all_trials(&self) -> u64 {
+    pub(crate) fn all_trials(&self) -> u64 {
         [&self.worlds, &self.estimators, &self.strategies]
             .iter()
             .fold(self.trials, |all, names| all * names.len() as u64)
@@ -169,6 +169,6 @@ fn position(names: &[String], name: &str) -> (usize, String) {
 }
 
 #[cfg(test)]
-mod synthetic;
+pub(crate) mod synthetic;
 #[cfg(test)]
 mod tests;

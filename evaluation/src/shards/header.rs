@@ -76,8 +76,7 @@ impl Header {
             () if self.program != other.program => differing("the program", &self.program, &other.program),
             () if self.version != other.version => differing("version", &self.version, &other.version),
             () if self.arguments != other.arguments => {
-                let [own, other] =
-                    [self, other].map(|header| format!("`{}`", header.arguments.join(" ")));
+                let [own, other] = [self, other].map(|header| format!("`{}`", header.arguments.join(" ")));
                 differing("the experiment", &own, &other)
             }
             () if (&self.settings, self.trials) != (&other.settings, other.trials) => {

@@ -112,7 +112,10 @@ impl Scan {
 }
 
 pub(super) fn not_a_shard(path: &Path) -> ShardError {
-    ShardError::content(path, "the first line is not the header of a shard: it was edited, or this is another file")
+    ShardError::content(
+        path,
+        "the first line is not the header of a shard: it was edited, or this is another file",
+    )
 }
 
 fn invalid(path: &Path, number: u64, what: &str) -> ShardError {

@@ -73,7 +73,14 @@ impl<W: TrialWorld> Experiment<W> {
                 for estimator in &self.estimators {
                     for strategy in &self.strategies {
                         let number = group * self.trials + trial;
-                        jobs.push(TrialSettings { number, world, estimator, strategy, seed, experiment: self });
+                        jobs.push(TrialSettings {
+                            number,
+                            world,
+                            estimator,
+                            strategy,
+                            seed,
+                            experiment: self,
+                        });
                         group += 1;
                     }
                 }

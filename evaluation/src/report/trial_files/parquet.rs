@@ -116,7 +116,8 @@ fn schema(length: Length) -> ParquetResult<Type> {
         let column = Type::primitive_type_builder(name, physical);
         Ok(Arc::new(column.with_repetition(repetition).with_logical_type(logical).build()?))
     };
-    let text = |name: &str| column(name, Physical::BYTE_ARRAY, Repetition::REQUIRED, Some(LogicalType::String));
+    let text =
+        |name: &str| column(name, Physical::BYTE_ARRAY, Repetition::REQUIRED, Some(LogicalType::String));
     let natural = LogicalType::Integer { bit_width: 64, is_signed: false };
     let number = |name: &str| column(name, Physical::INT64, Repetition::REQUIRED, Some(natural.clone()));
     let mut columns = NAMES.iter().map(|name| text(name)).collect::<ParquetResult<Vec<_>>>()?;
