@@ -1,8 +1,7 @@
 //! Code that the programs of trials share: options, and the way from trials to results.
 
-use crate::program::{Failure, INTERRUPTED, input, interrupt_flag};
+use crate::program::INTERRUPTED;
 use crate::progress::Progress;
-use crate::shards::{self, ShardCommand};
 use crate::terminal::{print, say};
 use agent::Reward;
 use anyhow::{Context, bail};
@@ -10,7 +9,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::parser::ValueSource;
 use clap::{Args, Parser, ValueEnum};
 use evaluation::output::{RunFolder, write_file};
-use evaluation::report::{Plan, REPORT, Report, ReportBuilder, ReportSettings, Trial, TrialFiles};
+use evaluation::report::{Plan, REPORT, ReportBuilder, ReportSettings, Trial, TrialFiles};
 use evaluation::shards::Shard;
 use evaluation::trials::{Experiment, TrialError, TrialStrategy, TrialWorld};
 use rayon::ThreadPool;
@@ -106,27 +105,6 @@ pub trait TrialProgram: Parser {
 
     /// The text of the file of a generated world.
     fn to_toml(world: &Self::Spec) -> Option<String>;
-}
-
-/// Runs the subcommand, the shard or the trials that the command line asks for.
-///
-/// # Errors
-///
-/// When the input is invalid, a trial cannot run, or results cannot be written.
-pub fn main<P: TrialProgram>(args: &P, command: Option<&ShardCommand>) -> Result<ExitCode, Failure>
-where
-    for<'a> Scene: From<&'a P::Spec>,
-    for<'a> Plan<'a>: From<&'a P::Spec>,
-{
-    if let Some(command) = command {
-        return shards::manage::<P>(command);
-    }
-    let experiment = args.experiment().map_err(input)?;
-    let is_canceled = interrupt_flag()?; // before any file is made
-    match args.shared().shard {
-        Some(shard) => shards::run(args, shard, &experiment, &is_canceled),
-        None => Ok(run(args, &experiment, &is_canceled)?),
-    }
 }
 
 /// A parser of the name of a strategy, or of a reference.
@@ -248,7 +226,7 @@ where
 }
 
 /// Runs the trials, and writes the results.
-fn run<P: TrialProgram>(
+pub(crate) fn run<P: TrialProgram>(
     program: &P,
     experiment: &Experiment<P::Spec>,
     is_canceled: &AtomicBool,
@@ -313,7 +291,7 @@ impl Results<'_> {
             files.add(&trial)?;
         }
         files.finish()?;
-        let report: Report = report.finish();
+        let report = report.finish();
         let written = report.write(&self.folder, worlds)?;
         let inputs: Vec<&Path> = self.world_names.iter().map(Path::new).collect();
         self.folder.finish(REPORT, &inputs)?;

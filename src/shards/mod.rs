@@ -2,10 +2,10 @@
 
 mod status;
 
-use crate::program::{Failure, INTERRUPTED, input};
+use crate::program::{Failure, INTERRUPTED, input, interrupt_flag};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
-use crate::trials::{Results, TrialProgram, experiment_arguments, report_settings, threads};
+use crate::trials::{self, Results, TrialProgram, experiment_arguments, report_settings, threads};
 use anyhow::{Context, anyhow};
 use clap::Subcommand;
 use evaluation::output::RunFolder;
@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Instant, SystemTime};
+use viewer::scene::Scene;
 
 /// What can be done with a folder of shards.
 #[derive(Clone, Debug, Subcommand)]
@@ -62,6 +63,27 @@ pub enum ShardCommand {
     },
 }
 
+/// Runs what the command line of a program of trials asks for: a subcommand on shards, a shard, or all trials.
+///
+/// # Errors
+///
+/// When the input is invalid, a trial cannot run, or results cannot be written.
+pub fn main<P: TrialProgram>(args: &P, command: Option<&ShardCommand>) -> Result<ExitCode, Failure>
+where
+    for<'a> Scene: From<&'a P::Spec>,
+    for<'a> Plan<'a>: From<&'a P::Spec>,
+{
+    if let Some(command) = command {
+        return manage::<P>(command);
+    }
+    let experiment = args.experiment().map_err(input)?;
+    let is_canceled = interrupt_flag()?; // before any file is made
+    match args.shared().shard {
+        Some(shard) => run_shard(args, shard, &experiment, &is_canceled),
+        None => Ok(trials::run(args, &experiment, &is_canceled)?),
+    }
+}
+
 /// The header of the files of the shards of an experiment.
 fn header<P: TrialProgram>(arguments: Vec<String>, shard: Shard, experiment: &Experiment<P::Spec>) -> Header {
     let program = P::command().get_name().to_owned();
@@ -70,7 +92,7 @@ fn header<P: TrialProgram>(arguments: Vec<String>, shard: Shard, experiment: &Ex
 }
 
 /// Runs the trials of a shard that are not finished yet.
-pub(crate) fn run<P: TrialProgram>(
+fn run_shard<P: TrialProgram>(
     program: &P,
     shard: Shard,
     experiment: &Experiment<P::Spec>,
@@ -138,7 +160,7 @@ fn now() -> u64 {
 }
 
 /// Carries out a subcommand.
-pub(crate) fn manage<P: TrialProgram>(command: &ShardCommand) -> Result<ExitCode, Failure>
+fn manage<P: TrialProgram>(command: &ShardCommand) -> Result<ExitCode, Failure>
 where
     for<'a> Plan<'a>: From<&'a P::Spec>,
 {

@@ -75,7 +75,7 @@ fn results_can_be_merged_into_the_folder_of_the_shards() {
     start(&run, GRID, 2, 1..=2);
     for _ in 0..2 {
         let ended = run.goes_well("merge shards");
-        assert!(ended.stdout.contains("all worlds (2)\n2 trials of 300 steps"), "{}", ended.stdout);
+        assert!(ended.stdout.contains("all worlds (2)\n4 trials of 300 steps"), "{}", ended.stdout);
         assert!(ended.stdout.contains("written to shards: report.json, "), "{}", ended.stdout);
         let all = names(&run.path("shards"));
         assert!(
@@ -194,7 +194,13 @@ fn invalid_input_is_refused_and_nothing_is_overwritten() {
         refused(&run, "status nowhere"),
         refused(&run, "missing ."),
     ];
-    insta::assert_snapshot!(refusals.join("\n"), @"");
+    insta::assert_snapshot!(refusals.join("\n"), @"
+    error: shards/shard-1-of-3.jsonl: this shard is one of 3 shards, not of 4; give another folder by --out
+    error: shards/shard-1-of-3.jsonl: this shard is of the experiment `--strategy curious --strategy recency --strategy poisson --trials 2 --steps 300 --generate 2 --seed 100`, not `--strategy curious --strategy recency --strategy poisson --trials 2 --steps 300 --max-steps 7 --generate 2 --seed 100`; give another folder by --out
+    error: cannot read nowhere: No such file or directory (os error 2)
+    error: cannot read nowhere: No such file or directory (os error 2)
+    error: .: this folder has no shard with a finished line
+    ");
     for (arguments, says) in [
         ("--shard 1/3 --rrd a.rrd", "cannot be used with"),
         ("--shard 1/3 --generate 1 --save-worlds", "cannot be used with"),
@@ -260,8 +266,8 @@ fn the_status_of_many_shards_is_short() {
     fs::write(&path, two.concat()).unwrap();
     let status = run.goes_well("status shards").stdout;
     let lines: Vec<&str> = status.lines().collect();
-    assert_eq!(lines[0], "shard 2/4              0 of 6 trials  not started");
-    assert!(lines[1].starts_with("shard 3/4              2 of 6 trials  running"), "{status}");
+    assert_eq!(lines[0], "shard 2/4                0 of 6 trials  not started");
+    assert!(lines[1].starts_with("shard 3/4                2 of 6 trials  running"), "{status}");
     assert!(
         lines[3].starts_with("8 of 24 trials (33.3 %), 0.0") && lines[3].ends_with(" core-hours"),
         "{status}"

@@ -1,13 +1,13 @@
 //! The file of a shard that runs.
 
 use super::line::{self, Cost};
-use super::scan::{Scan, not_a_shard};
+use super::scan::{MAX_LINE, Scan, not_a_shard};
 use super::{Header, Shard, ShardError};
 use crate::output::{OutputError, lock, make_folder};
 use crate::report::Trial;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -26,8 +26,8 @@ struct Appended {
     file: File,
     /// The length up to the end of the last whole line, bytes.
     intact: u64,
-    /// Whether a line could not be written: nothing must follow it.
-    has_failed: bool,
+    /// Why a line could not be written: nothing must follow it.
+    failure: Option<io::Error>,
 }
 
 impl ShardFile {
@@ -59,7 +59,7 @@ impl ShardFile {
         Ok(Self {
             key: header.key(),
             finished: scan.lines.into_keys().collect(),
-            file: Mutex::new(Appended { file, intact: scan.intact, has_failed: false }),
+            file: Mutex::new(Appended { file, intact: scan.intact, failure: None }),
             path,
         })
     }
@@ -84,12 +84,12 @@ impl ShardFile {
         let failed = |why| OutputError::new(&self.path, why);
         let line = line::write(number, cost, trial, self.key).map_err(|error| failed(error.into()))?;
         let mut appended = self.file.lock().unwrap_or_else(PoisonError::into_inner);
-        if appended.has_failed {
-            return Err(failed(io::Error::other("an earlier line could not be written")));
+        if let Some(earlier) = &appended.failure {
+            return Err(failed(again(earlier)));
         }
         if let Err(why) = appended.file.write_all(line.as_bytes()) {
-            appended.has_failed = true;
             appended.file.set_len(appended.intact).ok(); // a torn line is removed at the next start as well
+            appended.failure = Some(again(&why));
             return Err(failed(why));
         }
         appended.intact += line.len() as u64;
@@ -105,6 +105,11 @@ impl ShardFile {
         let appended = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         appended.file.sync_data().map_err(|why| OutputError::new(&self.path, why))
     }
+}
+
+/// The same error once more.
+fn again(error: &io::Error) -> io::Error {
+    error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
 }
 
 /// The shards that have files in a folder, in their order.
@@ -128,10 +133,12 @@ pub(super) fn shards_in(folder: &Path) -> Result<Vec<(Shard, PathBuf)>, ShardErr
 /// Checks that all shards in a folder are of the experiment of `header`, by their first lines.
 fn check_others(folder: &Path, header: &Header) -> Result<(), ShardError> {
     for (_, path) in shards_in(folder)? {
-        let mut line = String::new();
+        let mut line = Vec::new();
         let file = File::open(&path).map_err(|why| ShardError::read(&path, why))?;
-        BufReader::new(file).read_line(&mut line).map_err(|why| ShardError::read(&path, why))?;
-        let other = line.strip_suffix('\n').and_then(Header::read);
+        let read = BufReader::new(file).take(MAX_LINE).read_until(b'\n', &mut line);
+        read.map_err(|why| ShardError::read(&path, why))?;
+        let text = line.strip_suffix(b"\n").and_then(|line| std::str::from_utf8(line).ok());
+        let other = text.and_then(Header::read);
         if let Some(difference) = other.and_then(|other| other.difference(header)) {
             let why = format!("this shard is {difference}; give another folder by --out");
             return Err(ShardError::content(&path, why));

@@ -8,7 +8,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 /// No line is longer, bytes.
-const MAX_LINE: u64 = 1 << 20;
+pub(super) const MAX_LINE: u64 = 1 << 20;
 /// The speed of a shard is measured over this number of newest trials.
 const NEWEST: usize = 20;
 

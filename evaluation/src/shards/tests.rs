@@ -194,7 +194,10 @@ fn two_processes_on_one_shard_are_one_too_many() {
 fn merge_a_million_trials() {
     for (worlds, seeds, samples) in [(1000, 100, 8), (1, 100_000, 8), (100, 100, 80)] {
         let strategies = ["curious", "recency", "poisson", "random", "coin"];
-        let (settings, _) = experiment(worlds, &["paper", "two-state"], &strategies, seeds);
+        let (mut settings, mut some) = experiment(1, &["paper", "two-state"], &strategies, 9);
+        some.iter_mut().for_each(|trial| trial.samples.truncate(samples));
+        settings.worlds = (0..worlds).map(|number| format!("world {number}")).collect();
+        settings.trials = seeds;
         let all = settings.all_trials();
         let folder = tempfile::tempdir().unwrap();
         let start = std::time::Instant::now();
@@ -204,14 +207,12 @@ fn merge_a_million_trials() {
             ShardFile::open(folder.path(), &header, shard).unwrap()
         };
         let files: Vec<ShardFile> = (1..=64).map(own).collect();
-        let (_, mut some) = experiment(1, &["paper"], &["curious"], 97);
-        some.iter_mut().for_each(|trial| trial.samples.truncate(samples));
         let mut number = 0;
         for world in &settings.worlds {
             for estimator in &settings.estimators {
                 for strategy in &settings.strategies {
                     for seed in 0..seeds {
-                        let mut trial = some[number as usize % 97].clone();
+                        let mut trial = some[number as usize % some.len()].clone();
                         (trial.world, trial.estimator) = (world.clone(), estimator.clone());
                         (trial.strategy, trial.seed) = (strategy.clone(), seed);
                         number += 1;

@@ -5,6 +5,7 @@ mod args;
 use args::Args;
 use controller::CellDrive;
 use curious::program::{list, start};
+use curious::shards;
 use curious::terminal::say;
 use curious::trials::{self, TrialArgs, TrialProgram, distinct};
 use curious::worlds;
@@ -21,7 +22,7 @@ fn main() -> ExitCode {
             list(&worlds::SHIPPED_GRID, 20, |name| worlds::load_grid(name).map(|spec| spec.description))?;
             return Ok(ExitCode::SUCCESS);
         }
-        trials::main(args, args.command.as_ref())
+        shards::main(args, args.command.as_ref())
     })
 }
 

@@ -5,6 +5,7 @@ mod args;
 use anyhow::Context;
 use args::Args;
 use curious::program::{list_physics_worlds, start};
+use curious::shards;
 use curious::terminal::say;
 use curious::trials::{self, TrialArgs, TrialProgram, distinct};
 use curious::worlds;
@@ -24,7 +25,7 @@ fn main() -> ExitCode {
             list_physics_worlds()?;
             return Ok(ExitCode::SUCCESS);
         }
-        trials::main(args, args.command.as_ref())
+        shards::main(args, args.command.as_ref())
     })
 }
 
