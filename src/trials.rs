@@ -1,12 +1,11 @@
 //! Code that the programs of trials share: options, and the way from trials to results.
 
-use crate::program::INTERRUPTED;
+use crate::program::{INTERRUPTED, given_arguments};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
 use agent::Reward;
 use anyhow::{Context, bail};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::parser::ValueSource;
 use clap::{Args, Parser, ValueEnum};
 use evaluation::output::{RunFolder, write_file};
 use evaluation::report::{Plan, REPORT, ReportBuilder, ReportSettings, Trial, TrialFiles};
@@ -156,25 +155,10 @@ pub fn worlds<W: TrialWorld, E: Into<anyhow::Error>>(
     Ok(worlds)
 }
 
-/// The arguments that describe the experiment, in the order of the help: those on output and execution are left out,
-/// so that equal experiments have equal arguments.
+/// The arguments that describe the experiment: those on output and execution are left out, so that equal experiments
+/// have equal arguments.
 pub(crate) fn experiment_arguments<P: Parser>() -> Vec<String> {
-    let command = P::command();
-    let Ok(matches) = command.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };
-    let mut arguments = Vec::new();
-    for option in command.get_arguments() {
-        let id = option.get_id().as_str();
-        let is_left_out = [Some(OUTPUT), Some(EXECUTION)].contains(&option.get_help_heading());
-        let Some(name) = option.get_long().filter(|_| !is_left_out) else { continue };
-        if matches.value_source(id) != Some(ValueSource::CommandLine) {
-            continue;
-        }
-        for values in matches.get_raw_occurrences(id).into_iter().flatten() {
-            arguments.push(format!("--{name}"));
-            arguments.extend(values.map(|value| value.to_string_lossy().into_owned()));
-        }
-    }
-    arguments
+    given_arguments::<P>(&[OUTPUT, EXECUTION])
 }
 
 /// The settings of the report of an experiment.
