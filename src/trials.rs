@@ -8,7 +8,7 @@ use anyhow::{Context, bail};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
 use evaluation::output::{RunFolder, write_file};
-use evaluation::report::{Plan, REPORT, ReportBuilder, ReportSettings, Trial, TrialFiles};
+use evaluation::report::{Plan, REPORT, ReportSettings, Trial, collect};
 use evaluation::shards::Shard;
 use evaluation::trials::{Experiment, TrialError, TrialStrategy, TrialWorld};
 use rayon::ThreadPool;
@@ -267,15 +267,7 @@ impl Results<'_> {
     where
         Plan<'w>: From<&'w W>,
     {
-        let mut files = TrialFiles::create(self.folder.unfinished(), settings.length)?;
-        let mut report = ReportBuilder::new(settings);
-        for trial in trials {
-            let trial = trial?;
-            report.add(&trial)?;
-            files.add(&trial)?;
-        }
-        files.finish()?;
-        let report = report.finish();
+        let report = collect(settings, self.folder.unfinished(), trials)?;
         let written = report.write(&self.folder, worlds)?;
         let inputs: Vec<&Path> = self.world_names.iter().map(Path::new).collect();
         self.folder.finish(REPORT, &inputs)?;

@@ -29,7 +29,7 @@ pub use metric::{Measure, Metric, Sample, Trial};
 pub use run::Run;
 pub use statistics::Estimate;
 pub use strategy::StrategyResult;
-pub use trial_files::TrialFiles;
+pub use trial_files::collect;
 
 use crate::drawing::PictureError;
 use crate::output::{RunFolder, write_file};

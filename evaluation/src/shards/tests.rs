@@ -1,7 +1,7 @@
 use super::*;
 use crate::output::RunFolder;
 use crate::report::synthetic::{experiment, uniform};
-use crate::report::{Report, ReportBuilder, ReportSettings, Trial, TrialFiles};
+use crate::report::{ReportSettings, Trial, collect};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use std::fs;
@@ -230,16 +230,9 @@ fn merge_a_million_trials() {
         println!("  scanned after {:?}", start.elapsed());
         let out = folder.path().join("out");
         let out = RunFolder::open(&out).unwrap();
-        let mut files = TrialFiles::create(out.unfinished(), settings.length).unwrap();
-        let mut report = ReportBuilder::new(settings);
-        for trial in shards.trials().unwrap() {
-            let trial = trial.unwrap();
-            report.add(&trial).unwrap();
-            files.add(&trial).unwrap();
-        }
-        files.finish().unwrap();
+        let trials = shards.trials().unwrap().map(|trial| trial.map_err(Box::<dyn std::error::Error>::from));
+        let report = collect(settings, out.unfinished(), trials).unwrap();
         println!("  trials written after {:?}", start.elapsed());
-        let report: Report = report.finish();
         report.write::<sim::grid::GridSpec>(&out, &[]).unwrap();
         let status = fs::read_to_string("/proc/self/status").unwrap();
         let peak = status.lines().find(|line| line.starts_with("VmHWM")).unwrap();

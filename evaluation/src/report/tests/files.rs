@@ -5,6 +5,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::RowAccessor;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 fn json(report: &Report) -> (Value, String) {
     let files = written(report);
@@ -160,9 +161,9 @@ fn a_name_is_no_formula_in_the_csv() {
 /// `trials.csv` and `trials.parquet`.
 fn trial_files(settings: &ReportSettings, trials: &[Trial]) -> [Vec<u8>; 2] {
     let folder = tempfile::tempdir().unwrap();
-    let mut files = TrialFiles::create(folder.path(), settings.length).unwrap();
-    trials.iter().for_each(|trial| files.add(trial).unwrap());
-    files.finish().unwrap();
+    let each = trials.iter().cloned().map(Ok::<_, Box<dyn std::error::Error>>);
+    let report = collect(settings.clone(), folder.path(), each).unwrap();
+    assert_eq!(report.finished, trials.len() as u64);
     ["trials.csv", "trials.parquet"].map(|name| std::fs::read(folder.path().join(name)).unwrap())
 }
 
@@ -195,4 +196,20 @@ fn the_parquet_file_has_the_values_of_the_trials_with_their_types() {
     let columns = reader.metadata().file_metadata().schema_descr().columns().iter();
     let names: Vec<&str> = columns.map(|column| column.name()).collect();
     assert_eq!(names[..6], ["world", "estimator", "strategy", "seed", "step", "rate_error"]);
+}
+
+#[test]
+fn trials_that_cannot_be_read_or_written_are_an_error() {
+    let (settings, trials) = experiment(1, &["paper"], &["curious"], 3);
+    let folder = tempfile::tempdir().unwrap();
+    let collected = |folder: &Path, trials: Vec<Result<Trial, Box<dyn std::error::Error>>>| {
+        collect(settings.clone(), folder, trials.into_iter()).unwrap_err().to_string()
+    };
+    let mut other = trials[1].clone();
+    other.samples.pop();
+    let unequal = vec![Ok(trials[0].clone()), Ok(other)];
+    assert_eq!(collected(folder.path(), unequal), "trials are not sampled at the same times");
+    assert_eq!(collected(folder.path(), vec![Ok(trials[0].clone()), Err("gone".into())]), "gone");
+    let nowhere = collected(Path::new("no/such/folder"), vec![]);
+    assert!(nowhere.starts_with("cannot write no/such/folder/trials.csv: "), "{nowhere}");
 }
