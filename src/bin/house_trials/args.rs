@@ -12,7 +12,7 @@ use std::path::PathBuf;
 ///
 /// Without options, five strategies are compared in eight generated houses, for 20 simulated minutes each: about four
 /// minutes on two cores. The folder house_trials_out contains the results: the curves (curves.svg, curves.png, and with
-/// several worlds curves-all-worlds.svg and .png), every number (report.json), and every trial (trials.csv). The table
+/// several worlds curves-all-worlds.svg and .png), every number (report.json), and every trial (trials.csv, trials.parquet). The table
 /// at the end shows which strategy learned the rates of change best, and whether the difference is significant.
 ///
 /// Two references show how far a strategy can get: oracle knows the true rates, and full-observation sees every cell
