@@ -1,10 +1,11 @@
 //! Code that the programs share: arguments and exit codes, worlds and warnings about them, progress, lines for the
-//! user, the keyboard pilot, trials.
+//! user, the keyboard pilot, trials, and experiments in shards.
 
 pub mod keyboard;
 pub mod program;
 pub mod progress;
 pub mod reachability;
+pub mod shards;
 pub mod terminal;
 pub mod trials;
 pub mod worlds;

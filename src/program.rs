@@ -5,6 +5,7 @@ use crate::worlds;
 use anyhow::Context;
 use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::parser::ValueSource;
 use interfaces::printable_lines;
 use std::error::Error;
 use std::fmt::Display;
@@ -132,6 +133,26 @@ where
             .cloned()
             .ok_or("not one of the possible values")
     })
+}
+
+/// The arguments on the command line, in the order of the help, without those under the headings `left_out`.
+pub(crate) fn given_arguments<P: Parser>(left_out: &[&str]) -> Vec<String> {
+    let command = P::command();
+    let Ok(matches) = command.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };
+    let mut arguments = Vec::new();
+    for option in command.get_arguments() {
+        let id = option.get_id().as_str();
+        let is_left_out = option.get_help_heading().is_some_and(|heading| left_out.contains(&heading));
+        let Some(name) = option.get_long().filter(|_| !is_left_out) else { continue };
+        if matches.value_source(id) != Some(ValueSource::CommandLine) {
+            continue;
+        }
+        for values in matches.get_raw_occurrences(id).into_iter().flatten() {
+            arguments.push(format!("--{name}"));
+            arguments.extend(values.map(|value| value.to_string_lossy().into_owned()));
+        }
+    }
+    arguments
 }
 
 /// The longest run, s: 1000 hours.

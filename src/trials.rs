@@ -1,16 +1,19 @@
 //! Code that the programs of trials share: options, and the way from trials to results.
 
-use crate::program::{INTERRUPTED, strategy_of};
+use crate::program::{INTERRUPTED, given_arguments, strategy_of};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
 use agent::Reward;
 use anyhow::{Context, bail};
 use clap::builder::TypedValueParser;
-use clap::{Args, ValueEnum};
+use clap::{Args, Parser, ValueEnum};
 use evaluation::output::{RunFolder, write_file};
-use evaluation::report::{Plan, REPORT, Report, ReportSettings, Trial};
+use evaluation::report::{Plan, REPORT, ReportSettings, Trial, collect};
+use evaluation::shards::Shard;
 use evaluation::trials::{Experiment, TrialError, TrialStrategy, TrialWorld};
+use rayon::ThreadPool;
 use std::collections::BTreeSet;
+use std::fmt::Debug;
 use std::io::stderr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -18,6 +21,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use viewer::recording::{Recorder, RecordingError};
 use viewer::scene::{Scene, Visible};
 use viewer::trial::{Recorded, record};
+
+/// The groups of options that do not change the results of an experiment.
+const OUTPUT: &str = "Output";
+const EXECUTION: &str = "Execution";
 
 /// Options of all programs of trials.
 #[derive(Clone, Debug, Args)]
@@ -35,19 +42,24 @@ pub struct TrialArgs {
     pub reward: RewardChoice,
 
     /// The number of threads [default: the number of cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Execution")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = EXECUTION)]
     pub threads: Option<u16>,
 
+    /// Run shard I of N: every N-th trial, into a file of its own in --out. Run shards 1/N to N/N on any machines, then
+    /// `merge`. A shard that is started again goes on where it ended
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["rrd", "save_worlds"], help_heading = EXECUTION)]
+    pub shard: Option<Shard>,
+
     /// Record the first trial, at most 20,000 readings; open the recording with `rerun FILE`
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
     pub rrd: Option<PathBuf>,
 
     /// Save the generated worlds as TOML files in the output folder
-    #[arg(long, requires = "generate", help_heading = "Output")]
+    #[arg(long, requires = "generate", help_heading = OUTPUT)]
     pub save_worlds: bool,
 
     /// Print only errors
-    #[arg(long, short, help_heading = "Output")]
+    #[arg(long, short, help_heading = OUTPUT)]
     pub quiet: bool,
 }
 
@@ -67,6 +79,31 @@ impl From<RewardChoice> for Reward {
             RewardChoice::ChangesAndDiscoveries => Self::ChangesAndDiscoveries,
         }
     }
+}
+
+/// The command line of a program of trials.
+pub trait TrialProgram: Parser {
+    /// The worlds of the program.
+    type Spec: TrialWorld<World: Visible, Robot: Debug> + Debug;
+
+    /// The options of all programs of trials.
+    fn shared(&self) -> &TrialArgs;
+
+    /// The folder for all results.
+    fn out(&self) -> &Path;
+
+    /// The worlds as given.
+    fn world_names(&self) -> &[String];
+
+    /// The experiment that the arguments describe.
+    ///
+    /// # Errors
+    ///
+    /// When a world cannot be loaded.
+    fn experiment(&self) -> anyhow::Result<Experiment<Self::Spec>>;
+
+    /// The text of the file of a generated world.
+    fn to_toml(world: &Self::Spec) -> Option<String>;
 }
 
 /// A parser of the name of a strategy, or of a reference.
@@ -114,6 +151,27 @@ pub fn worlds<W: TrialWorld, E: Into<anyhow::Error>>(
     Ok(worlds)
 }
 
+/// The arguments that describe the experiment: those on output and execution are left out, so that equal experiments
+/// have equal arguments.
+pub(crate) fn experiment_arguments<P: Parser>() -> Vec<String> {
+    given_arguments::<P>(&[OUTPUT, EXECUTION])
+}
+
+/// The settings of the report of an experiment.
+pub(crate) fn report_settings<W: TrialWorld>(
+    experiment: &Experiment<W>,
+    arguments: Vec<String>,
+) -> ReportSettings {
+    let version = env!("CARGO_PKG_VERSION").to_owned();
+    ReportSettings { version, arguments, ..experiment.report_settings() }
+}
+
+/// The threads that run trials.
+pub(crate) fn threads(args: &TrialArgs) -> anyhow::Result<ThreadPool> {
+    let threads = usize::from(args.threads.unwrap_or(0)); // 0: the number of cores
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads")
+}
+
 /// Runs the trials; the first trial is recorded if `--rrd` is given. A failure of the recording is returned
 /// together with the trials, so that no trial is lost.
 fn trials<W: TrialWorld<World: Visible>>(
@@ -124,9 +182,7 @@ fn trials<W: TrialWorld<World: Visible>>(
 where
     for<'a> Scene: From<&'a W>,
 {
-    let threads = usize::from(args.threads.unwrap_or(0)); // 0: the number of cores
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads")?;
+    let pool = threads(args)?;
     let mut jobs = experiment.jobs();
     let progress = Progress::of_trials(jobs.len(), args.quiet);
     let first = match &args.rrd {
@@ -149,28 +205,21 @@ where
     Ok((first.into_iter().chain(others?).collect(), problem))
 }
 
-/// Runs the trials, and writes the results into the folder `out`. `names` are the worlds as given, and `to_toml` is
-/// the text of the file of a generated world.
-///
-/// # Errors
-///
-/// When a trial cannot run, or results cannot be written.
-pub fn run<W: TrialWorld<World: Visible>>(
-    args: &TrialArgs,
-    out: &Path,
-    names: &[String],
-    experiment: &Experiment<W>,
+/// Runs the trials, and writes the results.
+pub(crate) fn run<P: TrialProgram>(
+    program: &P,
+    experiment: &Experiment<P::Spec>,
     is_canceled: &AtomicBool,
-    to_toml: impl Fn(&W) -> Option<String>,
 ) -> anyhow::Result<ExitCode>
 where
-    for<'a> Scene: From<&'a W>,
-    for<'a> Plan<'a>: From<&'a W>,
+    for<'a> Scene: From<&'a P::Spec>,
+    for<'a> Plan<'a>: From<&'a P::Spec>,
 {
-    let mut folder = RunFolder::open(out)?;
+    let args = program.shared();
+    let mut folder = RunFolder::open(program.out())?;
     args.rrd.iter().try_for_each(|path| folder.adopt(path, "rrd"))?;
-    let (trials, problem) = trials(args, experiment, is_canceled)?;
-    let is_interrupted = is_canceled.load(Ordering::Relaxed);
+    let (mut trials, problem) = trials(args, experiment, is_canceled)?;
+    let interrupted = is_canceled.load(Ordering::Relaxed);
     if trials.is_empty() {
         say(stderr(), "interrupted before the first trial was finished: no report");
         return Ok(ExitCode::from(INTERRUPTED));
@@ -179,26 +228,49 @@ where
         let named = experiment.worlds.len() - args.generate.unwrap_or(0) as usize;
         for world in &experiment.worlds[named..] {
             let path = folder.unfinished().join(format!("{}.toml", world.name()));
-            let text = to_toml(world).context("a generated world cannot be written as a file")?;
+            let text = P::to_toml(world).context("a generated world cannot be written as a file")?;
             write_file(&path, |file| file.write_all(text.as_bytes()))?;
         }
     }
-    let settings = ReportSettings {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        arguments: std::env::args().skip(1).collect(),
-        interrupted: is_interrupted,
-        ..experiment.report_settings()
-    };
-    let report = Report::new(settings, trials);
-    let written = report.write(&folder, &experiment.worlds)?;
-    let inputs: Vec<&Path> = names.iter().map(Path::new).collect();
-    folder.finish(REPORT, &inputs)?;
-    if !args.quiet {
-        print(report.table())?;
-        print(format_args!("written to {}: {}", out.display(), written.join(", ")))?;
-    }
+    let settings = ReportSettings { interrupted, ..report_settings(experiment, experiment_arguments::<P>()) };
+    settings.sort(&mut trials);
+    let results =
+        Results { folder, out: program.out(), world_names: program.world_names(), quiet: args.quiet };
+    results.write(settings, trials.into_iter().map(Ok), &experiment.worlds)?;
     if let Some(problem) = problem {
         return Err(problem.into());
     }
-    Ok(if is_interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+    Ok(if interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+}
+
+/// Where results go.
+pub(crate) struct Results<'a> {
+    pub(crate) folder: RunFolder,
+    pub(crate) out: &'a Path,
+    /// The worlds as given: files that stay.
+    pub(crate) world_names: &'a [String],
+    pub(crate) quiet: bool,
+}
+
+impl Results<'_> {
+    /// Writes the results of trials, which come in the order of the report, and prints the table.
+    pub(crate) fn write<'w, W>(
+        self,
+        settings: ReportSettings,
+        trials: impl Iterator<Item = anyhow::Result<Trial>>,
+        worlds: &'w [W],
+    ) -> anyhow::Result<()>
+    where
+        Plan<'w>: From<&'w W>,
+    {
+        let report = collect(settings, self.folder.unfinished(), trials)?;
+        let written = report.write(&self.folder, worlds)?;
+        let inputs: Vec<&Path> = self.world_names.iter().map(Path::new).collect();
+        self.folder.finish(REPORT, &inputs)?;
+        if !self.quiet {
+            print(report.table())?;
+            print(format_args!("written to {}: {}", self.out.display(), written.join(", ")))?;
+        }
+        Ok(())
+    }
 }

@@ -14,6 +14,7 @@ pub mod palette;
 pub mod percent;
 pub mod physics_trial;
 pub mod report;
+pub mod shards;
 pub mod summary;
 pub mod thinned;
 pub mod trials;

@@ -22,6 +22,7 @@ mod output;
 mod pose;
 mod prior;
 mod screen;
+mod shards;
 mod targets;
 mod tour;
 mod worlds;

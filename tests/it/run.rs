@@ -79,7 +79,8 @@ impl Run {
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(self.program);
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
-        if !arguments.contains("--out") {
+        let is_on_shards = ["missing ", "merge ", "status "].iter().any(|name| arguments.starts_with(name));
+        if !arguments.contains("--out") && !is_on_shards {
             command.args(["--out", "out"]);
         }
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());

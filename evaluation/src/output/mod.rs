@@ -31,7 +31,7 @@ impl OutputError {
 
 /// Locks an open file until it is closed. If another run has locked it, `path` cannot be written, and `advice` says
 /// what to do.
-fn lock(file: &File, path: &Path, advice: &str) -> Result<(), OutputError> {
+pub(crate) fn lock(file: &File, path: &Path, advice: &str) -> Result<(), OutputError> {
     match file.try_lock() {
         // Not every file system has locks.
         Ok(()) | Err(TryLockError::Error(_)) => Ok(()),

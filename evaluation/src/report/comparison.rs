@@ -1,7 +1,7 @@
 //! The comparison of two strategies, paired by trial or by world.
 
 use super::metric::Measure;
-use super::statistics::{Quantiles, holm, mean};
+use super::statistics::{Moments, Quantiles, holm};
 use super::strategy::{StrategyResult, Unit};
 use super::wording::{p_value, value};
 use serde::Serialize;
@@ -98,7 +98,7 @@ fn compare(
     if pairs.is_empty() {
         return None;
     }
-    let [mean_a, mean_b] = [0, 1].map(|side| mean(pairs.iter().map(|pair| pair[side])));
+    let [mean_a, mean_b] = [0, 1].map(|side| Moments::of(pairs.iter().map(|pair| pair[side])).mean());
     let test = quantiles.paired_test(pairs.iter().map(|[a, b]| a - b));
     // No difference is larger than the range of the metric.
     let range = match measure {

@@ -1,5 +1,4 @@
-//! `report.json` and `trials.csv`. An undefined value is `null` in JSON and an empty field in CSV; names are in
-//! the order of the experiment. In CSV, a name that would begin a formula has an apostrophe before it.
+//! `report.json`. An undefined value is `null`; names are in the order of the experiment.
 
 use super::Report;
 use super::claim::Claim;
@@ -9,7 +8,6 @@ use super::strategy::StrategyResult;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};
-use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// The content of `report.json`.
@@ -26,34 +24,6 @@ pub(super) fn write_report(report: &Report, files: &[String], mut to: impl Write
     let content = Content { report, files };
     content.serialize(&mut serde_json::Serializer::with_formatter(&mut to, Layout::default()))?;
     writeln!(to)
-}
-
-/// Writes `trials.csv`: one row per trial and sample.
-pub(super) fn write_trials(report: &Report, to: impl Write) -> io::Result<()> {
-    let mut file = csv::Writer::from_writer(to);
-    let names = Metric::ALL.map(Metric::name);
-    let time = report.settings.length.column();
-    file.write_record(["world", "estimator", "strategy", "seed", time].iter().chain(&names))?;
-    for trial in &report.trials {
-        let seed = trial.seed.to_string();
-        for sample in &trial.samples {
-            for name in [&trial.world, &trial.estimator, &trial.strategy] {
-                file.write_field(no_formula(name).as_ref())?;
-            }
-            file.write_field(&seed)?;
-            file.write_field(sample.time.to_string())?;
-            for value in Metric::ALL.map(|metric| metric.of(sample)) {
-                file.write_field(if value.is_nan() { String::new() } else { value.to_string() })?;
-            }
-            file.write_record(None::<&[u8]>)?;
-        }
-    }
-    file.flush()
-}
-
-/// A name that a spreadsheet shows as it is: with an apostrophe before what would begin a formula.
-fn no_formula(name: &str) -> Cow<'_, str> {
-    if name.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{name}").into() } else { name.into() }
 }
 
 impl Serialize for Run {
@@ -87,7 +57,6 @@ impl Serialize for StrategyResult {
             let points: Vec<_> = curve.map(|(time, at)| (time, at.mean, at.low, at.high)).collect();
             object.serialize_entry(metric.name(), &points)?;
         }
-        object.serialize_entry("map_hashes", &Object(self.map_hashes.iter().cloned()))?;
         object.end()
     }
 }

@@ -20,6 +20,13 @@ macro_rules! metrics {
             $($(#[$doc])+ pub $field: f64,)+
         }
 
+        impl Sample {
+            /// The sample with these values, in the order of [`Metric::ALL`].
+            pub fn new(time: u64, [$($field),+]: [f64; $count]) -> Self {
+                Self { time, $($field),+ }
+            }
+        }
+
         /// A metric of the samples.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Metric {

@@ -2,9 +2,11 @@
 //! the verdict on the paper's claim, files and a table.
 //!
 //! ```text
-//! trials ──▶ runs: curves, areas, comparisons ──▶ report.json, trials.csv, figures, table, claim
+//! trials ──▶ runs: curves, areas, comparisons ──▶ report.json, figures, table, claim
+//!   └──────▶ trials.csv, trials.parquet
 //! ```
 
+mod builder;
 mod claim;
 mod comparison;
 mod figure;
@@ -15,8 +17,10 @@ mod run;
 mod statistics;
 mod strategy;
 mod table;
+mod trial_files;
 mod wording;
 
+pub use builder::{ReportBuilder, UnequalTimes};
 pub use claim::{Claim, Verdict};
 pub use comparison::Comparison;
 pub use figure::Plan;
@@ -25,11 +29,11 @@ pub use metric::{Measure, Metric, Sample, Trial};
 pub use run::Run;
 pub use statistics::Estimate;
 pub use strategy::StrategyResult;
+pub use trial_files::collect;
 
 use crate::drawing::PictureError;
 use crate::output::{RunFolder, write_file};
 use serde::Serialize;
-use statistics::Quantiles;
 
 /// Up to this number of worlds, the table and the figures show single worlds.
 const ONE_BY_ONE: usize = 8;
@@ -47,7 +51,7 @@ fn is_reference(strategy: &str) -> bool {
 pub struct ReportSettings {
     /// The version of the program.
     pub version: String,
-    /// The command line, without the name of the program.
+    /// The arguments that describe the experiment: those on output, threads and shards are left out.
     pub arguments: Vec<String>,
     /// The length of a trial.
     #[serde(flatten)]
@@ -73,10 +77,22 @@ pub struct ReportSettings {
 
 impl ReportSettings {
     /// The number of trials of the whole experiment.
-    fn all_trials(&self) -> u64 {
+    pub(crate) fn all_trials(&self) -> u64 {
         [&self.worlds, &self.estimators, &self.strategies]
             .iter()
             .fold(self.trials, |all, names| all * names.len() as u64)
+    }
+
+    /// Sorts trials into the order of the report: by world, estimator, strategy and seed.
+    pub fn sort(&self, trials: &mut [Trial]) {
+        trials.sort_by_cached_key(|trial| {
+            (
+                position(&self.worlds, &trial.world),
+                position(&self.estimators, &trial.estimator),
+                position(&self.strategies, &trial.strategy),
+                trial.seed,
+            )
+        });
     }
 }
 
@@ -86,9 +102,9 @@ pub struct Report {
     /// The settings of the experiment.
     #[serde(flatten)]
     pub settings: ReportSettings,
-    /// The trials, by estimator, world, strategy and seed.
+    /// The number of finished trials.
     #[serde(skip)]
-    pub trials: Vec<Trial>,
+    pub finished: u64,
     /// One run per world and estimator, then the runs over all worlds.
     pub runs: Vec<Run>,
 }
@@ -104,27 +120,12 @@ impl Report {
     ///
     /// When the trials were not sampled at the same times.
     pub fn new(settings: ReportSettings, mut trials: Vec<Trial>) -> Self {
-        let key = |trial: &Trial| {
-            (
-                position(&settings.estimators, &trial.estimator),
-                position(&settings.worlds, &trial.world),
-                position(&settings.strategies, &trial.strategy),
-                trial.seed,
-            )
-        };
-        trials.sort_by_cached_key(key);
-        let times_of = |trial: &Trial| trial.samples.iter().map(|sample| sample.time).collect::<Vec<_>>();
-        let times = trials.first().map(times_of).unwrap_or_default();
-        assert!(trials.iter().all(|trial| times_of(trial) == times), "trials are sampled at the same times");
-
-        let quantiles = Quantiles::up_to(trials.len());
-        let mut runs = Vec::new();
-        for trials in trials.chunk_by(|a, b| a.estimator == b.estimator) {
-            runs.extend(runs_of_estimator(trials, &settings.strategies, &times, &quantiles));
+        settings.sort(&mut trials);
+        let mut report = ReportBuilder::new(settings);
+        for trial in &trials {
+            assert!(report.add(trial).is_ok(), "trials are sampled at the same times");
         }
-        // World by world, each with all estimators; the entries over all worlds stay at the end.
-        runs.sort_by_cached_key(|run| (run.worlds > 1, position(&settings.worlds, &run.world)));
-        Self { settings, trials, runs }
+        report.finish()
     }
 
     /// The run with `estimator` in `world`, or over `all worlds (N)`.
@@ -137,8 +138,8 @@ impl Report {
         table::table(self)
     }
 
-    /// Writes `trials.csv`, the figures, and `report.json`, which lists all files of the run, into the folder of the
-    /// unfinished run. Returns the names of the files.
+    /// Writes the figures, and `report.json`, which lists all files of the run, into the folder of the unfinished run.
+    /// Returns the names of the files.
     ///
     /// `figure3` (in physics worlds: `curves`) shows the first run; the other figures are `figure3-<world>-<estimator>`,
     /// without the estimator if there is only one. With more than eight worlds, only the first world and all worlds together are drawn.
@@ -154,7 +155,6 @@ impl Report {
     {
         let plans: Vec<Plan> = worlds.iter().map(Plan::from).collect();
         let to = folder.unfinished();
-        write_file(&to.join("trials.csv"), |file| files::write_trials(self, file))?;
         figure::write_all(to, self, &plans)?;
         let mut names = folder.results()?;
         write_file(&to.join(REPORT), |file| files::write_report(self, &names, file))?;
@@ -168,35 +168,7 @@ fn position(names: &[String], name: &str) -> (usize, String) {
     (names.iter().position(|known| known == name).unwrap_or(names.len()), name.to_owned())
 }
 
-/// One run per world, and one over all of them; `trials` are of one estimator, sorted.
-fn runs_of_estimator(
-    trials: &[Trial],
-    strategies: &[String],
-    times: &[u64],
-    quantiles: &Quantiles,
-) -> Vec<Run> {
-    let estimator = &trials[0].estimator;
-    let in_world = |trials: &[Trial]| {
-        let strategies = trials.chunk_by(|a, b| a.strategy == b.strategy);
-        let results = strategies.map(|trials| StrategyResult::in_world(trials, times, quantiles)).collect();
-        Run::new(trials[0].world.clone(), 1, estimator, results, quantiles)
-    };
-    let mut runs: Vec<Run> = trials.chunk_by(|a, b| a.world == b.world).map(in_world).collect();
-    let worlds = runs.len();
-    if worlds > 1 {
-        let numbered =
-            (0..).zip(&runs).flat_map(|(number, run)| run.strategies.iter().map(move |of| (number, of)));
-        let mut results: Vec<(u64, &StrategyResult)> = numbered.collect();
-        // Stable: within a strategy the worlds keep their order.
-        results.sort_by_cached_key(|(_, of)| position(strategies, &of.name));
-        let all = results.chunk_by(|(_, a), (_, b)| a.name == b.name);
-        let all = all.map(|worlds| StrategyResult::in_all(worlds, quantiles)).collect();
-        runs.push(Run::new(format!("all worlds ({worlds})"), worlds, estimator, all, quantiles));
-    }
-    runs
-}
-
 #[cfg(test)]
-mod synthetic;
+pub(crate) mod synthetic;
 #[cfg(test)]
 mod tests;

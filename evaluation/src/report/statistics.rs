@@ -1,6 +1,8 @@
 //! Means with 95 % intervals, the paired t test, and Holm's correction for many tests.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 /// A mean and its 95 % confidence interval, which is cut to the values that the metric can have.
@@ -35,38 +37,65 @@ pub(super) struct PairedTest {
     pub(super) effect_size: f64,
 }
 
+/// Count, mean and deviation of values that arrive one by one (Welford, 1962). NaN is left out.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Moments {
+    count: usize,
+    sum: f64,
+    /// The mean so far, from which the next value deviates; the sum gives the mean with a smaller rounding error.
+    center: f64,
+    squares: f64,
+}
+
+impl Moments {
+    pub(super) fn add(&mut self, value: f64) {
+        if value.is_nan() {
+            return;
+        }
+        self.count += 1;
+        self.sum += value;
+        let deviation = value - self.center;
+        self.center += deviation / self.count as f64;
+        self.squares += deviation * (value - self.center);
+    }
+
+    pub(super) fn of(values: impl Iterator<Item = f64>) -> Self {
+        let mut moments = Self::default();
+        values.for_each(|value| moments.add(value));
+        moments
+    }
+
+    pub(super) fn mean(&self) -> f64 {
+        self.sum / self.count as f64
+    }
+
+    /// The standard deviation; NaN for fewer than two values.
+    fn deviation(&self) -> f64 {
+        if self.count < 2 { f64::NAN } else { (self.squares / (self.count - 1) as f64).sqrt() }
+    }
+}
+
 /// The 97.5 % points of Student's t, one per number of values, cached because each costs an iteration.
-pub(super) struct Quantiles(Vec<f64>);
+#[derive(Default)]
+pub(super) struct Quantiles(RefCell<BTreeMap<usize, f64>>);
 
 impl Quantiles {
-    /// For up to `count` values.
-    pub(super) fn up_to(count: usize) -> Self {
-        let quantile = |count| student(count).map_or(f64::NAN, |student| student.inverse_cdf(0.975));
-        Self((0..=count).map(quantile).collect())
+    fn of(&self, count: usize) -> f64 {
+        let quantile = || student(count).map_or(f64::NAN, |student| student.inverse_cdf(0.975));
+        *self.0.borrow_mut().entry(count).or_insert_with(quantile)
     }
 
-    /// The mean of `values` with its interval. NaN is left out.
-    pub(super) fn estimate(&self, values: impl Iterator<Item = f64> + Clone) -> Estimate {
-        let (estimate, _) = self.estimate_and_deviation(values);
-        estimate
-    }
-
-    /// The estimate, and the standard deviation of the values.
-    fn estimate_and_deviation(&self, values: impl Iterator<Item = f64> + Clone) -> (Estimate, f64) {
-        let values = values.filter(|value| !value.is_nan());
-        let (count, mean) = count_and_mean(values.clone());
-        if count < 2 {
-            return (Estimate { count, mean, low: f64::NAN, high: f64::NAN }, f64::NAN);
-        }
-        let squares: f64 = values.map(|value| (value - mean) * (value - mean)).sum();
-        let deviation = (squares / (count - 1) as f64).sqrt();
-        let half_width = self.0[count] * deviation / (count as f64).sqrt();
-        (Estimate { count, mean, low: mean - half_width, high: mean + half_width }, deviation)
+    /// The mean of values with its interval.
+    pub(super) fn estimate(&self, values: &Moments) -> Estimate {
+        let (count, mean) = (values.count, values.mean());
+        let half_width = self.of(count) * values.deviation() / (count as f64).sqrt();
+        Estimate { count, mean, low: mean - half_width, high: mean + half_width }
     }
 
     /// Tests whether the mean of the `differences` within pairs is zero.
-    pub(super) fn paired_test(&self, differences: impl Iterator<Item = f64> + Clone) -> PairedTest {
-        let (difference, deviation) = self.estimate_and_deviation(differences);
+    pub(super) fn paired_test(&self, differences: impl Iterator<Item = f64>) -> PairedTest {
+        let moments = Moments::of(differences);
+        let (difference, deviation) = (self.estimate(&moments), moments.deviation());
         let Estimate { count, mean, .. } = difference;
         let (p_value, effect_size) = match student(count) {
             None => (f64::NAN, f64::NAN),
@@ -84,16 +113,6 @@ impl Quantiles {
 /// Student's t of a mean of `count` values; `None` for fewer than two.
 fn student(count: usize) -> Option<StudentsT> {
     StudentsT::new(0.0, 1.0, count.checked_sub(1)? as f64).ok()
-}
-
-/// The mean of `values`, without NaN.
-pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    count_and_mean(values.filter(|value| !value.is_nan())).1
-}
-
-fn count_and_mean(values: impl Iterator<Item = f64>) -> (usize, f64) {
-    let (count, sum) = values.fold((0, 0.0), |(count, sum), value| (count + 1, sum + value));
-    (count, sum / count as f64)
 }
 
 /// Holm's correction of the p-values of a family of tests, in their order (Holm, 1979). NaN stays NaN and does not

@@ -1,7 +1,7 @@
 //! The results of one strategy: curves, areas, and the units of averages and pairs.
 
 use super::metric::{Measure, Metric, Trial, area};
-use super::statistics::{Estimate, Quantiles, mean};
+use super::statistics::{Estimate, Moments, Quantiles};
 
 /// The results of one strategy.
 #[derive(Clone, Debug)]
@@ -10,8 +10,6 @@ pub struct StrategyResult {
     pub name: String,
     /// The number of trials of the strategy.
     pub trials: usize,
-    /// The seeds of the trials and the hashes of the maps; empty in the run over all worlds.
-    pub map_hashes: Vec<(u64, String)>,
     /// For each strategy of the agent, the mean share of the goals that it selected.
     pub strategy_share: Vec<(String, f64)>,
     /// The number of change events on static cells, in all trials.
@@ -33,81 +31,19 @@ pub struct StrategyResult {
 pub(super) struct Unit {
     /// The seed, or the number of the world.
     pub(super) key: u64,
-    /// One per metric and sample.
-    curves: Vec<Vec<f64>>,
-    /// One per metric.
-    areas: Vec<f64>,
+    /// One per measure of [`Measure::COMPARED`].
+    values: [f64; Measure::COMPARED.len()],
 }
 
 impl Unit {
+    /// The value of a measure that is compared; NaN for another measure.
     pub(super) fn value(&self, measure: Measure) -> f64 {
-        match measure {
-            Measure::Final(metric) => self.curves[metric as usize].last().copied().unwrap_or(f64::NAN),
-            Measure::Area(metric) => self.areas[metric as usize],
-        }
+        let compared = Measure::COMPARED.iter().position(|compared| *compared == measure);
+        compared.map_or(f64::NAN, |at| self.values[at])
     }
 }
 
 impl StrategyResult {
-    /// The trials of one strategy in one world, at least one, in the order of their seeds.
-    pub(super) fn in_world(trials: &[Trial], times: &[u64], quantiles: &Quantiles) -> Self {
-        let unit = |trial: &Trial| {
-            let curve = |metric: Metric| trial.samples.iter().map(|sample| metric.of(sample)).collect();
-            let curves: Vec<Vec<f64>> = Metric::ALL.map(curve).into();
-            let areas = curves.iter().map(|curve| area(times, curve)).collect();
-            Unit { key: trial.seed, curves, areas }
-        };
-        Self {
-            trials: trials.len(),
-            map_hashes: trials.iter().map(|trial| (trial.seed, trial.map_hash.clone())).collect(),
-            strategy_share: mean_shares(trials.iter().map(|trial| &trial.strategy_share)),
-            false_change_events: trials.iter().map(|trial| trial.false_change_events).sum(),
-            collisions: trials.iter().map(|trial| trial.collisions).sum(),
-            ..Self::of_units(&trials[0].strategy, times, trials.iter().map(unit).collect(), quantiles)
-        }
-    }
-
-    /// The run over all worlds, from the result in each world, at least one, with the number of the world.
-    pub(super) fn in_all(worlds: &[(u64, &Self)], quantiles: &Quantiles) -> Self {
-        let results = worlds.iter().map(|&(_, result)| result);
-        let means = |curve: &Vec<Estimate>| curve.iter().map(|at| at.mean).collect();
-        let unit = |&(key, result): &(u64, &Self)| Unit {
-            key,
-            curves: result.curves.iter().map(means).collect(),
-            areas: result.areas.clone(),
-        };
-        let first = worlds[0].1;
-        Self {
-            trials: results.clone().map(|result| result.trials).sum(),
-            strategy_share: mean_shares(results.clone().map(|result| &result.strategy_share)),
-            false_change_events: results.clone().map(|result| result.false_change_events).sum(),
-            collisions: results.map(|result| result.collisions).sum(),
-            ..Self::of_units(&first.name, &first.times, worlds.iter().map(unit).collect(), quantiles)
-        }
-    }
-
-    fn of_units(name: &str, times: &[u64], units: Vec<Unit>, quantiles: &Quantiles) -> Self {
-        let at = |metric: Metric, sample: usize| {
-            let values = units.iter().map(move |unit| unit.curves[metric as usize][sample]);
-            quantiles.estimate(values).within(metric.range())
-        };
-        let curve = |metric| (0..times.len()).map(|sample| at(metric, sample)).collect();
-        Self {
-            name: name.to_owned(),
-            trials: 0,
-            map_hashes: Vec::new(),
-            strategy_share: Vec::new(),
-            false_change_events: 0,
-            collisions: None,
-            times: times.to_vec(),
-            curves: Metric::ALL.map(curve).into(),
-            areas: (0..Metric::ALL.len())
-                .map(|metric| mean(units.iter().map(|unit| unit.areas[metric])))
-                .collect(),
-            units,
-        }
-    }
-
     /// The mean and its 95 % confidence interval at every sample, over the trials (in the run over all worlds: over
     /// the worlds).
     pub fn curve(&self, metric: Metric) -> &[Estimate] {
@@ -124,15 +60,118 @@ impl StrategyResult {
     }
 }
 
-/// The mean of every share, in the order of first occurrence; a share that a list lacks is 0 in it.
-fn mean_shares<'a>(lists: impl ExactSizeIterator<Item = &'a Vec<(String, f64)>>) -> Vec<(String, f64)> {
-    let count = lists.len() as f64;
-    let mut means: Vec<(String, f64)> = Vec::new();
-    for (name, share) in lists.flatten() {
-        match means.iter_mut().find(|(known, _)| known == name) {
-            Some((_, sum)) => *sum += share / count,
-            None => means.push((name.clone(), share / count)),
+/// The results of one strategy while its trials, or its results in single worlds, arrive in the order of their keys. The
+/// memory for a trial is that of a [`Unit`].
+pub(super) struct StrategySums {
+    name: String,
+    times: Vec<u64>,
+    trials: usize,
+    shares: MeanShares,
+    false_change_events: u64,
+    collisions: Option<u64>,
+    units: Vec<Unit>,
+    /// One per metric and sample.
+    curves: Vec<Vec<Moments>>,
+    /// One per metric.
+    areas: Vec<Moments>,
+}
+
+impl StrategySums {
+    /// No trial yet.
+    pub(super) fn new(name: &str, times: &[u64]) -> Self {
+        Self {
+            name: name.to_owned(),
+            times: times.to_vec(),
+            trials: 0,
+            shares: MeanShares::default(),
+            false_change_events: 0,
+            collisions: Some(0),
+            units: Vec::new(),
+            curves: vec![vec![Moments::default(); times.len()]; Metric::ALL.len()],
+            areas: vec![Moments::default(); Metric::ALL.len()],
         }
     }
-    means
+
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Adds a trial.
+    pub(super) fn add_trial(&mut self, trial: &Trial) {
+        let curve = |metric: Metric| trial.samples.iter().map(|sample| metric.of(sample)).collect();
+        let curves: Vec<Vec<f64>> = Metric::ALL.map(curve).into();
+        let areas: Vec<f64> = curves.iter().map(|curve| area(&self.times, curve)).collect();
+        self.add_unit(trial.seed, &curves, &areas);
+        self.trials += 1;
+        self.shares.add(&trial.strategy_share);
+        self.add_counts(trial.false_change_events, trial.collisions);
+    }
+
+    /// Adds the result in the world with a number.
+    pub(super) fn add_world(&mut self, number: u64, world: &StrategyResult) {
+        let means = |curve: &Vec<Estimate>| curve.iter().map(|at| at.mean).collect();
+        let curves: Vec<Vec<f64>> = world.curves.iter().map(means).collect();
+        self.add_unit(number, &curves, &world.areas);
+        self.trials += world.trials;
+        self.shares.add(&world.strategy_share);
+        self.add_counts(world.false_change_events, world.collisions);
+    }
+
+    fn add_counts(&mut self, false_change_events: u64, collisions: Option<u64>) {
+        self.false_change_events += false_change_events;
+        self.collisions = self.collisions.zip(collisions).map(|(sum, count)| sum + count);
+    }
+
+    fn add_unit(&mut self, key: u64, curves: &[Vec<f64>], areas: &[f64]) {
+        for (sums, curve) in self.curves.iter_mut().zip(curves) {
+            sums.iter_mut().zip(curve).for_each(|(sum, value)| sum.add(*value));
+        }
+        self.areas.iter_mut().zip(areas).for_each(|(sum, value)| sum.add(*value));
+        let values = Measure::COMPARED.map(|measure| match measure {
+            Measure::Final(metric) => curves[metric as usize].last().copied().unwrap_or(f64::NAN),
+            Measure::Area(metric) => areas[metric as usize],
+        });
+        self.units.push(Unit { key, values });
+    }
+
+    /// The results of everything that was added.
+    pub(super) fn finish(self, quantiles: &Quantiles) -> StrategyResult {
+        let curve = |metric: Metric| {
+            let sums = self.curves[metric as usize].iter();
+            sums.map(|values| quantiles.estimate(values).within(metric.range())).collect()
+        };
+        StrategyResult {
+            trials: self.trials,
+            strategy_share: self.shares.means,
+            false_change_events: self.false_change_events,
+            collisions: self.collisions,
+            curves: Metric::ALL.map(curve).into(),
+            areas: self.areas.iter().map(Moments::mean).collect(),
+            name: self.name,
+            times: self.times,
+            units: self.units,
+        }
+    }
+}
+
+/// The mean of every share, in the order of first occurrence; a share that a list lacks is 0 in it.
+#[derive(Default)]
+struct MeanShares {
+    lists: usize,
+    means: Vec<(String, f64)>,
+}
+
+impl MeanShares {
+    fn add(&mut self, list: &[(String, f64)]) {
+        self.lists += 1;
+        for (name, _) in list {
+            if !self.means.iter().any(|(known, _)| known == name) {
+                self.means.push((name.clone(), 0.0));
+            }
+        }
+        for (name, mean) in &mut self.means {
+            let share: f64 = list.iter().filter(|(of, _)| of == name).map(|(_, share)| share).sum();
+            *mean += (share - *mean) / self.lists as f64;
+        }
+    }
 }

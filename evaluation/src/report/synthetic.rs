@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use sim::grid::GridSpec;
 
-pub(super) const HORIZON: u64 = 20_000;
+pub(crate) const HORIZON: u64 = 20_000;
 
 /// How fast a strategy learns, where its error of the rates ends, and its map quality.
 const CHARACTERS: [(&str, f64, f64, f64); 9] = [
@@ -21,17 +21,17 @@ const CHARACTERS: [(&str, f64, f64, f64); 9] = [
 ];
 
 /// Uniform in [0, 1).
-pub(super) fn uniform(chance: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn uniform(chance: &mut ChaCha8Rng) -> f64 {
     f64::from(chance.next_u32()) / 4_294_967_296.0
 }
 
 /// The mean 0, the variance 1.
-pub(super) fn normal(chance: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn normal(chance: &mut ChaCha8Rng) -> f64 {
     (0..12).map(|_| uniform(chance)).sum::<f64>() - 6.0
 }
 
 /// One trial; `world` makes it harder.
-pub(super) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) -> Trial {
+pub(crate) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) -> Trial {
     let &(_, speed, floor, quality) = CHARACTERS.iter().find(|(name, ..)| *name == strategy).unwrap();
     let mut chance = ChaCha8Rng::seed_from_u64(seed + 1000 * world as u64 + 77 * (speed * 10.0) as u64);
     let own = 0.1 * normal(&mut chance);
@@ -74,7 +74,7 @@ fn world_name(world: usize) -> String {
 }
 
 /// The settings and the trials of an experiment.
-pub(super) fn experiment(
+pub(crate) fn experiment(
     worlds: usize,
     estimators: &[&str],
     strategies: &[&str],
@@ -104,7 +104,7 @@ pub(super) fn experiment(
 }
 
 /// A world similar to the paper's: the upper block moves along 6 cells, the lower one along 42.
-pub(super) fn world(world: usize) -> GridSpec {
+pub(crate) fn world(world: usize) -> GridSpec {
     let text = r##"
 name = "two_blocks"
 sensor_radius = 4

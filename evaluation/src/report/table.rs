@@ -72,7 +72,7 @@ pub(super) fn table(report: &Report) -> String {
     let is_short = report.runs.iter().any(|run| run.worlds > ONE_BY_ONE);
     let mut text = String::new();
     if report.settings.interrupted {
-        let finished = report.trials.len();
+        let finished = report.finished;
         text =
             format!("Interrupted: {finished} of {} trials were finished.\n\n", report.settings.all_trials());
     }

@@ -64,13 +64,25 @@ impl<W: TrialWorld> Experiment<W> {
     /// All trials. Trials that are compared with each other are consecutive, so that after an interruption the
     /// finished trials can be compared.
     pub fn jobs(&self) -> Vec<TrialSettings<'_, W>> {
+        let mut seeds: Vec<u64> = (0..self.trials).map(|trial| self.seed.wrapping_add(trial)).collect();
+        seeds.sort_unstable();
         let mut jobs = Vec::new();
-        for trial in 0..self.trials {
-            let seed = self.seed.wrapping_add(trial);
+        for (trial, seed) in (1..).zip(seeds) {
+            let mut group = 0;
             for world in &self.worlds {
                 for estimator in &self.estimators {
-                    let job = |strategy| TrialSettings { world, estimator, strategy, seed, experiment: self };
-                    jobs.extend(self.strategies.iter().map(job));
+                    for strategy in &self.strategies {
+                        let number = group * self.trials + trial;
+                        jobs.push(TrialSettings {
+                            number,
+                            world,
+                            estimator,
+                            strategy,
+                            seed,
+                            experiment: self,
+                        });
+                        group += 1;
+                    }
                 }
             }
         }

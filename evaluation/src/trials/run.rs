@@ -13,6 +13,9 @@ use std::ops::ControlFlow;
 
 /// Everything that determines a trial.
 pub struct TrialSettings<'a, W: TrialWorld> {
+    /// The number of the trial in the experiment, from 1 on, in the order of a report: by world, estimator, strategy
+    /// and seed.
+    pub number: u64,
     /// The world.
     pub world: &'a W,
     /// The estimator of rates.

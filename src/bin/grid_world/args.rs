@@ -2,6 +2,7 @@
 
 use clap::Parser;
 use curious::program::one_of;
+use curious::shards::ShardCommand;
 use curious::trials::{TrialArgs, strategies};
 use evaluation::trials::TrialStrategy;
 use mapper::EstimatorChoice;
@@ -12,7 +13,7 @@ use std::path::PathBuf;
 /// Without options, the paper's learner (curious) is compared in the paper's world with each of its strategies
 /// alone (recency, poisson) and with two baselines (random, coin), in five trials of 20,000 steps each. The
 /// folder grid_world_out contains the results: the curves (figure3.svg, figure3.png), every number
-/// (report.json), and every trial (trials.csv). The table at the end shows which strategy learned the rates of
+/// (report.json), and every trial (trials.csv, trials.parquet). The table at the end shows which strategy learned the rates of
 /// change best, and whether the difference is significant.
 ///
 /// Options that can be repeated multiply: 2 worlds, 2 estimators, 3 strategies and 10 trials are 120 trials in
@@ -22,14 +23,22 @@ use std::path::PathBuf;
     name = "grid_world",
     version,
     max_term_width = 100,
+    args_conflicts_with_subcommands = true,
     after_help = "Examples:\n  \
         grid_world --trials 100                                  more trials, smaller intervals\n  \
         grid_world --generate 50 --trials 2 --strategy curious --strategy progress\n  \
         grid_world --world my_world.toml --sensor-radius 6 --rrd one_trial.rrd\n\n\
+        Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
+        grid_world --trials 1000 --shard 1/3 --out big     # and 2/3 and 3/3, anywhere, at any time\n  \
+        grid_world status big\n  \
+        grid_world merge big                               # the same files as without shards\n\n\
         Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; the \
         finished trials are reported)."
 )]
 pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Option<ShardCommand>,
+
     /// A world: the name of a shipped world (see --list-worlds), or a TOML file. Can be repeated
     /// [default: two_blocks, unless --generate is given]
     #[arg(long, value_name = "NAME|FILE", help_heading = "World")]

@@ -4,14 +4,16 @@ mod args;
 
 use args::Args;
 use controller::CellDrive;
-use curious::program::{Failure, interrupt_flag, list, start};
+use curious::program::{list, start};
+use curious::shards;
 use curious::terminal::say;
-use curious::trials::{distinct, run};
-use curious::{trials, worlds};
+use curious::trials::{self, TrialArgs, TrialProgram, distinct};
+use curious::worlds;
 use evaluation::trials::{Experiment, GridRobot};
 use mapper::{EstimatorChoice, MapperSettings, Paper};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::io::stderr;
+use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -20,31 +22,47 @@ fn main() -> ExitCode {
             list(&worlds::SHIPPED_GRID, 20, |name| worlds::load_grid(name).map(|spec| spec.description))?;
             return Ok(ExitCode::SUCCESS);
         }
-        let experiment = experiment(args).map_err(Failure::Input)?;
-        let is_canceled = interrupt_flag()?; // before any file is made
-        let to_toml = |world: &GridSpec| Some(worldfile::grid::to_toml(world));
-        Ok(run(&args.shared, &args.out, &args.world, &experiment, &is_canceled, to_toml)?)
+        shards::main(args, args.command.as_ref())
     })
 }
 
-/// The experiment that the arguments describe.
-fn experiment(args: &Args) -> anyhow::Result<Experiment<GridSpec>> {
-    let mut estimators = args.estimator.clone();
-    if estimators.is_empty() {
-        estimators = vec![Paper.into(), EstimatorChoice::default()];
+impl TrialProgram for Args {
+    type Spec = GridSpec;
+
+    fn shared(&self) -> &TrialArgs {
+        &self.shared
     }
-    let mut controller = CellDrive::settings();
-    controller.exploration.max_steps = args.max_steps;
-    let agent = agent::AgentSettings { reward: args.shared.reward.into(), ..Default::default() };
-    Ok(Experiment {
-        worlds: worlds(args)?,
-        estimators: distinct(estimators),
-        strategies: distinct(args.strategy.clone()),
-        trials: args.trials,
-        seed: args.shared.seed,
-        length: args.steps,
-        robot: GridRobot { mapper: MapperSettings::default(), agent, controller },
-    })
+
+    fn out(&self) -> &Path {
+        &self.out
+    }
+
+    fn world_names(&self) -> &[String] {
+        &self.world
+    }
+
+    fn experiment(&self) -> anyhow::Result<Experiment<GridSpec>> {
+        let mut estimators = self.estimator.clone();
+        if estimators.is_empty() {
+            estimators = vec![Paper.into(), EstimatorChoice::default()];
+        }
+        let mut controller = CellDrive::settings();
+        controller.exploration.max_steps = self.max_steps;
+        let agent = agent::AgentSettings { reward: self.shared.reward.into(), ..Default::default() };
+        Ok(Experiment {
+            worlds: worlds(self)?,
+            estimators: distinct(estimators),
+            strategies: distinct(self.strategy.clone()),
+            trials: self.trials,
+            seed: self.shared.seed,
+            length: self.steps,
+            robot: GridRobot { mapper: MapperSettings::default(), agent, controller },
+        })
+    }
+
+    fn to_toml(world: &GridSpec) -> Option<String> {
+        Some(worldfile::grid::to_toml(world))
+    }
 }
 
 /// The named worlds, then the generated worlds, with the changes that the arguments ask for.

@@ -2,6 +2,7 @@
 
 use clap::Parser;
 use curious::program::{duration_s, one_of};
+use curious::shards::ShardCommand;
 use curious::trials::{TrialArgs, strategies};
 use evaluation::trials::TrialStrategy;
 use mapper::EstimatorChoice;
@@ -11,7 +12,7 @@ use std::path::PathBuf;
 ///
 /// Without options, five strategies are compared in eight generated houses, for 20 simulated minutes each: about four
 /// minutes on two cores. The folder house_trials_out contains the results: the curves (curves.svg, curves.png, and with
-/// several worlds curves-all-worlds.svg and .png), every number (report.json), and every trial (trials.csv). The table
+/// several worlds curves-all-worlds.svg and .png), every number (report.json), and every trial (trials.csv, trials.parquet). The table
 /// at the end shows which strategy learned the rates of change best, and whether the difference is significant.
 ///
 /// Two references show how far a strategy can get: oracle knows the true rates, and full-observation sees every cell
@@ -24,14 +25,22 @@ use std::path::PathBuf;
     name = "house_trials",
     version,
     max_term_width = 100,
+    args_conflicts_with_subcommands = true,
     after_help = "Examples:\n  \
         house_trials --generate 20 --strategy curious --strategy information-gain\n  \
         house_trials --world house --world office --trials 3 --duration 1h\n  \
         house_trials --generate 2 --seed 7 --duration 60s --save-worlds\n\n\
+        Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
+        house_trials --trials 1000 --shard 1/3 --out big     # and 2/3 and 3/3, anywhere, at any time\n  \
+        house_trials status big\n  \
+        house_trials merge big                               # the same files as without shards\n\n\
         Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; the \
         finished trials are reported)."
 )]
 pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Option<ShardCommand>,
+
     /// A world: the name of a shipped world (see --list-worlds), a TOML file, or a Stage file (.world). Can be
     /// repeated [default: eight generated houses, unless --generate is given]
     #[arg(long, value_name = "NAME|FILE", help_heading = "World")]

@@ -4,14 +4,16 @@ mod args;
 
 use anyhow::Context;
 use args::Args;
-use curious::program::{Failure, interrupt_flag, list_physics_worlds, start};
+use curious::program::{list_physics_worlds, start};
+use curious::shards;
 use curious::terminal::say;
-use curious::trials::{distinct, run};
-use curious::{trials, worlds};
+use curious::trials::{self, TrialArgs, TrialProgram, distinct};
+use curious::worlds;
 use evaluation::physics_trial::PhysicsSettings;
 use evaluation::trials::{Experiment, PhysicsRobot};
 use sim::physics::WorldSpec;
 use std::io::stderr;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// The number of generated houses without `--world` and `--generate`.
@@ -23,24 +25,40 @@ fn main() -> ExitCode {
             list_physics_worlds()?;
             return Ok(ExitCode::SUCCESS);
         }
-        let experiment = experiment(args).map_err(Failure::Input)?;
-        let is_canceled = interrupt_flag()?; // before any file is made
-        let to_toml = |world: &WorldSpec| worldfile::physics::to_toml(world.fleet());
-        Ok(run(&args.shared, &args.out, &args.world, &experiment, &is_canceled, to_toml)?)
+        shards::main(args, args.command.as_ref())
     })
 }
 
-/// The experiment that the arguments describe.
-fn experiment(args: &Args) -> anyhow::Result<Experiment<WorldSpec>> {
-    Ok(Experiment {
-        worlds: worlds(args)?,
-        estimators: distinct(args.estimator.clone()),
-        strategies: distinct(args.strategy.clone()),
-        trials: args.trials,
-        seed: args.shared.seed,
-        length: args.duration,
-        robot: PhysicsRobot { reward: args.shared.reward.into(), max_steps: args.max_steps },
-    })
+impl TrialProgram for Args {
+    type Spec = WorldSpec;
+
+    fn shared(&self) -> &TrialArgs {
+        &self.shared
+    }
+
+    fn out(&self) -> &Path {
+        &self.out
+    }
+
+    fn world_names(&self) -> &[String] {
+        &self.world
+    }
+
+    fn experiment(&self) -> anyhow::Result<Experiment<WorldSpec>> {
+        Ok(Experiment {
+            worlds: worlds(self)?,
+            estimators: distinct(self.estimator.clone()),
+            strategies: distinct(self.strategy.clone()),
+            trials: self.trials,
+            seed: self.shared.seed,
+            length: self.duration,
+            robot: PhysicsRobot { reward: self.shared.reward.into(), max_steps: self.max_steps },
+        })
+    }
+
+    fn to_toml(world: &WorldSpec) -> Option<String> {
+        worldfile::physics::to_toml(world.fleet())
+    }
 }
 
 /// The named worlds, then the generated houses.

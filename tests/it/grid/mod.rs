@@ -34,19 +34,34 @@ pub(crate) struct Result {
     pub(crate) strategy: String,
     /// The entry in `report.json`.
     pub(crate) entry: Value,
+    /// See [`Result::hashes`].
+    hashes: Vec<(String, String)>,
 }
 
 impl Result {
-    /// The hash of everything that was learned, by seed.
+    /// The hash of everything that was learned, by seed, from `trials.csv`.
     pub(crate) fn hashes(&self) -> Vec<(String, String)> {
-        let hashes = self.entry["map_hashes"].as_object().unwrap().iter();
-        hashes.map(|(seed, hash)| (seed.clone(), hash.as_str().unwrap().to_owned())).collect()
+        self.hashes.clone()
     }
+}
+
+/// World, estimator, strategy, seed and hash of every trial, in the order of `trials.csv`.
+fn hashes(run: &Run) -> Vec<[String; 5]> {
+    let mut table = csv::Reader::from_path(run.out("trials.csv")).unwrap();
+    assert_eq!(table.headers().unwrap().iter().next_back(), Some("map_hash"));
+    let rows = table.records().map(|row| {
+        let row = row.unwrap();
+        [0, 1, 2, 3, row.len() - 1].map(|column| row[column].to_owned())
+    });
+    let mut trials: Vec<[String; 5]> = rows.collect();
+    trials.dedup();
+    trials
 }
 
 /// All results, except those over all worlds.
 pub(crate) fn results(run: &Run) -> Vec<Result> {
     let report = report(run);
+    let trials = hashes(run);
     let mut results = Vec::new();
     for run in report["runs"].as_array().unwrap() {
         let text = |key: &str| run[key].as_str().unwrap().to_owned();
@@ -54,8 +69,18 @@ pub(crate) fn results(run: &Run) -> Vec<Result> {
             continue;
         }
         for (strategy, entry) in run["strategies"].as_object().unwrap() {
-            let (strategy, entry) = (strategy.clone(), entry.clone());
-            results.push(Result { world: text("world"), estimator: text("estimator"), strategy, entry });
+            let (world, estimator) = (text("world"), text("estimator"));
+            let own = trials
+                .iter()
+                .filter(|trial| trial[..3] == [&world, &estimator, strategy].map(String::as_str));
+            let hashes = own.map(|trial| (trial[3].clone(), trial[4].clone())).collect();
+            results.push(Result {
+                world,
+                estimator,
+                strategy: strategy.clone(),
+                entry: entry.clone(),
+                hashes,
+            });
         }
     }
     results

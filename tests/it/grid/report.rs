@@ -33,7 +33,9 @@ fn it_has_every_key() {
     let top = ["version", "arguments", "steps", "trials", "sensor_radius", "runs"];
     assert!(top.iter().all(|key| keys(&report).contains(key)), "{:?}", keys(&report));
     assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
-    assert_eq!(report["arguments"][1], "--steps");
+    let arguments = report["arguments"].as_array().unwrap();
+    assert_eq!(arguments[..2], ["--world", "two_blocks"]);
+    assert!(!arguments.contains(&"--quiet".into()) && !arguments.contains(&"--out".into()), "{arguments:?}");
     assert_eq!([&report["steps"], &report["trials"], &report["sensor_radius"]], [600, 3, 4]);
     assert_eq!(report["interrupted"], false);
 

@@ -165,5 +165,5 @@ fn the_oracle_cannot_win_and_false_changes_are_reported() {
 fn no_trial_is_a_sentence() {
     let report = Report::new(ReportSettings::default(), Vec::new());
     assert_eq!(report.table(), "No trial was finished.\n");
-    assert_eq!(written(&report).len(), 2, "no figure");
+    assert_eq!(written(&report).len(), 1, "no figure");
 }

@@ -1,8 +1,11 @@
-//! `report.json` and `trials.csv`, read again.
+//! `report.json` and the files of trials, read again.
 
 use super::*;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::RowAccessor;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 fn json(report: &Report) -> (Value, String) {
     let files = written(report);
@@ -53,7 +56,6 @@ fn the_report_has_the_keys_that_are_promised() {
         }
         assert_eq!(comparisons[0]["metric"], "log_error_area");
     }
-    assert_eq!(keys(&runs[0]["strategies"]["curious"]["map_hashes"]).len(), 3);
     let files = written(&report);
     assert_eq!(json["files"], serde_json::json!(files[1..].iter().map(|(name, _)| name).collect::<Vec<_>>()));
     let places = ["recency", "curious", "poisson"].map(|name| text.find(&format!("\"{name}\": {{")).unwrap());
@@ -101,13 +103,14 @@ fn a_person_can_read_it() {
 
 #[test]
 fn the_csv_has_a_row_per_trial_and_sample_and_gives_the_report_again() {
-    let report = report(2, &["paper", "two-state"], &["curious", "recency"], 3);
-    let files = written(&report);
-    let trials = files.iter().find(|(name, _)| name == "trials.csv").unwrap();
-    let mut reader = csv::Reader::from_reader(trials.1.as_slice());
+    let (settings, trials) = experiment(2, &["paper", "two-state"], &["curious", "recency"], 3);
+    let [bytes, _] = trial_files(&settings, &trials);
+    let report = Report::new(settings, trials);
+    let mut reader = csv::Reader::from_reader(bytes.as_slice());
     let head: Vec<String> = reader.headers().unwrap().iter().map(String::from).collect();
     assert_eq!(head[..5], ["world", "estimator", "strategy", "seed", "step"]);
-    assert_eq!(head[5..], Metric::ALL.map(Metric::name));
+    assert_eq!(head[5..17], Metric::ALL.map(Metric::name));
+    assert_eq!(head[17..], ["map_hash"]);
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
     assert_eq!(rows.len(), 2 * 2 * 2 * 3 * 81);
 
@@ -148,10 +151,65 @@ fn a_name_is_no_formula_in_the_csv() {
     ] {
         let (settings, mut trials) = experiment(1, &["paper"], &["curious"], 1);
         trials[0].world = name.into();
-        let (report, mut bytes) = (Report::new(settings, trials), Vec::new());
-        crate::report::files::write_trials(&report, &mut bytes).unwrap();
+        let [bytes, _] = trial_files(&settings, &trials);
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         assert!(rows.iter().all(|row| &row[0] == field), "{name:?}: {:?}", rows[0]);
     }
+}
+
+/// `trials.csv` and `trials.parquet`.
+fn trial_files(settings: &ReportSettings, trials: &[Trial]) -> [Vec<u8>; 2] {
+    let folder = tempfile::tempdir().unwrap();
+    let each = trials.iter().cloned().map(Ok::<_, Box<dyn std::error::Error>>);
+    let report = collect(settings.clone(), folder.path(), each).unwrap();
+    assert_eq!(report.finished, trials.len() as u64);
+    ["trials.csv", "trials.parquet"].map(|name| std::fs::read(folder.path().join(name)).unwrap())
+}
+
+/// Every value, bit for bit, in more than one group of rows.
+#[test]
+fn the_parquet_file_has_the_values_of_the_trials_with_their_types() {
+    let (settings, mut trials) = experiment(1, &["paper"], &["curious"], 1300);
+    trials[0].seed = u64::MAX;
+    trials[0].world = "=1+1".into();
+    let [_, bytes] = trial_files(&settings, &trials);
+    let mut file = tempfile::tempfile().unwrap();
+    std::io::Write::write_all(&mut file, &bytes).unwrap();
+    let reader = SerializedFileReader::new(file).unwrap();
+    assert_eq!(reader.num_row_groups(), 2);
+    let mut rows = reader.get_row_iter(None).unwrap().map(Result::unwrap);
+    for trial in &trials {
+        for sample in &trial.samples {
+            let row = rows.next().unwrap();
+            let text = [0, 1, 2, 17].map(|column| row.get_string(column).unwrap().as_str());
+            assert_eq!(text, [&trial.world, &trial.estimator, &trial.strategy, &trial.map_hash]);
+            assert_eq!([row.get_ulong(3).unwrap(), row.get_ulong(4).unwrap()], [trial.seed, sample.time]);
+            for (metric, column) in Metric::ALL.into_iter().zip(5..) {
+                let value = metric.of(sample);
+                let found = row.get_double(column).unwrap_or(f64::NAN);
+                assert!(found.to_bits() == value.to_bits() || found.is_nan() && value.is_nan(), "{metric:?}");
+            }
+        }
+    }
+    assert!(rows.next().is_none());
+    let columns = reader.metadata().file_metadata().schema_descr().columns().iter();
+    let names: Vec<&str> = columns.map(|column| column.name()).collect();
+    assert_eq!(names[..6], ["world", "estimator", "strategy", "seed", "step", "rate_error"]);
+}
+
+#[test]
+fn trials_that_cannot_be_read_or_written_are_an_error() {
+    let (settings, trials) = experiment(1, &["paper"], &["curious"], 3);
+    let folder = tempfile::tempdir().unwrap();
+    let collected = |folder: &Path, trials: Vec<Result<Trial, Box<dyn std::error::Error>>>| {
+        collect(settings.clone(), folder, trials.into_iter()).unwrap_err().to_string()
+    };
+    let mut other = trials[1].clone();
+    other.samples.pop();
+    let unequal = vec![Ok(trials[0].clone()), Ok(other)];
+    assert_eq!(collected(folder.path(), unequal), "trials are not sampled at the same times");
+    assert_eq!(collected(folder.path(), vec![Ok(trials[0].clone()), Err("gone".into())]), "gone");
+    let nowhere = collected(Path::new("no/such/folder"), vec![]);
+    assert!(nowhere.starts_with("cannot write no/such/folder/trials.csv: "), "{nowhere}");
 }

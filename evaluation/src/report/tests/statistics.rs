@@ -1,19 +1,19 @@
 //! Against tables, textbooks and simulation.
 
 use super::super::metric::area;
-use super::super::statistics::{Quantiles, holm};
+use super::super::statistics::{Moments, Quantiles, holm};
 use super::*;
 
 #[test]
 fn half_widths_are_those_of_the_tables_of_student() {
-    let quantiles = Quantiles::up_to(101);
+    let quantiles = Quantiles::default();
     // Values −1 and 1 in turn have the mean 0 and a standard deviation near 1.
     for (count, t) in [(2, 12.7062), (3, 4.3027), (5, 2.7764), (10, 2.2622), (30, 2.0452), (101, 1.9840)] {
         let values: Vec<f64> = (0..count).map(|index| f64::from(index % 2) * 2.0 - 1.0).collect();
         let size = f64::from(count);
         let mean = if count % 2 == 0 { 0.0 } else { -1.0 / size };
         let deviation = ((size - size * mean * mean) / (size - 1.0)).sqrt();
-        let found = quantiles.estimate(values.into_iter());
+        let found = quantiles.estimate(&Moments::of(values.into_iter()));
         close(found.mean, mean, 1e-12);
         close(found.high - mean, t * deviation / size.sqrt(), 6e-5 * deviation);
         close(mean - found.low, found.high - mean, 1e-12);
@@ -26,7 +26,7 @@ fn half_widths_are_those_of_the_tables_of_student() {
 fn the_paired_test_gives_the_textbook_s_figures() {
     let one = [0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0];
     let other = [1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4];
-    let test = Quantiles::up_to(10).paired_test(one.iter().zip(other).map(|(one, other)| one - other));
+    let test = Quantiles::default().paired_test(one.iter().zip(other).map(|(one, other)| one - other));
     assert_eq!(test.difference.count, 10);
     close(test.difference.mean, -1.58, 1e-12);
     close(test.difference.low, -2.459_885_8, 5e-8);
@@ -37,7 +37,7 @@ fn the_paired_test_gives_the_textbook_s_figures() {
 
 #[test]
 fn too_little_says_nothing_and_no_difference_is_one() {
-    let quantiles = Quantiles::up_to(3);
+    let quantiles = Quantiles::default();
     let none = quantiles.paired_test([].into_iter());
     assert!(none.difference.mean.is_nan() && none.p_value.is_nan());
     let single = quantiles.paired_test([f64::NAN, 0.5].into_iter());
@@ -52,11 +52,11 @@ fn too_little_says_nothing_and_no_difference_is_one() {
 #[test]
 fn intervals_hold_the_truth_and_tests_err_as_often_as_they_say() {
     let mut chance = ChaCha8Rng::seed_from_u64(1);
-    let (quantiles, repeats) = (Quantiles::up_to(5), 20_000);
+    let (quantiles, repeats) = (Quantiles::default(), 20_000);
     let (mut holds, mut errs) = (0, 0);
     for _ in 0..repeats {
         let values: Vec<f64> = (0..5).map(|_| 3.0 + 2.0 * normal(&mut chance)).collect();
-        let found = quantiles.estimate(values.iter().copied());
+        let found = quantiles.estimate(&Moments::of(values.iter().copied()));
         holds += i32::from(found.low <= 3.0 && 3.0 <= found.high);
         errs += i32::from(quantiles.paired_test(values.iter().map(|value| value - 3.0)).p_value < 0.05);
     }

@@ -1,0 +1,111 @@
+use super::Shard;
+use super::line::{seal, unseal};
+use serde::{Deserialize, Serialize};
+use std::fmt::{self, Debug, Write};
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+
+/// The version of the format of the files of shards.
+const SCHEMA: u32 = 1;
+
+/// The first line of the file of a shard: what all shards of an experiment have in common, and the shard.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Header {
+    schema: u32,
+    /// The name of the program.
+    pub program: String,
+    /// The version of the program.
+    pub version: String,
+    /// The arguments that describe the experiment, without those on output, threads and shards.
+    pub arguments: Vec<String>,
+    /// A hash of all settings, of the worlds as well.
+    settings: String,
+    /// The number of trials of the experiment.
+    pub trials: u64,
+    /// The number of the shard, from 1 on.
+    shard: u64,
+    shards: u64,
+}
+
+impl Header {
+    /// The header of a shard of an experiment. `settings` are all settings: two experiments are the same if their
+    /// settings are printed the same.
+    pub fn new(
+        program: &str,
+        version: &str,
+        arguments: Vec<String>,
+        settings: &impl Debug,
+        trials: u64,
+        shard: Shard,
+    ) -> Self {
+        let mut hash = Hash(Xxh3::new());
+        let _ = write!(hash, "{settings:?}"); // hashing does not fail
+        Self {
+            schema: SCHEMA,
+            program: program.to_owned(),
+            version: version.to_owned(),
+            arguments,
+            settings: format!("{:032x}", hash.0.digest128()),
+            trials,
+            shard: shard.number(),
+            shards: shard.count(),
+        }
+    }
+
+    /// The shard.
+    pub fn shard(&self) -> Option<Shard> {
+        Shard::new(self.shard, self.shards)
+    }
+
+    /// The header of another shard of the same experiment.
+    pub fn of_shard(&self, shard: Shard) -> Self {
+        Self { shard: shard.number(), shards: shard.count(), ..self.clone() }
+    }
+
+    /// The key of the hashes of the lines: a line of another experiment does not match.
+    pub(super) fn key(&self) -> u64 {
+        xxh3_64(format!("{} {} {}", self.program, self.version, self.settings).as_bytes())
+    }
+
+    /// What differs from the experiment of `other`; `None` if it is the same.
+    pub(super) fn difference(&self, other: &Self) -> Option<String> {
+        let differing = |what: &str, own: &dyn fmt::Display, other: &dyn fmt::Display| {
+            Some(format!("of {what} {own}, not {other}"))
+        };
+        match () {
+            () if self.schema != other.schema => differing("format", &self.schema, &other.schema),
+            () if self.program != other.program => differing("the program", &self.program, &other.program),
+            () if self.version != other.version => differing("version", &self.version, &other.version),
+            () if self.arguments != other.arguments => {
+                let [own, other] = [self, other].map(|header| format!("`{}`", header.arguments.join(" ")));
+                differing("the experiment", &own, &other)
+            }
+            () if (&self.settings, self.trials) != (&other.settings, other.trials) => {
+                Some("of an experiment with the same arguments, but other worlds or settings".into())
+            }
+            () if self.shards != other.shards => {
+                Some(format!("one of {} shards, not of {}", self.shards, other.shards))
+            }
+            () => None,
+        }
+    }
+
+    /// The header as a line.
+    pub(super) fn line(&self) -> serde_json::Result<String> {
+        Ok(seal(&serde_json::to_string(self)?, 0))
+    }
+
+    /// The header in a line without its end; `None` for something else.
+    pub(super) fn read(line: &str) -> Option<Self> {
+        serde_json::from_str(&format!("{}}}", unseal(line, 0)?)).ok()
+    }
+}
+
+/// A hash of a text that is never in memory as a whole.
+struct Hash(Xxh3);
+
+impl Write for Hash {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
+    }
+}

@@ -1,0 +1,123 @@
+//! One pass over the file of a shard.
+
+use super::line::{split, unseal};
+use super::{Header, Shard, ShardError};
+use std::collections::{BTreeMap, VecDeque};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+/// No line is longer, bytes.
+pub(super) const MAX_LINE: u64 = 1 << 20;
+/// The speed of a shard is measured over this number of newest trials.
+const NEWEST: usize = 20;
+
+/// The content of the file of a shard, without the trials themselves.
+#[derive(Debug, Default)]
+pub struct Scan {
+    /// The first line; `None` if it is not complete.
+    pub header: Option<Header>,
+    /// The place of the line of every finished trial, in bytes from the beginning of the file, by the number of the
+    /// trial.
+    pub(super) lines: BTreeMap<u64, u64>,
+    /// The length of the file up to the end of the last whole line, bytes.
+    pub(super) intact: u64,
+    /// The text after the last whole line.
+    pub(super) torn: Vec<u8>,
+    /// The wall time of all trials, s.
+    pub seconds: f64,
+    /// The times at which the newest trials were finished, s since 1970.
+    newest: VecDeque<u64>,
+}
+
+impl Scan {
+    /// Reads the file of a shard. A line that is cut off at the end is no error.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be read, or a line is not as it was written, is twice in the file, or is of another shard.
+    pub(super) fn read(path: &Path, shard: Shard) -> Result<Self, ShardError> {
+        let file = File::open(path).map_err(|why| ShardError::read(path, why))?;
+        Self::of(path, shard, BufReader::with_capacity(1 << 18, file))
+    }
+
+    /// See [`Scan::read`].
+    pub(super) fn of(path: &Path, shard: Shard, mut file: impl BufRead) -> Result<Self, ShardError> {
+        let mut scan = Self::default();
+        let mut key = 0;
+        let mut line = Vec::new();
+        for number in 1.. {
+            line.clear();
+            let read = file.by_ref().take(MAX_LINE).read_until(b'\n', &mut line);
+            let length = read.map_err(|why| ShardError::read(path, why))? as u64;
+            let Some(text) = line.strip_suffix(b"\n") else {
+                if length == MAX_LINE {
+                    return Err(invalid(path, number, "is not a line of a shard"));
+                }
+                scan.torn = line;
+                break;
+            };
+            let text = std::str::from_utf8(text).unwrap_or_default();
+            if let Some(header) = &scan.header {
+                scan.add(text, key, header.trials, shard).map_err(|why| invalid(path, number, &why))?;
+            } else {
+                let header = Header::read(text).ok_or_else(|| not_a_shard(path))?;
+                if header.shard() != Some(shard) {
+                    let why = "this is the file of another shard under a new name; give it its name again";
+                    return Err(ShardError::content(path, why));
+                }
+                key = header.key();
+                scan.header = Some(header);
+            }
+            scan.intact += length;
+        }
+        Ok(scan)
+    }
+
+    fn add(&mut self, line: &str, key: u64, trials: u64, shard: Shard) -> Result<(), String> {
+        let Some((head, _)) = unseal(line, key).and_then(split) else {
+            return Err("is not as it was written: it was edited, or is of another experiment".into());
+        };
+        let job = head.job;
+        if !(1..=trials).contains(&job) || !shard.has(job) {
+            return Err(format!("is trial {job}, which does not belong to this shard"));
+        }
+        if self.lines.insert(job, self.intact).is_some() {
+            return Err(format!("is trial {job}, which is in this file before"));
+        }
+        self.seconds += head.cost.seconds;
+        if self.newest.len() == NEWEST {
+            self.newest.pop_front();
+        }
+        self.newest.push_back(head.cost.finished);
+        Ok(())
+    }
+
+    /// The number of finished trials.
+    pub fn finished(&self) -> u64 {
+        self.lines.len() as u64
+    }
+
+    /// The time at which the newest trial was finished, s since 1970.
+    pub fn last_finished(&self) -> Option<u64> {
+        self.newest.back().copied()
+    }
+
+    /// The wall time per trial of the newest trials, s; `None` for fewer than two.
+    pub fn seconds_per_trial(&self) -> Option<f64> {
+        let (first, last) = (self.newest.front()?, self.newest.back()?);
+        let intervals = self.newest.len() - 1;
+        (intervals > 0).then(|| last.saturating_sub(*first) as f64 / intervals as f64)
+    }
+}
+
+pub(super) fn not_a_shard(path: &Path) -> ShardError {
+    ShardError::content(
+        path,
+        "the first line is not the header of a shard: it was edited, or this is another file",
+    )
+}
+
+fn invalid(path: &Path, number: u64, what: &str) -> ShardError {
+    ShardError::content(path, format!("line {number} {what}; remove the file, and run its shard again"))
+}
