@@ -106,3 +106,23 @@ impl LocalizerSettings {
         check.within("ambiguity_ratio", self.ambiguity_ratio, 0.0..=1.0, "from 0 to 1")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invalid_settings_are_named() {
+        let refused = |settings: LocalizerSettings| settings.check().unwrap_err().key;
+        let defaults = LocalizerSettings::default;
+        assert_eq!(defaults().check(), Ok(()));
+        assert_eq!(refused(LocalizerSettings { min_support: 1.5, ..defaults() }), "min_support");
+        assert_eq!(
+            refused(LocalizerSettings { max_position_std_m: 0.0, ..defaults() }),
+            "max_position_std_m"
+        );
+        assert_eq!(refused(LocalizerSettings { lost_after_s: f64::NAN, ..defaults() }), "lost_after_s");
+        let odometry = OdometryTrust { turn_gain: -0.1, ..OdometryTrust::default() };
+        assert_eq!(refused(LocalizerSettings { odometry, ..defaults() }), "odometry.turn_gain");
+    }
+}

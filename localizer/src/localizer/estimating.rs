@@ -20,6 +20,8 @@ pub(super) const LEAST_CONFIRMED: f64 = 8.0;
 const DISTRUST_SCANS: u32 = 20;
 /// The number of scans for which only what lies exactly in place counts, after much of the view has moved.
 const TIGHT_SCANS: u32 = 10;
+/// The least support with which a pose that is not certain is followed.
+const LEAST_GUIDE: f64 = 0.5;
 /// The match of a mirrored scan starts up to this far from the pose, m.
 const MIRRORED_GATE_M: f64 = 0.2;
 /// The largest share of a scan without a return where the map knows something blocked: beyond, the laser is covered.
@@ -61,7 +63,10 @@ impl Localizer {
             self.accept(&tracked);
             return support;
         }
-        (self.pose, self.covariance) = (predicted, covariance);
+        // A scan of which most fits is a better guide than the odometry alone.
+        let is_guide = tracked.support.share() >= LEAST_GUIDE && !is_mirrored;
+        (self.pose, self.covariance) =
+            if is_guide { (tracked.pose, tracked.covariance) } else { (predicted, covariance) };
         self.doubt();
         if !is_mirrored {
             self.search(reading, map, &tracked);
