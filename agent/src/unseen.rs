@@ -146,11 +146,11 @@ impl UnseenSpace {
     fn viewpoint(&self, situation: &Situation, target: usize) -> Option<(f64, Cell)> {
         let (states, frame) = (situation.mapper.states(), situation.mapper.frame());
         let target = frame.cell(target);
-        let steps = (self.range_m / frame.resolution_m()) as u32;
+        let steps = (2.0 * self.range_m / frame.resolution_m()) as u32;
         let along = |direction: u32| {
             let (sin, cos) = libm::sincos(TAU * f64::from(direction) / f64::from(DIRECTIONS));
             let cells = (0..steps).map_while(|step| {
-                let offset = |slope: f64| (slope * f64::from(step)).round() as i32;
+                let offset = |slope: f64| (slope * f64::from(step) / 2.0).round() as i32;
                 let cell = Cell { x: target.x + offset(cos), y: target.y + offset(sin) };
                 let index = frame.index(cell)?;
                 (states.cells()[index] != CellState::Blocked).then_some((index, cell))

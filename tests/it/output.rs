@@ -31,6 +31,8 @@ fn the_output_folder_is_complete() {
             "recency.png",
             "summary.json",
             "trajectory.png",
+            "trajectory.tum",
+            "trajectory_true.tum",
         ]
     );
 }

@@ -5,8 +5,7 @@ use crate::run::Run;
 /// The error of the position that 95 % of the readings do not exceed, m, and how poses were known.
 fn p95_m(run: &Run) -> (f64, String) {
     let summary = run.summary();
-    let pose = &summary["pose"];
-    (pose["p95_m"].as_f64().unwrap(), pose["mode"].as_str().unwrap().to_owned())
+    (summary.number("/pose/p95_m"), summary.text("/pose/mode").to_owned())
 }
 
 #[test]
