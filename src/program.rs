@@ -112,7 +112,7 @@ const BEST_STRATEGY: &str = "information-gain";
 pub const BEST_STRATEGY_GAIN: &str = "--strategy best (information-gain) has 0.64 to 0.69 of the rate error of curious in \
                                       grid worlds, and about the same error in houses";
 
-/// A parser of the name of a strategy, one of `all`; `best` is another name of [the best one](BEST_STRATEGY). `describe`
+/// A parser of the name of a strategy, one of `all`; `best` is another name of the best one. `describe`
 /// gives the name and the description of a strategy.
 pub fn strategy_of<T>(
     all: Vec<T>,
