@@ -7,7 +7,7 @@ use crate::observer::Observer;
 use crate::summary::{Contacts, Liveliest, RunResults};
 use agent::{Agent, AgentSettings, Features, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
-use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, SettingsError, Twist, World};
+use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, SettingsError, Twist};
 use localizer::{GivenPoses, Localizer, LocalizerSettings, Start};
 use mapper::{Mapper, MapperSettings, ReadingError};
 use robot::{Autonomous, Belief, GoalSelector, Localization, Pilot, explore};
@@ -45,7 +45,7 @@ pub enum PoseChoice {
 impl PoseChoice {
     /// Exact poses where the world says that its poses are exact, otherwise a localizer.
     pub fn of(spec: &WorldSpec) -> Self {
-        if PhysicsWorld::new(spec, 0).poses_are_exact() { Self::Exact } else { Self::Localized }
+        if spec.driven().odometry.is_exact() { Self::Exact } else { Self::Localized }
     }
 
     /// The name on the command line and in files.

@@ -19,6 +19,15 @@ pub fn heading_rad(pose: &Isometry2<f64>) -> f64 {
     libm::atan2(pose.rotation.im, pose.rotation.re)
 }
 
+/// The limit of the coordinates of a place, m: beyond, they lose precision.
+pub const FARTHEST_M: f64 = 1e6;
+
+/// Whether every number of a pose is finite, its rotation valid, and its position within [`FARTHEST_M`].
+pub fn is_valid_pose(pose: &Isometry2<f64>) -> bool {
+    let is_near = [pose.translation.x, pose.translation.y].iter().all(|at| at.abs() <= FARTHEST_M);
+    is_near && (pose.rotation.norm_sqr() - 1.0).abs() < 1e-3
+}
+
 /// The same angle in [−π, π).
 pub fn wrap_rad(angle_rad: f64) -> f64 {
     angle_rad - TAU * libm::floor((angle_rad + PI) / TAU)

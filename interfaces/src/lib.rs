@@ -22,7 +22,10 @@ mod settings;
 mod state;
 mod world;
 
-pub use angle::{APPROXIMATE_ATAN2_ERROR_RAD, approximate_atan2, heading_rad, pose, rotation, wrap_rad};
+pub use angle::{
+    APPROXIMATE_ATAN2_ERROR_RAD, FARTHEST_M, approximate_atan2, heading_rad, is_valid_pose, pose, rotation,
+    wrap_rad,
+};
 pub use by_name::UnknownName;
 pub use cell::Cell;
 pub use command::{Step, Twist};

@@ -1,11 +1,9 @@
 //! Readings that a localizer must not believe.
 
 use crate::scan_points::ScanPoint;
-use interfaces::{LaserReading, heading_rad};
+use interfaces::{LaserReading, heading_rad, is_valid_pose};
 use nalgebra::Isometry2;
 
-/// The limit of coordinates, m: beyond, they lose precision.
-const FARTHEST_M: f64 = 1e6;
 /// A scan that repeats bit by bit while the odometry moves by more than this is frozen, m and rad.
 const FROZEN_M: f64 = 0.01;
 const FROZEN_RAD: f64 = 0.01;
@@ -34,7 +32,7 @@ impl FaultFinder {
     /// The fault of a reading, if it has one.
     pub(crate) fn find(&mut self, reading: &LaserReading) -> Option<Fault> {
         let LaserReading { time_s, pose, mount, scan, .. } = reading;
-        if scan.check().is_err() || !is_pose(pose) || !is_pose(mount) || !time_s.is_finite() {
+        if scan.check().is_err() || !is_valid_pose(pose) || !is_valid_pose(mount) || !time_s.is_finite() {
             return Some(Fault::Invalid);
         }
         let is_old = self.time_s.is_some_and(|last| *time_s <= last);
@@ -55,12 +53,6 @@ impl FaultFinder {
             is_old.then_some(Fault::Time)
         }
     }
-}
-
-/// Whether every number of a pose is finite, its rotation valid, and its position in the plane of a map.
-fn is_pose(pose: &Isometry2<f64>) -> bool {
-    let is_near = [pose.translation.x, pose.translation.y].iter().all(|at| at.abs() <= FARTHEST_M);
-    is_near && (pose.rotation.norm_sqr() - 1.0).abs() < 1e-3
 }
 
 /// The points as a laser that hangs upside down would see them.

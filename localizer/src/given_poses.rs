@@ -16,7 +16,9 @@ impl GivenPoses {
             self.last.replace((reading.time_s, reading.pose)).unwrap_or((reading.time_s, reading.pose));
         let elapsed_s = reading.time_s - last_s;
         let travel = sweep::travel(&reading.twist, elapsed_s);
-        reading.scan = sweep::unswept(&reading, &last.inv_mul(&reading.pose), &travel, elapsed_s);
+        if let Some(scan) = sweep::unswept(&reading, &last.inv_mul(&reading.pose), &travel, elapsed_s) {
+            reading.scan = scan;
+        }
         reading
     }
 }

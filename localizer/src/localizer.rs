@@ -162,7 +162,9 @@ impl Localizer {
             self.surfels.weigh_by_rates(map, self.settings.rate_horizon_s);
         }
         let mut reading = reading.clone();
-        reading.scan = self.unswept(&reading, &motion, elapsed_s);
+        if let Some(scan) = self.unswept(&reading, &motion, elapsed_s) {
+            reading.scan = scan;
+        }
         self.points.update(&reading, self.settings.range_noise_std_m, self.settings.weigh_by_arc_length);
         self.clear.update(&reading.scan);
         let before = self.pose;
@@ -194,8 +196,8 @@ impl Localizer {
         if self.distrust > 0 { motion.distrusted() } else { motion }
     }
 
-    /// The scan without its sweep, and how the robot moved during it.
-    fn unswept(&self, reading: &LaserReading, motion: &Motion, elapsed_s: f64) -> Scan {
+    /// The scan without its sweep; `None` if all beams were measured at once.
+    fn unswept(&self, reading: &LaserReading, motion: &Motion, elapsed_s: f64) -> Option<Scan> {
         let travel = sweep::travel(&reading.twist, elapsed_s);
         sweep::unswept(reading, &motion.delta, &self.calibration.correct(&travel), elapsed_s)
     }

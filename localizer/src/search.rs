@@ -217,10 +217,8 @@ impl Search<'_> {
                 continue;
             }
             if node.level == 0 {
-                least = least.max(
-                    (ratio * f64::from(found.first().unwrap_or(&(node, Point2::origin())).0.bound)) as u32,
-                );
                 found.push((node, self.grid.frame().center(Cell::new(node.x, node.y))));
+                least = least.max((ratio * f64::from(found[0].0.bound)) as u32);
                 continue;
             }
             let half = 1 << (node.level - 1);

@@ -4,7 +4,7 @@ use crate::changing_map::ChangingMap;
 use crate::matcher::derivative;
 use crate::scan_points::ScanPoint;
 use crate::surfel_map::SurfelMap;
-use interfaces::{CellState, Scan};
+use interfaces::{CellState, Grid, Scan};
 use nalgebra::{Isometry2, Matrix3, Point2, Vector2};
 
 /// A beam may pass blocked cells this close to its two ends, m.
@@ -88,22 +88,24 @@ pub(crate) fn judge(
 
 /// Whether a point on a surface contradicts the map: the map knows its cell as free, or something in front.
 fn is_contradicted(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>) -> bool {
-    let states = map.states();
-    let state = |point: &Point2<f64>| states.get(states.frame().cell_at(point)).copied().unwrap_or_default();
-    state(at) == CellState::Free || passes_blocked(map, laser, at)
+    state_at(map.states(), at) == CellState::Free || passes_blocked(map, laser, at)
+}
+
+/// The state of the cell that contains a point.
+fn state_at(states: &Grid<CellState>, point: &Point2<f64>) -> CellState {
+    states.get(states.frame().cell_at(point)).copied().unwrap_or_default()
 }
 
 /// Whether something blocked lies between the laser and a point.
 fn passes_blocked(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>) -> bool {
     let states = map.states();
-    let state = |point: &Point2<f64>| states.get(states.frame().cell_at(point)).copied().unwrap_or_default();
     let way = at - laser;
     let length_m = way.norm();
     let step_m = states.frame().resolution_m();
     let steps = ((length_m - 2.0 * END_MARGIN_M) / step_m).max(0.0) as usize;
     let along = way / length_m;
-    (0..steps)
-        .any(|step| state(&(laser + along * (END_MARGIN_M + step as f64 * step_m))) == CellState::Blocked)
+    let at = |step: usize| laser + along * (END_MARGIN_M + step as f64 * step_m);
+    (0..steps).any(|step| state_at(states, &at(step)) == CellState::Blocked)
 }
 
 /// Some of the beams without a return. Where such a beam passes something blocked, the map contradicts the scan: the

@@ -23,7 +23,7 @@ pub(crate) fn travel(velocity: &Twist, elapsed_s: f64) -> Isometry2<f64> {
     interfaces::pose(velocity.linear_mps * elapsed_s, 0.0, velocity.angular_radps * elapsed_s)
 }
 
-/// The scan of a reading, with all beams from its pose. `motion` is the motion of the robot in the time `elapsed_s` since
+/// The scan of a reading, with all beams from its pose; `None` if they are already. `motion` is the motion of the robot in the time `elapsed_s` since
 /// the last reading, and `travel` what it would be at the velocity of the reading. The robot is taken to have accelerated
 /// evenly: at constant velocity, the first beams of a robot that starts to turn would be wrong by a degree.
 pub(crate) fn unswept(
@@ -31,10 +31,10 @@ pub(crate) fn unswept(
     motion: &Isometry2<f64>,
     travel: &Isometry2<f64>,
     elapsed_s: f64,
-) -> Scan {
+) -> Option<Scan> {
     let scan = &reading.scan;
     if scan.sweep_s == 0.0 || elapsed_s <= 0.0 {
-        return scan.clone();
+        return None;
     }
     let vector = |motion: &Isometry2<f64>| {
         Vector3::new(motion.translation.x, motion.translation.y, heading_rad(motion))
@@ -48,7 +48,7 @@ pub(crate) fn unswept(
         let at = (slope + bend * share) * share;
         reading.mount.inverse() * interfaces::pose(at.x, at.y, at.z) * reading.mount
     };
-    undo(scan, laser_before)
+    Some(undo(scan, laser_before))
 }
 
 /// The scan as the laser would measure it at once, at the end of the sweep. `laser_before` gives the pose of the laser in
@@ -205,7 +205,8 @@ mod tests {
             mount: Isometry2::identity(),
             scan: scan((0..beams).map(range).collect()),
         };
-        let unswept = unswept(&reading, &before(elapsed_s).inverse(), &travel(&twist, elapsed_s), elapsed_s);
+        let unswept =
+            unswept(&reading, &before(elapsed_s).inverse(), &travel(&twist, elapsed_s), elapsed_s).unwrap();
         let errors_m = (0..beams).filter(|&beam| !unswept.ranges_m[beam].is_nan()).map(|beam| {
             (f64::from(unswept.ranges_m[beam]) - range_m(&Isometry2::identity(), empty.angle_rad(beam))).abs()
         });

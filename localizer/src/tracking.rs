@@ -43,7 +43,7 @@ pub(crate) struct Tracked {
 }
 
 /// Finds the pose of a scan near the predicted pose. `others` are other guesses: the pose at rest, the pose at constant
-/// velocity. The first result is that of the predicted pose, if none is good.
+/// velocity. If no guess gives a supported pose, the result is the match from the predicted pose.
 pub(crate) fn track<M: ChangingMap>(
     scene: &Scene<M>,
     predicted: &Isometry2<f64>,

@@ -28,10 +28,9 @@ pub use occupancy::{
 use derived::ExpectedChanges;
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, Observation, Reading, ScanError, SettingsCheck, SettingsError,
-    Transition,
+    Transition, is_valid_pose,
 };
 use nalgebra::{Isometry2, Point2};
-use occupancy::FARTHEST_M;
 
 /// The maximum of [`Mapper::bytes`].
 const MAX_BYTES: usize = 2 << 30;
@@ -83,11 +82,9 @@ pub enum ReadingError {
     },
 }
 
-/// Refuses an invalid pose: a number that is not finite, an invalid rotation, a position beyond every map.
+/// Refuses an invalid pose.
 fn check_pose(pose: &Isometry2<f64>, time: f64) -> Result<(), ReadingError> {
-    let is_near = [pose.translation.x, pose.translation.y].iter().all(|at| at.abs() <= FARTHEST_M);
-    let is_rotation = (pose.rotation.norm_sqr() - 1.0).abs() < 1e-3;
-    if is_near && is_rotation { Ok(()) } else { Err(ReadingError::Pose { time }) }
+    if is_valid_pose(pose) { Ok(()) } else { Err(ReadingError::Pose { time }) }
 }
 
 /// A map of a changing environment, with the change statistics of every cell. Cells are addressed by their index in
@@ -184,7 +181,7 @@ impl Mapper {
         let time = Some(reading.time()).filter(|time| time.is_finite()).map_or(last, |time| time.max(last));
         self.points.clear();
         if let Observation::Scan(laser) = reading.observation() {
-            let is_pose = [&laser.pose, &laser.mount].iter().all(|pose| check_pose(pose, time).is_ok());
+            let is_pose = is_valid_pose(&laser.pose) && is_valid_pose(&laser.mount);
             if is_pose && laser.scan.check().is_ok() {
                 self.project(laser);
             }

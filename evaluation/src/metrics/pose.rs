@@ -22,7 +22,6 @@ pub struct PoseErrors {
     lock_ins: usize,
     /// The beginning of the present large error with a certain pose, s; counted once it lasts.
     wrong_since_s: Option<f64>,
-    is_counted: bool,
     last_s: f64,
 }
 
@@ -57,7 +56,8 @@ impl PoseErrors {
         truth: &Isometry2<f64>,
         estimate: Option<&PoseEstimate>,
     ) {
-        let elapsed_s = time_s - std::mem::replace(&mut self.last_s, time_s);
+        let last_s = std::mem::replace(&mut self.last_s, time_s);
+        let elapsed_s = time_s - last_s;
         match estimate.map_or(PoseState::Tracking, |estimate| estimate.state) {
             PoseState::Tracking => {}
             PoseState::Uncertain => self.uncertain_s += elapsed_s,
@@ -78,12 +78,9 @@ impl PoseErrors {
             self.wrong_since_s = None;
             return;
         }
-        let since_s = *self.wrong_since_s.get_or_insert_with(|| {
-            self.is_counted = false;
-            time_s
-        });
-        if time_s - since_s > LOCK_IN_S && !self.is_counted {
-            self.is_counted = true;
+        let since_s = *self.wrong_since_s.get_or_insert(time_s);
+        // Counted once: at the reading with which the error has lasted.
+        if time_s - since_s > LOCK_IN_S && last_s - since_s <= LOCK_IN_S {
             self.lock_ins += 1;
         }
     }

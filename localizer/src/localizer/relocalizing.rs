@@ -26,6 +26,7 @@ const LEAST_SCORE_UNFINISHED: f64 = 0.7;
 const CLEAR_SCORE: f64 = 0.85;
 /// The number of scans between two searches in the whole map.
 const SEARCH_EVERY: u32 = 5;
+
 impl Localizer {
     /// The least score of a pose anywhere in the map.
     fn least_score(&self) -> f64 {

@@ -19,7 +19,6 @@ use crate::MapperSettings;
 use crate::change::CellMap;
 use interfaces::Cell;
 use log_odds_grid::LogOddsGrid;
-pub(crate) use projection::FARTHEST_M;
 pub use projection::{BeamReturn, ProjectedScan};
 use std::fmt;
 use std::sync::Arc;

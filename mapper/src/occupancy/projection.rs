@@ -1,11 +1,8 @@
 //! Projection: scan and pose → beams in the frame of the map, with the meaning of ROS `laser_geometry` and REP-117.
 
-use interfaces::{APPROXIMATE_ATAN2_ERROR_RAD, LaserReading, Scan, approximate_atan2};
+use interfaces::{APPROXIMATE_ATAN2_ERROR_RAD, FARTHEST_M, LaserReading, Scan, approximate_atan2};
 use nalgebra::{Point2, UnitComplex, Vector2};
 use std::f64::consts::TAU;
-
-/// The limit of ranges and of coordinates in the map, m: beyond, coordinates lose precision.
-pub(crate) const FARTHEST_M: f64 = 1e6;
 
 /// The result of one beam.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,8 +5,8 @@
 //! (changes of cells that nothing ever touched), and the time per scan.
 //!
 //! ```text
-//! cargo run -p localizer --example drift -- generate=1000 seed=1000 minutes=20 beams=360 noise=0.01
-//! cargo run -p localizer --example drift -- world=worlds/house.toml closed=1
+//! cargo run -p evaluation --example drift -- generate=1000 seed=1000 minutes=20 beams=360 noise=0.01
+//! cargo run -p evaluation --example drift -- world=worlds/house.toml closed=1
 //! ```
 
 mod driver;
@@ -17,7 +17,7 @@ mod score;
 use driver::Driver;
 use interfaces::{LaserReading, World};
 use localizer::{Localizer, PoseState};
-use mapper::{Mapper, MapperSettings};
+use mapper::Mapper;
 use options::Options;
 use score::Score;
 use sim::physics::PhysicsWorld;
@@ -41,13 +41,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>> {
     let spec = options.spec(seed)?;
     let mut world = PhysicsWorld::new(&spec, seed);
-    let mut settings = MapperSettings { max_gap: 8.0, ..MapperSettings::default() };
-    settings.steady.range_noise_std_m = spec.driven().laser.noise_std_m.max(0.01);
-    let mut exact = Mapper::new(&settings, spec.frame)?;
-    let mut estimated = Mapper::new(&settings, spec.frame)?;
+    let settings = options.settings(&spec)?;
+    let mut exact = Mapper::new(&settings.mapper, spec.frame)?;
+    let mut estimated = Mapper::new(&settings.mapper, spec.frame)?;
     let start = *world.true_pose();
-    let mut localizer = Localizer::from_nothing(&options.localizer(&spec), &spec.frame, start)?;
-    let mut driver = Driver::new(&spec, seed)?;
+    let mut localizer = Localizer::from_nothing(&settings.localizer, &spec.frame, start)?;
+    let mut driver = Driver::new(&settings, seed)?;
     let mut score = Score::new(&spec.frame);
     let first_odometry = world.sense().pose;
     while world.time_s() < options.minutes * 60.0 {
@@ -80,7 +79,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
     }
     score.finish(world.truth());
     if options.relocate {
-        relocations::run(options, &spec, seed)?;
+        relocations::run(options, &settings.localizer, &spec, seed)?;
     }
     Ok(score)
 }

@@ -1,5 +1,5 @@
+use evaluation::physics_trial::{PhysicsSettings, UnsupportedDrive};
 use interfaces::LaserReading;
-use localizer::LocalizerSettings;
 use sim::physics::{Motion, OdometryError, WorldSpec};
 
 /// The arguments, each of the form `key=value`.
@@ -129,15 +129,14 @@ impl Options {
         reading
     }
 
-    /// The settings of the localizer in this world.
-    pub(crate) fn localizer(&self, spec: &WorldSpec) -> LocalizerSettings {
-        let defaults = LocalizerSettings::default();
-        LocalizerSettings {
-            range_noise_std_m: spec.driven().laser.noise_std_m.max(defaults.range_noise_std_m),
-            weigh_by_arc_length: !self.no_arc,
-            gate: !self.no_gate,
-            rate_horizon_s: if self.no_rates { 0.0 } else { defaults.rate_horizon_s },
-            ..defaults
+    /// The settings of the robot in this world, with the parts of the localizer that are switched off.
+    pub(crate) fn settings(&self, spec: &WorldSpec) -> Result<PhysicsSettings, UnsupportedDrive> {
+        let mut settings = PhysicsSettings::of(spec)?;
+        let localizer = &mut settings.localizer;
+        (localizer.weigh_by_arc_length, localizer.gate) = (!self.no_arc, !self.no_gate);
+        if self.no_rates {
+            localizer.rate_horizon_s = 0.0;
         }
+        Ok(settings)
     }
 }

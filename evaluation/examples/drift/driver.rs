@@ -1,8 +1,8 @@
-use controller::{Controller, DiffDrive, DiffDriveSettings, Situation, Status};
+use controller::{Controller, DiffDrive, Situation, Status};
+use evaluation::physics_trial::PhysicsSettings;
 use interfaces::{Purpose, RandomStream, SettingsError, Twist};
 use mapper::Mapper;
 use nalgebra::Isometry2;
-use sim::physics::WorldSpec;
 
 /// Drives to random cells of the map.
 pub(crate) struct Driver {
@@ -11,19 +11,9 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    pub(crate) fn new(spec: &WorldSpec, seed: u64) -> Result<Self, SettingsError> {
-        let robot = spec.driven();
-        let drive = DiffDriveSettings {
-            radius_m: robot.radius_m,
-            max_linear_mps: robot.drive.max_linear_mps,
-            max_angular_radps: robot.drive.max_angular_radps,
-            acceleration_mps2: robot.drive.max_linear_acceleration_mps2,
-            angular_acceleration_radps2: robot.drive.max_angular_acceleration_radps2,
-            reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s,
-            ..DiffDriveSettings::default()
-        };
+    pub(crate) fn new(settings: &PhysicsSettings, seed: u64) -> Result<Self, SettingsError> {
         let stream = RandomStream::new(seed, Purpose::Controller);
-        let controller = Controller::new(controller::Settings::default(), DiffDrive::new(drive)?, stream)?;
+        let controller = Controller::new(settings.controller, DiffDrive::new(settings.drive)?, stream)?;
         Ok(Self { controller, random: RandomStream::new(seed, Purpose::Agent) })
     }
 

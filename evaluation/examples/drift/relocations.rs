@@ -5,7 +5,7 @@ use crate::score::{error, quantile};
 use interfaces::{
     Cell, CellState, Grid, GroundTruth, Purpose, RandomStream, SettingsError, TrueState, Twist, World,
 };
-use localizer::{Localizer, PoseState, Start};
+use localizer::{Localizer, LocalizerSettings, PoseState, Start};
 use nalgebra::Isometry2;
 use sim::physics::{PhysicsWorld, WorldSpec};
 use std::time::Instant;
@@ -15,12 +15,17 @@ const TRIALS: u64 = 60;
 const SCANS: usize = 8;
 
 /// Starts at random places of the true map at the start, and prints the results.
-pub(crate) fn run(options: &Options, spec: &WorldSpec, seed: u64) -> Result<(), SettingsError> {
+pub(crate) fn run(
+    options: &Options,
+    settings: &LocalizerSettings,
+    spec: &WorldSpec,
+    seed: u64,
+) -> Result<(), SettingsError> {
     let map = &true_map(&PhysicsWorld::new(spec, seed));
     let (mut right, mut wrong, mut open, mut elapsed_ms) = (0, 0, 0, Vec::new());
     for trial in 0..TRIALS {
         let Some((mut world, pose)) = somewhere(spec, map, seed + trial) else { continue };
-        let mut localizer = Localizer::in_map(&options.localizer(spec), map, Start::Unknown)?;
+        let mut localizer = Localizer::in_map(settings, map, Start::Unknown)?;
         for _ in 0..(trial % 10) * 30 {
             world.act(&Twist::STOP); // people walk and doors move
         }
