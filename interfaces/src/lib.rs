@@ -33,7 +33,7 @@ pub use grid::{Grid, GridFrame};
 pub use ground_truth::{GroundTruth, TrueChange, TrueState};
 pub use printable::{is_printable, printable, printable_lines};
 pub use random::{Purpose, RandomStream};
-pub use reading::{CellReading, LaserReading, Observation, Reading};
+pub use reading::{CellReading, LaserReading, Observation, Reading, VelocitySample};
 pub use scan::{Scan, ScanError};
 pub use settings::{SettingsCheck, SettingsError};
 pub use state::{CellState, Event, Transition};

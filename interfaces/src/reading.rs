@@ -22,6 +22,15 @@ pub enum Observation<'a> {
     Cells(&'a CellReading),
 }
 
+/// The mean velocity of a robot over an interval that ends at a time; it begins at the time of the sample before.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+pub struct VelocitySample {
+    /// The end of the interval, s.
+    pub time_s: f64,
+    /// The mean velocity, by odometry, m/s and rad/s.
+    pub twist: Twist,
+}
+
 /// A laser scan, and the pose of the robot at the same time. A scan that sweeps ([`Scan::sweep_s`]) ends at this time.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct LaserReading {
@@ -32,6 +41,10 @@ pub struct LaserReading {
     pub pose: Isometry2<f64>,
     /// The velocity of the robot, by odometry, m/s and rad/s.
     pub twist: Twist,
+    /// The velocities of the robot, by odometry, while the scan was measured, the earliest first. Empty if the source
+    /// knows only `twist`. A scan that sweeps needs them: the robot may brake or start to turn within a scan.
+    #[serde(default)]
+    pub velocities: Vec<VelocitySample>,
     /// The pose of the laser in the frame of the robot, m and rad.
     #[serde(with = "crate::serde_pose")]
     pub mount: Isometry2<f64>,

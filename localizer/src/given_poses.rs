@@ -1,4 +1,4 @@
-use crate::sweep;
+use crate::sweep::Path;
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
 
@@ -15,9 +15,8 @@ impl GivenPoses {
         let (last_s, last) =
             self.last.replace((reading.time_s, reading.pose)).unwrap_or((reading.time_s, reading.pose));
         let elapsed_s = reading.time_s - last_s;
-        let travel = sweep::travel(&reading.twist, elapsed_s);
-        if let Some(scan) = sweep::unswept(&reading, &last.inv_mul(&reading.pose), &travel, elapsed_s) {
-            reading.scan = scan;
+        if let Some(path) = Path::of_sweep(&reading, &last.inv_mul(&reading.pose), elapsed_s) {
+            reading.scan = path.unswept(&reading);
         }
         reading
     }

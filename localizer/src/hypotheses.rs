@@ -140,9 +140,9 @@ fn refine<M: ChangingMap>(
     first_m: f64,
     score: f64,
 ) -> Option<Hypothesis> {
-    let prior = Prior { pose: *pose, information: covariance.try_inverse()? };
+    let prior = Prior { pose: *pose, information: covariance.try_inverse()?, begin: None };
     let found = scene.align(pose, Some(&prior), first_m, true)?;
-    let support = scene.judge(&found.pose);
+    let support = scene.judge(&found.placement);
     let covariance = found.information.try_inverse()?;
-    Some(Hypothesis { pose: found.pose, covariance, support, score: score + support.score() })
+    Some(Hypothesis { pose: found.placement.pose, covariance, support, score: score + support.score() })
 }

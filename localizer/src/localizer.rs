@@ -7,13 +7,14 @@ use crate::estimate::{Localized, PoseEstimate, PoseState, Start};
 use crate::faults::{Fault, FaultFinder};
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
+use crate::placement::shifted;
 use crate::scan_points::ScanPoints;
 use crate::score_grid::ScoreGrid;
 use crate::settings::LocalizerSettings;
 use crate::support::ClearBeams;
 use crate::surfel_map::{Checker, SurfelMap};
-use crate::sweep;
-use interfaces::{CellState, Grid, GridFrame, LaserReading, Scan, SettingsError};
+use crate::sweep::Path;
+use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError};
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
 /// The number of scans between two updates of the weights by rates.
@@ -41,6 +42,8 @@ pub struct Localizer {
     /// The last valid odometry pose, its time, and the estimated motion to it.
     odometry: Option<Isometry2<f64>>,
     last_motion: Isometry2<f64>,
+    /// How far the robot was from the last estimate, as the present scan shows: x, y (m) and heading (rad).
+    begin: Vector3<f64>,
     /// The last motion by odometry.
     measured: Isometry2<f64>,
     time_s: f64,
@@ -121,6 +124,7 @@ impl Localizer {
             state,
             odometry: None,
             last_motion: Isometry2::identity(),
+            begin: Vector3::zeros(),
             measured: Isometry2::identity(),
             time_s: 0.0,
             supported_s: None,
@@ -161,17 +165,20 @@ impl Localizer {
         if self.readings.is_multiple_of(RATES_EVERY) && self.settings.rate_horizon_s > 0.0 {
             self.surfels.weigh_by_rates(map, self.settings.rate_horizon_s);
         }
-        let mut reading = reading.clone();
-        if let Some(scan) = self.unswept(&reading, &motion, elapsed_s) {
-            reading.scan = scan;
-        }
-        self.points.update(&reading, self.settings.range_noise_std_m, self.settings.weigh_by_arc_length);
-        self.clear.update(&reading.scan);
+        let mut posed = reading.clone();
+        self.undo_sweep(&mut posed, reading, &motion.delta, elapsed_s);
         let before = self.pose;
+        self.begin = Vector3::zeros();
         let was_tracking = self.state == PoseState::Tracking;
         self.learns = false;
-        let support = self.estimate(&reading, &motion, map, fault);
-        self.last_motion = before.inv_mul(&self.pose);
+        let support = self.estimate(&posed, &motion, map, fault);
+        self.last_motion = shifted(&before, &self.begin).inv_mul(&self.pose);
+        if was_tracking && self.state == PoseState::Tracking && posed.scan.sweep_s > 0.0 {
+            // The noise of the odometry within a scan bends its walls. The motion that the match has found does not.
+            let found = self.last_motion;
+            self.undo_sweep(&mut posed, reading, &found, elapsed_s);
+        }
+        let reading = posed;
         if was_tracking && self.state == PoseState::Tracking {
             self.calibration.learn(&self.measured, &self.last_motion);
         }
@@ -196,10 +203,26 @@ impl Localizer {
         if self.distrust > 0 { motion.distrusted() } else { motion }
     }
 
-    /// The scan without its sweep; `None` if all beams were measured at once.
-    fn unswept(&self, reading: &LaserReading, motion: &Motion, elapsed_s: f64) -> Option<Scan> {
-        let travel = sweep::travel(&reading.twist, elapsed_s);
-        sweep::unswept(reading, &motion.delta, &self.calibration.correct(&travel), elapsed_s)
+    /// Replaces the scan of `posed` by that of `reading` with all beams from the pose at its end, after a robot that
+    /// moved by `motion` in the time `elapsed_s`.
+    fn undo_sweep(
+        &mut self,
+        posed: &mut LaserReading,
+        reading: &LaserReading,
+        motion: &Isometry2<f64>,
+        elapsed_s: f64,
+    ) {
+        let LocalizerSettings { range_noise_std_m, weigh_by_arc_length, .. } = self.settings;
+        let (noise_m, by_arc_length) = (range_noise_std_m, weigh_by_arc_length);
+        match Path::of_sweep(reading, motion, elapsed_s) {
+            Some(path) => {
+                posed.scan = path.unswept(reading);
+                let passed = |beam| path.passed(reading.scan.age_s(beam));
+                self.points.update(posed, passed, noise_m, by_arc_length);
+            }
+            None => self.points.update(posed, |_| 1.0, noise_m, by_arc_length),
+        }
+        self.clear.update(&posed.scan);
     }
 
     /// Learns the line map from a scan with a certain pose.

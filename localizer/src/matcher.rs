@@ -4,10 +4,11 @@
 //! a second scan (as Segal, Haehnel & Thrun 2009 use surfaces on both sides), the kernel of Geman & McClure (1987), and
 //! a prior from odometry.
 
+use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
-use nalgebra::{Isometry2, Matrix3, UnitComplex, Vector2, Vector3};
+use nalgebra::{Isometry2, Matrix3, Matrix6, Vector2, Vector3, Vector6};
 
 /// The largest number of steps at one gate.
 const MAX_STEPS: usize = 8;
@@ -23,6 +24,17 @@ pub(crate) const SURFEL_STD_M: f64 = 0.003;
 pub(crate) struct Prior {
     pub(crate) pose: Isometry2<f64>,
     pub(crate) information: Matrix3<f64>,
+    /// For a scan that sweeps: what is known about its begin.
+    pub(crate) begin: Option<Begin>,
+}
+
+/// What is known about the pose at the last scan, where the way of a scan that sweeps begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Begin {
+    /// The inverse of the covariance of the pose at the begin.
+    pub(crate) information: Matrix3<f64>,
+    /// The inverse of the covariance of both poses: of the begin, then of the end.
+    pub(crate) joint: Matrix6<f64>,
 }
 
 /// The way to match.
@@ -41,24 +53,99 @@ pub(crate) struct Gates {
 /// The result of a match.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Match {
-    pub(crate) pose: Isometry2<f64>,
+    pub(crate) placement: Placement,
     /// The information of the scan alone, without the prior.
     pub(crate) scan_information: Matrix3<f64>,
     /// The information of scan and prior.
     pub(crate) information: Matrix3<f64>,
+    /// The covariance of the pose of a beam, in the mean over the scan: for a scan that sweeps, less than that of the
+    /// pose at its end.
+    pub(crate) beam_covariance: Matrix3<f64>,
     /// The mean square of the residuals over their expectation; about 1 for a good match.
     pub(crate) residual_ratio: f64,
 }
 
 /// The sums of the normal equations.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct NormalEquations {
+    /// Of the pose at the end of the scan.
     hessian: Matrix3<f64>,
     gradient: Vector3<f64>,
+    /// Of the pose at its begin, and of begin and end.
+    begin_hessian: Matrix3<f64>,
+    cross_hessian: Matrix3<f64>,
+    begin_gradient: Vector3<f64>,
     squares: f64,
     weight: f64,
     /// The sum of the weights of the points alone.
     points: f64,
+}
+
+impl NormalEquations {
+    fn scale(&mut self, by: f64) {
+        self.hessian *= by;
+        self.gradient *= by;
+        self.begin_hessian *= by;
+        self.cross_hessian *= by;
+        self.begin_gradient *= by;
+        self.squares *= by;
+    }
+
+    /// The steps of the end and of the begin. `None` if the points do not fix the pose.
+    fn step(&self, placement: &Placement, prior: Option<&Prior>) -> Option<[Vector3<f64>; 2]> {
+        let (mut hessian, mut gradient) = (self.hessian, self.gradient);
+        let Some(prior) = prior else {
+            return Some([-(hessian.try_inverse()? * gradient), Vector3::zeros()]);
+        };
+        let off = difference(&placement.pose, &prior.pose);
+        let Some(begin) = &prior.begin else {
+            hessian += prior.information;
+            gradient += prior.information * off;
+            return Some([-(hessian.try_inverse()? * gradient), Vector3::zeros()]);
+        };
+        let off = stack(&placement.begin(), &off);
+        let hessian = begin.joint + self.joint_hessian();
+        let gradient = begin.joint * off + stack(&self.begin_gradient, &gradient);
+        let step = -hessian.cholesky()?.solve(&gradient);
+        Some([step.fixed_rows::<3>(3).into(), step.fixed_rows::<3>(0).into()])
+    }
+
+    fn joint_hessian(&self) -> Matrix6<f64> {
+        let mut joint = Matrix6::zeros();
+        joint.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.begin_hessian);
+        joint.fixed_view_mut::<3, 3>(0, 3).copy_from(&self.cross_hessian);
+        joint.fixed_view_mut::<3, 3>(3, 0).copy_from(&self.cross_hessian.transpose());
+        joint.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.hessian);
+        joint
+    }
+
+    /// What is known about the pose at the end of the scan: of the points alone, and together with the prior; and the
+    /// covariance of the pose of a beam, in the mean over all.
+    fn known(&self, prior: Option<&Prior>) -> Option<[Matrix3<f64>; 3]> {
+        let Some(begin) = prior.and_then(|prior| prior.begin) else {
+            let all = self.hessian + prior.map_or(Matrix3::zeros(), |prior| prior.information);
+            return Some([self.hessian, all, all.try_inverse()?]);
+        };
+        let mut scan = self.joint_hessian();
+        let all = scan + begin.joint;
+        let mut own = scan.fixed_view_mut::<3, 3>(0, 0);
+        own += begin.information;
+        let covariance = all.try_inverse()?;
+        let block = |row, column| covariance.fixed_view::<3, 3>(row, column);
+        // A beam at the share f of the way has the pose (1 - f) begin + f end.
+        let beam = (block(0, 0) + block(3, 3)) / 3.0 + (block(0, 3) + block(3, 0)) / 6.0;
+        Some([end_of(&scan)?, end_of(&all)?, beam])
+    }
+}
+
+fn stack(begin: &Vector3<f64>, end: &Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(begin.x, begin.y, begin.z, end.x, end.y, end.z)
+}
+
+/// The information about the end, whatever the begin is: the Schur complement.
+fn end_of(joint: &Matrix6<f64>) -> Option<Matrix3<f64>> {
+    let block = |row, column| joint.fixed_view::<3, 3>(row, column).into_owned();
+    Some(block(3, 3) - block(3, 0) * block(0, 0).try_inverse()? * block(0, 3))
 }
 
 /// The residual of a point and its derivative with respect to a shift of the pose in x and y and to a turn about the
@@ -77,45 +164,42 @@ fn kernel(residual: f64, scale: f64) -> f64 {
 fn accumulate(
     map: &SurfelMap,
     points: &[ScanPoint],
-    pose: &Isometry2<f64>,
+    placement: &Placement,
     gate_m: f64,
     gates: &Gates,
 ) -> NormalEquations {
     let variance = gates.noise_m * gates.noise_m + SURFEL_STD_M * SURFEL_STD_M;
-    let mut sums = NormalEquations {
-        hessian: Matrix3::zeros(),
-        gradient: Vector3::zeros(),
-        squares: 0.0,
-        weight: 0.0,
-        points: 0.0,
-    };
+    let mut sums = NormalEquations::default();
     // Well inside of the gate: what moved by a little more than the noise must not pull.
     let scale_m = gate_m / 2.0;
     for point in points {
-        let arm = pose.rotation * point.at.coords;
-        let at = (pose.translation.vector + arm).into();
-        let Some((index, off_m)) = map.nearest(&at, &(pose.rotation * point.normal), gate_m) else {
-            continue;
-        };
+        let at = placement.place(point);
+        let arm = at.coords - placement.pose.translation.vector;
+        let normal = placement.pose.rotation * point.normal;
+        let Some((index, off_m)) = map.nearest(&at, &normal, gate_m) else { continue };
         let surfel = map.surfel(index);
         let mut weight = point.weight * surfel.weight();
         if gates.by_rates {
             weight *= surfel.steadiness;
         }
         let certain = weight / variance * kernel(off_m, scale_m);
-        let j = derivative(&arm, &surfel.normal);
-        sums.hessian += j * j.transpose() * certain;
-        sums.gradient += j * (off_m * certain);
+        let (j, share) = (derivative(&arm, &surfel.normal), placement.share(point));
+        let (hessian, gradient) = (j * j.transpose() * certain, j * (off_m * certain));
+        sums.hessian += hessian * (share * share);
+        sums.gradient += gradient * share;
+        if share < 1.0 {
+            let rest = 1.0 - share;
+            sums.begin_hessian += hessian * (rest * rest);
+            sums.cross_hessian += hessian * (rest * share);
+            sums.begin_gradient += gradient * rest;
+        }
         sums.squares += off_m * off_m * certain;
         sums.weight += weight * kernel(off_m, scale_m);
         sums.points += point.weight * kernel(off_m, scale_m);
     }
     // Trust decides between surfels; it does not make a scan worth less than the odometry.
     if sums.weight > 0.0 {
-        let scale = sums.points / sums.weight;
-        sums.hessian *= scale;
-        sums.gradient *= scale;
-        sums.squares *= scale;
+        sums.scale(sums.points / sums.weight);
         sums.weight = sums.points;
     }
     sums
@@ -131,7 +215,7 @@ pub(crate) fn difference(pose: &Isometry2<f64>, from: &Isometry2<f64>) -> Vector
     Vector3::new(shift.x, shift.y, turn)
 }
 
-/// Matches a scan, from a pose, with an optional prior. `None` if the points do not fix the pose.
+/// Matches a scan, from the pose with which its sweep was undone, with an optional prior. `None` if the points do not fix the pose.
 pub(crate) fn align(
     map: &SurfelMap,
     points: &[ScanPoint],
@@ -139,21 +223,17 @@ pub(crate) fn align(
     prior: Option<&Prior>,
     gates: &Gates,
 ) -> Option<Match> {
-    let mut pose = *start;
+    let is_elastic = prior.is_some_and(|prior| prior.begin.is_some());
+    let mut placement = if is_elastic { Placement::elastic(start) } else { Placement::rigid(start) };
     let mut gate_m = gates.first_m;
     loop {
         for _ in 0..MAX_STEPS {
-            let mut sums = accumulate(map, points, &pose, gate_m, gates);
-            if let Some(prior) = prior {
-                sums.hessian += prior.information;
-                sums.gradient += prior.information * difference(&pose, &prior.pose);
-            }
-            let step = -(sums.hessian.try_inverse()? * sums.gradient);
-            if !step.iter().all(|value| value.is_finite()) {
+            let sums = accumulate(map, points, &placement, gate_m, gates);
+            let [step, begin] = sums.step(&placement, prior)?;
+            if !step.iter().chain(&begin).all(|value| value.is_finite()) {
                 return None;
             }
-            pose.translation.vector += step.xy();
-            pose.rotation = interfaces::rotation(step.z) * pose.rotation;
+            placement.correct(&step, &begin);
             if step.xy().norm() < STEP_M && step.z.abs() < STEP_RAD {
                 break;
             }
@@ -163,14 +243,14 @@ pub(crate) fn align(
         }
         gate_m = (gate_m / 2.0).max(gates.last_m);
     }
-    pose.rotation = UnitComplex::from_cos_sin_unchecked(pose.rotation.re, pose.rotation.im);
-    pose.rotation.renormalize();
-    let sums = accumulate(map, points, &pose, gate_m, gates);
-    let information = sums.hessian + prior.map_or(Matrix3::zeros(), |prior| prior.information);
+    placement.pose.rotation.renormalize();
+    let sums = accumulate(map, points, &placement, gate_m, gates);
+    let [scan_information, information, beam_covariance] = sums.known(prior)?;
     Some(Match {
-        pose,
-        scan_information: sums.hessian,
+        placement,
+        scan_information,
         information,
+        beam_covariance,
         residual_ratio: if sums.weight > 0.0 { sums.squares / sums.weight } else { 1.0 },
     })
 }

@@ -1,8 +1,9 @@
 //! The motion between two readings by odometry, and how far it can be trusted.
 
+use crate::matcher::{Begin, Prior};
 use crate::settings::OdometryTrust;
 use interfaces::heading_rad;
-use nalgebra::{Isometry2, Matrix3};
+use nalgebra::{Isometry2, Matrix3, Matrix6, Vector3};
 
 /// The uncertainty of a motion of zero length: vibration, and rounding in the odometry.
 const REST_STD_M: f64 = 2e-4;
@@ -36,7 +37,7 @@ impl Motion {
         let across = heading * square(distance_m) / 3.0;
         // A robot that turns in place slips a little in every direction.
         let slip = square(REST_STD_M + 0.02 * trust.turn_gain * turn_rad);
-        let covariance = Matrix3::from_diagonal(&nalgebra::Vector3::new(
+        let covariance = Matrix3::from_diagonal(&Vector3::new(
             along + slip,
             across + square(0.02 * distance_m) + slip,
             heading + square(REST_STD_RAD),
@@ -46,7 +47,7 @@ impl Motion {
 
     /// The same motion, of an odometry that cannot be trusted.
     pub(crate) fn distrusted(mut self) -> Self {
-        let spread = nalgebra::Vector3::new(DISTRUSTED_STD_M, DISTRUSTED_STD_M, DISTRUSTED_STD_RAD);
+        let spread = Vector3::new(DISTRUSTED_STD_M, DISTRUSTED_STD_M, DISTRUSTED_STD_RAD);
         self.covariance += Matrix3::from_diagonal(&spread.component_mul(&spread));
         self
     }
@@ -58,15 +59,66 @@ impl Motion {
         moved
     }
 
+    /// The pose after the motion from a pose with the given covariance, with its covariance; all in the frame of the map.
+    pub(crate) fn predict(
+        &self,
+        pose: &Isometry2<f64>,
+        covariance: &Matrix3<f64>,
+        sweeps: bool,
+    ) -> Predicted {
+        let (by_heading, own) = self.spread(pose);
+        let begin = if sweeps { begin(covariance, &by_heading, &own) } else { None };
+        let covariance = by_heading * covariance * by_heading.transpose() + own;
+        Predicted { pose: self.apply(pose), covariance, begin }
+    }
+
     /// The covariance after the motion from a pose with the given covariance; both in the frame of the map.
     pub(crate) fn propagate(&self, pose: &Isometry2<f64>, covariance: &Matrix3<f64>) -> Matrix3<f64> {
+        let (by_heading, own) = self.spread(pose);
+        by_heading * covariance * by_heading.transpose() + own
+    }
+
+    /// How an error of the pose before the motion becomes one of the pose after it, and the covariance of the motion in
+    /// the frame of the map.
+    fn spread(&self, pose: &Isometry2<f64>) -> (Matrix3<f64>, Matrix3<f64>) {
         let shift = pose.rotation * self.delta.translation.vector;
         // A heading error of the pose turns the motion.
         let by_heading = Matrix3::new(1.0, 0.0, -shift.y, 0.0, 1.0, shift.x, 0.0, 0.0, 1.0);
         let (cos, sin) = (pose.rotation.re, pose.rotation.im);
         let to_map = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
-        by_heading * covariance * by_heading.transpose() + to_map * self.covariance * to_map.transpose()
+        (by_heading, to_map * self.covariance * to_map.transpose())
     }
+}
+
+/// The pose before a scan is seen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Predicted {
+    pub(crate) pose: Isometry2<f64>,
+    pub(crate) covariance: Matrix3<f64>,
+    /// For a scan that sweeps: what is known about the pose before the motion.
+    begin: Option<Begin>,
+}
+
+impl Predicted {
+    /// The prior of a match; `None` if the covariance cannot be inverted.
+    pub(crate) fn prior(&self) -> Option<Prior> {
+        Some(Prior { pose: self.pose, information: self.covariance.try_inverse()?, begin: self.begin })
+    }
+}
+
+/// What is known about a pose with `covariance` and the pose after a motion with the covariance `own`. `by_heading`: how
+/// an error of the first becomes one of the second.
+fn begin(covariance: &Matrix3<f64>, by_heading: &Matrix3<f64>, own: &Matrix3<f64>) -> Option<Begin> {
+    let least = Vector3::new(REST_STD_M, REST_STD_M, REST_STD_RAD);
+    let information = (covariance + Matrix3::from_diagonal(&least.component_mul(&least))).try_inverse()?;
+    let motion = own.try_inverse()?;
+    let cross = by_heading.transpose() * motion;
+    let mut joint = Matrix6::zeros();
+    joint.fixed_view_mut::<3, 3>(0, 0).copy_from(&(information + cross * by_heading));
+    joint.fixed_view_mut::<3, 3>(0, 3).copy_from(&-cross);
+    joint.fixed_view_mut::<3, 3>(3, 0).copy_from(&-cross.transpose());
+    joint.fixed_view_mut::<3, 3>(3, 3).copy_from(&motion);
+    Some(Begin { information, joint })
 }
 
 #[cfg(test)]

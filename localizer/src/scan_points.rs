@@ -36,6 +36,9 @@ pub(crate) struct ScanPoint {
     pub(crate) weight: f64,
     /// The number of the beam.
     pub(crate) beam: usize,
+    /// The share of the way since the last scan that the robot had gone when the beam was measured: from 0 to 1, the end
+    /// of the scan.
+    pub(crate) passed: f64,
 }
 
 /// The points of one scan. Its buffers are used again for the next scan.
@@ -127,7 +130,14 @@ impl ScanPoints {
 
     /// Replaces the points by those of `reading`. Beams without a return, and points where no straight surface can be
     /// recognised (edges, single points, surfaces that the beams graze) are left out.
-    pub(crate) fn update(&mut self, reading: &LaserReading, range_noise_std_m: f64, by_arc_length: bool) {
+    /// `passed` gives [`ScanPoint::passed`] of a beam.
+    pub(crate) fn update(
+        &mut self,
+        reading: &LaserReading,
+        passed: impl Fn(usize) -> f64,
+        range_noise_std_m: f64,
+        by_arc_length: bool,
+    ) {
         let LaserReading { scan, mount, .. } = reading;
         self.directions.update(scan, mount);
         let beams = scan.ranges_m.len();
@@ -144,7 +154,7 @@ impl ScanPoints {
         let is_closed = scan.is_full_turn() && beams > 2;
         for beam in 0..beams {
             if let Some(point) = self.point(beam, scan, is_closed, range_noise_std_m, by_arc_length) {
-                self.points.push(point);
+                self.points.push(ScanPoint { passed: passed(beam), ..point });
             }
         }
     }
@@ -211,7 +221,7 @@ impl ScanPoints {
         let incidence = normal.dot(&toward) / range_m;
         let arc_m = spacing_m / incidence.max(0.2);
         let weight = if by_arc_length { (arc_m / FULL_WEIGHT_M).min(1.0) } else { 1.0 };
-        Some(ScanPoint { at, normal, weight, beam })
+        Some(ScanPoint { at, normal, weight, beam, passed: 1.0 })
     }
 
     fn origin(&self) -> Vector2<f64> {

@@ -2,6 +2,7 @@
 
 use crate::changing_map::ChangingMap;
 use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align};
+use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::settings::LocalizerSettings;
 use crate::support::{ClearBeams, Support, judge};
@@ -56,11 +57,11 @@ impl<M: ChangingMap> Scene<'_, M> {
     }
 
     /// The agreement of the scan with the maps at a pose.
-    pub(crate) fn judge(&self, pose: &Isometry2<f64>) -> Support {
+    pub(crate) fn judge(&self, placement: &Placement) -> Support {
         let gate_m = self.gate_m();
-        let laser = pose * self.mount;
+        let laser = placement.pose * self.mount;
         let origin = Point2::from(laser.translation.vector);
-        let mut support = judge(self.surfels, self.map, self.points, pose, &origin, gate_m);
+        let mut support = judge(self.surfels, self.map, self.points, placement, &origin, gate_m);
         support.blind = self.clear.contradicted(self.map, &laser);
         support.contradicted += support.blind;
         support

@@ -2,6 +2,7 @@
 
 use crate::changing_map::ChangingMap;
 use crate::matcher::derivative;
+use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::surfel_map::SurfelMap;
 use interfaces::{CellState, Grid, Scan};
@@ -60,15 +61,15 @@ pub(crate) fn judge(
     surfels: &SurfelMap,
     map: &impl ChangingMap,
     points: &[ScanPoint],
-    pose: &Isometry2<f64>,
+    placement: &Placement,
     laser: &Point2<f64>,
     gate_m: f64,
 ) -> Support {
     let mut support = Support::default();
     for point in points {
-        let arm = pose.rotation * point.at.coords;
-        let at = Point2::from(pose.translation.vector + arm);
-        let normal = pose.rotation * point.normal;
+        let at = placement.place(point);
+        let arm = at.coords - placement.pose.translation.vector;
+        let normal = placement.pose.rotation * point.normal;
         match surfels.nearest(&at, &normal, gate_m) {
             Some((index, _)) if surfels.surfel(index).weight() > 0.0 => {
                 support.confirmed += point.weight;

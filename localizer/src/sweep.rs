@@ -1,14 +1,20 @@
 //! Undoes the sweep of a scan: a laser that turns measures each beam from a pose of its own. The result is a scan whose
 //! beams all start at the pose of its end.
 
-use interfaces::{LaserReading, Scan, Twist, approximate_atan2, heading_rad, wrap_rad};
+use interfaces::{LaserReading, Scan, Twist, VelocitySample, approximate_atan2, heading_rad, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2, Vector3};
 
 /// Neighboring end points nearer than this are joined by a straight surface, m.
 const JOIN_M: f64 = 0.15;
-/// Half of the largest acceleration that is taken for true, forward and sideways (m/s²), and of the turn (rad/s²). Beyond
-/// it, the odometry has jumped, or its velocity is not that of its poses.
-const MAX_BEND: [f64; 3] = [2.0, 2.0, 6.0];
+/// Between two surfaces, a direction that is farther than this from both beams (as a share of the angle between them)
+/// is not measured: the edge lies somewhere between.
+const EDGE_SHARE: f64 = 0.1;
+/// The largest difference between the motion from scan to scan and the sum of the velocities that is spread over the
+/// path, m and rad. Beyond it, the odometry has jumped, or the robot was carried.
+const MAX_MISMATCH_M: f64 = 0.1;
+const MAX_MISMATCH_RAD: f64 = 0.15;
+/// The turn that takes as long as a way of one metre, rad: what a path is made of, in one number.
+const RAD_PER_M: f64 = 3.0;
 
 /// The end point of a beam in the frame of the laser at the end of the sweep.
 #[derive(Clone, Copy)]
@@ -18,37 +24,125 @@ struct End {
     range_m: f32,
 }
 
-/// What a robot travels at a velocity.
-pub(crate) fn travel(velocity: &Twist, elapsed_s: f64) -> Isometry2<f64> {
-    interfaces::pose(velocity.linear_mps * elapsed_s, 0.0, velocity.angular_radps * elapsed_s)
+/// The path of a robot up to the end of a scan.
+pub(crate) struct Path {
+    /// The earliest last.
+    nodes: Vec<Node>,
 }
 
-/// The scan of a reading, with all beams from its pose; `None` if they are already. `motion` is the motion of the robot in the time `elapsed_s` since
-/// the last reading, and `travel` what it would be at the velocity of the reading. The robot is taken to have accelerated
-/// evenly: at constant velocity, the first beams of a robot that starts to turn would be wrong by a degree.
-pub(crate) fn unswept(
-    reading: &LaserReading,
-    motion: &Isometry2<f64>,
-    travel: &Isometry2<f64>,
-    elapsed_s: f64,
-) -> Option<Scan> {
-    let scan = &reading.scan;
-    if scan.sweep_s == 0.0 || elapsed_s <= 0.0 {
-        return None;
+/// A place on a path.
+#[derive(Clone, Copy)]
+struct Node {
+    /// The time before the end of the scan, s.
+    age_s: f64,
+    /// The pose in the frame of the robot at the end of the scan: x, y (m) and heading (rad).
+    at: Vector3<f64>,
+    /// The length of the path from here to the end: metres, and turns as metres.
+    length: f64,
+}
+
+impl Path {
+    /// The path of a robot that moved by `motion` in the time `elapsed_s` up to the end of a scan. The velocities of the
+    /// reading give its shape; what they miss of the motion is spread along the path, as the errors of wheels are.
+    fn new(reading: &LaserReading, motion: &Isometry2<f64>, elapsed_s: f64) -> Self {
+        let mut nodes = vec![Node { age_s: 0.0, at: Vector3::zeros(), length: 0.0 }];
+        let only = [VelocitySample { time_s: reading.time_s, twist: reading.twist }];
+        let samples = if reading.velocities.is_empty() { &only[..] } else { &reading.velocities };
+        for (index, sample) in samples.iter().enumerate().rev() {
+            let last = nodes[nodes.len() - 1];
+            let begin_s = if index > 0 { reading.time_s - samples[index - 1].time_s } else { elapsed_s };
+            // Times out of order, or not finite, are no part of the path.
+            if begin_s > last.age_s && begin_s <= elapsed_s {
+                nodes.push(last.before(&sample.twist, begin_s));
+            }
+        }
+        let last = nodes[nodes.len() - 1];
+        if last.age_s < elapsed_s {
+            nodes.push(last.before(&samples[0].twist, elapsed_s));
+        }
+        let mut path = Self { nodes };
+        path.end_at(motion);
+        path
     }
-    let vector = |motion: &Isometry2<f64>| {
-        Vector3::new(motion.translation.x, motion.translation.y, heading_rad(motion))
-    };
-    let (back, velocity) = (vector(&motion.inverse()), vector(travel));
-    let bend = back + velocity;
-    let is_plausible = bend.iter().zip(MAX_BEND).all(|(bend, max)| bend.abs() <= max * elapsed_s * elapsed_s);
-    let (slope, bend) = if is_plausible { (-velocity, bend) } else { (back, Vector3::zeros()) };
-    let laser_before = |left: f64| {
-        let share = left * scan.sweep_s / elapsed_s;
-        let at = (slope + bend * share) * share;
-        reading.mount.inverse() * interfaces::pose(at.x, at.y, at.z) * reading.mount
-    };
-    Some(undo(scan, laser_before))
+
+    /// Bends the path so that it has `motion` from its first to its last pose.
+    fn end_at(&mut self, motion: &Isometry2<f64>) {
+        let whole = *self.whole();
+        let missing = pose(&whole.at).inv_mul(&motion.inverse());
+        let (shift_m, turn_rad) = (missing.translation.vector, heading_rad(&missing));
+        if shift_m.norm() > MAX_MISMATCH_M || turn_rad.abs() > MAX_MISMATCH_RAD {
+            return;
+        }
+        for node in &mut self.nodes {
+            let share =
+                if whole.length > 0.0 { node.length / whole.length } else { node.age_s / whole.age_s };
+            let bent =
+                pose(&node.at) * interfaces::pose(shift_m.x * share, shift_m.y * share, turn_rad * share);
+            let turned_rad = node.at.z + turn_rad * share;
+            node.at = Vector3::new(bent.translation.x, bent.translation.y, turned_rad);
+        }
+    }
+
+    /// The path of a robot during a scan, see [`Path::new`]; `None` if all beams were measured at once.
+    pub(crate) fn of_sweep(reading: &LaserReading, motion: &Isometry2<f64>, elapsed_s: f64) -> Option<Self> {
+        let sweeps = reading.scan.sweep_s > 0.0 && elapsed_s > 0.0;
+        sweeps.then(|| Self::new(reading, motion, elapsed_s))
+    }
+
+    /// The scan of a reading, with all beams from its pose.
+    pub(crate) fn unswept(&self, reading: &LaserReading) -> Scan {
+        let (scan, mount, to_laser) = (&reading.scan, reading.mount, reading.mount.inverse());
+        undo(scan, |left| to_laser * self.at(left * scan.sweep_s) * mount)
+    }
+
+    /// The share of the path that the robot had gone at a time before the end of the scan.
+    pub(crate) fn passed(&self, age_s: f64) -> f64 {
+        let (from, to, share) = self.piece(age_s);
+        let (length, whole) = (from.length + (to.length - from.length) * share, self.whole());
+        let left = if whole.length > 0.0 { length / whole.length } else { age_s / whole.age_s };
+        (1.0 - left).clamp(0.0, 1.0)
+    }
+
+    /// The begin of the path.
+    fn whole(&self) -> &Node {
+        &self.nodes[self.nodes.len() - 1]
+    }
+
+    /// The pose at a time before the end of the scan, in the frame of the robot at the end.
+    fn at(&self, age_s: f64) -> Isometry2<f64> {
+        let (from, to, share) = self.piece(age_s);
+        pose(&from.at.lerp(&to.at, share))
+    }
+
+    /// The nodes around a time before the end of the scan, and where it lies between them.
+    fn piece(&self, age_s: f64) -> (&Node, &Node, f64) {
+        let last = self.nodes.len() - 1;
+        let next = (1..last).find(|&node| self.nodes[node].age_s >= age_s).unwrap_or(last);
+        let (from, to) = (&self.nodes[next - 1], &self.nodes[next]);
+        (from, to, (age_s - from.age_s) / (to.age_s - from.age_s))
+    }
+}
+
+impl Node {
+    /// The node at a time before this one, where the robot moved at a velocity.
+    fn before(&self, twist: &Twist, age_s: f64) -> Self {
+        let elapsed_s = age_s - self.age_s;
+        let (way_m, turn_rad) = (twist.linear_mps * elapsed_s, twist.angular_radps * elapsed_s);
+        if !way_m.is_finite() || !turn_rad.is_finite() {
+            return Self { age_s, ..*self };
+        }
+        let heading_rad = self.at.z - turn_rad / 2.0;
+        let way = interfaces::rotation(heading_rad) * Vector2::x() * way_m;
+        Self {
+            age_s,
+            at: self.at - Vector3::new(way.x, way.y, turn_rad),
+            length: self.length + way_m.abs() + turn_rad.abs() / RAD_PER_M,
+        }
+    }
+}
+
+fn pose(at: &Vector3<f64>) -> Isometry2<f64> {
+    interfaces::pose(at.x, at.y, at.z)
 }
 
 /// The scan as the laser would measure it at once, at the end of the sweep. `laser_before` gives the pose of the laser in
@@ -68,14 +162,15 @@ fn undo(scan: &Scan, laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
         End { at, angle_rad: approximate_atan2(at.y, at.x), range_m }
     };
     let mut ranges_m = vec![f32::NAN; beams];
-    let mut before = end(0);
+    let first = end(0);
+    let mut before = first;
     for beam in 1..beams {
         let after = end(beam);
         cover(scan, &before, &after, &mut ranges_m);
         before = after;
     }
     if scan.is_full_turn() {
-        close(scan, &before, &end(0), &mut ranges_m);
+        close(scan, &before, &first, &mut ranges_m);
     }
     Scan { ranges_m, ..*scan }
 }
@@ -126,6 +221,9 @@ fn between(scan: &Scan, from: &End, to: &End, share: f64, index: usize) -> f32 {
         if (range_m - middle_m).abs() < JOIN_M {
             return range_m as f32;
         }
+    }
+    if share.min(1.0 - share) > EDGE_SHARE && (are_hits || from.range_m != to.range_m) {
+        return f32::NAN;
     }
     if nearer.range_m.is_finite() { nearer.at.coords.norm() as f32 } else { nearer.range_m }
 }
@@ -194,27 +292,58 @@ mod tests {
             let left = 1.0 - beam as f64 / (beams - 1) as f64;
             range_m(&before(left * empty.sweep_s), empty.angle_rad(beam)) as f32
         };
-        let twist = Twist {
-            linear_mps: acceleration_mps2 * elapsed_s,
-            angular_radps: acceleration_radps2 * elapsed_s,
+        // The velocities are those of wheels with a gain.
+        let sample = |number: u32| {
+            let share = f64::from(number) / 5.0;
+            let mean = 1.05 * (share - 0.1) * elapsed_s;
+            VelocitySample {
+                time_s: 0.9 + share * elapsed_s,
+                twist: Twist {
+                    linear_mps: acceleration_mps2 * mean,
+                    angular_radps: acceleration_radps2 * mean,
+                },
+            }
         };
         let reading = LaserReading {
             time_s: 1.0,
             pose: Isometry2::identity(),
-            twist,
+            twist: Twist::STOP,
+            velocities: (1..=5).map(sample).collect(),
             mount: Isometry2::identity(),
             scan: scan((0..beams).map(range).collect()),
         };
-        let unswept =
-            unswept(&reading, &before(elapsed_s).inverse(), &travel(&twist, elapsed_s), elapsed_s).unwrap();
+        let path = Path::of_sweep(&reading, &before(elapsed_s).inverse(), elapsed_s).unwrap();
+        let unswept = path.unswept(&reading);
         let errors_m = (0..beams).filter(|&beam| !unswept.ranges_m[beam].is_nan()).map(|beam| {
             (f64::from(unswept.ranges_m[beam]) - range_m(&Isometry2::identity(), empty.angle_rad(beam))).abs()
         });
         let errors_m: Vec<f64> = errors_m.collect();
         assert!(errors_m.len() > beams - 8, "{} beams", errors_m.len());
         // The four corners between two beams are cut off.
-        let large = errors_m.iter().filter(|error_m| **error_m > 1e-5).count();
+        let large = errors_m.iter().filter(|error_m| **error_m > 1e-3).count();
         assert!(large <= 4 && errors_m.iter().all(|error_m| *error_m < 0.02), "{large} errors");
+    }
+
+    #[test]
+    fn velocities_that_cannot_be_true_are_no_part_of_the_path() {
+        let sample = |time_s, linear_mps| VelocitySample {
+            time_s,
+            twist: Twist { linear_mps, angular_radps: f64::NAN },
+        };
+        for velocities in [vec![], vec![sample(0.95, 0.3), sample(0.92, 0.3), sample(f64::NAN, 1.0)]] {
+            let reading = LaserReading {
+                time_s: 1.0,
+                pose: Isometry2::identity(),
+                twist: Twist { linear_mps: f64::INFINITY, angular_radps: 0.0 },
+                velocities,
+                mount: Isometry2::identity(),
+                scan: scan(vec![2.0; 360]),
+            };
+            let path = Path::new(&reading, &pose(0.04, 0.0, 0.1), 0.1);
+            let [first, middle] = [0.1, 0.05].map(|age_s| path.at(age_s));
+            assert!((pose(0.04, 0.0, 0.1) * first).translation.vector.norm() < 1e-12);
+            assert!(((-heading_rad(&middle)) - 0.05).abs() < 0.03, "{middle}");
+        }
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! From the predicted pose to the pose of the scan, and the question whether the robot or the things moved.
 
 use crate::changing_map::ChangingMap;
-use crate::matcher::{Match, Prior, difference};
+use crate::matcher::{Match, difference};
+use crate::motion::Predicted;
+use crate::placement::Placement;
 use crate::scene::Scene;
 use crate::support::Support;
 use interfaces::heading_rad;
@@ -33,8 +35,10 @@ const UNCHANGED_WEIGHT: f64 = 15.0;
 /// The pose of a scan by tracking.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tracked {
-    pub(crate) pose: Isometry2<f64>,
+    pub(crate) placement: Placement,
     pub(crate) covariance: Matrix3<f64>,
+    /// The covariance of the pose of a beam, in the mean over the scan.
+    pub(crate) beam_covariance: Matrix3<f64>,
     pub(crate) support: Support,
     /// Much of the view may have moved, but the robot moved as its odometry says: what stayed in place fixes the pose.
     pub(crate) stayed: bool,
@@ -42,31 +46,38 @@ pub(crate) struct Tracked {
     pub(crate) is_other: bool,
 }
 
+impl Tracked {
+    /// The pose by the odometry or a match. `covariances`: of the pose, and of the pose of a beam.
+    pub(crate) fn new(placement: Placement, covariances: [Matrix3<f64>; 2], support: Support) -> Self {
+        let [covariance, beam_covariance] = covariances;
+        Self { placement, covariance, beam_covariance, support, stayed: false, is_other: false }
+    }
+}
+
 /// Finds the pose of a scan near the predicted pose. `others` are other guesses: the pose at rest, the pose at constant
 /// velocity. If no guess gives a supported pose, the result is the match from the predicted pose.
 pub(crate) fn track<M: ChangingMap>(
     scene: &Scene<M>,
-    predicted: &Isometry2<f64>,
-    covariance: &Matrix3<f64>,
+    predicted: &Predicted,
     others: &[Isometry2<f64>],
 ) -> Tracked {
-    let (by_odometry, is_surprise) = with_prior(scene, predicted, covariance);
+    let (by_odometry, is_surprise) = with_prior(scene, predicted);
     let is_good = |tracked: &Tracked| tracked.support.share() >= scene.settings.min_support;
     if is_good(&by_odometry) && !is_surprise {
         return by_odometry;
     }
     let mut best = by_odometry;
-    for start in std::iter::once(predicted).chain(others) {
+    for start in std::iter::once(&predicted.pose).chain(others) {
         let Some(found) = scene.align(start, None, WIDE_GATE_M, false) else { continue };
         let candidate = tracked(scene, &found);
         if candidate.support.confirmed > best.support.confirmed + BETTER * by_odometry.support.weight() {
             best = candidate;
         }
     }
-    let in_place = scene.tight().judge(&by_odometry.pose);
+    let in_place = scene.tight().judge(&by_odometry.placement);
     let fixes_pose = |share: f64| in_place.fixes_pose(share * in_place.weight());
     if is_coherent(&by_odometry, &best) && fixes_pose(STAYED_SHARE) {
-        let (in_place, _) = with_prior(&scene.tight(), predicted, covariance);
+        let (in_place, _) = with_prior(&scene.tight(), predicted);
         return Tracked { stayed: true, ..in_place };
     }
     if is_good(&best) {
@@ -77,35 +88,29 @@ pub(crate) fn track<M: ChangingMap>(
 }
 
 /// The match with the prior of odometry, and whether the motion by odometry was not true.
-fn with_prior<M: ChangingMap>(
-    scene: &Scene<M>,
-    predicted: &Isometry2<f64>,
-    covariance: &Matrix3<f64>,
-) -> (Tracked, bool) {
+fn with_prior<M: ChangingMap>(scene: &Scene<M>, predicted: &Predicted) -> (Tracked, bool) {
+    let Predicted { pose, covariance, .. } = predicted;
     let stay = || {
-        let support = scene.judge(predicted);
-        (
-            Tracked { pose: *predicted, covariance: *covariance, support, stayed: false, is_other: false },
-            false,
-        )
+        let placement = Placement::rigid(pose);
+        let support = scene.judge(&placement);
+        (Tracked::new(placement, [*covariance; 2], support), false)
     };
-    let Some(information) = covariance.try_inverse() else { return stay() };
-    let prior = Prior { pose: *predicted, information };
+    let Some(prior) = predicted.prior() else { return stay() };
     let spread_m = (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
     // What has moved a little is out of reach from the start.
     let first_m = if scene.is_tight { scene.gate_m() } else { scene.gate_m() + 2.0 * spread_m };
-    let by_rates = unchanged_fix_pose(scene, predicted);
-    let Some(found) = scene.align(predicted, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else {
+    let by_rates = unchanged_fix_pose(scene, pose);
+    let Some(found) = scene.align(pose, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else {
         return stay();
     };
-    (tracked(scene, &found), surprise(&found, predicted, covariance) > SURPRISE)
+    (tracked(scene, &found), surprise(&found, pose, covariance) > SURPRISE)
 }
 
 /// How far the pose of the scan alone lies from the predicted pose: squared, over the covariance of both.
 fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>) -> f64 {
     let Some(scan) = found.scan_information.try_inverse() else { return 0.0 };
     // The match with the prior went only a part of the way that the scan alone would have gone.
-    let whole_way = scan * found.information * difference(&found.pose, predicted);
+    let whole_way = scan * found.information * difference(&found.placement.pose, predicted);
     let map = Vector3::new(MAP_STD_M, MAP_STD_M, MAP_STD_RAD);
     let spread = covariance + scan + Matrix3::from_diagonal(&map.component_mul(&map));
     spread.try_inverse().map_or(0.0, |inverse| (whole_way.transpose() * inverse * whole_way)[0])
@@ -116,25 +121,22 @@ fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>
 fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
     let inverse = found.information.try_inverse().unwrap_or_else(|| Matrix3::identity() * 1e3);
     let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD);
-    let covariance =
-        inverse * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model));
-    Tracked {
-        pose: found.pose,
-        covariance,
-        support: scene.judge(&found.pose),
-        stayed: false,
-        is_other: false,
-    }
+    let honest = |covariance: Matrix3<f64>| {
+        covariance * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model))
+    };
+    let covariances = [inverse, found.beam_covariance].map(honest);
+    Tracked::new(found.placement, covariances, scene.judge(&found.placement))
 }
 
 /// Whether changing surfaces may be weighed down: the others alone fix the pose. Otherwise a wrong pose could declare
 /// all that contradicts it as changing.
 fn unchanged_fix_pose<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>) -> bool {
-    scene.surfels.knows_rates() && scene.judge(pose).steady.symmetric_eigenvalues().min() >= UNCHANGED_WEIGHT
+    scene.surfels.knows_rates()
+        && scene.judge(&Placement::rigid(pose)).steady.symmetric_eigenvalues().min() >= UNCHANGED_WEIGHT
 }
 
 /// Whether two poses are as far apart as things that move together: then either the things moved, or the robot.
 fn is_coherent(stayed: &Tracked, moved: &Tracked) -> bool {
-    let shift = stayed.pose.inv_mul(&moved.pose);
+    let shift = stayed.placement.pose.inv_mul(&moved.placement.pose);
     shift.translation.vector.norm() + heading_rad(&shift).abs() >= COHERENT_M
 }

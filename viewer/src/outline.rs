@@ -90,6 +90,7 @@ mod tests {
             time_s: 0.0,
             pose: pose(1.0, 2.0, 0.5),
             twist: Twist::STOP,
+            velocities: Vec::new(),
             mount: pose(0.1, 0.0, 0.0),
             scan: Scan {
                 angle_min_rad: -0.5 * sweep_rad,

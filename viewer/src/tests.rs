@@ -109,6 +109,7 @@ impl FakeRun {
                 time_s: 0.0,
                 pose: Isometry2::identity(),
                 twist: Twist::STOP,
+                velocities: Vec::new(),
                 mount: Isometry2::identity(),
                 scan: Scan::default(),
             },

@@ -16,7 +16,7 @@ mod score;
 
 use driver::Driver;
 use interfaces::{LaserReading, World};
-use localizer::{Localizer, PoseState};
+use localizer::{GivenPoses, Localizer, PoseState};
 use mapper::Mapper;
 use options::Options;
 use score::Score;
@@ -42,6 +42,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
     let spec = options.spec(seed)?;
     let mut world = PhysicsWorld::new(&spec, seed);
     let settings = options.settings(&spec)?;
+    let mut true_poses = GivenPoses::default();
     let mut exact = Mapper::new(&settings.mapper, spec.frame)?;
     let mut estimated = Mapper::new(&settings.mapper, spec.frame)?;
     let start = *world.true_pose();
@@ -52,7 +53,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
     while world.time_s() < options.minutes * 60.0 {
         let reading = options.distort(world.sense());
         let true_pose = *world.true_pose();
-        exact.update(&LaserReading { pose: true_pose, ..reading.clone() })?;
+        exact.update(&true_poses.unswept(LaserReading { pose: true_pose, ..reading.clone() }))?;
         let begin = Instant::now();
         let localized = if options.odometry_only {
             score::by_odometry(start * first_odometry.inv_mul(&reading.pose), reading)

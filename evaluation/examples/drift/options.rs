@@ -13,6 +13,7 @@ pub(crate) struct Options {
     noise_m: f64,
     dropout: f64,
     fov_rad: f64,
+    sweep_s: f64,
     /// Nothing moves in the world.
     still: bool,
     /// The sign of the errors of the odometry, and their size in hard drifts.
@@ -43,6 +44,7 @@ impl Options {
             noise_m: 0.01,
             dropout: 0.0,
             fov_rad: std::f64::consts::TAU,
+            sweep_s: 0.0,
             still: false,
             drift: 1.0,
             minutes: 20.0,
@@ -68,6 +70,7 @@ impl Options {
                 "noise" => options.noise_m = number()?,
                 "dropout" => options.dropout = number()?,
                 "fov_deg" => options.fov_rad = number()?.to_radians(),
+                "sweep" => options.sweep_s = number()?,
                 "still" => options.still = is_on,
                 "drift" => options.drift = number()?,
                 "minutes" => options.minutes = number()?,
@@ -117,7 +120,7 @@ impl Options {
         };
         let laser = &mut robot.laser;
         (laser.beams, laser.noise_std_m, laser.dropout) = (self.beams, self.noise_m, self.dropout);
-        laser.fov_rad = self.fov_rad;
+        (laser.fov_rad, laser.sweep_s) = (self.fov_rad, self.sweep_s);
         WorldSpec::driving(fleet, driven).ok_or_else(|| "no robot".into())
     }
 

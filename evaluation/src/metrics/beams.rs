@@ -122,7 +122,14 @@ mod tests {
                 ranges_m,
             };
             let mount = Isometry2::identity();
-            let reading = LaserReading { time_s: 0.0, pose: laser, twist: Twist::STOP, mount, scan };
+            let reading = LaserReading {
+                time_s: 0.0,
+                pose: laser,
+                twist: Twist::STOP,
+                velocities: Vec::new(),
+                mount,
+                scan,
+            };
             let beams = Beams::new(&reading, &laser, &frame);
             for middle in (0..frame.len()).map(|index| frame.center(frame.cell(index))) {
                 for event in [Event::Block, Event::Free] {

@@ -2,7 +2,7 @@
 
 use super::Localizer;
 use crate::changing_map::ChangingMap;
-use crate::estimate::PoseState;
+use crate::estimate::{PoseEstimate, PoseState};
 use crate::faults::{Fault, mirrored};
 use crate::motion::Motion;
 use crate::scene::Scene;
@@ -39,11 +39,10 @@ impl Localizer {
         map: &impl ChangingMap,
         fault: Option<Fault>,
     ) -> Support {
-        let predicted = motion.apply(&self.pose);
-        let covariance = motion.propagate(&self.pose, &self.covariance);
+        let predicted = motion.predict(&self.pose, &self.covariance, reading.scan.sweep_s > 0.0);
         let is_first = self.from_nothing && self.surfels.is_empty();
         if fault == Some(Fault::Frozen) || is_first {
-            (self.pose, self.covariance) = (predicted, covariance);
+            (self.pose, self.covariance) = (predicted.pose, predicted.covariance);
             self.state = if is_first { PoseState::Tracking } else { PoseState::Uncertain };
             self.learns = is_first;
             return Support::default();
@@ -53,9 +52,9 @@ impl Localizer {
         }
         let others = [self.pose, self.pose * self.last_motion];
         let scene = self.scene(reading, map);
-        let tracked = track(&scene, &predicted, &covariance, &others);
+        let tracked = track(&scene, &predicted, &others);
         let is_low = tracked.support.share() < self.settings.min_support;
-        let is_mirrored = is_low && is_mirrored(&scene, &predicted, reading);
+        let is_mirrored = is_low && is_mirrored(&scene, &predicted.pose, reading);
         if self.is_supported(&tracked) && !is_mirrored {
             let support = tracked.support;
             self.tight = if tracked.stayed { TIGHT_SCANS } else { self.tight.saturating_sub(1) };
@@ -65,8 +64,11 @@ impl Localizer {
         }
         // A scan of which most fits is a better guide than the odometry alone.
         let is_guide = tracked.support.share() >= LEAST_GUIDE && !is_mirrored;
-        (self.pose, self.covariance) =
-            if is_guide { (tracked.pose, tracked.covariance) } else { (predicted, covariance) };
+        (self.pose, self.covariance) = if is_guide {
+            (tracked.placement.pose, tracked.covariance)
+        } else {
+            (predicted.pose, predicted.covariance)
+        };
         self.doubt();
         if !is_mirrored {
             self.search(reading, map, &tracked);
@@ -95,11 +97,13 @@ impl Localizer {
 
     /// Takes over a supported pose.
     pub(super) fn accept(&mut self, tracked: &Tracked) {
-        (self.pose, self.covariance) = (tracked.pose, tracked.covariance);
+        (self.pose, self.covariance) = (tracked.placement.pose, tracked.covariance);
+        self.begin = tracked.placement.begin();
         if tracked.support.share() >= self.settings.min_support {
             self.accepted_support = self.settings.min_support;
         }
-        let estimate = self.pose_estimate(1.0);
+        // Of the beams, since all of them enter the map.
+        let estimate = PoseEstimate { covariance: tracked.beam_covariance, ..self.pose_estimate(1.0) };
         let scale = (self.settings.range_noise_std_m / NOISE_M).max(1.0);
         let of_limits = (estimate.position_std_m() / self.settings.max_position_std_m)
             .max(estimate.heading_std_rad() / self.settings.max_heading_std_rad)
@@ -126,5 +130,5 @@ fn is_mirrored<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>, reading:
     let points = mirrored(scene.points, &reading.mount);
     let scene = Scene { points: &points, ..*scene };
     let found = scene.align(pose, None, MIRRORED_GATE_M, false);
-    found.is_some_and(|found| scene.judge(&found.pose).share() >= scene.settings.min_support)
+    found.is_some_and(|found| scene.judge(&found.placement).share() >= scene.settings.min_support)
 }

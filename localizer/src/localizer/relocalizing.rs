@@ -6,6 +6,7 @@ use crate::changing_map::ChangingMap;
 use crate::estimate::PoseState;
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
+use crate::placement::Placement;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::support::Support;
@@ -58,7 +59,7 @@ impl Localizer {
             found = found.or(anywhere, ratio);
         }
         self.scores = Some((revision, grid));
-        let is_confirmed = is_near && found.contains(&tracked.pose);
+        let is_confirmed = is_near && found.contains(&tracked.placement.pose);
         if is_confirmed && tracked.support.confirmed >= LEAST_CONFIRMED {
             // Much has changed here, but no other pose fits better.
             self.accepted_support = tracked.support.share() - 0.1;
@@ -84,13 +85,8 @@ impl Localizer {
         let support = self.hypotheses.best().map_or(Support::default(), |best| best.support);
         match self.hypotheses.decided(self.settings.scans_to_confirm) {
             Some(decided) => {
-                let tracked = Tracked {
-                    pose: decided.pose,
-                    covariance: decided.covariance,
-                    support: decided.support,
-                    stayed: false,
-                    is_other: false,
-                };
+                let placement = Placement::rigid(&decided.pose);
+                let tracked = Tracked::new(placement, [decided.covariance; 2], decided.support);
                 self.accepted_support = self.settings.min_support.min(support.share() - 0.1);
                 self.hypotheses = Hypotheses::default();
                 self.accept(&tracked);

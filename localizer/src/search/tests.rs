@@ -22,6 +22,7 @@ fn random_room(seed: u64) -> (ScoreGrid, Vec<ScanPoint>) {
         normal: Vector2::x(),
         weight: 1.0,
         beam: 0,
+        passed: 1.0,
     };
     let points = surfels.usable().map(|surfel| point(&surfel.at)).collect();
     (ScoreGrid::new(&surfels, &grid), points)

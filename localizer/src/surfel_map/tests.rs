@@ -15,6 +15,7 @@ fn wall(angle_rad: f64, distance_m: f64, noise: &mut RandomStream) -> LaserReadi
         time_s: 0.0,
         pose: Isometry2::identity(),
         twist: Twist::STOP,
+        velocities: Vec::new(),
         mount: Isometry2::identity(),
         scan: Scan {
             angle_min_rad: -1.0,
@@ -34,7 +35,7 @@ fn surfels_lie_on_the_line_of_the_wall() {
         let mut map = SurfelMap::new(&frame());
         let mut points = ScanPoints::default();
         for _ in 0..100 {
-            points.update(&wall(angle_rad, distance_m, &mut noise), 0.01, true);
+            points.update(&wall(angle_rad, distance_m, &mut noise), |_| 1.0, 0.01, true);
             map.learn(points.points(), &Isometry2::identity(), 0.01);
         }
         let normal = interfaces::rotation(angle_rad) * Vector2::x();
@@ -56,6 +57,7 @@ fn a_surfel_freezes() {
         normal: -Vector2::x(),
         weight: 1.0,
         beam: 0,
+        passed: 1.0,
     };
     for _ in 0..FROZEN_SCANS {
         map.learn(&[point(0.0)], &Isometry2::identity(), 0.01);
@@ -75,7 +77,7 @@ fn what_beams_pass_is_removed() {
         (SurfelMap::new(&frame()), ScanPoints::default(), Checker::default());
     let mut see = |map: &mut SurfelMap, distance_m: f64| {
         let reading = wall(0.0, distance_m, &mut noise);
-        points.update(&reading, 0.01, true);
+        points.update(&reading, |_| 1.0, 0.01, true);
         map.learn(points.points(), &Isometry2::identity(), 0.01);
         checker.check(map, &reading, &Isometry2::identity());
     };

@@ -147,6 +147,7 @@ mod tests {
             time_s: 0.0,
             pose: interfaces::pose(1.0, 2.0, FRAC_PI_2),
             twist: Twist::STOP,
+            velocities: Vec::new(),
             mount: interfaces::pose(0.1, 0.0, 0.0),
             scan: Scan {
                 angle_min_rad: 0.0,

@@ -201,6 +201,7 @@ impl House {
             time_s,
             pose,
             twist: Twist::STOP,
+            velocities: Vec::new(),
             mount: Isometry2::identity(),
             scan: Scan {
                 angle_min_rad: -TAU / 2.0,

@@ -21,6 +21,7 @@ fn reading(time_s: f64) -> LaserReading {
         time_s,
         pose: interfaces::pose(2.0, 2.0, 0.3),
         twist: Twist::STOP,
+        velocities: Vec::new(),
         mount: Isometry2::identity(),
         scan: Scan {
             angle_min_rad: -PI,

@@ -5,7 +5,7 @@ use super::rays::Passing;
 use super::shape::Rectangle;
 use super::snapshot::{SavedPose, Values, value};
 use super::spec::{FleetSpec, RobotSpec};
-use interfaces::{pose, wrap_rad};
+use interfaces::{Twist, VelocitySample, pose, wrap_rad};
 use nalgebra::{Isometry2, Vector2};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
@@ -13,7 +13,8 @@ use std::collections::VecDeque;
 /// What remains of a step in a whole number of steps because of rounding, as a share of a step.
 const ROUNDING: f64 = 1e-6;
 
-/// The poses of everything that moves at the begin and at the end of each of the last steps.
+/// The poses of everything that moves at the begin and at the end of each of the last steps, and the velocities by
+/// odometry.
 #[derive(Clone)]
 pub(super) struct Past {
     /// The number of steps that are kept: as many as the longest sweep takes.
@@ -27,6 +28,8 @@ pub(super) struct Past {
 #[derive(Clone, Deserialize, Serialize)]
 struct PastStep {
     robots: Vec<[SavedPose; 2]>,
+    /// The velocities of the robots in the step, by odometry.
+    twists: Vec<Twist>,
     /// `None`: the obstacle was absent.
     obstacles: Vec<Option<[SavedPose; 2]>>,
 }
@@ -44,11 +47,11 @@ impl Past {
         vec![value(&mut self.steps)]
     }
 
-    /// Notes a step: the poses of the robots before and after it, and for every obstacle that is present the poses of
-    /// its shape.
+    /// Notes a step: the poses of the robots before and after it, and their velocities by odometry; for every obstacle
+    /// that is present the poses of its shape.
     pub(super) fn note(
         &mut self,
-        robots: impl Iterator<Item = [Isometry2<f64>; 2]>,
+        robots: impl Iterator<Item = ([Isometry2<f64>; 2], Twist)>,
         obstacles: impl Iterator<Item = Option<[Isometry2<f64>; 2]>>,
     ) {
         if self.kept == 0 {
@@ -58,13 +61,16 @@ impl Past {
             self.steps.pop_front();
         }
         let saved = |poses: [Isometry2<f64>; 2]| poses.map(SavedPose);
-        let (robots, obstacles) = (robots.map(saved).collect(), obstacles.map(|poses| poses.map(saved)));
-        self.steps.push_back(PastStep { robots, obstacles: obstacles.collect() });
+        let (robots, twists) = robots.map(|(poses, twist)| (saved(poses), twist)).unzip();
+        let obstacles = obstacles.map(|poses| poses.map(saved)).collect();
+        self.steps.push_back(PastStep { robots, twists, obstacles });
     }
 
-    /// A robot has always been at a pose.
+    /// A robot has always been at a pose, at rest.
     pub(super) fn put(&mut self, robot: usize, pose: &Isometry2<f64>) {
-        self.steps.iter_mut().for_each(|step| step.robots[robot] = [SavedPose(*pose); 2]);
+        for step in &mut self.steps {
+            (step.robots[robot], step.twists[robot]) = ([SavedPose(*pose); 2], Twist::STOP);
+        }
     }
 
     /// What moved in the fleet of `spec` in the last steps. `robots` and `obstacles` are the present poses; the latter of
@@ -77,11 +83,13 @@ impl Past {
     ) -> Recent {
         let now = PastStep {
             robots: robots.map(|pose| [SavedPose(pose); 2]).collect(),
+            twists: Vec::new(),
             obstacles: obstacles.map(|pose| pose.map(|pose| [SavedPose(pose); 2])).collect(),
         };
         let steps = [&now].into_iter().chain(self.steps.iter().rev());
         let (robots, bodies) = steps.map(|step| step.interval(spec)).unzip();
-        Recent { step_s: spec.step_s, robots, bodies }
+        let twists = self.steps.iter().map(|step| step.twists.clone()).collect();
+        Recent { step_s: spec.step_s, robots, bodies, twists }
     }
 }
 
@@ -112,6 +120,8 @@ pub(super) struct Recent {
     robots: Vec<Vec<[Isometry2<f64>; 2]>>,
     /// For each of them the bodies.
     pub(super) bodies: Vec<Vec<Passing>>,
+    /// For each step, the earliest first, the velocities of the robots by odometry.
+    twists: Vec<Vec<Twist>>,
 }
 
 impl Recent {
@@ -127,6 +137,16 @@ impl Recent {
             return (self.robots.len() - 1, 0.0);
         }
         (interval, (interval as f64 - steps).max(0.0))
+    }
+
+    /// The velocities of a robot in the last steps, by odometry; the last step ended at `time_s`.
+    pub(super) fn velocities(&self, robot: usize, time_s: f64) -> impl Iterator<Item = VelocitySample> {
+        let last = self.twists.len().saturating_sub(1);
+        let sample = move |(step, twists): (usize, &Vec<Twist>)| VelocitySample {
+            time_s: time_s - (last - step) as f64 * self.step_s,
+            twist: twists[robot],
+        };
+        self.twists.iter().enumerate().map(sample)
     }
 
     /// The motion of a robot in an interval.

@@ -55,6 +55,7 @@ impl Case {
             time_s: 0.0,
             pose: interfaces::pose(self.x_m, self.y_m, self.heading_rad),
             twist: Twist::STOP,
+            velocities: Vec::new(),
             mount: interfaces::pose(0.0, 0.0, 0.0),
             scan: Scan {
                 angle_min_rad: self.angle_min_rad,

@@ -97,7 +97,7 @@ impl Fleet {
             }
         }
         self.past.note(
-            self.robots.iter().map(|robot| [robot.previous_pose, robot.pose]),
+            self.robots.iter().map(|robot| ([robot.previous_pose, robot.pose], robot.odometry_twist())),
             self.obstacles.iter().zip(&before).map(|(obstacle, before)| {
                 obstacle.is_standing().then_some([before.pose, obstacle.shape.pose])
             }),

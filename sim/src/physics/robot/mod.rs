@@ -212,17 +212,21 @@ impl Robot {
         }
     }
 
-    fn platform(&self) -> Platform {
+    /// The velocity by odometry.
+    pub(super) fn odometry_twist(&self) -> Twist {
         let (velocity, slipping) = (self.velocity.twist(), self.wheels.slipping().twist());
-        let measured = Twist {
+        self.odometry.twist(&Twist {
             linear_mps: velocity.linear_mps + slipping.linear_mps,
             angular_radps: velocity.angular_radps + slipping.angular_radps,
-        };
+        })
+    }
+
+    fn platform(&self) -> Platform {
         Platform {
             robot: self.index,
             pose: self.pose,
             odometry_pose: *self.odometry.pose(),
-            odometry_twist: self.odometry.twist(&measured),
+            odometry_twist: self.odometry_twist(),
         }
     }
 

@@ -50,11 +50,17 @@ impl Device for LaserScanner {
     fn measure(&self, look: &Look, streams: &mut LaserStreams, spare: Option<LaserReading>) -> LaserReading {
         let Look { platform, surroundings, .. } = look;
         let LaserSpec { range_min_m, range_max_m, noise_std_m, dropout, mount, sweep_s, .. } = self.spec;
-        let scan = spare.map_or_else(|| self.spec.empty_scan(), |spare| spare.scan);
+        let (scan, mut velocities) = spare
+            .map_or_else(|| (self.spec.empty_scan(), Vec::new()), |spare| (spare.scan, spare.velocities));
+        velocities.clear();
+        if sweep_s > 0.0 {
+            velocities.extend(surroundings.recent.velocities(platform.robot, surroundings.time_s));
+        }
         let mut reading = LaserReading {
             time_s: surroundings.time_s,
             pose: platform.odometry_pose,
             twist: platform.odometry_twist,
+            velocities,
             mount,
             scan,
         };
