@@ -1,4 +1,5 @@
-use crate::sweep::Path;
+use crate::path::Path;
+use crate::sweep::SweepUndo;
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
 
@@ -7,6 +8,7 @@ use nalgebra::Isometry2;
 pub struct GivenPoses {
     /// The time and the pose of the last reading.
     last: Option<(f64, Isometry2<f64>)>,
+    sweeps: SweepUndo,
 }
 
 impl GivenPoses {
@@ -16,7 +18,7 @@ impl GivenPoses {
             self.last.replace((reading.time_s, reading.pose)).unwrap_or((reading.time_s, reading.pose));
         let elapsed_s = reading.time_s - last_s;
         if let Some(path) = Path::of_sweep(&reading, &last.inv_mul(&reading.pose), elapsed_s) {
-            reading.scan = path.unswept(&reading);
+            reading.scan = self.sweeps.scan(&reading, &path);
         }
         reading
     }

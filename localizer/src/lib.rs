@@ -32,6 +32,7 @@ mod hypotheses;
 mod localizer;
 mod matcher;
 mod motion;
+mod path;
 mod placement;
 mod scan_points;
 mod scene;

@@ -7,13 +7,14 @@ use crate::estimate::{Localized, PoseEstimate, PoseState, Start};
 use crate::faults::{Fault, FaultFinder};
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
+use crate::path::Path;
 use crate::placement::shifted;
 use crate::scan_points::ScanPoints;
 use crate::score_grid::ScoreGrid;
 use crate::settings::LocalizerSettings;
 use crate::support::ClearBeams;
 use crate::surfel_map::{Checker, SurfelMap};
-use crate::sweep::Path;
+use crate::sweep::SweepUndo;
 use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError};
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
@@ -32,6 +33,7 @@ pub struct Localizer {
     points: ScanPoints,
     clear: ClearBeams,
     faults: FaultFinder,
+    sweeps: SweepUndo,
     calibration: Calibration,
     scores: Option<(u64, ScoreGrid)>,
     hypotheses: Hypotheses,
@@ -116,6 +118,7 @@ impl Localizer {
             points: ScanPoints::default(),
             clear: ClearBeams::default(),
             faults: FaultFinder::default(),
+            sweeps: SweepUndo::default(),
             calibration: Calibration::new(&settings.odometry),
             scores: None,
             hypotheses: Hypotheses::default(),
@@ -216,7 +219,7 @@ impl Localizer {
         let (noise_m, by_arc_length) = (range_noise_std_m, weigh_by_arc_length);
         match Path::of_sweep(reading, motion, elapsed_s) {
             Some(path) => {
-                posed.scan = path.unswept(reading);
+                posed.scan = self.sweeps.scan(reading, &path);
                 let passed = |beam| path.passed(reading.scan.age_s(beam));
                 self.points.update(posed, passed, noise_m, by_arc_length);
             }

@@ -227,6 +227,9 @@ pub(crate) fn align(
     let mut placement = if is_elastic { Placement::elastic(start) } else { Placement::rigid(start) };
     let mut gate_m = gates.first_m;
     loop {
+        // With a wide gate, the pose need only be good enough for the next gate.
+        let is_last = gate_m <= gates.last_m;
+        let (step_m, step_rad) = if is_last { (STEP_M, STEP_RAD) } else { (gate_m / 20.0, gate_m / 60.0) };
         for _ in 0..MAX_STEPS {
             let sums = accumulate(map, points, &placement, gate_m, gates);
             let [step, begin] = sums.step(&placement, prior)?;
@@ -234,11 +237,11 @@ pub(crate) fn align(
                 return None;
             }
             placement.correct(&step, &begin);
-            if step.xy().norm() < STEP_M && step.z.abs() < STEP_RAD {
+            if step.xy().norm() < step_m && step.z.abs() < step_rad {
                 break;
             }
         }
-        if gate_m <= gates.last_m {
+        if is_last {
             break;
         }
         gate_m = (gate_m / 2.0).max(gates.last_m);

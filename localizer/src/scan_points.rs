@@ -52,15 +52,19 @@ pub(crate) struct ScanPoints {
     sums: Vec<Moments>,
 }
 
-/// The directions of the beams in the frame of the robot, for the last geometry that was asked for.
+/// The directions of the beams as unit vectors in the frame of the robot, for the last geometry that was asked for.
 #[derive(Clone, Debug, Default)]
-struct Directions {
+pub(crate) struct Directions {
     geometry: Option<(f64, f64, usize, Isometry2<f64>)>,
     units: Vec<Vector2<f64>>,
 }
 
 impl Directions {
-    fn update(&mut self, scan: &Scan, mount: &Isometry2<f64>) {
+    pub(crate) fn units(&self) -> &[Vector2<f64>] {
+        &self.units
+    }
+
+    pub(crate) fn update(&mut self, scan: &Scan, mount: &Isometry2<f64>) {
         let geometry = Some((scan.angle_min_rad, scan.angle_increment_rad, scan.ranges_m.len(), *mount));
         if self.geometry != geometry {
             let unit = |beam| mount.rotation * (interfaces::rotation(scan.angle_rad(beam)) * Vector2::x());

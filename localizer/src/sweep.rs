@@ -1,20 +1,30 @@
 //! Undoes the sweep of a scan: a laser that turns measures each beam from a pose of its own. The result is a scan whose
 //! beams all start at the pose of its end.
 
-use interfaces::{LaserReading, Scan, Twist, VelocitySample, approximate_atan2, heading_rad, wrap_rad};
-use nalgebra::{Isometry2, Point2, Vector2, Vector3};
+use crate::path::Path;
+use crate::scan_points::Directions;
+use interfaces::{LaserReading, Scan, approximate_atan2, wrap_rad};
+use nalgebra::{Isometry2, Point2, Vector2};
 
 /// Neighboring end points nearer than this are joined by a straight surface, m.
 const JOIN_M: f64 = 0.15;
 /// Between two surfaces, a direction that is farther than this from both beams (as a share of the angle between them)
 /// is not measured: the edge lies somewhere between.
 const EDGE_SHARE: f64 = 0.1;
-/// The largest difference between the motion from scan to scan and the sum of the velocities that is spread over the
-/// path, m and rad. Beyond it, the odometry has jumped, or the robot was carried.
-const MAX_MISMATCH_M: f64 = 0.1;
-const MAX_MISMATCH_RAD: f64 = 0.15;
-/// The turn that takes as long as a way of one metre, rad: what a path is made of, in one number.
-const RAD_PER_M: f64 = 3.0;
+/// Undoes sweeps, with directions that it knows from the last scan.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SweepUndo {
+    directions: Directions,
+}
+
+impl SweepUndo {
+    /// The scan of a reading, with all beams from its pose, after a robot on a path.
+    pub(crate) fn scan(&mut self, reading: &LaserReading, path: &Path) -> Scan {
+        let (scan, mount, to_laser) = (&reading.scan, reading.mount, reading.mount.inverse());
+        self.directions.update(scan, &Isometry2::identity());
+        undo(scan, self.directions.units(), |left| to_laser * path.at(left * scan.sweep_s) * mount)
+    }
+}
 
 /// The end point of a beam in the frame of the laser at the end of the sweep.
 #[derive(Clone, Copy)]
@@ -24,130 +34,9 @@ struct End {
     range_m: f32,
 }
 
-/// The path of a robot up to the end of a scan.
-pub(crate) struct Path {
-    /// The earliest last.
-    nodes: Vec<Node>,
-}
-
-/// A place on a path.
-#[derive(Clone, Copy)]
-struct Node {
-    /// The time before the end of the scan, s.
-    age_s: f64,
-    /// The pose in the frame of the robot at the end of the scan: x, y (m) and heading (rad).
-    at: Vector3<f64>,
-    /// The length of the path from here to the end: metres, and turns as metres.
-    length: f64,
-}
-
-impl Path {
-    /// The path of a robot that moved by `motion` in the time `elapsed_s` up to the end of a scan. The velocities of the
-    /// reading give its shape; what they miss of the motion is spread along the path, as the errors of wheels are.
-    fn new(reading: &LaserReading, motion: &Isometry2<f64>, elapsed_s: f64) -> Self {
-        let mut nodes = vec![Node { age_s: 0.0, at: Vector3::zeros(), length: 0.0 }];
-        let only = [VelocitySample { time_s: reading.time_s, twist: reading.twist }];
-        let samples = if reading.velocities.is_empty() { &only[..] } else { &reading.velocities };
-        for (index, sample) in samples.iter().enumerate().rev() {
-            let last = nodes[nodes.len() - 1];
-            let begin_s = if index > 0 { reading.time_s - samples[index - 1].time_s } else { elapsed_s };
-            // Times out of order, or not finite, are no part of the path.
-            if begin_s > last.age_s && begin_s <= elapsed_s {
-                nodes.push(last.before(&sample.twist, begin_s));
-            }
-        }
-        let last = nodes[nodes.len() - 1];
-        if last.age_s < elapsed_s {
-            nodes.push(last.before(&samples[0].twist, elapsed_s));
-        }
-        let mut path = Self { nodes };
-        path.end_at(motion);
-        path
-    }
-
-    /// Bends the path so that it has `motion` from its first to its last pose.
-    fn end_at(&mut self, motion: &Isometry2<f64>) {
-        let whole = *self.whole();
-        let missing = pose(&whole.at).inv_mul(&motion.inverse());
-        let (shift_m, turn_rad) = (missing.translation.vector, heading_rad(&missing));
-        if shift_m.norm() > MAX_MISMATCH_M || turn_rad.abs() > MAX_MISMATCH_RAD {
-            return;
-        }
-        for node in &mut self.nodes {
-            let share =
-                if whole.length > 0.0 { node.length / whole.length } else { node.age_s / whole.age_s };
-            let bent =
-                pose(&node.at) * interfaces::pose(shift_m.x * share, shift_m.y * share, turn_rad * share);
-            let turned_rad = node.at.z + turn_rad * share;
-            node.at = Vector3::new(bent.translation.x, bent.translation.y, turned_rad);
-        }
-    }
-
-    /// The path of a robot during a scan, see [`Path::new`]; `None` if all beams were measured at once.
-    pub(crate) fn of_sweep(reading: &LaserReading, motion: &Isometry2<f64>, elapsed_s: f64) -> Option<Self> {
-        let sweeps = reading.scan.sweep_s > 0.0 && elapsed_s > 0.0;
-        sweeps.then(|| Self::new(reading, motion, elapsed_s))
-    }
-
-    /// The scan of a reading, with all beams from its pose.
-    pub(crate) fn unswept(&self, reading: &LaserReading) -> Scan {
-        let (scan, mount, to_laser) = (&reading.scan, reading.mount, reading.mount.inverse());
-        undo(scan, |left| to_laser * self.at(left * scan.sweep_s) * mount)
-    }
-
-    /// The share of the path that the robot had gone at a time before the end of the scan.
-    pub(crate) fn passed(&self, age_s: f64) -> f64 {
-        let (from, to, share) = self.piece(age_s);
-        let (length, whole) = (from.length + (to.length - from.length) * share, self.whole());
-        let left = if whole.length > 0.0 { length / whole.length } else { age_s / whole.age_s };
-        (1.0 - left).clamp(0.0, 1.0)
-    }
-
-    /// The begin of the path.
-    fn whole(&self) -> &Node {
-        &self.nodes[self.nodes.len() - 1]
-    }
-
-    /// The pose at a time before the end of the scan, in the frame of the robot at the end.
-    fn at(&self, age_s: f64) -> Isometry2<f64> {
-        let (from, to, share) = self.piece(age_s);
-        pose(&from.at.lerp(&to.at, share))
-    }
-
-    /// The nodes around a time before the end of the scan, and where it lies between them.
-    fn piece(&self, age_s: f64) -> (&Node, &Node, f64) {
-        let last = self.nodes.len() - 1;
-        let next = (1..last).find(|&node| self.nodes[node].age_s >= age_s).unwrap_or(last);
-        let (from, to) = (&self.nodes[next - 1], &self.nodes[next]);
-        (from, to, (age_s - from.age_s) / (to.age_s - from.age_s))
-    }
-}
-
-impl Node {
-    /// The node at a time before this one, where the robot moved at a velocity.
-    fn before(&self, twist: &Twist, age_s: f64) -> Self {
-        let elapsed_s = age_s - self.age_s;
-        let (way_m, turn_rad) = (twist.linear_mps * elapsed_s, twist.angular_radps * elapsed_s);
-        if !way_m.is_finite() || !turn_rad.is_finite() {
-            return Self { age_s, ..*self };
-        }
-        let heading_rad = self.at.z - turn_rad / 2.0;
-        let way = interfaces::rotation(heading_rad) * Vector2::x() * way_m;
-        Self {
-            age_s,
-            at: self.at - Vector3::new(way.x, way.y, turn_rad),
-            length: self.length + way_m.abs() + turn_rad.abs() / RAD_PER_M,
-        }
-    }
-}
-
-fn pose(at: &Vector3<f64>) -> Isometry2<f64> {
-    interfaces::pose(at.x, at.y, at.z)
-}
-
 /// The scan as the laser would measure it at once, at the end of the sweep. `laser_before` gives the pose of the laser in
 /// its frame at the end of the sweep, where a share of the sweep is left. Directions that no beam covers are NaN.
-fn undo(scan: &Scan, laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
+fn undo(scan: &Scan, units: &[Vector2<f64>], laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
     let beams = scan.ranges_m.len();
     if beams < 3 {
         return scan.clone();
@@ -157,8 +46,7 @@ fn undo(scan: &Scan, laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
         let range_m = scan.ranges_m[beam];
         // A beam without a return is a direction.
         let length_m = if range_m.is_finite() { f64::from(range_m).max(1e-3) } else { scan.range_max_m };
-        let at = laser_before(left)
-            * Point2::from(interfaces::rotation(scan.angle_rad(beam)) * Vector2::x() * length_m);
+        let at = laser_before(left) * Point2::from(units[beam] * length_m);
         End { at, angle_rad: approximate_atan2(at.y, at.x), range_m }
     };
     let mut ranges_m = vec![f32::NAN; beams];
@@ -166,26 +54,26 @@ fn undo(scan: &Scan, laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
     let mut before = first;
     for beam in 1..beams {
         let after = end(beam);
-        cover(scan, &before, &after, &mut ranges_m);
+        cover(scan, units, &before, &after, &mut ranges_m);
         before = after;
     }
     if scan.is_full_turn() {
-        close(scan, &before, &first, &mut ranges_m);
+        close(scan, units, &before, &first, &mut ranges_m);
     }
     Scan { ranges_m, ..*scan }
 }
 
 /// Between the last and the first beam of a full turn lie a gap or an overlap, by the turn of the robot. The neighbors
 /// of a gap of one beam fill it.
-fn close(scan: &Scan, last: &End, first: &End, ranges_m: &mut [f32]) {
+fn close(scan: &Scan, units: &[Vector2<f64>], last: &End, first: &End, ranges_m: &mut [f32]) {
     let gap_rad = wrap_rad(first.angle_rad - last.angle_rad).abs();
     if gap_rad < 2.0 * scan.angle_increment_rad.abs() {
-        cover(scan, last, first, ranges_m);
+        cover(scan, units, last, first, ranges_m);
     }
 }
 
 /// Writes the ranges of the directions from one end point to the next.
-fn cover(scan: &Scan, from: &End, to: &End, ranges_m: &mut [f32]) {
+fn cover(scan: &Scan, units: &[Vector2<f64>], from: &End, to: &End, ranges_m: &mut [f32]) {
     let (increment, beams) = (scan.angle_increment_rad, ranges_m.len());
     let sign = increment.signum();
     let span = sign * wrap_rad(to.angle_rad - from.angle_rad) / increment.abs();
@@ -203,19 +91,18 @@ fn cover(scan: &Scan, from: &End, to: &End, ranges_m: &mut [f32]) {
         let index = if index >= beams && scan.is_full_turn() { index - beams } else { index };
         if let Some(range_m) = ranges_m.get_mut(index) {
             let share = (direction - first) / span;
-            *range_m = between(scan, from, to, share, index);
+            *range_m = between(&units[index], from, to, share);
         }
         direction += 1.0;
     }
 }
 
-/// The range in a direction between two end points.
-fn between(scan: &Scan, from: &End, to: &End, share: f64, index: usize) -> f32 {
+/// The range in the direction of a unit vector between two end points.
+fn between(along: &Vector2<f64>, from: &End, to: &End, share: f64) -> f32 {
     let nearer = if share < 0.5 { from } else { to };
     let are_hits = from.range_m.is_finite() && to.range_m.is_finite();
     let edge = to.at - from.at;
     if are_hits && edge.norm_squared() < JOIN_M * JOIN_M {
-        let along = interfaces::rotation(scan.angle_rad(index)) * Vector2::x();
         let range_m = from.at.coords.perp(&edge) / along.perp(&edge);
         let middle_m = from.at.coords.norm().midpoint(to.at.coords.norm());
         if (range_m - middle_m).abs() < JOIN_M {
@@ -231,7 +118,7 @@ fn between(scan: &Scan, from: &End, to: &End, share: f64, index: usize) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::pose;
+    use interfaces::{Twist, VelocitySample, pose};
     use std::f64::consts::TAU;
 
     /// The range from a pose to the walls of a square room of 6 m around the origin.
@@ -254,6 +141,12 @@ mod tests {
         }
     }
 
+    fn undone(scan: &Scan, laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
+        let mut directions = Directions::default();
+        directions.update(scan, &Isometry2::identity());
+        undo(scan, directions.units(), laser_before)
+    }
+
     #[test]
     fn a_swept_scan_becomes_one_from_the_end() {
         let beams = 720;
@@ -265,7 +158,7 @@ mod tests {
             let empty = scan(vec![0.0; beams]);
             let range = |beam: usize| range_m(&at(beam), empty.angle_rad(beam)) as f32;
             let undone =
-                undo(&scan((0..beams).map(range).collect()), |left| pose(x * left, y * left, turn * left));
+                undone(&scan((0..beams).map(range).collect()), |left| pose(x * left, y * left, turn * left));
             let missing = undone.ranges_m.iter().filter(|range_m| range_m.is_nan()).count();
             assert!(missing <= (turn.abs() / TAU * beams as f64) as usize + 3, "{missing} missing");
             for (beam, found_m) in undone.ranges_m.iter().enumerate().filter(|(_, range_m)| !range_m.is_nan())
@@ -313,7 +206,7 @@ mod tests {
             scan: scan((0..beams).map(range).collect()),
         };
         let path = Path::of_sweep(&reading, &before(elapsed_s).inverse(), elapsed_s).unwrap();
-        let unswept = path.unswept(&reading);
+        let unswept = SweepUndo::default().scan(&reading, &path);
         let errors_m = (0..beams).filter(|&beam| !unswept.ranges_m[beam].is_nan()).map(|beam| {
             (f64::from(unswept.ranges_m[beam]) - range_m(&Isometry2::identity(), empty.angle_rad(beam))).abs()
         });
@@ -325,32 +218,10 @@ mod tests {
     }
 
     #[test]
-    fn velocities_that_cannot_be_true_are_no_part_of_the_path() {
-        let sample = |time_s, linear_mps| VelocitySample {
-            time_s,
-            twist: Twist { linear_mps, angular_radps: f64::NAN },
-        };
-        for velocities in [vec![], vec![sample(0.95, 0.3), sample(0.92, 0.3), sample(f64::NAN, 1.0)]] {
-            let reading = LaserReading {
-                time_s: 1.0,
-                pose: Isometry2::identity(),
-                twist: Twist { linear_mps: f64::INFINITY, angular_radps: 0.0 },
-                velocities,
-                mount: Isometry2::identity(),
-                scan: scan(vec![2.0; 360]),
-            };
-            let path = Path::new(&reading, &pose(0.04, 0.0, 0.1), 0.1);
-            let [first, middle] = [0.1, 0.05].map(|age_s| path.at(age_s));
-            assert!((pose(0.04, 0.0, 0.1) * first).translation.vector.norm() < 1e-12);
-            assert!(((-heading_rad(&middle)) - 0.05).abs() < 0.03, "{middle}");
-        }
-    }
-
-    #[test]
     fn a_robot_at_rest_keeps_its_scan() {
         let ranges_m = [1.0, 2.0, f32::INFINITY, f32::NAN, f32::NEG_INFINITY, 3.0, 3.0, 3.0].to_vec();
         let scan = scan(ranges_m.clone());
-        let undone = undo(&scan, |_| Isometry2::identity());
+        let undone = undone(&scan, |_| Isometry2::identity());
         for (before, after) in ranges_m.iter().zip(&undone.ranges_m) {
             let is_same = (before - after).abs() < 1e-5 || before.to_bits() == after.to_bits();
             assert!(is_same, "{before} became {after}");
