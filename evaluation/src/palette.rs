@@ -12,6 +12,8 @@ pub type Rgb = [u8; 3];
 pub const INK: Rgb = [40, 44, 52];
 /// The curious robot.
 pub const CURIOUS: Rgb = [0, 114, 178];
+/// The curious robot where it believes to be.
+pub const ESTIMATE: Rgb = [122, 92, 40];
 /// Every other robot.
 pub const OTHER_ROBOT: Rgb = [0, 158, 115];
 /// The planned path of the curious robot.

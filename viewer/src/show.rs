@@ -1,6 +1,6 @@
 //! Everything that shows one run: the recording, the moving picture, and the pictures at the end.
 
-use crate::pictures::{self, Film};
+use crate::pictures::{self, Film, Trails};
 use crate::recording::{Recorder, RecordingError};
 use crate::scene::Scene;
 use crate::view::{Trail, View};
@@ -13,6 +13,8 @@ use std::path::Path;
 pub struct Show {
     scene: Scene,
     trails: Vec<Trail>,
+    /// The trail of where the curious robot believed to be; empty if its poses are exact.
+    believed: Trail,
     recorder: Option<Recorder>,
     film: Option<Film>,
 }
@@ -32,7 +34,7 @@ impl Show {
     /// Shows a run in `scene` to a recorder, in a film, in both or in none of them.
     pub fn new(scene: Scene, recorder: Option<Recorder>, film: Option<Film>) -> Self {
         let trails = vec![Trail::default(); scene.robots.len()];
-        Self { scene, trails, recorder, film }
+        Self { scene, trails, believed: Trail::default(), recorder, film }
     }
 
     /// Shows the run as it is now. The last view closes the recording.
@@ -44,6 +46,9 @@ impl Show {
     pub fn add(&mut self, view: &View, is_last: bool) -> Result<(), ShowError> {
         for (trail, robot) in self.trails.iter_mut().zip(&view.robots) {
             trail.push(robot.pose.translation.vector.into());
+        }
+        if let Some(believed) = view.believed {
+            self.believed.push(believed.pose.translation.vector.into());
         }
         let recorded = self.recorder.as_mut().map_or(Ok(()), |recorder| recorder.log(view, is_last));
         if recorded.is_err() {
@@ -69,7 +74,13 @@ impl Show {
     ///
     /// When a picture cannot be drawn or written.
     pub fn write_pictures(&self, folder: &Path, mapper: &Mapper, goals: &Goals) -> Result<(), PictureError> {
-        pictures::write_all(folder, &self.scene, mapper, &self.trails, goals)
+        pictures::write_all(
+            folder,
+            &self.scene,
+            mapper,
+            &Trails { true_poses: &self.trails, believed: &self.believed },
+            goals,
+        )
     }
 
     /// Writes the film to its file, if there is one.

@@ -2,10 +2,11 @@
 //! and forth, and scans from a simple geometry. No physics, no agent.
 
 use crate::scene::{Obstacle, Outline, Robot, RobotState, Scene, Sight, TimeUnit};
-use crate::view::{Measured, View};
+use crate::view::{Believed, Measured, View};
 use agent::Features;
 use evaluation::metrics::MapScores;
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
+use localizer::PoseEstimate;
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2, Vector2};
 use robot::{Level, Message, StrategyState};
@@ -42,6 +43,8 @@ impl Driver {
 pub(crate) struct FakeRun {
     pub(crate) scene: Scene,
     pub(crate) has_agent: bool,
+    /// Where the curious robot believes to be; `None` if its poses are exact.
+    pub(crate) estimate: Option<PoseEstimate>,
     pub(crate) mapper: Mapper,
     pub(crate) step: u64,
     curious: Driver,
@@ -101,6 +104,7 @@ impl FakeRun {
                 robots: vec![robot("curious", tour[0], true), robot("dummy", (7.0, 11.2), false)],
             },
             has_agent: true,
+            estimate: None,
             mapper: Mapper::new(&MapperSettings::default(), frame).unwrap(),
             step: 0,
             curious: driver(&tour, 0.5),
@@ -202,6 +206,11 @@ impl FakeRun {
                 RobotState { pose: self.curious.pose, sight: Some(Sight::Laser(&self.reading)) },
                 RobotState { pose: self.dummy.pose, sight: None },
             ],
+            believed: self.estimate.as_ref().map(|estimate| Believed {
+                pose: estimate.pose,
+                true_pose: self.curious.pose,
+                estimate: Some(estimate),
+            }),
             obstacles: vec![toy.flatten()],
             path: &[Point2::from(self.curious.pose.translation.vector), goal],
             goal: Some(goal),

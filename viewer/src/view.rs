@@ -5,8 +5,9 @@ use agent::Features;
 use evaluation::metrics::{MapScores, RateErrors};
 use evaluation::thinned::Thinned;
 use interfaces::Reading;
+use localizer::PoseEstimate;
 use mapper::Mapper;
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2};
 use robot::{Belief, Message, Pilot, StrategyState};
 use std::collections::VecDeque;
 
@@ -22,6 +23,8 @@ pub struct View<'a> {
     pub features: Features,
     /// The robots, in the order of the scene.
     pub robots: Vec<RobotState<'a>>,
+    /// Where the curious robot believes to be; `None` if its poses are exact.
+    pub believed: Option<Believed<'a>>,
     /// The outlines of the obstacles, m, in the order of the scene; `None` for an obstacle that is absent.
     pub obstacles: Vec<Option<Outline>>,
     /// The planned path of the curious robot, m; empty without a plan.
@@ -32,6 +35,24 @@ pub struct View<'a> {
     pub strategies: Vec<StrategyState>,
     /// The measurements against the ground truth.
     pub measured: Measured<'a>,
+}
+
+/// Where the curious robot believes to be. The map, the path and the goal are in this frame.
+#[derive(Clone, Copy)]
+pub struct Believed<'a> {
+    /// The pose that the robot uses, m and rad.
+    pub pose: Isometry2<f64>,
+    /// The true pose.
+    pub true_pose: Isometry2<f64>,
+    /// The pose with its uncertainty; `None` for a robot that follows its odometry.
+    pub estimate: Option<&'a PoseEstimate>,
+}
+
+impl Believed<'_> {
+    /// The error of the position, m.
+    pub fn error_m(&self) -> f64 {
+        (self.pose.translation.vector - self.true_pose.translation.vector).norm()
+    }
 }
 
 /// The measurements that an observer adds to the state of the robot.
@@ -55,12 +76,20 @@ impl<'a> View<'a> {
         measured: Measured<'a>,
     ) -> Self {
         let time = belief.mapper.time();
+        let robots = world.robots(reading);
+        let curious = robots.iter().find(|robot| robot.sight.is_some());
+        let believed = curious.filter(|_| !world.poses_are_exact()).map(|robot| Believed {
+            pose: *belief.pose,
+            true_pose: robot.pose,
+            estimate: belief.estimate,
+        });
         Self {
             time,
             step: W::UNIT.choose(belief.mapper.readings() as u64, time as u64),
             mapper: belief.mapper,
             features: belief.features,
-            robots: world.robots(reading),
+            robots,
+            believed,
             obstacles: world.obstacles(),
             path: pilot.path(),
             goal: pilot.goal(),

@@ -116,9 +116,9 @@ impl Film {
             }
         }
         for (robot, trail) in self.scene.robots.iter().zip(trails) {
-            line(panel, chart, &Vec::from_iter(trail.recent()), robot.color())?;
+            line(panel, chart, &Vec::from_iter(trail.recent()), (robot.color(), 3))?;
         }
-        line(panel, chart, view.path, palette::PATH)?;
+        line(panel, chart, view.path, (palette::PATH, 3))?;
         if let Some(goal) = view.goal {
             let goal = plot.map_coordinate(&pair(&goal));
             panel.dot(&plot.use_screen_coord(), goal, palette::GOAL)?;

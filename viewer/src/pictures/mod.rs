@@ -20,12 +20,20 @@ use mapper::Mapper;
 use panel::Panel;
 use std::path::Path;
 
+/// The trails of the robots.
+#[derive(Clone, Copy)]
+pub struct Trails<'a> {
+    /// Where the robots were, in the order of the scene.
+    pub true_poses: &'a [Trail],
+    /// Where the curious robot believed to be; empty if its poses are exact.
+    pub believed: &'a Trail,
+}
+
 /// The panels of Figure 5, in its order.
 const FIGURE_5: [Layer; 3] = [Layer::Occupancy, Layer::Interval, Layer::ChangeProbability];
 
 /// Writes `figure5.png`, each layer of the map as `<layer>.png`, and `trajectory.png` into
-/// `folder`, which is created if needed. `trails` are in the order of the robots of the scene; `goals` are
-/// those of the curious robot.
+/// `folder`, which is created if needed. `goals` are those of the curious robot.
 ///
 /// # Errors
 ///
@@ -34,7 +42,7 @@ pub fn write_all(
     folder: &Path,
     scene: &Scene,
     mapper: &Mapper,
-    trails: &[Trail],
+    trails: &Trails,
     goals: &Goals,
 ) -> Result<(), PictureError> {
     make_folder(folder)?;
@@ -49,7 +57,8 @@ pub fn write_all(
     let of_layer = |layer| panels.iter().find(|(of, _)| *of == layer).map(|(_, picture)| picture);
     let panels: Vec<&Canvas> = FIGURE_5.into_iter().filter_map(of_layer).collect();
     Canvas::beside(&panels).write(&file("figure5"))?;
-    let panel = Panel::of_scene(mapper.frame(), scene.unit, trajectory::entries(scene, goals).len());
+    let panel =
+        Panel::of_scene(mapper.frame(), scene.unit, trajectory::entries(scene, trails.believed, goals).len());
     let draw_trails = |area: &Area| trajectory::draw(&panel, area, scene, trails, goals);
     Ok(draw("trajectory", panel.size(), draw_trails)?.write(&file("trajectory"))?)
 }

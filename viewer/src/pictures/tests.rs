@@ -31,6 +31,7 @@ fn drawn(ticks: usize) -> Drawn {
         }
     }
     let start = std::time::Instant::now();
+    let trails = Trails { true_poses: &trails, believed: &Trail::default() };
     write_all(folder.path(), &run.scene, &run.mapper, &trails, &goals()).unwrap();
     println!("drawn in {:?}", start.elapsed());
     Drawn { folder, run }
@@ -89,7 +90,7 @@ fn the_stripe_of_the_dummy_is_dark_and_nothing_else_is() {
 fn trails_walls_obstacles_starts_and_goals_are_drawn() {
     let drawn = drawn(300);
     let picture = drawn.picture("trajectory");
-    let entries = trajectory::entries(&drawn.run.scene, &goals()).len();
+    let entries = trajectory::entries(&drawn.run.scene, &Trail::default(), &goals()).len();
     let panel = Panel::of_scene(drawn.run.mapper.frame(), drawn.run.scene.unit, entries);
     let near = |x_m: f64, y_m: f64, color: Rgb| {
         let [x, y] = panel.pixel(&Point2::new(x_m, y_m));
@@ -108,7 +109,7 @@ fn trails_walls_obstacles_starts_and_goals_are_drawn() {
 fn a_few_robots_have_a_color_each_and_many_share_one() {
     let mut scene = FakeRun::new().scene;
     let lines = |scene: &Scene| -> Vec<(Rgb, String)> {
-        let entries = trajectory::entries(scene, &Goals::default()).into_iter();
+        let entries = trajectory::entries(scene, &Trail::default(), &Goals::default()).into_iter();
         let line = |(mark, text)| if let Mark::Line(color) = mark { Some((color, text)) } else { None };
         entries.filter_map(line).collect()
     };
@@ -173,7 +174,9 @@ fn a_folder_that_cannot_be_written_is_named() {
     let file = tempfile::NamedTempFile::new().unwrap();
     let folder = file.path().join("pictures");
     let run = FakeRun::new();
-    let error = write_all(&folder, &run.scene, &run.mapper, &[], &Goals::default()).unwrap_err().to_string();
+    let trails = Trails { true_poses: &[], believed: &Trail::default() };
+    let error =
+        write_all(&folder, &run.scene, &run.mapper, &trails, &Goals::default()).unwrap_err().to_string();
     assert!(error.starts_with(&format!("cannot write {}: ", folder.display())), "{error}");
 }
 

@@ -1,9 +1,10 @@
 //! The trajectories of the robots, as the paper's Figure 4.
 
+use super::Trails;
 use super::ground;
 use super::panel::{Chart, Panel, pair};
 use crate::legend::{Legend, Mark};
-use crate::scene::{Robot, Scene};
+use crate::scene::{Robot, Scene, extent};
 use crate::view::Trail;
 use evaluation::drawing::{Area, ink, why};
 use evaluation::observer::Goals;
@@ -16,15 +17,22 @@ pub(super) fn draw(
     panel: &Panel,
     area: &Area,
     scene: &Scene,
-    trails: &[Trail],
+    trails: &Trails,
     goals: &Goals,
 ) -> Result<(), String> {
     let (chart, legend) = panel.axes(area, &format!("Trajectories in {}", scene.title))?;
     ground::draw(&chart, scene)?;
     // The other robots' trails on top: the curious robot goes everywhere.
-    let mut drawn: Vec<_> = scene.robots.iter().zip(trails).zip(colors(scene)).collect();
+    let mut drawn: Vec<_> = scene.robots.iter().zip(trails.true_poses).zip(colors(scene)).collect();
     drawn.sort_by_key(|((robot, _), _)| !robot.is_driven);
-    drawn.iter().try_for_each(|((_, trail), color)| line(panel, &chart, trail.points(), *color))?;
+    drawn.iter().try_for_each(|((_, trail), color)| line(panel, &chart, trail.points(), (*color, 3)))?;
+    // Thin and on top, so that the true trail is seen on both sides. A robot that is off by metres leaves the picture.
+    let (low, size) = extent(&scene.frame);
+    let is_inside = |at: &Point2<f64>| at >= &low && at <= &(low + size);
+    let believed = trails.believed.points();
+    for step in believed.windows(2).filter(|step| step.iter().all(is_inside)) {
+        line(panel, &chart, step, (palette::ESTIMATE, 1))?;
+    }
     let plot = chart.plotting_area();
     for goal in goals.samples() {
         let cross = Cross::new(pair(goal), panel.px(3), panel.line(ink(palette::GOAL), 2));
@@ -37,7 +45,7 @@ pub(super) fn draw(
         }
     }
     panel.frame(&chart)?;
-    panel.legend(&legend, &entries(scene, goals))
+    panel.legend(&legend, &entries(scene, trails.believed, goals))
 }
 
 /// The colors of the robots, in the order of the scene.
@@ -49,7 +57,7 @@ fn colors(scene: &Scene) -> Vec<Rgb> {
 }
 
 /// The entries of the legend.
-pub(super) fn entries(scene: &Scene, goals: &Goals) -> Legend {
+pub(super) fn entries(scene: &Scene, believed: &Trail, goals: &Goals) -> Legend {
     let mut robots: Vec<(&Robot, Rgb)> = scene.robots.iter().zip(colors(scene)).collect();
     robots.sort_by_key(|(robot, _)| !robot.is_driven);
     let entry = |same: &[(&Robot, Rgb)]| match same {
@@ -57,6 +65,9 @@ pub(super) fn entries(scene: &Scene, goals: &Goals) -> Legend {
         several => (Mark::Line(several[0].1), format!("{} other robots", several.len())),
     };
     let mut entries: Legend = robots.chunk_by(|(_, a), (_, b)| a == b).map(entry).collect();
+    if !believed.points().is_empty() {
+        entries.push((Mark::Line(palette::ESTIMATE), "where it believed to be".into()));
+    }
     entries.push((Mark::Dot(palette::CURIOUS), "start".into()));
     let (shown, all) = (goals.samples().len(), goals.count());
     if all > 0 {
@@ -68,8 +79,13 @@ pub(super) fn entries(scene: &Scene, goals: &Goals) -> Legend {
 }
 
 /// Draws a line step by step: the library's thick lines break where a line turns back on itself.
-pub(super) fn line(panel: &Panel, chart: &Chart, points: &[Point2<f64>], color: Rgb) -> Result<(), String> {
-    let style = panel.line(ink(color), 3);
+pub(super) fn line(
+    panel: &Panel,
+    chart: &Chart,
+    points: &[Point2<f64>],
+    (color, width): (Rgb, u32),
+) -> Result<(), String> {
+    let style = panel.line(ink(color), width);
     points.windows(2).try_for_each(|step| {
         let step = PathElement::new(step.iter().map(pair).collect::<Vec<_>>(), style);
         chart.plotting_area().draw(&step).map_err(why)

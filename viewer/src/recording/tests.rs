@@ -2,7 +2,8 @@ use super::*;
 use crate::layers::Layer;
 use crate::scene::TimeUnit;
 use crate::tests::FakeRun;
-use nalgebra::Point2;
+use localizer::{PoseEstimate, PoseState};
+use nalgebra::{Matrix3, Point2, Vector3};
 use rerun::components::{ImageBuffer, Scalar, Text, Translation3D};
 use rerun::external::re_log_encoding::Decoder;
 use rerun::{
@@ -123,6 +124,27 @@ fn every_entity_is_there() {
     ];
     assert_eq!(entities, expected);
     assert_eq!(timelines(&store), ["sim_time", "step"]);
+}
+
+#[test]
+fn a_robot_that_is_localized_is_there_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let mut run = FakeRun::new();
+    run.estimate = Some(PoseEstimate {
+        pose: interfaces::pose(3.0, 3.0, 0.5),
+        covariance: Matrix3::from_diagonal(&Vector3::new(1e-4, 4e-4, 1e-6)),
+        support: 0.75,
+        state: PoseState::Tracking,
+    });
+    record_run(run, &file, 50);
+    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+    let entities = Vec::from_iter(store.all_entities_sorted().iter().map(|path| path.to_string()));
+    for entity in ["body", "scan", "trail", "uncertainty_20_times_enlarged"] {
+        assert!(entities.contains(&format!("/world/estimate/{entity}")), "{entity} is not in {entities:?}");
+    }
+    let support = rows::<Scalar>(&store, "/curves/support/support", Scalars::descriptor_scalars().component);
+    assert!(!support.is_empty() && support.iter().all(|(_, values)| values[0].0.0 == 0.75), "{support:?}");
 }
 
 #[test]

@@ -32,10 +32,10 @@ impl From<&WorldSpec> for Scene {
 impl Visible for PhysicsWorld {
     const UNIT: TimeUnit = TimeUnit::Second;
 
-    fn robots<'a>(&'a self, _: &'a LaserReading) -> Vec<RobotState<'a>> {
+    fn robots<'a>(&'a self, reading: &'a LaserReading) -> Vec<RobotState<'a>> {
         let state = |robot: sim::physics::RobotView<'a>| RobotState {
             pose: robot.pose,
-            sight: robot.is_driven.then(|| robot.reading()).flatten().map(Sight::Laser),
+            sight: robot.is_driven.then_some(Sight::Laser(reading)),
         };
         PhysicsWorld::robots(self).map(state).collect()
     }

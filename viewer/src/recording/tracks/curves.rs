@@ -4,6 +4,7 @@ use super::{Kind, ON_CHANGE, Tracks, color, escape};
 use crate::scene::Scene;
 use crate::view::View;
 use evaluation::palette::{self, Rgb};
+use localizer::PoseState;
 use rerun::{RecordingStreamResult, Scalars, SeriesLines, StateChange, StateConfiguration};
 
 /// The strategy that chose the goal.
@@ -54,6 +55,26 @@ pub(in crate::recording) fn plots(scene: &Scene, view: &View) -> Vec<Plot> {
             Some(view.measured.scores?.map_quality)
         });
         plot("Map: coverage and quality", "/curves/scores", SHARE, vec![coverage, quality]);
+    }
+    if let Some(believed) = &view.believed {
+        let error = curve("error", "true error", palette::GOAL, |view| {
+            Some(1000.0 * view.believed.as_ref()?.error_m())
+        });
+        let mut curves = vec![error];
+        if believed.estimate.is_some() {
+            curves.push(curve("deviation", "standard deviation", palette::SENSOR, |view| {
+                Some(1000.0 * view.believed.as_ref()?.estimate?.position_std_m())
+            }));
+            let support = curve("support", "share of the scan that fits the map", palette::PATH, |view| {
+                Some(view.believed.as_ref()?.estimate?.support)
+            });
+            let certain = curve("certain", "the pose is certain", palette::OTHER_ROBOT, |view| {
+                let state = view.believed.as_ref()?.estimate?.state;
+                Some(if state == PoseState::Tracking { 1.0 } else { 0.0 })
+            });
+            plot("Localization: support", "/curves/support", SHARE, vec![support, certain]);
+        }
+        plot("Localization: error of the position (mm)", "/curves/pose_error", None, curves);
     }
     if view.measured.rate_errors.is_some() && !scene.obstacles.is_empty() {
         let relative = curve("relative", "relative error", palette::MOVING, |view| {

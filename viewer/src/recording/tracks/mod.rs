@@ -4,6 +4,7 @@
 //! line to [`start`].
 
 mod curves;
+mod estimate;
 mod field_of_view;
 mod legend;
 mod maps;
@@ -53,6 +54,7 @@ pub(super) fn start(
     field_of_view::add(&mut tracks)?;
     obstacles::add(&mut tracks)?;
     robots::add(&mut tracks)?;
+    estimate::add(&mut tracks)?;
     curves::add(&mut tracks)?;
     messages(&mut tracks);
     Ok(tracks.tracks)

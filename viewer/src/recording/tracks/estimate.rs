@@ -1,0 +1,95 @@
+//! Where the curious robot believes to be: its body, its trail, its uncertainty, and the scan at the believed pose.
+
+use super::{
+    EVENTS, Kind, ON_CHANGE, Strip, Tracks, WORLD, closed, color, line, order, points, position, strips,
+};
+use crate::scene::Sight;
+use crate::view::{Believed, View, is_next_point};
+use evaluation::palette;
+use localizer::PoseEstimate;
+use nalgebra::{Point2, SymmetricEigen, Vector2};
+use rerun::{Points2D, Radius, RecordingStreamResult};
+use std::f64::consts::TAU;
+
+/// The ellipse of the uncertainty is drawn at this many standard deviations, ...
+const STDS: f64 = 2.0;
+/// ... and larger than it is: an uncertainty of millimetres could not be seen beside a robot.
+const ENLARGED: f64 = 20.0;
+/// The corners of a round outline.
+const CORNERS: u32 = 32;
+/// One of this many beams is drawn as a point.
+const EVERY: usize = 4;
+
+/// Adds all entities of the estimate; nothing for a robot whose poses are exact.
+pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
+    let Some(believed) = tracks.view.believed else { return Ok(()) };
+    let path = |part: &str| format!("{WORLD}/estimate/{part}");
+    let own = color(palette::ESTIMATE, 255);
+    let (body, trail, scan) = (path("body"), path("trail"), path("scan"));
+    tracks.always(&body, &line(own, 1.5, order::HEADING))?;
+    tracks.always(&trail, &line(color(palette::ESTIMATE, 160), 1.0, order::TRAIL))?;
+    let dots = Points2D::update_fields()
+        .with_colors([own])
+        .with_radii([Radius::new_ui_points(1.0)])
+        .with_draw_order(order::SIGHT_OUTLINE);
+    tracks.always(&scan, &dots)?;
+    let driven = tracks.scene.robots.iter().find(|robot| robot.is_driven);
+    let radius_m = driven.map_or(0.2, |robot| robot.radius_m);
+    let outline = move |view: &View| view.believed.iter().map(|it| self::body(it, radius_m)).collect();
+    tracks.add(body, ON_CHANGE, outline, strips);
+    let mut last = None;
+    let step = move |view: &View| -> Vec<Strip> {
+        let Some(now) = view.believed.map(|it| Point2::from(it.pose.translation.vector)) else {
+            return Vec::new();
+        };
+        if !is_next_point(last.as_ref(), &now) {
+            return Vec::new();
+        }
+        last.replace(now).map(|last| vec![position(&last), position(&now)]).into_iter().collect()
+    };
+    tracks.add(trail, EVENTS, step, strips);
+    let when = (Kind::State, tracks.scene.unit.choose(1.0, 10.0));
+    tracks.add(scan, when, hits, points);
+    if believed.estimate.is_some() {
+        let uncertainty = path(&format!("uncertainty_{ENLARGED}_times_enlarged"));
+        tracks.always(&uncertainty, &line(own, 1.0, order::HEADING))?;
+        tracks.add(uncertainty, ON_CHANGE, |view| estimate(view).map(ellipse).into_iter().collect(), strips);
+    }
+    Ok(())
+}
+
+fn estimate<'a>(view: &View<'a>) -> Option<&'a PoseEstimate> {
+    view.believed?.estimate
+}
+
+/// A circle with a line to the front.
+fn body(believed: &Believed, radius_m: f64) -> Strip {
+    let circle =
+        (0..=CORNERS).map(|corner| interfaces::rotation(TAU * f64::from(corner) / f64::from(CORNERS)));
+    let circle = circle.map(|rotation| Point2::from(rotation * Vector2::x() * radius_m));
+    let middle = [Point2::origin()].into_iter();
+    middle.chain(circle).map(|point| position(&(believed.pose * point))).collect()
+}
+
+/// The ellipse of the position.
+fn ellipse(estimate: &PoseEstimate) -> Strip {
+    let eigen = SymmetricEigen::new(estimate.covariance.fixed_view::<2, 2>(0, 0).into_owned());
+    let axes = eigen.eigenvalues.map(|variance| ENLARGED * STDS * variance.max(0.0).sqrt());
+    let at = Point2::from(estimate.pose.translation.vector);
+    let corner = |corner: u32| {
+        let unit = interfaces::rotation(TAU * f64::from(corner) / f64::from(CORNERS)) * Vector2::x();
+        at + eigen.eigenvectors * unit.component_mul(&axes)
+    };
+    closed(&Vec::from_iter((0..CORNERS).map(corner)))
+}
+
+/// The end points of the scan at the believed pose.
+fn hits(view: &View) -> Vec<[f32; 2]> {
+    let Some(Sight::Laser(reading)) = view.sight() else { return Vec::new() };
+    let (laser, scan) = (reading.pose * reading.mount, &reading.scan);
+    let beams = scan.ranges_m.iter().enumerate().step_by(EVERY).filter(|(_, range_m)| range_m.is_finite());
+    let end = |(beam, range_m): (usize, &f32)| {
+        laser * Point2::from(interfaces::rotation(scan.angle_rad(beam)) * Vector2::x() * f64::from(*range_m))
+    };
+    beams.map(|beam| position(&end(beam))).collect()
+}
