@@ -3,9 +3,10 @@
 use crate::terminal::{check_printed, print, say};
 use crate::worlds;
 use anyhow::Context;
-use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::parser::ValueSource;
+use clap::{Parser, ValueEnum};
+use evaluation::physics_trial::PoseChoice;
 use interfaces::printable_lines;
 use std::error::Error;
 use std::fmt::Display;
@@ -104,6 +105,27 @@ where
     T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
 {
     PossibleValuesParser::new(all.iter().map(name)).try_map(|name| name.parse::<T>())
+}
+
+/// How the robot knows its pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PoseArg {
+    /// The true pose
+    Exact,
+    /// The pose by odometry, with its drift: the map becomes wrong
+    Odometry,
+    /// The pose that fits the scan to the map
+    Localized,
+}
+
+impl From<PoseArg> for PoseChoice {
+    fn from(pose: PoseArg) -> Self {
+        match pose {
+            PoseArg::Exact => Self::Exact,
+            PoseArg::Odometry => Self::Odometry,
+            PoseArg::Localized => Self::Localized,
+        }
+    }
 }
 
 /// The strategy with the lowest error of the rates over grid worlds and houses, see `docs/strategies.md`.

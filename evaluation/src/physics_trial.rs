@@ -132,6 +132,32 @@ impl PhysicsSettings {
         Ok(Self { mapper, agent, controller, drive, pose: PoseChoice::of(spec), localizer })
     }
 
+    /// What gives the readings of a world their poses. `prior` is the map that the robot knows at the start.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn localization(
+        &self,
+        world: &mut PhysicsWorld,
+        prior: Option<&Grid<CellState>>,
+    ) -> Result<Box<dyn Localization<LaserReading>>, SettingsError> {
+        Ok(match (self.pose, prior) {
+            (PoseChoice::Exact, _) => {
+                world.correct_odometry();
+                Box::new(GivenPoses::default())
+            }
+            (PoseChoice::Odometry, _) => Box::new(GivenPoses::default()),
+            (PoseChoice::Localized, None) => {
+                let (start, frame) = (*world.true_pose(), world.spec().frame);
+                Box::new(Localizer::from_nothing(&self.localizer, &frame, start)?)
+            }
+            (PoseChoice::Localized, Some(map)) => {
+                Box::new(Localizer::in_map(&self.localizer, map, Start::Unknown)?)
+            }
+        })
+    }
+
     /// The pilot that drives to the goals of `selector`.
     ///
     /// # Errors
@@ -187,19 +213,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         pilot: P,
     ) -> Result<Self, SettingsError> {
         let mut world = PhysicsWorld::new(spec, seed);
-        if settings.pose == PoseChoice::Exact {
-            world.correct_odometry();
-        }
-        let localization: Box<dyn Localization<LaserReading>> = match (settings.pose, &prior) {
-            (PoseChoice::Exact | PoseChoice::Odometry, _) => Box::new(GivenPoses::default()),
-            (PoseChoice::Localized, None) => {
-                let start = *world.true_pose();
-                Box::new(Localizer::from_nothing(&settings.localizer, &spec.frame, start)?)
-            }
-            (PoseChoice::Localized, Some(map)) => {
-                Box::new(Localizer::in_map(&settings.localizer, map, Start::Unknown)?)
-            }
-        };
+        let localization = settings.localization(&mut world, prior.as_ref())?;
         let mapper = match prior {
             None => Mapper::new(&settings.mapper, spec.frame)?,
             Some(map) => Mapper::with_prior(&settings.mapper, map)?,

@@ -1,11 +1,11 @@
-use super::{TrialError, TrialWorld};
+use super::{Poses, TrialError, TrialWorld};
 use crate::oracle::Oracle;
 use crate::report::Length;
 use agent::{Agent, AgentSettings, Policy};
 use controller::{CellDrive, Controller};
 use interfaces::{Purpose, RandomStream};
 use mapper::MapperSettings;
-use robot::{Autonomous, GoalSelector};
+use robot::{Autonomous, ExactPoses, GoalSelector};
 use sim::grid::{GridGroundTruth, GridSpec, GridWorld};
 
 /// The settings of the robot in grid worlds.
@@ -60,6 +60,10 @@ impl TrialWorld for GridSpec {
 
     fn mapper(&self, robot: &GridRobot) -> Result<MapperSettings, TrialError> {
         Ok(robot.mapper.clone())
+    }
+
+    fn localization(&self, _: &GridRobot, _: &mut GridWorld) -> Result<Poses<Self>, TrialError> {
+        Ok(Box::new(ExactPoses))
     }
 
     fn agent(&self, robot: &GridRobot, policy: &Policy, seed: u64) -> Result<Agent, TrialError> {

@@ -18,7 +18,7 @@ pub use grid::GridRobot;
 pub use physics::PhysicsRobot;
 pub use run::{TrialSettings, TrialStep, run_trial};
 pub use strategy::TrialStrategy;
-pub use world::TrialWorld;
+pub use world::{Poses, TrialWorld};
 
 use crate::physics_trial::UnsupportedDrive;
 use crate::report::{Report, ReportSettings, Trial};

@@ -1,6 +1,6 @@
-use super::{TrialError, TrialWorld};
+use super::{Poses, TrialError, TrialWorld};
 use crate::oracle::Oracle;
-use crate::physics_trial::{LOCAL_STEPS, PhysicsSettings, UnsupportedDrive};
+use crate::physics_trial::{LOCAL_STEPS, PhysicsSettings, PoseChoice, UnsupportedDrive};
 use crate::report::Length;
 use agent::{Agent, Policy, Reward};
 use controller::DiffDrive;
@@ -15,11 +15,13 @@ pub struct PhysicsRobot {
     pub reward: Reward,
     /// The maximum number of steps of local exploration.
     pub max_steps: u32,
+    /// How the robot knows its pose; `None`: as the world suggests.
+    pub pose: Option<PoseChoice>,
 }
 
 impl Default for PhysicsRobot {
     fn default() -> Self {
-        Self { reward: Reward::default(), max_steps: LOCAL_STEPS }
+        Self { reward: Reward::default(), max_steps: LOCAL_STEPS, pose: None }
     }
 }
 
@@ -28,6 +30,7 @@ impl PhysicsRobot {
         let mut settings = PhysicsSettings::of(spec)?;
         settings.agent.reward = self.reward;
         settings.controller.exploration.max_steps = self.max_steps;
+        settings.pose = self.pose.unwrap_or(settings.pose);
         Ok(settings)
     }
 }
@@ -67,6 +70,14 @@ impl TrialWorld for WorldSpec {
 
     fn mapper(&self, robot: &PhysicsRobot) -> Result<MapperSettings, TrialError> {
         Ok(robot.settings(self)?.mapper)
+    }
+
+    fn localization(
+        &self,
+        robot: &PhysicsRobot,
+        world: &mut PhysicsWorld,
+    ) -> Result<Poses<Self>, TrialError> {
+        Ok(robot.settings(self)?.localization(world, None)?)
     }
 
     fn agent(&self, robot: &PhysicsRobot, policy: &Policy, seed: u64) -> Result<Agent, TrialError> {

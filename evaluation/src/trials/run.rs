@@ -110,7 +110,8 @@ fn run<W: TrialWorld, G: GoalSelector>(
             step(&world.0, &reading.of_sensors, belief, pilot)
         })?;
     } else {
-        explore(&mut world, &mut ExactPoses, &mut mapper, &mut pilot, step)?;
+        let mut poses = trial.world.localization(&trial.experiment.robot, &mut world)?;
+        explore(&mut world, poses.as_mut(), &mut mapper, &mut pilot, step)?;
     }
     Ok(false_change_events.map(|false_change_events| Trial {
         world: trial.world.name().to_owned(),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::physics_trial::PoseChoice;
 use mapper::Paper;
 use sim::grid::{GenerateSettings, GridSpec};
 use sim::physics::WorldSpec;
@@ -45,4 +46,21 @@ fn samples_of_a_physics_world_are_at_whole_seconds() {
         assert!(times.is_sorted_by(|a, b| a < b) && times.last() == Some(&length), "{times:?}");
         assert!(times.len() == 80.min(length as usize), "{times:?}");
     }
+}
+
+#[test]
+fn a_robot_that_drifts_is_localized_unless_its_poses_are_chosen() {
+    let house = WorldSpec::generate_house(5);
+    let mut fleet = house.fleet().clone();
+    fleet.robots[house.driven_index()].odometry.turn_gain = 0.1;
+    let drifting = WorldSpec::driving(fleet, house.driven_index()).unwrap();
+    let trial = |pose| {
+        let robot = PhysicsRobot { pose, ..PhysicsRobot::default() };
+        trials(drifting.clone(), 60, &["recency"], robot).remove(0)
+    };
+    let [default, localized, odometry] =
+        [None, Some(PoseChoice::Localized), Some(PoseChoice::Odometry)].map(trial);
+    assert_eq!(default.map_hash, localized.map_hash);
+    let [localized, odometry] = [localized, odometry].map(|trial| trial.false_change_events);
+    assert!(5 * localized < odometry, "{localized} false changes, {odometry} by odometry");
 }

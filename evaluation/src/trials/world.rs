@@ -5,7 +5,10 @@ use agent::{Agent, Policy};
 use controller::Drive;
 use interfaces::{GroundTruth, Reading, World};
 use mapper::MapperSettings;
-use robot::{Autonomous, GoalSelector};
+use robot::{Autonomous, GoalSelector, Localization};
+
+/// What gives the readings of a world their poses.
+pub type Poses<W> = Box<dyn Localization<<<W as TrialWorld>::World as World>::Reading>>;
 
 /// The specification of a world in which trials run, of one kind.
 pub trait TrialWorld: Sized + Sync {
@@ -47,6 +50,13 @@ pub trait TrialWorld: Sized + Sync {
     ///
     /// When the controller cannot drive the robot.
     fn mapper(&self, robot: &Self::Robot) -> Result<MapperSettings, TrialError>;
+
+    /// What gives the readings of a world their poses.
+    ///
+    /// # Errors
+    ///
+    /// When the controller cannot drive the robot.
+    fn localization(&self, robot: &Self::Robot, world: &mut Self::World) -> Result<Poses<Self>, TrialError>;
 
     /// The agent that follows `policy`.
     ///

@@ -3,8 +3,7 @@
 use agent::Policy;
 use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
-use curious::program::{duration_s, one_of, strategy_of};
-use evaluation::physics_trial::PoseChoice;
+use curious::program::{PoseArg, duration_s, one_of, strategy_of};
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
 use viewer::recording::Live;
@@ -111,27 +110,6 @@ impl Args {
     /// The strategy of the agent.
     pub(crate) fn strategy(&self) -> Policy {
         self.strategy.clone().unwrap_or_default()
-    }
-}
-
-/// How the robot knows its pose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PoseArg {
-    /// The true pose
-    Exact,
-    /// The pose by odometry, with its drift: the map becomes wrong
-    Odometry,
-    /// The pose that fits the scan to the map
-    Localized,
-}
-
-impl From<PoseArg> for PoseChoice {
-    fn from(pose: PoseArg) -> Self {
-        match pose {
-            PoseArg::Exact => Self::Exact,
-            PoseArg::Odometry => Self::Odometry,
-            PoseArg::Localized => Self::Localized,
-        }
     }
 }
 

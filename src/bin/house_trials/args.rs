@@ -1,7 +1,7 @@
 //! The command line.
 
 use clap::Parser;
-use curious::program::{duration_s, one_of};
+use curious::program::{PoseArg, duration_s, one_of};
 use curious::shards::ShardCommand;
 use curious::trials::{TrialArgs, strategies};
 use evaluation::trials::TrialStrategy;
@@ -69,6 +69,10 @@ pub(crate) struct Args {
     /// The maximum number of steps of local exploration at a goal
     #[arg(long, value_name = "STEPS", default_value_t = 15, help_heading = "Comparison")]
     pub(crate) max_steps: u32,
+
+    /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
+    #[arg(long, value_enum, help_heading = "Comparison")]
+    pub(crate) pose: Option<PoseArg>,
 
     /// The folder for all results
     #[arg(long, value_name = "DIR", default_value = "house_trials_out", help_heading = "Output")]

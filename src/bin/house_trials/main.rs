@@ -52,7 +52,11 @@ impl TrialProgram for Args {
             trials: self.trials,
             seed: self.shared.seed,
             length: self.duration,
-            robot: PhysicsRobot { reward: self.shared.reward.into(), max_steps: self.max_steps },
+            robot: PhysicsRobot {
+                reward: self.shared.reward.into(),
+                max_steps: self.max_steps,
+                pose: self.pose.map(Into::into),
+            },
         })
     }
 
