@@ -215,7 +215,8 @@ pub(crate) fn difference(pose: &Isometry2<f64>, from: &Isometry2<f64>) -> Vector
     Vector3::new(shift.x, shift.y, turn)
 }
 
-/// Matches a scan, from the pose with which its sweep was undone, with an optional prior. `None` if the points do not fix the pose.
+/// Matches a scan, from the pose for which its sweep was undone, with an optional prior. `None` if the points do not fix
+/// the pose.
 pub(crate) fn align(
     map: &SurfelMap,
     points: &[ScanPoint],
@@ -225,29 +226,28 @@ pub(crate) fn align(
 ) -> Option<Match> {
     let is_elastic = prior.is_some_and(|prior| prior.begin.is_some());
     let mut placement = if is_elastic { Placement::elastic(start) } else { Placement::rigid(start) };
-    let mut gate_m = gates.first_m;
-    loop {
+    let (mut gate_m, mut steps) = (gates.first_m, 0);
+    let sums = loop {
+        let sums = accumulate(map, points, &placement, gate_m, gates);
+        let [step, begin] = sums.step(&placement, prior)?;
+        if !step.iter().chain(&begin).all(|value| value.is_finite()) {
+            return None;
+        }
+        placement.correct(&step, &begin);
+        steps += 1;
         // With a wide gate, the pose need only be good enough for the next gate.
         let is_last = gate_m <= gates.last_m;
         let (step_m, step_rad) = if is_last { (STEP_M, STEP_RAD) } else { (gate_m / 20.0, gate_m / 60.0) };
-        for _ in 0..MAX_STEPS {
-            let sums = accumulate(map, points, &placement, gate_m, gates);
-            let [step, begin] = sums.step(&placement, prior)?;
-            if !step.iter().chain(&begin).all(|value| value.is_finite()) {
-                return None;
-            }
-            placement.correct(&step, &begin);
-            if step.xy().norm() < step_m && step.z.abs() < step_rad {
-                break;
-            }
+        let is_small = step.xy().norm() < step_m && step.z.abs() < step_rad;
+        if !is_small && steps < MAX_STEPS {
+            continue;
         }
         if is_last {
-            break;
+            break sums; // those of a pose that is off by less than the last step
         }
-        gate_m = (gate_m / 2.0).max(gates.last_m);
-    }
+        (gate_m, steps) = (if gate_m > 3.0 * gates.last_m { gate_m / 2.0 } else { gates.last_m }, 0);
+    };
     placement.pose.rotation.renormalize();
-    let sums = accumulate(map, points, &placement, gate_m, gates);
     let [scan_information, information, beam_covariance] = sums.known(prior)?;
     Some(Match {
         placement,
