@@ -12,6 +12,9 @@
 //! - Scans are matched with a map of short straight surfaces (surfels) that stop to move after a number of hits, by
 //!   point-to-line Gauss-Newton with a prior from odometry: Censi (2008), Segal, Haehnel & Thrun (2009).
 //! - Points count by the length of surface that they stand for.
+//! - A scan that sweeps is undone along the path that the velocities of the odometry describe, and is matched as an elastic
+//!   scan: the pose at its begin and the pose at its end are estimated together, and a beam in between follows both
+//!   (as Dellenbach et al. 2022, "CT-ICP", but with the begin tied to the last estimate by its covariance).
 //! - Where the scan does not support the pose, it is searched for: correlative matching in a window (Olson 2009) and
 //!   in the whole map are one branch and bound over a pyramid of maxima (Hess, Kohler, Rapp & Andor 2016). Several
 //!   poses that fit about as well are kept as hypotheses, and driving on decides.
