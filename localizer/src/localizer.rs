@@ -165,7 +165,8 @@ impl Localizer {
         }
         self.start_s.get_or_insert(self.time_s);
         self.readings = self.readings.wrapping_add(1);
-        if self.readings.is_multiple_of(RATES_EVERY) && self.settings.rate_horizon_s > 0.0 {
+        let is_due = self.readings == 1 || self.readings.is_multiple_of(RATES_EVERY);
+        if is_due && self.settings.rate_horizon_s > 0.0 {
             self.surfels.weigh_by_rates(map, self.settings.rate_horizon_s);
         }
         let mut posed = reading.clone();

@@ -27,6 +27,8 @@ pub(crate) struct Options {
     pub(crate) no_gate: bool,
     /// Unknown starts in the map of the run.
     pub(crate) relocate: bool,
+    /// A third of the furniture was moved since the map of the unknown starts was made.
+    pub(crate) moved: bool,
     no_rates: bool,
     no_arc: bool,
     /// The odometry never moves.
@@ -53,6 +55,7 @@ impl Options {
             odometry_only: false,
             no_gate: false,
             relocate: false,
+            moved: false,
             no_rates: false,
             no_arc: false,
             no_odometry: false,
@@ -79,6 +82,7 @@ impl Options {
                 "odometry-only" => options.odometry_only = is_on,
                 "no-gate" => options.no_gate = is_on,
                 "relocate" => options.relocate = is_on,
+                "moved" => options.moved = is_on,
                 "no-rates" => options.no_rates = is_on,
                 "no-arc" => options.no_arc = is_on,
                 "no-odometry" => options.no_odometry = is_on,

@@ -5,9 +5,9 @@ use crate::score::{error, quantile};
 use interfaces::{
     Cell, CellState, Grid, GroundTruth, Purpose, RandomStream, SettingsError, TrueState, Twist, World,
 };
-use localizer::{Localizer, LocalizerSettings, PoseState, Start};
+use localizer::{ChangingMap, Localizer, LocalizerSettings, PoseState, Start};
 use nalgebra::Isometry2;
-use sim::physics::{PhysicsWorld, WorldSpec};
+use sim::physics::{Motion, PhysicsWorld, WorldSpec};
 use std::time::Instant;
 
 const TRIALS: u64 = 60;
@@ -21,11 +21,16 @@ pub(crate) fn run(
     spec: &WorldSpec,
     seed: u64,
 ) -> Result<(), SettingsError> {
-    let map = &true_map(&PhysicsWorld::new(spec, seed));
+    let map = &KnownMap::new(spec, seed);
+    let spec = &if options.moved { rearranged(spec, seed) } else { spec.clone() };
     let (mut right, mut wrong, mut open, mut elapsed_ms) = (0, 0, 0, Vec::new());
     for trial in 0..TRIALS {
-        let Some((mut world, pose)) = somewhere(spec, map, seed + trial) else { continue };
-        let mut localizer = Localizer::in_map(settings, map, Start::Unknown)?;
+        let Some((mut world, pose)) =
+            somewhere(spec, &true_map(&PhysicsWorld::new(spec, seed)), seed + trial)
+        else {
+            continue;
+        };
+        let mut localizer = Localizer::in_map(settings, &map.states, Start::Unknown)?;
         for _ in 0..(trial % 10) * 30 {
             world.act(&Twist::STOP); // people walk and doors move
         }
@@ -58,6 +63,51 @@ pub(crate) fn run(
         quantile(&elapsed_ms, 1.0),
     );
     Ok(())
+}
+
+/// The true map at the start. What is no wall changed in the past: furniture is moved about once in this time, s.
+struct KnownMap {
+    states: Grid<CellState>,
+    is_wall: Vec<bool>,
+}
+
+const MOVED_EVERY_S: f64 = 1000.0;
+
+impl KnownMap {
+    fn new(spec: &WorldSpec, seed: u64) -> Self {
+        let mut walls = spec.fleet().clone();
+        walls.obstacles.clear();
+        let walls = WorldSpec::driving(walls, spec.driven_index()).map(|spec| PhysicsWorld::new(&spec, seed));
+        let states = true_map(&PhysicsWorld::new(spec, seed));
+        let is_wall =
+            |index| walls.as_ref().is_some_and(|walls| walls.truth().state(index) != TrueState::Free);
+        let is_wall = (0..states.cells().len()).map(is_wall).collect();
+        Self { states, is_wall }
+    }
+}
+
+impl ChangingMap for KnownMap {
+    fn states(&self) -> &Grid<CellState> {
+        &self.states
+    }
+
+    fn rate(&self, index: usize) -> f64 {
+        let was_furniture = self.states.cells()[index] == CellState::Blocked && !self.is_wall[index];
+        if was_furniture { 1.0 / MOVED_EVERY_S } else { 0.0 }
+    }
+}
+
+/// The house after every third piece of furniture was moved by up to a metre and turned.
+fn rearranged(spec: &WorldSpec, seed: u64) -> WorldSpec {
+    let mut random = RandomStream::new(seed, Purpose::HouseGenerator);
+    let mut fleet = spec.fleet().clone();
+    let furniture = fleet.obstacles.iter_mut().filter(|obstacle| obstacle.motion == Motion::Fixed);
+    for obstacle in furniture.step_by(3) {
+        let by = interfaces::pose(random.uniform(-1.0..1.0), random.uniform(-1.0..1.0), 0.0);
+        let turn = interfaces::pose(0.0, 0.0, random.uniform(-0.5..0.5));
+        obstacle.shape.pose = by * obstacle.shape.pose * turn;
+    }
+    WorldSpec::driving(fleet, spec.driven_index()).unwrap_or_else(|| spec.clone())
 }
 
 /// The map of all that stands at the start.
