@@ -12,8 +12,9 @@ use interfaces::LaserReading;
 use nalgebra::Isometry2;
 
 /// The line map also learns from scans whose pose is less certain than a map of changes tolerates, by this factor:
-/// otherwise a robot that turns into a new room with few beams would never see it with certainty.
-const LEARNING_LIMITS: f64 = 3.0;
+/// otherwise a robot that turns into a new room with few beams, or drives along a corridor, would never see the rest of it
+/// with certainty, and would lose what it sees.
+const LEARNING_LIMITS: f64 = 10.0;
 /// The least confirmed weight of a certain pose: about a metre of wall.
 pub(super) const LEAST_CONFIRMED: f64 = 8.0;
 /// The number of scans for which the odometry is not trusted after it did not tell the truth.
@@ -21,7 +22,7 @@ const DISTRUST_SCANS: u32 = 20;
 /// The number of scans for which only what lies exactly in place counts, after much of the view has moved.
 const TIGHT_SCANS: u32 = 10;
 /// The least support with which a pose that is not certain is followed.
-const LEAST_GUIDE: f64 = 0.5;
+pub(super) const LEAST_GUIDE: f64 = 0.5;
 /// The match of a mirrored scan starts up to this far from the pose, m.
 const MIRRORED_GATE_M: f64 = 0.2;
 /// The largest share of a scan without a return where the map knows something blocked: beyond, the laser is covered.

@@ -1,7 +1,7 @@
 //! The search for a pose that tracking has lost, and the choice between several poses.
 
 use super::Localizer;
-use super::estimating::LEAST_CONFIRMED;
+use super::estimating::{LEAST_CONFIRMED, LEAST_GUIDE};
 use crate::changing_map::ChangingMap;
 use crate::estimate::PoseState;
 use crate::hypotheses::Hypotheses;
@@ -51,7 +51,10 @@ impl Localizer {
             found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE_NEAR, ratio);
         }
         let is_clear = found.best().is_some_and(|best| best.support.score() >= CLEAR_SCORE);
-        if !is_clear && self.since_search >= SEARCH_EVERY {
+        // Where most of the scan fits, the map is not finished or the view has changed: far away, something in an
+        // unfinished map always fits better.
+        let is_elsewhere = !is_near || tracked.support.share() < LEAST_GUIDE;
+        if !is_clear && is_elsewhere && self.since_search >= SEARCH_EVERY {
             self.since_search = 0;
             let candidates = search(&grid, self.points.points(), None, LEAST_FOUND, ratio);
             let anywhere =
