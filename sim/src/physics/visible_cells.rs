@@ -22,6 +22,15 @@ impl WorldSpec {
     /// Lines of sight are searched in 360 directions from each cell that no pose of the robot is beside, against the exact
     /// geometry.
     pub fn visible_cells(&self) -> Vec<bool> {
+        self.visible_cells_among(not_enclosed)
+    }
+
+    /// See [`WorldSpec::visible_cells`]. Lines of sight are searched only from the cells in `candidates`, which receives
+    /// the states of all cells and whether the robot can reach them.
+    pub(in crate::physics) fn visible_cells_among(
+        &self,
+        candidates: impl Fn(&GridFrame, &[TrueState], &[bool]) -> Vec<bool>,
+    ) -> Vec<bool> {
         let (frame, robot) = (&self.frame, self.driven());
         let (solids, space) = (solids(self), FreeSpace::new(self, robot.radius_m));
         let states = start::walls_cover(frame, &solids);
@@ -30,18 +39,35 @@ impl WorldSpec {
             space.regions().iter().map(|region| region.is_some() && *region == own).collect();
         let range_m = robot.laser.range_max_m;
         let sight = Sight::new(frame, &solids, range_m, robot.radius_m, &reached);
+        let candidates = candidates(frame, &states, &reached);
         let is_visible = |index: usize| match states[index] {
             _ if reached[index] => true,
-            TrueState::Free => sight.reaches(frame.center(frame.cell(index))),
+            TrueState::Free => candidates[index] && sight.reaches(frame.center(frame.cell(index))),
             TrueState::PartlyCovered => false,
             TrueState::Blocked => {
                 let cell = frame.cell(index);
-                let mut sides = frame.beside(index).filter(|side| states[*side] != TrueState::Blocked);
+                let mut sides = frame.beside(index).filter(|side| candidates[*side]);
                 sides.any(|side| sight.reaches(before(frame, cell, side)))
             }
         };
         (0..frame.len()).map(is_visible).collect()
     }
+}
+
+/// The cells that are not blocked and that others of this kind connect, by sides or corners, with a reached cell. Every
+/// line of sight from another cell to a reached cell meets a blocked cell.
+fn not_enclosed(frame: &GridFrame, states: &[TrueState], reached: &[bool]) -> Vec<bool> {
+    let mut is_connected = reached.to_vec();
+    let mut open: Vec<usize> = (0..frame.len()).filter(|index| reached[*index]).collect();
+    while let Some(index) = open.pop() {
+        for near in frame.cell(index).neighbours8().into_iter().filter_map(|cell| frame.index(cell)) {
+            if states[near] != TrueState::Blocked && !is_connected[near] {
+                is_connected[near] = true;
+                open.push(near);
+            }
+        }
+    }
+    is_connected
 }
 
 /// The point just outside of a cell, before the middle of the side that it shares with the cell `side`.

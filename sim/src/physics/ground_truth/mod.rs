@@ -240,12 +240,16 @@ impl GroundTruth for PhysicsGroundTruth {
     }
 
     fn swept(&self) -> Cow<'_, [usize]> {
-        let words = self.swept.iter().enumerate().filter(|(_, word)| **word != 0);
-        let of_word = |(at, word): (usize, &u64)| {
-            let word = *word;
-            (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| 64 * at + bit)
-        };
-        words.flat_map(of_word).collect()
+        let count: u32 = self.swept.iter().map(|word| word.count_ones()).sum();
+        let mut cells = Vec::with_capacity(count as usize);
+        for (at, word) in self.swept.iter().enumerate() {
+            let mut rest = *word;
+            while rest != 0 {
+                cells.push(64 * at + rest.trailing_zeros() as usize);
+                rest &= rest - 1; // without its lowest bit
+            }
+        }
+        cells.into()
     }
 
     /// Obstacles first, then robots, each in the order of the world file. The computing time is that of a pass over
