@@ -89,7 +89,7 @@ impl Mapper {
             CellState::Free => 0.0,
             CellState::Blocked => 1.0,
         };
-        if self.is_in_view(index) && state != CellState::Unknown {
+        if !self.cells.has_changed(index) || self.is_in_view(index) && state != CellState::Unknown {
             return last_seen;
         }
         let seen = self.statistics(index);

@@ -11,6 +11,8 @@ use std::f64::consts::{PI, TAU};
 
 /// The number of directions in which a line of sight is searched.
 const DIRECTIONS: usize = 360;
+/// Most lines of sight end within this distance, m. Few walls are that near, so that these lines are searched first.
+const NEAR_M: f64 = 1.0;
 /// The distance of the points that see a blocked cell from its sides, as a share of the side.
 const OUTSIDE: f64 = 1e-3;
 
@@ -81,8 +83,8 @@ struct Sight<'a> {
     frame: &'a GridFrame,
     reached: &'a [bool],
     radius_m: f64,
-    range_m: f64,
-    beams: Beams,
+    /// The ranges in which lines are searched, m, each with its beams.
+    beams: [(f64, Beams); 2],
     scene: Scene,
 }
 
@@ -97,13 +99,15 @@ impl<'a> Sight<'a> {
         let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
         let corners = (frame.origin(), frame.origin() + size);
         let scene = Scene::new(corners, solids, Vec::new(), 0, range_m);
-        let beams = Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m);
-        Self { frame, reached, radius_m: radius_m.min(range_m), range_m, beams, scene }
+        let beams = [NEAR_M.min(range_m), range_m]
+            .map(|range_m| (range_m, Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m)));
+        Self { frame, reached, radius_m: radius_m.min(range_m), beams, scene }
     }
 
     /// Whether a straight line from a point to a reached cell meets nothing.
     fn reaches(&self, from: Point2<f64>) -> bool {
-        self.is_near(from) || self.finds_a_line(from)
+        let mut beams = self.beams.iter();
+        self.is_near(from) || beams.any(|(range_m, beams)| self.finds_a_line(from, *range_m, beams))
     }
 
     /// Whether the robot's disc in a reached cell covers a point. Nothing is between the point and the center then. This
@@ -119,8 +123,8 @@ impl<'a> Sight<'a> {
         })
     }
 
-    fn finds_a_line(&self, from: Point2<f64>) -> bool {
-        let Self { frame, reached, range_m, beams, scene, .. } = self;
+    fn finds_a_line(&self, from: Point2<f64>, range_m: f64, beams: &Beams) -> bool {
+        let Self { frame, reached, scene, .. } = self;
         let step_m = frame.resolution_m() / 2.0;
         let is_reached = |at: Point2<f64>| frame.index(frame.cell_at(&at)).is_some_and(|cell| reached[cell]);
         let meets_one = |((x, y), inverse): ((f64, f64), &f64)| {

@@ -50,6 +50,8 @@ pub struct PhysicsGroundTruth {
     swept: Vec<u64>,
     /// The cells that are connected with the start of the driven robot. Walls separate cells, obstacles do not.
     reachable: Vec<bool>,
+    /// The cells that are reachable or share a side with a reachable cell. No other cell can be seen.
+    may_be_seen: Vec<bool>,
     changes: Vec<TrueChange>,
 }
 
@@ -57,6 +59,8 @@ impl PhysicsGroundTruth {
     /// The ground truth at the start: walls, and the region around `start` (m).
     pub(super) fn new(frame: GridFrame, walls: &[Rectangle], start: &Point2<f64>) -> Self {
         let fixed = start::walls_cover(&frame, walls);
+        let reachable = start::reachable(&frame, &fixed, frame.cell_at(start));
+        let may_be_seen = |index| reachable[index] || frame.beside(index).any(|side| reachable[side]);
         Self {
             frame,
             elapsed_s: 0.0,
@@ -71,7 +75,8 @@ impl PhysicsGroundTruth {
             pass_events: vec![0; frame.len()],
             movers: vec![None; frame.len()],
             swept: vec![0; frame.len().div_ceil(64)],
-            reachable: start::reachable(&frame, &fixed, frame.cell_at(start)),
+            may_be_seen: (0..frame.len()).map(may_be_seen).collect(),
+            reachable,
             changes: Vec::new(),
             fixed,
         }
@@ -215,6 +220,7 @@ impl GroundTruth for PhysicsGroundTruth {
 
     fn can_be_seen(&self, index: usize) -> bool {
         match self.states[index] {
+            _ if !self.may_be_seen[index] => false,
             TrueState::Free => self.reachable[index],
             TrueState::PartlyCovered => false,
             TrueState::Blocked => {

@@ -94,7 +94,10 @@ mod tests {
                 let from = Point2::new(random.uniform(0.0..1.0), random.uniform(0.0..1.0));
                 let to = edge.from.lerp(&edge.to, random.uniform(0.0..1.0)) - from;
                 let sector = ((libm::atan2(to.y, to.x) + PI) / SECTOR_RAD) as u32;
-                assert!(sectors >> sector.min(31) & 1 == 1, "{edge:?} from {from}: {sectors:b}");
+                assert!(
+                    sectors >> sector.min(Sectors::BITS - 1) & 1 == 1,
+                    "{edge:?} from {from}: {sectors:b}"
+                );
             }
         }
         assert!(partial > 1000 && all > 100, "{partial} {all}");
