@@ -6,14 +6,16 @@
 //! A look that shows nothing new is repeated after a time that doubles with every such look: what hides the frontier
 //! may be a door, or a body that moves away.
 
+mod lines_of_sight;
+
 use crate::goal_sampler::Goal;
 use crate::situation::Situation;
 use crate::strategies::Stay;
 use crate::visibility::Regions;
 use interfaces::{Cell, CellState, GridFrame};
+use lines_of_sight::LinesOfSight;
 use mapper::Mapper;
 use std::cmp::Reverse;
-use std::f64::consts::TAU;
 
 /// The maximum duration of a look, in the time unit of the readings. A map can need some readings before it takes a cell
 /// beside a surface for free.
@@ -54,6 +56,7 @@ pub(crate) struct UnseenSpace {
     range_m: f64,
     frame: Option<GridFrame>,
     looks: Vec<Looks>,
+    lines: LinesOfSight,
     /// The number of frontier cells of each region.
     frontier: Vec<usize>,
     target: Option<Target>,
@@ -63,7 +66,8 @@ impl UnseenSpace {
     /// For regions of `region_cells` × `region_cells` cells, and a sensor with the range `range_m`.
     pub(crate) fn new(region_cells: usize, range_m: f64) -> Self {
         let (frame, target) = (None, None);
-        Self { region_cells, range_m, frame, looks: Vec::new(), frontier: Vec::new(), target }
+        let (looks, lines, frontier) = (Vec::new(), LinesOfSight::default(), Vec::new());
+        Self { region_cells, range_m, frame, looks, lines, frontier, target }
     }
 
     /// Ends the last look. Returns whether any frontier is due for a look now.
@@ -129,6 +133,7 @@ impl UnseenSpace {
         if self.frame != Some(frame) {
             (self.frame, self.target) = (Some(frame), None);
             self.looks = vec![Looks::default(); regions.count()];
+            self.lines = LinesOfSight::new(&frame, self.range_m, DIRECTIONS);
         }
         regions
     }
@@ -146,19 +151,16 @@ impl UnseenSpace {
     fn viewpoint(&self, situation: &Situation, target: usize) -> Option<(f64, Cell)> {
         let (states, frame) = (situation.mapper.states(), situation.mapper.frame());
         let target = frame.cell(target);
-        let steps = (2.0 * self.range_m / frame.resolution_m()) as u32;
-        let along = |direction: u32| {
-            let (sin, cos) = libm::sincos(TAU * f64::from(direction) / f64::from(DIRECTIONS));
-            let cells = (0..steps).map_while(|step| {
-                let offset = |slope: f64| (slope * f64::from(step) / 2.0).round() as i32;
-                let cell = Cell { x: target.x + offset(cos), y: target.y + offset(sin) };
+        let along = |line: &[Cell]| {
+            let cells = line.iter().map_while(|offset| {
+                let cell = Cell::new(target.x + offset.x, target.y + offset.y);
                 let index = frame.index(cell)?;
                 (states.cells()[index] != CellState::Blocked).then_some((index, cell))
             });
             let mut times = cells.map(|(index, cell)| (situation.travel_to(index), cell));
             times.find(|(time, _)| time.is_finite())
         };
-        let seen: Vec<Option<(f64, Cell)>> = (0..DIRECTIONS).map(along).collect();
+        let seen: Vec<Option<(f64, Cell)>> = self.lines.iter().map(along).collect();
         // Whether the directions beside are free as well: in a gap, the middle of the view.
         let margin = |direction: usize| {
             let at = |offset: usize| seen[(direction + offset) % seen.len()].is_some();

@@ -12,28 +12,38 @@ const CREDIBLE_MASS: f64 = 0.9;
 /// One row: a cell that was seen at least once. Times are in seconds.
 #[derive(serde::Serialize)]
 struct Row {
-    x_m: f64,
-    y_m: f64,
+    x_m: Number,
+    y_m: Number,
     column: i32,
     row: i32,
     state: &'static str,
-    first_seen_s: f64,
-    last_seen_s: f64,
-    unobserved_s: f64,
-    watched_free_s: f64,
-    watched_blocked_s: f64,
+    first_seen_s: Number,
+    last_seen_s: Number,
+    unobserved_s: Number,
+    watched_free_s: Number,
+    watched_blocked_s: Number,
     block_events: u32,
     free_events: u32,
     block_events_after_gap: u32,
     free_events_after_gap: u32,
     /// `inf` for a cell that never changed.
-    interval_s: f64,
-    rate_hz: f64,
+    interval_s: Number,
+    rate_hz: Number,
     /// The ends of the 90 % credible interval of the rate; the upper one is `inf` before the second reading.
-    rate_low_hz: f64,
-    rate_high_hz: f64,
-    change_probability: f64,
-    recency_s: f64,
+    rate_low_hz: Number,
+    rate_high_hz: Number,
+    change_probability: Number,
+    recency_s: Number,
+}
+
+/// A number as the standard library prints it: the shortest digits that give the same value. The standard library is
+/// optimized in every build, unlike the package that prints the numbers of the `csv` crate.
+struct Number(f64);
+
+impl serde::Serialize for Number {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&format_args!("{:?}", self.0))
+    }
 }
 
 /// Writes a CSV file with one row for every cell that was seen at least once, row by row from the lower left.
@@ -44,17 +54,17 @@ struct Row {
 pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
     write_file(path, |file| {
         let mut table = csv::Writer::from_writer(file);
+        let interval = mapper.credible_intervals(CREDIBLE_MASS);
         for index in (0..mapper.frame().len()).filter(|&index| mapper.was_ever_seen(index)) {
-            table.serialize(row(mapper, index)).map_err(io::Error::other)?;
+            table.serialize(row(mapper, index, interval(index))).map_err(io::Error::other)?;
         }
         table.flush()
     })
 }
 
-fn row(mapper: &Mapper, index: usize) -> Row {
+fn row(mapper: &Mapper, index: usize, (rate_low_hz, rate_high_hz): (f64, f64)) -> Row {
     let (frame, seen) = (mapper.frame(), mapper.statistics(index));
     let cell = frame.cell(index);
-    let (rate_low_hz, rate_high_hz) = mapper.credible_interval(index, CREDIBLE_MASS);
     let center = frame.center(cell);
     Row {
         x_m: micro(center.x),
@@ -76,17 +86,17 @@ fn row(mapper: &Mapper, index: usize) -> Row {
         block_events_after_gap: seen.block_events_after_gap,
         free_events_after_gap: seen.free_events_after_gap,
         interval_s: micro(mapper.interval(index)),
-        rate_hz: mapper.rate(index),
-        rate_low_hz,
-        rate_high_hz,
-        change_probability: mapper.change_probability(index),
+        rate_hz: Number(mapper.rate(index)),
+        rate_low_hz: Number(rate_low_hz),
+        rate_high_hz: Number(rate_high_hz),
+        change_probability: Number(mapper.change_probability(index)),
         recency_s: micro(mapper.recency(index)),
     }
 }
 
 /// Rounds to millionths: a sum of tenths of a second is 31.4, not 31.400000000000002.
-fn micro(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6
+fn micro(value: f64) -> Number {
+    Number((value * 1e6).round() / 1e6)
 }
 
 #[cfg(test)]

@@ -151,8 +151,8 @@ impl Planner {
         let Some(start) = self.exit(map, frame.cell_at(from)) else { return };
         self.wavefront.spread(self.inflation.costmap(), start, None);
         let unit_m = frame.resolution_m() / f64::from(STRAIGHT);
-        for (index, length_m) in lengths_m.iter_mut().enumerate().take(frame.len()) {
-            if let Some(cost) = self.wavefront.path_cost(frame.cell(index)) {
+        for (length_m, cost) in lengths_m.iter_mut().zip(self.wavefront.path_costs()) {
+            if let Some(cost) = cost {
                 *length_m = f64::from(cost) * unit_m;
             }
         }

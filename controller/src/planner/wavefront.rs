@@ -173,6 +173,13 @@ impl Wavefront {
         (cost != UNREACHED).then_some(cost)
     }
 
+    /// The [path costs](Self::path_cost) of all cells, in row-major order.
+    pub fn path_costs(&self) -> impl Iterator<Item = Option<u32>> {
+        let width = self.frame.width();
+        let rows = self.costs.chunks_exact(width + 2).skip(1).take(self.frame.height());
+        rows.flat_map(move |row| &row[1..=width]).map(|&cost| (cost != UNREACHED).then_some(cost))
+    }
+
     /// Writes the cells of a cheapest path from `from` to the source into `path`, both included: the descent
     /// of the field (paper: hill climbing). Nothing where no wave was.
     pub fn descend(&self, map: &Costmap, from: Cell, path: &mut Vec<Cell>) {
@@ -260,7 +267,9 @@ mod tests {
             let moves = if four { Moves::Four } else { Moves::Eight };
             let mut wave = Wavefront::new(*map.frame(), moves);
             wave.spread(&map, source, None);
-            prop_assert_eq!(all_costs(&wave, map.frame()), dijkstra(&map, source, moves));
+            let costs = all_costs(&wave, map.frame());
+            prop_assert!(wave.path_costs().eq(costs.iter().copied()));
+            prop_assert_eq!(costs, dijkstra(&map, source, moves));
         }
 
         #[test]

@@ -8,52 +8,65 @@ const MAX_ROUNDS: usize = 100;
 /// A quantile is found when it moves by less than this share of itself.
 const FOUND: f64 = 1e-12;
 
-/// The `probability` quantile of a gamma distribution of mean 1: Newton's method in the logarithm, within bounds
-/// that close in.
-pub(super) fn quantile(shape: f64, probability: f64) -> f64 {
-    if shape >= NORMAL_FROM {
-        let root = cube_root(shape, probability);
-        return root.max(0.0) * root * root;
-    }
-    let of_shape = libm::lgamma(shape);
-    // No requested quantile lies beyond these bounds.
-    let (mut low, mut high) = (-(40.0 / shape).min(700.0), libm::log(60.0 * (1.0 + shape)));
-    let mut log = first_guess(shape, of_shape, probability).clamp(low, high);
-    for _ in 0..MAX_ROUNDS {
-        let x = libm::exp(log);
-        let density = libm::exp(shape * log - x - of_shape);
-        let below = lower(shape, x, density);
-        if below < probability {
-            low = log
-        } else {
-            high = log
-        }
-        // Newton's method for the logarithm of the probability: almost straight where x is small.
-        let next = log - below / density * libm::log(below / probability);
-        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        let is_found = (next - log).abs() < FOUND;
-        log = next;
-        if is_found {
-            break;
-        }
-    }
-    libm::exp(log) / shape
+/// A quantile of gamma distributions.
+pub(super) struct Quantile {
+    probability: f64,
+    /// The same quantile of a normal distribution of variance 1 around 0.
+    normal: f64,
 }
 
-/// The logarithm of a value near the quantile: from the first term of the power series where that is small, else by
-/// the rule of Wilson and Hilferty.
-fn first_guess(shape: f64, of_shape: f64, probability: f64) -> f64 {
-    let small = (libm::log(probability * shape) + of_shape) / shape;
-    if small < libm::log(0.2 * (shape + 1.0)) {
-        return small;
+impl Quantile {
+    /// The quantile for a probability.
+    pub(super) fn new(probability: f64) -> Self {
+        Self { probability, normal: normal_quantile(probability) }
     }
-    libm::log(shape) + 3.0 * libm::log(cube_root(shape, probability).max(0.1))
-}
 
-/// The cube root of the quantile, as if it were normal (Wilson & Hilferty).
-fn cube_root(shape: f64, probability: f64) -> f64 {
-    let ninth = 1.0 / (9.0 * shape);
-    1.0 - ninth + normal_quantile(probability) * libm::sqrt(ninth)
+    /// The quantile of a gamma distribution of mean 1: Newton's method in the logarithm, within bounds that close in.
+    pub(super) fn of(&self, shape: f64) -> f64 {
+        if shape >= NORMAL_FROM {
+            let root = self.cube_root(shape);
+            return root.max(0.0) * root * root;
+        }
+        let of_shape = libm::lgamma(shape);
+        // No requested quantile lies beyond these bounds.
+        let (mut low, mut high) = (-(40.0 / shape).min(700.0), libm::log(60.0 * (1.0 + shape)));
+        let mut log = self.first_guess(shape, of_shape).clamp(low, high);
+        for _ in 0..MAX_ROUNDS {
+            let x = libm::exp(log);
+            let density = libm::exp(shape * log - x - of_shape);
+            let below = lower(shape, x, density);
+            if below < self.probability {
+                low = log
+            } else {
+                high = log
+            }
+            // Newton's method for the logarithm of the probability: almost straight where x is small.
+            let next = log - below / density * libm::log(below / self.probability);
+            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            let is_found = (next - log).abs() < FOUND;
+            log = next;
+            if is_found {
+                break;
+            }
+        }
+        libm::exp(log) / shape
+    }
+
+    /// The logarithm of a value near the quantile: from the first term of the power series where that is small, else by
+    /// the rule of Wilson and Hilferty.
+    fn first_guess(&self, shape: f64, of_shape: f64) -> f64 {
+        let small = (libm::log(self.probability * shape) + of_shape) / shape;
+        if small < libm::log(0.2 * (shape + 1.0)) {
+            return small;
+        }
+        libm::log(shape) + 3.0 * libm::log(self.cube_root(shape).max(0.1))
+    }
+
+    /// The cube root of the quantile, as if it were normal (Wilson & Hilferty).
+    fn cube_root(&self, shape: f64) -> f64 {
+        let ninth = 1.0 / (9.0 * shape);
+        1.0 - ninth + self.normal * libm::sqrt(ninth)
+    }
 }
 
 /// The quantile of a normal distribution of variance 1 around 0, by halving.
@@ -103,7 +116,7 @@ mod tests {
     fn quantiles_invert_the_distribution() {
         for shape in [0.3, 0.5, 1.0, 2.5, 20.0, 99.0, 101.0, 5000.0] {
             for probability in [0.001, 0.05, 0.5, 0.9, 0.999] {
-                let x = quantile(shape, probability) * shape;
+                let x = Quantile::new(probability).of(shape) * shape;
                 let found = summed(shape, x);
                 assert!((found - probability).abs() < 2e-4, "shape {shape}: {found}, not {probability}");
             }
@@ -112,6 +125,6 @@ mod tests {
 
     #[test]
     fn an_exponential_variable() {
-        assert!((quantile(1.0, 0.5) - std::f64::consts::LN_2).abs() < 1e-12);
+        assert!((Quantile::new(0.5).of(1.0) - std::f64::consts::LN_2).abs() < 1e-12);
     }
 }

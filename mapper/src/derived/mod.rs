@@ -10,6 +10,7 @@ mod gamma;
 use crate::Mapper;
 use blocked_probability::blocked_probability;
 use change_probability::change_probability;
+use credible_interval::CredibleInterval;
 pub(crate) use expected_changes::ExpectedChanges;
 use interfaces::CellState;
 
@@ -57,10 +58,17 @@ impl Mapper {
     /// observation time, and the longer the cell was observed without an event, the lower is the upper bound.
     /// Before the second reading the interval is 0 to ∞.
     pub fn credible_interval(&self, index: usize, mass: f64) -> (f64, f64) {
-        let belief = self.cells.belief(index);
-        belief.map_or((0.0, f64::INFINITY), |(belief, period)| {
-            credible_interval::of_cycle_rate(belief, period, mass)
-        })
+        self.credible_intervals(mass)(index)
+    }
+
+    /// The [credible interval](Self::credible_interval) of every cell, by index. This takes less time than one call per
+    /// cell.
+    pub fn credible_intervals(&self, mass: f64) -> impl Fn(usize) -> (f64, f64) {
+        let interval = CredibleInterval::new(mass);
+        move |index| {
+            let belief = self.cells.belief(index);
+            belief.map_or((0.0, f64::INFINITY), |(belief, period)| interval.of_cycle_rate(belief, period))
+        }
     }
 
     /// The rates at which the cell leaves its states, per unit of time: free → blocked (α) and blocked → free (β).
@@ -76,17 +84,17 @@ impl Mapper {
     /// last observed, and an unknown cell has 0.5.
     pub fn blocked_probability(&self, index: usize) -> f64 {
         let state = self.cells.state(index);
-        let is_certain = self.is_in_view(index) && state != CellState::Unknown;
-        match self.cells.transition_rates(index).filter(|_| !is_certain) {
-            Some(rates) => {
-                let (seen, variation) = (self.statistics(index), self.cells.variation());
-                blocked_probability(rates, &seen, variation, state, self.recency(index))
-            }
-            None => match state {
-                CellState::Unknown => 0.5,
-                CellState::Free => 0.0,
-                CellState::Blocked => 1.0,
-            },
+        let last_seen = match state {
+            CellState::Unknown => 0.5,
+            CellState::Free => 0.0,
+            CellState::Blocked => 1.0,
+        };
+        if !self.cells.has_changed(index) || self.is_in_view(index) && state != CellState::Unknown {
+            return last_seen;
         }
+        let seen = self.statistics(index);
+        self.estimator().transition_rates(&seen).map_or(last_seen, |rates| {
+            blocked_probability(rates, &seen, self.cells.variation(), state, self.recency(index))
+        })
     }
 }

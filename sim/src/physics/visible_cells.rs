@@ -11,6 +11,8 @@ use std::f64::consts::{PI, TAU};
 
 /// The number of directions in which a line of sight is searched.
 const DIRECTIONS: usize = 360;
+/// Most lines of sight end within this distance, m. Few walls are that near, so that these lines are searched first.
+const NEAR_M: f64 = 1.0;
 /// The distance of the points that see a blocked cell from its sides, as a share of the side.
 const OUTSIDE: f64 = 1e-3;
 
@@ -22,6 +24,15 @@ impl WorldSpec {
     /// Lines of sight are searched in 360 directions from each cell that no pose of the robot is beside, against the exact
     /// geometry.
     pub fn visible_cells(&self) -> Vec<bool> {
+        self.visible_cells_among(not_enclosed)
+    }
+
+    /// See [`WorldSpec::visible_cells`]. Lines of sight are searched only from the cells in `candidates`, which receives
+    /// the states of all cells and whether the robot can reach them.
+    pub(in crate::physics) fn visible_cells_among(
+        &self,
+        candidates: impl Fn(&GridFrame, &[TrueState], &[bool]) -> Vec<bool>,
+    ) -> Vec<bool> {
         let (frame, robot) = (&self.frame, self.driven());
         let (solids, space) = (solids(self), FreeSpace::new(self, robot.radius_m));
         let states = start::walls_cover(frame, &solids);
@@ -30,18 +41,35 @@ impl WorldSpec {
             space.regions().iter().map(|region| region.is_some() && *region == own).collect();
         let range_m = robot.laser.range_max_m;
         let sight = Sight::new(frame, &solids, range_m, robot.radius_m, &reached);
+        let candidates = candidates(frame, &states, &reached);
         let is_visible = |index: usize| match states[index] {
             _ if reached[index] => true,
-            TrueState::Free => sight.reaches(frame.center(frame.cell(index))),
+            TrueState::Free => candidates[index] && sight.reaches(frame.center(frame.cell(index))),
             TrueState::PartlyCovered => false,
             TrueState::Blocked => {
                 let cell = frame.cell(index);
-                let mut sides = frame.beside(index).filter(|side| states[*side] != TrueState::Blocked);
+                let mut sides = frame.beside(index).filter(|side| candidates[*side]);
                 sides.any(|side| sight.reaches(before(frame, cell, side)))
             }
         };
         (0..frame.len()).map(is_visible).collect()
     }
+}
+
+/// The cells that are not blocked and that others of this kind connect, by sides or corners, with a reached cell. Every
+/// line of sight from another cell to a reached cell meets a blocked cell.
+fn not_enclosed(frame: &GridFrame, states: &[TrueState], reached: &[bool]) -> Vec<bool> {
+    let mut is_connected = reached.to_vec();
+    let mut open: Vec<usize> = (0..frame.len()).filter(|index| reached[*index]).collect();
+    while let Some(index) = open.pop() {
+        for near in frame.cell(index).neighbours8().into_iter().filter_map(|cell| frame.index(cell)) {
+            if states[near] != TrueState::Blocked && !is_connected[near] {
+                is_connected[near] = true;
+                open.push(near);
+            }
+        }
+    }
+    is_connected
 }
 
 /// The point just outside of a cell, before the middle of the side that it shares with the cell `side`.
@@ -55,8 +83,8 @@ struct Sight<'a> {
     frame: &'a GridFrame,
     reached: &'a [bool],
     radius_m: f64,
-    range_m: f64,
-    beams: Beams,
+    /// The ranges in which lines are searched, m, each with its beams.
+    beams: [(f64, Beams); 2],
     scene: Scene,
 }
 
@@ -71,13 +99,15 @@ impl<'a> Sight<'a> {
         let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
         let corners = (frame.origin(), frame.origin() + size);
         let scene = Scene::new(corners, solids, Vec::new(), 0, range_m);
-        let beams = Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m);
-        Self { frame, reached, radius_m: radius_m.min(range_m), range_m, beams, scene }
+        let beams = [NEAR_M.min(range_m), range_m]
+            .map(|range_m| (range_m, Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m)));
+        Self { frame, reached, radius_m: radius_m.min(range_m), beams, scene }
     }
 
     /// Whether a straight line from a point to a reached cell meets nothing.
     fn reaches(&self, from: Point2<f64>) -> bool {
-        self.is_near(from) || self.finds_a_line(from)
+        let mut beams = self.beams.iter();
+        self.is_near(from) || beams.any(|(range_m, beams)| self.finds_a_line(from, *range_m, beams))
     }
 
     /// Whether the robot's disc in a reached cell covers a point. Nothing is between the point and the center then. This
@@ -93,8 +123,8 @@ impl<'a> Sight<'a> {
         })
     }
 
-    fn finds_a_line(&self, from: Point2<f64>) -> bool {
-        let Self { frame, reached, range_m, beams, scene, .. } = self;
+    fn finds_a_line(&self, from: Point2<f64>, range_m: f64, beams: &Beams) -> bool {
+        let Self { frame, reached, scene, .. } = self;
         let step_m = frame.resolution_m() / 2.0;
         let is_reached = |at: Point2<f64>| frame.index(frame.cell_at(&at)).is_some_and(|cell| reached[cell]);
         let meets_one = |((x, y), inverse): ((f64, f64), &f64)| {

@@ -81,15 +81,22 @@ impl CellMap {
         }
     }
 
+    /// Whether the cell ever changed. Most cells did not: their rates need no statistics.
+    #[inline]
+    pub(crate) fn has_changed(&self, index: usize) -> bool {
+        self.records[index].slot().is_some()
+    }
+
     /// The cycle rate of a cell, by the estimator in use.
     #[inline]
     pub(crate) fn rate(&self, index: usize) -> f64 {
-        self.estimator.rate(&self.statistics(index))
+        if self.has_changed(index) { self.estimator.rate(&self.statistics(index)) } else { 0.0 }
     }
 
     /// The transition rates of a cell, if the estimator in use computes them.
     pub(crate) fn transition_rates(&self, index: usize) -> Option<TransitionRates> {
-        self.estimator.transition_rates(&self.statistics(index))
+        let seen = self.has_changed(index).then(|| self.statistics(index));
+        seen.and_then(|seen| self.estimator.transition_rates(&seen))
     }
 
     /// For free and for blocked stays, the squared coefficient of variation over the whole map; 1, as in a chain, until

@@ -86,7 +86,7 @@ impl CellMap {
 
     /// Weighs the gaps of a cell that changes, if enough was observed since the gaps were last weighed.
     pub(super) fn weigh_gaps(&mut self, index: usize) {
-        if self.gaps.is_empty() || self.records[index].slot().is_none() {
+        if self.gaps.is_empty() || !self.has_changed(index) {
             return;
         }
         let seen = self.statistics(index);

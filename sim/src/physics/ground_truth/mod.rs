@@ -50,6 +50,8 @@ pub struct PhysicsGroundTruth {
     swept: Vec<u64>,
     /// The cells that are connected with the start of the driven robot. Walls separate cells, obstacles do not.
     reachable: Vec<bool>,
+    /// The cells that are reachable or share a side with a reachable cell. No other cell can be seen.
+    may_be_seen: Vec<bool>,
     changes: Vec<TrueChange>,
 }
 
@@ -57,6 +59,8 @@ impl PhysicsGroundTruth {
     /// The ground truth at the start: walls, and the region around `start` (m).
     pub(super) fn new(frame: GridFrame, walls: &[Rectangle], start: &Point2<f64>) -> Self {
         let fixed = start::walls_cover(&frame, walls);
+        let reachable = start::reachable(&frame, &fixed, frame.cell_at(start));
+        let may_be_seen = |index| reachable[index] || frame.beside(index).any(|side| reachable[side]);
         Self {
             frame,
             elapsed_s: 0.0,
@@ -71,7 +75,8 @@ impl PhysicsGroundTruth {
             pass_events: vec![0; frame.len()],
             movers: vec![None; frame.len()],
             swept: vec![0; frame.len().div_ceil(64)],
-            reachable: start::reachable(&frame, &fixed, frame.cell_at(start)),
+            may_be_seen: (0..frame.len()).map(may_be_seen).collect(),
+            reachable,
             changes: Vec::new(),
             fixed,
         }
@@ -215,6 +220,7 @@ impl GroundTruth for PhysicsGroundTruth {
 
     fn can_be_seen(&self, index: usize) -> bool {
         match self.states[index] {
+            _ if !self.may_be_seen[index] => false,
             TrueState::Free => self.reachable[index],
             TrueState::PartlyCovered => false,
             TrueState::Blocked => {
@@ -240,12 +246,16 @@ impl GroundTruth for PhysicsGroundTruth {
     }
 
     fn swept(&self) -> Cow<'_, [usize]> {
-        let words = self.swept.iter().enumerate().filter(|(_, word)| **word != 0);
-        let of_word = |(at, word): (usize, &u64)| {
-            let word = *word;
-            (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| 64 * at + bit)
-        };
-        words.flat_map(of_word).collect()
+        let count: u32 = self.swept.iter().map(|word| word.count_ones()).sum();
+        let mut cells = Vec::with_capacity(count as usize);
+        for (at, word) in self.swept.iter().enumerate() {
+            let mut rest = *word;
+            while rest != 0 {
+                cells.push(64 * at + rest.trailing_zeros() as usize);
+                rest &= rest - 1; // without its lowest bit
+            }
+        }
+        cells.into()
     }
 
     /// Obstacles first, then robots, each in the order of the world file. The computing time is that of a pass over

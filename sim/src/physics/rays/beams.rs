@@ -159,7 +159,7 @@ impl<'a> Hits<'a> {
     /// Adds an edge of a solid, if the edge faces the laser and is within range.
     pub(super) fn add_edge(&mut self, edge: &Edge) {
         if let Some(gap_m) = self.gap_m(edge) {
-            let [from, to] = [&edge.from, &edge.to].map(|point| self.bearing(point));
+            let (from, to) = (self.bearing(&edge.from), self.bearing(&edge.to));
             self.add_between(edge, gap_m, &from, &to);
         }
     }

@@ -6,6 +6,7 @@
 //! edge). All margins are on the safe side, so the lists never change a range.
 
 use super::edges::Edge;
+use super::hiding::{Sectors, sectors_of};
 use super::index_lists::IndexLists;
 use crate::physics::shape::{Rectangle, point_segment_m};
 use nalgebra::{Point2, Vector2};
@@ -28,6 +29,8 @@ pub(super) struct SeenEdge {
     pub(super) edge: u32,
     /// At most the shortest distance between a point of the cell and the edge, m.
     pub(super) nearest_m: f32,
+    /// The directions from points of the cell to points of the edge.
+    pub(super) sectors: Sectors,
 }
 
 /// The cells, and what can be seen from each.
@@ -230,7 +233,7 @@ impl View {
             .map(|&(i, middle_m)| {
                 // Less than the true value, also in single precision.
                 let nearest_m = (middle_m - self.half_m - MARGIN_M) as f32 - 1e-5 * middle_m as f32;
-                SeenEdge { edge: i as u32, nearest_m }
+                SeenEdge { edge: i as u32, nearest_m, sectors: sectors_of(&self.corners, &edges[i]) }
             })
             .collect();
         seen.sort_unstable_by(|a, b| a.nearest_m.total_cmp(&b.nearest_m).then(a.edge.cmp(&b.edge)));

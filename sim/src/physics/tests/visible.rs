@@ -47,6 +47,16 @@ fn closed_rooms_stay_hidden_but_not_rooms_with_doors() {
     assert!(!at(0.05, 5.0), "the wall of the closet, which is seen from nowhere");
 }
 
+#[test]
+fn nothing_is_seen_from_enclosed_cells() {
+    let spec = house();
+    let by_trying = |frame: &GridFrame, states: &[interfaces::TrueState], _: &[bool]| {
+        assert_eq!(states.len(), frame.len());
+        states.iter().map(|state| *state != interfaces::TrueState::Blocked).collect()
+    };
+    assert_eq!(spec.visible_cells(), spec.visible_cells_among(by_trying));
+}
+
 /// The poses at which the robot fits, 0.25 m apart. In this house all but those in the closet can be reached.
 fn poses(spec: &WorldSpec, solids: &[Rectangle]) -> Vec<Point2<f64>> {
     let places = (0..48 * 48)

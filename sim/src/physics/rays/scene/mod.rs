@@ -7,6 +7,7 @@ use super::beams::{Beams, Hits};
 use super::circles::Discs;
 use super::disc::Disc;
 use super::edges::{Edge, visible_edges};
+use super::hiding::add_edges;
 use super::index_lists::IndexLists;
 use super::polygons::{Polygons, SortedPolygons, Tested};
 use super::visibility::PotentiallyVisibleSet;
@@ -149,7 +150,7 @@ impl Scene {
         tested.begin(polygons.len());
         match own_cell {
             Some(cell) => {
-                visible.edges(cell).iter().for_each(|seen| hits.add_edge(&edges[seen.edge as usize]));
+                add_edges(visible.edges(cell), edges, &mut hits);
                 let cells = visible.cells(cell).iter().map(|&cell| cell as usize);
                 for cell in cells.chain([visible.len()]) {
                     add_robots(discs, &mut hits, robots.get(cell), own);
