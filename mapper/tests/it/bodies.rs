@@ -25,6 +25,15 @@ struct Watched {
 
 /// The house, empty at first, then with the outlines `things(scan)`, seen by a robot at rest.
 fn watch(at: (f64, f64), scans: u32, things: impl Fn(u32) -> Vec<Vec<Point2<f64>>>) -> Watched {
+    watch_from(|_| at, scans, things)
+}
+
+/// The same, seen by a robot at `at(scan)`.
+fn watch_from(
+    at: impl Fn(u32) -> (f64, f64),
+    scans: u32,
+    things: impl Fn(u32) -> Vec<Vec<Point2<f64>>>,
+) -> Watched {
     let mut house = House::new(0.1, 0.0, 0.0, 720, 1);
     let walls = house.things.len();
     let mut mapper = Mapper::new(&MapperSettings::default(), house.frame).unwrap();
@@ -35,6 +44,7 @@ fn watch(at: (f64, f64), scans: u32, things: impl Fn(u32) -> Vec<Vec<Point2<f64>
             touched.extend((0..house.frame.len()).filter(|&index| touches(&house, index, &corners)));
             house.add(Thing::always(corners));
         }
+        let at = at(scan.saturating_sub(EMPTY_SCANS));
         let pose = Isometry2::translation(at.0, at.1);
         mapper.update(&house.reading(f64::from(scan) * PERIOD_S, pose, &[])).unwrap();
         if scan >= EMPTY_SCANS {
@@ -150,6 +160,38 @@ fn a_body_is_known_from_its_visible_side() {
         let share = watched.blocked_share(&corners);
         assert!(share >= least, "{name}: {share}");
         assert!(watched.false_changes().is_empty(), "{name}: {:?}", watched.false_changes());
+    }
+}
+
+/// From the side, the gap between two boxes seems to be a part of one body. A look through the gap shows that it is not.
+#[test]
+fn a_gap_between_two_bodies_at_rest_stays_free_once_it_was_seen_free() {
+    let boxes = || vec![rectangle(2.5, 3.5, 2.95, 3.9), rectangle(3.03, 3.5, 3.5, 3.9)];
+    let (aside, through) = ((1.5, 1.5), (2.99, 1.5));
+    let gap = |watched: &Watched| {
+        let cells = (0..8).map(|row| Point2::new(2.975, 3.525 + 0.05 * f64::from(row)));
+        let is_blocked = |at: &Point2<f64>| {
+            watched.mapper.states().get(watched.house.frame.cell_at(at)) == Some(&CellState::Blocked)
+        };
+        cells.filter(is_blocked).count()
+    };
+    let first = watch_from(|_| aside, 130, |_| boxes());
+    assert!(gap(&first) > 0, "the gap seems to be a part of a body");
+    let again = watch_from(|scan| if (130..190).contains(&scan) { through } else { aside }, 250, |_| boxes());
+    assert_eq!(gap(&again), 0);
+}
+
+#[test]
+fn a_thing_that_comes_behind_a_leaf_at_rest_is_a_body_of_its_own() {
+    for y in [3.74, 3.76, 3.78, 3.8] {
+        let beside = disc(Point2::new(3.38, y), 0.17);
+        let comes = |scan: u32| {
+            let leaf = rectangle(2.5, 3.5, 3.4, 3.55);
+            if scan < 120 { vec![leaf] } else { vec![leaf, beside.clone()] }
+        };
+        let watched = watch((3.7, 1.5), 125, comes);
+        assert!(watched.blocked_share(&beside) > 0.0, "{y}: not seen");
+        assert!(watched.false_changes().is_empty(), "{y}: {:?}", watched.false_changes());
     }
 }
 

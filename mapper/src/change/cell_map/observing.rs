@@ -23,6 +23,12 @@ impl CellMap {
         self.last_reading(index) == self.reading()
     }
 
+    /// Whether a reading after this one observed the cell.
+    #[inline]
+    pub fn was_seen_after(&self, index: usize, reading: ReadingIndex) -> bool {
+        self.last_reading(index) > reading
+    }
+
     /// Whether the cell was in view when the open reading came: the last observation of the cell was made by the
     /// reading before, or at most [`MapperSettings::max_gap`](crate::MapperSettings::max_gap) ago, and all readings since
     /// had a certain pose.

@@ -1,7 +1,7 @@
 //! Bodies: the cells inside of a new obstacle, which no beam can show.
 
 use super::{Surface, SurfaceGrid, SurfaceGridSettings};
-use crate::change::CellMap;
+use crate::change::{CellMap, ReadingIndex};
 use crate::occupancy::inverse_sensor_model::{NOISE_STDS, passes};
 use crate::occupancy::projection::ProjectedScan;
 use interfaces::{Cell, CellState};
@@ -10,6 +10,11 @@ use nalgebra::{Point2, Vector2};
 /// A body touches a cell if the center of the cell is nearer to the body than half a cell. Noise takes a part of this
 /// distance: less at the visible side, more at the far side, which follows from several hits. In cells.
 const REACH: [f64; 2] = [0.4, 0.2];
+/// A surface is at rest after this many times the hits after which it stands, about 10 s in view.
+const REST: u16 = 5;
+/// The distance from a hit to the next one on the same surface is at most this many times the distance between the two
+/// beams there: a surface that is seen at 20° or more.
+const MAX_SPACINGS: f64 = 3.0;
 
 /// The body of an obstacle, as far as one scan shows it: the convex outline of the hits, and the same outline turned
 /// by 180° about the middle between the first and the last hit.
@@ -79,15 +84,43 @@ impl Body {
     }
 }
 
+/// A hit on a new obstacle, or a hit that can be on one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NewHit {
+    beam: usize,
+    /// Whether the obstacle is on the map.
+    is_on_map: bool,
+    /// The reading since which a surface at rest has been there; the last of all readings for other surfaces.
+    since: ReadingIndex,
+}
+
+impl NewHit {
+    fn is_at_rest(&self) -> bool {
+        self.since < ReadingIndex::MAX
+    }
+}
+
+/// What is known of the hits on one body.
+#[derive(Clone, Copy, Debug, Default)]
+struct Known {
+    /// Whether a part of the body is on the map.
+    is_on_map: bool,
+    /// The reading since which all surfaces have been there, see [`NewHit::since`].
+    since: ReadingIndex,
+}
+
 impl SurfaceGrid {
     /// Notes the hit of one beam, counted for this cell, if the hit is on a new obstacle or can be on one.
     pub(super) fn note_new(&mut self, beam: usize, index: usize, cells: &CellMap) {
         let surface = &self.surfaces[index];
-        match cells.state(index) {
-            CellState::Blocked if surface.came => self.new_hits.push((beam, true)),
-            CellState::Free if surface.hit_at == cells.reading() => self.new_hits.push((beam, false)),
-            _ => {}
-        }
+        let is_on_map = match cells.state(index) {
+            CellState::Blocked if surface.came => true,
+            CellState::Free if surface.hit_at == cells.reading() => false,
+            _ => return,
+        };
+        let is_at_rest = is_on_map && surface.hits >= self.settings.hits_to_stand.saturating_mul(REST);
+        let since = if is_at_rest { surface.doubted_since } else { ReadingIndex::MAX };
+        self.new_hits.push(NewHit { beam, is_on_map, since });
     }
 
     /// Blocks the free cells in the bodies of new obstacles (rule 4).
@@ -95,25 +128,38 @@ impl SurfaceGrid {
         let new_hits = std::mem::take(&mut self.new_hits);
         let mut hits = std::mem::take(&mut self.body_hits);
         hits.clear();
-        let (mut next, mut is_new) = (usize::MAX, false);
-        for &(beam, is_on_new) in &new_hits {
-            let Some(end) = self.segmentation.ends[beam] else { continue };
-            let is_near = |last: &Point2<f64>| (end - last).norm() < self.settings.max_gap_m;
-            if beam != next || !hits.last().is_some_and(is_near) {
-                self.body(&hits, is_new, scan, cells);
+        let (mut known, mut before): (Known, Option<NewHit>) = Default::default();
+        for &hit in &new_hits {
+            let Some(end) = self.segmentation.ends[hit.beam] else { continue };
+            let goes_on = before.zip(hits.last()).is_some_and(|(last, last_end)| {
+                // A thing that comes near another one at rest is a body of its own.
+                let may_be_other = last.is_at_rest() != hit.is_at_rest();
+                let max_m = if may_be_other { self.same_surface_m(hit.beam, scan) } else { f64::INFINITY };
+                last.beam + 1 == hit.beam && (end - last_end).norm() < max_m.min(self.settings.max_gap_m)
+            });
+            if !goes_on {
+                self.body(&hits, known, scan, cells);
                 hits.clear();
-                is_new = false;
+                known = Known::default();
             }
             hits.push(end);
-            (next, is_new) = (beam + 1, is_new || is_on_new);
+            known.is_on_map |= hit.is_on_map;
+            known.since = known.since.max(hit.since);
+            before = Some(hit);
         }
-        self.body(&hits, is_new, scan, cells);
+        self.body(&hits, known, scan, cells);
         (self.new_hits, self.body_hits) = (new_hits, hits);
     }
 
+    /// The greatest distance from the hit of a beam to the next hit on the same surface, m.
+    fn same_surface_m(&self, beam: usize, scan: &ProjectedScan) -> f64 {
+        let spacing_m = scan.spacing_rad * scan.returns[beam].clear_m();
+        (MAX_SPACINGS * spacing_m).max(NOISE_STDS * self.settings.range_noise_std_m)
+    }
+
     /// Blocks the free cells in the body with these hits; in two bodies, if the hits enclose a hollow.
-    fn body(&mut self, hits: &[Point2<f64>], is_new: bool, scan: &ProjectedScan, cells: &mut CellMap) {
-        if hits.len() < 3 || !is_new {
+    fn body(&mut self, hits: &[Point2<f64>], known: Known, scan: &ProjectedScan, cells: &mut CellMap) {
+        if hits.len() < 3 || !known.is_on_map {
             return; // Two hits enclose nothing; hits on nothing that is on the map can be noise.
         }
         let mut body = std::mem::take(&mut self.body);
@@ -122,17 +168,18 @@ impl SurfaceGrid {
         let SurfaceGridSettings { range_noise_std_m, surface_depth_m, .. } = self.settings;
         let is_hollow = depth_m > surface_depth_m.max(NOISE_STDS * range_noise_std_m);
         if !is_hollow {
-            self.block(&body, scan, cells);
+            self.block(&body, known.since, scan, cells);
         }
         self.body = body;
         if is_hollow && deepest > 0 && deepest + 1 < hits.len() {
-            self.body(&hits[..=deepest], is_new, scan, cells);
-            self.body(&hits[deepest..], is_new, scan, cells);
+            self.body(&hits[..=deepest], known, scan, cells);
+            self.body(&hits[deepest..], known, scan, cells);
         }
     }
 
-    /// Blocks the free cells that a body touches, but for those that a beam passes.
-    fn block(&mut self, body: &Body, scan: &ProjectedScan, cells: &mut CellMap) {
+    /// Blocks the free cells that a body touches, but for those that a beam passes, or that were seen free since all
+    /// surfaces of the body have been there: they lie between two bodies.
+    fn block(&mut self, body: &Body, since: ReadingIndex, scan: &ProjectedScan, cells: &mut CellMap) {
         let frame = *cells.frame();
         let reach_m = REACH.map(|share| share * frame.resolution_m());
         // Not beyond the corners either: the lines through two sides meet far from a sharp corner.
@@ -142,10 +189,10 @@ impl SurfaceGrid {
         for y in low.y.max(0)..=high.y.min(frame.height() as i32 - 1) {
             for x in low.x.max(0)..=high.x.min(frame.width() as i32 - 1) {
                 let cell = Cell::new(x, y);
-                let Some(index) = frame.index(cell).filter(|&index| cells.state(index) == CellState::Free)
-                else {
-                    continue;
+                let may_be_inside = |index: &usize| {
+                    cells.state(*index) == CellState::Free && !cells.was_seen_after(*index, since)
                 };
+                let Some(index) = frame.index(cell).filter(may_be_inside) else { continue };
                 let center = frame.center(cell);
                 let max_gap_m = self.settings.max_gap_m;
                 if body.reaches(&center, reach_m) && !passes(scan, &center, 0.0, max_gap_m, reach_m[0]) {
@@ -154,6 +201,7 @@ impl SurfaceGrid {
                         hit_at: cells.reading(),
                         evidence: self.settings.misses_to_free_fresh as i8,
                         came: true,
+                        doubted_since: cells.reading(),
                         ..Surface::default()
                     };
                     self.remember(index, center, cells);

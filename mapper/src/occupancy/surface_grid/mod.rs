@@ -16,7 +16,8 @@
 //!    about the middle between the two ends: between both outlines is the body. This is a part of every convex body
 //!    with a center of symmetry, however much of the body is visible: most of a disc, all of a box whose corner is seen,
 //!    but only the surface of a door leaf or of a single flat side. The free cells in the body become blocked. All
-//!    other hidden cells are not seen, and keep their states.
+//!    other hidden cells are not seen, and keep their states. A thing that comes near another one at rest is a body of
+//!    its own, and cells that were seen free since a body has been at rest are not in the body.
 //!
 //! A cell that was hit receives no miss from the same scan. A first observation from far away can be wrong: if a
 //! state is contradicted before it was confirmed, the state is corrected, which does not count as a change.
@@ -31,7 +32,7 @@ use super::footprint::Footprint;
 use super::projection::ProjectedScan;
 use super::segmentation::Segmentation;
 use crate::change::{CellMap, ReadingIndex};
-use bodies::Body;
+use bodies::{Body, NewHit};
 use interfaces::CellState;
 use nalgebra::Point2;
 pub use settings::SurfaceGridSettings;
@@ -69,8 +70,8 @@ pub(super) struct SurfaceGrid {
     segmentation: Segmentation,
     /// Scratch memory: the cells of a scan that are not settled.
     unsettled: Vec<u32>,
-    /// Scratch memory: the beams of a scan that hit new obstacles (true), or that can have hit new obstacles (false).
-    new_hits: Vec<(usize, bool)>,
+    /// Scratch memory: the hits of a scan on new obstacles, and those that can be on new obstacles.
+    new_hits: Vec<NewHit>,
     /// Scratch memory: the hits on one body, and the body.
     body_hits: Vec<Point2<f64>>,
     body: Body,
