@@ -41,9 +41,11 @@ mod support;
 mod surfel_map;
 mod sweep;
 mod tracking;
+mod trajectory;
 
 pub use changing_map::ChangingMap;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};
 pub use given_poses::GivenPoses;
 pub use localizer::Localizer;
 pub use settings::{LocalizerSettings, OdometryTrust};
+pub use trajectory::{Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings};

@@ -1,0 +1,238 @@
+//! From reading to reading: the pose by matching with the submap of the last keyframes.
+
+use super::graph::{Edge, PoseGraph};
+use super::keyframe::{Keyframe, filled};
+use super::settings::TrajectorySettings;
+use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
+use crate::calibration::Calibration;
+use crate::estimate::PoseState;
+use crate::faults::{Fault, FaultFinder};
+use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align};
+use crate::motion::Motion;
+use crate::scan_points::ScanPoints;
+use crate::score_grid::ScoreGrid;
+use crate::search::{Window, search};
+use crate::surfel_map::SurfelMap;
+use interfaces::{LaserReading, heading_rad};
+use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// Points match a surfel within this many standard deviations of the range noise and of the surfel.
+const GATE_STDS: f64 = 3.0;
+/// The farthest that a match starts from the prediction, m.
+const WIDEST_M: f64 = 0.4;
+/// A pose counts as supported if at least this share of what the submap can judge agrees, and this many points.
+const LEAST_AGREEMENT: f64 = 0.7;
+const LEAST_POINTS: usize = 12;
+/// Below this agreement, the pose is searched for around the prediction.
+const SEARCH_BELOW: f64 = 0.5;
+const SEARCH_M: f64 = 0.8;
+const SEARCH_RAD: f64 = 0.4;
+/// The least gain of agreement by a search.
+const BETTER: f64 = 0.15;
+/// The errors of a matched motion that do not average out, m and rad.
+const MODEL_STD_M: f64 = 0.004;
+const MODEL_STD_RAD: f64 = 0.0015;
+
+/// The gates of a match of scans with this noise.
+pub(super) fn gates(noise_m: f64, first_m: f64) -> Gates {
+    let noise_m = noise_m.max(0.005);
+    let last_m = GATE_STDS * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt();
+    Gates { noise_m, first_m: first_m.clamp(last_m, WIDEST_M), last_m, by_rates: false }
+}
+
+/// The covariance of standard deviations of x and y, and of the heading.
+pub(super) fn covariance(std_m: f64, std_rad: f64) -> Matrix3<f64> {
+    Matrix3::from_diagonal(&Vector3::new(std_m * std_m, std_m * std_m, std_rad * std_rad))
+}
+
+/// An information matrix of shifts along the axes of a map, as one along the axes of a frame with this pose.
+pub(super) fn in_frame(information: &Matrix3<f64>, frame: &Isometry2<f64>) -> Matrix3<f64> {
+    let (cos, sin) = (frame.rotation.re, frame.rotation.im);
+    let turn = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+    turn.transpose() * information * turn
+}
+
+/// Matches scan by scan.
+#[derive(Debug)]
+pub(super) struct FrontEnd {
+    settings: TrajectorySettings,
+    faults: FaultFinder,
+    calibration: Calibration,
+    points: ScanPoints,
+    odometry: Option<Isometry2<f64>>,
+    /// The pose by matching with local submaps alone, and its covariance within the submap.
+    pose: Isometry2<f64>,
+    covariance: Matrix3<f64>,
+    /// The motion by odometry since the last keyframe.
+    since_keyframe: Isometry2<f64>,
+    keyframes: Vec<Keyframe>,
+    /// The older one is matched with, the younger one is only filled.
+    growing: Vec<GrowingSubmap>,
+    finished: Vec<FinishedSubmap>,
+}
+
+/// The result of a match with a submap.
+struct Tracked {
+    found: Match,
+    agreement: Agreement,
+}
+
+impl FrontEnd {
+    pub(super) fn new(settings: &TrajectorySettings) -> Self {
+        Self {
+            settings: settings.clone(),
+            faults: FaultFinder::default(),
+            calibration: Calibration::new(&settings.odometry),
+            points: ScanPoints::default(),
+            odometry: None,
+            pose: Isometry2::identity(),
+            covariance: Matrix3::zeros(),
+            since_keyframe: Isometry2::identity(),
+            keyframes: Vec::new(),
+            growing: Vec::new(),
+            finished: Vec::new(),
+        }
+    }
+
+    pub(super) fn keyframes(&self) -> &[Keyframe] {
+        &self.keyframes
+    }
+
+    /// The next submap that is full.
+    pub(super) fn next_finished(&mut self) -> Option<FinishedSubmap> {
+        if self.finished.is_empty() { None } else { Some(self.finished.remove(0)) }
+    }
+
+    /// The last submaps.
+    pub(super) fn finish(&mut self) -> Vec<FinishedSubmap> {
+        self.growing.drain(..).map(|submap| submap.finish(&self.keyframes)).collect()
+    }
+
+    /// The pose of a reading relative to the last keyframe of the graph, to which new keyframes are added.
+    pub(super) fn localize(
+        &mut self,
+        reading: &LaserReading,
+        graph: &mut PoseGraph,
+    ) -> (Isometry2<f64>, PoseState) {
+        let fault = self.faults.find(reading);
+        if fault == Some(Fault::Invalid) {
+            if graph.poses.is_empty() {
+                self.points.clear();
+                self.add_keyframe(graph, None);
+            }
+            return (self.offset(), PoseState::Lost);
+        }
+        let before = self.odometry.replace(reading.pose).unwrap_or(reading.pose);
+        let measured = before.inv_mul(&reading.pose);
+        let motion = Motion::new(self.calibration.correct(&measured), &self.settings.odometry);
+        self.since_keyframe *= motion.delta;
+        self.since_keyframe.rotation.renormalize();
+        let last = self.pose;
+        self.pose = motion.apply(&last);
+        self.covariance = motion.propagate(&last, &self.covariance);
+        if fault == Some(Fault::Frozen) && !graph.poses.is_empty() {
+            return (self.offset(), PoseState::Uncertain);
+        }
+        self.points.update(reading, self.settings.range_noise_std_m, true);
+        let tracked = self.track();
+        if let Some(tracked) = &tracked {
+            self.pose = tracked.found.pose;
+            self.covariance =
+                tracked.found.information.try_inverse().unwrap_or_else(|| covariance(0.1, 0.05))
+                    + covariance(0.001, 3e-4);
+        }
+        let is_supported = tracked.as_ref().is_none_or(|tracked| tracked.agreement.share() >= LEAST_AGREEMENT);
+        if is_supported && tracked.is_some() {
+            self.calibration.learn(&measured, &last.inv_mul(&self.pose));
+        }
+        let offset = self.offset();
+        let is_far = offset.translation.vector.norm() >= self.settings.keyframe_m
+            || heading_rad(&offset).abs() >= self.settings.keyframe_rad;
+        if graph.poses.is_empty() || is_far {
+            self.add_keyframe(graph, tracked.as_ref().map(|tracked| &tracked.found));
+        }
+        (self.offset(), if is_supported { PoseState::Tracking } else { PoseState::Uncertain })
+    }
+
+    /// The pose relative to the last keyframe.
+    fn offset(&self) -> Isometry2<f64> {
+        self.keyframes.last().map_or(Isometry2::identity(), |keyframe| keyframe.local.inv_mul(&self.pose))
+    }
+
+    /// The match of the scan with the submap; `None` if there is nothing to match with.
+    fn track(&self) -> Option<Tracked> {
+        let map = self.growing.first()?.map();
+        let prior = Prior { pose: self.pose, information: self.covariance.try_inverse()? };
+        let spread_m = (self.covariance[(0, 0)] + self.covariance[(1, 1)]).sqrt();
+        let at_range_m = 5.0 * self.covariance[(2, 2)].sqrt();
+        let tracked = self.matched(map, &self.pose, &prior, 0.1 + 2.0 * (spread_m + at_range_m))?;
+        if tracked.agreement.share() >= SEARCH_BELOW {
+            return Some(tracked);
+        }
+        let grid = ScoreGrid::anywhere(map);
+        let window = Window { pose: self.pose, reach_m: SEARCH_M, reach_rad: SEARCH_RAD };
+        let found = search(&grid, self.points.points(), Some(&window), SEARCH_BELOW, 0.95);
+        let wide = Prior { pose: self.pose, information: covariance(1.0, 0.5).try_inverse()? };
+        let found =
+            found.first().and_then(|candidate| self.matched(map, &candidate.pose, &wide, WIDEST_M / 2.0));
+        found
+            .filter(|found| found.agreement.share() > tracked.agreement.share() + BETTER)
+            .or(Some(tracked))
+    }
+
+    fn matched(
+        &self,
+        map: &SurfelMap,
+        start: &Isometry2<f64>,
+        prior: &Prior,
+        first_m: f64,
+    ) -> Option<Tracked> {
+        let points = self.points.points();
+        let gates = gates(self.settings.range_noise_std_m, first_m);
+        let found = align(map, points, start, Some(prior), &gates)?;
+        let agreement = agreement(map, points, &found.pose, gates.last_m);
+        (agreement.confirmed_points >= LEAST_POINTS).then_some(Tracked { found, agreement })
+    }
+
+    /// Makes the scan a keyframe.
+    fn add_keyframe(&mut self, graph: &mut PoseGraph, found: Option<&Match>) {
+        if let (Some(last), Some(at)) = (self.keyframes.last(), graph.poses.last().copied()) {
+            let motion = last.local.inv_mul(&self.pose);
+            let odometry = Motion::new(self.since_keyframe, &self.settings.odometry);
+            let by_odometry = odometry.propagate(&Isometry2::identity(), &covariance(1e-3, 1e-3));
+            let by_odometry = by_odometry.try_inverse().unwrap_or_else(Matrix3::identity);
+            let by_scan =
+                found.map_or_else(Matrix3::zeros, |found| in_frame(&found.scan_information, &last.local));
+            let spread = (by_odometry + by_scan).try_inverse().unwrap_or_else(|| covariance(0.1, 0.05));
+            let information = (spread + covariance(MODEL_STD_M, MODEL_STD_RAD)).try_inverse();
+            let information = information.unwrap_or_else(Matrix3::identity);
+            let (from, to) = (graph.poses.len() - 1, graph.poses.len());
+            graph.edges.push(Edge { from, to, motion, information, is_loop: false });
+            let mut pose = at * motion;
+            pose.rotation.renormalize();
+            graph.poses.push(pose);
+        } else {
+            graph.poses.push(self.pose);
+        }
+        self.since_keyframe = Isometry2::identity();
+        self.keyframes.push(Keyframe { local: self.pose, points: filled(self.points.points()) });
+        self.grow();
+    }
+
+    /// Adds the last keyframe to the growing submaps.
+    fn grow(&mut self) {
+        let number = self.keyframes.len() - 1;
+        let keyframe = &self.keyframes[number];
+        let half = self.settings.submap_keyframes / 2;
+        if self.growing.last().is_none_or(|youngest| youngest.len() >= half) {
+            self.growing.extend(GrowingSubmap::new(&keyframe.local));
+        }
+        for submap in &mut self.growing {
+            submap.add(number, keyframe, self.settings.range_noise_std_m);
+        }
+        if self.growing.len() > 1 && self.growing[0].len() >= self.settings.submap_keyframes {
+            let full = self.growing.remove(0);
+            self.finished.push(full.finish(&self.keyframes));
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! The last pass: keyframes are matched with the submaps around them.
+
+use super::graph::{Edge, PoseGraph};
+use super::keyframe::Keyframe;
+use super::loops::{LoopCloser, fit, loop_information};
+use super::submap::FinishedSubmap;
+use crate::surfel_map::SurfelMap;
+
+/// Keyframes farther from the middle of a submap than this are not matched with it, m.
+const NEAR_M: f64 = 6.0;
+/// One of this many keyframes is matched with a submap.
+const STRIDE: usize = 2;
+/// The uncertainty of the poses after loops were closed, m and rad.
+const STD_M: f64 = 0.15;
+const STD_RAD: f64 = 0.03;
+/// The least shares of a match: of the points that the submap can judge, and of those that agree.
+const LEAST_OVERLAP: f64 = 0.4;
+const LEAST_AGREEMENT: f64 = 0.75;
+/// The errors of a match that do not average out, m and rad.
+const MODEL_STD_M: f64 = 0.015;
+const MODEL_STD_RAD: f64 = 0.003;
+
+/// Matches keyframes with all submaps around them of which they are no part, and optimises the graph.
+pub(super) fn refine(closer: &LoopCloser, keyframes: &[Keyframe], graph: &mut PoseGraph) {
+    let mut edges = Vec::new();
+    for (number, submap) in closer.submaps().iter().enumerate() {
+        let near: Vec<usize> = near(submap, graph).filter(|near| (near + number) % STRIDE == 0).collect();
+        if near.is_empty() {
+            continue;
+        }
+        let Some(map) = SurfelMap::of_points(&submap.points) else { continue };
+        for keyframe in near {
+            edges.extend(edge(&map, submap.anchor, keyframe, keyframes, closer.noise_m(), graph));
+        }
+    }
+    graph.edges.extend(edges);
+    graph.optimize();
+    graph.remove_outliers();
+    graph.optimize();
+}
+
+/// The keyframes around a submap of which they are no part.
+fn near<'a>(submap: &'a FinishedSubmap, graph: &'a PoseGraph) -> impl Iterator<Item = usize> + 'a {
+    let middle = graph.poses[submap.anchor].translation.vector;
+    let is_near = move |number: &usize| {
+        let is_part = (submap.first..=submap.last).contains(number);
+        !is_part && (graph.poses[*number].translation.vector - middle).norm() <= NEAR_M
+    };
+    (0..graph.poses.len()).filter(is_near)
+}
+
+/// The motion from the middle of a submap to a keyframe, if the scan of the keyframe agrees with the submap.
+fn edge(
+    map: &SurfelMap,
+    anchor: usize,
+    keyframe: usize,
+    keyframes: &[Keyframe],
+    noise_m: f64,
+    graph: &PoseGraph,
+) -> Option<Edge> {
+    let pose = graph.poses[anchor].inv_mul(&graph.poses[keyframe]);
+    let (found, agreement) = fit(map, &keyframes[keyframe].points, &pose, (STD_M, STD_RAD), noise_m)?;
+    if agreement.overlap() < LEAST_OVERLAP || agreement.share() < LEAST_AGREEMENT {
+        return None;
+    }
+    let information = loop_information(&found, MODEL_STD_M, MODEL_STD_RAD)?;
+    Some(Edge { from: anchor, to: keyframe, motion: found.pose, information, is_loop: true })
+}
