@@ -11,6 +11,7 @@
 //!   another loop agrees with it, unless the way since then was short.
 //! - In the end, keyframes are matched with all submaps around them, so that every wall is there once.
 
+mod free_space;
 mod front_end;
 mod graph;
 mod keyframe;
@@ -96,18 +97,22 @@ impl TrajectoryFinder {
         let keyframe = self.graph.poses.len() - 1;
         self.readings.push(Attached { time_s: reading.time_s, keyframe, offset, state });
         if self.settings.close_loops {
-            while let Some(submap) = self.front_end.next_finished() {
-                self.closer.add(submap, &mut self.graph);
-            }
+            self.search_loops();
+        }
+    }
+
+    /// Searches for the submaps that were finished since the last search.
+    fn search_loops(&mut self) {
+        while let Some(submap) = self.front_end.next_finished() {
+            self.closer.add(submap, self.front_end.keyframes(), &mut self.graph);
         }
     }
 
     /// The trajectory of all readings.
     pub fn finish(mut self) -> Trajectory {
         if self.settings.close_loops {
-            for submap in self.front_end.finish() {
-                self.closer.add(submap, &mut self.graph);
-            }
+            self.front_end.end();
+            self.search_loops();
             self.closer.finish(&mut self.graph);
             refine::refine(&self.closer, self.front_end.keyframes(), &mut self.graph);
         }

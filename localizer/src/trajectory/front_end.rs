@@ -23,12 +23,22 @@ const WIDEST_M: f64 = 0.4;
 /// A pose counts as supported if at least this share of what the submap can judge agrees, and this many points.
 const LEAST_AGREEMENT: f64 = 0.7;
 const LEAST_POINTS: usize = 12;
-/// Below this agreement, the pose is searched for around the prediction.
-const SEARCH_BELOW: f64 = 0.5;
+/// The shares of agreeing points below which other headings are tried: of those that the submap can judge, and of all.
+const DOUBTED_AGREEMENT: f64 = 0.75;
+const DOUBTED_SHARE: f64 = 0.5;
+/// These headings, rad. A robot that turns in place while its laser and its odometry are out of step is off by these.
+const OTHER_HEADINGS_RAD: [f64; 6] = [0.08, -0.08, 0.16, -0.16, 0.25, -0.25];
+/// The shares below which the pose is searched for around the prediction.
+const SEARCH_AGREEMENT: f64 = 0.5;
+const SEARCH_SHARE: f64 = 0.3;
 const SEARCH_M: f64 = 0.8;
 const SEARCH_RAD: f64 = 0.4;
-/// The least gain of agreement by a search.
-const BETTER: f64 = 0.15;
+const SEARCH_SCORE: f64 = 0.4;
+/// The uncertainty of the prediction for other headings and for a search, m and rad.
+const WIDE_STD_M: f64 = 0.5;
+const WIDE_STD_RAD: f64 = 0.3;
+/// Another pose must confirm more than the prediction by this factor.
+const BETTER: f64 = 1.15;
 /// The errors of a matched motion that do not average out, m and rad.
 const MODEL_STD_M: f64 = 0.004;
 const MODEL_STD_RAD: f64 = 0.0015;
@@ -77,6 +87,13 @@ struct Tracked {
     agreement: Agreement,
 }
 
+impl Tracked {
+    /// Whether less of the scan agrees: of what the submap can judge, or of all.
+    fn is_below(&self, agreement: f64, share: f64) -> bool {
+        self.agreement.share() < agreement || self.agreement.confirmed < share * self.agreement.all
+    }
+}
+
 impl FrontEnd {
     pub(super) fn new(settings: &TrajectorySettings) -> Self {
         Self {
@@ -103,9 +120,10 @@ impl FrontEnd {
         if self.finished.is_empty() { None } else { Some(self.finished.remove(0)) }
     }
 
-    /// The last submaps.
-    pub(super) fn finish(&mut self) -> Vec<FinishedSubmap> {
-        self.growing.drain(..).map(|submap| submap.finish(&self.keyframes)).collect()
+    /// The growing submaps as they are: there is no further reading.
+    pub(super) fn end(&mut self) {
+        let growing = self.growing.drain(..);
+        self.finished.extend(growing.map(|submap| submap.finish(&self.keyframes)));
     }
 
     /// The pose of a reading relative to the last keyframe of the graph, to which new keyframes are added.
@@ -118,7 +136,7 @@ impl FrontEnd {
         if fault == Some(Fault::Invalid) {
             if graph.poses.is_empty() {
                 self.points.clear();
-                self.add_keyframe(graph, None);
+                self.add_keyframe(graph, reading, None);
             }
             return (self.offset(), PoseState::Lost);
         }
@@ -141,6 +159,11 @@ impl FrontEnd {
                 tracked.found.information.try_inverse().unwrap_or_else(|| covariance(0.1, 0.05))
                     + covariance(0.001, 3e-4);
         }
+        if std::env::var("FRONT").is_ok() && let Some(tracked) = &tracked {
+            let a = &tracked.agreement;
+            let off = motion.apply(&last).inv_mul(&self.pose);
+            eprintln!("scan {:.2} share {:.2} overlap {:.2} points {} moved {:.2} {:.2} off {:.3} {:.3} std {:.3} {:.4} ratio {:.2}", reading.time_s, a.share(), a.overlap(), self.points.points().len(), motion.delta.translation.vector.norm(), heading_rad(&motion.delta), off.translation.vector.norm(), heading_rad(&off), self.covariance[(0,0)].sqrt(), self.covariance[(2,2)].sqrt(), tracked.found.residual_ratio);
+        }
         let is_supported = tracked.as_ref().is_none_or(|tracked| tracked.agreement.share() >= LEAST_AGREEMENT);
         if is_supported && tracked.is_some() {
             self.calibration.learn(&measured, &last.inv_mul(&self.pose));
@@ -149,7 +172,7 @@ impl FrontEnd {
         let is_far = offset.translation.vector.norm() >= self.settings.keyframe_m
             || heading_rad(&offset).abs() >= self.settings.keyframe_rad;
         if graph.poses.is_empty() || is_far {
-            self.add_keyframe(graph, tracked.as_ref().map(|tracked| &tracked.found));
+            self.add_keyframe(graph, reading, tracked.as_ref().map(|tracked| &tracked.found));
         }
         (self.offset(), if is_supported { PoseState::Tracking } else { PoseState::Uncertain })
     }
@@ -166,18 +189,32 @@ impl FrontEnd {
         let spread_m = (self.covariance[(0, 0)] + self.covariance[(1, 1)]).sqrt();
         let at_range_m = 5.0 * self.covariance[(2, 2)].sqrt();
         let tracked = self.matched(map, &self.pose, &prior, 0.1 + 2.0 * (spread_m + at_range_m))?;
-        if tracked.agreement.share() >= SEARCH_BELOW {
+        if !tracked.is_below(DOUBTED_AGREEMENT, DOUBTED_SHARE) {
             return Some(tracked);
         }
-        let grid = ScoreGrid::anywhere(map);
+        let wide =
+            Prior { pose: self.pose, information: covariance(WIDE_STD_M, WIDE_STD_RAD).try_inverse()? };
+        let turned = OTHER_HEADINGS_RAD.map(|turn_rad| self.pose * interfaces::pose(0.0, 0.0, turn_rad));
+        let tracked = self.better(map, tracked, &turned, &wide);
+        if !tracked.is_below(SEARCH_AGREEMENT, SEARCH_SHARE) {
+            return Some(tracked);
+        }
+        let near = SurfelMap::of_points(&map.points(&Isometry2::identity()))?;
         let window = Window { pose: self.pose, reach_m: SEARCH_M, reach_rad: SEARCH_RAD };
-        let found = search(&grid, self.points.points(), Some(&window), SEARCH_BELOW, 0.95);
-        let wide = Prior { pose: self.pose, information: covariance(1.0, 0.5).try_inverse()? };
-        let found =
-            found.first().and_then(|candidate| self.matched(map, &candidate.pose, &wide, WIDEST_M / 2.0));
-        found
-            .filter(|found| found.agreement.share() > tracked.agreement.share() + BETTER)
-            .or(Some(tracked))
+        let grid = ScoreGrid::anywhere(&near);
+        let found = search(&grid, self.points.points(), Some(&window), SEARCH_SCORE, BETTER.recip());
+        let found: Vec<Isometry2<f64>> = found.iter().map(|candidate| candidate.pose).collect();
+        Some(self.better(map, tracked, &found, &wide))
+    }
+
+    /// The best of a match and those from other poses.
+    fn better(&self, map: &SurfelMap, tracked: Tracked, starts: &[Isometry2<f64>], prior: &Prior) -> Tracked {
+        let least = BETTER * tracked.agreement.confirmed;
+        let others = starts.iter().filter_map(|start| self.matched(map, start, prior, WIDEST_M / 2.0));
+        others
+            .filter(|other| other.agreement.confirmed > least)
+            .max_by(|a, b| a.agreement.confirmed.total_cmp(&b.agreement.confirmed))
+            .unwrap_or(tracked)
     }
 
     fn matched(
@@ -195,7 +232,7 @@ impl FrontEnd {
     }
 
     /// Makes the scan a keyframe.
-    fn add_keyframe(&mut self, graph: &mut PoseGraph, found: Option<&Match>) {
+    fn add_keyframe(&mut self, graph: &mut PoseGraph, reading: &LaserReading, found: Option<&Match>) {
         if let (Some(last), Some(at)) = (self.keyframes.last(), graph.poses.last().copied()) {
             let motion = last.local.inv_mul(&self.pose);
             let odometry = Motion::new(self.since_keyframe, &self.settings.odometry);
@@ -215,7 +252,12 @@ impl FrontEnd {
             graph.poses.push(self.pose);
         }
         self.since_keyframe = Isometry2::identity();
-        self.keyframes.push(Keyframe { local: self.pose, points: filled(self.points.points()) });
+        self.keyframes.push(Keyframe {
+            local: self.pose,
+            points: filled(self.points.points()),
+            mount: reading.mount,
+            scan: reading.scan.clone(),
+        });
         self.grow();
     }
 

@@ -1,4 +1,5 @@
 use crate::scan_points::ScanPoint;
+use interfaces::Scan;
 use nalgebra::Isometry2;
 
 /// Points farther away than this are left out, m: neighboring beams are so far apart that they may be on different
@@ -19,6 +20,10 @@ pub(super) struct Keyframe {
     pub(super) local: Isometry2<f64>,
     /// The points, in the frame of the robot.
     pub(super) points: Vec<ScanPoint>,
+    /// The pose of the laser in the frame of the robot.
+    pub(super) mount: Isometry2<f64>,
+    /// The scan.
+    pub(super) scan: Scan,
 }
 
 /// The near points of a scan, and between neighbors on one surface as many more as a line map needs: far surfaces are

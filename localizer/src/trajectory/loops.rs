@@ -1,7 +1,9 @@
 //! Loops: a finished submap is searched for in earlier submaps.
 
+use super::free_space::passing_share;
 use super::front_end::{covariance, gates};
 use super::graph::{Edge, PoseGraph};
+use super::keyframe::Keyframe;
 use super::odometry_drift::{reach, ways_m};
 use super::settings::TrajectorySettings;
 use super::submap::{Agreement, FinishedSubmap, agreement};
@@ -27,6 +29,8 @@ const EXAMINED: f64 = 0.75;
 /// The least shares of a loop: of the points that the other submap can judge, and of those that agree.
 const LEAST_OVERLAP: f64 = 0.45;
 const LEAST_AGREEMENT: f64 = 0.8;
+/// The largest share of beams that pass surfaces of the other submap.
+const MOST_PASSING: f64 = 0.06;
 /// A loop is ambiguous if another pose confirms at least this share of what it confirms.
 const AMBIGUOUS: f64 = 0.9;
 /// Poses nearer than this are the same, m and rad.
@@ -96,12 +100,12 @@ impl LoopCloser {
     }
 
     /// Searches for a finished submap in the earlier ones.
-    pub(super) fn add(&mut self, submap: FinishedSubmap, graph: &mut PoseGraph) {
+    pub(super) fn add(&mut self, submap: FinishedSubmap, keyframes: &[Keyframe], graph: &mut PoseGraph) {
         let to = self.submaps.len();
         self.submaps.push(submap);
         let mut is_urgent = false;
         for (from, way_m) in self.candidates(to, graph) {
-            let Some(found) = self.search_in(from, to, way_m, graph) else { continue };
+            let Some(found) = self.search_in(from, to, way_m, keyframes, graph) else { continue };
             if way_m <= SHORT_WAY_M || self.is_confirmed(&found, graph) {
                 is_urgent |= is_urgent_in(&found.edge, graph);
                 self.accept(found, graph);
@@ -147,7 +151,14 @@ impl LoopCloser {
     }
 
     /// The pose of a submap in an earlier one, if there is one, and no other fits about as well.
-    fn search_in(&mut self, from: usize, to: usize, way_m: f64, graph: &PoseGraph) -> Option<Loop> {
+    fn search_in(
+        &mut self,
+        from: usize,
+        to: usize,
+        way_m: f64,
+        keyframes: &[Keyframe],
+        graph: &PoseGraph,
+    ) -> Option<Loop> {
         self.prepare(from)?;
         let (_, map, grid) = self.grids.iter().find(|(number, ..)| *number == from)?;
         let (anchor, other) = (self.submaps[from].anchor, self.submaps[to].anchor);
@@ -169,9 +180,10 @@ impl LoopCloser {
             !is_same && agreement.confirmed >= least
         };
         let is_ambiguous = fits.iter().any(|fit| is_rival(&fit, AMBIGUOUS * agreement.confirmed));
+        let passing = passing_share(&self.submaps[from], &self.submaps[to], &best.pose, keyframes);
         if std::env::var("LOOPS").is_ok() {
             eprintln!(
-                "{from} {to} way {way_m:.1} reach {reach_m:.1} {reach_rad:.2} found {} overlap {:.2} agree {:.2} ambiguous {is_ambiguous} off {:.2} {:.3}",
+                "{from} {to} way {way_m:.1} reach {reach_m:.1} {reach_rad:.2} found {} overlap {:.2} agree {:.2} passing {passing:.3} ambiguous {is_ambiguous} off {:.2} {:.3}",
                 candidates.len(),
                 agreement.overlap(),
                 agreement.share(),
@@ -179,7 +191,7 @@ impl LoopCloser {
                 heading_rad(&pose.inv_mul(&best.pose))
             );
         }
-        if is_ambiguous || agreement.overlap() < LEAST_OVERLAP || agreement.share() < LEAST_AGREEMENT {
+        if is_ambiguous || passing > MOST_PASSING || agreement.overlap() < LEAST_OVERLAP || agreement.share() < LEAST_AGREEMENT {
             return None;
         }
         let information = loop_information(best, MODEL_STD_M, MODEL_STD_RAD)?;
@@ -200,28 +212,25 @@ impl LoopCloser {
         Some(())
     }
 
-    /// Whether another loop between the same parts of the trajectory says the same. Loops that wait for this are
-    /// accepted with it.
+    /// Whether other loops between the same parts of the trajectory agree: at least one more than contradict. Loops
+    /// that wait for this are accepted with it.
     fn is_confirmed(&mut self, found: &Loop, graph: &mut PoseGraph) -> bool {
-        let agrees = |other: &Loop| {
-            let is_neighbor =
-                found.from.abs_diff(other.from) <= NEIGHBORS && found.to.abs_diff(other.to) <= NEIGHBORS;
-            if !is_neighbor || found.to == other.to {
-                return false;
+        let (mut agreeing, mut contradicting) = (0, 0);
+        for other in self.pending.iter().chain(&self.accepted).filter(|other| are_neighbors(found, other)) {
+            match agree(found, other, graph) {
+                true => agreeing += 1,
+                false => contradicting += 1,
             }
-            let between = |a: usize, b: usize| graph.poses[a].inv_mul(&graph.poses[b]);
-            let expected = between(found.edge.from, other.edge.from)
-                * other.edge.motion
-                * between(other.edge.to, found.edge.to);
-            let off = expected.inv_mul(&found.edge.motion);
-            off.translation.vector.norm() <= AGREE_M && heading_rad(&off).abs() <= AGREE_RAD
-        };
-        let (confirmed, pending): (Vec<Loop>, Vec<Loop>) =
-            std::mem::take(&mut self.pending).into_iter().partition(&agrees);
-        let is_confirmed = !confirmed.is_empty() || self.accepted.iter().any(agrees);
-        self.pending = pending;
-        for other in confirmed {
-            self.accept(other, graph);
+        }
+        let is_confirmed = agreeing > contradicting;
+        if is_confirmed {
+            let (confirmed, pending): (Vec<Loop>, Vec<Loop>) = std::mem::take(&mut self.pending)
+                .into_iter()
+                .partition(|other| are_neighbors(found, other) && agree(found, other, graph));
+            self.pending = pending;
+            for other in confirmed {
+                self.accept(other, graph);
+            }
         }
         is_confirmed
     }
@@ -230,6 +239,19 @@ impl LoopCloser {
         graph.edges.push(found.edge.clone());
         self.accepted.push(found);
     }
+}
+
+/// Whether two loops connect the same parts of the trajectory, and were not found with the same submap.
+fn are_neighbors(a: &Loop, b: &Loop) -> bool {
+    a.from.abs_diff(b.from) <= NEIGHBORS && a.to.abs_diff(b.to) <= NEIGHBORS && a.to != b.to
+}
+
+/// Whether two loops say the same.
+fn agree(a: &Loop, b: &Loop, graph: &PoseGraph) -> bool {
+    let between = |from: usize, to: usize| graph.poses[from].inv_mul(&graph.poses[to]);
+    let expected = between(a.edge.from, b.edge.from) * b.edge.motion * between(b.edge.to, a.edge.to);
+    let off = expected.inv_mul(&a.edge.motion);
+    off.translation.vector.norm() <= AGREE_M && heading_rad(&off).abs() <= AGREE_RAD
 }
 
 /// Whether a loop contradicts the trajectory so much that all later searches profit from it.

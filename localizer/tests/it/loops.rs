@@ -114,3 +114,16 @@ fn long_loops_are_closed() {
         }
     }
 }
+
+#[test]
+#[ignore = "scratch"]
+fn scratch() {
+    let mut corridor = Corridor::new([62.0, 41.0], Plan::Varied, 100).with_laser(181, 181_f64.to_radians());
+    let trip = trip(&mut corridor, 1.05, &TrajectorySettings::default(), 100);
+    trip.report("x");
+    for k in (0..trip.truth.len()).step_by(100) {
+        let p = trip.trajectory.poses[k];
+        let t = trip.truth[k];
+        println!("{k} {:.2} {:.2} {:.3} {:?}", p.pose.translation.x - t.translation.x, p.pose.translation.y - t.translation.y, interfaces::heading_rad(&t.inv_mul(&p.pose)), p.state);
+    }
+}
