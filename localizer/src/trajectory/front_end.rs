@@ -34,8 +34,9 @@ const SEARCH_SHARE: f64 = 0.3;
 const SEARCH_M: f64 = 0.8;
 const SEARCH_RAD: f64 = 0.4;
 const SEARCH_SCORE: f64 = 0.4;
-/// The uncertainty of the prediction for other headings and for a search, m and rad.
-const WIDE_STD_M: f64 = 0.5;
+/// What is added to the uncertainty of the prediction for other headings and for a search, m and rad. Along a corridor
+/// nothing but the odometry says how far the robot went.
+const WIDE_STD_M: f64 = 0.05;
 const WIDE_STD_RAD: f64 = 0.3;
 /// Another pose must confirm more than the prediction by this factor.
 const BETTER: f64 = 1.15;
@@ -165,7 +166,7 @@ impl FrontEnd {
             eprintln!("scan {:.2} share {:.2} overlap {:.2} points {} moved {:.2} {:.2} off {:.3} {:.3} std {:.3} {:.4} ratio {:.2}", reading.time_s, a.share(), a.overlap(), self.points.points().len(), motion.delta.translation.vector.norm(), heading_rad(&motion.delta), off.translation.vector.norm(), heading_rad(&off), self.covariance[(0,0)].sqrt(), self.covariance[(2,2)].sqrt(), tracked.found.residual_ratio);
         }
         let is_supported = tracked.as_ref().is_none_or(|tracked| tracked.agreement.share() >= LEAST_AGREEMENT);
-        if is_supported && tracked.is_some() {
+        if tracked.as_ref().is_some_and(|tracked| !tracked.is_below(DOUBTED_AGREEMENT, DOUBTED_SHARE)) {
             self.calibration.learn(&measured, &last.inv_mul(&self.pose));
         }
         let offset = self.offset();
@@ -192,8 +193,8 @@ impl FrontEnd {
         if !tracked.is_below(DOUBTED_AGREEMENT, DOUBTED_SHARE) {
             return Some(tracked);
         }
-        let wide =
-            Prior { pose: self.pose, information: covariance(WIDE_STD_M, WIDE_STD_RAD).try_inverse()? };
+        let wide = self.covariance + covariance(WIDE_STD_M, WIDE_STD_RAD);
+        let wide = Prior { pose: self.pose, information: wide.try_inverse()? };
         let turned = OTHER_HEADINGS_RAD.map(|turn_rad| self.pose * interfaces::pose(0.0, 0.0, turn_rad));
         let tracked = self.better(map, tracked, &turned, &wide);
         if !tracked.is_below(SEARCH_AGREEMENT, SEARCH_SHARE) {
