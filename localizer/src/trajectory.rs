@@ -116,6 +116,14 @@ impl TrajectoryFinder {
             self.closer.finish(&mut self.graph);
             refine::refine(&self.closer, self.front_end.keyframes(), &mut self.graph);
         }
+        if let Ok(file) = std::env::var("EDGES") {
+            let index = |k: usize| self.readings.iter().position(|r| r.keyframe == k).unwrap_or(0);
+            let mut t = String::new();
+            for e in &self.graph.edges {
+                t += &format!("{} {} {} {} {} {} {} {}\n", index(e.from), index(e.to), e.kind == graph::EdgeKind::Loop, e.motion.translation.x, e.motion.translation.y, interfaces::heading_rad(&e.motion), e.information[(0,0)], e.information[(2,2)]);
+            }
+            std::fs::write(file, t).unwrap();
+        }
         let loops = self.closer.loops();
         let pose = |reading: &Attached| TrajectoryPose {
             time_s: reading.time_s,

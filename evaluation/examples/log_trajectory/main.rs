@@ -28,6 +28,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let log = CarmenLog::open(Path::new(file))?;
     print_summary(&log);
     let settings = TrajectorySettings { close_loops: switches.is_empty(), ..TrajectorySettings::default() };
+    let e = |k: &str, d: f64| std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
+    let settings = TrajectorySettings { range_noise_std_m: e("NOISE", 0.02), keyframe_m: e("KM", 0.3), keyframe_rad: e("KR", 0.2), submap_keyframes: e("SK", 20.0) as usize, ..settings };
     let mut finder = TrajectoryFinder::new(&settings)?;
     let mut readings = Vec::new();
     for reading in log.readings()? {

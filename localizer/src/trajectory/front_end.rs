@@ -1,13 +1,13 @@
 //! From reading to reading: the pose by matching with the submap of the last keyframes.
 
-use super::graph::{Edge, PoseGraph};
+use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::{Keyframe, filled};
 use super::settings::TrajectorySettings;
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
 use crate::calibration::Calibration;
 use crate::estimate::PoseState;
 use crate::faults::{Fault, FaultFinder};
-use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align};
+use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align, difference};
 use crate::motion::Motion;
 use crate::scan_points::ScanPoints;
 use crate::score_grid::ScoreGrid;
@@ -40,6 +40,8 @@ const WIDE_STD_M: f64 = 0.05;
 const WIDE_STD_RAD: f64 = 0.3;
 /// Another pose must confirm more than the prediction by this factor.
 const BETTER: f64 = 1.15;
+/// A contradiction to the odometry (squared, over its covariance) that means nothing.
+const EXPECTED: f64 = 4.0;
 /// The errors of a matched motion that do not average out, m and rad.
 const MODEL_STD_M: f64 = 0.004;
 const MODEL_STD_RAD: f64 = 0.0015;
@@ -238,14 +240,12 @@ impl FrontEnd {
             let motion = last.local.inv_mul(&self.pose);
             let odometry = Motion::new(self.since_keyframe, &self.settings.odometry);
             let by_odometry = odometry.propagate(&Isometry2::identity(), &covariance(1e-3, 1e-3));
-            let by_odometry = by_odometry.try_inverse().unwrap_or_else(Matrix3::identity);
-            let by_scan =
-                found.map_or_else(Matrix3::zeros, |found| in_frame(&found.scan_information, &last.local));
-            let spread = (by_odometry + by_scan).try_inverse().unwrap_or_else(|| covariance(0.1, 0.05));
+            let scan = found.map(|found| in_frame(&found.scan_information, &last.local));
+            let (from, to) = (graph.poses.len() - 1, graph.poses.len());
+            let spread = self.spread(&motion, &by_odometry, scan.as_ref());
             let information = (spread + covariance(MODEL_STD_M, MODEL_STD_RAD)).try_inverse();
             let information = information.unwrap_or_else(Matrix3::identity);
-            let (from, to) = (graph.poses.len() - 1, graph.poses.len());
-            graph.edges.push(Edge { from, to, motion, information, is_loop: false });
+            graph.edges.push(Edge { from, to, motion, information, kind: EdgeKind::Match });
             let mut pose = at * motion;
             pose.rotation.renormalize();
             graph.poses.push(pose);
@@ -260,6 +260,17 @@ impl FrontEnd {
             scan: reading.scan.clone(),
         });
         self.grow();
+    }
+
+    /// The covariance of a motion between keyframes by matching. A match that contradicts the odometry can be wrong by
+    /// as much.
+    fn spread(&self, motion: &Isometry2<f64>, by_odometry: &Matrix3<f64>, scan: Option<&Matrix3<f64>>) -> Matrix3<f64> {
+        let Some(information) = by_odometry.try_inverse() else { return *by_odometry };
+        let spread = (information + scan.copied().unwrap_or_else(Matrix3::zeros)).try_inverse();
+        let off = difference(motion, &self.since_keyframe);
+        let square = (off.transpose() * information * off)[0];
+        let share = (1.0 - EXPECTED / square.max(EXPECTED)).max(0.0);
+        spread.unwrap_or(*by_odometry) + off * off.transpose() * share
     }
 
     /// Adds the last keyframe to the growing submaps.

@@ -1,7 +1,7 @@
 //! The pose graph: keyframes, and measured motions between them. Its optimum is the trajectory.
 //!
 //! Gauss-Newton on the differences between measured and estimated motions (Grisetti, Kümmerle, Stachniss & Burgard
-//! 2010). Motions that were found by recognising a place can be wrong: they count by the kernel of Geman and McClure,
+//! 2010). Motions that were found by matching can be wrong: they count by the kernel of Geman and McClure,
 //! whose scale shrinks from step to step (graduated non-convexity: Yang, Antonante, Tzoumas & Carlone 2020), since after
 //! a long way a correct loop contradicts all that is known.
 
@@ -19,6 +19,15 @@ const KERNEL: f64 = 16.0;
 /// The factor by which the kernel shrinks from step to step.
 const SHRINK: f64 = 3.0;
 
+/// How a motion was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum EdgeKind {
+    /// From one keyframe to the next, by matching with the submap of the last keyframes.
+    Match,
+    /// By recognising a place. It can be wrong.
+    Loop,
+}
+
 /// A measured motion from one keyframe to another.
 #[derive(Clone, Debug)]
 pub(super) struct Edge {
@@ -28,8 +37,7 @@ pub(super) struct Edge {
     pub(super) motion: Isometry2<f64>,
     /// The inverse covariance of x, y and heading of the motion, in the frame of `from`.
     pub(super) information: Matrix3<f64>,
-    /// Whether the motion was found by recognising a place, and can be wrong.
-    pub(super) is_loop: bool,
+    pub(super) kind: EdgeKind,
 }
 
 /// The pose graph.
@@ -94,11 +102,11 @@ impl PoseGraph {
     /// Removes the loops that contradict the optimum.
     pub(super) fn remove_outliers(&mut self) {
         let poses = &self.poses;
-        self.edges.retain(|edge| !edge.is_loop || edge.square(poses) <= 2.0 * KERNEL);
+        self.edges.retain(|edge| edge.kind != EdgeKind::Loop || edge.square(poses) <= 2.0 * KERNEL);
     }
 
     fn loops(&self) -> impl Iterator<Item = &Edge> {
-        self.edges.iter().filter(|edge| edge.is_loop)
+        self.edges.iter().filter(|edge| edge.kind == EdgeKind::Loop)
     }
 
     fn step(&self, scale: f64) -> Option<Vec<Vector3<f64>>> {
@@ -106,7 +114,7 @@ impl PoseGraph {
         equations.add_diagonal(0, &(Matrix3::identity() * 1e12));
         for edge in &self.edges {
             let root = scale / (scale + edge.square(&self.poses));
-            let weight = if edge.is_loop { root * root } else { 1.0 };
+            let weight = if edge.kind == EdgeKind::Loop { root * root } else { 1.0 };
             edge.add_to(&mut equations, &self.poses, weight);
         }
         equations.solve().filter(|step| step.iter().all(|part| part.iter().all(|value| value.is_finite())))
@@ -121,9 +129,9 @@ mod tests {
 
     const NODES: usize = 100;
 
-    fn edge(from: usize, to: usize, motion: Isometry2<f64>, std: f64, is_loop: bool) -> Edge {
+    fn edge(from: usize, to: usize, motion: Isometry2<f64>, std: f64, kind: EdgeKind) -> Edge {
         let information = Matrix3::identity() / (std * std);
-        Edge { from, to, motion, information, is_loop }
+        Edge { from, to, motion, information, kind }
     }
 
     /// A circle of 100 m, whose every step turns a little too much.
@@ -135,7 +143,7 @@ mod tests {
             let motion = pose(1.0, 0.0, turn + bend_rad);
             truth.push(truth[node - 1] * pose(1.0, 0.0, turn));
             graph.poses.push(graph.poses[node - 1] * motion);
-            graph.edges.push(edge(node - 1, node, motion, 0.01, false));
+            graph.edges.push(edge(node - 1, node, motion, 0.01, EdgeKind::Match));
         }
         (graph, truth)
     }
@@ -152,7 +160,7 @@ mod tests {
         let (mut graph, truth) = circle(0.01);
         let before_m = worst_m(&graph, &truth);
         let closing = truth[NODES - 1].inv_mul(&truth[0]);
-        graph.edges.push(edge(NODES - 1, 0, closing, 0.001, true));
+        graph.edges.push(edge(NODES - 1, 0, closing, 0.001, EdgeKind::Loop));
         graph.optimize();
         let after_m = worst_m(&graph, &truth);
         assert!(before_m > 5.0 && after_m < 0.1, "{before_m} m before, {after_m} m after");
@@ -163,9 +171,9 @@ mod tests {
         let (mut graph, truth) = circle(0.01);
         for (from, to) in [(NODES - 1, 0), (NODES - 2, 1), (NODES - 3, 0)] {
             let motion = truth[from].inv_mul(&truth[to]);
-            graph.edges.push(edge(from, to, motion, 0.01, true));
+            graph.edges.push(edge(from, to, motion, 0.01, EdgeKind::Loop));
         }
-        graph.edges.push(edge(70, 20, pose(0.0, 1.0, 3.0), 0.01, true));
+        graph.edges.push(edge(70, 20, pose(0.0, 1.0, 3.0), 0.01, EdgeKind::Loop));
         graph.optimize();
         graph.remove_outliers();
         let worst_m = worst_m(&graph, &truth);

@@ -2,7 +2,7 @@
 
 use super::free_space::passing_share;
 use super::front_end::{covariance, gates};
-use super::graph::{Edge, PoseGraph};
+use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
 use super::odometry_drift::{reach, ways_m};
 use super::settings::TrajectorySettings;
@@ -195,7 +195,7 @@ impl LoopCloser {
             return None;
         }
         let information = loop_information(best, MODEL_STD_M, MODEL_STD_RAD)?;
-        let edge = Edge { from: anchor, to: other, motion: best.pose, information, is_loop: true };
+        let edge = Edge { from: anchor, to: other, motion: best.pose, information, kind: EdgeKind::Loop };
         Some(Loop { from, to, edge })
     }
 

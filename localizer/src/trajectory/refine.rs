@@ -1,6 +1,6 @@
 //! The last pass: keyframes are matched with the submaps around them.
 
-use super::graph::{Edge, PoseGraph};
+use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
 use super::loops::{LoopCloser, fit, loop_information};
 use super::submap::FinishedSubmap;
@@ -64,5 +64,5 @@ fn edge(
         return None;
     }
     let information = loop_information(&found, MODEL_STD_M, MODEL_STD_RAD)?;
-    Some(Edge { from: anchor, to: keyframe, motion: found.pose, information, is_loop: true })
+    Some(Edge { from: anchor, to: keyframe, motion: found.pose, information, kind: EdgeKind::Loop })
 }
