@@ -13,7 +13,7 @@ use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
-use nalgebra::{Isometry2, Matrix3};
+use nalgebra::{Isometry2, Matrix3, Vector3};
 
 /// Submaps that are connected by a shorter way need no loop, m.
 const LEAST_WAY_M: f64 = 8.0;
@@ -38,14 +38,16 @@ const SAME_M: f64 = 0.25;
 const SAME_RAD: f64 = 0.08;
 /// After a way shorter than this, a loop needs no other that agrees, m.
 const SHORT_WAY_M: f64 = 20.0;
-/// Two loops that agree begin and end at most this many submaps apart ...
+/// Two loops that agree begin and end at most this many submaps apart, and differ by no more than the trajectory between
+/// them is uncertain.
 const NEIGHBORS: usize = 6;
-/// ... and differ by at most this, m and rad.
-const AGREE_M: f64 = 0.35;
-const AGREE_RAD: f64 = 0.08;
+/// The way from keyframe to keyframe, for this uncertainty, m.
+const KEYFRAME_M: f64 = 0.35;
 /// The errors of a relative pose of submaps that do not average out, m and rad.
 const MODEL_STD_M: f64 = 0.02;
 const MODEL_STD_RAD: f64 = 0.004;
+/// The share of the information about a position that may come from normals that are a little off.
+const SPURIOUS_SHARE: f64 = 0.03;
 /// The uncertainty of a direction that no surface fixes, m and rad.
 const LOOSE_M: f64 = 10.0;
 const LOOSE_RAD: f64 = 1.0;
@@ -251,7 +253,9 @@ fn agree(a: &Loop, b: &Loop, graph: &PoseGraph) -> bool {
     let between = |from: usize, to: usize| graph.poses[from].inv_mul(&graph.poses[to]);
     let expected = between(a.edge.from, b.edge.from) * b.edge.motion * between(b.edge.to, a.edge.to);
     let off = expected.inv_mul(&a.edge.motion);
-    off.translation.vector.norm() <= AGREE_M && heading_rad(&off).abs() <= AGREE_RAD
+    let keyframes = a.edge.from.abs_diff(b.edge.from) + a.edge.to.abs_diff(b.edge.to);
+    let (most_m, most_rad) = reach(keyframes as f64 * KEYFRAME_M);
+    off.translation.vector.norm() <= most_m && heading_rad(&off).abs() <= most_rad
 }
 
 /// Whether a loop contradicts the trajectory so much that all later searches profit from it.
@@ -275,9 +279,15 @@ pub(super) fn fit(
     Some((found, agreement))
 }
 
-/// The information of a match, with the errors of the model (m, rad). Directions that the scan does not fix stay free.
+/// The information of a match, with the errors of the model (m, rad). Directions that the scan does not fix stay free:
+/// of all that a scan says, a small share comes from normals that are a little off.
 pub(super) fn loop_information(found: &Match, std_m: f64, std_rad: f64) -> Option<Matrix3<f64>> {
+    let scan = &found.scan_information;
+    let off = SPURIOUS_SHARE * (scan[(0, 0)] + scan[(1, 1)]);
+    let eigen = (scan - Matrix3::from_diagonal(&Vector3::new(off, off, 0.0))).symmetric_eigen();
+    let values = eigen.eigenvalues.map(|value| value.max(0.0));
+    let fixed = eigen.eigenvectors * Matrix3::from_diagonal(&values) * eigen.eigenvectors.transpose();
     let free = covariance(LOOSE_M, LOOSE_RAD).try_inverse()?;
-    let spread = (found.scan_information + free).try_inverse()? * found.residual_ratio.max(1.0);
+    let spread = (fixed + free).try_inverse()? * found.residual_ratio.max(1.0);
     (spread + covariance(std_m, std_rad)).try_inverse()
 }
