@@ -23,12 +23,18 @@ const NEAR_M: f64 = 6.0;
 const MOST_SEARCHES: usize = 3;
 /// Points of a submap farther from its middle than this are not searched for, m: they may lie outside of the other.
 const COMPARED_M: f64 = 10.0;
+/// The number of points that are compared.
+const MOST_POINTS: usize = 300;
 /// The least score of a pose in a search, and the share of the best score that other poses are examined with.
 const LEAST_SCORE: f64 = 0.35;
 const EXAMINED: f64 = 0.75;
 /// The least shares of a loop: of the points that the other submap can judge, and of those that agree.
 const LEAST_OVERLAP: f64 = 0.45;
 const LEAST_AGREEMENT: f64 = 0.8;
+/// The same of a loop that is accepted although the trajectory ends before another submap can confirm it.
+const STRONG_OVERLAP: f64 = 0.5;
+const STRONG_AGREEMENT: f64 = 0.88;
+const STRONG_PASSING: f64 = 0.03;
 /// The largest share of beams that pass surfaces of the other submap.
 const MOST_PASSING: f64 = 0.06;
 /// A loop is ambiguous if another pose confirms at least this share of what it confirms.
@@ -63,6 +69,8 @@ struct Loop {
     from: usize,
     to: usize,
     edge: Edge,
+    /// Whether little speaks against it.
+    is_strong: bool,
 }
 
 /// Finds loops and adds them to the graph.
@@ -120,8 +128,16 @@ impl LoopCloser {
         }
     }
 
-    /// Optimises the graph with all loops.
+    /// Optimises the graph with all loops. Of those that wait for others, strong ones are accepted if two earlier submaps
+    /// say the same.
     pub(super) fn finish(&mut self, graph: &mut PoseGraph) {
+        let pending = std::mem::take(&mut self.pending);
+        for found in pending.iter().filter(|found| found.is_strong) {
+            let mut others = pending.iter().filter(|other| other.from != found.from && other.to == found.to);
+            if others.any(|other| agree(found, other, graph)) {
+                self.accept(found.clone(), graph);
+            }
+        }
         graph.optimize();
         graph.remove_outliers();
         graph.optimize();
@@ -167,7 +183,8 @@ impl LoopCloser {
         let pose = graph.poses[anchor].inv_mul(&graph.poses[other]);
         let (reach_m, reach_rad) = reach(way_m);
         let is_near = |point: &&ScanPoint| point.at.coords.norm() <= COMPARED_M;
-        let points: Vec<ScanPoint> = self.submaps[to].points.iter().filter(is_near).copied().collect();
+        let near: Vec<ScanPoint> = self.submaps[to].points.iter().filter(is_near).copied().collect();
+        let points = thinned(&near, MOST_POINTS);
         let window = Window { pose, reach_m, reach_rad };
         let candidates = search(grid, &points, Some(&window), LEAST_SCORE, EXAMINED);
         let mut fits: Vec<(Match, Agreement)> = candidates
@@ -198,7 +215,10 @@ impl LoopCloser {
         }
         let information = loop_information(best, MODEL_STD_M, MODEL_STD_RAD)?;
         let edge = Edge { from: anchor, to: other, motion: best.pose, information, kind: EdgeKind::Loop };
-        Some(Loop { from, to, edge })
+        let is_strong = agreement.overlap() >= STRONG_OVERLAP
+            && agreement.share() >= STRONG_AGREEMENT
+            && passing <= STRONG_PASSING;
+        Some(Loop { from, to, edge, is_strong })
     }
 
     /// Makes the scores of a submap.
@@ -262,6 +282,11 @@ fn agree(a: &Loop, b: &Loop, graph: &PoseGraph) -> bool {
 fn is_urgent_in(edge: &Edge, graph: &PoseGraph) -> bool {
     let off = edge.motion.inv_mul(&graph.poses[edge.from].inv_mul(&graph.poses[edge.to]));
     off.translation.vector.norm() > URGENT_M || heading_rad(&off).abs() > URGENT_RAD
+}
+
+/// At most a number of points, evenly taken.
+pub(super) fn thinned(points: &[ScanPoint], most: usize) -> Vec<ScanPoint> {
+    points.iter().step_by(points.len().div_ceil(most).max(1)).copied().collect()
 }
 
 /// Matches points with a map, from a pose that is uncertain by this much (m, rad).

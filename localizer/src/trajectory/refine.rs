@@ -2,14 +2,16 @@
 
 use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
-use super::loops::{LoopCloser, fit, loop_information};
+use super::loops::{LoopCloser, fit, loop_information, thinned};
 use super::submap::FinishedSubmap;
 use crate::surfel_map::SurfelMap;
 
 /// Keyframes farther from the middle of a submap than this are not matched with it, m.
 const NEAR_M: f64 = 6.0;
 /// One of this many keyframes is matched with a submap.
-const STRIDE: usize = 2;
+const STRIDE: usize = 3;
+/// The number of points of a keyframe that are compared.
+const MOST_POINTS: usize = 150;
 /// The uncertainty of the poses after loops were closed, m and rad.
 const STD_M: f64 = 0.15;
 const STD_RAD: f64 = 0.03;
@@ -59,7 +61,7 @@ fn edge(
     graph: &PoseGraph,
 ) -> Option<Edge> {
     let pose = graph.poses[anchor].inv_mul(&graph.poses[keyframe]);
-    let (found, agreement) = fit(map, &keyframes[keyframe].points, &pose, (STD_M, STD_RAD), noise_m)?;
+    let (found, agreement) = fit(map, &thinned(&keyframes[keyframe].points, MOST_POINTS), &pose, (STD_M, STD_RAD), noise_m)?;
     if agreement.overlap() < LEAST_OVERLAP || agreement.share() < LEAST_AGREEMENT {
         return None;
     }
