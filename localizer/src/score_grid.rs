@@ -45,13 +45,8 @@ impl ScoreGrid {
         let frame = GridFrame::new(coarse.origin(), CELL_M, columns, rows).unwrap_or(*coarse);
         let margin = 1_usize << TOP;
         let (width, height) = (frame.width() + margin, frame.height() + margin);
-        let mut grid = Self {
-            frame,
-            margin: margin as i32,
-            width,
-            levels: vec![vec![0; width * height]],
-            free: None,
-        };
+        let mut grid =
+            Self { frame, margin: margin as i32, width, levels: vec![vec![0; width * height]], free: None };
         grid.splat(surfels);
         for level in 0..TOP {
             let finer = &grid.levels[level];

@@ -16,7 +16,9 @@ mod front_end;
 mod graph;
 mod keyframe;
 mod loops;
+mod matching;
 mod odometry_drift;
+mod places;
 mod refine;
 mod settings;
 mod sparse;
@@ -84,7 +86,7 @@ impl TrajectoryFinder {
             settings: settings.clone(),
             given: GivenPoses::default(),
             front_end: FrontEnd::new(settings),
-            closer: LoopCloser::new(settings),
+            closer: LoopCloser::new(settings.range_noise_std_m),
             graph: PoseGraph::default(),
             readings: Vec::new(),
         })
@@ -114,15 +116,7 @@ impl TrajectoryFinder {
             self.front_end.end();
             self.search_loops();
             self.closer.finish(&mut self.graph);
-            refine::refine(&self.closer, self.front_end.keyframes(), &mut self.graph);
-        }
-        if let Ok(file) = std::env::var("EDGES") {
-            let index = |k: usize| self.readings.iter().position(|r| r.keyframe == k).unwrap_or(0);
-            let mut t = String::new();
-            for e in &self.graph.edges {
-                t += &format!("{} {} {} {} {} {} {} {}\n", index(e.from), index(e.to), e.kind == graph::EdgeKind::Loop, e.motion.translation.x, e.motion.translation.y, interfaces::heading_rad(&e.motion), e.information[(0,0)], e.information[(2,2)]);
-            }
-            std::fs::write(file, t).unwrap();
+            refine::refine(&self.closer.places, self.front_end.keyframes(), &mut self.graph);
         }
         let loops = self.closer.loops();
         let pose = |reading: &Attached| TrajectoryPose {

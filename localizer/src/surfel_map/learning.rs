@@ -22,7 +22,12 @@ impl SurfelMap {
     }
 
     /// Updates the map with a keyframe: one scan stands for all around it, and takes part in matching at once.
-    pub(crate) fn learn_keyframe(&mut self, points: &[ScanPoint], pose: &Isometry2<f64>, range_noise_std_m: f64) {
+    pub(crate) fn learn_keyframe(
+        &mut self,
+        points: &[ScanPoint],
+        pose: &Isometry2<f64>,
+        range_noise_std_m: f64,
+    ) {
         self.learn_as(points, pose, range_noise_std_m, USABLE_SCANS);
     }
 

@@ -2,24 +2,21 @@
 
 use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::{Keyframe, filled};
+use super::matching::{WIDEST_M, covariance, gates, in_frame};
 use super::settings::TrajectorySettings;
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
 use crate::calibration::Calibration;
 use crate::estimate::PoseState;
 use crate::faults::{Fault, FaultFinder};
-use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align, difference};
+use crate::matcher::{Match, Prior, align, difference};
 use crate::motion::Motion;
 use crate::scan_points::ScanPoints;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::surfel_map::SurfelMap;
 use interfaces::{LaserReading, heading_rad};
-use nalgebra::{Isometry2, Matrix3, Vector3};
+use nalgebra::{Isometry2, Matrix3};
 
-/// Points match a surfel within this many standard deviations of the range noise and of the surfel.
-const GATE_STDS: f64 = 3.0;
-/// The farthest that a match starts from the prediction, m.
-const WIDEST_M: f64 = 0.4;
 /// A pose counts as supported if at least this share of what the submap can judge agrees, and this many points.
 const LEAST_AGREEMENT: f64 = 0.7;
 const LEAST_POINTS: usize = 12;
@@ -45,25 +42,6 @@ const EXPECTED: f64 = 4.0;
 /// The errors of a matched motion that do not average out, m and rad.
 const MODEL_STD_M: f64 = 0.004;
 const MODEL_STD_RAD: f64 = 0.0015;
-
-/// The gates of a match of scans with this noise.
-pub(super) fn gates(noise_m: f64, first_m: f64) -> Gates {
-    let noise_m = noise_m.max(0.005);
-    let last_m = GATE_STDS * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt();
-    Gates { noise_m, first_m: first_m.clamp(last_m, WIDEST_M), last_m, by_rates: false }
-}
-
-/// The covariance of standard deviations of x and y, and of the heading.
-pub(super) fn covariance(std_m: f64, std_rad: f64) -> Matrix3<f64> {
-    Matrix3::from_diagonal(&Vector3::new(std_m * std_m, std_m * std_m, std_rad * std_rad))
-}
-
-/// An information matrix of shifts along the axes of a map, as one along the axes of a frame with this pose.
-pub(super) fn in_frame(information: &Matrix3<f64>, frame: &Isometry2<f64>) -> Matrix3<f64> {
-    let (cos, sin) = (frame.rotation.re, frame.rotation.im);
-    let turn = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
-    turn.transpose() * information * turn
-}
 
 /// Matches scan by scan.
 #[derive(Debug)]
@@ -162,12 +140,8 @@ impl FrontEnd {
                 tracked.found.information.try_inverse().unwrap_or_else(|| covariance(0.1, 0.05))
                     + covariance(0.001, 3e-4);
         }
-        if std::env::var("FRONT").is_ok() && let Some(tracked) = &tracked {
-            let a = &tracked.agreement;
-            let off = motion.apply(&last).inv_mul(&self.pose);
-            eprintln!("scan {:.2} share {:.2} overlap {:.2} points {} moved {:.2} {:.2} off {:.3} {:.3} std {:.3} {:.4} ratio {:.2}", reading.time_s, a.share(), a.overlap(), self.points.points().len(), motion.delta.translation.vector.norm(), heading_rad(&motion.delta), off.translation.vector.norm(), heading_rad(&off), self.covariance[(0,0)].sqrt(), self.covariance[(2,2)].sqrt(), tracked.found.residual_ratio);
-        }
-        let is_supported = tracked.as_ref().is_none_or(|tracked| tracked.agreement.share() >= LEAST_AGREEMENT);
+        let is_supported =
+            tracked.as_ref().is_none_or(|tracked| tracked.agreement.share() >= LEAST_AGREEMENT);
         if tracked.as_ref().is_some_and(|tracked| !tracked.is_below(DOUBTED_AGREEMENT, DOUBTED_SHARE)) {
             self.calibration.learn(&measured, &last.inv_mul(&self.pose));
         }
@@ -264,7 +238,12 @@ impl FrontEnd {
 
     /// The covariance of a motion between keyframes by matching. A match that contradicts the odometry can be wrong by
     /// as much.
-    fn spread(&self, motion: &Isometry2<f64>, by_odometry: &Matrix3<f64>, scan: Option<&Matrix3<f64>>) -> Matrix3<f64> {
+    fn spread(
+        &self,
+        motion: &Isometry2<f64>,
+        by_odometry: &Matrix3<f64>,
+        scan: Option<&Matrix3<f64>>,
+    ) -> Matrix3<f64> {
         let Some(information) = by_odometry.try_inverse() else { return *by_odometry };
         let spread = (information + scan.copied().unwrap_or_else(Matrix3::zeros)).try_inverse();
         let off = difference(motion, &self.since_keyframe);

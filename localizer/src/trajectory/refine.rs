@@ -2,7 +2,8 @@
 
 use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
-use super::loops::{LoopCloser, fit, loop_information, thinned};
+use super::matching::{fit, information_of, thinned};
+use super::places::Places;
 use super::submap::FinishedSubmap;
 use crate::surfel_map::SurfelMap;
 
@@ -23,16 +24,16 @@ const MODEL_STD_M: f64 = 0.015;
 const MODEL_STD_RAD: f64 = 0.003;
 
 /// Matches keyframes with all submaps around them of which they are no part, and optimises the graph.
-pub(super) fn refine(closer: &LoopCloser, keyframes: &[Keyframe], graph: &mut PoseGraph) {
+pub(super) fn refine(places: &Places, keyframes: &[Keyframe], graph: &mut PoseGraph) {
     let mut edges = Vec::new();
-    for (number, submap) in closer.submaps().iter().enumerate() {
+    for (number, submap) in places.submaps.iter().enumerate() {
         let near: Vec<usize> = near(submap, graph).filter(|near| (near + number) % STRIDE == 0).collect();
         if near.is_empty() {
             continue;
         }
         let Some(map) = SurfelMap::of_points(&submap.points) else { continue };
         for keyframe in near {
-            edges.extend(edge(&map, submap.anchor, keyframe, keyframes, closer.noise_m(), graph));
+            edges.extend(edge(&map, submap.anchor, keyframe, keyframes, places.noise_m, graph));
         }
     }
     graph.edges.extend(edges);
@@ -61,10 +62,11 @@ fn edge(
     graph: &PoseGraph,
 ) -> Option<Edge> {
     let pose = graph.poses[anchor].inv_mul(&graph.poses[keyframe]);
-    let (found, agreement) = fit(map, &thinned(&keyframes[keyframe].points, MOST_POINTS), &pose, (STD_M, STD_RAD), noise_m)?;
+    let (found, agreement) =
+        fit(map, &thinned(&keyframes[keyframe].points, MOST_POINTS), &pose, (STD_M, STD_RAD), noise_m)?;
     if agreement.overlap() < LEAST_OVERLAP || agreement.share() < LEAST_AGREEMENT {
         return None;
     }
-    let information = loop_information(&found, MODEL_STD_M, MODEL_STD_RAD)?;
+    let information = information_of(&found, MODEL_STD_M, MODEL_STD_RAD)?;
     Some(Edge { from: anchor, to: keyframe, motion: found.pose, information, kind: EdgeKind::Loop })
 }

@@ -59,6 +59,9 @@ mod tests {
         assert_eq!(defaults().check(), Ok(()));
         assert_eq!(refused(TrajectorySettings { keyframe_m: 0.0, ..defaults() }), "keyframe_m");
         assert_eq!(refused(TrajectorySettings { submap_keyframes: 1, ..defaults() }), "submap_keyframes");
-        assert_eq!(refused(TrajectorySettings { range_noise_std_m: -1.0, ..defaults() }), "range_noise_std_m");
+        assert_eq!(
+            refused(TrajectorySettings { range_noise_std_m: -1.0, ..defaults() }),
+            "range_noise_std_m"
+        );
     }
 }

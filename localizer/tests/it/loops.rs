@@ -69,7 +69,8 @@ impl Trip {
 
     fn report(&self, name: &str) -> f64 {
         let [raw_m, aligned_m] = [false, true].map(|is_aligned| self.errors_m(is_aligned));
-        let at = |errors_m: &[f64], share: f64| errors_m[(share * (errors_m.len() - 1) as f64) as usize] * 100.0;
+        let at =
+            |errors_m: &[f64], share: f64| errors_m[(share * (errors_m.len() - 1) as f64) as usize] * 100.0;
         println!(
             "{name}: odometry off by {:.1} m at the end; {} loops; median / 95 % / max {:.1} / {:.1} / {:.1} cm from the \
              start, {:.1} / {:.1} / {:.1} cm aligned; {:.2} ms per scan",
@@ -102,12 +103,15 @@ fn a_loop_of_50_m_is_closed() {
 #[test]
 #[ignore = "takes minutes"]
 fn long_loops_are_closed() {
-    for (sides_m, rounds) in [([30.0, 23.0], 1.1), ([62.0, 41.0], 1.05), ([85.0, 18.0], 1.05), ([62.0, 41.0], 2.0)] {
+    for (sides_m, rounds) in
+        [([30.0, 23.0], 1.1), ([62.0, 41.0], 1.05), ([85.0, 18.0], 1.05), ([62.0, 41.0], 2.0)]
+    {
         for seed in 100..103 {
             for (beams, fov_deg) in [(360, 360.0_f64), (181, 181.0)] {
                 let mut corridor =
                     Corridor::new(sides_m, Plan::Varied, seed).with_laser(beams, fov_deg.to_radians());
-                let name = format!("{:.0} m, {rounds} rounds, seed {seed}, {beams} beams", corridor.round_m());
+                let name =
+                    format!("{:.0} m, {rounds} rounds, seed {seed}, {beams} beams", corridor.round_m());
                 let trip = trip(&mut corridor, rounds, &TrajectorySettings::default(), seed);
                 trip.report(&name);
             }
@@ -118,12 +122,18 @@ fn long_loops_are_closed() {
 #[test]
 #[ignore = "scratch"]
 fn scratch() {
-    let mut corridor = Corridor::new([62.0, 41.0], Plan::Varied, 100).with_laser(181, 181_f64.to_radians());
-    let trip = trip(&mut corridor, 1.05, &TrajectorySettings::default(), 100);
-    trip.report("x");
-    for k in (0..trip.truth.len()).step_by(100) {
-        let p = trip.trajectory.poses[k];
-        let t = trip.truth[k];
-        println!("{k} {:.2} {:.2} {:.3} {:?}", p.pose.translation.x - t.translation.x, p.pose.translation.y - t.translation.y, interfaces::heading_rad(&t.inv_mul(&p.pose)), p.state);
+    for seed in 100..104 {
+        for beams in [360, 181] {
+            for sides_m in [[62.0, 41.0], [31.0, 31.0]] {
+                for close_loops in [false, true] {
+                    let fov_rad = if beams == 360 { std::f64::consts::TAU } else { 181_f64.to_radians() };
+                    let mut corridor =
+                        Corridor::new(sides_m, Plan::Repeated, seed).with_laser(beams, fov_rad);
+                    let settings = TrajectorySettings { close_loops, ..TrajectorySettings::default() };
+                    let trip = trip(&mut corridor, 1.3, &settings, seed);
+                    trip.report(&format!("seed {seed} beams {beams} {sides_m:?} {close_loops}"));
+                }
+            }
+        }
     }
 }
