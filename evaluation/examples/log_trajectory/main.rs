@@ -23,21 +23,11 @@ use std::time::Instant;
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (switches, paths): (Vec<_>, Vec<_>) = arguments.iter().partition(|argument| *argument == "no-loops");
-    let Some(file) = paths.first() else {
-        return Err("usage: log_trajectory FILE [FOLDER] [no-loops]".into());
-    };
+    let Some(file) = paths.first() else { return Err("usage: log_trajectory FILE [FOLDER] [no-loops]".into()) };
     let folder = paths.get(1).map_or_else(|| PathBuf::from("."), PathBuf::from);
     let log = CarmenLog::open(Path::new(file))?;
     print_summary(&log);
     let settings = TrajectorySettings { close_loops: switches.is_empty(), ..TrajectorySettings::default() };
-    let e = |k: &str, d: f64| std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
-    let settings = TrajectorySettings {
-        range_noise_std_m: e("NOISE", 0.02),
-        keyframe_m: e("KM", 0.3),
-        keyframe_rad: e("KR", 0.2),
-        submap_keyframes: e("SK", 20.0) as usize,
-        ..settings
-    };
     let mut finder = TrajectoryFinder::new(&settings)?;
     let mut readings = Vec::new();
     for reading in log.readings()? {

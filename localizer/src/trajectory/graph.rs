@@ -114,7 +114,7 @@ impl PoseGraph {
         equations.add_diagonal(0, &(Matrix3::identity() * 1e12));
         for edge in &self.edges {
             let root = scale / (scale + edge.square(&self.poses));
-            let weight = if edge.kind == EdgeKind::Loop { root * root } else { 1.0 };
+            let weight = if edge.kind == EdgeKind::Loop { root * root } else { root };
             edge.add_to(&mut equations, &self.poses, weight);
         }
         equations.solve().filter(|step| step.iter().all(|part| part.iter().all(|value| value.is_finite())))
