@@ -7,8 +7,8 @@
 //! - A scan is matched with the submap of the last keyframes only: an error of the past bends nothing that follows.
 //! - A finished submap is searched for in earlier submaps by branch and bound, as far as the trajectory since then is
 //!   uncertain (Hess, Kohler, Rapp & Andor 2016).
-//! - A loop counts where most of what both submaps cover agrees, where no other pose fits about as well, and where
-//!   another loop agrees with it, unless the way since then was short.
+//! - A loop counts where most of what both submaps cover agrees, where no beam of one passes the walls of the other, where
+//!   no other pose fits about as well, and where another loop agrees with it, unless the way since then was short.
 //! - In the end, keyframes are matched with all submaps around them, so that every wall is there once.
 
 mod free_space;
@@ -30,7 +30,7 @@ use crate::estimate::PoseState;
 use crate::given_poses::GivenPoses;
 use front_end::FrontEnd;
 use graph::PoseGraph;
-use interfaces::{LaserReading, SettingsError};
+use interfaces::{LaserReading, SettingsError, is_valid_pose};
 use loops::LoopCloser;
 use nalgebra::Isometry2;
 
@@ -94,7 +94,8 @@ impl TrajectoryFinder {
 
     /// Adds the next reading. An invalid reading gets the pose of the odometry.
     pub fn add(&mut self, reading: LaserReading) {
-        let reading = self.given.unswept(reading);
+        let is_valid = reading.scan.check().is_ok() && is_valid_pose(&reading.pose);
+        let reading = if is_valid { self.given.unswept(reading) } else { reading };
         let (offset, state) = self.front_end.localize(&reading, &mut self.graph);
         let keyframe = self.graph.poses.len() - 1;
         self.readings.push(Attached { time_s: reading.time_s, keyframe, offset, state });

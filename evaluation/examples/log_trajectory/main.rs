@@ -23,7 +23,9 @@ use std::time::Instant;
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (switches, paths): (Vec<_>, Vec<_>) = arguments.iter().partition(|argument| *argument == "no-loops");
-    let Some(file) = paths.first() else { return Err("usage: log_trajectory FILE [FOLDER] [no-loops]".into()) };
+    let Some(file) = paths.first() else {
+        return Err("usage: log_trajectory FILE [FOLDER] [no-loops]".into());
+    };
     let folder = paths.get(1).map_or_else(|| PathBuf::from("."), PathBuf::from);
     let log = CarmenLog::open(Path::new(file))?;
     print_summary(&log);

@@ -140,8 +140,9 @@ impl FrontEnd {
                 tracked.found.information.try_inverse().unwrap_or_else(|| covariance(0.1, 0.05))
                     + covariance(0.001, 3e-4);
         }
-        let is_supported =
-            tracked.as_ref().is_none_or(|tracked| tracked.agreement.share() >= LEAST_AGREEMENT);
+        // The first scan is right by definition.
+        let is_supported = graph.poses.is_empty()
+            || tracked.as_ref().is_some_and(|tracked| tracked.agreement.share() >= LEAST_AGREEMENT);
         if tracked.as_ref().is_some_and(|tracked| !tracked.is_below(DOUBTED_AGREEMENT, DOUBTED_SHARE)) {
             self.calibration.learn(&measured, &last.inv_mul(&self.pose));
         }

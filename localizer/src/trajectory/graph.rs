@@ -1,9 +1,9 @@
 //! The pose graph: keyframes, and measured motions between them. Its optimum is the trajectory.
 //!
 //! Gauss-Newton on the differences between measured and estimated motions (Grisetti, Kümmerle, Stachniss & Burgard
-//! 2010). Motions that were found by matching can be wrong: they count by the kernel of Geman and McClure,
-//! whose scale shrinks from step to step (graduated non-convexity: Yang, Antonante, Tzoumas & Carlone 2020), since after
-//! a long way a correct loop contradicts all that is known.
+//! 2010). All of them can be wrong: recognised places count by the kernel of Geman and McClure, motions from keyframe to
+//! keyframe by the milder one of Cauchy. The scale of the kernels shrinks from step to step (graduated non-convexity:
+//! Yang, Antonante, Tzoumas & Carlone 2020), since after a long way a correct loop contradicts all that is known.
 
 use super::sparse::Equations;
 use crate::matcher::difference;
@@ -14,7 +14,7 @@ use nalgebra::{Isometry2, Matrix3, Vector3};
 const MAX_STEPS: usize = 25;
 /// A step below this ends the iteration, m and rad.
 const STEP: f64 = 1e-4;
-/// The square of the error over its covariance at which a loop counts a quarter.
+/// The square of the error over its covariance at which a loop counts a quarter, and any other motion a half.
 const KERNEL: f64 = 16.0;
 /// The factor by which the kernel shrinks from step to step.
 const SHRINK: f64 = 3.0;
@@ -24,7 +24,7 @@ const SHRINK: f64 = 3.0;
 pub(super) enum EdgeKind {
     /// From one keyframe to the next, by matching with the submap of the last keyframes.
     Match,
-    /// By recognising a place. It can be wrong.
+    /// By recognising a place.
     Loop,
 }
 
@@ -82,6 +82,9 @@ impl Edge {
 impl PoseGraph {
     /// Moves all poses but the first to the optimum.
     pub(super) fn optimize(&mut self) {
+        if self.edges.is_empty() {
+            return;
+        }
         let largest = self.loops().map(|edge| edge.square(&self.poses)).fold(0.0, f64::max);
         let mut scale = largest.max(KERNEL);
         for _ in 0..MAX_STEPS {
