@@ -1,9 +1,18 @@
-//! The difference to poses of an earlier estimation.
+//! The difference to poses of an earlier estimation, and which of both trajectories makes the sharper map.
 
+use crate::hits;
 use interfaces::{LaserReading, heading_rad, wrap_rad};
 use localizer::Trajectory;
 use logs::{CarmenLog, LogError};
 use nalgebra::{Isometry2, Vector2};
+use std::collections::BTreeSet;
+
+/// A pose of ours and that of the earlier estimation.
+type Pair = (Isometry2<f64>, Isometry2<f64>);
+
+/// The side of the cells in which points are counted, m, and the largest range of these points, m.
+const CELL_M: f64 = 0.03;
+const FARTHEST_M: f64 = 15.0;
 
 /// Prints the differences of position and heading after a rigid alignment, if the log has poses of the laser.
 pub(crate) fn print(
@@ -12,7 +21,7 @@ pub(crate) fn print(
     readings: &[LaserReading],
 ) -> Result<(), LogError> {
     let reference = log.reference_poses()?;
-    let pairs: Vec<(Isometry2<f64>, Isometry2<f64>)> = trajectory
+    let pairs: Vec<Pair> = trajectory
         .poses
         .iter()
         .zip(readings)
@@ -42,16 +51,35 @@ pub(crate) fn print(
         most_m * 100.0,
         max_m * 100.0
     );
+    if pairs.len() == readings.len() {
+        let ours = cells(pairs.iter().map(|pair| pair.0), readings);
+        let theirs = cells(pairs.iter().map(|pair| pair.1), readings);
+        println!(
+            "sharpness: the points lie in {ours} cells of {CELL_M} m, along the poses in the FLASER lines in {theirs}"
+        );
+    }
     Ok(())
+}
+
+/// The number of cells that contain points, from poses of the laser: a blurred map has more.
+fn cells(poses: impl Iterator<Item = Isometry2<f64>>, readings: &[LaserReading]) -> usize {
+    let mut cells = BTreeSet::new();
+    for (pose, reading) in poses.zip(readings) {
+        let from_laser = pose * reading.mount.inverse();
+        let near = hits(reading).filter(|hit| hit.coords.norm() < FARTHEST_M);
+        cells.extend(near.map(|hit| {
+            let at = (from_laser * hit) / CELL_M;
+            (at.x.floor() as i32, at.y.floor() as i32)
+        }));
+    }
+    cells.len()
 }
 
 /// The motion that lays the first poses on the second with the least squares of distances (Umeyama 1991, without
 /// scale).
-fn alignment(pairs: &[(Isometry2<f64>, Isometry2<f64>)]) -> Isometry2<f64> {
+fn alignment(pairs: &[Pair]) -> Isometry2<f64> {
     let count = pairs.len() as f64;
-    let mean = |of: fn(&(Isometry2<f64>, Isometry2<f64>)) -> Vector2<f64>| {
-        pairs.iter().map(of).sum::<Vector2<f64>>() / count
-    };
+    let mean = |of: fn(&Pair) -> Vector2<f64>| pairs.iter().map(of).sum::<Vector2<f64>>() / count;
     let (from, to) = (mean(|pair| pair.0.translation.vector), mean(|pair| pair.1.translation.vector));
     let (mut dot, mut cross) = (0.0, 0.0);
     for (found, reference) in pairs {

@@ -2,8 +2,8 @@
 //!
 //! Writes `trajectory.tum` (the TUM format) and `trajectory.png` (all points that the laser hit, drawn along the
 //! trajectory) beside each other in a folder, and prints the time per scan. Where the FLASER lines of the log contain
-//! the result of an earlier estimation, its difference to ours is printed, after a rigid alignment. The estimation never
-//! sees these poses.
+//! the result of an earlier estimation, its difference to ours is printed, after a rigid alignment, and the sharpness of
+//! both maps. The estimation never sees these poses.
 //!
 //! ```text
 //! cargo run -p evaluation --example log_trajectory -- FILE.log.gz [FOLDER] [no-loops]

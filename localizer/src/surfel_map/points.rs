@@ -28,7 +28,7 @@ impl SurfelMap {
             (low.coords.inf(&point.at.coords).into(), high.coords.sup(&point.at.coords).into())
         });
         let size: Vector2<f64> = high - low;
-        if !(size.max() <= LARGEST_M) {
+        if size.max() > LARGEST_M {
             return None;
         }
         let origin: Point2<f64> = low - Vector2::repeat(CELL_M);

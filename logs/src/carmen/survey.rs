@@ -39,7 +39,7 @@ impl Survey {
         let (mut with_time, mut without_time) = (0, 0);
         while let Some(line) = line::next(lines, &geometry)? {
             match line {
-                Line::Odometry { time_s, .. } if time_s == 0.0 => without_time += 1,
+                Line::Odometry { time_s: 0.0, .. } => without_time += 1,
                 Line::Odometry { .. } => with_time += 1,
                 Line::Scan(scan) => times_s.push(scan.time_s),
                 Line::LaserOffset(offset_m) => geometry.offset_m = offset_m,
