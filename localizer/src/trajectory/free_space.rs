@@ -83,3 +83,41 @@ fn is_passed(keyframe: &Keyframe, point: &ScanPoint, to_laser: &Isometry2<f64>) 
     }
     ranges.iter().any(|range_m| (range_m - distance_m).abs() <= margin_m).then_some(false)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::Scan;
+    use nalgebra::Vector2;
+
+    #[test]
+    fn a_beam_that_ends_behind_a_surface_passes_it() {
+        // All beams end 3 m ahead, but two of them, that see nothing.
+        let mut ranges_m = vec![3.0; 181];
+        ranges_m[20] = f32::NAN;
+        ranges_m[60] = f32::INFINITY;
+        let scan = Scan {
+            angle_min_rad: -std::f64::consts::FRAC_PI_2,
+            angle_increment_rad: 1_f64.to_radians(),
+            range_min_m: 0.0,
+            range_max_m: 80.0,
+            sweep_s: 0.0,
+            ranges_m,
+        };
+        let (local, mount) = (Isometry2::identity(), Isometry2::identity());
+        let keyframe = Keyframe { local, points: Vec::new(), mount, scan };
+        let passed = |beam: f64, distance_m: f64, facing: f64| {
+            let along = interfaces::rotation((beam - 90.0).to_radians()) * Vector2::x();
+            let point =
+                ScanPoint { at: (along * distance_m).into(), normal: -along * facing, weight: 1.0, beam: 0 };
+            is_passed(&keyframe, &point, &Isometry2::identity())
+        };
+        assert_eq!(passed(90.0, 2.0, 1.0), Some(true));
+        assert_eq!(passed(90.0, 3.1, 1.0), Some(false));
+        assert_eq!(passed(90.0, 5.0, 1.0), None, "hidden");
+        assert_eq!(passed(90.0, 2.0, -1.0), None, "seen from behind");
+        assert_eq!(passed(20.0, 2.0, 1.0), None, "a missing beam");
+        assert_eq!(passed(60.0, 2.0, 1.0), Some(true), "no return");
+        assert_eq!(passed(250.0, 2.0, 1.0), None, "behind the laser");
+    }
+}

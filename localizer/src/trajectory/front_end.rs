@@ -2,13 +2,13 @@
 
 use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::{Keyframe, filled};
-use super::matching::{WIDEST_M, covariance, gates, in_frame};
+use super::matching::{WIDEST_M, covariance, gates, in_frame, motion_spread};
 use super::settings::TrajectorySettings;
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
 use crate::calibration::Calibration;
 use crate::estimate::PoseState;
 use crate::faults::{Fault, FaultFinder};
-use crate::matcher::{Match, Prior, align, difference};
+use crate::matcher::{Match, Prior, align};
 use crate::motion::Motion;
 use crate::scan_points::ScanPoints;
 use crate::score_grid::ScoreGrid;
@@ -17,6 +17,12 @@ use crate::surfel_map::SurfelMap;
 use interfaces::{LaserReading, heading_rad};
 use nalgebra::{Isometry2, Matrix3};
 
+/// An odometry that has moved by this is there, m and rad.
+const LEAST_M: f64 = 0.005;
+const LEAST_RAD: f64 = 0.005;
+/// The uncertainty of a motion between keyframes without odometry, m and rad.
+const MISSING_STD_M: f64 = 0.3;
+const MISSING_STD_RAD: f64 = 0.3;
 /// A pose counts as supported if at least this share of what the submap can judge agrees, and this many points.
 const LEAST_AGREEMENT: f64 = 0.7;
 const LEAST_POINTS: usize = 12;
@@ -37,8 +43,6 @@ const WIDE_STD_M: f64 = 0.05;
 const WIDE_STD_RAD: f64 = 0.3;
 /// Another pose must confirm more than the prediction by this factor.
 const BETTER: f64 = 1.15;
-/// A contradiction to the odometry (squared, over its covariance) that means nothing.
-const EXPECTED: f64 = 4.0;
 /// The errors of a matched motion that do not average out, m and rad.
 const MODEL_STD_M: f64 = 0.004;
 const MODEL_STD_RAD: f64 = 0.0015;
@@ -51,6 +55,10 @@ pub(super) struct FrontEnd {
     calibration: Calibration,
     points: ScanPoints,
     odometry: Option<Isometry2<f64>>,
+    /// Whether the odometry has ever moved.
+    has_odometry: bool,
+    /// The last motion by matching.
+    last_motion: Isometry2<f64>,
     /// The pose by matching with local submaps alone, and its covariance within the submap.
     pose: Isometry2<f64>,
     covariance: Matrix3<f64>,
@@ -83,6 +91,8 @@ impl FrontEnd {
             calibration: Calibration::new(&settings.odometry),
             points: ScanPoints::default(),
             odometry: None,
+            has_odometry: false,
+            last_motion: Isometry2::identity(),
             pose: Isometry2::identity(),
             covariance: Matrix3::zeros(),
             since_keyframe: Isometry2::identity(),
@@ -123,7 +133,7 @@ impl FrontEnd {
         }
         let before = self.odometry.replace(reading.pose).unwrap_or(reading.pose);
         let measured = before.inv_mul(&reading.pose);
-        let motion = Motion::new(self.calibration.correct(&measured), &self.settings.odometry);
+        let motion = self.predict(&measured);
         self.since_keyframe *= motion.delta;
         self.since_keyframe.rotation.renormalize();
         let last = self.pose;
@@ -135,6 +145,7 @@ impl FrontEnd {
         self.points.update(reading, self.settings.range_noise_std_m, true);
         let tracked = self.track();
         if let Some(tracked) = &tracked {
+            self.last_motion = last.inv_mul(&tracked.found.pose);
             self.pose = tracked.found.pose;
             self.covariance =
                 tracked.found.information.try_inverse().unwrap_or_else(|| covariance(0.1, 0.05))
@@ -153,6 +164,18 @@ impl FrontEnd {
             self.add_keyframe(graph, reading, tracked.as_ref().map(|tracked| &tracked.found));
         }
         (self.offset(), if is_supported { PoseState::Tracking } else { PoseState::Uncertain })
+    }
+
+    /// The motion by odometry. Until the odometry moves for the first time, it may be missing: then the robot goes on as
+    /// before.
+    fn predict(&mut self, measured: &Isometry2<f64>) -> Motion {
+        let turn_rad = heading_rad(measured).abs();
+        self.has_odometry |= measured.translation.vector.norm() > LEAST_M || turn_rad > LEAST_RAD;
+        if self.has_odometry {
+            Motion::new(self.calibration.correct(measured), &self.settings.odometry)
+        } else {
+            Motion::new(self.last_motion, &self.settings.odometry).distrusted()
+        }
     }
 
     /// The pose relative to the last keyframe.
@@ -214,10 +237,13 @@ impl FrontEnd {
         if let (Some(last), Some(at)) = (self.keyframes.last(), graph.poses.last().copied()) {
             let motion = last.local.inv_mul(&self.pose);
             let odometry = Motion::new(self.since_keyframe, &self.settings.odometry);
-            let by_odometry = odometry.propagate(&Isometry2::identity(), &covariance(1e-3, 1e-3));
+            let by_odometry = match self.has_odometry {
+                true => odometry.propagate(&Isometry2::identity(), &covariance(1e-3, 1e-3)),
+                false => covariance(MISSING_STD_M, MISSING_STD_RAD),
+            };
             let scan = found.map(|found| in_frame(&found.scan_information, &last.local));
             let (from, to) = (graph.poses.len() - 1, graph.poses.len());
-            let spread = self.spread(&motion, &by_odometry, scan.as_ref());
+            let spread = motion_spread(&motion, (&self.since_keyframe, &by_odometry), scan.as_ref());
             let information = (spread + covariance(MODEL_STD_M, MODEL_STD_RAD)).try_inverse();
             let information = information.unwrap_or_else(Matrix3::identity);
             graph.edges.push(Edge { from, to, motion, information, kind: EdgeKind::Match });
@@ -235,22 +261,6 @@ impl FrontEnd {
             scan: reading.scan.clone(),
         });
         self.grow();
-    }
-
-    /// The covariance of a motion between keyframes by matching. A match that contradicts the odometry can be wrong by
-    /// as much.
-    fn spread(
-        &self,
-        motion: &Isometry2<f64>,
-        by_odometry: &Matrix3<f64>,
-        scan: Option<&Matrix3<f64>>,
-    ) -> Matrix3<f64> {
-        let Some(information) = by_odometry.try_inverse() else { return *by_odometry };
-        let spread = (information + scan.copied().unwrap_or_else(Matrix3::zeros)).try_inverse();
-        let off = difference(motion, &self.since_keyframe);
-        let square = (off.transpose() * information * off)[0];
-        let share = (1.0 - EXPECTED / square.max(EXPECTED)).max(0.0);
-        spread.unwrap_or(*by_odometry) + off * off.transpose() * share
     }
 
     /// Adds the last keyframe to the growing submaps.

@@ -53,3 +53,30 @@ fn are_joined(before: &ScanPoint, point: &ScanPoint) -> bool {
         && before.normal.dot(&point.normal) > SAME_NORMAL
         && before.normal.dot(&way).abs() < OFF_LINE * distance_m
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Point2, Vector2};
+
+    #[test]
+    fn only_neighbors_on_one_surface_are_joined() {
+        let point = |x: f64, y: f64, beam: usize| ScanPoint {
+            at: Point2::new(x, y),
+            normal: -Vector2::y(),
+            weight: 1.0,
+            beam,
+        };
+        // 0.5 m along a wall; then a step, a missing beam, and a point that is too far away.
+        let points = [
+            point(0.0, 5.0, 0),
+            point(0.5, 5.0, 1),
+            point(1.0, 5.4, 2),
+            point(1.3, 5.4, 4),
+            point(30.0, 5.4, 5),
+        ];
+        let filled = filled(&points);
+        assert_eq!(filled.len(), 4 + 4);
+        assert!(filled[..6].windows(2).all(|pair| (pair[1].at.x - pair[0].at.x - 0.1).abs() < 1e-9));
+    }
+}

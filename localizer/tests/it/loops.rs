@@ -28,6 +28,17 @@ struct Trip {
 
 /// A trip around a corridor, and on past the start.
 fn trip(corridor: &mut Corridor, rounds: f64, settings: &TrajectorySettings, seed: u64) -> Trip {
+    trip_with(corridor, rounds, settings, seed, |_| {})
+}
+
+/// The same, with a fault of the sensors.
+fn trip_with(
+    corridor: &mut Corridor,
+    rounds: f64,
+    settings: &TrajectorySettings,
+    seed: u64,
+    fault: impl Fn(&mut LaserReading),
+) -> Trip {
     let start = corridor.at(0.0);
     let mut odometry = Odometry::new(start, seed);
     let mut finder = TrajectoryFinder::new(settings).unwrap();
@@ -38,6 +49,7 @@ fn trip(corridor: &mut Corridor, rounds: f64, settings: &TrajectorySettings, see
         let pose = corridor.at(step as f64 * SPEED_MPS * PERIOD_S);
         let mut reading = corridor.reading(step as f64 * PERIOD_S, pose);
         reading.pose = odometry.moved_to(&pose);
+        fault(&mut reading);
         truth.push(start.inv_mul(&pose));
         let begin = std::time::Instant::now();
         finder.add(reading);
@@ -178,6 +190,15 @@ fn faults_of_the_sensors_have_a_pose_and_end() {
             assert!(error_m < 0.3, "fault {fault}: {error_m} m");
         }
     }
+}
+
+#[test]
+fn without_odometry_the_scans_are_enough() {
+    let mut corridor = Corridor::new([15.0, 11.0], Plan::Varied, 106);
+    let settings = TrajectorySettings::default();
+    let trip = trip_with(&mut corridor, 1.15, &settings, 106, |reading| reading.pose = Isometry2::identity());
+    let error_m = trip.report("50 m without odometry");
+    assert!(error_m < 0.05, "{error_m} m");
 }
 
 #[test]
