@@ -9,13 +9,13 @@ use crate::surfel_map::SurfelMap;
 
 /// Keyframes farther from the middle of a submap than this are not matched with it, m.
 const NEAR_M: f64 = 6.0;
-/// One of this many keyframes is matched with a submap.
-const STRIDE: usize = 3;
+/// One of this many keyframes is matched with a submap, round by round.
+const STRIDES: [usize; 2] = [7, 4];
 /// The number of points of a keyframe that are compared.
-const MOST_POINTS: usize = 150;
+const MOST_POINTS: usize = 120;
 /// The uncertainty of the poses after loops were closed, m and rad.
-const STD_M: f64 = 0.15;
-const STD_RAD: f64 = 0.03;
+const STD_M: f64 = 0.3;
+const STD_RAD: f64 = 0.05;
 /// The least shares of a match: of the points that the submap can judge, and of those that agree.
 const LEAST_OVERLAP: f64 = 0.4;
 const LEAST_AGREEMENT: f64 = 0.75;
@@ -23,11 +23,25 @@ const LEAST_AGREEMENT: f64 = 0.75;
 const MODEL_STD_M: f64 = 0.015;
 const MODEL_STD_RAD: f64 = 0.003;
 
-/// Matches keyframes with all submaps around them of which they are no part, and optimises the graph.
+/// Matches keyframes with all submaps around them of which they are no part, and optimises the graph; once more from the
+/// better poses.
 pub(super) fn refine(places: &Places, keyframes: &[Keyframe], graph: &mut PoseGraph) {
+    let without = graph.edges.clone();
+    for stride in STRIDES {
+        let edges = edges(places, keyframes, stride, graph);
+        graph.edges.clone_from(&without);
+        graph.edges.extend(edges);
+        graph.optimize();
+    }
+    graph.remove_outliers();
+    graph.optimize();
+}
+
+/// The motions from submaps to the keyframes around them.
+fn edges(places: &Places, keyframes: &[Keyframe], stride: usize, graph: &PoseGraph) -> Vec<Edge> {
     let mut edges = Vec::new();
     for (number, submap) in places.submaps.iter().enumerate() {
-        let near: Vec<usize> = near(submap, graph).filter(|near| (near + number) % STRIDE == 0).collect();
+        let near: Vec<usize> = near(submap, graph).filter(|near| (near + number) % stride == 0).collect();
         if near.is_empty() {
             continue;
         }
@@ -36,10 +50,7 @@ pub(super) fn refine(places: &Places, keyframes: &[Keyframe], graph: &mut PoseGr
             edges.extend(edge(&map, submap.anchor, keyframe, keyframes, places.noise_m, graph));
         }
     }
-    graph.edges.extend(edges);
-    graph.optimize();
-    graph.remove_outliers();
-    graph.optimize();
+    edges
 }
 
 /// The keyframes around a submap of which they are no part.
