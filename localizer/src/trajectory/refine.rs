@@ -4,18 +4,16 @@ use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
 use super::matching::{fit, information_of, thinned};
 use super::places::Places;
-use super::submap::FinishedSubmap;
+use super::submap::{Agreement, FinishedSubmap};
+use crate::matcher::Match;
 use crate::surfel_map::SurfelMap;
 
 /// Keyframes farther from the middle of a submap than this are not matched with it, m.
 const NEAR_M: f64 = 6.0;
-/// One of this many keyframes is matched with a submap, round by round.
-const STRIDES: [usize; 2] = [7, 4];
+/// The rounds: one of this many keyframes is matched with a submap, from a pose that is uncertain by this much, m and rad.
+const ROUNDS: [(usize, (f64, f64)); 2] = [(7, (0.3, 0.05)), (3, (0.15, 0.03))];
 /// The number of points of a keyframe that are compared.
 const MOST_POINTS: usize = 120;
-/// The uncertainty of the poses after loops were closed, m and rad.
-const STD_M: f64 = 0.3;
-const STD_RAD: f64 = 0.05;
 /// The least shares of a match: of the points that the submap can judge, and of those that agree.
 const LEAST_OVERLAP: f64 = 0.4;
 const LEAST_AGREEMENT: f64 = 0.75;
@@ -27,8 +25,8 @@ const MODEL_STD_RAD: f64 = 0.003;
 /// better poses.
 pub(super) fn refine(places: &Places, keyframes: &[Keyframe], graph: &mut PoseGraph) {
     let without = graph.edges.clone();
-    for stride in STRIDES {
-        let edges = edges(places, keyframes, stride, graph);
+    for (stride, std) in ROUNDS {
+        let edges = edges(places, keyframes, stride, std, graph);
         graph.edges.clone_from(&without);
         graph.edges.extend(edges);
         graph.optimize();
@@ -38,7 +36,13 @@ pub(super) fn refine(places: &Places, keyframes: &[Keyframe], graph: &mut PoseGr
 }
 
 /// The motions from submaps to the keyframes around them.
-fn edges(places: &Places, keyframes: &[Keyframe], stride: usize, graph: &PoseGraph) -> Vec<Edge> {
+fn edges(
+    places: &Places,
+    keyframes: &[Keyframe],
+    stride: usize,
+    std: (f64, f64),
+    graph: &PoseGraph,
+) -> Vec<Edge> {
     let mut edges = Vec::new();
     for (number, submap) in places.submaps.iter().enumerate() {
         let near: Vec<usize> = near(submap, graph).filter(|near| (near + number) % stride == 0).collect();
@@ -47,7 +51,10 @@ fn edges(places: &Places, keyframes: &[Keyframe], stride: usize, graph: &PoseGra
         }
         let Some(map) = SurfelMap::of_points(&submap.points) else { continue };
         for keyframe in near {
-            edges.extend(edge(&map, submap.anchor, keyframe, keyframes, places.noise_m, graph));
+            let pose = graph.poses[submap.anchor].inv_mul(&graph.poses[keyframe]);
+            let points = thinned(&keyframes[keyframe].points, MOST_POINTS);
+            let found = fit(&map, &points, &pose, std, places.noise_m);
+            edges.extend(found.and_then(|found| edge(submap.anchor, keyframe, &found)));
         }
     }
     edges
@@ -64,20 +71,10 @@ fn near<'a>(submap: &'a FinishedSubmap, graph: &'a PoseGraph) -> impl Iterator<I
 }
 
 /// The motion from the middle of a submap to a keyframe, if the scan of the keyframe agrees with the submap.
-fn edge(
-    map: &SurfelMap,
-    anchor: usize,
-    keyframe: usize,
-    keyframes: &[Keyframe],
-    noise_m: f64,
-    graph: &PoseGraph,
-) -> Option<Edge> {
-    let pose = graph.poses[anchor].inv_mul(&graph.poses[keyframe]);
-    let (found, agreement) =
-        fit(map, &thinned(&keyframes[keyframe].points, MOST_POINTS), &pose, (STD_M, STD_RAD), noise_m)?;
+fn edge(anchor: usize, keyframe: usize, (found, agreement): &(Match, Agreement)) -> Option<Edge> {
     if agreement.overlap() < LEAST_OVERLAP || agreement.share() < LEAST_AGREEMENT {
         return None;
     }
-    let information = information_of(&found, MODEL_STD_M, MODEL_STD_RAD)?;
+    let information = information_of(found, MODEL_STD_M, MODEL_STD_RAD)?;
     Some(Edge { from: anchor, to: keyframe, motion: found.pose, information, kind: EdgeKind::Loop })
 }
