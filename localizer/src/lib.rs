@@ -23,6 +23,9 @@
 //! - Learned rates of change ([`ChangingMap`]) lower the weight of surfaces in a search; in tracking only where the
 //!   unchanged surfaces alone fix the pose.
 //!
+//! [`TrajectoryFinder`] finds the trajectory of a whole log: with submaps that move along with the robot, loops, and a pose
+//! graph.
+//!
 //! This crate knows readings, and of the map its states and rates. It must not know worlds, simulators, goals, drives,
 //! recordings or files.
 
@@ -46,9 +49,11 @@ mod support;
 mod surfel_map;
 mod sweep;
 mod tracking;
+mod trajectory;
 
 pub use changing_map::ChangingMap;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};
 pub use given_poses::GivenPoses;
 pub use localizer::Localizer;
 pub use settings::{LocalizerSettings, OdometryTrust};
+pub use trajectory::{Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings};

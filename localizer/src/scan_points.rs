@@ -132,6 +132,11 @@ impl ScanPoints {
         &self.points
     }
 
+    /// Removes all points.
+    pub(crate) fn clear(&mut self) {
+        self.points.clear();
+    }
+
     /// Replaces the points by those of `reading`. Beams without a return, and points where no straight surface can be
     /// recognised (edges, single points, surfaces that the beams graze) are left out.
     /// `passed` gives [`ScanPoint::passed`] of a beam.

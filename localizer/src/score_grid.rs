@@ -24,26 +24,29 @@ pub(crate) struct ScoreGrid {
     margin: i32,
     width: usize,
     levels: Vec<Vec<u8>>,
-    /// For every cell of the frame, the number of free cells to the left of and below it: where a robot can be.
-    free: Vec<u32>,
+    /// For every cell of the frame, the number of free cells to the left of and below it: where a robot can be. `None`:
+    /// anywhere.
+    free: Option<Vec<u32>>,
 }
 
 impl ScoreGrid {
     /// The scores of the line map. The robot can only be where `states` are free.
     pub(crate) fn new(surfels: &SurfelMap, states: &Grid<CellState>) -> Self {
+        let mut grid = Self::anywhere(surfels);
+        grid.free = Some(free_cells(&grid.frame, states));
+        grid
+    }
+
+    /// The scores of the line map, where nothing is known about the places where the robot can be.
+    pub(crate) fn anywhere(surfels: &SurfelMap) -> Self {
         let coarse = surfels.frame();
         let cells = |count: usize| (count as f64 * coarse.resolution_m() / CELL_M).ceil() as usize;
         let (columns, rows) = (cells(coarse.width()), cells(coarse.height()));
         let frame = GridFrame::new(coarse.origin(), CELL_M, columns, rows).unwrap_or(*coarse);
         let margin = 1_usize << TOP;
         let (width, height) = (frame.width() + margin, frame.height() + margin);
-        let mut grid = Self {
-            frame,
-            margin: margin as i32,
-            width,
-            levels: vec![vec![0; width * height]],
-            free: free_cells(&frame, states),
-        };
+        let mut grid =
+            Self { frame, margin: margin as i32, width, levels: vec![vec![0; width * height]], free: None };
         grid.splat(surfels);
         for level in 0..TOP {
             let finer = &grid.levels[level];
@@ -98,10 +101,11 @@ impl ScoreGrid {
 
     /// Whether the square of `side` cells at `(x, y)` contains a cell where a robot can be.
     pub(crate) fn has_free(&self, x: i32, y: i32, side: i32) -> bool {
+        let Some(free) = &self.free else { return true };
         let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
         let (low_x, low_y) = (x.clamp(0, width), y.clamp(0, height));
         let (high_x, high_y) = ((x + side).clamp(0, width), (y + side).clamp(0, height));
-        let sum = |x: i32, y: i32| self.free[y as usize * (width as usize + 1) + x as usize];
+        let sum = |x: i32, y: i32| free[y as usize * (width as usize + 1) + x as usize];
         sum(high_x, high_y) + sum(low_x, low_y) > sum(low_x, high_y) + sum(high_x, low_y)
     }
 }

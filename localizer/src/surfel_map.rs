@@ -5,6 +5,7 @@
 
 mod checking;
 mod learning;
+mod points;
 mod prior;
 #[cfg(test)]
 mod tests;

@@ -16,10 +16,25 @@ const CLEARANCE_M: f64 = 0.25;
 impl SurfelMap {
     /// Updates the map with a scan at a certain pose.
     pub(crate) fn learn(&mut self, points: &[ScanPoint], pose: &Isometry2<f64>, range_noise_std_m: f64) {
-        let gate_m = HIT_STDS * range_noise_std_m.max(LEAST_NOISE_M);
-        self.scan = self.scan.wrapping_add(1);
         // All that follows is matched with the first scan.
         let scans = if self.surfels.is_empty() { USABLE_SCANS } else { 1 };
+        self.learn_as(points, pose, range_noise_std_m, scans);
+    }
+
+    /// Updates the map with a keyframe: one scan stands for all around it, and takes part in matching at once.
+    pub(crate) fn learn_keyframe(
+        &mut self,
+        points: &[ScanPoint],
+        pose: &Isometry2<f64>,
+        range_noise_std_m: f64,
+    ) {
+        self.learn_as(points, pose, range_noise_std_m, USABLE_SCANS);
+    }
+
+    /// Updates the map with a scan whose new surfels count as seen in a number of scans.
+    fn learn_as(&mut self, points: &[ScanPoint], pose: &Isometry2<f64>, range_noise_std_m: f64, scans: u32) {
+        let gate_m = HIT_STDS * range_noise_std_m.max(LEAST_NOISE_M);
+        self.scan = self.scan.wrapping_add(1);
         for point in points {
             let (at, normal) = (pose * point.at, pose.rotation * point.normal);
             match self.nearest(&at, &normal, gate_m) {

@@ -6,6 +6,7 @@ mod house;
 mod coherent_motion;
 mod faults;
 mod glitches;
+mod loops;
 mod robot;
 mod tracking;
 mod unknown_start;

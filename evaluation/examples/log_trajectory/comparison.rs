@@ -1,0 +1,92 @@
+//! The difference to poses of an earlier estimation, and which of both trajectories makes the sharper map.
+
+use crate::hits;
+use interfaces::{LaserReading, heading_rad, wrap_rad};
+use localizer::Trajectory;
+use logs::{CarmenLog, LogError};
+use nalgebra::{Isometry2, Vector2};
+use std::collections::BTreeSet;
+
+/// A pose of ours and that of the earlier estimation.
+type Pair = (Isometry2<f64>, Isometry2<f64>);
+
+/// The side of the cells in which points are counted, m, and the largest range of these points, m.
+const CELL_M: f64 = 0.03;
+const FARTHEST_M: f64 = 15.0;
+
+/// Prints the differences of position and heading after a rigid alignment, if the log has poses of the laser.
+pub(crate) fn print(
+    log: &CarmenLog,
+    trajectory: &Trajectory,
+    readings: &[LaserReading],
+) -> Result<(), LogError> {
+    let reference = log.reference_poses()?;
+    let pairs: Vec<Pair> = trajectory
+        .poses
+        .iter()
+        .zip(readings)
+        .zip(reference)
+        .filter_map(|((found, reading), reference)| Some((found.pose * reading.mount, reference?)))
+        .collect();
+    if pairs.is_empty() {
+        return Ok(());
+    }
+    let align = alignment(&pairs);
+    let errors = pairs.iter().map(|(found, reference)| {
+        let found = align * found;
+        let turn_rad = wrap_rad(heading_rad(&found) - heading_rad(reference));
+        ((found.translation.vector - reference.translation.vector).norm(), turn_rad.abs().to_degrees())
+    });
+    let (mut positions_m, mut headings_deg): (Vec<f64>, Vec<f64>) = errors.unzip();
+    let by_poses = |sorted: &mut Vec<f64>| {
+        sorted.sort_by(f64::total_cmp);
+        [0.5, 0.95, 1.0].map(|share| sorted[(share * (sorted.len() - 1) as f64) as usize])
+    };
+    let ([median_m, most_m, max_m], [median_deg, most_deg, max_deg]) =
+        (by_poses(&mut positions_m), by_poses(&mut headings_deg));
+    println!(
+        "against the poses in the FLASER lines, median / 95 % / max: {:.1} / {:.1} / {:.1} cm, {median_deg:.2} / {most_deg:.2} / \
+         {max_deg:.2}°",
+        median_m * 100.0,
+        most_m * 100.0,
+        max_m * 100.0
+    );
+    if pairs.len() == readings.len() {
+        let ours = cells(pairs.iter().map(|pair| pair.0), readings);
+        let theirs = cells(pairs.iter().map(|pair| pair.1), readings);
+        println!(
+            "sharpness: the points lie in {ours} cells of {CELL_M} m, along the poses in the FLASER lines in {theirs}"
+        );
+    }
+    Ok(())
+}
+
+/// The number of cells that contain points, from poses of the laser: a blurred map has more.
+fn cells(poses: impl Iterator<Item = Isometry2<f64>>, readings: &[LaserReading]) -> usize {
+    let mut cells = BTreeSet::new();
+    for (pose, reading) in poses.zip(readings) {
+        let from_laser = pose * reading.mount.inverse();
+        let near = hits(reading).filter(|hit| hit.coords.norm() < FARTHEST_M);
+        cells.extend(near.map(|hit| {
+            let at = (from_laser * hit) / CELL_M;
+            (at.x.floor() as i32, at.y.floor() as i32)
+        }));
+    }
+    cells.len()
+}
+
+/// The motion that lays the first poses on the second with the least squares of distances (Umeyama 1991, without
+/// scale).
+fn alignment(pairs: &[Pair]) -> Isometry2<f64> {
+    let count = pairs.len() as f64;
+    let mean = |of: fn(&Pair) -> Vector2<f64>| pairs.iter().map(of).sum::<Vector2<f64>>() / count;
+    let (from, to) = (mean(|pair| pair.0.translation.vector), mean(|pair| pair.1.translation.vector));
+    let (mut dot, mut cross) = (0.0, 0.0);
+    for (found, reference) in pairs {
+        let (a, b) = (found.translation.vector - from, reference.translation.vector - to);
+        dot += a.dot(&b);
+        cross += a.perp(&b);
+    }
+    let rotation = interfaces::rotation(cross.atan2(dot));
+    Isometry2::from_parts((to - rotation * from).into(), rotation)
+}

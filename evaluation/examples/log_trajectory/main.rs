@@ -1,0 +1,102 @@
+//! The trajectory of a robot from a CARMEN log, plain or compressed: matching, loops, pose graph.
+//!
+//! Writes `trajectory.tum` (the TUM format) and `trajectory.png` (all points that the laser hit, drawn along the
+//! trajectory) beside each other in a folder, and prints the time per scan. Where the FLASER lines of the log contain
+//! the result of an earlier estimation, its difference to ours is printed, after a rigid alignment, and the sharpness of
+//! both maps. The estimation never sees these poses.
+//!
+//! ```text
+//! cargo run -p evaluation --example log_trajectory -- FILE.log.gz [FOLDER] [no-loops]
+//! ```
+
+mod comparison;
+mod picture;
+
+use interfaces::LaserReading;
+use localizer::{PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
+use logs::CarmenLog;
+use std::error::Error;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (switches, paths): (Vec<_>, Vec<_>) = arguments.iter().partition(|argument| *argument == "no-loops");
+    let Some(file) = paths.first() else {
+        return Err("usage: log_trajectory FILE [FOLDER] [no-loops]".into());
+    };
+    let folder = paths.get(1).map_or_else(|| PathBuf::from("."), PathBuf::from);
+    let log = CarmenLog::open(Path::new(file))?;
+    print_summary(&log);
+    let settings = TrajectorySettings { close_loops: switches.is_empty(), ..TrajectorySettings::default() };
+    let mut finder = TrajectoryFinder::new(&settings)?;
+    let mut readings = Vec::new();
+    for reading in log.readings()? {
+        readings.push(reading?);
+    }
+    let begin = Instant::now();
+    for reading in &readings {
+        finder.add(reading.clone());
+    }
+    let trajectory = finder.finish();
+    let per_scan_ms = begin.elapsed().as_secs_f64() * 1e3 / readings.len() as f64;
+    print_trajectory(&trajectory, per_scan_ms);
+    comparison::print(&log, &trajectory, &readings)?;
+    std::fs::create_dir_all(&folder)?;
+    std::fs::write(folder.join("trajectory.tum"), tum(&trajectory))?;
+    picture::write(&folder.join("trajectory.png"), &trajectory, &readings)?;
+    Ok(())
+}
+
+fn print_summary(log: &CarmenLog) {
+    let summary = log.summary();
+    println!(
+        "{} scans in {:.0} s, {} poses of the odometry",
+        summary.scans, summary.duration_s, summary.odometry_poses
+    );
+    for note in &summary.notes {
+        println!("note: {note}");
+    }
+}
+
+fn print_trajectory(trajectory: &Trajectory, per_scan_ms: f64) {
+    let poses = &trajectory.poses;
+    let step_m = |pair: &[localizer::TrajectoryPose]| {
+        (pair[1].pose.translation.vector - pair[0].pose.translation.vector).norm()
+    };
+    let length_m: f64 = poses.windows(2).map(step_m).sum();
+    let uncertain = poses.iter().filter(|pose| pose.state != PoseState::Tracking).count();
+    println!(
+        "trajectory: {length_m:.0} m, {} places recognised, {uncertain} scans without support, {per_scan_ms:.2} ms per scan",
+        trajectory.loops
+    );
+}
+
+/// The trajectory in the TUM format: time, position, quaternion.
+fn tum(trajectory: &Trajectory) -> String {
+    let mut text = String::new();
+    for pose in &trajectory.poses {
+        let (at, half) = (pose.pose.translation, interfaces::heading_rad(&pose.pose) / 2.0);
+        let _ = writeln!(
+            text,
+            "{:.6} {:.6} {:.6} 0 0 0 {:.9} {:.9}",
+            pose.time_s,
+            at.x,
+            at.y,
+            half.sin(),
+            half.cos()
+        );
+    }
+    text
+}
+
+/// The points that a reading hit, in the frame of the robot.
+fn hits(reading: &LaserReading) -> impl Iterator<Item = nalgebra::Point2<f64>> + '_ {
+    let scan = &reading.scan;
+    let hit = |(beam, range_m): (usize, &f32)| {
+        let along = interfaces::rotation(scan.angle_rad(beam)) * nalgebra::Vector2::x();
+        range_m.is_finite().then(|| reading.mount * nalgebra::Point2::from(along * f64::from(*range_m)))
+    };
+    scan.ranges_m.iter().enumerate().filter_map(hit)
+}

@@ -1,0 +1,130 @@
+//! The trajectory of a robot from a whole log, with loops: offline, and without a known extent of the place.
+//!
+//! ```text
+//! reading ─▶ match with the local submap ─▶ keyframe ─▶ submap is finished ─▶ loops? ─▶ pose graph ─▶ refine
+//! ```
+//!
+//! - A scan is matched with the submap of the last keyframes only: an error of the past bends nothing that follows.
+//! - A finished submap is searched for in earlier submaps by branch and bound, as far as the trajectory since then is
+//!   uncertain (Hess, Kohler, Rapp & Andor 2016).
+//! - A loop counts where most of what both submaps cover agrees, where no beam of one passes the walls of the other, where
+//!   no other pose fits about as well, and where another loop agrees with it, unless the way since then was short.
+//! - In the end, keyframes are matched with all submaps around them, so that every wall is there once.
+
+mod free_space;
+mod front_end;
+mod graph;
+mod keyframe;
+mod loops;
+mod matching;
+mod odometry_drift;
+mod places;
+mod refine;
+mod settings;
+mod sparse;
+mod submap;
+
+pub use settings::TrajectorySettings;
+
+use crate::estimate::PoseState;
+use crate::given_poses::GivenPoses;
+use front_end::FrontEnd;
+use graph::PoseGraph;
+use interfaces::{LaserReading, SettingsError, is_valid_pose};
+use loops::LoopCloser;
+use nalgebra::Isometry2;
+
+/// The pose of one reading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrajectoryPose {
+    /// The time of the reading, s.
+    pub time_s: f64,
+    /// The pose of the robot, m and rad. The pose of the first reading is the origin.
+    pub pose: Isometry2<f64>,
+    /// [`PoseState::Tracking`] where the scan supports the pose, [`PoseState::Lost`] for invalid readings.
+    pub state: PoseState,
+}
+
+/// A trajectory.
+#[derive(Clone, Debug, Default)]
+pub struct Trajectory {
+    /// One pose per reading, in their order.
+    pub poses: Vec<TrajectoryPose>,
+    /// The number of places that were recognised.
+    pub loops: usize,
+}
+
+/// A reading, and its pose relative to a keyframe.
+#[derive(Clone, Copy, Debug)]
+struct Attached {
+    time_s: f64,
+    keyframe: usize,
+    offset: Isometry2<f64>,
+    state: PoseState,
+}
+
+/// Finds the trajectory of a robot from its readings, one after the other. The same readings give the same bits.
+#[derive(Debug)]
+pub struct TrajectoryFinder {
+    settings: TrajectorySettings,
+    given: GivenPoses,
+    front_end: FrontEnd,
+    closer: LoopCloser,
+    graph: PoseGraph,
+    readings: Vec<Attached>,
+}
+
+impl TrajectoryFinder {
+    /// A finder without a reading.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn new(settings: &TrajectorySettings) -> Result<Self, SettingsError> {
+        settings.check()?;
+        Ok(Self {
+            settings: settings.clone(),
+            given: GivenPoses::default(),
+            front_end: FrontEnd::new(settings),
+            closer: LoopCloser::new(settings.range_noise_std_m),
+            graph: PoseGraph::default(),
+            readings: Vec::new(),
+        })
+    }
+
+    /// Adds the next reading. An invalid reading gets the pose of the odometry.
+    pub fn add(&mut self, reading: LaserReading) {
+        let is_valid = reading.scan.check().is_ok() && is_valid_pose(&reading.pose);
+        let reading = if is_valid { self.given.unswept(reading) } else { reading };
+        let (offset, state) = self.front_end.localize(&reading, &mut self.graph);
+        let keyframe = self.graph.poses.len() - 1;
+        self.readings.push(Attached { time_s: reading.time_s, keyframe, offset, state });
+        if self.settings.close_loops {
+            self.search_loops();
+        }
+    }
+
+    /// Searches for the submaps that were finished since the last search.
+    fn search_loops(&mut self) {
+        while let Some(submap) = self.front_end.next_finished() {
+            self.closer.add(submap, self.front_end.keyframes(), &mut self.graph);
+        }
+    }
+
+    /// The trajectory of all readings.
+    pub fn finish(mut self) -> Trajectory {
+        if self.settings.close_loops {
+            self.front_end.end();
+            self.search_loops();
+            self.closer.finish(&mut self.graph);
+            refine::refine(&self.closer.places, self.front_end.keyframes(), &mut self.graph);
+        }
+        let loops = self.closer.loops();
+        let pose = |reading: &Attached| TrajectoryPose {
+            time_s: reading.time_s,
+            pose: self.graph.poses[reading.keyframe] * reading.offset,
+            state: reading.state,
+        };
+        Trajectory { poses: self.readings.iter().map(pose).collect(), loops }
+    }
+}

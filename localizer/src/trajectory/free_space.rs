@@ -1,0 +1,128 @@
+//! Whether the beams of one submap pass the surfaces of another: then they are not the same place.
+
+use super::keyframe::Keyframe;
+use super::submap::FinishedSubmap;
+use crate::scan_points::ScanPoint;
+use interfaces::approximate_atan2;
+use nalgebra::{Isometry2, Point2};
+use std::f64::consts::TAU;
+
+/// One of this many keyframes, and one of this many points, is looked at.
+const KEYFRAME_STRIDE: usize = 3;
+const POINT_STRIDE: usize = 2;
+/// A beam passes a surface if it ends at least this far behind: a distance (m) and a share of the range.
+const PASSED_M: f64 = 0.25;
+const PASSED_SHARE: f64 = 0.02;
+/// Surfaces farther away are not looked at, m.
+const FARTHEST_M: f64 = 10.0;
+/// Beams that graze a surface say nothing: the least cosine of the angle of incidence.
+const LEAST_INCIDENCE: f64 = 0.35;
+
+/// The numbers of beams that end at the surfaces, and that pass them.
+#[derive(Clone, Copy, Debug, Default)]
+struct Beams {
+    ending: usize,
+    passing: usize,
+}
+
+/// The share of beams that pass surfaces of the other submap, of all that reach them. `pose` is the pose of `to` in
+/// `from`.
+pub(super) fn passing_share(
+    from: &FinishedSubmap,
+    to: &FinishedSubmap,
+    pose: &Isometry2<f64>,
+    keyframes: &[Keyframe],
+) -> f64 {
+    let mut beams = Beams::default();
+    count(from, to, pose, keyframes, &mut beams);
+    count(to, from, &pose.inverse(), keyframes, &mut beams);
+    beams.passing as f64 / (beams.passing + beams.ending).max(1) as f64
+}
+
+/// Counts the beams of one submap at the surfaces of the other.
+fn count(
+    seeing: &FinishedSubmap,
+    seen: &FinishedSubmap,
+    pose: &Isometry2<f64>,
+    keyframes: &[Keyframe],
+    beams: &mut Beams,
+) {
+    let back = keyframes[seeing.anchor].local.inverse();
+    for keyframe in keyframes[seeing.first..=seeing.last].iter().step_by(KEYFRAME_STRIDE) {
+        let to_laser = (back * keyframe.local * keyframe.mount).inv_mul(pose);
+        for point in seen.points.iter().step_by(POINT_STRIDE) {
+            match is_passed(keyframe, point, &to_laser) {
+                Some(true) => beams.passing += 1,
+                Some(false) => beams.ending += 1,
+                None => {}
+            }
+        }
+    }
+}
+
+/// Whether the beams of a keyframe pass a surface; `None` if they do not reach it.
+fn is_passed(keyframe: &Keyframe, point: &ScanPoint, to_laser: &Isometry2<f64>) -> Option<bool> {
+    let scan = &keyframe.scan;
+    let at: Point2<f64> = to_laser * point.at;
+    let distance_m = at.coords.norm();
+    let incidence = -(to_laser.rotation * point.normal).dot(&at.coords);
+    if distance_m > FARTHEST_M.min(scan.range_max_m) || incidence < LEAST_INCIDENCE * distance_m {
+        return None;
+    }
+    let turn = (approximate_atan2(at.y, at.x) - scan.angle_min_rad) / scan.angle_increment_rad;
+    let turns = TAU / scan.angle_increment_rad.abs();
+    let beam = (turn - turns * (turn / turns).floor()).round() as usize;
+    if beam == 0 || beam + 1 >= scan.ranges_m.len() {
+        return None;
+    }
+    let margin_m = PASSED_M + PASSED_SHARE * distance_m;
+    let ranges = [beam - 1, beam, beam + 1].map(|beam| f64::from(scan.ranges_m[beam]));
+    // A missing range says nothing; no return means that the beam passed.
+    if ranges.iter().all(|range_m| *range_m > distance_m + margin_m) {
+        return Some(true);
+    }
+    ranges.iter().any(|range_m| (range_m - distance_m).abs() <= margin_m).then_some(false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::Scan;
+    use nalgebra::Vector2;
+
+    #[test]
+    fn a_beam_that_ends_behind_a_surface_passes_it() {
+        // All beams end 3 m ahead, but two of them, that see nothing.
+        let mut ranges_m = vec![3.0; 181];
+        ranges_m[20] = f32::NAN;
+        ranges_m[60] = f32::INFINITY;
+        let scan = Scan {
+            angle_min_rad: -std::f64::consts::FRAC_PI_2,
+            angle_increment_rad: 1_f64.to_radians(),
+            range_min_m: 0.0,
+            range_max_m: 80.0,
+            sweep_s: 0.0,
+            ranges_m,
+        };
+        let (local, mount) = (Isometry2::identity(), Isometry2::identity());
+        let keyframe = Keyframe { local, points: Vec::new(), mount, scan };
+        let passed = |beam: f64, distance_m: f64, facing: f64| {
+            let along = interfaces::rotation((beam - 90.0).to_radians()) * Vector2::x();
+            let point = ScanPoint {
+                at: (along * distance_m).into(),
+                normal: -along * facing,
+                weight: 1.0,
+                beam: 0,
+                passed: 1.0,
+            };
+            is_passed(&keyframe, &point, &Isometry2::identity())
+        };
+        assert_eq!(passed(90.0, 2.0, 1.0), Some(true));
+        assert_eq!(passed(90.0, 3.1, 1.0), Some(false));
+        assert_eq!(passed(90.0, 5.0, 1.0), None, "hidden");
+        assert_eq!(passed(90.0, 2.0, -1.0), None, "seen from behind");
+        assert_eq!(passed(20.0, 2.0, 1.0), None, "a missing beam");
+        assert_eq!(passed(60.0, 2.0, 1.0), Some(true), "no return");
+        assert_eq!(passed(250.0, 2.0, 1.0), None, "behind the laser");
+    }
+}

@@ -1,0 +1,83 @@
+use crate::scan_points::ScanPoint;
+use interfaces::Scan;
+use nalgebra::Isometry2;
+
+/// Points farther away than this are left out, m: neighboring beams are so far apart that they may be on different
+/// surfaces.
+const FARTHEST_M: f64 = 25.0;
+/// The distance between points on one surface, m: that of the cells of a line map.
+const SPACING_M: f64 = 0.1;
+/// Neighboring points on one straight surface are at most this far apart, m ...
+const MOST_M: f64 = 0.8;
+/// ... have normals with at least this cosine, and lie on one line up to this share of their distance.
+const SAME_NORMAL: f64 = 0.95;
+const OFF_LINE: f64 = 0.15;
+
+/// A scan that stands for all scans around it.
+#[derive(Clone, Debug)]
+pub(super) struct Keyframe {
+    /// The pose by matching with local submaps alone, m and rad.
+    pub(super) local: Isometry2<f64>,
+    /// The points, in the frame of the robot.
+    pub(super) points: Vec<ScanPoint>,
+    /// The pose of the laser in the frame of the robot.
+    pub(super) mount: Isometry2<f64>,
+    /// The scan.
+    pub(super) scan: Scan,
+}
+
+/// The near points of a scan, and between neighbors on one surface as many more as a line map needs: far surfaces are
+/// hit by few beams.
+pub(super) fn filled(points: &[ScanPoint]) -> Vec<ScanPoint> {
+    let near = |point: &&ScanPoint| point.at.coords.norm_squared() < FARTHEST_M * FARTHEST_M;
+    let mut filled: Vec<ScanPoint> = Vec::with_capacity(points.len());
+    for point in points.iter().filter(near) {
+        if let Some(before) = filled.last().copied().filter(|before| are_joined(before, point)) {
+            let way = point.at - before.at;
+            let steps = (way.norm() / SPACING_M) as usize;
+            for step in 1..steps {
+                let at = before.at + way * (step as f64 / steps as f64);
+                filled.push(ScanPoint { at, ..before });
+            }
+        }
+        filled.push(*point);
+    }
+    filled
+}
+
+fn are_joined(before: &ScanPoint, point: &ScanPoint) -> bool {
+    let way = point.at - before.at;
+    let distance_m = way.norm();
+    point.beam == before.beam + 1
+        && distance_m < MOST_M
+        && before.normal.dot(&point.normal) > SAME_NORMAL
+        && before.normal.dot(&way).abs() < OFF_LINE * distance_m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Point2, Vector2};
+
+    #[test]
+    fn only_neighbors_on_one_surface_are_joined() {
+        let point = |x: f64, y: f64, beam: usize| ScanPoint {
+            at: Point2::new(x, y),
+            normal: -Vector2::y(),
+            weight: 1.0,
+            beam,
+            passed: 1.0,
+        };
+        // 0.5 m along a wall; then a step, a missing beam, and a point that is too far away.
+        let points = [
+            point(0.0, 5.0, 0),
+            point(0.5, 5.0, 1),
+            point(1.0, 5.4, 2),
+            point(1.3, 5.4, 4),
+            point(30.0, 5.4, 5),
+        ];
+        let filled = filled(&points);
+        assert_eq!(filled.len(), 4 + 4);
+        assert!(filled[..6].windows(2).all(|pair| (pair[1].at.x - pair[0].at.x - 0.1).abs() < 1e-9));
+    }
+}

@@ -1,0 +1,121 @@
+//! Loops: recognised places that other recognised places confirm.
+
+use super::graph::{Edge, PoseGraph};
+use super::keyframe::Keyframe;
+use super::odometry_drift::reach;
+use super::places::{Place, Places};
+use super::submap::FinishedSubmap;
+use interfaces::heading_rad;
+
+/// After a way shorter than this, a place needs no other that agrees, m.
+const SHORT_WAY_M: f64 = 20.0;
+/// Two places that agree begin and end at most this many submaps apart, and differ by no more than the trajectory between
+/// them is uncertain.
+const NEIGHBORS: usize = 6;
+/// The way from keyframe to keyframe, for this uncertainty, m.
+const KEYFRAME_M: f64 = 0.35;
+/// The graph is optimised at once if a new loop contradicts it by this, m and rad.
+const URGENT_M: f64 = 0.1;
+const URGENT_RAD: f64 = 0.03;
+
+/// Finds loops and adds them to the graph.
+#[derive(Debug)]
+pub(super) struct LoopCloser {
+    pub(super) places: Places,
+    /// Places that no other has confirmed yet.
+    pending: Vec<Place>,
+    accepted: Vec<Place>,
+}
+
+impl LoopCloser {
+    pub(super) fn new(noise_m: f64) -> Self {
+        Self { places: Places::new(noise_m), pending: Vec::new(), accepted: Vec::new() }
+    }
+
+    /// The number of loops that were accepted.
+    pub(super) fn loops(&self) -> usize {
+        self.accepted.len()
+    }
+
+    /// Searches for a finished submap in the earlier ones.
+    pub(super) fn add(&mut self, submap: FinishedSubmap, keyframes: &[Keyframe], graph: &mut PoseGraph) {
+        let to = self.places.submaps.len();
+        self.places.submaps.push(submap);
+        let mut is_urgent = false;
+        for place in self.places.of(to, keyframes, graph) {
+            if place.way_m <= SHORT_WAY_M || self.is_confirmed(&place, graph) {
+                is_urgent |= is_urgent_in(&place.edge, graph);
+                self.accept(place, graph);
+            } else {
+                self.pending.push(place);
+            }
+        }
+        if is_urgent {
+            graph.optimize();
+        }
+    }
+
+    /// Optimises the graph with all loops. Of the places that wait for others, strong ones are accepted if two earlier
+    /// submaps say the same.
+    pub(super) fn finish(&mut self, graph: &mut PoseGraph) {
+        let pending = std::mem::take(&mut self.pending);
+        for found in pending.iter().filter(|found| found.is_strong) {
+            let mut others = pending.iter().filter(|other| other.from != found.from && other.to == found.to);
+            if others.any(|other| agree(found, other, graph)) {
+                self.accept(found.clone(), graph);
+            }
+        }
+        graph.optimize();
+        graph.remove_outliers();
+        graph.optimize();
+    }
+
+    /// Whether other places between the same parts of the trajectory agree: at least one more than contradict. Places
+    /// that wait for this are accepted with it.
+    fn is_confirmed(&mut self, found: &Place, graph: &mut PoseGraph) -> bool {
+        let (mut agreeing, mut contradicting) = (0, 0);
+        for other in self.pending.iter().chain(&self.accepted).filter(|other| are_neighbors(found, other)) {
+            match agree(found, other, graph) {
+                true => agreeing += 1,
+                false => contradicting += 1,
+            }
+        }
+        let is_confirmed = agreeing > contradicting;
+        if is_confirmed {
+            let (confirmed, pending): (Vec<Place>, Vec<Place>) = std::mem::take(&mut self.pending)
+                .into_iter()
+                .partition(|other| are_neighbors(found, other) && agree(found, other, graph));
+            self.pending = pending;
+            for other in confirmed {
+                self.accept(other, graph);
+            }
+        }
+        is_confirmed
+    }
+
+    fn accept(&mut self, found: Place, graph: &mut PoseGraph) {
+        graph.edges.push(found.edge.clone());
+        self.accepted.push(found);
+    }
+}
+
+/// Whether two places connect the same parts of the trajectory, and were not found with the same submap.
+fn are_neighbors(a: &Place, b: &Place) -> bool {
+    a.from.abs_diff(b.from) <= NEIGHBORS && a.to.abs_diff(b.to) <= NEIGHBORS && a.to != b.to
+}
+
+/// Whether two places say the same.
+fn agree(a: &Place, b: &Place, graph: &PoseGraph) -> bool {
+    let between = |from: usize, to: usize| graph.poses[from].inv_mul(&graph.poses[to]);
+    let expected = between(a.edge.from, b.edge.from) * b.edge.motion * between(b.edge.to, a.edge.to);
+    let off = expected.inv_mul(&a.edge.motion);
+    let keyframes = a.edge.from.abs_diff(b.edge.from) + a.edge.to.abs_diff(b.edge.to);
+    let (most_m, most_rad) = reach(keyframes as f64 * KEYFRAME_M);
+    off.translation.vector.norm() <= most_m && heading_rad(&off).abs() <= most_rad
+}
+
+/// Whether a loop contradicts the trajectory so much that all later searches profit from it.
+fn is_urgent_in(edge: &Edge, graph: &PoseGraph) -> bool {
+    let off = edge.motion.inv_mul(&graph.poses[edge.from].inv_mul(&graph.poses[edge.to]));
+    off.translation.vector.norm() > URGENT_M || heading_rad(&off).abs() > URGENT_RAD
+}

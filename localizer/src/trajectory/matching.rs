@@ -1,0 +1,132 @@
+//! What matches of scans and of submaps share: gates, covariances, and what a match says.
+
+use super::submap::{Agreement, agreement};
+use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align, difference};
+use crate::scan_points::ScanPoint;
+use crate::surfel_map::SurfelMap;
+use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// Points match a surfel within this many standard deviations of the range noise and of the surfel.
+const GATE_STDS: f64 = 3.0;
+/// The farthest that a match starts from the prediction, m.
+pub(super) const WIDEST_M: f64 = 0.4;
+/// The least noise that is assumed, m: surfaces are not perfectly straight.
+const LEAST_NOISE_M: f64 = 0.005;
+/// A contradiction to the odometry (squared, over its covariance) that means nothing.
+const EXPECTED: f64 = 4.0;
+/// The share of the information about a position that may come from normals that are a little off.
+const SPURIOUS_SHARE: f64 = 0.03;
+/// The uncertainty of a direction that no surface fixes, m and rad.
+const LOOSE_M: f64 = 10.0;
+const LOOSE_RAD: f64 = 1.0;
+
+/// The gates of a match of scans with this noise.
+pub(super) fn gates(noise_m: f64, first_m: f64) -> Gates {
+    let noise_m = noise_m.max(LEAST_NOISE_M);
+    let last_m = GATE_STDS * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt();
+    Gates { noise_m, first_m: first_m.min(WIDEST_M).max(last_m), last_m, by_rates: false }
+}
+
+/// The covariance of standard deviations of x and y, and of the heading.
+pub(super) fn covariance(std_m: f64, std_rad: f64) -> Matrix3<f64> {
+    Matrix3::from_diagonal(&Vector3::new(std_m * std_m, std_m * std_m, std_rad * std_rad))
+}
+
+/// An information matrix of shifts along the axes of a map, as one along the axes of a frame with this pose.
+pub(super) fn in_frame(information: &Matrix3<f64>, frame: &Isometry2<f64>) -> Matrix3<f64> {
+    let (cos, sin) = (frame.rotation.re, frame.rotation.im);
+    let turn = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+    turn.transpose() * information * turn
+}
+
+/// At most a number of points, evenly taken.
+pub(super) fn thinned(points: &[ScanPoint], most: usize) -> Vec<ScanPoint> {
+    points.iter().step_by(points.len().div_ceil(most).max(1)).copied().collect()
+}
+
+/// Matches points with a map, from a pose that is uncertain by this much (m, rad).
+pub(super) fn fit(
+    map: &SurfelMap,
+    points: &[ScanPoint],
+    pose: &Isometry2<f64>,
+    (std_m, std_rad): (f64, f64),
+    noise_m: f64,
+) -> Option<(Match, Agreement)> {
+    let prior = Prior { pose: *pose, information: covariance(std_m, std_rad).try_inverse()?, begin: None };
+    let gates = gates(noise_m, std_m);
+    let found = align(map, points, pose, Some(&prior), &gates)?;
+    let agreement = agreement(map, points, &found.placement.pose, gates.last_m);
+    Some((found, agreement))
+}
+
+/// The information of a match, with the errors of the model (m, rad). Directions that the scan does not fix stay free:
+/// of all that a scan says, a small share comes from normals that are a little off.
+pub(super) fn information_of(found: &Match, std_m: f64, std_rad: f64) -> Option<Matrix3<f64>> {
+    let scan = &found.scan_information;
+    let off = SPURIOUS_SHARE * (scan[(0, 0)] + scan[(1, 1)]);
+    let eigen = (scan - Matrix3::from_diagonal(&Vector3::new(off, off, 0.0))).symmetric_eigen();
+    let values = eigen.eigenvalues.map(|value| value.max(0.0));
+    let fixed = eigen.eigenvectors * Matrix3::from_diagonal(&values) * eigen.eigenvectors.transpose();
+    let free = covariance(LOOSE_M, LOOSE_RAD).try_inverse()?;
+    let spread = (fixed + free).try_inverse()? * found.residual_ratio.max(1.0);
+    (spread + covariance(std_m, std_rad)).try_inverse()
+}
+
+/// The covariance of a motion between keyframes, from the motion by odometry with its covariance, and the information of
+/// the scan. A match that contradicts the odometry can be wrong by as much.
+pub(super) fn motion_spread(
+    motion: &Isometry2<f64>,
+    (measured, by_odometry): (&Isometry2<f64>, &Matrix3<f64>),
+    scan: Option<&Matrix3<f64>>,
+) -> Matrix3<f64> {
+    let Some(information) = by_odometry.try_inverse() else { return *by_odometry };
+    let spread = (information + scan.copied().unwrap_or_else(Matrix3::zeros)).try_inverse();
+    let off = difference(motion, measured);
+    let square = (off.transpose() * information * off)[0];
+    let share = (1.0 - EXPECTED / square.max(EXPECTED)).max(0.0);
+    spread.unwrap_or(*by_odometry) + off * off.transpose() * share
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Point2, Vector2};
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    /// Points on straight walls along x, 2 m apart, and on some more surfaces.
+    fn corridor(more: &[(f64, f64, f64)]) -> Vec<ScanPoint> {
+        let point = |(x, y, normal_rad): (f64, f64, f64)| ScanPoint {
+            at: Point2::new(x, y),
+            normal: interfaces::rotation(normal_rad) * Vector2::x(),
+            weight: 1.0,
+            beam: 0,
+            passed: 1.0,
+        };
+        // The normals are a little off, to both sides.
+        let walls = (-40_i32..40).flat_map(|step| {
+            let (x, off) = (0.1 * f64::from(step), 0.05 * f64::from(step.rem_euclid(3) - 1));
+            [(x, 1.0, off - FRAC_PI_2), (x, -1.0, off + FRAC_PI_2)]
+        });
+        walls.chain(more.iter().copied()).map(point).collect()
+    }
+
+    fn information(points: &[ScanPoint]) -> Matrix3<f64> {
+        let map = SurfelMap::of_points(points).unwrap();
+        let (found, agreement) = fit(&map, points, &Isometry2::identity(), (0.3, 0.05), 0.02).unwrap();
+        assert!(agreement.share() > 0.99 && agreement.overlap() > 0.99);
+        information_of(&found, 0.02, 0.004).unwrap()
+    }
+
+    #[test]
+    fn a_bare_corridor_does_not_fix_the_position_along_it() {
+        let std_m = |information: &Matrix3<f64>| {
+            let spread = information.try_inverse().unwrap();
+            [spread[(0, 0)].sqrt(), spread[(1, 1)].sqrt()]
+        };
+        let [along_m, across_m] = std_m(&information(&corridor(&[])));
+        assert!(along_m > 1.0 && across_m < 0.03, "{along_m} {across_m}");
+        let end: Vec<(f64, f64, f64)> = (-9..10).map(|step| (4.0, 0.1 * f64::from(step), PI)).collect();
+        let [along_m, _] = std_m(&information(&corridor(&end)));
+        assert!(along_m < 0.03, "{along_m}");
+    }
+}

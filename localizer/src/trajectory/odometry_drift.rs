@@ -1,0 +1,45 @@
+//! How far apart two keyframes are along the trajectory, and how far their relative pose can be wrong.
+
+use super::graph::{EdgeKind, PoseGraph};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// A recognised place connects two keyframes as if they were this far apart, m.
+const LOOP_M: f64 = 0.5;
+/// A turn counts as this way, m/rad.
+const TURN_M: f64 = 0.3;
+/// The least error of a relative pose, and its growth with the way, m and rad.
+const LEAST_M: f64 = 0.4;
+const PER_WAY: f64 = 0.03;
+const MOST_M: f64 = 12.0;
+const LEAST_RAD: f64 = 0.08;
+const PER_ROOT_M_RAD: f64 = 0.03;
+
+/// The shortest way from a keyframe to every other keyframe, along the edges of the graph, m.
+pub(super) fn ways_m(graph: &PoseGraph, from: usize) -> Vec<f64> {
+    let mut neighbors = vec![Vec::new(); graph.poses.len()];
+    for edge in &graph.edges {
+        let turn_m = interfaces::heading_rad(&edge.motion).abs() * TURN_M;
+        let way_m =
+            if edge.kind == EdgeKind::Loop { LOOP_M } else { edge.motion.translation.vector.norm() + turn_m };
+        // Whole millimetres can be sorted.
+        let way_mm = (way_m * 1e3) as u64;
+        neighbors[edge.from].push((edge.to, way_mm));
+        neighbors[edge.to].push((edge.from, way_mm));
+    }
+    let mut ways_mm = vec![u64::MAX; neighbors.len()];
+    let mut queue = BinaryHeap::from([Reverse((0, from))]);
+    while let Some(Reverse((way_mm, node))) = queue.pop() {
+        if way_mm < ways_mm[node] {
+            ways_mm[node] = way_mm;
+            let next = neighbors[node].iter().map(|(other, step_mm)| Reverse((way_mm + step_mm, *other)));
+            queue.extend(next);
+        }
+    }
+    ways_mm.into_iter().map(|way_mm| way_mm as f64 * 1e-3).collect()
+}
+
+/// The largest error of position (m) and heading (rad) that is expected after a way.
+pub(super) fn reach(way_m: f64) -> (f64, f64) {
+    ((LEAST_M + PER_WAY * way_m).min(MOST_M), LEAST_RAD + PER_ROOT_M_RAD * way_m.sqrt())
+}

@@ -1,0 +1,199 @@
+//! Where a submap is in earlier submaps: branch and bound, Gauss-Newton, and the question whether it is the same place.
+
+use super::free_space::passing_share;
+use super::graph::{Edge, EdgeKind, PoseGraph};
+use super::keyframe::Keyframe;
+use super::matching::{fit, information_of, thinned};
+use super::odometry_drift::{reach, ways_m};
+use super::submap::{Agreement, FinishedSubmap};
+use crate::matcher::Match;
+use crate::scan_points::ScanPoint;
+use crate::score_grid::ScoreGrid;
+use crate::search::{Window, search};
+use crate::surfel_map::SurfelMap;
+use interfaces::heading_rad;
+use nalgebra::Isometry2;
+
+/// Submaps that are connected by a shorter way need no loop, m.
+const LEAST_WAY_M: f64 = 8.0;
+/// Two submaps may cover the same place if their middles are this near, beyond the uncertainty, m.
+const NEAR_M: f64 = 6.0;
+/// The number of earlier submaps in which a submap is searched for.
+const MOST_SEARCHES: usize = 3;
+/// Points of a submap farther from its middle than this are not searched for, m: they may lie outside of the other.
+const COMPARED_M: f64 = 10.0;
+/// The number of points that are compared.
+const MOST_POINTS: usize = 300;
+/// The least score of a pose in a search, and the share of the best score that other poses are examined with.
+const LEAST_SCORE: f64 = 0.35;
+const EXAMINED: f64 = 0.75;
+/// The uncertainty of a pose that a search has found, m and rad.
+const FOUND_STD: (f64, f64) = (0.3, 0.05);
+/// The least shares of a recognised place: of the points that the other submap can judge, and of those that agree.
+const LEAST_OVERLAP: f64 = 0.45;
+const LEAST_AGREEMENT: f64 = 0.8;
+/// The largest share of beams that pass surfaces of the other submap.
+const MOST_PASSING: f64 = 0.06;
+/// The same of a place of which little speaks against it.
+const STRONG_OVERLAP: f64 = 0.5;
+const STRONG_AGREEMENT: f64 = 0.88;
+const STRONG_PASSING: f64 = 0.03;
+/// What a pose at the border of the window counts less.
+const UNLIKELY: f64 = 0.3;
+/// A place is ambiguous if another pose counts at least this share of the best.
+const AMBIGUOUS: f64 = 0.9;
+/// Poses nearer than this are the same, m and rad.
+const SAME_M: f64 = 0.5;
+const SAME_RAD: f64 = 0.1;
+/// The errors of a relative pose of submaps that do not average out, m and rad.
+const MODEL_STD_M: f64 = 0.02;
+const MODEL_STD_RAD: f64 = 0.004;
+/// The number of score grids that are kept.
+const MOST_GRIDS: usize = 6;
+
+/// A recognised place: the pose of submap `to` in submap `from`.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    pub(super) from: usize,
+    pub(super) to: usize,
+    /// The way between the two along the trajectory, m.
+    pub(super) way_m: f64,
+    pub(super) edge: Edge,
+    /// Whether little speaks against it.
+    pub(super) is_strong: bool,
+}
+
+/// A pose of a submap in an earlier submap.
+struct Fit {
+    from: usize,
+    way_m: f64,
+    found: Match,
+    agreement: Agreement,
+    /// The share of beams that pass surfaces of the other submap.
+    passing: f64,
+    /// The confirmed points; poses that the trajectory makes unlikely count less.
+    value: f64,
+    /// The pose in the frame of the trajectory.
+    at: Isometry2<f64>,
+}
+
+impl Fit {
+    fn is_same(&self, other: &Self) -> bool {
+        let between = self.at.inv_mul(&other.at);
+        between.translation.vector.norm() < SAME_M && heading_rad(&between).abs() < SAME_RAD
+    }
+
+    fn holds(&self, overlap: f64, agreement: f64, passing: f64) -> bool {
+        self.agreement.overlap() >= overlap && self.agreement.share() >= agreement && self.passing <= passing
+    }
+}
+
+/// The submaps, and the scores of those that were searched last.
+#[derive(Debug)]
+pub(super) struct Places {
+    pub(super) noise_m: f64,
+    pub(super) submaps: Vec<FinishedSubmap>,
+    grids: Vec<(usize, SurfelMap, ScoreGrid)>,
+}
+
+impl Places {
+    pub(super) fn new(noise_m: f64) -> Self {
+        Self { noise_m, submaps: Vec::new(), grids: Vec::new() }
+    }
+
+    /// The places of a submap in earlier submaps. None, if its pose is ambiguous.
+    pub(super) fn of(&mut self, to: usize, keyframes: &[Keyframe], graph: &PoseGraph) -> Vec<Place> {
+        let mut fits = Vec::new();
+        for (from, way_m) in self.candidates(to, graph) {
+            self.fits(from, to, way_m, graph, &mut fits);
+        }
+        fits.retain_mut(|fit| {
+            if !fit.holds(LEAST_OVERLAP, LEAST_AGREEMENT, 1.0) {
+                return false;
+            }
+            let submaps = &self.submaps;
+            fit.passing =
+                passing_share(&submaps[fit.from], &submaps[to], &fit.found.placement.pose, keyframes);
+            fit.passing <= MOST_PASSING
+        });
+        fits.sort_by(|a, b| b.value.total_cmp(&a.value));
+        let Some(best) = fits.first() else { return Vec::new() };
+        if fits.iter().any(|fit| fit.value >= AMBIGUOUS * best.value && !fit.is_same(best)) {
+            return Vec::new();
+        }
+        let mut places: Vec<Place> = Vec::new();
+        for fit in fits.iter().filter(|fit| fit.is_same(best)) {
+            if places.iter().all(|place| place.from != fit.from) {
+                places.extend(self.place(to, fit));
+            }
+        }
+        places
+    }
+
+    fn place(&self, to: usize, fit: &Fit) -> Option<Place> {
+        let information = information_of(&fit.found, MODEL_STD_M, MODEL_STD_RAD)?;
+        let (from, to_anchor) = (self.submaps[fit.from].anchor, self.submaps[to].anchor);
+        let edge =
+            Edge { from, to: to_anchor, motion: fit.found.placement.pose, information, kind: EdgeKind::Loop };
+        let is_strong = fit.holds(STRONG_OVERLAP, STRONG_AGREEMENT, STRONG_PASSING);
+        Some(Place { from: fit.from, to, way_m: fit.way_m, edge, is_strong })
+    }
+
+    /// The earlier submaps that may cover the place of a submap, and the ways to them, m: the nearest ones.
+    fn candidates(&self, to: usize, graph: &PoseGraph) -> Vec<(usize, f64)> {
+        let submap = &self.submaps[to];
+        let ways_m = ways_m(graph, submap.anchor);
+        let distance_m = |other: &FinishedSubmap| {
+            graph.poses[other.anchor].inv_mul(&graph.poses[submap.anchor]).translation.vector.norm()
+        };
+        let earlier = self.submaps[..to].iter().enumerate().filter(|(_, other)| other.last < submap.first);
+        let mut candidates: Vec<(usize, f64, f64)> = earlier
+            .map(|(from, other)| (from, ways_m[other.anchor], distance_m(other)))
+            .filter(|(_, way_m, distance_m)| *way_m >= LEAST_WAY_M && *distance_m <= NEAR_M + reach(*way_m).0)
+            .collect();
+        candidates.sort_by(|a, b| a.2.total_cmp(&b.2));
+        let mut chosen: Vec<(usize, f64)> = Vec::new();
+        for (from, way_m, _) in candidates {
+            // Neighbors share half of their keyframes.
+            if chosen.len() < MOST_SEARCHES && chosen.iter().all(|(other, _)| from.abs_diff(*other) > 1) {
+                chosen.push((from, way_m));
+            }
+        }
+        chosen
+    }
+
+    /// Adds the poses at which a submap fits in an earlier one.
+    fn fits(&mut self, from: usize, to: usize, way_m: f64, graph: &PoseGraph, fits: &mut Vec<Fit>) {
+        self.prepare(from);
+        let Some((_, map, grid)) = self.grids.iter().find(|(number, ..)| *number == from) else { return };
+        let (anchor, other) = (self.submaps[from].anchor, self.submaps[to].anchor);
+        let pose = graph.poses[anchor].inv_mul(&graph.poses[other]);
+        let (reach_m, reach_rad) = reach(way_m);
+        let is_near = |point: &&ScanPoint| point.at.coords.norm() <= COMPARED_M;
+        let near: Vec<ScanPoint> = self.submaps[to].points.iter().filter(is_near).copied().collect();
+        let points = thinned(&near, MOST_POINTS);
+        let window = Window { pose, reach_m, reach_rad };
+        for candidate in search(grid, &points, Some(&window), LEAST_SCORE, EXAMINED) {
+            let Some((found, agreement)) = fit(map, &points, &candidate.pose, FOUND_STD, self.noise_m) else {
+                continue;
+            };
+            let off = (found.placement.pose.translation.vector - pose.translation.vector).norm() / reach_m;
+            let value = agreement.confirmed * (1.0 - UNLIKELY * (off * off).min(1.0));
+            let at = graph.poses[anchor] * found.placement.pose;
+            fits.push(Fit { from, way_m, found, agreement, passing: 0.0, value, at });
+        }
+    }
+
+    /// Makes the scores of a submap.
+    fn prepare(&mut self, number: usize) {
+        if self.grids.iter().any(|(known, ..)| *known == number) {
+            return;
+        }
+        let Some(map) = SurfelMap::of_points(&self.submaps[number].points) else { return };
+        let grid = ScoreGrid::anywhere(&map);
+        if self.grids.len() == MOST_GRIDS {
+            self.grids.remove(0);
+        }
+        self.grids.push((number, map, grid));
+    }
+}

@@ -1,0 +1,80 @@
+//! The last pass: keyframes are matched with the submaps around them.
+
+use super::graph::{Edge, EdgeKind, PoseGraph};
+use super::keyframe::Keyframe;
+use super::matching::{fit, information_of, thinned};
+use super::places::Places;
+use super::submap::{Agreement, FinishedSubmap};
+use crate::matcher::Match;
+use crate::surfel_map::SurfelMap;
+
+/// Keyframes farther from the middle of a submap than this are not matched with it, m.
+const NEAR_M: f64 = 6.0;
+/// The rounds: one of this many keyframes is matched with a submap, from a pose that is uncertain by this much, m and rad.
+const ROUNDS: [(usize, (f64, f64)); 2] = [(7, (0.3, 0.05)), (3, (0.15, 0.03))];
+/// The number of points of a keyframe that are compared.
+const MOST_POINTS: usize = 120;
+/// The least shares of a match: of the points that the submap can judge, and of those that agree.
+const LEAST_OVERLAP: f64 = 0.4;
+const LEAST_AGREEMENT: f64 = 0.75;
+/// The errors of a match that do not average out, m and rad.
+const MODEL_STD_M: f64 = 0.015;
+const MODEL_STD_RAD: f64 = 0.003;
+
+/// Matches keyframes with all submaps around them of which they are no part, and optimises the graph; once more from the
+/// better poses.
+pub(super) fn refine(places: &Places, keyframes: &[Keyframe], graph: &mut PoseGraph) {
+    let without = graph.edges.clone();
+    for (stride, std) in ROUNDS {
+        let edges = edges(places, keyframes, stride, std, graph);
+        graph.edges.clone_from(&without);
+        graph.edges.extend(edges);
+        graph.optimize();
+    }
+    graph.remove_outliers();
+    graph.optimize();
+}
+
+/// The motions from submaps to the keyframes around them.
+fn edges(
+    places: &Places,
+    keyframes: &[Keyframe],
+    stride: usize,
+    std: (f64, f64),
+    graph: &PoseGraph,
+) -> Vec<Edge> {
+    let mut edges = Vec::new();
+    for (number, submap) in places.submaps.iter().enumerate() {
+        let near: Vec<usize> = near(submap, graph).filter(|near| (near + number) % stride == 0).collect();
+        if near.is_empty() {
+            continue;
+        }
+        let Some(map) = SurfelMap::of_points(&submap.points) else { continue };
+        for keyframe in near {
+            let pose = graph.poses[submap.anchor].inv_mul(&graph.poses[keyframe]);
+            let points = thinned(&keyframes[keyframe].points, MOST_POINTS);
+            let found = fit(&map, &points, &pose, std, places.noise_m);
+            edges.extend(found.and_then(|found| edge(submap.anchor, keyframe, &found)));
+        }
+    }
+    edges
+}
+
+/// The keyframes around a submap of which they are no part.
+fn near<'a>(submap: &'a FinishedSubmap, graph: &'a PoseGraph) -> impl Iterator<Item = usize> + 'a {
+    let middle = graph.poses[submap.anchor].translation.vector;
+    let is_near = move |number: &usize| {
+        let is_part = (submap.first..=submap.last).contains(number);
+        !is_part && (graph.poses[*number].translation.vector - middle).norm() <= NEAR_M
+    };
+    (0..graph.poses.len()).filter(is_near)
+}
+
+/// The motion from the middle of a submap to a keyframe, if the scan of the keyframe agrees with the submap.
+fn edge(anchor: usize, keyframe: usize, (found, agreement): &(Match, Agreement)) -> Option<Edge> {
+    if agreement.overlap() < LEAST_OVERLAP || agreement.share() < LEAST_AGREEMENT {
+        return None;
+    }
+    let information = information_of(found, MODEL_STD_M, MODEL_STD_RAD)?;
+    Some(Edge { from: anchor, to: keyframe, motion: found.placement.pose, information, kind: EdgeKind::Loop })
+}

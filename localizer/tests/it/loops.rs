@@ -1,0 +1,236 @@
+//! Trajectories around loops, with a known truth and hard drift.
+
+mod world;
+
+use crate::robot::{Odometry, PERIOD_S};
+use interfaces::LaserReading;
+use localizer::{PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
+use nalgebra::{Isometry2, Vector2};
+use std::f64::consts::TAU;
+use world::{Corridor, Plan};
+
+/// The speed of the robot, m/s.
+const SPEED_MPS: f64 = 0.5;
+
+/// The same corridor with 181 beams ahead, as the lasers of many logs.
+fn ahead(corridor: Corridor) -> Corridor {
+    corridor.with_laser(181, 181_f64.to_radians())
+}
+
+/// The result of a trip.
+struct Trip {
+    trajectory: Trajectory,
+    truth: Vec<Isometry2<f64>>,
+    /// The error of the odometry at the end, m.
+    drift_m: f64,
+    per_scan_ms: f64,
+}
+
+/// A trip around a corridor, and on past the start.
+fn trip(corridor: &mut Corridor, rounds: f64, settings: &TrajectorySettings, seed: u64) -> Trip {
+    trip_with(corridor, rounds, settings, seed, |_| {})
+}
+
+/// The same, with a fault of the sensors.
+fn trip_with(
+    corridor: &mut Corridor,
+    rounds: f64,
+    settings: &TrajectorySettings,
+    seed: u64,
+    fault: impl Fn(&mut LaserReading),
+) -> Trip {
+    let start = corridor.at(0.0);
+    let mut odometry = Odometry::new(start, seed);
+    let mut finder = TrajectoryFinder::new(settings).unwrap();
+    let end_m = rounds * corridor.round_m();
+    let steps = (end_m / (SPEED_MPS * PERIOD_S)) as usize;
+    let (mut truth, mut elapsed) = (Vec::new(), std::time::Duration::ZERO);
+    for step in 0..steps {
+        let pose = corridor.at(step as f64 * SPEED_MPS * PERIOD_S);
+        let mut reading = corridor.reading(step as f64 * PERIOD_S, pose);
+        reading.pose = odometry.moved_to(&pose);
+        fault(&mut reading);
+        truth.push(start.inv_mul(&pose));
+        let begin = std::time::Instant::now();
+        finder.add(reading);
+        elapsed += begin.elapsed();
+    }
+    let begin = std::time::Instant::now();
+    let trajectory = finder.finish();
+    elapsed += begin.elapsed();
+    let last = start * truth[steps - 1];
+    let drift_m = (odometry.pose.translation.vector - last.translation.vector).norm();
+    Trip { trajectory, truth, drift_m, per_scan_ms: elapsed.as_secs_f64() * 1e3 / steps as f64 }
+}
+
+impl Trip {
+    /// The errors of the positions after a rigid alignment, the least first, m.
+    fn errors_m(&self, is_aligned: bool) -> Vec<f64> {
+        let found: Vec<Vector2<f64>> =
+            self.trajectory.poses.iter().map(|pose| pose.pose.translation.vector).collect();
+        let truth: Vec<Vector2<f64>> = self.truth.iter().map(|pose| pose.translation.vector).collect();
+        let mean = |of: &[Vector2<f64>]| of.iter().sum::<Vector2<f64>>() / of.len() as f64;
+        let (from, to) = (mean(&found), mean(&truth));
+        let (mut dot, mut cross) = (0.0, 0.0);
+        for (a, b) in found.iter().zip(&truth) {
+            dot += (a - from).dot(&(b - to));
+            cross += (a - from).perp(&(b - to));
+        }
+        let rotation = interfaces::rotation(cross.atan2(dot));
+        let error = |(a, b): (&Vector2<f64>, &Vector2<f64>)| match is_aligned {
+            true => (rotation * (a - from) - (b - to)).norm(),
+            false => (a - b).norm(),
+        };
+        let mut errors_m: Vec<f64> = found.iter().zip(&truth).map(error).collect();
+        errors_m.sort_by(f64::total_cmp);
+        errors_m
+    }
+
+    /// Prints the errors. Returns the error that 95 % of the positions do not exceed, m.
+    fn report(&self, name: &str) -> f64 {
+        let [raw_m, aligned_m] = [false, true].map(|is_aligned| self.errors_m(is_aligned));
+        let at =
+            |errors_m: &[f64], share: f64| errors_m[(share * (errors_m.len() - 1) as f64) as usize] * 100.0;
+        println!(
+            "{name}: odometry off by {:.1} m at the end; {} loops; median / 95 % / max {:.1} / {:.1} / {:.1} cm from the \
+             start, {:.1} / {:.1} / {:.1} cm aligned; {:.2} ms per scan",
+            self.drift_m,
+            self.trajectory.loops,
+            at(&raw_m, 0.5),
+            at(&raw_m, 0.95),
+            at(&raw_m, 1.0),
+            at(&aligned_m, 0.5),
+            at(&aligned_m, 0.95),
+            at(&aligned_m, 1.0),
+            self.per_scan_ms
+        );
+        at(&aligned_m, 0.95) / 100.0
+    }
+}
+
+#[test]
+fn a_loop_of_50_m_is_closed() {
+    let mut corridor = Corridor::new([15.0, 11.0], Plan::Varied, 100);
+    let trip = trip(&mut corridor, 1.15, &TrajectorySettings::default(), 100);
+    let error_m = trip.report("50 m");
+    assert!(trip.drift_m > 1.0 && trip.trajectory.loops > 0);
+    assert!(error_m < 0.02, "{error_m} m");
+    let tracking = trip.trajectory.poses.iter().filter(|pose| pose.state == PoseState::Tracking).count();
+    assert_eq!(tracking, trip.truth.len());
+}
+
+#[test]
+fn without_loops_the_end_is_not_at_the_start() {
+    // A laser that looks ahead only: the trajectory bends.
+    let errors_m = [false, true].map(|close_loops| {
+        let mut corridor = ahead(Corridor::new([31.0, 20.0], Plan::Varied, 104));
+        let settings = TrajectorySettings { close_loops, ..TrajectorySettings::default() };
+        trip(&mut corridor, 1.2, &settings, 104).report(&format!("100 m, loops closed: {close_loops}"))
+    });
+    assert!(errors_m[1] < 0.1 && errors_m[0] > 2.0 * errors_m[1], "{errors_m:?}");
+}
+
+#[test]
+fn corridors_that_look_the_same_are_not_confused() {
+    // The same niche every 4 m: a place is recognised by the corners only.
+    let mut corridor = ahead(Corridor::new([31.0, 20.0], Plan::Repeated, 105));
+    let trip = trip(&mut corridor, 1.2, &TrajectorySettings::default(), 105);
+    let error_m = trip.report("100 m, the same niches");
+    assert!(error_m < 0.2, "{error_m} m");
+}
+
+#[test]
+fn the_same_readings_give_the_same_bits() {
+    let run = || {
+        let mut corridor = Corridor::new([8.0, 5.0], Plan::Varied, 101).with_laser(120, TAU);
+        let trip = trip(&mut corridor, 1.3, &TrajectorySettings::default(), 101);
+        format!("{:?}", trip.trajectory)
+    };
+    assert_eq!(run(), run());
+}
+
+/// A reading with something wrong.
+fn broken(mut reading: LaserReading, fault: usize, step: usize) -> LaserReading {
+    match fault {
+        0 => reading.scan.ranges_m.fill(f32::NAN),
+        1 => reading.scan.ranges_m.fill(0.2),
+        2 => reading.pose.translation.x = f64::NAN,
+        3 => reading.time_s = -100.0,
+        4 => reading.scan.ranges_m.truncate(step % 3),
+        5 => reading.pose.translation.x += 1e5,
+        6 => reading.scan.angle_increment_rad = f64::INFINITY,
+        7 => reading.scan.sweep_s = f64::NAN,
+        _ => reading.scan.ranges_m.reverse(),
+    }
+    reading
+}
+
+#[test]
+fn faults_of_the_sensors_have_a_pose_and_end() {
+    for fault in 0..9 {
+        let mut corridor = Corridor::new([15.0, 11.0], Plan::Varied, 102).with_laser(180, TAU);
+        let mut finder = TrajectoryFinder::new(&TrajectorySettings::default()).unwrap();
+        let start = corridor.at(0.0);
+        let mut last = Isometry2::identity();
+        for step in 0..300 {
+            let pose = corridor.at(step as f64 * SPEED_MPS * PERIOD_S);
+            let reading = corridor.reading(step as f64 * PERIOD_S, pose);
+            let is_broken = step == 0 || (100..110).contains(&step);
+            finder.add(if is_broken { broken(reading, fault, step) } else { reading });
+            last = start.inv_mul(&pose);
+        }
+        let trajectory = finder.finish();
+        assert_eq!(trajectory.poses.len(), 300);
+        assert!(trajectory.poses.iter().all(|pose| interfaces::is_valid_pose(&pose.pose)), "fault {fault}");
+        let end = trajectory.poses[299];
+        assert_eq!(end.state, PoseState::Tracking, "fault {fault}");
+        // Other faults move the origin.
+        if [0, 1, 3].contains(&fault) {
+            let error_m = (end.pose.translation.vector - last.translation.vector).norm();
+            assert!(error_m < 0.3, "fault {fault}: {error_m} m");
+        }
+    }
+}
+
+#[test]
+fn without_odometry_the_scans_are_enough() {
+    let mut corridor = Corridor::new([15.0, 11.0], Plan::Varied, 106);
+    let settings = TrajectorySettings::default();
+    let trip = trip_with(&mut corridor, 1.15, &settings, 106, |reading| reading.pose = Isometry2::identity());
+    let error_m = trip.report("50 m without odometry");
+    assert!(error_m < 0.05, "{error_m} m");
+}
+
+#[test]
+fn no_reading_has_no_trajectory() {
+    let finder = TrajectoryFinder::new(&TrajectorySettings::default()).unwrap();
+    assert!(finder.finish().poses.is_empty());
+    let settings = TrajectorySettings { keyframe_m: f64::NAN, ..TrajectorySettings::default() };
+    assert_eq!(TrajectoryFinder::new(&settings).unwrap_err().key, "keyframe_m");
+}
+
+/// ```text
+/// cargo test -p localizer --test it loops::long -- --ignored --nocapture
+/// ```
+#[test]
+#[ignore = "takes minutes"]
+fn long_loops_are_closed() {
+    let loops = [([30.0, 23.0], 1.1), ([62.0, 41.0], 1.05), ([85.0, 18.0], 1.05), ([62.0, 41.0], 2.0)];
+    let mut worst_m: f64 = 0.0;
+    for (plan, seeds) in [(Plan::Varied, 100..103), (Plan::Repeated, 103..105)] {
+        for ((sides_m, rounds), seed) in
+            loops.iter().flat_map(|case| seeds.clone().map(move |seed| (*case, seed)))
+        {
+            for looks_ahead in [false, true] {
+                let corridor = Corridor::new(sides_m, plan, seed);
+                let mut corridor = if looks_ahead { ahead(corridor) } else { corridor };
+                let laser = if looks_ahead { "181 beams ahead" } else { "360 beams" };
+                let name =
+                    format!("{:.0} m, {rounds} rounds, {plan:?}, seed {seed}, {laser}", corridor.round_m());
+                let trip = trip(&mut corridor, rounds, &TrajectorySettings::default(), seed);
+                worst_m = worst_m.max(trip.report(&name));
+            }
+        }
+    }
+    assert!(worst_m < 0.15, "{worst_m} m");
+}

@@ -1,0 +1,80 @@
+//! The odometry of a log: the sum of its motions, and its pose at the time of a scan.
+
+use interfaces::{Twist, heading_rad, wrap_rad};
+use nalgebra::Isometry2;
+
+/// Between two poses that are farther apart than this, s, the odometry is not interpolated.
+const LONGEST_GAP_S: f64 = 2.0;
+/// The number of poses that are kept: some messages arrive later than others.
+const KEPT: usize = 64;
+
+/// The recent poses.
+#[derive(Debug, Default)]
+pub(super) struct Odometry {
+    /// The last pose as written.
+    written: Option<Isometry2<f64>>,
+    /// The times (s) and the sums of the motions, the newest last.
+    samples: Vec<(f64, Isometry2<f64>)>,
+}
+
+impl Odometry {
+    /// Adds a pose as written.
+    pub(super) fn add(&mut self, time_s: f64, pose: Isometry2<f64>) {
+        let motion = self.written.map_or(Isometry2::identity(), |before| before.inv_mul(&pose));
+        self.written = Some(pose);
+        let mut at = self.last() * motion;
+        at.rotation.renormalize();
+        if self.samples.len() == KEPT {
+            self.samples.remove(0);
+        }
+        self.samples.push((time_s, at));
+    }
+
+    /// Motions are measured from this pose on.
+    pub(super) fn set_origin(&mut self, pose: Isometry2<f64>) {
+        self.written = Some(pose);
+        // The older poses were written in another frame, but their motions are true.
+    }
+
+    /// The newest pose.
+    fn last(&self) -> Isometry2<f64> {
+        self.samples.last().map_or(Isometry2::identity(), |(_, pose)| *pose)
+    }
+
+    /// Whether a later pose can be nearer to this time.
+    pub(super) fn must_wait(&self, time_s: f64) -> bool {
+        self.samples.last().is_some_and(|(last_s, _)| *last_s < time_s && time_s - last_s < LONGEST_GAP_S)
+    }
+
+    /// The pose and the velocity at a time; the newest pose where the time is not between two poses.
+    pub(super) fn at(&self, time_s: f64) -> (Isometry2<f64>, Twist) {
+        let around = |pair: &&[(f64, Isometry2<f64>)]| pair[0].0 <= time_s && time_s <= pair[1].0;
+        match self.samples.windows(2).rev().find(around) {
+            Some([from, to]) if to.0 - from.0 <= LONGEST_GAP_S && to.0 > from.0 => {
+                between(from, to, (time_s - from.0) / (to.0 - from.0))
+            }
+            _ => self.newest(),
+        }
+    }
+
+    /// The newest pose and its velocity.
+    pub(super) fn newest(&self) -> (Isometry2<f64>, Twist) {
+        match self.samples.as_slice() {
+            [.., from, to] if to.0 > from.0 && to.0 - from.0 <= LONGEST_GAP_S => between(from, to, 1.0),
+            _ => (self.last(), Twist::STOP),
+        }
+    }
+}
+
+fn between(from: &(f64, Isometry2<f64>), to: &(f64, Isometry2<f64>), share: f64) -> (Isometry2<f64>, Twist) {
+    let (from_s, from) = from;
+    let elapsed_s = to.0 - from_s;
+    let turn_rad = wrap_rad(heading_rad(&to.1) - heading_rad(from));
+    let way = to.1.translation.vector - from.translation.vector;
+    let at = from.translation.vector + way * share;
+    let twist = Twist {
+        linear_mps: from.inv_mul(&to.1).translation.x / elapsed_s,
+        angular_radps: turn_rad / elapsed_s,
+    };
+    (interfaces::pose(at.x, at.y, heading_rad(from) + turn_rad * share), twist)
+}

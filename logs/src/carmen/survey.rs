@@ -1,0 +1,68 @@
+//! The first reading of a log: what it contains, and what makes no sense.
+
+use super::line::{self, Geometry, Line};
+use super::times::{self, Times};
+use crate::error::LogError;
+use crate::lines::Lines;
+use std::sync::Arc;
+
+/// What a log contains.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LogSummary {
+    /// The number of readings.
+    pub scans: usize,
+    /// The number of poses of the odometry, without those that only define a new origin.
+    pub odometry_poses: usize,
+    /// The time from the first to the last reading, after repair, s.
+    pub duration_s: f64,
+    /// What was repaired or left out, each a sentence.
+    pub notes: Vec<String>,
+}
+
+/// All that the second reading needs.
+#[derive(Clone, Debug)]
+pub(super) struct Survey {
+    pub(super) summary: LogSummary,
+    pub(super) geometry: Geometry,
+    /// The times of the readings from the first on, strictly increasing, s.
+    pub(super) times_s: Arc<[f64]>,
+    /// Whether the times in the log can be compared with each other.
+    pub(super) has_times: bool,
+    /// Whether an ODOM line without a time is a new origin of the odometry.
+    pub(super) has_origins: bool,
+}
+
+impl Survey {
+    pub(super) fn of(lines: &mut Lines) -> Result<Self, LogError> {
+        let mut geometry = Geometry::default();
+        let (mut times_s, mut notes) = (Vec::new(), Vec::new());
+        let (mut with_time, mut without_time) = (0, 0);
+        while let Some(line) = line::next(lines, &geometry)? {
+            match line {
+                Line::Odometry { time_s: 0.0, .. } => without_time += 1,
+                Line::Odometry { .. } => with_time += 1,
+                Line::Scan(scan) => times_s.push(scan.time_s),
+                Line::LaserOffset(offset_m) => geometry.offset_m = offset_m,
+                Line::MaxRange(range_max_m) => geometry.range_max_m = range_max_m,
+                Line::Other { is_cut_off: true } => {
+                    notes.push(format!("line {}, the last one, is cut off and left out", lines.number));
+                }
+                Line::Other { is_cut_off: false } => {}
+            }
+        }
+        if times_s.is_empty() {
+            let why = "no line is a scan (FLASER or ROBOTLASER1): not a CARMEN log".to_owned();
+            return Err(LogError::Unusable { file: lines.file.clone(), why });
+        }
+        let has_origins = with_time > 0;
+        let odometry_poses = if has_origins { with_time } else { without_time };
+        if odometry_poses == 0 {
+            notes.push("no ODOM line: the odometry stands still".to_owned());
+        }
+        let Times { times_s, has_times, note } = times::repaired(&times_s);
+        notes.extend(note);
+        let duration_s = times_s.last().copied().unwrap_or_default();
+        let summary = LogSummary { scans: times_s.len(), odometry_poses, duration_s, notes };
+        Ok(Self { summary, geometry, times_s: times_s.into(), has_times, has_origins })
+    }
+}

@@ -1,0 +1,182 @@
+use super::CarmenLog;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use interfaces::{LaserReading, heading_rad};
+use proptest::prelude::*;
+use std::io::Write;
+
+/// A log of 180 readings per scan.
+fn flaser(time_s: f64, pose: &str) -> String {
+    let ranges = "1.5 ".repeat(178);
+    format!("FLASER 180 81.83 {ranges}0.5 {pose} {pose} {time_s} host {time_s}\n")
+}
+
+fn readings(text: &str) -> Vec<LaserReading> {
+    let log = CarmenLog::from_bytes("test.log", text.as_bytes()).unwrap();
+    log.readings().unwrap().map(Result::unwrap).collect()
+}
+
+fn error(text: &str) -> String {
+    CarmenLog::from_bytes("test.log", text.as_bytes()).unwrap_err().to_string()
+}
+
+#[test]
+fn only_ranges_and_times_come_from_the_scans_and_poses_from_the_odometry() {
+    let text = "# FLASER in a comment\nODOM 1 2 0 0 0 0 10 h 10\n".to_owned()
+        + &flaser(10.5, "77 88 3")
+        + "ODOM 2 2 0.2 0 0 0 11 h 11\n";
+    let readings = readings(&text);
+    assert_eq!(readings.len(), 1);
+    let LaserReading { time_s, pose, scan, twist, .. } = &readings[0];
+    assert_eq!(*time_s, 0.0);
+    let at = [pose.translation.x, pose.translation.y, heading_rad(pose)];
+    assert!((at[0] - 0.5).abs() < 1e-9 && at[1].abs() < 1e-9 && (at[2] - 0.1).abs() < 1e-9, "{at:?}");
+    assert!((twist.linear_mps - 1.0).abs() < 1e-9);
+    assert_eq!(scan.ranges_m.len(), 180);
+    assert!(scan.ranges_m[0].is_nan() && scan.ranges_m[1] == 1.5 && scan.ranges_m[179] == 0.5);
+    assert!((scan.angle_rad(90)).abs() < 1e-9, "the middle beam looks ahead");
+    let log = CarmenLog::from_bytes("test.log", text.as_bytes()).unwrap();
+    assert_eq!(log.reference_poses().unwrap()[0].unwrap().translation.x, 77.0);
+}
+
+#[test]
+fn the_field_of_view_follows_from_the_number_of_readings() {
+    for (count, increment_deg) in [(180, 1.0), (181, 1.0), (360, 0.5), (361, 0.5)] {
+        let text = format!("FLASER {count} {} 0 0 0 0 0 0 1 h 1\n", "2 ".repeat(count));
+        let scan = &readings(&text)[0].scan;
+        assert!((scan.angle_increment_rad.to_degrees() - increment_deg).abs() < 1e-9, "{count}");
+        assert!((scan.angle_min_rad.to_degrees() + 90.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn the_corrected_pose_after_a_scan_is_an_origin_and_no_motion() {
+    let text = "ODOM 0 0 0 0 0 0 1 h 1\nODOM 1 0 0 0 0 0 2 h 2\n".to_owned()
+        + &flaser(2.0, "5 5 1")
+        + "ODOM 5 5 1.5707963267948966 0 0 0 0 h 0\nODOM 5 7 1.5707963267948966 0 0 0 3 h 3\n"
+        + &flaser(3.0, "9 9 1");
+    let readings = readings(&text);
+    let x = readings.iter().map(|reading| reading.pose.translation.x);
+    for (found, expected) in x.zip([1.0, 3.0]) {
+        assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+    }
+    assert!(readings[1].pose.translation.y.abs() < 1e-9);
+}
+
+#[test]
+fn robotlaser_lines_name_their_field_of_view() {
+    let text = "ODOM 0 0 0 0 0 0 1 h 1\nODOM 1 0 0 0 0 0 2 h 2\n\
+        ROBOTLASER1 0 -0.5 1.0 0.5 10 0.01 0 3 1 2 11 2 7 8 0 0 0 0 0 0 0 0 0 0 0 2 h 2\n";
+    let scan = &readings(text)[0].scan;
+    assert_eq!((scan.angle_min_rad, scan.angle_increment_rad, scan.range_max_m), (-0.5, 0.5, 10.0));
+    assert!(scan.ranges_m[..2] == [1.0, 2.0] && scan.ranges_m[2].is_nan());
+}
+
+#[test]
+fn compressed_logs_are_recognised_by_their_content() {
+    let text = "ODOM 0 0 0 0 0 0 1 h 1\n".to_owned() + &flaser(1.0, "0 0 0") + &flaser(2.0, "0 0 0");
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(text.as_bytes()).unwrap();
+    let packed = encoder.finish().unwrap();
+    let log = CarmenLog::from_bytes("packed", &packed).unwrap();
+    assert_eq!(log.summary().scans, 2);
+    let same = log.readings().unwrap().map(Result::unwrap).zip(readings(&text));
+    for (unpacked, plain) in same {
+        assert_eq!(format!("{unpacked:?}"), format!("{plain:?}"));
+    }
+    let cut = CarmenLog::from_bytes("packed", &packed[..packed.len() / 2]).unwrap_err().to_string();
+    assert!(cut.starts_with("packed: "), "{cut}");
+}
+
+#[test]
+fn errors_name_the_file_and_the_line() {
+    assert_eq!(error("# nothing\n"), "test.log: no line is a scan (FLASER or ROBOTLASER1): not a CARMEN log");
+    assert_eq!(error("\nFLASER 3 1 2\n"), "test.log:2: FLASER ends before its last reading");
+    assert_eq!(
+        error("FLASER x 1 2\n"),
+        "test.log:1: FLASER: `x` is no valid value for the number of readings"
+    );
+    assert_eq!(
+        error("ODOM 1 nan 0 0 0 0 1 h 1\n"),
+        "test.log:1: ODOM: `nan` is no valid value for x, y and theta"
+    );
+    let missing = CarmenLog::open(std::path::Path::new("no/such.log")).unwrap_err().to_string();
+    assert!(missing.starts_with("no/such.log: "), "{missing}");
+}
+
+#[test]
+fn a_last_line_that_is_cut_off_is_left_out() {
+    let text = flaser(1.0, "0 0 0") + "FLASER 180 1.5 1.5";
+    let log = CarmenLog::from_bytes("test.log", text.as_bytes()).unwrap();
+    assert_eq!(log.summary().scans, 1);
+    let expected =
+        ["line 2, the last one, is cut off and left out", "no ODOM line: the odometry stands still"];
+    assert_eq!(log.summary().notes, expected);
+}
+
+#[test]
+fn scans_wait_for_the_odometry_after_them() {
+    // Two scans before the next pose, and one whose time lies before the last pose.
+    let text = "ODOM 0 0 0 0 0 0 1 h 1\n".to_owned()
+        + &flaser(1.2, "0 0 0")
+        + &flaser(1.4, "0 0 0")
+        + "ODOM 1 0 0 0 0 0 2 h 2\nODOM 2 0 0 0 0 0 3 h 3\n"
+        + &flaser(2.5, "0 0 0")
+        + &flaser(2.9, "0 0 0")
+        + &flaser(3.5, "0 0 0");
+    let x: Vec<f64> = readings(&text).iter().map(|reading| reading.pose.translation.x).collect();
+    for (found, expected) in x.iter().zip([0.2, 0.4, 1.5, 1.9, 2.0]) {
+        assert!((found - expected).abs() < 1e-9, "{x:?}");
+    }
+    assert_eq!(x.len(), 5);
+}
+
+/// Words of logs, and words that are none.
+fn word() -> impl Strategy<Value = String> {
+    prop_oneof![
+        Just("FLASER".to_owned()),
+        Just("ODOM".to_owned()),
+        Just("ROBOTLASER1".to_owned()),
+        Just("PARAM robot_frontlaser_offset".to_owned()),
+        Just("\n".to_owned()),
+        (0..4_u8).prop_map(|count| count.to_string()),
+        any::<f64>().prop_map(|number| number.to_string()),
+        any::<f32>().prop_map(|number| number.to_string()),
+        "[\\PC]{0,4}",
+    ]
+}
+
+fn read_all(bytes: &[u8]) {
+    let Ok(log) = CarmenLog::from_bytes("any", bytes) else { return };
+    let readings: Vec<_> = log.readings().unwrap().map(Result::unwrap).collect();
+    assert_eq!(readings.len(), log.summary().scans);
+    assert!(readings.windows(2).all(|pair| pair[0].time_s < pair[1].time_s));
+    assert!(readings.iter().all(|reading| reading.scan.check().is_ok()));
+}
+
+proptest! {
+    #[test]
+    fn any_bytes_are_read_or_refused(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        read_all(&bytes);
+    }
+
+    #[test]
+    fn any_words_are_read_or_refused(words in proptest::collection::vec(word(), 0..80)) {
+        read_all(words.join(" ").as_bytes());
+    }
+
+    #[test]
+    fn any_times_are_read(times in proptest::collection::vec((any::<f64>(), any::<f64>()), 1..20)) {
+        let lines = times.iter().map(|(scan_s, odom_s)| {
+            format!("ODOM 1 2 3 0 0 0 {odom_s} h 0\nFLASER 2 1 2 0 0 0 0 0 0 {scan_s} h 0\n")
+        });
+        read_all(lines.collect::<String>().as_bytes());
+    }
+
+    #[test]
+    fn compressed_nonsense_is_refused(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        let mut packed = vec![0x1f, 0x8b, 8, 0];
+        packed.extend(bytes);
+        read_all(&packed);
+    }
+}

@@ -1,0 +1,94 @@
+//! Times that make no sense. Clocks of robots are set while they run, and some programs write too few digits.
+
+/// Two scans are never farther apart than this, s.
+const LONGEST_PAUSE_S: f64 = 86_400.0;
+/// Times that go back by less than this come from messages that were written in another order, s.
+const DISORDER_S: f64 = 60.0;
+/// The time between scans that have the time of the scan before, or an earlier one, s.
+const LEAST_STEP_S: f64 = 1e-3;
+/// The time between scans of a log without usable times, s.
+const STEP_WITHOUT_TIMES_S: f64 = 1.0;
+
+/// The times of the readings.
+pub(super) struct Times {
+    /// From the first reading on, strictly increasing, s.
+    pub(super) times_s: Vec<f64>,
+    /// Whether the times in the log can be compared with each other.
+    pub(super) has_times: bool,
+    /// What was repaired.
+    pub(super) note: Option<String>,
+}
+
+/// Repairs the times of the scans of a log.
+pub(super) fn repaired(raw_s: &[f64]) -> Times {
+    let mut steps: Vec<f64> = raw_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let count = steps.len();
+    steps.retain(|step| *step > 0.0 && *step <= LONGEST_PAUSE_S);
+    if steps.len() * 2 < count || !raw_s.iter().all(|time_s| time_s.abs() < 1e15) {
+        let note = format!(
+            "the times of the scans are unusable ({} of {count} steps go forward): scans count as {STEP_WITHOUT_TIMES_S} s \
+             apart, and rates are per scan",
+            steps.len(),
+        );
+        let times_s = (0..raw_s.len()).map(|scan| scan as f64 * STEP_WITHOUT_TIMES_S).collect();
+        return Times { times_s, has_times: false, note: Some(note) };
+    }
+    steps.sort_by(f64::total_cmp);
+    let period_s = steps.get(steps.len() / 2).copied().unwrap_or(STEP_WITHOUT_TIMES_S);
+    let (mut jumps, mut back) = (0, 0);
+    let (mut times_s, mut offset_s) = (Vec::with_capacity(raw_s.len()), 0.0);
+    for raw in raw_s {
+        let Some(last_s) = times_s.last().copied() else {
+            offset_s = -raw;
+            times_s.push(0.0);
+            continue;
+        };
+        let step_s = raw + offset_s - last_s;
+        if !(-DISORDER_S..=LONGEST_PAUSE_S).contains(&step_s) {
+            jumps += 1;
+            offset_s += period_s - step_s;
+        } else if step_s < LEAST_STEP_S {
+            back += 1;
+        }
+        times_s.push((raw + offset_s).max(last_s + LEAST_STEP_S));
+    }
+    let note = (jumps + back > 0).then(|| {
+        format!(
+            "{back} scans are not later than the scan before and count as {LEAST_STEP_S} s later; {jumps} jumps of the clock \
+             count as {period_s:.3} s"
+        )
+    });
+    Times { times_s, has_times: true, note }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn good_times_begin_at_zero_and_stay() {
+        let Times { times_s, has_times, note } = repaired(&[1e9, 1e9 + 0.5, 1e9 + 2.0]);
+        assert_eq!((times_s, has_times, note), (vec![0.0, 0.5, 2.0], true, None));
+        assert_eq!(repaired(&[7.0]).times_s, [0.0]);
+    }
+
+    #[test]
+    fn times_that_span_nothing_are_counted() {
+        let Times { times_s, has_times, note } = repaired(&[1.018_93e9; 4]);
+        assert_eq!((times_s, has_times), (vec![0.0, 1.0, 2.0, 3.0], false));
+        assert!(note.unwrap().starts_with("the times of the scans are unusable (0 of 3 steps go forward)"));
+        assert!(!repaired(&[0.0, f64::NAN, 1.0]).has_times);
+    }
+
+    #[test]
+    fn jumps_are_closed_and_disorder_is_ordered() {
+        let jump = 4.29e9;
+        let repaired = repaired(&[10.0, 10.5, 11.0, 11.0, 10.9, 11.5, 12.0 + jump, 12.5 + jump, 13.0]);
+        let expected = [0.0, 0.5, 1.0, 1.001, 1.002, 1.5, 2.0, 2.5, 3.0];
+        for (found, expected) in repaired.times_s.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-5, "{found} instead of {expected}");
+        }
+        let note = "2 scans are not later than the scan before and count as 0.001 s later; 2 jumps of the clock count as 0.500 s";
+        assert_eq!(repaired.note.as_deref(), Some(note));
+    }
+}

@@ -1,0 +1,69 @@
+//! A file as lines of text, plain or compressed.
+
+use crate::error::LogError;
+use flate2::bufread::MultiGzDecoder;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Cursor, Error, ErrorKind, Read};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// The longest line, in bytes: a file that never ends a line must not fill the memory.
+const LONGEST: u64 = 1 << 20;
+/// The first bytes of a file that is compressed with gzip.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+
+/// Where the bytes of a log come from.
+#[derive(Clone, Debug)]
+pub(crate) enum Bytes {
+    File(PathBuf),
+    Memory(Arc<[u8]>),
+}
+
+/// The lines of a log, one after the other.
+pub(crate) struct Lines {
+    reader: Box<dyn BufRead>,
+    pub(crate) file: String,
+    /// The number of the last line, from 1.
+    pub(crate) number: u64,
+    /// Whether the last line ended with a line feed. Otherwise, it can be cut off.
+    pub(crate) is_complete: bool,
+    line: Vec<u8>,
+}
+
+impl Lines {
+    /// Opens a log. The compression is recognised by the content.
+    pub(crate) fn open(bytes: &Bytes, file: &str) -> Result<Self, LogError> {
+        let io = |source| LogError::Io { file: file.to_owned(), source };
+        let mut reader: Box<dyn BufRead> = match bytes {
+            Bytes::File(path) => Box::new(BufReader::new(File::open(path).map_err(io)?)),
+            Bytes::Memory(bytes) => Box::new(Cursor::new(bytes.clone())),
+        };
+        if reader.fill_buf().map_err(io)?.starts_with(&GZIP) {
+            reader = Box::new(BufReader::new(MultiGzDecoder::new(reader)));
+        }
+        Ok(Self { reader, file: file.to_owned(), number: 0, is_complete: true, line: Vec::new() })
+    }
+
+    /// The next line, `None` at the end. Bytes that are no text are replaced.
+    pub(crate) fn next_line(&mut self) -> Result<Option<String>, LogError> {
+        self.line.clear();
+        let mut limited = self.reader.by_ref().take(LONGEST);
+        let read = limited.read_until(b'\n', &mut self.line);
+        let count = read.map_err(|source| LogError::Io { file: self.file.clone(), source })?;
+        if count == 0 {
+            return Ok(None);
+        }
+        self.number += 1;
+        self.is_complete = self.line.ends_with(b"\n");
+        if !self.is_complete && count as u64 == LONGEST {
+            let source = Error::new(ErrorKind::InvalidData, "a line is longer than 1 MiB: not a log");
+            return Err(LogError::Io { file: self.file.clone(), source });
+        }
+        Ok(Some(String::from_utf8_lossy(&self.line).into_owned()))
+    }
+
+    /// The error for the last line.
+    pub(crate) fn error(&self, what: String) -> LogError {
+        LogError::Line { file: self.file.clone(), line: self.number, what }
+    }
+}
