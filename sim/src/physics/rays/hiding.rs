@@ -6,13 +6,23 @@
 
 use super::beams::Hits;
 use super::edges::Edge;
-use super::visibility::SeenEdge;
 use interfaces::{approximate_atan2, wrap_rad};
 use nalgebra::Point2;
 use std::f64::consts::{PI, TAU};
 
 /// Directions in the frame of the world: bit i stands for those from i to i + 1 sectors after −π.
-pub(super) type Sectors = u32;
+type Sectors = u32;
+
+/// An edge that may be seen from a cell of the potentially visible set.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SeenEdge {
+    /// Its index.
+    pub(super) edge: u32,
+    /// At most the shortest distance between a point of the cell and the edge, m.
+    pub(super) nearest_m: f32,
+    /// The directions from points of the cell to points of the edge.
+    pub(super) sectors: Sectors,
+}
 
 /// All directions.
 const ALL: Sectors = Sectors::MAX;

@@ -6,7 +6,7 @@
 //! edge). All margins are on the safe side, so the lists never change a range.
 
 use super::edges::Edge;
-use super::hiding::{Sectors, sectors_of};
+use super::hiding::{SeenEdge, sectors_of};
 use super::index_lists::IndexLists;
 use crate::physics::shape::{Rectangle, point_segment_m};
 use nalgebra::{Point2, Vector2};
@@ -21,17 +21,6 @@ const MAX_OCCLUDERS: usize = 24;
 const MIN_OCCLUDER_SIZE: f64 = 0.1;
 /// Points this near to a cell or an edge may count as being on it, m.
 const MARGIN_M: f64 = 1e-6;
-
-/// An edge that may be seen from a cell.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct SeenEdge {
-    /// Its index.
-    pub(super) edge: u32,
-    /// At most the shortest distance between a point of the cell and the edge, m.
-    pub(super) nearest_m: f32,
-    /// The directions from points of the cell to points of the edge.
-    pub(super) sectors: Sectors,
-}
 
 /// The cells, and what can be seen from each.
 #[derive(Clone, Debug)]
