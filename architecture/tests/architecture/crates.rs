@@ -15,7 +15,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("controller", &["interfaces"]),
     ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
     ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot"]),
-    ("viewer", &["interfaces", "sim", "mapper", "agent", "controller", "robot", "evaluation"]),
+    ("viewer", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "evaluation"]),
     (
         "curious",
         &[
