@@ -29,6 +29,7 @@
 //! This crate knows readings, and of the map its states and rates. It must not know worlds, simulators, goals, drives,
 //! recordings or files.
 
+mod beams;
 mod calibration;
 mod changing_map;
 mod estimate;

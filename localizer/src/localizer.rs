@@ -165,6 +165,7 @@ impl Localizer {
         }
         self.start_s.get_or_insert(self.time_s);
         self.readings = self.readings.wrapping_add(1);
+        // At the first reading, a known map may bring rates.
         let is_due = self.readings == 1 || self.readings.is_multiple_of(RATES_EVERY);
         if is_due && self.settings.rate_horizon_s > 0.0 {
             self.surfels.weigh_by_rates(map, self.settings.rate_horizon_s);
@@ -177,23 +178,22 @@ impl Localizer {
         self.learns = false;
         let support = self.estimate(&posed, &motion, map, fault);
         self.last_motion = shifted(&before, &self.begin).inv_mul(&self.pose);
-        if was_tracking && self.state == PoseState::Tracking && posed.scan.sweep_s > 0.0 {
-            // The noise of the odometry within a scan bends its walls. The motion that the match has found does not.
-            let found = self.last_motion;
-            self.undo_sweep(&mut posed, reading, &found, elapsed_s);
-        }
-        let reading = posed;
         if was_tracking && self.state == PoseState::Tracking {
-            self.calibration.learn(&self.measured, &self.last_motion);
+            let found = self.last_motion;
+            self.calibration.learn(&self.measured, &found);
+            if posed.scan.sweep_s > 0.0 {
+                // The noise of the odometry within a scan bends its walls. The motion that the match has found does not.
+                self.undo_sweep(&mut posed, reading, &found, elapsed_s);
+            }
         }
         if fault.is_some() && self.state == PoseState::Tracking {
             self.state = PoseState::Uncertain;
             self.learns = false;
         }
         if self.learns || !self.settings.gate {
-            self.learn(&reading);
+            self.learn(&posed);
         }
-        self.localized(reading, support.share())
+        self.localized(posed, support.share())
     }
 }
 

@@ -7,8 +7,9 @@
 //! - A scan is matched with the submap of the last keyframes only: an error of the past bends nothing that follows.
 //! - A finished submap is searched for in earlier submaps by branch and bound, as far as the trajectory since then is
 //!   uncertain (Hess, Kohler, Rapp & Andor 2016).
-//! - A loop counts where most of what both submaps cover agrees, where no beam of one passes the walls of the other, where
-//!   no other pose fits about as well, and where another loop agrees with it, unless the way since then was short.
+//! - A loop counts where most of what both submaps cover agrees, where few beams of one pass the walls of the other
+//!   (`places::MOST_PASSING`), where no other pose fits about as well, and where another loop agrees with it, unless the
+//!   way since then was short.
 //! - In the end, keyframes are matched with all submaps around them, so that every wall is there once.
 
 mod free_space;

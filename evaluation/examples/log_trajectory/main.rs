@@ -12,11 +12,11 @@
 mod comparison;
 mod picture;
 
+use evaluation::output::TrajectoryFile;
 use interfaces::LaserReading;
 use localizer::{PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
 use logs::CarmenLog;
 use std::error::Error;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -44,7 +44,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     print_trajectory(&trajectory, per_scan_ms);
     comparison::print(&log, &trajectory, &readings)?;
     std::fs::create_dir_all(&folder)?;
-    std::fs::write(folder.join("trajectory.tum"), tum(&trajectory))?;
+    let mut file = TrajectoryFile::create(&folder.join("trajectory.tum"));
+    trajectory.poses.iter().for_each(|pose| file.add(pose.time_s, &pose.pose));
+    file.finish()?;
     picture::write(&folder.join("trajectory.png"), &trajectory, &readings)?;
     Ok(())
 }
@@ -71,24 +73,6 @@ fn print_trajectory(trajectory: &Trajectory, per_scan_ms: f64) {
         "trajectory: {length_m:.0} m, {} places recognised, {uncertain} scans without support, {per_scan_ms:.2} ms per scan",
         trajectory.loops
     );
-}
-
-/// The trajectory in the TUM format: time, position, quaternion.
-fn tum(trajectory: &Trajectory) -> String {
-    let mut text = String::new();
-    for pose in &trajectory.poses {
-        let (at, half) = (pose.pose.translation, interfaces::heading_rad(&pose.pose) / 2.0);
-        let _ = writeln!(
-            text,
-            "{:.6} {:.6} {:.6} 0 0 0 {:.9} {:.9}",
-            pose.time_s,
-            at.x,
-            at.y,
-            half.sin(),
-            half.cos()
-        );
-    }
-    text
 }
 
 /// The points that a reading hit, in the frame of the robot.

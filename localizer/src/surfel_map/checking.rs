@@ -1,9 +1,9 @@
 //! Surfels that are no longer there are removed.
 
 use super::{CELL_M, SurfelMap};
-use interfaces::{LaserReading, approximate_atan2};
+use crate::beams::ranges_around;
+use interfaces::LaserReading;
 use nalgebra::{Isometry2, Point2};
-use std::f64::consts::TAU;
 
 /// One of this many surfels is checked per scan.
 const TURNS: usize = 10;
@@ -28,8 +28,7 @@ impl Checker {
         let origin = Point2::from(laser.translation.vector);
         let to_laser = laser.rotation.inverse();
         let scan = &reading.scan;
-        let beams = scan.ranges_m.len();
-        if beams < 3 {
+        if scan.ranges_m.len() < 3 {
             return;
         }
         self.turn = (self.turn + 1) % TURNS;
@@ -43,16 +42,7 @@ impl Checker {
             {
                 continue;
             }
-            let toward = to_laser * to;
-            let turn =
-                (approximate_atan2(toward.y, toward.x) - scan.angle_min_rad) / scan.angle_increment_rad;
-            let turns = TAU / scan.angle_increment_rad.abs();
-            let beam = (turn - turns * (turn / turns).floor()).round() as usize;
-            let beam = if beam >= beams && scan.is_full_turn() { 0 } else { beam };
-            if beam == 0 || beam + 1 >= beams {
-                continue;
-            }
-            let ranges = [beam - 1, beam, beam + 1].map(|beam| f64::from(scan.ranges_m[beam]));
+            let Some(ranges) = ranges_around(scan, &(to_laser * to)) else { continue };
             // A missing range says nothing; no return means that the beam passed.
             if ranges.iter().any(|range_m| range_m.is_nan() || *range_m < scan.range_min_m) {
                 continue;

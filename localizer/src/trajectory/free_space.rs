@@ -2,10 +2,9 @@
 
 use super::keyframe::Keyframe;
 use super::submap::FinishedSubmap;
+use crate::beams::ranges_around;
 use crate::scan_points::ScanPoint;
-use interfaces::approximate_atan2;
 use nalgebra::{Isometry2, Point2};
-use std::f64::consts::TAU;
 
 /// One of this many keyframes, and one of this many points, is looked at.
 const KEYFRAME_STRIDE: usize = 3;
@@ -69,14 +68,8 @@ fn is_passed(keyframe: &Keyframe, point: &ScanPoint, to_laser: &Isometry2<f64>) 
     if distance_m > FARTHEST_M.min(scan.range_max_m) || incidence < LEAST_INCIDENCE * distance_m {
         return None;
     }
-    let turn = (approximate_atan2(at.y, at.x) - scan.angle_min_rad) / scan.angle_increment_rad;
-    let turns = TAU / scan.angle_increment_rad.abs();
-    let beam = (turn - turns * (turn / turns).floor()).round() as usize;
-    if beam == 0 || beam + 1 >= scan.ranges_m.len() {
-        return None;
-    }
+    let ranges = ranges_around(scan, &at.coords)?;
     let margin_m = PASSED_M + PASSED_SHARE * distance_m;
-    let ranges = [beam - 1, beam, beam + 1].map(|beam| f64::from(scan.ranges_m[beam]));
     // A missing range says nothing; no return means that the beam passed.
     if ranges.iter().all(|range_m| *range_m > distance_m + margin_m) {
         return Some(true);

@@ -4,10 +4,10 @@
 //! hit the body are determined, and only these are computed ([`beams`]). The computing time depends on the number
 //! of bodies plus the number of beams that they cover, not on the product. Walls are reduced to the [`edges`] that
 //! a ray can hit, and a potentially visible set ([`visibility`]) lists for every position the few edges that can be
-//! seen from there, and edges behind the hits of nearer ones are left out ([`hiding`]). Moving bodies are sorted by position ([`polygons`], and round robots in [`scene`]). Where only the
-//! shortest range counts, the nearest walls and bodies come first, and what is farther away is left out ([`nearest`]); the
-//! sensors of a robot share the list of what is near ([`vicinity`]). A scan that sweeps has a method of its
-//! own ([`sectors`]).
+//! seen from there, and edges behind the hits of nearer ones are left out ([`hiding`]). Moving bodies are sorted by
+//! position ([`polygons`], and round robots in [`scene`]). Where only the shortest range counts, the nearest walls and
+//! bodies come first, and what is farther away is left out ([`nearest`]); the sensors of a robot share the list of what is
+//! near ([`vicinity`]). A scan that sweeps has a method of its own ([`sectors`]).
 
 mod beams;
 mod circles;

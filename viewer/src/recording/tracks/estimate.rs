@@ -1,10 +1,9 @@
 //! Where the curious robot believes to be: its body, its trail, its uncertainty, and the scan at the believed pose.
 
-use super::{
-    EVENTS, Kind, ON_CHANGE, Strip, Tracks, WORLD, closed, color, line, order, points, position, strips,
-};
+use super::robots::add_trail;
+use super::{Kind, ON_CHANGE, Strip, Tracks, WORLD, closed, color, line, order, points, position, strips};
 use crate::scene::Sight;
-use crate::view::{Believed, View, is_next_point};
+use crate::view::{Believed, View};
 use evaluation::palette;
 use localizer::PoseEstimate;
 use nalgebra::{Point2, SymmetricEigen, Vector2};
@@ -37,17 +36,7 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
     let radius_m = driven.map_or(0.2, |robot| robot.radius_m);
     let outline = move |view: &View| view.believed.iter().map(|it| self::body(it, radius_m)).collect();
     tracks.add(body, ON_CHANGE, outline, strips);
-    let mut last = None;
-    let step = move |view: &View| -> Vec<Strip> {
-        let Some(now) = view.believed.map(|it| Point2::from(it.pose.translation.vector)) else {
-            return Vec::new();
-        };
-        if !is_next_point(last.as_ref(), &now) {
-            return Vec::new();
-        }
-        last.replace(now).map(|last| vec![position(&last), position(&now)]).into_iter().collect()
-    };
-    tracks.add(trail, EVENTS, step, strips);
+    add_trail(tracks, trail, |view| Some(view.believed?.pose));
     let when = (Kind::State, tracks.scene.unit.choose(1.0, 10.0));
     tracks.add(scan, when, hits, points);
     if believed.estimate.is_some() {

@@ -21,18 +21,24 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
         let trail = self::robot(&robot.name, "trail");
         let order = if robot.is_driven { order::TRAIL } else { order::OTHER_TRAIL };
         tracks.always(&trail, &line(color(robot.color(), 140), 1.0, order))?;
-        let mut last = None;
-        let step = move |view: &View| -> Vec<Strip> {
-            let now = view.robots[index].pose.translation.vector.into();
-            if !is_next_point(last.as_ref(), &now) {
-                return Vec::new();
-            }
-            let step = last.replace(now).map(|last| vec![position(&last), position(&now)]);
-            step.into_iter().collect()
-        };
-        tracks.add(trail, EVENTS, step, strips);
+        add_trail(tracks, trail, move |view| Some(view.robots[index].pose));
     }
     plan(tracks)
+}
+
+/// Adds the trail of the poses that `pose` reads from the views: a line from place to place.
+pub(super) fn add_trail(
+    tracks: &mut Tracks,
+    path: String,
+    pose: impl Fn(&View) -> Option<Isometry2<f64>> + Send + 'static,
+) {
+    let mut last = None;
+    let step = move |view: &View| -> Vec<Strip> {
+        let now = pose(view).map(|pose| pose.translation.vector.into());
+        let Some(now) = now.filter(|now| is_next_point(last.as_ref(), now)) else { return Vec::new() };
+        last.replace(now).map(|last| vec![position(&last), position(&now)]).into_iter().collect()
+    };
+    tracks.add(path, EVENTS, step, strips);
 }
 
 /// Adds the body of a robot: a disc, its heading, and its name below if there are several robots.
