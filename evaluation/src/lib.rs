@@ -13,6 +13,7 @@ pub mod output;
 pub mod palette;
 pub mod percent;
 pub mod physics_trial;
+pub mod raster;
 pub mod report;
 pub mod shards;
 pub mod summary;

@@ -1,5 +1,6 @@
 //! Everything that shows one run: the recording, the moving picture, and the pictures at the end.
 
+use crate::layers::Layer;
 use crate::pictures::{self, Film, Trails};
 use crate::recording::{Recorder, RecordingError};
 use crate::scene::Scene;
@@ -68,18 +69,25 @@ impl Show {
         self.recorder.as_ref()?.live_problem()
     }
 
-    /// Writes the pictures into `folder`.
+    /// Writes the pictures into `folder`: of these layers, and of the trails.
     ///
     /// # Errors
     ///
     /// When a picture cannot be drawn or written.
-    pub fn write_pictures(&self, folder: &Path, mapper: &Mapper, goals: &Goals) -> Result<(), PictureError> {
+    pub fn write_pictures(
+        &self,
+        folder: &Path,
+        mapper: &Mapper,
+        goals: &Goals,
+        layers: &[Layer],
+    ) -> Result<(), PictureError> {
         pictures::write_all(
             folder,
             &self.scene,
             mapper,
             &Trails { true_poses: &self.trails, believed: &self.believed },
             goals,
+            layers,
         )
     }
 

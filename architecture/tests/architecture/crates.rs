@@ -14,8 +14,23 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("agent", &["interfaces", "mapper"]),
     ("controller", &["interfaces"]),
     ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
+    ("survey", &["interfaces", "mapper", "localizer", "logs", "agent", "robot"]),
     ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot"]),
-    ("viewer", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "evaluation"]),
+    (
+        "viewer",
+        &[
+            "interfaces",
+            "sim",
+            "mapper",
+            "localizer",
+            "agent",
+            "controller",
+            "robot",
+            "logs",
+            "survey",
+            "evaluation",
+        ],
+    ),
     (
         "curious",
         &[
@@ -24,9 +39,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "worldfile",
             "stage",
             "mapper",
+            "localizer",
+            "logs",
             "agent",
             "controller",
             "robot",
+            "survey",
             "evaluation",
             "viewer",
         ],
@@ -50,6 +68,7 @@ const WITHOUT_RERUN: &[&str] = &[
     "agent",
     "controller",
     "robot",
+    "survey",
     "evaluation",
 ];
 

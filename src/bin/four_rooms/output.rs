@@ -10,6 +10,7 @@ use evaluation::summary::Summary;
 use interfaces::Twist;
 use mapper::Mapper;
 use robot::Pilot;
+use viewer::layers::Layer;
 use viewer::show::Show;
 use worldfile::ros_map;
 
@@ -25,7 +26,7 @@ pub(crate) fn write(
     summary: &mut Summary,
 ) -> anyhow::Result<()> {
     let to = folder.unfinished();
-    show.write_pictures(to, mapper, goals)?;
+    show.write_pictures(to, mapper, goals, &Layer::ALL)?;
     let map = mapper.states();
     write_file(&to.join("map.pgm"), |file| file.write_all(&ros_map::pgm(map)))?;
     write_file(&to.join("map.yaml"), |file| write!(file, "{}", ros_map::yaml(map.frame(), "map.pgm")))?;

@@ -4,6 +4,7 @@
 mod film;
 mod ground;
 mod panel;
+mod places;
 mod plan;
 mod plate;
 mod trajectory;
@@ -11,12 +12,13 @@ mod trajectory;
 pub use film::Film;
 
 use crate::layers::Layer;
-use crate::scene::Scene;
+use crate::scene::{Scene, TimeUnit};
 use crate::view::Trail;
 use evaluation::drawing::{Area, Canvas, PictureError};
 use evaluation::observer::Goals;
 use evaluation::output::make_folder;
 use mapper::Mapper;
+use nalgebra::Point2;
 use panel::Panel;
 use std::path::Path;
 
@@ -32,8 +34,8 @@ pub struct Trails<'a> {
 /// The panels of Figure 5, in its order.
 const FIGURE_5: [Layer; 3] = [Layer::Occupancy, Layer::Interval, Layer::ChangeProbability];
 
-/// Writes `figure5.png`, each layer of the map as `<layer>.png`, and `trajectory.png` into
-/// `folder`, which is created if needed. `goals` are those of the curious robot.
+/// Writes each of `layers` of the map as `<layer>.png`, `figure5.png` if its layers are among them, and `trajectory.png`
+/// into `folder`, which is created if needed. `goals` are those of the curious robot.
 ///
 /// # Errors
 ///
@@ -44,22 +46,26 @@ pub fn write_all(
     mapper: &Mapper,
     trails: &Trails,
     goals: &Goals,
+    layers: &[Layer],
 ) -> Result<(), PictureError> {
     make_folder(folder)?;
     let file = |name: &str| folder.join(format!("{name}.png"));
     let panel = Panel::of_layer(mapper.frame(), scene.unit);
     let mut panels = Vec::new();
-    for layer in Layer::ALL {
+    for &layer in layers {
         let picture = draw(layer.name(), panel.size(), |area| panel.layer(area, mapper, layer, scene.unit))?;
         picture.write(&file(layer.name()))?;
         panels.push((layer, picture));
     }
     let of_layer = |layer| panels.iter().find(|(of, _)| *of == layer).map(|(_, picture)| picture);
     let panels: Vec<&Canvas> = FIGURE_5.into_iter().filter_map(of_layer).collect();
-    Canvas::beside(&panels).write(&file("figure5"))?;
+    if panels.len() == FIGURE_5.len() {
+        Canvas::beside(&panels).write(&file("figure5"))?;
+    }
     let panel =
         Panel::of_scene(mapper.frame(), scene.unit, trajectory::entries(scene, trails.believed, goals).len());
-    let draw_trails = |area: &Area| trajectory::draw(&panel, area, scene, trails, goals);
+    let ground = scene.is_unknown().then_some(mapper);
+    let draw_trails = |area: &Area| trajectory::draw(&panel, area, (scene, ground), trails, goals);
     Ok(draw("trajectory", panel.size(), draw_trails)?.write(&file("trajectory"))?)
 }
 
@@ -71,6 +77,23 @@ pub fn write_all(
 pub fn draw_plan(path: &Path, scene: &Scene) -> Result<(), PictureError> {
     let panel = Panel::of_scene(&scene.frame, scene.unit, plan::entries(scene).len());
     let picture = draw(&scene.title, panel.size(), |area| plan::draw(&panel, area, scene))?;
+    Ok(picture.write(path)?)
+}
+
+/// Draws the map with what changed, and numbers places, to the PNG file `path`. A place is the rectangle between two
+/// corners, m.
+///
+/// # Errors
+///
+/// When the picture cannot be drawn or written.
+pub fn draw_places(
+    path: &Path,
+    title: &str,
+    mapper: &Mapper,
+    places: &[[Point2<f64>; 2]],
+) -> Result<(), PictureError> {
+    let panel = Panel::of_scene(mapper.frame(), TimeUnit::Second, places::entries().len());
+    let picture = draw("places", panel.size(), |area| places::draw(&panel, area, mapper, title, places))?;
     Ok(picture.write(path)?)
 }
 

@@ -3,24 +3,29 @@
 use super::Trails;
 use super::ground;
 use super::panel::{Chart, Panel, pair};
+use crate::layers::Layer;
 use crate::legend::{Legend, Mark};
 use crate::scene::{Robot, Scene, extent};
 use crate::view::Trail;
 use evaluation::drawing::{Area, ink, why};
 use evaluation::observer::Goals;
 use evaluation::palette::{self, Rgb};
+use mapper::Mapper;
 use nalgebra::Point2;
 use plotters::prelude::*;
 
-/// Draws the scene, every trail with its start, and the goals.
+/// Draws the scene, every trail with its start, and the goals. Below the scene is the map, where there is one.
 pub(super) fn draw(
     panel: &Panel,
     area: &Area,
-    scene: &Scene,
+    (scene, map): (&Scene, Option<&Mapper>),
     trails: &Trails,
     goals: &Goals,
 ) -> Result<(), String> {
     let (chart, legend) = panel.axes(area, &format!("Trajectories in {}", scene.title))?;
+    if let Some(map) = map {
+        panel.cells(&chart, Layer::Occupancy, &Layer::Occupancy.classes(map, scene.unit))?;
+    }
     ground::draw(&chart, scene)?;
     // The other robots' trails on top: the curious robot goes everywhere.
     let mut drawn: Vec<_> = scene.robots.iter().zip(trails.true_poses).zip(colors(scene)).collect();

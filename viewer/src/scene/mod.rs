@@ -2,6 +2,7 @@
 //! displayed.
 
 mod grid;
+mod log;
 mod physics;
 
 use evaluation::palette::{self, Rgb};

@@ -1,0 +1,139 @@
+//! The command line.
+
+use clap::{Parser, ValueEnum};
+use curious::program::one_of;
+use mapper::EstimatorChoice;
+use std::path::PathBuf;
+use survey::{PoseMode, SurveySettings};
+
+/// Maps the log of a robot: where the place changes, how often, and when last.
+///
+/// A log is a CARMEN log, plain or compressed with gzip. Its trajectory is found from the scans and the odometry; a laser
+/// that stands needs neither. The folder map_log_out contains the results: a page to read (report.html) with a map of the
+/// places where something changes (places.png), pictures of the maps (figure5.png) and of the trajectory (trajectory.png),
+/// a recording (map_log.rrd; open it with `rerun FILE`), the map in ROS format (map.yaml) and the map of what is permanent
+/// (permanent.yaml), masks for the costmap filters of Nav2 (speed_mask.yaml, keepout_mask.yaml), the statistics of every
+/// cell (cell_statistics.csv, and layers.npy for NumPy), the trajectory (trajectory.tum, in the TUM format), and all
+/// results as JSON (summary.json).
+///
+/// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones are in its
+/// subfolder unfinished_run.
+#[derive(Clone, Debug, Parser)]
+#[command(
+    name = "map_log",
+    version,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C, SIGTERM or SIGHUP; \
+                  in the second pass the results so far are written)."
+)]
+pub(crate) struct Args {
+    /// The log
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+
+    /// How the poses are known [default: exact for a laser that stands, otherwise localized]
+    #[arg(long, value_enum, help_heading = "Poses")]
+    pub(crate) pose: Option<PoseArg>,
+
+    /// The side of a cell, m
+    #[arg(
+        long,
+        value_name = "METRES",
+        default_value_t = 0.05,
+        allow_negative_numbers = true,
+        help_heading = "Map"
+    )]
+    pub(crate) resolution: f64,
+
+    /// Ranges beyond this one are not used, m
+    #[arg(
+        long,
+        value_name = "METRES",
+        default_value_t = 20.0,
+        allow_negative_numbers = true,
+        help_heading = "Map"
+    )]
+    pub(crate) max_range: f64,
+
+    /// The errors of ranges and poses together: their standard deviation, m [default: 0.06, with exact poses 0.03]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, help_heading = "Map")]
+    pub(crate) noise: Option<f64>,
+
+    /// Hits whose line to the next hit has a smaller angle to the beam lie between two surfaces and are left out; 0 keeps
+    /// all
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        default_value_t = 10.0,
+        allow_negative_numbers = true,
+        help_heading = "Map"
+    )]
+    pub(crate) shadow_angle: f64,
+
+    /// The estimator of the rates of change
+    #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Map")]
+    pub(crate) estimator: EstimatorChoice,
+
+    /// The folder for all results
+    #[arg(long, value_name = "DIR", default_value = "map_log_out", help_heading = "Output")]
+    pub(crate) out: PathBuf,
+
+    /// Do not record
+    #[arg(long, help_heading = "Output")]
+    pub(crate) no_rrd: bool,
+
+    /// Print only errors
+    #[arg(long, short, help_heading = "Output")]
+    pub(crate) quiet: bool,
+}
+
+/// How the poses of a log are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PoseArg {
+    /// The poses of the log, which are exact
+    Exact,
+    /// The poses of the odometry, with their drift: the map becomes wrong
+    Odometry,
+    /// The trajectory is found from the scans
+    Localized,
+}
+
+impl From<PoseArg> for PoseMode {
+    fn from(pose: PoseArg) -> Self {
+        match pose {
+            PoseArg::Exact => Self::Exact,
+            PoseArg::Odometry => Self::Odometry,
+            PoseArg::Localized => Self::Localized,
+        }
+    }
+}
+
+impl Args {
+    /// The settings of the survey of a log; `stands`: the log has no odometry.
+    pub(crate) fn settings(&self, stands: bool) -> SurveySettings {
+        let default = if stands { PoseMode::Exact } else { PoseMode::Localized };
+        let mut settings = SurveySettings::of(self.pose.map_or(default, Into::into));
+        settings.resolution_m = self.resolution;
+        settings.max_range_m = self.max_range;
+        settings.min_shadow_angle_rad = self.shadow_angle.to_radians();
+        settings.mapper.estimator = self.estimator.clone();
+        if let Some(noise_m) = self.noise {
+            settings.mapper.steady.range_noise_std_m = noise_m;
+        }
+        settings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Args::command().debug_assert();
+        let args = Args::parse_from(["map_log", "a.log"]);
+        assert_eq!(args.settings(false), SurveySettings::default());
+        assert_eq!(args.settings(true).pose, PoseMode::Exact);
+    }
+}

@@ -1,0 +1,50 @@
+//! The files of a survey.
+
+use crate::Learned;
+use crate::report;
+use crate::summary::Summary;
+use evaluation::output::{RunFolder, write_file};
+use evaluation::thinned::Thinned;
+use evaluation::{cell_statistics, raster};
+use nalgebra::Point2;
+use survey::{keepout_mask, permanent, speed_mask};
+use viewer::layers::Layer;
+use viewer::pictures::draw_places;
+use worldfile::ros_map;
+
+/// The file that ends a run.
+const SUMMARY: &str = "summary.json";
+
+/// Writes everything except the recording and the trajectory.
+pub(crate) fn write(folder: RunFolder, learned: &Learned, summary: &mut Summary) -> anyhow::Result<()> {
+    let (to, mapper) = (folder.unfinished(), &learned.mapper);
+    let has_rates = summary.rates_withheld.is_none();
+    let layers: &[Layer] = if has_rates { &Layer::ALL } else { &[Layer::Occupancy] };
+    learned.show.write_pictures(to, mapper, &Thinned::default(), layers)?;
+    let corner = |at: &[f64; 2]| Point2::new(at[0], at[1]);
+    let numbered: Vec<_> =
+        summary.places.iter().map(|place| [corner(&place.low_m), corner(&place.high_m)]).collect();
+    draw_places(&to.join("places.png"), "Where it changes", mapper, &numbered)?;
+    for (name, map) in [("map", mapper.states()), ("permanent", &permanent(mapper))] {
+        let image = format!("{name}.pgm");
+        write_file(&to.join(&image), |file| file.write_all(&ros_map::pgm(map)))?;
+        let yaml = ros_map::yaml(map.frame(), &image);
+        write_file(&to.join(format!("{name}.yaml")), |file| file.write_all(yaml.as_bytes()))?;
+    }
+    if has_rates {
+        for (name, mask) in [("speed_mask", speed_mask(mapper)), ("keepout_mask", keepout_mask(mapper))] {
+            let image = format!("{name}.pgm");
+            write_file(&to.join(&image), |file| file.write_all(&ros_map::mask_pgm(&mask)))?;
+            let yaml = ros_map::mask_yaml(mask.frame(), &image);
+            write_file(&to.join(format!("{name}.yaml")), |file| file.write_all(yaml.as_bytes()))?;
+        }
+        cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
+        raster::write(&to.join("layers.npy"), mapper)?;
+    }
+    let page = report::page(summary);
+    write_file(&to.join("report.html"), |file| file.write_all(page.as_bytes()))?;
+    summary.files = folder.results()?;
+    let text = serde_json::to_string_pretty(summary)?;
+    write_file(&to.join(SUMMARY), |file| writeln!(file, "{text}"))?;
+    Ok(folder.finish(SUMMARY, &[])?)
+}

@@ -1,0 +1,170 @@
+//! `report.html`: a page for people who look after a building.
+
+use crate::summary::Summary;
+use evaluation::percent::percent;
+use maud::{DOCTYPE, Markup, html};
+use survey::Place;
+
+const STYLE: &str = "body{font-family:sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}\
+table{border-collapse:collapse}td,th{padding:.3em .8em;border-bottom:1px solid #ccc;text-align:right}\
+td:first-child,th:first-child{text-align:left}img{max-width:100%;height:auto}figcaption{color:#555}";
+
+/// The page.
+pub(crate) fn page(summary: &Summary) -> String {
+    let has_rates = summary.rates_withheld.is_none();
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width";
+                title { "Where it changes: " (summary.log) }
+                style { (STYLE) }
+            }
+            body {
+                h1 { "Where it changes, and how often" }
+                (overview(summary))
+                @if let Some(why) = &summary.rates_withheld { p { strong { "No rates: " } (why) "." } }
+                h2 { "Where" }
+                (picture("places.png", "Red: cells that changed while the robot looked or between two looks. The numbers are \
+                                        those of the table. Gray: never seen."))
+                (table(&summary.places, has_rates))
+                @if summary.place_count > summary.places.len() {
+                    p { (summary.place_count - summary.places.len()) " more places with less change are in the pictures." }
+                }
+                @if has_rates {
+                    h2 { "How often" }
+                    (picture("interval.png", "The mean time of one cycle: blocked, free, and blocked again. Dark: often."))
+                    h2 { "When last seen" }
+                    (picture("recency.png", "The time between the last look at a cell and the end of the log."))
+                    h2 { "How sure" }
+                    p {
+                        "Rates are estimated from what the robot saw. The table gives the range that contains the true rate with \
+                         90 % probability, if changes come at random. Where the robot looked for a short time only, the range is \
+                         wide. A cell without a change can still change: the file cell_statistics.csv has the range of every cell."
+                    }
+                }
+                h2 { "What was never seen" }
+                p {
+                    "The gray areas of the maps. Nothing is known about them. The laser sees one horizontal plane: what is above \
+                     or below it, or made of clear glass, is not in the map."
+                }
+                (picture("trajectory.png", "The route of the robot."))
+                @if !summary.notes.is_empty() {
+                    h2 { "Notes on the log" }
+                    ul { @for note in &summary.notes { li { (note) } } }
+                }
+                h2 { "Files for a robot" }
+                (files(has_rates))
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn overview(summary: &Summary) -> Markup {
+    let has_rates = summary.rates_withheld.is_none();
+    html! {
+        p {
+            (summary.scans) " scans"
+            @if has_rates { " in " (length_of(summary.duration_s)) }
+            ", " (format!("{:.0}", summary.trajectory_m)) " m travelled, "
+            (format!("{:.0}", summary.seen_m2)) " m² seen. "
+            (percent(summary.changed_share)) " of this area changed at least once, in " (summary.place_count) " places. "
+            @if summary.scans_left_out > 0 {
+                (summary.scans_left_out) " scans were left out, because it is not certain from where they were taken."
+            }
+        }
+    }
+}
+
+fn table(places: &[Place], has_rates: bool) -> Markup {
+    if places.is_empty() {
+        return html! { p { "Nothing changed where the robot looked." } };
+    }
+    html! {
+        table {
+            tr {
+                th { "place" } th { "at (m)" } th { "area" } th { "changes seen" }
+                @if has_rates {
+                    th { "how often" } th { "90 % range, per hour" } th { "blocked" } th { "looked at for" } th { "last change" }
+                }
+            }
+            @for (number, place) in (1..).zip(places) {
+                tr {
+                    td { (number) }
+                    td { (format!("{:.1}, {:.1}", place.x_m, place.y_m)) }
+                    td { (format!("{:.2} m²", place.area_m2)) }
+                    td { (place.changes) }
+                    @if has_rates {
+                        td { (how_often(place)) }
+                        td { (range(place)) }
+                        td { (percent(place.share_blocked)) " of the time" }
+                        td { (length_of(place.observed_s)) }
+                        td { "after " (length_of(place.last_change_s)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn files(has_rates: bool) -> Markup {
+    html! {
+        ul {
+            li { "map.yaml: the map as last seen; permanent.yaml: the map without what moves (ROS map server)" }
+            @if has_rates {
+                li { "speed_mask.yaml, keepout_mask.yaml: masks for the speed filter and the keepout filter of Nav2" }
+                li { "cell_statistics.csv, layers.npy: all that was learned about every cell" }
+            }
+            li { "trajectory.tum: the route, with times; summary.json: this page as data" }
+        }
+    }
+}
+
+fn picture(file: &str, caption: &str) -> Markup {
+    html! { figure { img src=(file) alt=(caption); figcaption { (caption) } } }
+}
+
+/// How often something changes at a place, in words.
+pub(crate) fn how_often(place: &Place) -> String {
+    match place.cycles_per_hour {
+        rate if rate > 0.0 => format!("once in {}", length_of(3600.0 / rate)),
+        _ => "too rarely to tell".to_owned(),
+    }
+}
+
+fn range(place: &Place) -> String {
+    let bound = |rate: Option<f64>| rate.map_or("∞".to_owned(), short);
+    format!("{} to {}", bound(place.cycles_per_hour_90[0]), bound(place.cycles_per_hour_90[1]))
+}
+
+/// A number with two digits that matter.
+fn short(value: f64) -> String {
+    match value {
+        value if value >= 10.0 => format!("{value:.0}"),
+        value if value >= 1.0 => format!("{value:.1}"),
+        value => format!("{value:.2}"),
+    }
+}
+
+/// A length of time in words.
+fn length_of(time_s: f64) -> String {
+    match time_s {
+        time if time < 90.0 => format!("{time:.0} s"),
+        time if time < 5400.0 => format!("{:.0} min", time / 60.0),
+        time if time < 172_800.0 => format!("{} h", short(time / 3600.0)),
+        time => format!("{} days", short(time / 86_400.0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_in_the_unit_that_a_person_would_choose() {
+        let texts = [5.0, 89.0, 90.0, 5399.0, 5400.0, 170_000.0, 172_800.0].map(length_of);
+        assert_eq!(texts, ["5 s", "89 s", "2 min", "90 min", "1.5 h", "47 h", "2.0 days"]);
+    }
+}

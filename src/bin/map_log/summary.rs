@@ -1,0 +1,122 @@
+//! The results of a survey: `summary.json`, and a few lines for the terminal.
+
+use crate::Learned;
+use crate::args::Args;
+use evaluation::percent::percent;
+use interfaces::CellState;
+use logs::CarmenLog;
+use serde::Serialize;
+use std::fmt;
+use survey::{Place, PoseMode, Route, SurveySettings, places};
+
+/// The number of places in the summary and in the report.
+const MOST_PLACES: usize = 20;
+
+/// The content of `summary.json`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Summary {
+    pub(crate) version: &'static str,
+    /// The command line, without the name of the program.
+    pub(crate) arguments: Vec<String>,
+    pub(crate) settings: SurveySettings,
+    /// The log.
+    pub(crate) log: String,
+    pub(crate) scans: usize,
+    pub(crate) duration_s: f64,
+    /// What was repaired or left out in the log.
+    pub(crate) notes: Vec<String>,
+    /// The length of the trajectory, m.
+    pub(crate) trajectory_m: f64,
+    /// The number of places that the robot recognised.
+    pub(crate) loops: usize,
+    /// The number of scans that did not enter the map, because their pose is not certain.
+    pub(crate) scans_left_out: usize,
+    /// The area that was seen, m².
+    pub(crate) seen_m2: f64,
+    /// The share of the cells seen that changed at least once.
+    pub(crate) changed_share: f64,
+    /// The number of changes of cells.
+    pub(crate) changes: u64,
+    /// Why there are no rates; `null` if there are.
+    pub(crate) rates_withheld: Option<String>,
+    /// The number of places where something changes; the first of them are in `places`.
+    pub(crate) place_count: usize,
+    /// The places where something changes, those with the most change first.
+    pub(crate) places: Vec<Place>,
+    pub(crate) is_interrupted: bool,
+    pub(crate) wall_s: f64,
+    /// The names of the other files with results, in the same folder.
+    pub(crate) files: Vec<String>,
+}
+
+impl Summary {
+    pub(crate) fn new(
+        args: &Args,
+        log: &CarmenLog,
+        settings: &SurveySettings,
+        route: &Route,
+        learned: &Learned,
+    ) -> Self {
+        let (summary, mapper) = (log.summary(), &learned.mapper);
+        let cell_m2 = mapper.frame().resolution_m().powi(2);
+        let seen = mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();
+        let mut places = places(mapper, &learned.changes);
+        let place_count = places.len();
+        places.truncate(MOST_PLACES);
+        let why = "the times of the log are unusable, so that no rate, duration or date can be given: the map shows where \
+                   something changed, not how often";
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            arguments: std::env::args().skip(1).collect(),
+            settings: settings.clone(),
+            log: args.file.display().to_string(),
+            scans: summary.scans,
+            duration_s: summary.duration_s,
+            notes: summary.notes.clone(),
+            trajectory_m: route.length_m(),
+            loops: route.loops,
+            scans_left_out: route.uncertain(),
+            seen_m2: seen as f64 * cell_m2,
+            changed_share: mapper.changed().count() as f64 / seen.max(1) as f64,
+            changes: learned.changes.events(),
+            rates_withheld: (!summary.has_times).then(|| why.to_owned()),
+            place_count,
+            places,
+            is_interrupted: learned.is_interrupted,
+            wall_s: 0.0,
+            files: Vec::new(),
+        }
+    }
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let per_scan_ms = self.wall_s * 1e3 / self.scans.max(1) as f64;
+        let seconds = format!("{:.0} s", self.duration_s);
+        let duration = if self.rates_withheld.is_some() { "an unknown time" } else { seconds.as_str() };
+        writeln!(f, "{}: {} scans in {duration}", self.log, self.scans)?;
+        let pose = match self.settings.pose {
+            PoseMode::Exact => "poses of the log",
+            PoseMode::Odometry => "odometry, with its drift",
+            PoseMode::Localized => "found",
+        };
+        writeln!(
+            f,
+            "  route     {:.0} m, {pose}, {} places recognised, {} scans left out",
+            self.trajectory_m, self.loops, self.scans_left_out
+        )?;
+        writeln!(f, "  seen      {:.0} m², {} of it changed", self.seen_m2, percent(self.changed_share))?;
+        writeln!(f, "  changes   {} of cells, in {} places", self.changes, self.place_count)?;
+        for (number, place) in (1..).zip(self.places.iter().take(3)) {
+            let rate = match self.rates_withheld {
+                Some(_) => String::new(),
+                None => format!(", {}", crate::report::how_often(place)),
+            };
+            writeln!(f, "    {number}.      at ({:.1}, {:.1}) m{rate}", place.x_m, place.y_m)?;
+        }
+        if let Some(why) = &self.rates_withheld {
+            writeln!(f, "  rates     withheld: {why}")?;
+        }
+        write!(f, "  time      {:.1} s, {per_scan_ms:.2} ms per scan", self.wall_s)
+    }
+}

@@ -1,0 +1,104 @@
+//! Places: neighbouring cells that change, as a person would point at them.
+
+use crate::ChangeLog;
+use crate::permanent::share_blocked;
+use mapper::Mapper;
+use nalgebra::Point2;
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// Cells that change belong to one place if they are at most this far apart, m.
+const APART_M: f64 = 0.15;
+/// A place has at least this area, m²: less is noise of the laser at an edge.
+const LEAST_M2: f64 = 0.02;
+/// The probability with which the interval contains the rate.
+const MASS: f64 = 0.9;
+const HOUR_S: f64 = 3600.0;
+
+/// A place where something changes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// The middle of the cells, m.
+    pub x_m: f64,
+    /// The middle of the cells, m.
+    pub y_m: f64,
+    /// The lower left corner of the rectangle around the cells, m.
+    pub low_m: [f64; 2],
+    /// The upper right corner of this rectangle, m.
+    pub high_m: [f64; 2],
+    /// The area of the cells that changed, m².
+    pub area_m2: f64,
+    /// The number of changes that were seen in the cell with the most changes.
+    pub changes: u32,
+    /// The cycles per hour (blocked, free, blocked again) of the cell with the median rate.
+    pub cycles_per_hour: f64,
+    /// The ends of the 90 % credible interval of this rate, 1/h; the upper one is `null` without an upper bound.
+    pub cycles_per_hour_90: [Option<f64>; 2],
+    /// The mean share of the time that the cells are blocked, from 0 to 1.
+    pub share_blocked: f64,
+    /// The time in view of the cells, mean, s.
+    pub observed_s: f64,
+    /// The time of the last change, s.
+    pub last_change_s: f64,
+}
+
+/// The places where something changes, those with the most cycles first: the number of cells times their rate.
+pub fn places(mapper: &Mapper, log: &ChangeLog) -> Vec<Place> {
+    let mut left: BTreeSet<usize> = mapper.changed().collect();
+    let mut found = Vec::new();
+    while let Some(first) = left.pop_first() {
+        let cells = together(mapper, first, &mut left);
+        let area_m2 = cells.len() as f64 * mapper.frame().resolution_m().powi(2);
+        if area_m2 >= LEAST_M2 {
+            found.extend(place(mapper, log, &cells, area_m2));
+        }
+    }
+    let activity = |place: &Place| place.area_m2 * place.cycles_per_hour;
+    found.sort_by(|a, b| activity(b).total_cmp(&activity(a)));
+    found
+}
+
+/// The cells of `left` that belong together with `first`; they are removed from `left`.
+fn together(mapper: &Mapper, first: usize, left: &mut BTreeSet<usize>) -> Vec<usize> {
+    let frame = mapper.frame();
+    let reach = (APART_M / frame.resolution_m()).round().max(1.0) as i32;
+    let (mut cells, mut next) = (vec![first], 0);
+    while let Some(cell) = cells.get(next).map(|index| frame.cell(*index)) {
+        next += 1;
+        for y in -reach..=reach {
+            for x in -reach..=reach {
+                let beside = interfaces::Cell { x: cell.x + x, y: cell.y + y };
+                cells.extend(frame.index(beside).filter(|index| left.remove(index)));
+            }
+        }
+    }
+    cells
+}
+
+fn place(mapper: &Mapper, log: &ChangeLog, cells: &[usize], area_m2: f64) -> Option<Place> {
+    let frame = mapper.frame();
+    let mean =
+        |of: &dyn Fn(usize) -> f64| cells.iter().map(|index| of(*index)).sum::<f64>() / cells.len() as f64;
+    let centers: Vec<Point2<f64>> = cells.iter().map(|index| frame.center(frame.cell(*index))).collect();
+    let half_m = frame.resolution_m() / 2.0;
+    let spans = centers.iter().map(|at| (*at, *at));
+    let (low, high) = spans.reduce(|(low, high), (at, _)| (low.inf(&at), high.sup(&at)))?;
+    let mut by_rate = cells.to_vec();
+    by_rate.sort_by(|a, b| mapper.rate(*a).total_cmp(&mapper.rate(*b)));
+    let median = by_rate[by_rate.len() / 2];
+    let interval = mapper.credible_interval(median, MASS);
+    let bound = |rate_hz: f64| Some(rate_hz * HOUR_S).filter(|rate| rate.is_finite());
+    Some(Place {
+        x_m: centers.iter().map(|at| at.x).sum::<f64>() / centers.len() as f64,
+        y_m: centers.iter().map(|at| at.y).sum::<f64>() / centers.len() as f64,
+        low_m: [low.x - half_m, low.y - half_m],
+        high_m: [high.x + half_m, high.y + half_m],
+        area_m2,
+        changes: cells.iter().map(|index| mapper.statistics(*index).events()).max()?,
+        cycles_per_hour: mapper.rate(median) * HOUR_S,
+        cycles_per_hour_90: [bound(interval.0), bound(interval.1)],
+        share_blocked: mean(&|index| share_blocked(mapper, index)),
+        observed_s: mean(&|index| mapper.statistics(index).observed()),
+        last_change_s: cells.iter().filter_map(|index| log.last_s(*index)).reduce(f64::max)?,
+    })
+}

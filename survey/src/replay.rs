@@ -1,0 +1,108 @@
+//! The second pass as the loop of a robot: a log as a world that ignores commands.
+
+use crate::settings::SurveySettings;
+use interfaces::{LaserReading, World};
+use localizer::{GivenPoses, PoseEstimate, TrajectoryPose};
+use logs::LogError;
+use mapper::Mapper;
+use nalgebra::Matrix3;
+use robot::{Belief, Localization, Permission, Pilot, Posed};
+
+/// A log as a world. It has at least one reading; the last one is repeated at the end, see [`Replay::is_over`].
+pub struct Replay<I> {
+    readings: I,
+    settings: SurveySettings,
+    now: LaserReading,
+    next: Option<LaserReading>,
+    problem: Option<LogError>,
+}
+
+impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
+    /// The log from its first reading on; `None` if there is none.
+    ///
+    /// # Errors
+    ///
+    /// When the first reading cannot be read.
+    pub fn new(mut readings: I, settings: &SurveySettings) -> Result<Option<Self>, LogError> {
+        let Some(now) = readings.next().transpose()? else { return Ok(None) };
+        let mut replay = Self { readings, settings: settings.clone(), now, next: None, problem: None };
+        replay.read();
+        Ok(Some(replay))
+    }
+
+    /// Whether the present reading is the last one.
+    pub fn is_over(&self) -> bool {
+        self.next.is_none()
+    }
+
+    /// Why the log ended before its end.
+    pub fn into_problem(self) -> Option<LogError> {
+        self.problem
+    }
+
+    fn read(&mut self) {
+        match self.readings.next() {
+            Some(Ok(reading)) => self.next = Some(reading),
+            Some(Err(problem)) => self.problem = Some(problem),
+            None => {}
+        }
+    }
+}
+
+impl<I: Iterator<Item = Result<LaserReading, LogError>>> World for Replay<I> {
+    type Reading = LaserReading;
+    type Command = ();
+
+    fn sense(&mut self) -> LaserReading {
+        self.settings.filtered(self.now.clone())
+    }
+
+    fn poses_are_exact(&self) -> bool {
+        true // There is no better pose to compare with.
+    }
+
+    fn act(&mut self, (): &()) {
+        if let Some(next) = self.next.take() {
+            self.now = next;
+            self.read();
+        }
+    }
+}
+
+/// Gives every reading the pose that the first pass has found for it.
+#[derive(Debug)]
+pub struct FoundPoses {
+    poses: std::vec::IntoIter<TrajectoryPose>,
+    given: GivenPoses,
+}
+
+impl FoundPoses {
+    /// The poses of the readings, in their order.
+    pub fn new(poses: Vec<TrajectoryPose>) -> Self {
+        Self { poses: poses.into_iter(), given: GivenPoses::default() }
+    }
+}
+
+impl Localization<LaserReading> for FoundPoses {
+    /// A reading beyond the last pose keeps its own pose and is not certain. The covariance is not estimated: 0.
+    fn localize(&mut self, mut reading: LaserReading, _: &Mapper) -> Posed<LaserReading> {
+        let state = self.poses.next().map_or_else(Default::default, |found| {
+            reading.pose = found.pose;
+            found.state
+        });
+        let reading = self.given.unswept(reading);
+        let (pose, covariance, support) = (reading.pose, Matrix3::zeros(), 1.0);
+        let estimate = Some(PoseEstimate { pose, covariance, support, state });
+        Posed { reading, estimate, permission: Permission::Drive }
+    }
+}
+
+/// A pilot that gives no command.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Passenger;
+
+impl Pilot for Passenger {
+    type Command = ();
+
+    fn command(&mut self, _: &Belief) {}
+}

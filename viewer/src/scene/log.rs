@@ -1,0 +1,53 @@
+//! The scene of a log: a place of which nothing is known before.
+
+use super::{Outline, Robot, RobotState, Scene, Sector, Sight, TimeUnit, Visible};
+use interfaces::{GridFrame, LaserReading};
+use logs::LogError;
+use nalgebra::Isometry2;
+use survey::Replay;
+
+/// The drawn radius of a robot of which a log says nothing, m.
+const RADIUS_M: f64 = 0.25;
+
+impl Scene {
+    /// The scene of a log with this first reading.
+    pub fn of_log(title: &str, frame: GridFrame, first: &LaserReading) -> Self {
+        let scan = &first.scan;
+        let angle_rad = scan.angle_increment_rad.abs() * scan.ranges_m.len().saturating_sub(1) as f64;
+        let middle = scan.angle_rad(0) + scan.angle_increment_rad.signum() * angle_rad / 2.0;
+        let mount = first.mount * interfaces::pose(0.0, 0.0, middle);
+        let robot = Robot {
+            name: "the robot".to_owned(),
+            pose: Isometry2::identity(),
+            radius_m: RADIUS_M,
+            corners: Vec::new(),
+            sectors: vec![Sector { mount, angle_rad, range_m: scan.range_max_m }],
+            is_driven: true,
+        };
+        Self {
+            title: title.to_owned(),
+            unit: TimeUnit::Second,
+            frame,
+            walls: Vec::new(),
+            obstacles: Vec::new(),
+            robots: vec![robot],
+        }
+    }
+
+    /// Whether nothing but the robots is known before the run.
+    pub(crate) fn is_unknown(&self) -> bool {
+        self.walls.is_empty() && self.obstacles.is_empty()
+    }
+}
+
+impl<I: Iterator<Item = Result<LaserReading, LogError>>> Visible for Replay<I> {
+    const UNIT: TimeUnit = TimeUnit::Second;
+
+    fn robots<'a>(&'a self, reading: &'a LaserReading) -> Vec<RobotState<'a>> {
+        vec![RobotState { pose: reading.pose, sight: Some(Sight::Laser(reading)) }]
+    }
+
+    fn obstacles(&self) -> Vec<Option<Outline>> {
+        Vec::new()
+    }
+}
