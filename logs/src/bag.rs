@@ -13,7 +13,6 @@ mod message;
 mod messages;
 mod plan;
 mod readings;
-pub(crate) mod ros;
 mod scan;
 mod sqlite;
 #[cfg(test)]

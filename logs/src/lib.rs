@@ -13,6 +13,7 @@ mod error;
 mod lines;
 mod log;
 mod odometry;
+mod ros;
 mod summary;
 mod times;
 

@@ -5,11 +5,11 @@ use super::inventory::Kind;
 use super::message::Message;
 use super::messages::Messages;
 use super::plan::{Laser, Motion, Plan};
-use super::ros::{self, Header, LaserScan, Transforms};
 use super::scan;
 use crate::choice::bare;
 use crate::error::LogError;
 use crate::odometry::Odometry;
+use crate::ros::{self, Header, LaserScan, Transforms};
 use interfaces::{LaserReading, Scan};
 use nalgebra::Isometry2;
 use std::collections::VecDeque;
@@ -170,7 +170,7 @@ impl RawReadings {
 
     fn take_odometry(&mut self, message: &Message) -> Result<(), String> {
         let found: ros::Odometry = ros::decoded(&message.data)?;
-        self.take_pose(&found.header, message, &found.pose);
+        self.take_pose(&found.header, message, &found.pose.pose);
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! `sensor_msgs/LaserScan` as a scan of ours.
 
-use super::ros::LaserScan;
+use crate::ros::LaserScan;
 use interfaces::Scan;
 use std::f64::consts::TAU;
 
@@ -70,7 +70,7 @@ fn meaning(range_m: f32, min_m: f32, max_m: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bag::ros::Header;
+    use crate::ros::Header;
 
     fn message(angle_min: f32, angle_increment: f32, ranges: &[f32]) -> LaserScan {
         LaserScan {

@@ -1,4 +1,4 @@
-//! The messages of ROS 2 that we read, as in `common_interfaces` and `geometry2`, and their encoding (CDR).
+//! The messages of ROS 2, as in `common_interfaces` and `geometry2`, and their encoding (CDR).
 
 use byteorder::{BigEndian, LittleEndian};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
@@ -77,12 +77,31 @@ impl Pose {
     }
 }
 
-/// The beginning of `nav_msgs/Odometry`: covariances and velocities follow.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+/// The covariance of 6 figures: 36 numbers.
+pub(crate) type Covariance = ([f64; 18], [f64; 18]);
+
+/// `geometry_msgs/PoseWithCovariance`.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub(crate) struct PoseWithCovariance {
+    pub(crate) pose: Pose,
+    pub(crate) covariance: Covariance,
+}
+
+/// `geometry_msgs/TwistWithCovariance`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub(crate) struct TwistWithCovariance {
+    pub(crate) linear: Vector,
+    pub(crate) angular: Vector,
+    pub(crate) covariance: Covariance,
+}
+
+/// `nav_msgs/Odometry`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub(crate) struct Odometry {
     pub(crate) header: Header,
     pub(crate) child_frame_id: String,
-    pub(crate) pose: Pose,
+    pub(crate) pose: PoseWithCovariance,
+    pub(crate) twist: TwistWithCovariance,
 }
 
 /// `geometry_msgs/TransformStamped`.
@@ -116,6 +135,13 @@ pub(crate) fn decoded<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, Stri
     message.map(|(message, _)| message).map_err(|error| format!("it is damaged: {error}"))
 }
 
+/// A message as bytes, in little-endian order.
+pub(crate) fn encoded<T: Serialize>(message: &T) -> Result<Vec<u8>, String> {
+    let mut bytes = vec![0, 1, 0, 0];
+    bytes.extend(cdr_encoding::to_vec::<T, LittleEndian>(message).map_err(|error| error.to_string())?);
+    Ok(bytes)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,7 +149,9 @@ mod tests {
     #[test]
     fn both_orders_of_bytes_are_read() {
         let time = Time { sec: 1, nanosec: 2 };
-        assert_eq!(decoded::<Time>(&[0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]), Ok(time));
+        let little = [0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0];
+        assert_eq!(encoded(&time).unwrap(), little);
+        assert_eq!(decoded::<Time>(&little), Ok(time));
         assert_eq!(decoded::<Time>(&[0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2]), Ok(time));
         assert_eq!(decoded::<Time>(&[0, 7, 0, 0]).unwrap_err(), "the encoding 0007 is not CDR");
         // 2³² − 1 transforms in 4 bytes.
