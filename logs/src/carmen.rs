@@ -15,58 +15,44 @@
 //!   line continues from there. Such a line is a new origin of the odometry, not a motion.
 
 mod line;
-mod odometry;
 mod readings;
 mod survey;
 #[cfg(test)]
 mod tests;
-mod times;
 
-pub use readings::Readings;
-pub use survey::LogSummary;
+pub(crate) use readings::Readings;
 
+use crate::bytes::Bytes;
 use crate::error::LogError;
-use crate::lines::{Bytes, Lines};
+use crate::lines::Lines;
+use crate::summary::LogSummary;
 use line::Line;
 use nalgebra::Isometry2;
-use std::path::Path;
 use survey::Survey;
 
 /// A CARMEN log.
 #[derive(Clone, Debug)]
-pub struct CarmenLog {
+pub(crate) struct CarmenLog {
     bytes: Bytes,
     file: String,
     survey: Survey,
 }
 
 impl CarmenLog {
-    /// Opens a log, and surveys it: every line is read once.
+    /// Opens a log, and surveys it: every line is read once. `file` is its name in messages.
     ///
     /// # Errors
     ///
     /// When the file cannot be read, when a line is invalid, or when no line is a scan. A last line that is cut off is
     /// left out, see [`LogSummary::notes`].
-    pub fn open(path: &Path) -> Result<Self, LogError> {
-        Self::new(Bytes::File(path.to_owned()), path.display().to_string())
-    }
-
-    /// A log in memory, plain or compressed. `file` is its name in messages.
-    ///
-    /// # Errors
-    ///
-    /// As for [`CarmenLog::open`].
-    pub fn from_bytes(file: &str, bytes: &[u8]) -> Result<Self, LogError> {
-        Self::new(Bytes::Memory(bytes.into()), file.to_owned())
-    }
-
-    fn new(bytes: Bytes, file: String) -> Result<Self, LogError> {
+    pub(crate) fn open(file: &str, bytes: Bytes) -> Result<Self, LogError> {
+        let file = file.to_owned();
         let survey = Survey::of(&mut Lines::open(&bytes, &file)?)?;
         Ok(Self { bytes, file, survey })
     }
 
     /// What the log contains, and what was repaired.
-    pub fn summary(&self) -> &LogSummary {
+    pub(crate) fn summary(&self) -> &LogSummary {
         &self.survey.summary
     }
 
@@ -76,7 +62,7 @@ impl CarmenLog {
     /// # Errors
     ///
     /// When the file can no longer be opened.
-    pub fn readings(&self) -> Result<Readings, LogError> {
+    pub(crate) fn readings(&self) -> Result<Readings, LogError> {
         Ok(Readings::new(Lines::open(&self.bytes, &self.file)?, self.survey.clone()))
     }
 
@@ -86,7 +72,7 @@ impl CarmenLog {
     /// # Errors
     ///
     /// As for [`CarmenLog::open`].
-    pub fn reference_poses(&self) -> Result<Vec<Option<Isometry2<f64>>>, LogError> {
+    pub(crate) fn reference_poses(&self) -> Result<Vec<Option<Isometry2<f64>>>, LogError> {
         let mut lines = Lines::open(&self.bytes, &self.file)?;
         let mut poses = Vec::new();
         while let Some(line) = line::next(&mut lines, &self.survey.geometry)? {

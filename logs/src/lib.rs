@@ -1,13 +1,23 @@
 //! Logs as sources of readings: a recorded robot is read like a world that ignores commands.
 //!
-//! [`CarmenLog`] reads CARMEN logs, plain or compressed with gzip. A log is surveyed when it is opened; after this it
-//! can be read any number of times, reading by reading.
+//! [`Log`] reads CARMEN logs, plain or compressed with gzip, and bags of ROS 2: MCAP files, SQLite databases, and folders of
+//! them. A log is surveyed when it is opened; after this it can be read any number of times, reading by reading.
 //!
 //! This crate knows the formats of files and the values of `interfaces`. It must not know maps, localizers or programs.
 
+mod bag;
+mod bytes;
 mod carmen;
+mod choice;
 mod error;
 mod lines;
+mod log;
+mod odometry;
+mod ros;
+mod summary;
+mod times;
 
-pub use carmen::{CarmenLog, LogSummary, Readings};
+pub use choice::TopicChoice;
 pub use error::LogError;
+pub use log::{Log, Readings};
+pub use summary::{LogSummary, PoseSource};

@@ -1,23 +1,14 @@
 //! A file as lines of text, plain or compressed.
 
+use crate::bytes::Bytes;
 use crate::error::LogError;
 use flate2::bufread::MultiGzDecoder;
-use std::fs::File;
-use std::io::{BufRead, BufReader, Cursor, Error, ErrorKind, Read};
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::io::{BufRead, BufReader, Error, ErrorKind, Read};
 
 /// The longest line, in bytes: a file that never ends a line must not fill the memory.
 const LONGEST: u64 = 1 << 20;
 /// The first bytes of a file that is compressed with gzip.
 const GZIP: [u8; 2] = [0x1f, 0x8b];
-
-/// Where the bytes of a log come from.
-#[derive(Clone, Debug)]
-pub(crate) enum Bytes {
-    File(PathBuf),
-    Memory(Arc<[u8]>),
-}
 
 /// The lines of a log, one after the other.
 pub(crate) struct Lines {
@@ -34,10 +25,7 @@ impl Lines {
     /// Opens a log. The compression is recognised by the content.
     pub(crate) fn open(bytes: &Bytes, file: &str) -> Result<Self, LogError> {
         let io = |source| LogError::Io { file: file.to_owned(), source };
-        let mut reader: Box<dyn BufRead> = match bytes {
-            Bytes::File(path) => Box::new(BufReader::new(File::open(path).map_err(io)?)),
-            Bytes::Memory(bytes) => Box::new(Cursor::new(bytes.clone())),
-        };
+        let mut reader: Box<dyn BufRead> = Box::new(BufReader::new(bytes.open().map_err(io)?));
         if reader.fill_buf().map_err(io)?.starts_with(&GZIP) {
             reader = Box::new(BufReader::new(MultiGzDecoder::new(reader)));
         }

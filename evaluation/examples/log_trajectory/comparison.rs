@@ -3,7 +3,7 @@
 use crate::hits;
 use interfaces::{LaserReading, heading_rad, wrap_rad};
 use localizer::Trajectory;
-use logs::{CarmenLog, LogError};
+use logs::{Log, LogError};
 use nalgebra::{Isometry2, Vector2};
 use std::collections::BTreeSet;
 
@@ -15,12 +15,8 @@ const CELL_M: f64 = 0.03;
 const FARTHEST_M: f64 = 15.0;
 
 /// Prints the differences of position and heading after a rigid alignment, if the log has poses of the laser.
-pub(crate) fn print(
-    log: &CarmenLog,
-    trajectory: &Trajectory,
-    readings: &[LaserReading],
-) -> Result<(), LogError> {
-    let reference = log.reference_poses()?;
+pub(crate) fn print(log: &Log, trajectory: &Trajectory, readings: &[LaserReading]) -> Result<(), LogError> {
+    let Some(reference) = log.reference_poses()? else { return Ok(()) };
     let pairs: Vec<Pair> = trajectory
         .poses
         .iter()

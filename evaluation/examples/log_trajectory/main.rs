@@ -1,12 +1,12 @@
-//! The trajectory of a robot from a CARMEN log, plain or compressed: matching, loops, pose graph.
+//! The trajectory of a robot from a log, a CARMEN log or a bag of ROS 2: matching, loops, pose graph.
 //!
 //! Writes `trajectory.tum` (the TUM format) and `trajectory.png` (all points that the laser hit, drawn along the
-//! trajectory) beside each other in a folder, and prints the time per scan. Where the FLASER lines of the log contain
+//! trajectory) beside each other in a folder, and prints the time per scan. Where the FLASER lines of a CARMEN log contain
 //! the result of an earlier estimation, its difference to ours is printed, after a rigid alignment, and the sharpness of
 //! both maps. The estimation never sees these poses.
 //!
 //! ```text
-//! cargo run -p evaluation --example log_trajectory -- FILE.log.gz [FOLDER] [no-loops]
+//! cargo run -p evaluation --example log_trajectory -- LOG [FOLDER] [no-loops]
 //! ```
 
 mod comparison;
@@ -15,7 +15,7 @@ mod picture;
 use evaluation::output::TrajectoryFile;
 use interfaces::LaserReading;
 use localizer::{PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
-use logs::CarmenLog;
+use logs::{Log, TopicChoice};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -24,10 +24,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (switches, paths): (Vec<_>, Vec<_>) = arguments.iter().partition(|argument| *argument == "no-loops");
     let Some(file) = paths.first() else {
-        return Err("usage: log_trajectory FILE [FOLDER] [no-loops]".into());
+        return Err("usage: log_trajectory LOG [FOLDER] [no-loops]".into());
     };
     let folder = paths.get(1).map_or_else(|| PathBuf::from("."), PathBuf::from);
-    let log = CarmenLog::open(Path::new(file))?;
+    let log = Log::open(Path::new(file), &TopicChoice::default())?;
     print_summary(&log);
     let settings = TrajectorySettings { close_loops: switches.is_empty(), ..TrajectorySettings::default() };
     let mut finder = TrajectoryFinder::new(&settings)?;
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn print_summary(log: &CarmenLog) {
+fn print_summary(log: &Log) {
     let summary = log.summary();
     println!(
         "{} scans in {:.0} s, {} poses of the odometry",

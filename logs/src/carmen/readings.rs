@@ -1,10 +1,10 @@
 //! The second reading of a log: reading by reading.
 
 use super::line::{self, Line, ScanLine};
-use super::odometry::Odometry;
 use super::survey::Survey;
 use crate::error::LogError;
 use crate::lines::Lines;
+use crate::odometry::Odometry;
 use interfaces::{LaserReading, Twist};
 use nalgebra::Isometry2;
 use std::collections::VecDeque;
@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 const MOST_WAITING: usize = 64;
 
 /// The readings of a log, one after the other. After an error, there are no more.
-pub struct Readings {
+pub(crate) struct Readings {
     lines: Lines,
     survey: Survey,
     odometry: Odometry,

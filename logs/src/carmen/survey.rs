@@ -1,23 +1,11 @@
 //! The first reading of a log: what it contains, and what makes no sense.
 
 use super::line::{self, Geometry, Line};
-use super::times::{self, Times};
 use crate::error::LogError;
 use crate::lines::Lines;
+use crate::summary::{LogSummary, PoseSource, since_epoch};
+use crate::times::{self, Times};
 use std::sync::Arc;
-
-/// What a log contains.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LogSummary {
-    /// The number of readings.
-    pub scans: usize,
-    /// The number of poses of the odometry, without those that only define a new origin.
-    pub odometry_poses: usize,
-    /// The time from the first to the last reading, after repair, s.
-    pub duration_s: f64,
-    /// What was repaired or left out, each a sentence.
-    pub notes: Vec<String>,
-}
 
 /// All that the second reading needs.
 #[derive(Clone, Debug)]
@@ -59,10 +47,20 @@ impl Survey {
         if odometry_poses == 0 {
             notes.push("no ODOM line: the odometry stands still".to_owned());
         }
+        let begin_s = times_s.first().copied().and_then(since_epoch);
+        let pose_source = if odometry_poses > 0 { PoseSource::OdometryLines } else { PoseSource::Standing };
         let Times { times_s, has_times, note } = times::repaired(&times_s);
         notes.extend(note);
         let duration_s = times_s.last().copied().unwrap_or_default();
-        let summary = LogSummary { scans: times_s.len(), odometry_poses, duration_s, notes };
+        let summary = LogSummary {
+            scans: times_s.len(),
+            duration_s,
+            begin_s: begin_s.filter(|_| has_times),
+            pose_source,
+            odometry_poses,
+            scan_topics: Vec::new(),
+            notes,
+        };
         Ok(Self { summary, geometry, times_s: times_s.into(), has_times, has_origins })
     }
 }

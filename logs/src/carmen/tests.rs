@@ -1,9 +1,15 @@
 use super::CarmenLog;
+use crate::bytes::Bytes;
+use crate::error::LogError;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use interfaces::{LaserReading, heading_rad};
 use proptest::prelude::*;
 use std::io::Write;
+
+fn open(file: &str, bytes: &[u8]) -> Result<CarmenLog, LogError> {
+    CarmenLog::open(file, Bytes::Memory(bytes.into()))
+}
 
 /// A log of 180 readings per scan.
 fn flaser(time_s: f64, pose: &str) -> String {
@@ -12,12 +18,12 @@ fn flaser(time_s: f64, pose: &str) -> String {
 }
 
 fn readings(text: &str) -> Vec<LaserReading> {
-    let log = CarmenLog::from_bytes("test.log", text.as_bytes()).unwrap();
+    let log = open("test.log", text.as_bytes()).unwrap();
     log.readings().unwrap().map(Result::unwrap).collect()
 }
 
 fn error(text: &str) -> String {
-    CarmenLog::from_bytes("test.log", text.as_bytes()).unwrap_err().to_string()
+    open("test.log", text.as_bytes()).unwrap_err().to_string()
 }
 
 #[test]
@@ -35,7 +41,7 @@ fn only_ranges_and_times_come_from_the_scans_and_poses_from_the_odometry() {
     assert_eq!(scan.ranges_m.len(), 180);
     assert!(scan.ranges_m[0].is_nan() && scan.ranges_m[1] == 1.5 && scan.ranges_m[179] == 0.5);
     assert!((scan.angle_rad(90)).abs() < 1e-9, "the middle beam looks ahead");
-    let log = CarmenLog::from_bytes("test.log", text.as_bytes()).unwrap();
+    let log = open("test.log", text.as_bytes()).unwrap();
     assert_eq!(log.reference_poses().unwrap()[0].unwrap().translation.x, 77.0);
 }
 
@@ -78,13 +84,13 @@ fn compressed_logs_are_recognised_by_their_content() {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
     encoder.write_all(text.as_bytes()).unwrap();
     let packed = encoder.finish().unwrap();
-    let log = CarmenLog::from_bytes("packed", &packed).unwrap();
+    let log = open("packed", &packed).unwrap();
     assert_eq!(log.summary().scans, 2);
     let same = log.readings().unwrap().map(Result::unwrap).zip(readings(&text));
     for (unpacked, plain) in same {
         assert_eq!(format!("{unpacked:?}"), format!("{plain:?}"));
     }
-    let cut = CarmenLog::from_bytes("packed", &packed[..packed.len() / 2]).unwrap_err().to_string();
+    let cut = open("packed", &packed[..packed.len() / 2]).unwrap_err().to_string();
     assert!(cut.starts_with("packed: "), "{cut}");
 }
 
@@ -100,14 +106,14 @@ fn errors_name_the_file_and_the_line() {
         error("ODOM 1 nan 0 0 0 0 1 h 1\n"),
         "test.log:1: ODOM: `nan` is no valid value for x, y and theta"
     );
-    let missing = CarmenLog::open(std::path::Path::new("no/such.log")).unwrap_err().to_string();
+    let missing = CarmenLog::open("no/such.log", Bytes::File("no/such.log".into())).unwrap_err().to_string();
     assert!(missing.starts_with("no/such.log: "), "{missing}");
 }
 
 #[test]
 fn a_last_line_that_is_cut_off_is_left_out() {
     let text = flaser(1.0, "0 0 0") + "FLASER 180 1.5 1.5";
-    let log = CarmenLog::from_bytes("test.log", text.as_bytes()).unwrap();
+    let log = open("test.log", text.as_bytes()).unwrap();
     assert_eq!(log.summary().scans, 1);
     let expected =
         ["line 2, the last one, is cut off and left out", "no ODOM line: the odometry stands still"];
@@ -147,7 +153,7 @@ fn word() -> impl Strategy<Value = String> {
 }
 
 fn read_all(bytes: &[u8]) {
-    let Ok(log) = CarmenLog::from_bytes("any", bytes) else { return };
+    let Ok(log) = open("any", bytes) else { return };
     let readings: Vec<_> = log.readings().unwrap().map(Result::unwrap).collect();
     assert_eq!(readings.len(), log.summary().scans);
     assert!(readings.windows(2).all(|pair| pair[0].time_s < pair[1].time_s));

@@ -1,16 +1,16 @@
 //! The odometry of a log: the sum of its motions, and its pose at the time of a scan.
 
-use interfaces::{Twist, heading_rad, wrap_rad};
+use interfaces::{Twist, VelocitySample, heading_rad, wrap_rad};
 use nalgebra::Isometry2;
 
 /// Between two poses that are farther apart than this, s, the odometry is not interpolated.
 const LONGEST_GAP_S: f64 = 2.0;
 /// The number of poses that are kept: some messages arrive later than others.
-const KEPT: usize = 64;
+const KEPT: usize = 256;
 
 /// The recent poses.
 #[derive(Debug, Default)]
-pub(super) struct Odometry {
+pub(crate) struct Odometry {
     /// The last pose as written.
     written: Option<Isometry2<f64>>,
     /// The times (s) and the sums of the motions, the newest last.
@@ -19,7 +19,7 @@ pub(super) struct Odometry {
 
 impl Odometry {
     /// Adds a pose as written.
-    pub(super) fn add(&mut self, time_s: f64, pose: Isometry2<f64>) {
+    pub(crate) fn add(&mut self, time_s: f64, pose: Isometry2<f64>) {
         let motion = self.written.map_or(Isometry2::identity(), |before| before.inv_mul(&pose));
         self.written = Some(pose);
         let mut at = self.last() * motion;
@@ -31,7 +31,7 @@ impl Odometry {
     }
 
     /// Motions are measured from this pose on.
-    pub(super) fn set_origin(&mut self, pose: Isometry2<f64>) {
+    pub(crate) fn set_origin(&mut self, pose: Isometry2<f64>) {
         self.written = Some(pose);
         // The older poses were written in another frame, but their motions are true.
     }
@@ -42,12 +42,12 @@ impl Odometry {
     }
 
     /// Whether a later pose can be nearer to this time.
-    pub(super) fn must_wait(&self, time_s: f64) -> bool {
+    pub(crate) fn must_wait(&self, time_s: f64) -> bool {
         self.samples.last().is_some_and(|(last_s, _)| *last_s < time_s && time_s - last_s < LONGEST_GAP_S)
     }
 
     /// The pose and the velocity at a time; the newest pose where the time is not between two poses.
-    pub(super) fn at(&self, time_s: f64) -> (Isometry2<f64>, Twist) {
+    pub(crate) fn at(&self, time_s: f64) -> (Isometry2<f64>, Twist) {
         let around = |pair: &&[(f64, Isometry2<f64>)]| pair[0].0 <= time_s && time_s <= pair[1].0;
         match self.samples.windows(2).rev().find(around) {
             Some([from, to]) if to.0 - from.0 <= LONGEST_GAP_S && to.0 > from.0 => {
@@ -57,8 +57,21 @@ impl Odometry {
         }
     }
 
+    /// The mean velocities between the poses in an interval, the earliest first; the last one ends with the interval.
+    pub(crate) fn during(&self, from_s: f64, to_s: f64) -> Vec<VelocitySample> {
+        let overlaps = |pair: &&[(f64, Isometry2<f64>)]| {
+            pair[0].0 < to_s && from_s < pair[1].0 && (0.0..=LONGEST_GAP_S).contains(&(pair[1].0 - pair[0].0))
+        };
+        let pairs = self.samples.windows(2).filter(overlaps);
+        let sample = |pair: &[(f64, Isometry2<f64>)]| {
+            let (_, twist) = between(&pair[0], &pair[1], 1.0);
+            VelocitySample { time_s: pair[1].0.min(to_s), twist }
+        };
+        pairs.map(sample).collect()
+    }
+
     /// The newest pose and its velocity.
-    pub(super) fn newest(&self) -> (Isometry2<f64>, Twist) {
+    pub(crate) fn newest(&self) -> (Isometry2<f64>, Twist) {
         match self.samples.as_slice() {
             [.., from, to] if to.0 > from.0 && to.0 - from.0 <= LONGEST_GAP_S => between(from, to, 1.0),
             _ => (self.last(), Twist::STOP),

@@ -10,17 +10,17 @@ const LEAST_STEP_S: f64 = 1e-3;
 const STEP_WITHOUT_TIMES_S: f64 = 1.0;
 
 /// The times of the readings.
-pub(super) struct Times {
+pub(crate) struct Times {
     /// From the first reading on, strictly increasing, s.
-    pub(super) times_s: Vec<f64>,
+    pub(crate) times_s: Vec<f64>,
     /// Whether the times in the log can be compared with each other.
-    pub(super) has_times: bool,
+    pub(crate) has_times: bool,
     /// What was repaired.
-    pub(super) note: Option<String>,
+    pub(crate) note: Option<String>,
 }
 
 /// Repairs the times of the scans of a log.
-pub(super) fn repaired(raw_s: &[f64]) -> Times {
+pub(crate) fn repaired(raw_s: &[f64]) -> Times {
     let mut steps: Vec<f64> = raw_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let count = steps.len();
     steps.retain(|step| *step > 0.0 && *step <= LONGEST_PAUSE_S);

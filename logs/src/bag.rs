@@ -1,0 +1,173 @@
+//! Bags of ROS 2 (rosbag2): MCAP files and SQLite databases, several of them one after the other.
+//!
+//! A bag is read three times: for its topics and frames, for the times of its scans, and reading by reading. Each time it
+//! is a stream: memory does not grow with the bag.
+
+mod chunk;
+mod fields;
+mod files;
+mod frames;
+mod inventory;
+mod mcap;
+mod message;
+mod messages;
+mod plan;
+mod readings;
+mod scan;
+mod sqlite;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use files::{BagFile, in_folder};
+
+use crate::choice::TopicChoice;
+use crate::error::LogError;
+use crate::summary::{LogSummary, since_epoch};
+use crate::times::{self, Times};
+use interfaces::LaserReading;
+use inventory::Inventory;
+use messages::Messages;
+use plan::Plan;
+use readings::{Clock, Counts, RawReadings};
+use std::sync::Arc;
+
+/// A bag.
+#[derive(Clone, Debug)]
+pub(crate) struct Bag {
+    files: Arc<[BagFile]>,
+    plan: Arc<Plan>,
+    clock: Clock,
+    times_s: Arc<[f64]>,
+    summary: LogSummary,
+}
+
+impl Bag {
+    /// Opens a bag, and surveys it: its messages are read twice. `file` is its name in messages.
+    pub(crate) fn open(
+        file: &str,
+        files: Vec<BagFile>,
+        choice: &TopicChoice,
+        mut notes: Vec<String>,
+    ) -> Result<Self, LogError> {
+        let unusable = |why| LogError::Unusable { file: file.to_owned(), why };
+        let inventory = Inventory::of(&files)?;
+        notes.extend(inventory.notes.iter().cloned());
+        let plan = Arc::new(Plan::new(&inventory, choice, &mut notes).map_err(unusable)?);
+        let (stamp_ns, log_ns) = inventory.begin_ns.unwrap_or_default();
+        let mut clock = Clock::Stamps(stamp_ns);
+        let mut survey = Survey::of(&files, &plan, clock)?;
+        if !survey.times.has_times {
+            let by_recording = Survey::of(&files, &plan, Clock::Recording(log_ns))?;
+            if by_recording.times.has_times {
+                notes.push(
+                    "the stamps of the scans are unusable: the times of the recording count".to_owned(),
+                );
+                (clock, survey) = (Clock::Recording(log_ns), by_recording);
+            }
+        }
+        let Survey { raw_begin_s, times, counts } = survey;
+        if times.times_s.is_empty() {
+            let why = counts.first_invalid.unwrap_or_default();
+            return Err(unusable(format!("no scan is valid; the first: {why}")));
+        }
+        notes.extend(times.note);
+        notes.extend(counts.notes());
+        let begins_s = [stamp_ns, log_ns].map(|ns| since_epoch(ns as f64 * 1e-9 + raw_begin_s));
+        let begin_s = match clock {
+            Clock::Stamps(_) => begins_s[0].or(begins_s[1]),
+            Clock::Recording(_) => begins_s[1],
+        };
+        let mut scan_topics: Vec<String> = plan.lasers.iter().map(|laser| laser.topic.clone()).collect();
+        scan_topics.dedup();
+        let summary = LogSummary {
+            scans: times.times_s.len(),
+            duration_s: times.times_s.last().copied().unwrap_or_default(),
+            begin_s,
+            pose_source: plan.pose_source.clone(),
+            odometry_poses: counts.poses,
+            scan_topics,
+            notes,
+        };
+        Ok(Self { files: files.into(), plan, clock, times_s: times.times_s.into(), summary })
+    }
+
+    pub(crate) fn summary(&self) -> &LogSummary {
+        &self.summary
+    }
+
+    pub(crate) fn readings(&self) -> Readings {
+        let raw = raw_readings(&self.files, &self.plan, self.clock);
+        Readings { raw, times_s: self.times_s.clone(), given: 0, has_failed: false }
+    }
+}
+
+fn raw_readings(files: &[BagFile], plan: &Arc<Plan>, clock: Clock) -> RawReadings {
+    let needed = plan.clone();
+    let messages = Messages::new(files, Arc::new(move |topic| needed.needs(topic)));
+    RawReadings::new(messages, plan, clock)
+}
+
+/// The times of all scans.
+struct Survey {
+    /// The time of the first scan on the clock, s.
+    raw_begin_s: f64,
+    times: Times,
+    counts: Counts,
+}
+
+impl Survey {
+    fn of(files: &[BagFile], plan: &Arc<Plan>, clock: Clock) -> Result<Self, LogError> {
+        let mut raw = raw_readings(files, plan, clock);
+        let mut raw_s = Vec::new();
+        while let Some(reading) = raw.next_reading()? {
+            raw_s.push(reading.time_s);
+        }
+        let raw_begin_s = raw_s.first().copied().unwrap_or_default();
+        Ok(Self { raw_begin_s, times: times::repaired(&raw_s), counts: raw.counts })
+    }
+}
+
+impl Counts {
+    /// What was left out.
+    fn notes(&self) -> impl Iterator<Item = String> {
+        let scans = self.first_invalid.as_ref().map(|first| {
+            format!("{} scans are invalid and left out, the first: {first}", self.invalid_scans)
+        });
+        let poses = (self.invalid_poses > 0).then(|| {
+            format!("{} poses of odometry or transforms are invalid and left out", self.invalid_poses)
+        });
+        scans.into_iter().chain(poses)
+    }
+}
+
+/// The readings of a bag, one after the other. After an error, there are no more.
+pub(crate) struct Readings {
+    raw: RawReadings,
+    times_s: Arc<[f64]>,
+    given: usize,
+    has_failed: bool,
+}
+
+impl Iterator for Readings {
+    type Item = Result<LaserReading, LogError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.has_failed {
+            return None;
+        }
+        let mut reading = match self.raw.next_reading() {
+            Ok(reading) => reading?,
+            Err(error) => {
+                self.has_failed = true;
+                return Some(Err(error));
+            }
+        };
+        // The file can have grown since the survey.
+        let time_s = *self.times_s.get(self.given)?;
+        self.given += 1;
+        let shift_s = time_s - reading.time_s;
+        reading.velocities.iter_mut().for_each(|sample| sample.time_s += shift_s);
+        reading.time_s = time_s;
+        Some(Ok(reading))
+    }
+}

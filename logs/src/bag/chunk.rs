@@ -1,0 +1,117 @@
+//! A chunk of an MCAP file: records, often compressed. It is unpacked as a stream, so that one that claims gigabytes needs
+//! no memory.
+
+use super::fields::Fields;
+use flate2::Crc;
+use std::io::{self, BufRead, BufReader, Cursor, ErrorKind, Read};
+
+/// The most bytes of a chunk in the file, and unpacked. The tools of ROS write chunks of some megabytes.
+const MOST_PACKED: u64 = 256 << 20;
+const MOST_UNPACKED: u64 = 1 << 30;
+/// The bytes of a chunk before the name of its compression.
+const BEFORE_NAME: usize = 28;
+
+/// A chunk that is being read.
+pub(super) struct Chunk {
+    records: Box<dyn BufRead>,
+    /// The bytes that are still to come.
+    remaining: u64,
+    crc: Crc,
+    expected_crc: u32,
+    /// Whether the file ends within the chunk.
+    pub(super) is_cut: bool,
+}
+
+impl Chunk {
+    /// Reads a chunk of `len` bytes, of which the file has `available`.
+    pub(super) fn read(input: &mut dyn Read, len: u64, available: u64) -> Result<Self, String> {
+        if len.min(available) > MOST_PACKED {
+            return Err(format!("a chunk of {len} bytes; at most {MOST_PACKED} are read"));
+        }
+        let mut bytes = Vec::new();
+        let read = input.take(len).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+        let is_cut = (read as u64) < len;
+        let mut fields = Fields::new(&bytes);
+        let header = (|| {
+            fields.skip(16)?; // the times of the first and the last message
+            Some((fields.u64()?, fields.u32()?, fields.text()?, fields.u64()?))
+        })();
+        let Some((unpacked, expected_crc, compression, packed)) = header else {
+            return Err(format!("a chunk of {len} bytes ends within its header"));
+        };
+        if unpacked > MOST_UNPACKED {
+            return Err(format!("a chunk of {unpacked} bytes, unpacked; at most {MOST_UNPACKED} are read"));
+        }
+        let start = BEFORE_NAME + 4 + compression.len() + 8;
+        if !is_cut && packed > (bytes.len() - start) as u64 {
+            return Err(format!("the records of a chunk have {packed} bytes, but the chunk has {len}"));
+        }
+        let mut cursor = Cursor::new(bytes);
+        cursor.set_position(start as u64);
+        let failed = |error: io::Error| error.to_string();
+        let records: Box<dyn BufRead> = match compression.as_str() {
+            "" => Box::new(cursor),
+            "zstd" => {
+                Box::new(BufReader::new(zstd::stream::read::Decoder::with_buffer(cursor).map_err(failed)?))
+            }
+            "lz4" => Box::new(BufReader::new(lz4::Decoder::new(cursor).map_err(failed)?)),
+            other => {
+                return Err(format!("a chunk is compressed with `{other}`; zstd, lz4 and none are read"));
+            }
+        };
+        Ok(Self { records, remaining: unpacked, crc: Crc::new(), expected_crc, is_cut })
+    }
+
+    /// The operation code and the length of the next record; `None` at the end.
+    pub(super) fn next_record(&mut self) -> io::Result<Option<(u8, u64)>> {
+        if self.remaining == 0 {
+            let is_intact = self.is_cut || self.expected_crc == 0 || self.crc.sum() == self.expected_crc;
+            return if is_intact { Ok(None) } else { Err(invalid("the checksum of the chunk is wrong")) };
+        }
+        let mut start = [0; 9];
+        self.read_exact(&mut start)?;
+        let [code, length @ ..] = start;
+        let length = u64::from_le_bytes(length);
+        if length > self.remaining {
+            return Err(invalid("a record is longer than its chunk"));
+        }
+        Ok(Some((code, length)))
+    }
+
+    /// Skips bytes.
+    pub(super) fn skip(&mut self, mut length: u64) -> io::Result<()> {
+        while length > 0 {
+            length -= self.take_some(length, |_| {})? as u64;
+        }
+        Ok(())
+    }
+
+    /// Fills a buffer.
+    pub(super) fn read_exact(&mut self, to: &mut [u8]) -> io::Result<()> {
+        let mut filled = 0;
+        while filled < to.len() {
+            let wanted = (to.len() - filled) as u64;
+            filled +=
+                self.take_some(wanted, |bytes| to[filled..filled + bytes.len()].copy_from_slice(bytes))?;
+        }
+        Ok(())
+    }
+
+    /// Takes at most `most` bytes, at least one, and gives their number.
+    fn take_some(&mut self, most: u64, use_bytes: impl FnOnce(&[u8])) -> io::Result<usize> {
+        let bytes = self.records.fill_buf()?;
+        let count = (bytes.len() as u64).min(most).min(self.remaining) as usize;
+        if count == 0 {
+            return Err(ErrorKind::UnexpectedEof.into());
+        }
+        self.crc.update(&bytes[..count]);
+        use_bytes(&bytes[..count]);
+        self.records.consume(count);
+        self.remaining -= count as u64;
+        Ok(count)
+    }
+}
+
+fn invalid(what: &str) -> io::Error {
+    io::Error::new(ErrorKind::InvalidData, what.to_owned())
+}

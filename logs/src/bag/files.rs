@@ -1,0 +1,201 @@
+//! The files of a bag: found out by content, put in order, unpacked.
+
+use super::{mcap, sqlite};
+use crate::bytes::Bytes;
+use crate::error::LogError;
+use serde::Deserialize;
+use std::fs;
+use std::io::{self, Read, Seek, Write};
+use std::path::{Component, Path};
+use std::sync::Arc;
+use tempfile::NamedTempFile;
+
+/// The first bytes of a file that is compressed with zstd.
+pub(super) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+/// The first bytes of a bag of ROS 1.
+const ROS1: &[u8] = b"#ROSBAG V";
+/// A compressed file may grow by this factor, and by this number of bytes in any case.
+const MOST_GROWTH: u64 = 1000;
+const ANY_GROWTH: u64 = 64 << 20;
+/// The largest `metadata.yaml`.
+const MOST_METADATA: u64 = 16 << 20;
+
+/// A file of a bag.
+#[derive(Clone, Debug)]
+pub(crate) struct BagFile {
+    /// Its name in messages.
+    pub(crate) name: Arc<str>,
+    pub(super) format: Format,
+    pub(super) bytes: Bytes,
+}
+
+/// How a file stores messages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Format {
+    Mcap,
+    Sqlite,
+}
+
+impl Format {
+    /// The format of a file that begins with these bytes.
+    fn of(start: &[u8]) -> Option<Self> {
+        match start {
+            _ if start.starts_with(&mcap::MAGIC) => Some(Self::Mcap),
+            _ if start.starts_with(&sqlite::MAGIC) => Some(Self::Sqlite),
+            _ => None,
+        }
+    }
+}
+
+impl BagFile {
+    /// A file, if it is one of a bag.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be read, or is of ROS 1.
+    pub(crate) fn open(path: &Path) -> Result<Option<Self>, LogError> {
+        let name: Arc<str> = path.display().to_string().into();
+        Self::recognised(name.clone(), Bytes::File(path.to_owned()))
+            .map_err(|source| LogError::Io { file: name.to_string(), source })
+    }
+
+    pub(crate) fn recognised(name: Arc<str>, bytes: Bytes) -> io::Result<Option<Self>> {
+        let start = bytes.start()?;
+        if start.starts_with(ROS1) {
+            let what = "a bag of ROS 1; convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install \
+                        rosbags)";
+            return Err(io::Error::new(io::ErrorKind::Unsupported, what));
+        }
+        if let Some(format) = Format::of(&start) {
+            return Ok(Some(Self { name, format, bytes }));
+        }
+        if !start.starts_with(&ZSTD) {
+            return Ok(None);
+        }
+        let bytes = Bytes::Unpacked(Arc::new(unpacked(&bytes)?));
+        let Some(format) = Format::of(&bytes.start()?) else {
+            let what = "compressed with zstd, but what is in it is no bag";
+            return Err(io::Error::new(io::ErrorKind::InvalidData, what));
+        };
+        Ok(Some(Self { name, format, bytes }))
+    }
+}
+
+/// A temporary file with what is in a compressed one.
+fn unpacked(bytes: &Bytes) -> io::Result<NamedTempFile> {
+    let mut input = bytes.open()?;
+    let packed = input.seek(io::SeekFrom::End(0))?;
+    input.rewind()?;
+    let most = packed.saturating_mul(MOST_GROWTH).saturating_add(ANY_GROWTH);
+    let mut decoder = zstd::stream::read::Decoder::new(input)?.take(most);
+    let mut file = NamedTempFile::new()?;
+    io::copy(&mut decoder, &mut file)?;
+    file.flush()?;
+    if decoder.limit() == 0 {
+        let what = format!("{packed} bytes grow to {most} when they are unpacked, and more");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, what));
+    }
+    Ok(file)
+}
+
+/// What we need of `metadata.yaml`.
+#[derive(Deserialize)]
+struct Metadata {
+    rosbag2_bagfile_information: Information,
+}
+
+#[derive(Deserialize)]
+struct Information {
+    relative_file_paths: Vec<String>,
+}
+
+/// The files of a folder in their order, and a note if that was found out by their names.
+pub(crate) fn in_folder(folder: &Path) -> Result<(Vec<BagFile>, Option<String>), LogError> {
+    let metadata = folder.join("metadata.yaml");
+    let io = |source| LogError::Io { file: metadata.display().to_string(), source };
+    let file = match fs::File::open(&metadata) {
+        Ok(file) => file,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return by_name(folder),
+        Err(error) => return Err(io(error)),
+    };
+    let mut text = String::new();
+    file.take(MOST_METADATA).read_to_string(&mut text).map_err(io)?;
+    let unusable = |why: String| LogError::Unusable { file: metadata.display().to_string(), why };
+    let Metadata { rosbag2_bagfile_information: information } =
+        serde_saphyr::from_str(&text).map_err(|error| {
+            let text = error.to_string();
+            let first = text.lines().next().unwrap_or_default();
+            unusable(format!("{first}; without this file, the files of the folder are read by name"))
+        })?;
+    let mut files = Vec::new();
+    for name in &information.relative_file_paths {
+        let relative = Path::new(name);
+        if !relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
+            return Err(unusable(format!("`{name}` is not a file of this folder")));
+        }
+        // Old versions wrote the name of the folder as well.
+        let candidates = [folder.join(relative), folder.join(relative.file_name().unwrap_or_default())];
+        let Some(path) = candidates.iter().find(|path| path.is_file()) else {
+            return Err(unusable(format!("the file `{name}` is missing")));
+        };
+        let Some(file) = BagFile::open(path)? else {
+            return Err(unusable(format!("`{name}` is neither MCAP nor SQLite")));
+        };
+        files.push(file);
+    }
+    if files.is_empty() {
+        return Err(unusable("no file is named in `relative_file_paths`".to_owned()));
+    }
+    Ok((files, None))
+}
+
+/// All bag files of a folder without metadata, in the order of the numbers in their names.
+fn by_name(folder: &Path) -> Result<(Vec<BagFile>, Option<String>), LogError> {
+    let io = |source| LogError::Io { file: folder.display().to_string(), source };
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(folder).map_err(io)? {
+        let path = entry.map_err(io)?.path();
+        if path.is_file() {
+            paths.push(path);
+        }
+    }
+    paths.sort_by_key(|path| natural(&path.file_name().unwrap_or_default().to_string_lossy()));
+    let mut files = Vec::new();
+    for path in paths {
+        files.extend(BagFile::open(&path)?);
+    }
+    if files.is_empty() {
+        let why = "a folder without bag files".to_owned();
+        return Err(LogError::Unusable { file: folder.display().to_string(), why });
+    }
+    let note =
+        format!("metadata.yaml is missing: {} bag files are read in the order of their names", files.len());
+    Ok((files, Some(note)))
+}
+
+/// A key that sorts `bag_10` after `bag_9`: text and numbers in turn.
+fn natural(name: &str) -> Vec<(String, u64)> {
+    let mut parts: Vec<(String, u64)> = Vec::new();
+    let mut rest = name;
+    while !rest.is_empty() {
+        let text = rest.find(|at: char| at.is_ascii_digit()).unwrap_or(rest.len());
+        let (text, after) = rest.split_at(text);
+        let digits = after.find(|at: char| !at.is_ascii_digit()).unwrap_or(after.len());
+        let (digits, after) = after.split_at(digits);
+        parts.push((text.to_owned(), digits.parse().unwrap_or(u64::MAX)));
+        rest = after;
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_names_are_in_order() {
+        let mut names = ["bag_10.mcap", "bag_9.mcap", "a", "bag_1.mcap", "bag.mcap"];
+        names.sort_by_key(|name| natural(name));
+        assert_eq!(names, ["a", "bag.mcap", "bag_1.mcap", "bag_9.mcap", "bag_10.mcap"]);
+    }
+}

@@ -1,0 +1,174 @@
+//! Frames and the transforms between them (tf).
+
+use crate::choice::bare;
+use nalgebra::{Isometry2, Isometry3, UnitComplex, Vector3};
+use std::collections::{BTreeMap, VecDeque};
+
+/// The most frames of a robot.
+const MOST_FRAMES: usize = 1_000;
+/// A laser that is tilted by more than this does not measure a plane: the cosine of 15°.
+const LEAST_UPRIGHT: f64 = 0.9659;
+/// Frames that move against each other are the robot and the world.
+const LEAST_MOTION: f64 = 1e-6;
+
+/// A transform between two frames.
+#[derive(Clone, Debug)]
+pub(super) struct Edge {
+    pub(super) parent: String,
+    pub(super) child: String,
+    /// The newest pose of the child in the frame of the parent.
+    pub(super) pose: Isometry3<f64>,
+    /// The number of poses, and whether they differ.
+    pub(super) poses: usize,
+    pub(super) moves: bool,
+}
+
+/// A way through transforms: the edges, and whether they are taken from the parent to the child.
+pub(super) type Way = Vec<(usize, bool)>;
+
+/// All transforms.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Frames {
+    edges: Vec<Edge>,
+    /// The edges by child and parent.
+    known: BTreeMap<(String, String), usize>,
+}
+
+impl Frames {
+    /// Takes a pose of `child` in the frame of `parent`. Gives the number of the edge.
+    ///
+    /// # Errors
+    ///
+    /// When there are too many frames.
+    pub(super) fn set(&mut self, parent: &str, child: &str, pose: Isometry3<f64>) -> Result<usize, String> {
+        let key = (bare(child).to_owned(), bare(parent).to_owned());
+        if let Some(index) = self.known.get(&key) {
+            let edge = &mut self.edges[*index];
+            let step = edge.pose.inv_mul(&pose);
+            edge.moves |= step.translation.vector.norm().max(step.rotation.angle()) > LEAST_MOTION;
+            edge.pose = pose;
+            edge.poses += 1;
+            return Ok(*index);
+        }
+        if self.edges.len() == MOST_FRAMES {
+            return Err(format!("more than {MOST_FRAMES} transforms between frames"));
+        }
+        let (child, parent) = key.clone();
+        self.edges.push(Edge { parent, child, pose, poses: 1, moves: false });
+        self.known.insert(key, self.edges.len() - 1);
+        Ok(self.edges.len() - 1)
+    }
+
+    /// Sets a transform back to an earlier pose.
+    pub(super) fn rewind(&mut self, index: usize, pose: Isometry3<f64>) {
+        self.edges[index].pose = pose;
+    }
+
+    pub(super) fn edge(&self, index: usize) -> &Edge {
+        &self.edges[index]
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.edges.is_empty()
+    }
+
+    /// The names of all frames, in order.
+    pub(super) fn names(&self) -> Vec<&str> {
+        let mut names: Vec<&str> =
+            self.edges.iter().flat_map(|edge| [&edge.parent[..], &edge.child[..]]).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// The edges from a frame up to its root, the nearest first. Of two parents, one in which robots are located is
+    /// taken.
+    ///
+    /// # Errors
+    ///
+    /// When the frames form a circle.
+    pub(super) fn above(&self, frame: &str) -> Result<Vec<usize>, String> {
+        let (mut above, mut at) = (Vec::new(), bare(frame));
+        loop {
+            let to = |index: &usize| self.edges[*index].child == at;
+            let Some(edge) = (0..self.edges.len()).filter(to).max_by_key(|index| {
+                let edge = &self.edges[*index];
+                (is_odom(&edge.parent), !is_world(&edge.parent), usize::MAX - index)
+            }) else {
+                return Ok(above);
+            };
+            if above.contains(&edge) {
+                return Err(format!("the frames form a circle: {} is above itself", self.edges[edge].child));
+            }
+            above.push(edge);
+            at = &self.edges[edge].parent;
+        }
+    }
+
+    /// The shortest way from one frame to another that does not lead through the frames of the world.
+    pub(super) fn way(&self, from: &str, to: &str, world: &[&str]) -> Option<Way> {
+        let (from, to) = (bare(from), bare(to));
+        let mut ways: BTreeMap<&str, Way> = BTreeMap::from([(from, Way::new())]);
+        let mut open = VecDeque::from([from]);
+        while let Some(at) = open.pop_front() {
+            if at == to {
+                return ways.remove(at);
+            }
+            for (index, edge) in self.edges.iter().enumerate() {
+                let (next, is_down) = match () {
+                    () if edge.parent == at => (&edge.child[..], true),
+                    () if edge.child == at => (&edge.parent[..], false),
+                    () => continue,
+                };
+                if !ways.contains_key(next) && !world.contains(&next) {
+                    let mut way = ways[at].clone();
+                    way.push((index, is_down));
+                    ways.insert(next, way);
+                    open.push_back(next);
+                }
+            }
+        }
+        None
+    }
+
+    /// The pose of the frame at the end of a way in the frame at its begin.
+    pub(super) fn along(&self, way: &Way) -> Isometry3<f64> {
+        way.iter().fold(Isometry3::identity(), |pose, (index, is_down)| {
+            let edge = self.edges[*index].pose;
+            if *is_down { pose * edge } else { pose * edge.inverse() }
+        })
+    }
+}
+
+/// Whether this is the name of a frame of odometry (REP-105).
+pub(super) fn is_odom(frame: &str) -> bool {
+    frame.rsplit('/').next().is_some_and(|name| name.starts_with("odom"))
+}
+
+/// Whether this is the name of a frame in which the world stands still.
+pub(super) fn is_world(frame: &str) -> bool {
+    matches!(frame.rsplit('/').next(), Some("map" | "world" | "earth"))
+}
+
+/// A pose without height, roll and pitch.
+pub(super) fn flat(pose: &Isometry3<f64>) -> Isometry2<f64> {
+    let ahead = pose.rotation * Vector3::x();
+    // A robot that stands on end has no heading.
+    let length = (ahead.x * ahead.x + ahead.y * ahead.y).sqrt();
+    let (cos, sin) = if length > 1e-9 { (ahead.x / length, ahead.y / length) } else { (1.0, 0.0) };
+    let rotation = UnitComplex::from_cos_sin_unchecked(cos, sin);
+    Isometry2::from_parts([pose.translation.x, pose.translation.y].into(), rotation)
+}
+
+/// How a laser is mounted: its pose, and whether it is upside down.
+///
+/// # Errors
+///
+/// When it is tilted.
+pub(super) fn mounted(pose: &Isometry3<f64>) -> Result<(Isometry2<f64>, bool), String> {
+    let up = (pose.rotation * Vector3::z()).z;
+    if up.abs() < LEAST_UPRIGHT {
+        return Err(format!("is tilted by {:.0}° and does not scan a plane", up.abs().acos().to_degrees()));
+    }
+    Ok((flat(pose), up < 0.0))
+}

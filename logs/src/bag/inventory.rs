@@ -1,0 +1,149 @@
+//! The first pass over a bag: which topics and frames there are.
+
+use super::files::BagFile;
+use super::frames::Frames;
+use super::message::{Message, Topic};
+use super::messages::Messages;
+use crate::choice::bare;
+use crate::error::LogError;
+use crate::ros::{self, Header, Odometry, Transforms};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What the messages of a topic are to us.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    Scans,
+    Odometry,
+    Transforms,
+}
+
+impl Kind {
+    /// The kind of a topic by the type of its messages; `None` for all others.
+    pub(super) fn of(topic: &Topic) -> Option<Self> {
+        let kind = match topic.type_name.as_str() {
+            "sensor_msgs/msg/LaserScan" => Self::Scans,
+            "nav_msgs/msg/Odometry" => Self::Odometry,
+            "tf2_msgs/msg/TFMessage" => Self::Transforms,
+            _ => return None,
+        };
+        // Other topics of transforms are those of tools, or copies.
+        let is_tf = matches!(topic.name.rsplit('/').next(), Some("tf" | "tf_static"));
+        (kind != Self::Transforms || is_tf).then_some(kind)
+    }
+
+    /// The kind of a topic that can be read.
+    pub(super) fn of_readable(topic: &Topic) -> Option<Self> {
+        Self::of(topic).filter(|_| topic.encoding == "cdr")
+    }
+}
+
+/// A message of a scan up to its header.
+#[derive(Deserialize)]
+struct Stamped {
+    header: Header,
+}
+
+/// What is known of one laser: the frame of scans on a topic.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LaserTopic {
+    pub(super) topic: String,
+    pub(super) frame: String,
+    pub(super) scans: usize,
+}
+
+/// What is known of a topic of odometry.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct OdometryTopic {
+    pub(super) topic: String,
+    pub(super) odom_frame: String,
+    pub(super) child_frame: String,
+    pub(super) poses: usize,
+}
+
+/// What a bag contains.
+#[derive(Default)]
+pub(super) struct Inventory {
+    pub(super) lasers: Vec<LaserTopic>,
+    pub(super) odometry: Vec<OdometryTopic>,
+    /// With the first pose of each transform.
+    pub(super) frames: Frames,
+    /// The stamp and the time of recording of the first scan, ns.
+    pub(super) begin_ns: Option<(i64, i64)>,
+    pub(super) topics: Vec<Arc<Topic>>,
+    pub(super) notes: Vec<String>,
+}
+
+/// The most lasers, or topics of odometry.
+const MOST_SOURCES: usize = 64;
+
+impl Inventory {
+    pub(super) fn of(files: &[BagFile]) -> Result<Self, LogError> {
+        let filter = Arc::new(|topic: &Topic| Kind::of_readable(topic).is_some());
+        let mut messages = Messages::new(files, filter);
+        let mut inventory = Self::default();
+        let mut first = BTreeMap::new();
+        while let Some(message) = messages.next_message()? {
+            let counted = match Kind::of(&message.topic) {
+                Some(Kind::Scans) => inventory.count_scan(&message),
+                Some(Kind::Odometry) => inventory.count_odometry(&message),
+                Some(Kind::Transforms) => inventory.count_transforms(&message, &mut first),
+                None => Ok(()),
+            };
+            counted.map_err(|what| message.error(what))?;
+        }
+        for (index, pose) in first {
+            inventory.frames.rewind(index, pose);
+        }
+        inventory.topics = messages.topics;
+        inventory.topics.sort();
+        inventory.topics.dedup();
+        inventory.notes = messages.notes;
+        Ok(inventory)
+    }
+
+    fn count_scan(&mut self, message: &Message) -> Result<(), String> {
+        let Stamped { header } = ros::decoded(&message.data)?;
+        self.begin_ns.get_or_insert((header.stamp.ns(), message.log_ns));
+        let (topic, frame) = (&message.topic.name, bare(&header.frame_id));
+        let is_full = self.lasers.len() == MOST_SOURCES;
+        match self.lasers.iter_mut().find(|laser| laser.topic == *topic && laser.frame == frame) {
+            Some(laser) => laser.scans += 1,
+            None if is_full => return Err(format!("more than {MOST_SOURCES} lasers")),
+            None => self.lasers.push(LaserTopic { topic: topic.clone(), frame: frame.to_owned(), scans: 1 }),
+        }
+        Ok(())
+    }
+
+    fn count_odometry(&mut self, message: &Message) -> Result<(), String> {
+        let Odometry { header, child_frame_id, .. } = ros::decoded(&message.data)?;
+        let topic = &message.topic.name;
+        let is_full = self.odometry.len() == MOST_SOURCES;
+        match self.odometry.iter_mut().find(|odometry| odometry.topic == *topic) {
+            Some(odometry) => odometry.poses += 1,
+            None if is_full => return Err(format!("more than {MOST_SOURCES} topics of odometry")),
+            None => self.odometry.push(OdometryTopic {
+                topic: topic.clone(),
+                odom_frame: bare(&header.frame_id).to_owned(),
+                child_frame: bare(&child_frame_id).to_owned(),
+                poses: 1,
+            }),
+        }
+        Ok(())
+    }
+
+    fn count_transforms(&mut self, message: &Message, first: &mut First) -> Result<(), String> {
+        let Transforms { transforms } = ros::decoded(&message.data)?;
+        for transform in transforms {
+            let (parent, child) = (&transform.header.frame_id, &transform.child_frame_id);
+            if let Some(pose) = transform.transform.isometry() {
+                first.entry(self.frames.set(parent, child, pose)?).or_insert(pose);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The first pose of each transform.
+type First = BTreeMap<usize, nalgebra::Isometry3<f64>>;

@@ -1,0 +1,274 @@
+//! MCAP files (<https://mcap.dev/spec>): records, each with a code and a length, some of them in compressed chunks.
+//!
+//! The crate `mcap` has readers as well, but version 0.25 trusts the lengths within chunks: a hostile file makes it panic or
+//! allocate gigabytes.
+
+use super::chunk::Chunk;
+use super::fields::Fields;
+use super::message::{Filter, Message, MessageSource, Topic};
+use crate::bytes::{Bytes, Input};
+use crate::error::LogError;
+use std::collections::BTreeMap;
+use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
+use std::sync::Arc;
+
+/// The first bytes of a file.
+pub(super) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
+/// The codes of records.
+const FOOTER: u8 = 2;
+const SCHEMA: u8 = 3;
+const CHANNEL: u8 = 4;
+const MESSAGE: u8 = 5;
+const CHUNK: u8 = 6;
+const DATA_END: u8 = 15;
+/// The bytes of a message before its data.
+const MESSAGE_HEADER: usize = 22;
+/// The most bytes of a record that is read as a whole.
+const MOST_RECORD: u64 = 64 << 20;
+/// A record that claims more bytes is no record that was cut off, but nonsense.
+const MOST_CLAIMED: u64 = 1 << 40;
+
+/// A channel: a topic in one file.
+struct Channel {
+    topic: Arc<Topic>,
+    is_wanted: bool,
+    messages: u64,
+}
+
+/// An MCAP file.
+pub(super) struct McapFile {
+    input: BufReader<Box<dyn Input>>,
+    file: Arc<str>,
+    size: u64,
+    /// The offset of the last record outside of chunks, and of the next.
+    record: u64,
+    next: u64,
+    chunk: Option<Chunk>,
+    schemas: BTreeMap<u16, String>,
+    channels: BTreeMap<u16, Channel>,
+    filter: Filter,
+    /// Why the file ends too early.
+    missing: Option<String>,
+    is_over: bool,
+}
+
+/// What stops the reading of a record.
+enum Stop {
+    /// The file ends within it.
+    Cut,
+    Invalid(String),
+}
+
+impl From<io::Error> for Stop {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            ErrorKind::UnexpectedEof => Self::Cut,
+            _ => Self::Invalid(error.to_string()),
+        }
+    }
+}
+
+impl McapFile {
+    pub(super) fn open(file: &Arc<str>, bytes: &Bytes, filter: Filter) -> Result<Self, LogError> {
+        let io = |source| LogError::Io { file: file.to_string(), source };
+        let mut input = BufReader::with_capacity(1 << 16, bytes.open().map_err(io)?);
+        let size = input.seek(SeekFrom::End(0)).map_err(io)?;
+        let start = MAGIC.len() as u64;
+        input.seek(SeekFrom::Start(start)).map_err(io)?;
+        Ok(Self {
+            input,
+            file: file.clone(),
+            size,
+            record: start,
+            next: start,
+            chunk: None,
+            schemas: BTreeMap::new(),
+            channels: BTreeMap::new(),
+            filter,
+            missing: None,
+            is_over: false,
+        })
+    }
+
+    /// Reads one record. Gives its message, if it is one that is wanted.
+    fn step(&mut self) -> Result<Option<Message>, Stop> {
+        if let Some(chunk) = self.chunk.take() {
+            let is_cut = chunk.is_cut;
+            return self.step_in_chunk(chunk).map_err(|stop| match stop {
+                _ if is_cut => Stop::Cut,
+                Stop::Cut => Stop::Invalid("the records of a chunk end too early".to_owned()),
+                invalid => invalid,
+            });
+        }
+        self.record = self.next;
+        let mut start = [0; 9];
+        self.input.read_exact(&mut start)?;
+        let [code, length @ ..] = start;
+        let length = u64::from_le_bytes(length);
+        if length > MOST_CLAIMED {
+            return Err(Stop::Invalid(format!("a record (code {code}) of {length} bytes")));
+        }
+        self.next = self.record + 9 + length;
+        match code {
+            // Files that were not closed end in zeros on some file systems.
+            0 => Err(Stop::Cut),
+            FOOTER | DATA_END => {
+                self.is_over = true;
+                Ok(None)
+            }
+            CHUNK => {
+                let available = self.size - (self.record + 9).min(self.size);
+                let chunk = Chunk::read(&mut self.input, length, available);
+                self.chunk = Some(chunk.map_err(|what| match length > available {
+                    true => Stop::Cut,
+                    false => Stop::Invalid(what),
+                })?);
+                Ok(None)
+            }
+            _ if self.next > self.size => Err(Stop::Cut),
+            SCHEMA | CHANNEL => {
+                let bytes = self.whole(length)?;
+                self.define(code, &bytes)?;
+                Ok(None)
+            }
+            MESSAGE => {
+                let mut header = [0; MESSAGE_HEADER];
+                let Some(data) = length.checked_sub(MESSAGE_HEADER as u64) else {
+                    return Err(Stop::Invalid(format!("a message of {length} bytes")));
+                };
+                self.input.read_exact(&mut header)?;
+                match self.message(&header)? {
+                    Some(mut message) => {
+                        message.data = self.whole(data)?;
+                        Ok(Some(message))
+                    }
+                    None => self.skip(data),
+                }
+            }
+            _ => self.skip(length),
+        }
+    }
+
+    fn step_in_chunk(&mut self, mut chunk: Chunk) -> Result<Option<Message>, Stop> {
+        let Some((code, length)) = chunk.next_record()? else {
+            return if chunk.is_cut { Err(Stop::Cut) } else { Ok(None) };
+        };
+        let mut found = None;
+        match code {
+            SCHEMA | CHANNEL => {
+                let mut bytes = vec![0; checked(length)?];
+                chunk.read_exact(&mut bytes)?;
+                self.define(code, &bytes)?;
+            }
+            MESSAGE => {
+                let mut header = [0; MESSAGE_HEADER];
+                let Some(data) = length.checked_sub(MESSAGE_HEADER as u64) else {
+                    return Err(Stop::Invalid(format!("a message of {length} bytes")));
+                };
+                chunk.read_exact(&mut header)?;
+                match self.message(&header)? {
+                    Some(mut message) => {
+                        message.data = vec![0; checked(data)?];
+                        chunk.read_exact(&mut message.data)?;
+                        found = Some(message);
+                    }
+                    None => chunk.skip(data)?,
+                }
+            }
+            _ => chunk.skip(length)?,
+        }
+        self.chunk = Some(chunk);
+        Ok(found)
+    }
+
+    /// The next bytes outside of chunks.
+    fn whole(&mut self, length: u64) -> Result<Vec<u8>, Stop> {
+        let mut bytes = vec![0; checked(length)?];
+        self.input.read_exact(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    fn skip(&mut self, length: u64) -> Result<Option<Message>, Stop> {
+        self.input.seek_relative(length as i64)?;
+        Ok(None)
+    }
+
+    /// A schema or a channel.
+    fn define(&mut self, code: u8, bytes: &[u8]) -> Result<(), Stop> {
+        let mut fields = Fields::new(bytes);
+        let mut read = || {
+            let id = fields.u16()?;
+            if code == SCHEMA {
+                self.schemas.insert(id, fields.text()?);
+                return Some(());
+            }
+            // A channel without a schema has no type.
+            let type_name = self.schemas.get(&fields.u16()?).cloned().unwrap_or_default();
+            let topic = Topic { name: fields.text()?, type_name, encoding: fields.text()? };
+            // Channels are defined again in later chunks.
+            if self.channels.get(&id).is_none_or(|known| *known.topic != topic) {
+                let is_wanted = (self.filter)(&topic);
+                self.channels.insert(id, Channel { topic: Arc::new(topic), is_wanted, messages: 0 });
+            }
+            Some(())
+        };
+        let what = if code == SCHEMA { "a schema" } else { "a channel" };
+        read().ok_or_else(|| Stop::Invalid(format!("{what} ends too early, or its name is no text")))
+    }
+
+    /// The message that begins with this header, if it is wanted; its data is to be read.
+    fn message(&mut self, header: &[u8]) -> Result<Option<Message>, Stop> {
+        let mut fields = Fields::new(header);
+        let id = fields.u16().unwrap_or_default();
+        fields.skip(4); // the sequence number
+        let log_ns = fields.u64().unwrap_or_default();
+        let Some(channel) = self.channels.get_mut(&id) else {
+            return Err(Stop::Invalid(format!("a message of channel {id}, which is not defined")));
+        };
+        channel.messages += 1;
+        Ok(channel.is_wanted.then(|| Message {
+            topic: channel.topic.clone(),
+            log_ns: i64::try_from(log_ns).unwrap_or(i64::MAX),
+            data: Vec::new(),
+            file: self.file.clone(),
+            number: channel.messages,
+        }))
+    }
+
+    fn cut(&mut self) {
+        self.is_over = true;
+        self.missing = Some(format!(
+            "{} has no end, since its recorder was stopped: what is whole before byte {} was read",
+            self.file, self.record
+        ));
+    }
+}
+
+/// The length of a record that is read as a whole.
+fn checked(length: u64) -> Result<usize, Stop> {
+    if length > MOST_RECORD {
+        return Err(Stop::Invalid(format!("a record of {length} bytes; at most {MOST_RECORD} are read")));
+    }
+    Ok(length as usize)
+}
+
+impl MessageSource for McapFile {
+    fn next_message(&mut self) -> Result<Option<Message>, LogError> {
+        while !self.is_over {
+            match self.step() {
+                Ok(Some(message)) => return Ok(Some(message)),
+                Ok(None) => {}
+                Err(Stop::Cut) => self.cut(),
+                Err(Stop::Invalid(what)) => {
+                    self.is_over = true;
+                    return Err(LogError::Byte { file: self.file.to_string(), byte: self.record, what });
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    fn report(&self) -> (Vec<Arc<Topic>>, Option<String>) {
+        (self.channels.values().map(|channel| channel.topic.clone()).collect(), self.missing.clone())
+    }
+}

@@ -1,0 +1,64 @@
+//! The messages of a bag, file by file.
+
+use super::files::{BagFile, Format, ZSTD};
+use super::mcap::McapFile;
+use super::message::{Filter, Message, MessageSource, Topic};
+use super::sqlite::SqliteFile;
+use crate::error::LogError;
+use std::io::Read;
+use std::sync::Arc;
+use std::vec::IntoIter;
+
+/// The most bytes of a message, unpacked.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// The messages of a bag, in the order of its files.
+pub(crate) struct Messages {
+    files: IntoIter<BagFile>,
+    current: Option<Box<dyn MessageSource>>,
+    filter: Filter,
+    /// All topics, also those that are not wanted.
+    pub(crate) topics: Vec<Arc<Topic>>,
+    pub(crate) notes: Vec<String>,
+}
+
+impl Messages {
+    pub(crate) fn new(files: &[BagFile], filter: Filter) -> Self {
+        let files = files.to_vec().into_iter();
+        Self { files, current: None, filter, topics: Vec::new(), notes: Vec::new() }
+    }
+
+    pub(crate) fn next_message(&mut self) -> Result<Option<Message>, LogError> {
+        loop {
+            let Some(current) = &mut self.current else {
+                let Some(file) = self.files.next() else { return Ok(None) };
+                let filter = self.filter.clone();
+                self.current = Some(match file.format {
+                    Format::Mcap => Box::new(McapFile::open(&file.name, &file.bytes, filter)?),
+                    Format::Sqlite => Box::new(SqliteFile::open(&file.name, &file.bytes, filter)?),
+                });
+                continue;
+            };
+            if let Some(mut message) = current.next_message()? {
+                if message.data.starts_with(&ZSTD) {
+                    message.data = unpacked(&message)?;
+                }
+                return Ok(Some(message));
+            }
+            let (topics, note) = current.report();
+            self.topics.extend(topics);
+            self.notes.extend(note);
+            self.current = None;
+        }
+    }
+}
+
+/// The data of a message that was compressed on its own (rosbag2's compression mode `message`).
+fn unpacked(message: &Message) -> Result<Vec<u8>, LogError> {
+    let mut data = Vec::new();
+    let mut unpack = || {
+        zstd::stream::read::Decoder::with_buffer(&message.data[..])?.take(MOST_BYTES).read_to_end(&mut data)
+    };
+    unpack().map_err(|error| message.error(error.to_string()))?;
+    Ok(data)
+}

@@ -1,0 +1,207 @@
+//! The second pass over a bag, and all later ones: reading by reading.
+
+use super::frames::{Frames, flat, mounted};
+use super::inventory::Kind;
+use super::message::Message;
+use super::messages::Messages;
+use super::plan::{Laser, Motion, Plan};
+use super::scan;
+use crate::choice::bare;
+use crate::error::LogError;
+use crate::odometry::Odometry;
+use crate::ros::{self, Header, LaserScan, Transforms};
+use interfaces::{LaserReading, Scan};
+use nalgebra::Isometry2;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// Scans that wait for a later pose, or for an earlier scan of another laser; more are not kept.
+const MOST_WAITING: usize = 256;
+/// A scan of another laser arrives at most this much later, s.
+const DISORDER_S: f64 = 0.5;
+/// Between scans that are farther apart than this, the clock was set, s.
+const JUMP_S: f64 = 60.0;
+
+/// Which times count.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Clock {
+    /// The stamps of the messages, since this time, ns.
+    Stamps(i64),
+    /// The times at which the messages were recorded, since this time, ns.
+    Recording(i64),
+}
+
+impl Clock {
+    fn time_s(self, header: &Header, message: &Message) -> f64 {
+        let (time_ns, origin_ns) = match self {
+            Self::Stamps(origin_ns) => (header.stamp.ns(), origin_ns),
+            Self::Recording(origin_ns) => (message.log_ns, origin_ns),
+        };
+        time_ns.saturating_sub(origin_ns) as f64 * 1e-9
+    }
+}
+
+/// What a pass found.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Counts {
+    /// Scans that are none, and what is wrong with the first.
+    pub(super) invalid_scans: usize,
+    pub(super) first_invalid: Option<String>,
+    pub(super) poses: usize,
+    pub(super) invalid_poses: usize,
+}
+
+/// A scan that waits.
+struct Waiting {
+    /// The time of its last beam, since the begin of the bag, s.
+    time_s: f64,
+    laser: usize,
+    mount: Isometry2<f64>,
+    scan: Scan,
+}
+
+/// The readings of a bag, with times as the bag has them, since its first scan.
+pub(super) struct RawReadings {
+    messages: Messages,
+    plan: Arc<Plan>,
+    clock: Clock,
+    odometry: Odometry,
+    /// The time of the last pose, s.
+    last_pose_s: Option<f64>,
+    frames: Frames,
+    waiting: VecDeque<Waiting>,
+    /// The number of scans before the clock was set: they do not wait any longer.
+    overdue: usize,
+    newest_s: f64,
+    is_over: bool,
+    pub(super) counts: Counts,
+}
+
+impl RawReadings {
+    pub(super) fn new(messages: Messages, plan: &Arc<Plan>, clock: Clock) -> Self {
+        Self {
+            messages,
+            plan: plan.clone(),
+            clock,
+            odometry: Odometry::default(),
+            last_pose_s: None,
+            frames: plan.frames.clone(),
+            waiting: VecDeque::new(),
+            overdue: 0,
+            newest_s: f64::NEG_INFINITY,
+            is_over: false,
+            counts: Counts::default(),
+        }
+    }
+
+    /// The next reading, `None` at the end.
+    pub(super) fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError> {
+        loop {
+            if self.is_ripe() {
+                return Ok(self.waiting.pop_front().map(|scan| self.reading(scan)));
+            }
+            if self.is_over {
+                return Ok(None);
+            }
+            let Some(message) = self.messages.next_message()? else {
+                self.is_over = true;
+                continue;
+            };
+            let taken = match Kind::of(&message.topic) {
+                Some(Kind::Scans) => self.take_scan(&message),
+                Some(Kind::Odometry) => self.take_odometry(&message),
+                Some(Kind::Transforms) => self.take_transforms(&message),
+                None => Ok(()),
+            };
+            taken.map_err(|what| message.error(what))?;
+        }
+    }
+
+    /// Whether the first scan that waits has a pose, and no earlier scan can come.
+    fn is_ripe(&self) -> bool {
+        let Some(first) = self.waiting.front() else { return false };
+        if self.is_over || self.overdue > 0 || self.waiting.len() > MOST_WAITING {
+            return true;
+        }
+        let has_come = |laser| self.waiting.iter().any(|scan| scan.laser == laser);
+        let is_first = self.newest_s > first.time_s + DISORDER_S || (0..self.plan.lasers.len()).all(has_come);
+        is_first && !self.odometry.must_wait(first.time_s)
+    }
+
+    fn reading(&mut self, Waiting { time_s, mount, scan, .. }: Waiting) -> LaserReading {
+        self.overdue = self.overdue.saturating_sub(1);
+        let (pose, twist) = self.odometry.at(time_s);
+        let velocities = match scan.sweep_s > 0.0 {
+            true => self.odometry.during(time_s - scan.sweep_s, time_s),
+            false => Vec::new(),
+        };
+        LaserReading { time_s, pose, twist, velocities, mount, scan }
+    }
+
+    fn take_scan(&mut self, message: &Message) -> Result<(), String> {
+        let found: LaserScan = ros::decoded(&message.data)?;
+        let (frame, topic) = (bare(&found.header.frame_id), &message.topic.name);
+        let is_this = |laser: &Laser| laser.frame == frame && laser.topic == *topic;
+        let Some(laser) = self.plan.lasers.iter().position(is_this) else { return Ok(()) };
+        let begin_s = self.clock.time_s(&found.header, message);
+        let mounted = mounted(&self.frames.along(&self.plan.lasers[laser].way));
+        let scan =
+            mounted.and_then(|(mount, is_upside_down)| Ok((mount, scan::converted(found, is_upside_down)?)));
+        let (mount, scan) = match scan {
+            Ok(scan) => scan,
+            Err(what) => {
+                self.counts.invalid_scans += 1;
+                self.counts.first_invalid.get_or_insert_with(|| message.error(what).to_string());
+                return Ok(());
+            }
+        };
+        // The stamp of a scan is the time of its first beam.
+        let time_s = begin_s + scan.sweep_s;
+        if self.waiting.back().is_some_and(|last| (last.time_s - time_s).abs() > JUMP_S) {
+            self.overdue = self.waiting.len();
+            self.newest_s = time_s;
+        }
+        let is_earlier = |scan: &Waiting| scan.time_s <= time_s;
+        let at = self.waiting.iter().skip(self.overdue).take_while(|scan| is_earlier(scan)).count();
+        self.waiting.insert(self.overdue + at, Waiting { time_s, laser, mount, scan });
+        self.newest_s = self.newest_s.max(time_s);
+        Ok(())
+    }
+
+    fn take_odometry(&mut self, message: &Message) -> Result<(), String> {
+        let found: ros::Odometry = ros::decoded(&message.data)?;
+        self.take_pose(&found.header, message, &found.pose.pose);
+        Ok(())
+    }
+
+    fn take_transforms(&mut self, message: &Message) -> Result<(), String> {
+        let Transforms { transforms } = ros::decoded(&message.data)?;
+        for found in transforms {
+            let Some(pose) = found.transform.isometry() else {
+                self.counts.invalid_poses += 1;
+                continue;
+            };
+            let edge = self.frames.set(&found.header.frame_id, &found.child_frame_id, pose)?;
+            if matches!(self.plan.motion, Motion::Transform(index) if index == edge) {
+                self.take_pose(&found.header, message, &found.transform);
+            }
+        }
+        Ok(())
+    }
+
+    fn take_pose(&mut self, header: &Header, message: &Message, pose: &ros::Pose) {
+        let Some(pose) = pose.isometry() else {
+            self.counts.invalid_poses += 1;
+            return;
+        };
+        let time_s = self.clock.time_s(header, message);
+        // Some estimators give the same pose again.
+        if self.last_pose_s == Some(time_s) {
+            return;
+        }
+        self.last_pose_s = Some(time_s);
+        self.newest_s = self.newest_s.max(time_s);
+        self.counts.poses += 1;
+        self.odometry.add(time_s, flat(&(pose * self.frames.along(&self.plan.to_base))));
+    }
+}

@@ -1,0 +1,129 @@
+//! `sensor_msgs/LaserScan` as a scan of ours.
+
+use crate::ros::LaserScan;
+use interfaces::Scan;
+use std::f64::consts::TAU;
+
+/// The most beams of a scan: a message that claims more is invalid.
+const MOST_BEAMS: usize = 100_000;
+/// A scan never takes longer than this, s.
+const LONGEST_SWEEP_S: f64 = 10.0;
+
+/// The scan of a message. `is_upside_down`: the laser hangs with its head down, so that its beams turn clockwise.
+///
+/// As in ROS, the beams are measured one after the other in the time `time_increment`, and all at once if that is 0.
+///
+/// # Errors
+///
+/// When the fields are no scan.
+pub(super) fn converted(message: LaserScan, is_upside_down: bool) -> Result<Scan, String> {
+    let beams = message.ranges.len();
+    if !(1..=MOST_BEAMS).contains(&beams) {
+        return Err(format!("{beams} ranges; a scan has 1 to {MOST_BEAMS}"));
+    }
+    let side = if is_upside_down { -1.0 } else { 1.0 };
+    let mut scan = Scan {
+        angle_min_rad: side * f64::from(message.angle_min),
+        angle_increment_rad: side * increment_rad(&message),
+        range_min_m: f64::from(message.range_min),
+        range_max_m: f64::from(message.range_max),
+        sweep_s: f64::from(message.time_increment) * (beams - 1) as f64,
+        ranges_m: message.ranges,
+    };
+    scan.check().map_err(|error| error.to_string())?;
+    if scan.sweep_s > LONGEST_SWEEP_S {
+        return Err(format!("a scan of {} s", scan.sweep_s));
+    }
+    for range_m in &mut scan.ranges_m {
+        *range_m = meaning(*range_m, message.range_min, message.range_max);
+    }
+    // The order is that of the measurement where this takes time; otherwise, it is counter-clockwise.
+    if scan.angle_increment_rad < 0.0 && scan.sweep_s == 0.0 {
+        scan.angle_min_rad = scan.angle_rad(beams - 1);
+        scan.angle_increment_rad = -scan.angle_increment_rad;
+        scan.ranges_m.reverse();
+    }
+    Ok(scan)
+}
+
+/// The angle between beams. Some drivers leave it at 0, or name the one of another number of beams: then it follows from
+/// the first and the last angle.
+fn increment_rad(message: &LaserScan) -> f64 {
+    let steps = (message.ranges.len().max(2) - 1) as f64;
+    let named = f64::from(message.angle_increment);
+    let is_turn = named != 0.0 && named.abs() * steps <= TAU + 1e-3;
+    if is_turn { named } else { f64::from(message.angle_max - message.angle_min) / steps }
+}
+
+/// A range with the meaning of REP-117. Drivers older than that report a beam without a return as a range of at least the
+/// maximum.
+fn meaning(range_m: f32, min_m: f32, max_m: f32) -> f32 {
+    if range_m.is_finite() && (range_m < min_m || range_m <= 0.0) {
+        f32::NAN
+    } else if range_m > max_m {
+        f32::INFINITY
+    } else {
+        range_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ros::Header;
+
+    fn message(angle_min: f32, angle_increment: f32, ranges: &[f32]) -> LaserScan {
+        LaserScan {
+            header: Header::default(),
+            angle_min,
+            angle_max: angle_min + angle_increment * (ranges.len() - 1) as f32,
+            angle_increment,
+            time_increment: 0.0,
+            scan_time: 0.1,
+            range_min: 0.1,
+            range_max: 10.0,
+            ranges: ranges.to_vec(),
+            intensities: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn ranges_out_of_the_limits_have_a_meaning() {
+        let ranges = [0.05, 0.1, 10.0, 10.5, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+        let scan = converted(message(0.0, 0.1, &ranges), false).unwrap();
+        let expected = [f32::NAN, 0.1, 10.0, f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+        assert_eq!(format!("{:?}", scan.ranges_m), format!("{expected:?}"));
+        assert_eq!(scan.sweep_s, 0.0);
+    }
+
+    #[test]
+    fn beams_turn_counter_clockwise_where_they_are_measured_at_once() {
+        let clockwise = converted(message(0.5, -0.5, &[1.0, 2.0, 3.0]), false).unwrap();
+        assert_eq!((clockwise.angle_min_rad, clockwise.angle_increment_rad), (-0.5, 0.5));
+        assert_eq!(clockwise.ranges_m, [3.0, 2.0, 1.0]);
+        // A laser upside down: its left is our right.
+        let hanging = converted(message(0.0, 0.5, &[1.0, 2.0]), true).unwrap();
+        assert_eq!((hanging.angle_min_rad, hanging.angle_increment_rad), (-0.5, 0.5));
+        assert_eq!(hanging.ranges_m, [2.0, 1.0]);
+        let sweeping = LaserScan { time_increment: 0.01, ..message(0.5, -0.5, &[1.0, 2.0, 3.0]) };
+        let sweeping = converted(sweeping, false).unwrap();
+        assert_eq!((sweeping.angle_min_rad, sweeping.angle_increment_rad), (0.5, -0.5));
+        assert_eq!(sweeping.ranges_m, [1.0, 2.0, 3.0]);
+        assert!((sweeping.sweep_s - 0.02).abs() < 1e-9);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let good = message(0.0, 0.1, &[1.0, 2.0]);
+        let refused = |message: LaserScan| converted(message, false).unwrap_err();
+        assert_eq!(
+            refused(LaserScan { ranges: Vec::new(), ..good.clone() }),
+            "0 ranges; a scan has 1 to 100000"
+        );
+        let swapped = LaserScan { range_min: 10.0, range_max: 0.1, ..good.clone() };
+        assert!(refused(swapped).starts_with("range limits must hold"));
+        assert!(refused(LaserScan { angle_min: f32::NAN, ..good.clone() }).starts_with("scan angles"));
+        assert!(refused(LaserScan { time_increment: -1.0, ..good.clone() }).starts_with("the duration"));
+        assert_eq!(refused(LaserScan { time_increment: 20.0, ..good }), "a scan of 20 s");
+    }
+}

@@ -1,0 +1,5 @@
+mod builder;
+mod choices;
+mod faults;
+mod fuzz;
+mod reading;

@@ -1,0 +1,165 @@
+use super::builder::*;
+use crate::choice::TopicChoice;
+use crate::ros::LaserScan;
+use mcap::{Compression, WriteOptions};
+
+/// Twenty scans, without a pose.
+fn standing() -> Builder {
+    let mut bag = Builder::default();
+    for step in 0..20 {
+        let time_s = f64::from(step) * 0.1;
+        bag.scan("/scan", time_s, &scan(time_s, "laser"));
+    }
+    bag
+}
+
+fn refused(bytes: &[u8]) -> String {
+    open(bytes, &TopicChoice::default()).expect_err("the bag should be refused").to_string()
+}
+
+/// The offset of the first record with a code, outside of chunks.
+fn record(bytes: &[u8], code: u8) -> usize {
+    let mut at = 8;
+    while bytes[at] != code {
+        at += 9 + u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+    }
+    at
+}
+
+#[test]
+fn what_is_whole_of_a_file_without_its_end_is_read() {
+    for options in [plain(), compressed(Compression::Lz4), WriteOptions::new().use_chunks(false)] {
+        let bytes = standing().mcap(options);
+        let data_end = record(&bytes, 15);
+        let bag = open(&bytes[..data_end], &TopicChoice::default()).unwrap();
+        assert_eq!(readings(&bag).len(), 20);
+        let note = format!(
+            "test has no end, since its recorder was stopped: what is whole before byte {data_end} was read"
+        );
+        assert_eq!(bag.summary().notes, [note]);
+        let mut zeros = bytes[..data_end].to_vec();
+        zeros.resize(data_end + 4096, 0);
+        assert_eq!(open(&zeros, &TopicChoice::default()).unwrap().summary().scans, 20);
+    }
+    let bytes = standing().mcap(plain());
+    let chunk = record(&bytes, 6);
+    let bag = open(&bytes[..chunk + 1500], &TopicChoice::default()).unwrap();
+    let scans = readings(&bag).len();
+    assert!((5..20).contains(&scans), "{scans} scans");
+}
+
+#[test]
+fn damaged_records_are_named_by_their_offset() {
+    let bytes = standing().mcap(plain());
+    let chunk = record(&bytes, 6);
+    let damaged = |at: usize, to: &[u8]| {
+        let mut bytes = bytes.clone();
+        bytes[at..at + to.len()].copy_from_slice(to);
+        refused(&bytes)
+    };
+    let expected = format!("test: byte {chunk}: a record (code 6) of 1152921504606846976 bytes");
+    assert_eq!(damaged(chunk + 1, &(1_u64 << 60).to_le_bytes()), expected);
+    let unpacked = damaged(chunk + 9 + 16, &(5_u64 << 30).to_le_bytes());
+    let expected =
+        format!("test: byte {chunk}: a chunk of 5368709120 bytes, unpacked; at most 1073741824 are read");
+    assert_eq!(unpacked, expected);
+    let crc = damaged(chunk + 9 + 24, &1_u32.to_le_bytes());
+    assert_eq!(crc, format!("test: byte {chunk}: the checksum of the chunk is wrong"));
+    let records = chunk + 9 + 40;
+    let long = damaged(records + 1, &(1_u64 << 40).to_le_bytes());
+    assert_eq!(long, format!("test: byte {chunk}: a record is longer than its chunk"));
+    let packed = damaged(chunk + 9 + 32, &u64::MAX.to_le_bytes());
+    assert!(packed.starts_with(&format!("test: byte {chunk}: the records of a chunk have 1844")), "{packed}");
+}
+
+#[test]
+fn a_chunk_that_grows_without_end_needs_no_memory() {
+    // A megabyte of zeros in a few bytes; the header says 20 bytes, then a gigabyte.
+    let bytes = standing().mcap(compressed(Compression::Zstd));
+    let chunk = record(&bytes, 6);
+    let bomb = zstd::encode_all(&vec![5_u8; 64 << 20][..], 0).unwrap();
+    for claimed in [20_u64, 1 << 30] {
+        let mut file = bytes[..chunk].to_vec();
+        file.push(6);
+        file.extend((16 + 8 + 4 + 4 + 4 + 8 + bomb.len() as u64).to_le_bytes());
+        file.extend([0; 16]);
+        file.extend(claimed.to_le_bytes());
+        file.extend([0; 4]);
+        file.extend([4, 0, 0, 0]);
+        file.extend(b"zstd");
+        file.extend((bomb.len() as u64).to_le_bytes());
+        file.extend(&bomb);
+        assert!(refused(&file).starts_with(&format!("test: byte {chunk}: ")));
+    }
+}
+
+#[test]
+fn damaged_messages_are_named_by_their_number() {
+    let mut bag = standing();
+    bag.messages[2].3.truncate(30);
+    let error = bag.refused();
+    assert!(error.starts_with("test: message 3 of /scan: it is damaged: "), "{error}");
+    bag.messages[2].3 = vec![0, 9, 0, 0];
+    assert_eq!(bag.refused(), "test: message 3 of /scan: the encoding 0009 is not CDR");
+    // 2³² − 1 ranges.
+    let mut bag = standing();
+    let at = bag.messages[0].3.len() - 4 - 3 * 4 - 4;
+    bag.messages[0].3[at..at + 4].copy_from_slice(&u32::MAX.to_le_bytes());
+    let error = bag.refused();
+    assert!(error.starts_with("test: message 1 of /scan: it is damaged: "), "{error}");
+}
+
+#[test]
+fn scans_that_are_none_are_left_out() {
+    let swapped = |time_s| LaserScan { range_min: 10.0, range_max: 0.1, ..scan(time_s, "laser") };
+    let mut bag = standing();
+    bag.scan("/scan", 3.0, &swapped(3.0));
+    let opened = bag.open(&TopicChoice::default()).unwrap();
+    assert_eq!(opened.summary().scans, 20);
+    let note = "1 scans are invalid and left out, the first: test: message 21 of /scan: range limits must hold 0 <= range_min \
+                < range_max, finite: 10 m, 0.10000000149011612 m";
+    assert_eq!(opened.summary().notes, [note]);
+    let mut bag = Builder::default();
+    bag.scan("/scan", 3.0, &swapped(3.0));
+    assert!(bag.refused().starts_with("test: no scan is valid; the first: test: message 1 of /scan: range"));
+}
+
+#[test]
+fn poses_that_are_none_are_left_out() {
+    let mut bag = standing();
+    bag.mount().odometry("/odom", 0.0, f64::NAN, 0.0).odometry("/odom", 1.0, 1e30, 0.0);
+    let opened = bag.open(&TopicChoice::default()).unwrap();
+    assert_eq!(opened.summary().notes, ["2 poses of odometry or transforms are invalid and left out"]);
+}
+
+#[test]
+fn other_formats_are_named() {
+    let error = refused(b"#ROSBAG V2.0\n and so on");
+    assert!(error.contains("a bag of ROS 1; convert it with `rosbags-convert --src FILE.bag"), "{error}");
+    let packed = zstd::encode_all(&b"something else"[..], 0).unwrap();
+    assert_eq!(refused(&packed), "test: compressed with zstd, but what is in it is no bag");
+    // A bomb.
+    let packed = zstd::encode_all(&vec![0; 80 << 20][..], 0).unwrap();
+    let error = refused(&packed);
+    assert!(error.contains("bytes grow to"), "{error}");
+}
+
+#[test]
+fn other_databases_are_refused() {
+    let database = |sql: &str| {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        rusqlite::Connection::open(file.path()).unwrap().execute_batch(sql).unwrap();
+        refused(&std::fs::read(file.path()).unwrap())
+    };
+    let missing = database("CREATE TABLE other(a)");
+    assert_eq!(missing, "test: a database without the table `topics`: not a bag of rosbag2");
+    // Rows without end.
+    let endless = "CREATE TABLE topics(id, name, type, serialization_format); CREATE VIEW messages AS WITH RECURSIVE \
+                   n(rowid, topic_id, timestamp, data) AS (SELECT 1, 1, 1, x'00' UNION ALL SELECT rowid + 1, 1, 1, x'00' \
+                   FROM n) SELECT * FROM n";
+    assert_eq!(database(endless), "test: a database without the table `messages`: not a bag of rosbag2");
+    let unknown = "CREATE TABLE topics(id, name, type, serialization_format); CREATE TABLE messages(id INTEGER PRIMARY KEY, \
+                   topic_id, timestamp, data); INSERT INTO messages VALUES (1, 7, 0, x'00')";
+    let expected = "test: the database is damaged: row 1 of `messages`: topic 7 is not in `topics`";
+    assert_eq!(database(unknown), expected);
+}

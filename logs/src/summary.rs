@@ -1,0 +1,47 @@
+//! What a log contains.
+
+/// What a log contains.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LogSummary {
+    /// The number of readings.
+    pub scans: usize,
+    /// The time from the first to the last reading, after repair, s.
+    pub duration_s: f64,
+    /// The time of the first reading in seconds since the epoch (1970-01-01 UTC); `None` if the log does not say it.
+    pub begin_s: Option<f64>,
+    /// Where the poses of the readings come from.
+    pub pose_source: PoseSource,
+    /// The number of poses of the odometry, without those that only define a new origin.
+    pub odometry_poses: usize,
+    /// The topics of the scans in use; none in a CARMEN log.
+    pub scan_topics: Vec<String>,
+    /// What was repaired or left out, each a sentence.
+    pub notes: Vec<String>,
+}
+
+/// Where the poses of the readings come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PoseSource {
+    /// The ODOM lines of a CARMEN log.
+    OdometryLines,
+    /// The messages of this topic.
+    OdometryTopic(String),
+    /// The transforms between two frames.
+    Transforms {
+        /// The frame in which the poses are given.
+        odom_frame: String,
+        /// The frame of the robot.
+        base_frame: String,
+    },
+    /// Nothing in the log moves: the laser stands, and all poses are the same.
+    Standing,
+}
+
+/// Times before this are no times of this epoch but those of a simulation, or of a clock that was never set, s
+/// (1973-03-03).
+const LEAST_EPOCH_S: f64 = 1e8;
+
+/// A time that a log contains, if it can be a time since the epoch, s.
+pub(crate) fn since_epoch(time_s: f64) -> Option<f64> {
+    (LEAST_EPOCH_S..1e11).contains(&time_s).then_some(time_s)
+}
