@@ -26,11 +26,13 @@ enum Kind {
     Lines,
 }
 
-/// The progress of one run in simulated time, or of many trials, which may run on any thread.
+/// The progress of one run in simulated time, of one log, or of many trials, which may run on any thread.
 pub struct Progress {
     /// The position is in milliseconds of simulated time, or in trials.
     bar: ProgressBar,
     kind: Kind,
+    /// What [`Progress::step`] counts.
+    what: &'static str,
     /// The time of the next message.
     next: Mutex<Instant>,
 }
@@ -50,13 +52,23 @@ impl Progress {
         progress
     }
 
+    /// A number of scans of a log.
+    pub fn of_scans(scans: usize, is_quiet: bool) -> Self {
+        Self { what: "scans", ..Self::new(scans as u64, OF_SCANS, LINE_EVERY, is_quiet, false) }
+    }
+
     fn new(length: u64, template: &str, first: Duration, is_quiet: bool, is_raw: bool) -> Self {
         let (kind, target) = match () {
             () if is_quiet => (Kind::Silent, ProgressDrawTarget::hidden()),
             () if stderr().is_terminal() && !is_raw => (Kind::Bar, ProgressDrawTarget::stderr()),
             () => (Kind::Lines, ProgressDrawTarget::hidden()),
         };
-        Self { bar: bar(length, template, target), kind, next: Mutex::new(Instant::now() + first) }
+        Self {
+            bar: bar(length, template, target),
+            kind,
+            what: "trials",
+            next: Mutex::new(Instant::now() + first),
+        }
     }
 
     /// Whether a message is due. If it is, the time of the next message is set.
@@ -92,12 +104,12 @@ impl Progress {
         }
     }
 
-    /// Counts one more finished trial.
+    /// Counts one more finished trial or scan.
     pub fn step(&self) {
         self.bar.inc(1);
         if self.kind == Kind::Lines && self.is_due() {
             let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
-            say(stderr(), format_args!("{done} of {all} trials, {}", self.time_left()));
+            say(stderr(), format_args!("{done} of {all} {}, {}", self.what, self.time_left()));
         }
     }
 
@@ -160,6 +172,7 @@ fn milliseconds(time_s: f64) -> u64 {
 }
 
 const OF_TIME: &str = "{done:>3} % {wide_bar} {msg}, {left}";
+const OF_SCANS: &str = "{done:>3} % {wide_bar} {pos} of {len} scans, {left}";
 const OF_TRIALS: &str = "{done:>3} % {wide_bar} {pos} of {len} trials, {left}";
 
 fn bar(length: u64, template: &str, target: ProgressDrawTarget) -> ProgressBar {

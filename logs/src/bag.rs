@@ -82,6 +82,7 @@ impl Bag {
         let summary = LogSummary {
             scans: times.times_s.len(),
             duration_s: times.times_s.last().copied().unwrap_or_default(),
+            has_times: times.has_times,
             begin_s,
             pose_source: plan.pose_source.clone(),
             odometry_poses: counts.poses,

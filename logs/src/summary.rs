@@ -7,6 +7,8 @@ pub struct LogSummary {
     pub scans: usize,
     /// The time from the first to the last reading, after repair, s.
     pub duration_s: f64,
+    /// Whether the times are those of the log; `false`: they are unusable and were replaced by a count.
+    pub has_times: bool,
     /// The time of the first reading in seconds since the epoch (1970-01-01 UTC); `None` if the log does not say it.
     pub begin_s: Option<f64>,
     /// Where the poses of the readings come from.

@@ -1,10 +1,11 @@
-//! A survey of a place from the log of a robot: where the place changes, and how often.
+//! A survey of a place from the logs of a robot: where the place changes, and how often.
 //!
 //! A log is read twice:
 //!
 //! ```text
-//! first pass:   log ─▶ trajectory and extent of the place           [`FirstPass`] ─▶ [`Route`]
-//! second pass:  log ─▶ localization ─▶ mapper ─▶ changes            [`Replay`], [`FoundPoses`], [`ChangeLog`]
+//! first pass:   log ─▶ trajectory and reach                  [`FirstPass`] ─▶ [`Session`]
+//! between:      later log ─▶ its place in the first one      [`Aligner`], [`Search`]
+//! second pass:  log ─▶ found poses ─▶ mapper ─▶ changes      [`Replay`], [`FoundPoses`], [`ChangeLog`]
 //! ```
 //!
 //! The second pass is the loop of every robot, [`robot::explore`], with a source that ignores commands and a pilot that
@@ -13,23 +14,25 @@
 //!
 //! This crate knows logs, trajectories and maps. It must not know files, pictures or programs.
 
+mod alignment;
 mod change_log;
 mod extent;
-mod first_pass;
 mod masks;
 mod permanent;
 mod places;
 mod replay;
+mod session;
 mod settings;
 mod shadows;
 #[cfg(test)]
 mod tests;
 
+pub use alignment::{Aligner, Search};
 pub use change_log::ChangeLog;
-pub use first_pass::{FirstPass, Route, SurveyError};
 pub use masks::{keepout_mask, speed_mask};
 pub use permanent::permanent;
 pub use places::{Place, places};
 pub use replay::{FoundPoses, Passenger, Replay};
+pub use session::{FirstPass, Session, SurveyError, frame};
 pub use settings::{PoseMode, SurveySettings};
 pub use shadows::remove_shadows;

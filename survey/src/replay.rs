@@ -12,20 +12,23 @@ use robot::{Belief, Localization, Permission, Pilot, Posed};
 pub struct Replay<I> {
     readings: I,
     settings: SurveySettings,
+    /// What is added to the times of the log, s.
+    offset_s: f64,
     now: LaserReading,
     next: Option<LaserReading>,
     problem: Option<LogError>,
 }
 
 impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
-    /// The log from its first reading on; `None` if there is none.
+    /// The log from its first reading on, `offset_s` later than its own times; `None` if there is no reading.
     ///
     /// # Errors
     ///
     /// When the first reading cannot be read.
-    pub fn new(mut readings: I, settings: &SurveySettings) -> Result<Option<Self>, LogError> {
+    pub fn new(mut readings: I, settings: &SurveySettings, offset_s: f64) -> Result<Option<Self>, LogError> {
         let Some(now) = readings.next().transpose()? else { return Ok(None) };
-        let mut replay = Self { readings, settings: settings.clone(), now, next: None, problem: None };
+        let mut replay =
+            Self { readings, settings: settings.clone(), offset_s, now, next: None, problem: None };
         replay.read();
         Ok(Some(replay))
     }
@@ -54,7 +57,10 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> World for Replay<I> {
     type Command = ();
 
     fn sense(&mut self) -> LaserReading {
-        self.settings.filtered(self.now.clone())
+        let mut reading = self.settings.filtered(self.now.clone());
+        reading.time_s += self.offset_s;
+        reading.velocities.iter_mut().for_each(|sample| sample.time_s += self.offset_s);
+        reading
     }
 
     fn poses_are_exact(&self) -> bool {

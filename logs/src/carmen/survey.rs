@@ -55,6 +55,7 @@ impl Survey {
         let summary = LogSummary {
             scans: times_s.len(),
             duration_s,
+            has_times,
             begin_s: begin_s.filter(|_| has_times),
             pose_source,
             odometry_poses,

@@ -1,15 +1,19 @@
 //! The command line.
 
+use crate::logs_in_order::Source;
+use anyhow::ensure;
 use clap::{Parser, ValueEnum};
 use curious::program::one_of;
+use logs::TopicChoice;
 use mapper::EstimatorChoice;
 use std::path::PathBuf;
 use survey::{PoseMode, SurveySettings};
 
-/// Maps the log of a robot: where the place changes, how often, and when last.
+/// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
-/// A log is a CARMEN log, plain or compressed with gzip. Its trajectory is found from the scans and the odometry; a laser
-/// that stands needs neither. The folder map_log_out contains the results: a page to read (report.html) with a map of the
+/// A log is a CARMEN log, plain or compressed with gzip, or a bag of ROS 2: a folder, an MCAP file or an SQLite file. Its
+/// trajectory is found from the scans and the odometry; a laser that stands needs neither. Several logs are those of one
+/// place: they are read in the order of their times, and later ones find their place in the map of the first. The folder map_log_out contains the results: a page to read (report.html) with a map of the
 /// places where something changes (places.png), pictures of the maps (figure5.png) and of the trajectory (trajectory.png),
 /// a recording (map_log.rrd; open it with `rerun FILE`), the map in ROS format (map.yaml) and the map of what is permanent
 /// (permanent.yaml), masks for the costmap filters of Nav2 (speed_mask.yaml, keepout_mask.yaml), the statistics of every
@@ -27,9 +31,21 @@ use survey::{PoseMode, SurveySettings};
                   in the second pass the results so far are written)."
 )]
 pub(crate) struct Args {
-    /// The log
-    #[arg(value_name = "FILE")]
-    pub(crate) file: PathBuf,
+    /// The logs of one place: CARMEN logs, bags of ROS 2 (folders, MCAP, SQLite)
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<PathBuf>,
+
+    /// The topic of a laser in a bag; several are possible [default: all topics of scans]
+    #[arg(long, value_name = "TOPIC", help_heading = "Bags")]
+    pub(crate) scan_topic: Vec<String>,
+
+    /// The topic of the odometry in a bag [default: the only one]
+    #[arg(long, value_name = "TOPIC", help_heading = "Bags")]
+    pub(crate) odom_topic: Option<String>,
+
+    /// The frame of the robot in a bag [default: the frame whose pose the odometry gives]
+    #[arg(long, value_name = "FRAME", help_heading = "Bags")]
+    pub(crate) base_frame: Option<String>,
 
     /// How the poses are known [default: exact for a laser that stands, otherwise localized]
     #[arg(long, value_enum, help_heading = "Poses")]
@@ -109,10 +125,24 @@ impl From<PoseArg> for PoseMode {
 }
 
 impl Args {
-    /// The settings of the survey of a log; `stands`: the log has no odometry.
-    pub(crate) fn settings(&self, stands: bool) -> SurveySettings {
+    /// What to use of bags.
+    pub(crate) fn topics(&self) -> TopicChoice {
+        TopicChoice {
+            scan_topics: self.scan_topic.clone(),
+            odom_topic: self.odom_topic.clone(),
+            base_frame: self.base_frame.clone(),
+        }
+    }
+
+    /// The settings of the survey of these logs.
+    pub(crate) fn settings(&self, sources: &[Source]) -> anyhow::Result<SurveySettings> {
+        let stands = sources.iter().all(Source::stands);
         let default = if stands { PoseMode::Exact } else { PoseMode::Localized };
         let mut settings = SurveySettings::of(self.pose.map_or(default, Into::into));
+        ensure!(
+            stands || sources.len() == 1 || settings.pose == PoseMode::Localized,
+            "the poses of each log begin at its own origin: several logs of a robot that moves need --pose localized"
+        );
         settings.resolution_m = self.resolution;
         settings.max_range_m = self.max_range;
         settings.min_shadow_angle_rad = self.shadow_angle.to_radians();
@@ -120,7 +150,7 @@ impl Args {
         if let Some(noise_m) = self.noise {
             settings.mapper.steady.range_noise_std_m = noise_m;
         }
-        settings
+        Ok(settings)
     }
 }
 
@@ -133,7 +163,8 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         let args = Args::parse_from(["map_log", "a.log"]);
-        assert_eq!(args.settings(false), SurveySettings::default());
-        assert_eq!(args.settings(true).pose, PoseMode::Exact);
+        assert_eq!(args.settings(&[]).unwrap().pose, PoseMode::Exact);
+        let args = Args::parse_from(["map_log", "a.log", "--pose", "localized"]);
+        assert_eq!(args.settings(&[]).unwrap(), SurveySettings::default());
     }
 }

@@ -1,7 +1,7 @@
 //! The files of a survey.
 
-use crate::Learned;
 use crate::report;
+use crate::second_pass::Learned;
 use crate::summary::Summary;
 use evaluation::output::{RunFolder, write_file};
 use evaluation::thinned::Thinned;

@@ -18,7 +18,7 @@ pub(crate) fn page(summary: &Summary) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width";
-                title { "Where it changes: " (summary.log) }
+                title { "Where it changes: " (summary.logs.join(", ")) }
                 style { (STYLE) }
             }
             body {
@@ -87,7 +87,7 @@ fn table(places: &[Place], has_rates: bool) -> Markup {
             tr {
                 th { "place" } th { "at (m)" } th { "area" } th { "changes seen" }
                 @if has_rates {
-                    th { "how often" } th { "90 % range, per hour" } th { "blocked" } th { "looked at for" } th { "last change" }
+                    th { "how often" } th { "90 % range" } th { "blocked" } th { "looked at for" } th { "last change" }
                 }
             }
             @for (number, place) in (1..).zip(places) {
@@ -134,9 +134,15 @@ pub(crate) fn how_often(place: &Place) -> String {
     }
 }
 
+/// The range of the time of one cycle that contains the true one with 90 % probability, in words.
 fn range(place: &Place) -> String {
-    let bound = |rate: Option<f64>| rate.map_or("∞".to_owned(), short);
-    format!("{} to {}", bound(place.cycles_per_hour_90[0]), bound(place.cycles_per_hour_90[1]))
+    let time = |rate: Option<f64>| rate.filter(|rate| *rate > 0.0).map(|rate| length_of(3600.0 / rate));
+    let [slow, fast] = place.cycles_per_hour_90.map(time);
+    match (fast, slow) {
+        (Some(fast), Some(slow)) => format!("{fast} to {slow}"),
+        (Some(fast), None) => format!("{fast} or more"),
+        (None, _) => "unknown".to_owned(),
+    }
 }
 
 /// A number with two digits that matter.

@@ -1,13 +1,12 @@
 //! The results of a survey: `summary.json`, and a few lines for the terminal.
 
-use crate::Learned;
-use crate::args::Args;
+use crate::Job;
+use crate::second_pass::Learned;
 use evaluation::percent::percent;
 use interfaces::CellState;
-use logs::CarmenLog;
 use serde::Serialize;
 use std::fmt;
-use survey::{Place, PoseMode, Route, SurveySettings, places};
+use survey::{Place, PoseMode, Session, SurveySettings, places};
 
 /// The number of places in the summary and in the report.
 const MOST_PLACES: usize = 20;
@@ -19,9 +18,10 @@ pub(crate) struct Summary {
     /// The command line, without the name of the program.
     pub(crate) arguments: Vec<String>,
     pub(crate) settings: SurveySettings,
-    /// The log.
-    pub(crate) log: String,
+    /// The logs, in the order of their times.
+    pub(crate) logs: Vec<String>,
     pub(crate) scans: usize,
+    /// The duration of all logs, without the time between them, s.
     pub(crate) duration_s: f64,
     /// What was repaired or left out in the log.
     pub(crate) notes: Vec<String>,
@@ -50,14 +50,9 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    pub(crate) fn new(
-        args: &Args,
-        log: &CarmenLog,
-        settings: &SurveySettings,
-        route: &Route,
-        learned: &Learned,
-    ) -> Self {
-        let (summary, mapper) = (log.summary(), &learned.mapper);
+    pub(crate) fn new(job: &Job, sessions: &[Session], learned: &Learned) -> Self {
+        let mapper = &learned.mapper;
+        let summaries = || job.sources.iter().map(|source| source.log.summary());
         let cell_m2 = mapper.frame().resolution_m().powi(2);
         let seen = mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();
         let mut places = places(mapper, &learned.changes);
@@ -68,18 +63,18 @@ impl Summary {
         Self {
             version: env!("CARGO_PKG_VERSION"),
             arguments: std::env::args().skip(1).collect(),
-            settings: settings.clone(),
-            log: args.file.display().to_string(),
-            scans: summary.scans,
-            duration_s: summary.duration_s,
-            notes: summary.notes.clone(),
-            trajectory_m: route.length_m(),
-            loops: route.loops,
-            scans_left_out: route.uncertain(),
+            settings: job.settings.clone(),
+            logs: job.sources.iter().map(|source| source.name.clone()).collect(),
+            scans: summaries().map(|summary| summary.scans).sum(),
+            duration_s: summaries().map(|summary| summary.duration_s).sum(),
+            notes: summaries().flat_map(|summary| summary.notes.clone()).collect(),
+            trajectory_m: sessions.iter().map(Session::length_m).sum(),
+            loops: sessions.iter().map(|session| session.loops).sum(),
+            scans_left_out: sessions.iter().map(Session::uncertain).sum(),
             seen_m2: seen as f64 * cell_m2,
             changed_share: mapper.changed().count() as f64 / seen.max(1) as f64,
             changes: learned.changes.events(),
-            rates_withheld: (!summary.has_times).then(|| why.to_owned()),
+            rates_withheld: (!summaries().all(|summary| summary.has_times)).then(|| why.to_owned()),
             place_count,
             places,
             is_interrupted: learned.is_interrupted,
@@ -94,7 +89,7 @@ impl fmt::Display for Summary {
         let per_scan_ms = self.wall_s * 1e3 / self.scans.max(1) as f64;
         let seconds = format!("{:.0} s", self.duration_s);
         let duration = if self.rates_withheld.is_some() { "an unknown time" } else { seconds.as_str() };
-        writeln!(f, "{}: {} scans in {duration}", self.log, self.scans)?;
+        writeln!(f, "{}: {} scans in {duration}", self.logs.join(", "), self.scans)?;
         let pose = match self.settings.pose {
             PoseMode::Exact => "poses of the log",
             PoseMode::Odometry => "odometry, with its drift",

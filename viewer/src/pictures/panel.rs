@@ -53,14 +53,15 @@ pub(super) struct Panel {
 impl Panel {
     /// A panel for one layer of the map, a third of Figure 5.
     pub(super) fn of_layer(frame: &GridFrame, unit: TimeUnit) -> Self {
-        let width = 280 - Y_AXIS - MARGIN;
+        let width = (280 - Y_AXIS - MARGIN).max(enough_for(frame));
         Self { frame: *frame, unit: unit.length(), width, scale: 2, columns: 2, rows: 3, has_bar: true }
     }
 
     /// A panel for a picture of its own, with a legend of `entries` entries.
     pub(super) fn of_scene(frame: &GridFrame, unit: TimeUnit, entries: usize) -> Self {
         let rows = entries.div_ceil(3) as u32;
-        Self { frame: *frame, unit: unit.length(), width: 430, scale: 2, columns: 3, rows, has_bar: false }
+        let width = 430.max(enough_for(frame));
+        Self { frame: *frame, unit: unit.length(), width, scale: 2, columns: 3, rows, has_bar: false }
     }
 
     /// Half of a frame of the moving picture.
@@ -258,6 +259,15 @@ impl Panel {
         let y = f64::from(TITLE * self.scale) + (1.0 - share.y / self.frame.height() as f64) * height;
         [x as u32, y as u32]
     }
+}
+
+/// The width in points with which the walls of a large map stay visible: half a point, one pixel, per cell. Maps of up to
+/// 600 cells are drawn smaller.
+fn enough_for(frame: &GridFrame) -> u32 {
+    const LARGE: usize = 600;
+    const MOST: usize = 1000;
+    let cells = frame.width().max(frame.height());
+    if cells > LARGE { (cells / 2).min(MOST) as u32 } else { 0 }
 }
 
 /// A number without unneeded digits: 2 and not 2.0.

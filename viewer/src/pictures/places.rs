@@ -22,7 +22,8 @@ pub(super) fn draw(
     let (chart, legend) = panel.axes(area, title)?;
     panel.cells(&chart, Layer::Occupancy, &Layer::Occupancy.classes(mapper, TimeUnit::Second))?;
     let frame = mapper.frame();
-    let half = nalgebra::Vector2::repeat(frame.resolution_m() / 2.0);
+    // Twice as large as they are: a cell of a building is smaller than a point.
+    let half = nalgebra::Vector2::repeat(frame.resolution_m());
     for index in mapper.changed().filter(|index| mapper.rate(*index) > 0.0) {
         let center = frame.center(frame.cell(index));
         let corners = [pair(&(center - half)), pair(&(center + half))];

@@ -1,31 +1,43 @@
+//! One log along its trajectory, and the cells that cover several of them.
+
 use crate::extent::{self, Reach};
 use crate::settings::{PoseMode, SurveySettings};
 use interfaces::{GridFrame, LaserReading, SettingsError};
 use localizer::{PoseState, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
+use nalgebra::Isometry2;
 
-/// The error for a log from which no map can be made.
+/// The error for logs from which no map can be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SurveyError {
     /// A setting is out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// The log has no reading, or its poses leave every map.
-    #[error("no reading of the log has a pose on a map")]
+    /// No reading has a pose on a map.
+    #[error("no reading has a certain pose from which the place has a size")]
     NoPlace,
+    /// The place of a log is not that of the logs before.
+    #[error(
+        "the place is not recognised in the map of the earlier logs: the pose was certain for {certain} of {readings} scans"
+    )]
+    OtherPlace {
+        /// The number of readings with a certain pose in the map of the earlier logs.
+        certain: usize,
+        /// The number of readings.
+        readings: usize,
+    },
 }
 
-/// What the first pass has found.
+/// A log along its trajectory.
 #[derive(Clone, Debug)]
-pub struct Route {
-    /// The cells of the place.
-    pub frame: GridFrame,
+pub struct Session {
     /// One pose per reading, in the frame of the map.
     pub poses: Vec<TrajectoryPose>,
     /// The number of places that were recognised; 0 where no trajectory was searched.
     pub loops: usize,
+    reaches: Vec<Reach>,
 }
 
-impl Route {
+impl Session {
     /// The length of the trajectory, m.
     pub fn length_m(&self) -> f64 {
         let position = |at: &TrajectoryPose| at.pose.translation.vector;
@@ -36,9 +48,28 @@ impl Route {
     pub fn uncertain(&self) -> usize {
         self.poses.iter().filter(|pose| pose.state != PoseState::Tracking).count()
     }
+
+    /// The session in another frame, whose pose of this frame is `by`.
+    #[must_use]
+    pub fn moved(mut self, by: &Isometry2<f64>) -> Self {
+        self.poses.iter_mut().for_each(|at| at.pose = by * at.pose);
+        self
+    }
 }
 
-/// The first pass over a log: the trajectory, and the extent of the place.
+/// The cells that cover what was seen in all sessions.
+///
+/// # Errors
+///
+/// When no reading has a certain pose, or when the place is too large for a map.
+pub fn frame(sessions: &[Session], settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
+    let readings = sessions.iter().flat_map(|session| session.poses.iter().zip(&session.reaches));
+    let used = readings.filter(|(pose, _)| pose.state == PoseState::Tracking);
+    let placed = used.map(|(pose, reach)| (&pose.pose, reach));
+    extent::frame(placed, settings.resolution_m).ok_or(SurveyError::NoPlace)
+}
+
+/// The first pass over a log: its trajectory, and how far its readings reach.
 #[derive(Debug)]
 pub struct FirstPass {
     settings: SurveySettings,
@@ -76,12 +107,8 @@ impl FirstPass {
         }
     }
 
-    /// The poses of all readings, and the cells that cover the place.
-    ///
-    /// # Errors
-    ///
-    /// When there was no reading.
-    pub fn finish(self) -> Result<Route, SurveyError> {
+    /// The log along its trajectory, in the frame of its first pose.
+    pub fn finish(self) -> Session {
         let (poses, loops) = match self.finder {
             Some(finder) => {
                 let trajectory = finder.finish();
@@ -89,9 +116,6 @@ impl FirstPass {
             }
             None => (self.given, 0),
         };
-        let used = poses.iter().zip(&self.reaches).filter(|(pose, _)| pose.state == PoseState::Tracking);
-        let placed = used.map(|(pose, reach)| (&pose.pose, reach));
-        let frame = extent::frame(placed, self.settings.resolution_m).ok_or(SurveyError::NoPlace)?;
-        Ok(Route { frame, poses, loops })
+        Session { poses, loops, reaches: self.reaches }
     }
 }

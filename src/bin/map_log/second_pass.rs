@@ -1,0 +1,107 @@
+//! The second pass: the map and its changes along the trajectories.
+
+use crate::Job;
+use crate::logs_in_order::Source;
+use anyhow::{Context, anyhow};
+use curious::program::{Failure, input};
+use curious::progress::Progress;
+use curious::terminal::say;
+use evaluation::output::TrajectoryFile;
+use mapper::{Mapper, ReadingError};
+use robot::explore;
+use std::io::stderr;
+use std::ops::ControlFlow;
+use std::path::Path;
+use survey::{ChangeLog, FoundPoses, Passenger, Replay, Session, frame};
+use viewer::recording::Recorder;
+use viewer::scene::Scene;
+use viewer::show::Show;
+use viewer::view::{Measured, View};
+
+/// The name of the recording.
+const RECORDING: &str = "map_log.rrd";
+
+/// What the second pass has learned.
+pub(crate) struct Learned {
+    pub(crate) mapper: Mapper,
+    pub(crate) changes: ChangeLog,
+    pub(crate) show: Show,
+    /// Whether the pass was interrupted.
+    pub(crate) is_interrupted: bool,
+    /// Whether the recording and the trajectory are complete.
+    pub(crate) is_shown: bool,
+}
+
+/// Learns from all logs along their trajectories. The recording and the trajectory are written to `folder`.
+pub(crate) fn learn(job: &Job, sessions: &[Session], folder: &Path) -> Result<Learned, Failure> {
+    let frame = frame(sessions, &job.settings).map_err(input)?;
+    let mapper = Mapper::new(&job.settings.mapper, frame).map_err(input)?;
+    let first = job.sources[0].log.readings().map_err(input)?.next();
+    let first = first.context("the log has no reading").map_err(input)?.map_err(input)?;
+    let title = job.sources.iter().map(|source| source.name.as_str()).collect::<Vec<_>>().join(", ");
+    let scene = Scene::of_log(&title, frame, &job.settings.filtered(first));
+    let recording = folder.join(RECORDING);
+    let recorder = (!job.args.no_rrd).then(|| Recorder::new(Some(&recording), &[], scene.clone()));
+    let recorder = recorder.transpose().map_err(anyhow::Error::from)?;
+    let mut learned = Learned {
+        mapper,
+        changes: ChangeLog::default(),
+        show: Show::new(scene, recorder, None),
+        is_interrupted: false,
+        is_shown: true,
+    };
+    let mut trajectory = TrajectoryFile::create(&folder.join("trajectory.tum"));
+    let last = job.sources.len() - 1;
+    for (number, (source, session)) in job.sources.iter().zip(sessions).enumerate() {
+        learned.replay(job, source, session, &mut trajectory, number == last)?;
+        if learned.is_interrupted {
+            break;
+        }
+    }
+    if let Err(problem) = trajectory.finish() {
+        learned.is_shown = false;
+        say(stderr(), format_args!("error: cannot write the trajectory: {problem}"));
+    }
+    Ok(learned)
+}
+
+impl Learned {
+    /// Learns from one log.
+    fn replay(
+        &mut self,
+        job: &Job,
+        source: &Source,
+        session: &Session,
+        trajectory: &mut TrajectoryFile,
+        is_last_log: bool,
+    ) -> Result<(), Failure> {
+        job.say(format_args!("{}: learning what changes", source.name));
+        let readings = source.log.readings().map_err(input)?;
+        let replay = Replay::new(readings, &job.settings, source.offset_s).map_err(input)?;
+        let changed = || anyhow!("{}: the log has changed since the first pass", source.name);
+        let mut replay = replay.ok_or_else(|| input(changed()))?;
+        let mut poses = FoundPoses::new(session.poses.clone());
+        let progress = Progress::of_scans(source.log.summary().scans, job.args.quiet);
+        let Self { mapper, changes, show, is_interrupted, is_shown } = self;
+        explore(&mut replay, &mut poses, mapper, &mut Passenger, |replay, reading, belief, pilot| {
+            progress.step();
+            changes.note(belief.mapper);
+            trajectory.add(reading.time_s, belief.pose);
+            *is_interrupted = job.is_interrupted();
+            let is_over = *is_interrupted || replay.is_over();
+            let view = View::new(replay, reading, belief, pilot, Measured::default());
+            let is_last = *is_interrupted || is_over && is_last_log;
+            if let Err(problem) = show.add(&view, is_last) {
+                *is_shown = false;
+                progress.say(format_args!("error: {problem}; the run goes on without it"));
+            }
+            Ok::<_, ReadingError>(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        })
+        .map_err(input)?;
+        progress.finish();
+        match replay.into_problem() {
+            Some(problem) => Err(input(problem)),
+            None => Ok(()),
+        }
+    }
+}

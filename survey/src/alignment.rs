@@ -1,0 +1,117 @@
+//! Where the frame of a later log lies in the map of the earlier ones.
+
+use crate::permanent::permanent;
+use crate::session::{Session, SurveyError, frame};
+use crate::settings::SurveySettings;
+use interfaces::{GridFrame, LaserReading, heading_rad, wrap_rad};
+use localizer::{Localizer, LocalizerSettings, PoseState, Start, TrajectoryPose};
+use mapper::{Mapper, ReadingError};
+use nalgebra::{Isometry2, Vector2};
+
+/// How far later logs may leave the extent of the first one and still be aligned there, m.
+const AROUND_M: f64 = 10.0;
+/// At least this share of the readings must have a certain pose in the map of the earlier logs.
+const LEAST_CERTAIN: f64 = 0.1;
+
+/// The map of the first log, in which later logs find their place.
+#[derive(Debug)]
+pub struct Aligner {
+    settings: SurveySettings,
+    mapper: Mapper,
+}
+
+impl Aligner {
+    /// An empty map around the first session.
+    ///
+    /// # Errors
+    ///
+    /// When the session has no extent, or a setting is out of range.
+    pub fn new(settings: &SurveySettings, first: &Session) -> Result<Self, SurveyError> {
+        let extent = frame(std::slice::from_ref(first), settings)?;
+        let around = (AROUND_M / extent.resolution_m()).ceil();
+        let origin = extent.origin() - Vector2::repeat(around * extent.resolution_m());
+        let sides = [extent.width(), extent.height()].map(|cells| cells + 2 * around as usize);
+        let larger = GridFrame::new(origin, extent.resolution_m(), sides[0], sides[1]);
+        let mapper = Mapper::new(&settings.mapper, larger.ok_or(SurveyError::NoPlace)?)?;
+        Ok(Self { settings: settings.clone(), mapper })
+    }
+
+    /// Adds a reading of the first log, with the pose that was found for it.
+    ///
+    /// # Errors
+    ///
+    /// When the mapper refuses the reading.
+    pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) -> Result<(), ReadingError> {
+        let mut reading = self.settings.filtered(reading);
+        reading.pose = found.pose;
+        match found.state {
+            PoseState::Tracking => self.mapper.update(&reading)?,
+            PoseState::Uncertain | PoseState::Lost => self.mapper.skip(&reading),
+        }
+        Ok(())
+    }
+
+    /// Begins the search for a later log.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn search(&self) -> Result<Search<'_>, SurveyError> {
+        let settings = LocalizerSettings {
+            range_noise_std_m: self.settings.mapper.steady.range_noise_std_m,
+            ..LocalizerSettings::default()
+        };
+        let localizer = Localizer::in_map(&settings, &permanent(&self.mapper), Start::Unknown)?;
+        Ok(Search { mapper: &self.mapper, localizer, pairs: Vec::new(), readings: 0 })
+    }
+}
+
+/// The search for the place of a log in the map of the earlier ones.
+#[derive(Debug)]
+pub struct Search<'a> {
+    mapper: &'a Mapper,
+    localizer: Localizer,
+    /// The pose in the map, and the pose of the session, of every reading that is certain in both.
+    pairs: Vec<[Isometry2<f64>; 2]>,
+    readings: usize,
+}
+
+impl Search<'_> {
+    /// Adds the next reading of the log, with the pose that its own session has for it.
+    pub fn add(&mut self, reading: &LaserReading, found: &TrajectoryPose) {
+        self.readings += 1;
+        let estimate = self.localizer.localize(reading, self.mapper).estimate;
+        if estimate.state == PoseState::Tracking && found.state == PoseState::Tracking {
+            self.pairs.push([estimate.pose, found.pose]);
+        }
+    }
+
+    /// The pose of the frame of the session in the map: the median of all readings that are certain in both.
+    ///
+    /// # Errors
+    ///
+    /// When too few readings have a certain pose in the map.
+    pub fn finish(self) -> Result<Isometry2<f64>, SurveyError> {
+        let (certain, readings) = (self.pairs.len(), self.readings);
+        let turns = self.pairs.iter().map(|[map, own]| heading_rad(map) - heading_rad(own));
+        let turns: Vec<f64> = turns.map(wrap_rad).collect();
+        let Some(reference) = turns.first().filter(|_| certain as f64 >= LEAST_CERTAIN * readings as f64)
+        else {
+            return Err(SurveyError::OtherPlace { certain, readings });
+        };
+        // Angles are averaged around one of them.
+        let about = median(turns.iter().map(|turn| wrap_rad(turn - reference)));
+        let rotation = interfaces::rotation(reference + about);
+        let offset =
+            |[map, own]: &[Isometry2<f64>; 2]| map.translation.vector - rotation * own.translation.vector;
+        let (x, y): (Vec<f64>, Vec<f64>) = self.pairs.iter().map(offset).map(|at| (at.x, at.y)).unzip();
+        let translation = Vector2::new(median(x.into_iter()), median(y.into_iter()));
+        Ok(Isometry2::from_parts(translation.into(), rotation))
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
+}
