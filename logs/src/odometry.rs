@@ -69,7 +69,7 @@ impl Odometry {
     /// The mean velocities between the poses in an interval, the earliest first; the last one ends with the interval.
     pub(crate) fn during(&self, from_s: f64, to_s: f64) -> Vec<VelocitySample> {
         let overlaps = |pair: &&[(f64, Isometry2<f64>)]| {
-            pair[0].0 < to_s
+            pair[0].0 + LEAST_OVERLAP_S < to_s
                 && from_s + LEAST_OVERLAP_S < pair[1].0
                 && (0.0..=LONGEST_GAP_S).contains(&(pair[1].0 - pair[0].0))
         };
