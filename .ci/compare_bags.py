@@ -1,6 +1,7 @@
-"""The test of .ci/rosbags: bags that rosbags writes are read by us, and every reading is compared.
+"""The test of .ci/rosbags: bags that rosbags writes are read by us, and every reading is compared; a bag that we write is
+read by rosbags, every message of it.
 
-    python compare_bags.py FOLDER PRINT_LOG
+    python compare_bags.py FOLDER PRINT_LOG MCAP_SAMPLE
 """
 
 import math
@@ -10,6 +11,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
@@ -188,8 +190,38 @@ def check(folder, entries, print_log, moves):
     return len(lines)
 
 
+def check_ours(file, print_log):
+    """Reads every message of a bag that we wrote, and compares scans and odometry with what we read from it."""
+    found, counts = [], {}
+    with AnyReader([file]) as reader:
+        for connection, time_ns, raw in reader.messages():
+            message = reader.deserialize(raw, connection.msgtype)
+            counts[connection.topic] = counts.get(connection.topic, 0) + 1
+            if connection.topic in ("/scan", "/odom"):
+                found.append((connection.topic, time_ns, message))
+            if connection.topic == "/map":
+                assert len(message.data) == message.info.width * message.info.height, "the map has another size"
+            if connection.topic == "/changes":
+                assert len(message.data) == message.width * message.point_step, "the point cloud has another size"
+    topics = ["/changes", "/goal_pose", "/map", "/map_updates", "/odom", "/plan", "/scan", "/tf", "/tf_static"]
+    assert sorted(counts) == topics, f"the topics are {sorted(counts)}"
+    printed = subprocess.run([print_log, file, "readings"], capture_output=True, text=True)
+    assert printed.returncode == 0, printed.stderr
+    scans = [message for topic, _, message in found if topic == "/scan"]
+    poses = [message.pose.pose for topic, _, message in found if topic == "/odom"]
+    lines = printed.stdout.splitlines()
+    assert len(lines) == len(scans) == len(poses), "the number of scans differs"
+    for line, scan_message, pose in zip(lines, scans, poses):
+        words = line.split()
+        near(float(words[1]), pose.position.x - poses[0].position.x, 1e-9, "x")
+        near(float(words[2]), pose.position.y - poses[0].position.y, 1e-9, "y")
+        near(float(words[3]), 2 * math.atan2(pose.orientation.z, pose.orientation.w), 1e-9, "heading")
+        assert np.array_equal(np.array(words[13:], dtype=np.float32), scan_message.ranges), "the ranges differ"
+    return sum(counts.values())
+
+
 def main():
-    work, print_log = Path(sys.argv[1]), sys.argv[2]
+    work, print_log, mcap_sample = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     modes = [CompressionMode.NONE, CompressionMode.FILE, CompressionMode.MESSAGE]
     storages = [StoragePlugin.MCAP, StoragePlugin.SQLITE3]
     bags, compared = 0, 0
@@ -207,6 +239,12 @@ def main():
                         sys.exit(f"FAILED: {folder.name}: {error}")
                     bags += 1
     print(f"{bags} bags that rosbags wrote: {compared} readings, all the same")
+    sample = work / "sample.mcap"
+    subprocess.run([mcap_sample, sample], check=True)
+    try:
+        print(f"a bag that we wrote: rosbags reads all {check_ours(sample, print_log)} messages")
+    except AssertionError as error:
+        sys.exit(f"FAILED: {sample.name}: {error}")
 
 
 if __name__ == "__main__":

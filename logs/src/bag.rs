@@ -27,6 +27,7 @@ use crate::times::{self, Times};
 use interfaces::LaserReading;
 use inventory::Inventory;
 use messages::Messages;
+use nalgebra::Isometry2;
 use plan::Plan;
 use readings::{Clock, Counts, RawReadings};
 use std::sync::Arc;
@@ -65,7 +66,7 @@ impl Bag {
                 (clock, survey) = (Clock::Recording(log_ns), by_recording);
             }
         }
-        let Survey { raw_begin_s, times, counts } = survey;
+        let Survey { raw_begin_s, times, counts, odom_origin } = survey;
         if times.times_s.is_empty() {
             let why = counts.first_invalid.unwrap_or_default();
             return Err(unusable(format!("no scan is valid; the first: {why}")));
@@ -86,6 +87,7 @@ impl Bag {
             begin_s,
             pose_source: plan.pose_source.clone(),
             odometry_poses: counts.poses,
+            odom_origin,
             scan_topics,
             notes,
         };
@@ -114,6 +116,7 @@ struct Survey {
     raw_begin_s: f64,
     times: Times,
     counts: Counts,
+    odom_origin: Isometry2<f64>,
 }
 
 impl Survey {
@@ -124,7 +127,8 @@ impl Survey {
             raw_s.push(reading.time_s);
         }
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
-        Ok(Self { raw_begin_s, times: times::repaired(&raw_s), counts: raw.counts })
+        let odom_origin = raw.origin();
+        Ok(Self { raw_begin_s, times: times::repaired(&raw_s), counts: raw.counts, odom_origin })
     }
 }
 

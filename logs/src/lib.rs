@@ -8,10 +8,12 @@
 mod bag;
 mod bytes;
 mod carmen;
+mod cdr;
 mod choice;
 mod error;
 mod lines;
 mod log;
+mod mcap_out;
 mod odometry;
 mod ros;
 mod summary;
@@ -20,4 +22,5 @@ mod times;
 pub use choice::TopicChoice;
 pub use error::LogError;
 pub use log::{Log, Readings};
+pub use mcap_out::McapWriter;
 pub use summary::{LogSummary, PoseSource};

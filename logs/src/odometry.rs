@@ -5,13 +5,16 @@ use nalgebra::Isometry2;
 
 /// Between two poses that are farther apart than this, s, the odometry is not interpolated.
 const LONGEST_GAP_S: f64 = 2.0;
+/// Intervals that overlap by less than this do so by rounding, s.
+const LEAST_OVERLAP_S: f64 = 1e-6;
 /// The number of poses that are kept: some messages arrive later than others.
 const KEPT: usize = 256;
 
 /// The recent poses.
 #[derive(Debug, Default)]
 pub(crate) struct Odometry {
-    /// The last pose as written.
+    /// The first and the last pose as written.
+    first: Option<Isometry2<f64>>,
     written: Option<Isometry2<f64>>,
     /// The times (s) and the sums of the motions, the newest last.
     samples: Vec<(f64, Isometry2<f64>)>,
@@ -21,6 +24,7 @@ impl Odometry {
     /// Adds a pose as written.
     pub(crate) fn add(&mut self, time_s: f64, pose: Isometry2<f64>) {
         let motion = self.written.map_or(Isometry2::identity(), |before| before.inv_mul(&pose));
+        self.first.get_or_insert(pose);
         self.written = Some(pose);
         let mut at = self.last() * motion;
         at.rotation.renormalize();
@@ -28,6 +32,11 @@ impl Odometry {
             self.samples.remove(0);
         }
         self.samples.push((time_s, at));
+    }
+
+    /// The first pose, as written: the origin of all others.
+    pub(crate) fn origin(&self) -> Isometry2<f64> {
+        self.first.unwrap_or_default()
     }
 
     /// Motions are measured from this pose on.
@@ -60,7 +69,9 @@ impl Odometry {
     /// The mean velocities between the poses in an interval, the earliest first; the last one ends with the interval.
     pub(crate) fn during(&self, from_s: f64, to_s: f64) -> Vec<VelocitySample> {
         let overlaps = |pair: &&[(f64, Isometry2<f64>)]| {
-            pair[0].0 < to_s && from_s < pair[1].0 && (0.0..=LONGEST_GAP_S).contains(&(pair[1].0 - pair[0].0))
+            pair[0].0 + LEAST_OVERLAP_S < to_s
+                && from_s + LEAST_OVERLAP_S < pair[1].0
+                && (0.0..=LONGEST_GAP_S).contains(&(pair[1].0 - pair[0].0))
         };
         let pairs = self.samples.windows(2).filter(overlaps);
         let sample = |pair: &[(f64, Isometry2<f64>)]| {

@@ -1,7 +1,6 @@
-//! The messages of ROS 2, as in `common_interfaces` and `geometry2`, and their encoding (CDR).
+//! The messages of ROS 2, as in `common_interfaces` and `geometry2`. Field by field, they are what CDR encodes.
 
-use byteorder::{BigEndian, LittleEndian};
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::{Isometry2, Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
 /// A time of ROS.
@@ -12,6 +11,12 @@ pub(crate) struct Time {
 }
 
 impl Time {
+    /// The time from ns. What is before or after all times of ROS is the first or the last.
+    pub(crate) fn from_ns(ns: i64) -> Self {
+        let sec = ns.div_euclid(1_000_000_000).clamp(i32::MIN.into(), i32::MAX.into());
+        Self { sec: sec as i32, nanosec: ns.rem_euclid(1_000_000_000) as u32 }
+    }
+
     /// The time in ns.
     pub(crate) fn ns(self) -> i64 {
         i64::from(self.sec) * 1_000_000_000 + i64::from(self.nanosec)
@@ -65,6 +70,16 @@ pub(crate) struct Pose {
 }
 
 impl Pose {
+    /// A pose in the plane. The quaternion of half the angle follows from the sine and the cosine without an angle.
+    pub(crate) fn in_plane(pose: &Isometry2<f64>) -> Self {
+        let (cos, sin) = (pose.rotation.re, pose.rotation.im);
+        let larger = ((1.0 + cos.abs()) / 2.0).sqrt();
+        let smaller = sin.abs() / (2.0 * larger);
+        let (z, w) = if cos > 0.0 { (smaller, larger) } else { (larger, smaller) };
+        let orientation = Rotation { x: 0.0, y: 0.0, z: z.copysign(sin), w };
+        Self { position: Vector { x: pose.translation.x, y: pose.translation.y, z: 0.0 }, orientation }
+    }
+
     /// The pose; `None` if a number is not finite or far beyond all places, or the rotation is none.
     pub(crate) fn isometry(&self) -> Option<Isometry3<f64>> {
         let Self { position: Vector { x, y, z }, orientation } = *self;
@@ -118,44 +133,62 @@ pub(crate) struct Transforms {
     pub(crate) transforms: Vec<TransformStamped>,
 }
 
-/// A message from its bytes: two bytes name the order of the bytes, two are options.
-///
-/// # Errors
-///
-/// When the encoding is none of these, or the bytes end too early.
-pub(crate) fn decoded<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, String> {
-    let Some((start, body)) = bytes.split_at_checked(4) else {
-        return Err(format!("{} bytes, too short for a message", bytes.len()));
-    };
-    let message = match start[..2] {
-        [0, 0] => cdr_encoding::from_bytes::<T, BigEndian>(body),
-        [0, 1] => cdr_encoding::from_bytes::<T, LittleEndian>(body),
-        _ => return Err(format!("the encoding {:02x}{:02x} is not CDR", start[0], start[1])),
-    };
-    message.map(|(message, _)| message).map_err(|error| format!("it is damaged: {error}"))
+/// `geometry_msgs/PoseStamped`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub(crate) struct PoseStamped {
+    pub(crate) header: Header,
+    pub(crate) pose: Pose,
 }
 
-/// A message as bytes, in little-endian order.
-pub(crate) fn encoded<T: Serialize>(message: &T) -> Result<Vec<u8>, String> {
-    let mut bytes = vec![0, 1, 0, 0];
-    bytes.extend(cdr_encoding::to_vec::<T, LittleEndian>(message).map_err(|error| error.to_string())?);
-    Ok(bytes)
+/// `nav_msgs/Path`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub(crate) struct Path {
+    pub(crate) header: Header,
+    pub(crate) poses: Vec<PoseStamped>,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// `nav_msgs/OccupancyGrid`, with its `MapMetaData`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub(crate) struct OccupancyGrid {
+    pub(crate) header: Header,
+    pub(crate) map_load_time: Time,
+    pub(crate) resolution: f32,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) origin: Pose,
+    pub(crate) data: Vec<i8>,
+}
 
-    #[test]
-    fn both_orders_of_bytes_are_read() {
-        let time = Time { sec: 1, nanosec: 2 };
-        let little = [0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0];
-        assert_eq!(encoded(&time).unwrap(), little);
-        assert_eq!(decoded::<Time>(&little), Ok(time));
-        assert_eq!(decoded::<Time>(&[0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2]), Ok(time));
-        assert_eq!(decoded::<Time>(&[0, 7, 0, 0]).unwrap_err(), "the encoding 0007 is not CDR");
-        // 2³² − 1 transforms in 4 bytes.
-        let error = decoded::<Transforms>(&[0, 1, 0, 0, 255, 255, 255, 255]).unwrap_err();
-        assert!(error.starts_with("it is damaged: "), "{error}");
-    }
+/// `map_msgs/OccupancyGridUpdate`: a rectangle of cells.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub(crate) struct OccupancyGridUpdate {
+    pub(crate) header: Header,
+    pub(crate) x: i32,
+    pub(crate) y: i32,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) data: Vec<i8>,
+}
+
+/// `sensor_msgs/PointField`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub(crate) struct PointField {
+    pub(crate) name: String,
+    pub(crate) offset: u32,
+    pub(crate) datatype: u8,
+    pub(crate) count: u32,
+}
+
+/// `sensor_msgs/PointCloud2`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub(crate) struct PointCloud2 {
+    pub(crate) header: Header,
+    pub(crate) height: u32,
+    pub(crate) width: u32,
+    pub(crate) fields: Vec<PointField>,
+    pub(crate) is_bigendian: bool,
+    pub(crate) point_step: u32,
+    pub(crate) row_step: u32,
+    pub(crate) data: Vec<u8>,
+    pub(crate) is_dense: bool,
 }

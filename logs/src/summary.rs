@@ -1,5 +1,7 @@
 //! What a log contains.
 
+use nalgebra::Isometry2;
+
 /// What a log contains.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogSummary {
@@ -15,6 +17,9 @@ pub struct LogSummary {
     pub pose_source: PoseSource,
     /// The number of poses of the odometry, without those that only define a new origin.
     pub odometry_poses: usize,
+    /// The first pose of the odometry in its own frame, m and rad: `odom_origin * pose` is the pose of a reading as the log
+    /// has it, up to the point where the log sets a new origin.
+    pub odom_origin: Isometry2<f64>,
     /// The topics of the scans in use; none in a CARMEN log.
     pub scan_topics: Vec<String>,
     /// What was repaired or left out, each a sentence.

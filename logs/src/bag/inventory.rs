@@ -4,9 +4,10 @@ use super::files::BagFile;
 use super::frames::Frames;
 use super::message::{Message, Topic};
 use super::messages::Messages;
+use crate::cdr;
 use crate::choice::bare;
 use crate::error::LogError;
-use crate::ros::{self, Header, Odometry, Transforms};
+use crate::ros::{Header, Odometry, Transforms};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -104,7 +105,7 @@ impl Inventory {
     }
 
     fn count_scan(&mut self, message: &Message) -> Result<(), String> {
-        let Stamped { header } = ros::decoded(&message.data)?;
+        let Stamped { header } = cdr::decoded(&message.data)?;
         self.begin_ns.get_or_insert((header.stamp.ns(), message.log_ns));
         let (topic, frame) = (&message.topic.name, bare(&header.frame_id));
         let is_full = self.lasers.len() == MOST_SOURCES;
@@ -117,7 +118,7 @@ impl Inventory {
     }
 
     fn count_odometry(&mut self, message: &Message) -> Result<(), String> {
-        let Odometry { header, child_frame_id, .. } = ros::decoded(&message.data)?;
+        let Odometry { header, child_frame_id, .. } = cdr::decoded(&message.data)?;
         let topic = &message.topic.name;
         let is_full = self.odometry.len() == MOST_SOURCES;
         match self.odometry.iter_mut().find(|odometry| odometry.topic == *topic) {
@@ -134,7 +135,7 @@ impl Inventory {
     }
 
     fn count_transforms(&mut self, message: &Message, first: &mut First) -> Result<(), String> {
-        let Transforms { transforms } = ros::decoded(&message.data)?;
+        let Transforms { transforms } = cdr::decoded(&message.data)?;
         for transform in transforms {
             let (parent, child) = (&transform.header.frame_id, &transform.child_frame_id);
             if let Some(pose) = transform.transform.isometry() {

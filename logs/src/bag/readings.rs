@@ -6,6 +6,7 @@ use super::message::Message;
 use super::messages::Messages;
 use super::plan::{Laser, Motion, Plan};
 use super::scan;
+use crate::cdr;
 use crate::choice::bare;
 use crate::error::LogError;
 use crate::odometry::Odometry;
@@ -138,8 +139,13 @@ impl RawReadings {
         LaserReading { time_s, pose, twist, velocities, mount, scan }
     }
 
+    /// The first pose of the odometry, in its own frame.
+    pub(super) fn origin(&self) -> Isometry2<f64> {
+        self.odometry.origin()
+    }
+
     fn take_scan(&mut self, message: &Message) -> Result<(), String> {
-        let found: LaserScan = ros::decoded(&message.data)?;
+        let found: LaserScan = cdr::decoded(&message.data)?;
         let (frame, topic) = (bare(&found.header.frame_id), &message.topic.name);
         let is_this = |laser: &Laser| laser.frame == frame && laser.topic == *topic;
         let Some(laser) = self.plan.lasers.iter().position(is_this) else { return Ok(()) };
@@ -169,13 +175,13 @@ impl RawReadings {
     }
 
     fn take_odometry(&mut self, message: &Message) -> Result<(), String> {
-        let found: ros::Odometry = ros::decoded(&message.data)?;
+        let found: ros::Odometry = cdr::decoded(&message.data)?;
         self.take_pose(&found.header, message, &found.pose.pose);
         Ok(())
     }
 
     fn take_transforms(&mut self, message: &Message) -> Result<(), String> {
-        let Transforms { transforms } = ros::decoded(&message.data)?;
+        let Transforms { transforms } = cdr::decoded(&message.data)?;
         for found in transforms {
             let Some(pose) = found.transform.isometry() else {
                 self.counts.invalid_poses += 1;

@@ -25,10 +25,13 @@ impl Survey {
         let mut geometry = Geometry::default();
         let (mut times_s, mut notes) = (Vec::new(), Vec::new());
         let (mut with_time, mut without_time) = (0, 0);
+        let mut odom_origin = None;
         while let Some(line) = line::next(lines, &geometry)? {
             match line {
-                Line::Odometry { time_s: 0.0, .. } => without_time += 1,
-                Line::Odometry { .. } => with_time += 1,
+                Line::Odometry { time_s, pose } => {
+                    odom_origin.get_or_insert(pose);
+                    *(if time_s == 0.0 { &mut without_time } else { &mut with_time }) += 1;
+                }
                 Line::Scan(scan) => times_s.push(scan.time_s),
                 Line::LaserOffset(offset_m) => geometry.offset_m = offset_m,
                 Line::MaxRange(range_max_m) => geometry.range_max_m = range_max_m,
@@ -59,6 +62,7 @@ impl Survey {
             begin_s: begin_s.filter(|_| has_times),
             pose_source,
             odometry_poses,
+            odom_origin: odom_origin.unwrap_or_default(),
             scan_topics: Vec::new(),
             notes,
         };

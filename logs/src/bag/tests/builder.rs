@@ -2,11 +2,12 @@
 
 use crate::bag::{Bag, BagFile};
 use crate::bytes::Bytes;
+use crate::cdr::encoded;
 use crate::choice::TopicChoice;
 use crate::error::LogError;
 use crate::ros::{
     Header, LaserScan, Odometry, Pose, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms,
-    TwistWithCovariance, Vector, encoded,
+    TwistWithCovariance, Vector,
 };
 use interfaces::LaserReading;
 use mcap::records::MessageHeader;

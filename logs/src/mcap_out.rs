@@ -1,0 +1,275 @@
+//! Recordings as bags of ROS 2: MCAP files that Foxglove shows, and that [`crate::Log`] reads.
+
+mod channels;
+mod grids;
+mod schemas;
+#[cfg(test)]
+mod tests;
+
+use crate::error::LogError;
+use crate::ros::{
+    Header, LaserScan, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, PoseWithCovariance, Time,
+    TransformStamped, Transforms, TwistWithCovariance, Vector,
+};
+use channels::Channels;
+use grids::Grids;
+use interfaces::{Event, Grid, LaserReading, Twist, heading_rad};
+use nalgebra::{Isometry2, Point2};
+use std::io::{Seek, Write};
+
+/// The frames, by REP-105.
+const MAP: &str = "map";
+const ODOM: &str = "odom";
+const BASE: &str = "base_link";
+/// The type of a number of 32 bits in a point cloud.
+const FLOAT32: u8 = 7;
+/// The bytes of a point: x, y, z and the change.
+const POINT_BYTES: u32 = 16;
+
+/// Writes a run as a bag of ROS 2 in the format MCAP, with compressed chunks and an index.
+///
+/// | method | topics | messages |
+/// |---|---|---|
+/// | [`reading`](Self::reading) | `/scan` (a second laser `/scan_2`), `/odom`, `/tf`, `/tf_static` | `LaserScan`, `Odometry`, `TFMessage` |
+/// | [`correction`](Self::correction) | `/tf` | `TFMessage`: odom in map |
+/// | [`grid`](Self::grid) | the given one, and with `_updates` | `OccupancyGrid`, `OccupancyGridUpdate` |
+/// | [`goal`](Self::goal), [`path`](Self::path) | `/goal_pose`, `/plan` | `PoseStamped`, `Path` |
+/// | [`events`](Self::events) | `/changes` | `PointCloud2` with the field `change`: 1 blocked, −1 free |
+///
+/// Poses of a reading are given in the frame `odom`, all others in the frame `map`. Times are those of the readings, after
+/// the begin that is given first.
+///
+/// The same run gives the same messages, bit by bit; the order of the topics in the index differs.
+///
+/// A file that is not finished can be read up to its last chunk. For a file that appears when it is complete, give the writer
+/// one with a temporary name, and rename it after [`finish`](Self::finish).
+pub struct McapWriter<W: Write + Seek> {
+    channels: Channels<W>,
+    begin_ns: i64,
+    /// The lasers: where they are mounted.
+    mounts: Vec<Isometry2<f64>>,
+    map_to_odom: Isometry2<f64>,
+    grids: Grids,
+    /// The time of the last odometry, ns.
+    last_odometry_ns: Option<i64>,
+}
+
+impl<W: Write + Seek> McapWriter<W> {
+    /// Begins a recording. `name` is that of the file in messages; `begin_s` is the time 0 of the readings in seconds since
+    /// the epoch, 0 in a simulation.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be written, as for all methods.
+    pub fn new(to: W, name: &str, begin_s: f64) -> Result<Self, LogError> {
+        Ok(Self {
+            channels: Channels::new(to, name)?,
+            begin_ns: (begin_s.floor() as i64)
+                .saturating_mul(1_000_000_000)
+                .saturating_add(((begin_s - begin_s.floor()) * 1e9).round() as i64),
+            mounts: Vec::new(),
+            map_to_odom: Isometry2::identity(),
+            grids: Grids::default(),
+            last_odometry_ns: None,
+        })
+    }
+
+    /// Writes a reading: scan, odometry and transforms. A scan that sweeps comes with the odometry while it was measured.
+    pub fn reading(&mut self, reading: &LaserReading) -> Result<(), LogError> {
+        let end_ns = self.ns(reading.time_s);
+        let laser = self.laser(end_ns, &reading.mount)?;
+        self.odometry(reading, end_ns)?;
+        let topic = numbered("/scan", laser);
+        let mut scan = scan_message(reading, numbered("laser", laser));
+        // What a reader finds from the stamp and the rounded times of the beams is the end of the scan.
+        let sweep_s = f64::from(scan.time_increment) * scan.ranges.len().saturating_sub(1) as f64;
+        scan.header.stamp = Time::from_ns(end_ns.saturating_sub((sweep_s * 1e9).round() as i64));
+        self.channels.write(&topic, "sensor_msgs/LaserScan", end_ns, &scan)
+    }
+
+    /// Writes a correction of the odometry: the pose of its frame in the frame of the map. It holds from now on.
+    pub fn correction(&mut self, time_s: f64, map_to_odom: &Isometry2<f64>) -> Result<(), LogError> {
+        self.map_to_odom = *map_to_odom;
+        let ns = self.ns(time_s);
+        self.transforms("/tf", ns, &[(MAP, ODOM, *map_to_odom)])
+    }
+
+    /// Writes a map to `topic`: as a whole at first, when its frame changes and every few seconds, between as the rectangle
+    /// that changed. `share` gives the value of a cell from 0 to 1, `None` if it is unknown.
+    pub fn grid<T>(
+        &mut self,
+        topic: &str,
+        time_s: f64,
+        grid: &Grid<T>,
+        share: impl Fn(&T) -> Option<f64>,
+    ) -> Result<(), LogError> {
+        let ns = self.ns(time_s);
+        let percent =
+            |cell: &T| share(cell).map_or(-1, |share| (share.clamp(0.0, 1.0) * 100.0).round() as i8);
+        let header = header(ns, MAP);
+        self.grids.write(&mut self.channels, topic, header, ns, &grid.map(percent))
+    }
+
+    /// Writes the pose to which the robot drives.
+    pub fn goal(&mut self, time_s: f64, pose: &Isometry2<f64>) -> Result<(), LogError> {
+        let ns = self.ns(time_s);
+        let goal = PoseStamped { header: header(ns, MAP), pose: Pose::in_plane(pose) };
+        self.channels.write("/goal_pose", "geometry_msgs/PoseStamped", ns, &goal)
+    }
+
+    /// Writes the path on which it drives there; none if it is empty.
+    pub fn path(&mut self, time_s: f64, poses: &[Isometry2<f64>]) -> Result<(), LogError> {
+        let ns = self.ns(time_s);
+        let stamped = |pose| PoseStamped { header: header(ns, MAP), pose: Pose::in_plane(pose) };
+        let path = Path { header: header(ns, MAP), poses: poses.iter().map(stamped).collect() };
+        self.channels.write("/plan", "nav_msgs/Path", ns, &path)
+    }
+
+    /// Writes changes of the place, each with the center of its cell.
+    pub fn events(&mut self, time_s: f64, events: &[(Point2<f64>, Event)]) -> Result<(), LogError> {
+        let ns = self.ns(time_s);
+        let mut data = Vec::with_capacity(events.len() * POINT_BYTES as usize);
+        for (center, event) in events {
+            let change = match event {
+                Event::Block => 1.0,
+                Event::Free => -1.0,
+            };
+            for value in [center.x as f32, center.y as f32, 0.0, change] {
+                data.extend(value.to_le_bytes());
+            }
+        }
+        let field = |(index, name): (u32, &str)| PointField {
+            name: name.to_owned(),
+            offset: index * 4,
+            datatype: FLOAT32,
+            count: 1,
+        };
+        let cloud = PointCloud2 {
+            header: header(ns, MAP),
+            height: 1,
+            width: events.len() as u32,
+            fields: (0..).zip(["x", "y", "z", "change"]).map(field).collect(),
+            is_bigendian: false,
+            point_step: POINT_BYTES,
+            row_step: data.len() as u32,
+            data,
+            is_dense: true,
+        };
+        self.channels.write("/changes", "sensor_msgs/PointCloud2", ns, &cloud)
+    }
+
+    /// Writes the index and ends the file.
+    pub fn finish(self) -> Result<W, LogError> {
+        self.channels.finish()
+    }
+
+    fn ns(&self, time_s: f64) -> i64 {
+        self.begin_ns.saturating_add((time_s * 1e9).round() as i64)
+    }
+
+    /// The number of the laser that is mounted like this. A new one is written as a static transform.
+    fn laser(&mut self, ns: i64, mount: &Isometry2<f64>) -> Result<usize, LogError> {
+        if let Some(laser) = self.mounts.iter().position(|known| known == mount) {
+            return Ok(laser);
+        }
+        self.mounts.push(*mount);
+        let laser = self.mounts.len() - 1;
+        self.transforms("/tf_static", ns, &[(BASE, &numbered("laser", laser), *mount)])?;
+        Ok(laser)
+    }
+
+    /// The odometry at the end of a reading, and before it while the scan was measured.
+    fn odometry(&mut self, reading: &LaserReading, end_ns: i64) -> Result<(), LogError> {
+        let mut poses = vec![(end_ns, reading.pose, reading.twist)];
+        let (mut pose, mut time_s) = (reading.pose, reading.time_s);
+        for (index, sample) in reading.velocities.iter().enumerate().rev() {
+            let begin_s = match index.checked_sub(1) {
+                Some(before) => reading.velocities[before].time_s,
+                None => reading.time_s - reading.scan.sweep_s,
+            };
+            // Times out of order are no part of the motion.
+            if begin_s < time_s && begin_s.is_finite() {
+                pose *= moved(&sample.twist, begin_s - time_s);
+                time_s = begin_s;
+                let before =
+                    index.checked_sub(1).map_or(sample.twist, |before| reading.velocities[before].twist);
+                poses.push((self.ns(begin_s), pose, before));
+            }
+        }
+        for (ns, pose, twist) in poses.into_iter().rev() {
+            if self.last_odometry_ns.is_none_or(|last_ns| last_ns < ns) {
+                self.last_odometry_ns = Some(ns);
+                self.pose(ns, &pose, &twist)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn pose(&mut self, ns: i64, pose: &Isometry2<f64>, twist: &Twist) -> Result<(), LogError> {
+        let odometry = Odometry {
+            header: header(ns, ODOM),
+            child_frame_id: BASE.to_owned(),
+            pose: PoseWithCovariance { pose: Pose::in_plane(pose), covariance: Default::default() },
+            twist: TwistWithCovariance {
+                linear: Vector { x: twist.linear_mps, ..Vector::default() },
+                angular: Vector { z: twist.angular_radps, ..Vector::default() },
+                covariance: Default::default(),
+            },
+        };
+        self.channels.write("/odom", "nav_msgs/Odometry", ns, &odometry)?;
+        self.transforms("/tf", ns, &[(MAP, ODOM, self.map_to_odom), (ODOM, BASE, *pose)])
+    }
+
+    fn transforms(
+        &mut self,
+        topic: &str,
+        ns: i64,
+        transforms: &[(&str, &str, Isometry2<f64>)],
+    ) -> Result<(), LogError> {
+        let stamped = |(parent, child, pose): &(&str, &str, Isometry2<f64>)| TransformStamped {
+            header: header(ns, parent),
+            child_frame_id: (*child).to_owned(),
+            transform: Pose::in_plane(pose),
+        };
+        let message = Transforms { transforms: transforms.iter().map(stamped).collect() };
+        self.channels.write(topic, "tf2_msgs/TFMessage", ns, &message)
+    }
+}
+
+/// The name of the first laser, or of a later one.
+fn numbered(name: &str, laser: usize) -> String {
+    if laser == 0 { name.to_owned() } else { format!("{name}_{}", laser + 1) }
+}
+
+fn header(ns: i64, frame: &str) -> Header {
+    Header { stamp: Time::from_ns(ns), frame_id: frame.to_owned() }
+}
+
+/// The scan as a message that is not stamped.
+fn scan_message(reading: &LaserReading, frame_id: String) -> LaserScan {
+    let scan = &reading.scan;
+    let steps = scan.ranges_m.len().saturating_sub(1);
+    LaserScan {
+        header: Header { stamp: Time::default(), frame_id },
+        angle_min: scan.angle_min_rad as f32,
+        angle_max: scan.angle_rad(steps) as f32,
+        angle_increment: scan.angle_increment_rad as f32,
+        time_increment: (scan.sweep_s / steps.max(1) as f64) as f32,
+        scan_time: scan.sweep_s as f32,
+        range_min: scan.range_min_m as f32,
+        range_max: scan.range_max_m as f32,
+        ranges: scan.ranges_m.clone(),
+        intensities: Vec::new(),
+    }
+}
+
+/// The motion with a velocity in a time, along an arc.
+fn moved(twist: &Twist, elapsed_s: f64) -> Isometry2<f64> {
+    let turn_rad = twist.angular_radps * elapsed_s;
+    let way_m = twist.linear_mps * elapsed_s;
+    let half = interfaces::rotation(turn_rad / 2.0);
+    // The chord of a short arc.
+    let chord_m = way_m * (1.0 - turn_rad * turn_rad / 24.0);
+    let to = half * nalgebra::Vector2::new(chord_m, 0.0);
+    interfaces::pose(to.x, to.y, heading_rad(&Isometry2::from_parts(to.into(), half * half)))
+}
