@@ -1,5 +1,5 @@
 use crate::Situation;
-use interfaces::{Cell, CellState, Grid};
+use interfaces::{Cell, CellState, Grid, Value, runs};
 use nalgebra::Point2;
 
 /// The time for which a cell counts as dynamic after a change in or beside it, s.
@@ -19,6 +19,15 @@ impl DynamicObstacleFilter {
     /// A filter without any change yet.
     pub fn new<T>(map: &Grid<T>) -> Self {
         Self { changed_at: map.map(|_| f64::NEG_INFINITY) }
+    }
+
+    /// The times of the changes.
+    pub(crate) fn value(&mut self) -> Box<dyn Value + '_> {
+        // A change longer ago counts no more.
+        let last = self.changed_at.cells().iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let old = self.changed_at.cells_mut().iter_mut().filter(|time| **time < last - MEMORY_S);
+        old.for_each(|time| *time = f64::NEG_INFINITY);
+        runs(self.changed_at.cells_mut())
     }
 
     /// Applies the changes of this update.

@@ -11,12 +11,14 @@ mod autonomous;
 mod localization;
 mod messages;
 mod pilot;
+mod session;
 mod tour;
 
 pub use autonomous::{Autonomous, Destination, GoalSelector};
 pub use localization::{ExactPoses, Localization, Permission, Posed};
 pub use messages::{Level, Message};
 pub use pilot::{Belief, GoalCount, Pilot, StrategyState};
+pub use session::Session;
 pub use tour::Tour;
 
 use agent::Features;

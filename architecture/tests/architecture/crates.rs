@@ -14,6 +14,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("agent", &["interfaces", "mapper"]),
     ("controller", &["interfaces"]),
     ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
+    ("state", &["interfaces", "mapper", "localizer", "robot"]),
     ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot"]),
     ("viewer", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "evaluation"]),
     (
@@ -27,6 +28,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "agent",
             "controller",
             "robot",
+            "state",
             "evaluation",
             "viewer",
         ],
@@ -50,6 +52,7 @@ const WITHOUT_RERUN: &[&str] = &[
     "agent",
     "controller",
     "robot",
+    "state",
     "evaluation",
 ];
 

@@ -2,8 +2,9 @@ use super::fleet::Fleet;
 use super::ground_truth::PhysicsGroundTruth;
 use super::report::{Body, Contact, ObstacleEvent, ObstacleView};
 use super::robot::RobotView;
+use super::snapshot::{self, SnapshotError};
 use super::spec::WorldSpec;
-use interfaces::{LaserReading, Twist, World};
+use interfaces::{LaserReading, Twist, Values, World, value};
 use nalgebra::{Isometry2, Point2};
 
 /// A world in which one robot is driven, with the ground truth of every cell.
@@ -93,6 +94,34 @@ impl PhysicsWorld {
     /// The obstacles that are present now, at their present poses.
     pub fn obstacles(&self) -> impl Iterator<Item = ObstacleView<'_>> {
         self.fleet.obstacles()
+    }
+
+    /// The state as bytes: that of the [fleet](Fleet::snapshot), and the ground truth. A world that was restored from them
+    /// continues bit for bit like this one.
+    pub fn snapshot(&mut self) -> Vec<u8> {
+        let mut fleet = self.fleet.snapshot();
+        let mut values = vec![value(&mut fleet)];
+        values.extend(self.values());
+        interfaces::snapshot(values)
+    }
+
+    /// Goes on from a snapshot of a world with the same spec.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are not a snapshot, are damaged, or were taken of a world with another spec. The world must not be
+    /// used then.
+    pub fn restore(&mut self, mut snapshot: &[u8]) -> Result<(), SnapshotError> {
+        let mut fleet = Vec::new();
+        snapshot::read(&mut snapshot, vec![value(&mut fleet)])?;
+        self.fleet = Fleet::restored(self.spec.fleet(), &fleet)?;
+        interfaces::restore(self.values(), snapshot).map_err(|_| SnapshotError::Damaged)
+    }
+
+    fn values(&mut self) -> Values<'_> {
+        let mut values = self.truth.values();
+        values.extend([value(&mut self.contacts), value(&mut self.obstacle_events)]);
+        values
     }
 
     /// Does one physics step.
