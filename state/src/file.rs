@@ -71,6 +71,17 @@ impl StateFile {
         Ok(Some(State::from_bytes(&bytes)?))
     }
 
+    /// Checks before a long run that the file can be written. Nothing changes.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot, or when another run is writing it.
+    pub fn check_writable(&self) -> io::Result<()> {
+        let unfinished = unfinished_name(&self.path);
+        open_unfinished(&unfinished)?;
+        fs::remove_file(unfinished)
+    }
+
     /// Whether it is time to [`save`](Self::save).
     pub fn is_due(&self) -> bool {
         self.last.elapsed() >= self.every && self.writing.as_ref().is_none_or(JoinHandle::is_finished)
@@ -104,9 +115,7 @@ impl StateFile {
 fn write(path: &Path, state: &State) -> io::Result<()> {
     let bytes = state.to_bytes();
     let unfinished = unfinished_name(path);
-    // Cut off only when it is locked: it may be the file of a run that goes on.
-    let mut file = File::options().write(true).create(true).truncate(false).open(&unfinished)?;
-    file.try_lock().map_err(|_| io::Error::other("another run is writing it"))?;
+    let mut file = open_unfinished(&unfinished)?;
     let written = file.set_len(0).and_then(|()| file.write_all(&bytes)).and_then(|()| file.sync_all());
     let renamed = written.and_then(|()| fs::rename(&unfinished, path));
     if renamed.is_err() {
@@ -115,6 +124,13 @@ fn write(path: &Path, state: &State) -> io::Result<()> {
     }
     sync_folder(path);
     Ok(())
+}
+
+fn open_unfinished(unfinished: &Path) -> io::Result<File> {
+    // Cut off only when it is locked: it may be the file of a run that goes on.
+    let file = File::options().write(true).create(true).truncate(false).open(unfinished)?;
+    file.try_lock().map_err(|_| io::Error::other("another run is writing it"))?;
+    Ok(file)
 }
 
 /// Brings the new name to the disk as well. Not every file system can do it; the file is complete under one of its names.

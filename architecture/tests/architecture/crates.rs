@@ -15,7 +15,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("controller", &["interfaces"]),
     ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
     ("state", &["interfaces", "mapper", "localizer", "robot"]),
-    ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot"]),
+    ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "state"]),
     ("viewer", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "evaluation"]),
     (
         "curious",

@@ -96,16 +96,14 @@ impl PhysicsWorld {
         self.fleet.obstacles()
     }
 
-    /// The state as bytes: that of the [fleet](Fleet::snapshot), and the ground truth. A world that was restored from them
-    /// continues bit for bit like this one.
-    pub fn snapshot(&mut self) -> Vec<u8> {
-        let mut fleet = self.fleet.snapshot();
-        let mut values = vec![value(&mut fleet)];
-        values.extend(self.values());
-        interfaces::snapshot(values)
+    /// Copies the state.
+    pub fn snapshot(&self) -> WorldSnapshot {
+        let Self { fleet, truth, contacts, obstacle_events, .. } = self;
+        let (contacts, obstacle_events) = (contacts.clone(), obstacle_events.clone());
+        WorldSnapshot { fleet: fleet.snapshot(), truth: truth.clone(), contacts, obstacle_events }
     }
 
-    /// Goes on from a snapshot of a world with the same spec.
+    /// Goes on from the bytes of a snapshot of a world with the same spec, bit for bit.
     ///
     /// # Errors
     ///
@@ -115,13 +113,8 @@ impl PhysicsWorld {
         let mut fleet = Vec::new();
         snapshot::read(&mut snapshot, vec![value(&mut fleet)])?;
         self.fleet = Fleet::restored(self.spec.fleet(), &fleet)?;
-        interfaces::restore(self.values(), snapshot).map_err(|_| SnapshotError::Damaged)
-    }
-
-    fn values(&mut self) -> Values<'_> {
-        let mut values = self.truth.values();
-        values.extend([value(&mut self.contacts), value(&mut self.obstacle_events)]);
-        values
+        let values = values(&mut self.truth, &mut self.contacts, &mut self.obstacle_events);
+        interfaces::restore(values, snapshot).map_err(|_| SnapshotError::Damaged)
     }
 
     /// Does one physics step.
@@ -151,6 +144,35 @@ impl PhysicsWorld {
             self.obstacle_events.push(ObstacleEvent { time_s, obstacle, name, appeared, cells });
         });
     }
+}
+
+/// A copy of the state of a world. It takes longer to turn it into bytes than to make it.
+#[derive(Clone, Debug)]
+pub struct WorldSnapshot {
+    fleet: Vec<u8>,
+    truth: PhysicsGroundTruth,
+    contacts: Vec<Contact>,
+    obstacle_events: Vec<ObstacleEvent>,
+}
+
+impl WorldSnapshot {
+    /// The state as bytes: that of the [fleet](Fleet::snapshot), and the ground truth.
+    pub fn into_bytes(mut self) -> Vec<u8> {
+        let mut all = vec![value(&mut self.fleet)];
+        all.extend(values(&mut self.truth, &mut self.contacts, &mut self.obstacle_events));
+        interfaces::snapshot(all)
+    }
+}
+
+/// The values of a world beside those of the fleet.
+fn values<'a>(
+    truth: &'a mut PhysicsGroundTruth,
+    contacts: &'a mut Vec<Contact>,
+    obstacle_events: &'a mut Vec<ObstacleEvent>,
+) -> Values<'a> {
+    let mut values = truth.values();
+    values.extend([value(contacts), value(obstacle_events)]);
+    values
 }
 
 /// The robots that are not driven.

@@ -89,6 +89,16 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     pub(crate) no_rrd: bool,
 
+    /// Save the state of the run in a file, at the end and every minute. If the file exists, the run goes on from there,
+    /// bit for bit as if it had never ended: give the same world, seed and settings. --duration is the simulated time
+    /// in all; the recording, the moving picture and the trajectories cover what is run now
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) state: Option<PathBuf>,
+
+    /// The wall time between two savings of the state
+    #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration_s, requires = "state", help_heading = "Output")]
+    pub(crate) state_every: f64,
+
     /// Write a moving picture of the run, a GIF file; the run takes some seconds more
     #[arg(long, value_name = "FILE", value_parser = gif, help_heading = "Output")]
     pub(crate) gif: Option<PathBuf>,
@@ -110,6 +120,17 @@ impl Args {
     /// The strategy of the agent.
     pub(crate) fn strategy(&self) -> Policy {
         self.strategy.clone().unwrap_or_default()
+    }
+}
+
+impl DriveChoice {
+    /// The name on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Agent => "agent",
+            Self::Keyboard => "keyboard",
+            Self::Tour => "tour",
+        }
     }
 }
 
