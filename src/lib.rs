@@ -1,6 +1,7 @@
 //! Code that the programs share: arguments and exit codes, worlds and warnings about them, progress, lines for the
 //! user, the keyboard pilot, trials, and experiments in shards.
 
+pub mod bag;
 pub mod keyboard;
 pub mod program;
 pub mod progress;

@@ -35,12 +35,21 @@ pub struct Progress {
     what: &'static str,
     /// The time of the next message.
     next: Mutex<Instant>,
+    /// The simulated time at which the run began, s.
+    from_s: f64,
 }
 
 impl Progress {
     /// A run of `duration_s` of simulated time. `is_raw`: the keyboard pilot uses the terminal.
     pub fn of_time(duration_s: f64, is_quiet: bool, is_raw: bool) -> Self {
         Self::new(milliseconds(duration_s), OF_TIME, FIRST, is_quiet, is_raw)
+    }
+
+    /// The same, of a run that goes on from a simulated time.
+    #[must_use]
+    pub fn from(self, from_s: f64) -> Self {
+        self.bar.set_length(self.bar.length().unwrap_or(0).saturating_sub(milliseconds(from_s)));
+        Self { from_s, ..self }
     }
 
     /// A number of trials.
@@ -68,6 +77,7 @@ impl Progress {
             kind,
             what: "trials",
             next: Mutex::new(Instant::now() + first),
+            from_s: 0.0,
         }
     }
 
@@ -88,17 +98,17 @@ impl Progress {
         }
         let state = State {
             time_s,
-            all_s: self.bar.length().unwrap_or(0) as f64 / 1000.0,
-            speed: time_s / self.bar.elapsed().as_secs_f64().max(1e-3),
+            all_s: self.from_s + self.bar.length().unwrap_or(0) as f64 / 1000.0,
+            speed: (time_s - self.from_s) / self.bar.elapsed().as_secs_f64().max(1e-3),
             coverage: coverage(),
         };
         if self.kind == Kind::Bar {
             let columns = terminal::size().map_or(NARROW, |(columns, _)| columns);
             // The text first: each of the two draws the bar.
             self.bar.set_message(state.beside_bar(columns));
-            self.bar.set_position(milliseconds(time_s));
+            self.bar.set_position(milliseconds(time_s - self.from_s));
         } else {
-            self.bar.set_position(milliseconds(time_s));
+            self.bar.set_position(milliseconds(time_s - self.from_s));
             // A raw terminal needs the carriage return.
             say(stderr(), format_args!("{state}, {}\r", self.time_left()));
         }

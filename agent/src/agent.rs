@@ -6,7 +6,7 @@ use crate::settings::{AgentSettings, Reward};
 use crate::situation::{Situation, Travel};
 use crate::strategies::Strategy;
 use crate::unseen::UnseenSpace;
-use interfaces::{RandomStream, SettingsError, Transition};
+use interfaces::{RandomStream, SettingsError, Transition, Values, value};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use std::f64::consts::LN_10;
@@ -145,6 +145,25 @@ impl Agent {
         self.chooser.learn(&Trajectory { strategy, features, reward, progress });
         self.trajectory.clear();
         self.updates = 0;
+    }
+
+    /// Everything that readings and goals have changed: what a state file holds of the agent. `mapper` is that of the same
+    /// state; what follows from it is not in the list.
+    pub fn values(&mut self, mapper: &Mapper) -> Values<'_> {
+        let mut values = vec![
+            value(&mut self.rng),
+            value(&mut self.current),
+            value(&mut self.trajectory),
+            value(&mut self.updates),
+            value(&mut self.information),
+            value(&mut self.features),
+            value(&mut self.goal_counts),
+            value(&mut self.last_reward),
+        ];
+        values.extend(self.unseen.iter_mut().flat_map(|unseen| unseen.values(mapper)));
+        values.extend(self.strategies.iter_mut().flat_map(|strategy| strategy.values(mapper)));
+        values.extend(self.chooser.values());
+        values
     }
 
     /// The names of the strategies, by index.

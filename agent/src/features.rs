@@ -1,7 +1,7 @@
 use mapper::Mapper;
 
 /// The features (p, r) by which the agent chooses a strategy (section 4).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Features {
     /// The expected number of cells that changed since they were last seen, p = Σ P(E > 0).
     pub p: f64,

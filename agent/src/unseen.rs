@@ -12,7 +12,7 @@ use crate::goal_sampler::Goal;
 use crate::situation::Situation;
 use crate::strategies::Stay;
 use crate::visibility::Regions;
-use interfaces::{Cell, CellState, GridFrame};
+use interfaces::{Cell, CellState, GridFrame, Values, value};
 use lines_of_sight::LinesOfSight;
 use mapper::Mapper;
 use std::cmp::Reverse;
@@ -33,7 +33,7 @@ const DIRECTIONS: u32 = 240;
 const MARGIN: usize = 3;
 
 /// The looks at a region of the map.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 struct Looks {
     /// The looks in a row that showed nothing new.
     failed: u32,
@@ -42,7 +42,7 @@ struct Looks {
 }
 
 /// The region that the robot goes to look at.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct Target {
     region: usize,
     /// A frontier cell in the region.
@@ -68,6 +68,12 @@ impl UnseenSpace {
         let (frame, target) = (None, None);
         let (looks, lines, frontier) = (Vec::new(), LinesOfSight::default(), Vec::new());
         Self { region_cells, range_m, frame, looks, lines, frontier, target }
+    }
+
+    /// The looks so far, and the present one.
+    pub(crate) fn values(&mut self, mapper: &Mapper) -> Values<'_> {
+        self.regions(mapper);
+        vec![value(&mut self.looks), value(&mut self.target)]
     }
 
     /// Ends the last look. Returns whether any frontier is due for a look now.

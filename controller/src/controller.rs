@@ -4,7 +4,7 @@ use crate::navigation::{LocalExploration, NavigationTask, Progress, Surroundings
 use crate::planner::{Path, Planner};
 use crate::settings::Settings;
 use crate::situation::Situation;
-use interfaces::{RandomStream, SettingsError};
+use interfaces::{CellState, Grid, RandomStream, SettingsError, Values, value};
 use nalgebra::Point2;
 
 /// The state of a controller.
@@ -21,7 +21,7 @@ pub enum Status {
 }
 
 /// The outcome of a goal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 pub enum Outcome {
     /// The robot reached the goal.
     Reached,
@@ -48,7 +48,7 @@ pub struct Controller<D: Drive> {
 }
 
 /// The present activity, with its data.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 enum State {
     Idle,
     /// A goal that was set since the last tick.
@@ -73,7 +73,7 @@ enum State {
 }
 
 /// What the robot does at the goal.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 enum AtGoal {
     Explore,
     /// Stop for this duration, s (steps in a grid world).
@@ -81,7 +81,7 @@ enum AtGoal {
 }
 
 /// A goal, and the outcome of the navigation to it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct Done {
     goal: Point2<f64>,
     outcome: Outcome,
@@ -214,14 +214,36 @@ impl<D: Drive> Controller<D> {
                 known.planner.update(situation.transitions);
                 known
             }
-            None => {
-                let body = self.drive.body();
-                let planner = Planner::new(&self.settings.inflation, body.radius_m, body.moves, map);
-                Surroundings { planner, dynamic: DynamicObstacleFilter::new(map) }
-            }
+            None => self.surroundings_of(map),
         };
         surroundings.dynamic.update(situation);
         surroundings
+    }
+
+    fn surroundings_of(&self, map: &Grid<CellState>) -> Surroundings {
+        let body = self.drive.body();
+        let planner = Planner::new(&self.settings.inflation, body.radius_m, body.moves, map);
+        Surroundings { planner, dynamic: DynamicObstacleFilter::new(map) }
+    }
+
+    /// Everything that a tick changes and a later tick needs: what a state file holds of the controller. `map` is the map
+    /// of the last tick; what follows from it is not in the list.
+    pub fn values(&mut self, map: &Grid<CellState>) -> Values<'_> {
+        let surroundings = match self.surroundings.take() {
+            Some(known) => known,
+            None => self.surroundings_of(map),
+        };
+        let surroundings = self.surroundings.insert(surroundings);
+        let mut values = vec![
+            value(&mut self.rng),
+            value(&mut self.state),
+            value(&mut self.path),
+            value(&mut self.last_change),
+            surroundings.planner.value(),
+            surroundings.dynamic.value(),
+        ];
+        values.extend(self.drive.values());
+        values
     }
 
     fn travel(&mut self, tick: &mut Tick, mut task: NavigationTask, at_goal: AtGoal) -> D::Command {

@@ -1,5 +1,5 @@
 use crate::Situation;
-use interfaces::{Cell, CellState, Grid};
+use interfaces::{Cell, CellState, Grid, Value, ValueError};
 use nalgebra::Point2;
 
 /// The time for which a cell counts as dynamic after a change in or beside it, s.
@@ -19,6 +19,33 @@ impl DynamicObstacleFilter {
     /// A filter without any change yet.
     pub fn new<T>(map: &Grid<T>) -> Self {
         Self { changed_at: map.map(|_| f64::NEG_INFINITY) }
+    }
+
+    /// The times of the changes. A change longer ago than [`MEMORY_S`] counts no more.
+    pub(crate) fn value(&mut self) -> Box<dyn Value + '_> {
+        struct Changes<'a>(&'a mut [f64]);
+
+        impl Value for Changes<'_> {
+            fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+                let last = self.0.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                let times = self.0.iter().copied().enumerate();
+                let mut recent: Vec<_> =
+                    times.filter(|(_, time)| time.is_finite() && last - time <= MEMORY_S).collect();
+                (&mut recent).write(bytes)
+            }
+
+            fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
+                let mut recent: Vec<(usize, f64)> = Vec::new();
+                (&mut recent).read(bytes)?;
+                self.0.fill(f64::NEG_INFINITY);
+                for (index, time) in recent {
+                    *self.0.get_mut(index).ok_or(ValueError)? = time;
+                }
+                Ok(())
+            }
+        }
+
+        Box::new(Changes(self.changed_at.cells_mut()))
     }
 
     /// Applies the changes of this update.

@@ -18,4 +18,5 @@ pub mod report;
 pub mod shards;
 pub mod summary;
 pub mod thinned;
+pub mod trial_state;
 pub mod trials;

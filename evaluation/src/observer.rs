@@ -26,7 +26,7 @@ pub type Curve = Thinned<CurvePoint, 1024>;
 pub type Goals = Thinned<Point2<f64>, 2048>;
 
 /// The measurements of a run so far.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct Observer {
     /// The delays between changes that a beam has shown and the map.
     pub latency: Latency,
@@ -43,6 +43,7 @@ pub struct Observer {
     /// The longest standstill of every robot.
     pub standstills: Standstills,
     /// Coverage and map quality over time.
+    #[serde(with = "saved_curve")]
     pub curve: Curve,
     /// The positions of the goals of the curious robot, m.
     pub goals: Goals,
@@ -53,6 +54,23 @@ pub struct Observer {
     pub own_contacts: usize,
     /// The messages of the last tick.
     pub messages: Vec<Message>,
+}
+
+/// The form of a curve in a state file, which has no names of fields.
+mod saved_curve {
+    use super::{Curve, CurvePoint, MapScores, Thinned};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    type Saved = Thinned<(f64, MapScores), 1024>;
+
+    pub(super) fn serialize<S: Serializer>(curve: &Curve, serializer: S) -> Result<S::Ok, S::Error> {
+        let saved: Saved = curve.clone().map(|CurvePoint { time_s, scores }| (time_s, scores));
+        saved.serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Curve, D::Error> {
+        Ok(Saved::deserialize(deserializer)?.map(|(time_s, scores)| CurvePoint { time_s, scores }))
+    }
 }
 
 impl Observer {

@@ -7,7 +7,7 @@ use crate::observer::Observer;
 use crate::summary::{Contacts, Liveliest, RunResults};
 use agent::{Agent, AgentSettings, Features, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
-use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, SettingsError, Twist};
+use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, SettingsError, Twist, World};
 use localizer::{GivenPoses, Localizer, LocalizerSettings, Start};
 use mapper::{Mapper, MapperSettings, ReadingError};
 use robot::{Autonomous, Belief, GoalSelector, Localization, Pilot, explore};
@@ -197,6 +197,8 @@ pub struct PhysicsTrial<P> {
     pub pilot: P,
     /// The measurements.
     pub observer: Observer,
+    /// The last command of a run that was ended, which the world has not executed.
+    pub(crate) pending: Option<Twist>,
 }
 
 impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
@@ -219,10 +221,11 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             Some(map) => Mapper::with_prior(&settings.mapper, map)?,
         };
         let (pose, observer) = (settings.pose, Observer::default());
-        Ok(Self { world, pose, localization, mapper, pilot, observer })
+        Ok(Self { world, pose, localization, mapper, pilot, observer, pending: None })
     }
 
-    /// Runs until `watch` breaks. `watch` is called once per reading, after the measurement.
+    /// Runs until `watch` breaks; the next call goes on from there. `watch` is called once per reading, after the
+    /// measurement.
     ///
     /// # Errors
     ///
@@ -237,11 +240,15 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             &Observer,
         ) -> Result<ControlFlow<()>, E>,
     ) -> Result<(), E> {
-        let Self { world, localization, mapper, pilot, observer, .. } = self;
-        explore(world, localization.as_mut(), mapper, pilot, |world, reading, belief, pilot| {
-            observer.observe(world, reading, belief, pilot);
-            watch(world, reading, belief, pilot, observer)
-        })
+        let Self { world, localization, mapper, pilot, observer, pending, .. } = self;
+        pending.take().into_iter().for_each(|command| world.act(&command));
+        let command =
+            explore(world, localization.as_mut(), mapper, pilot, |world, reading, belief, pilot| {
+                observer.observe(world, reading, belief, pilot);
+                watch(world, reading, belief, pilot, observer)
+            })?;
+        *pending = Some(command);
+        Ok(())
     }
 
     /// Runs until `end_s` of simulated time, or until the pilot is done.

@@ -3,7 +3,7 @@
 /// A series of at most `MOST` samples, an even number. When the series is full, every second sample is dropped, and
 /// from then on half as many samples are kept. The samples that are kept are therefore spread evenly over the whole
 /// run. The first sample and the newest sample are always kept.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub struct Thinned<T, const MOST: usize> {
     samples: Vec<T>,
     /// One in this many samples is kept.
@@ -19,6 +19,12 @@ impl<T, const MOST: usize> Default for Thinned<T, MOST> {
 }
 
 impl<T, const MOST: usize> Thinned<T, MOST> {
+    /// The same series of other samples, each made of one of these.
+    pub(crate) fn map<U>(self, of: impl FnMut(T) -> U) -> Thinned<U, MOST> {
+        let Self { samples, stride, count } = self;
+        Thinned { samples: samples.into_iter().map(of).collect(), stride, count }
+    }
+
     /// Appends the newest sample.
     pub fn push(&mut self, sample: T) {
         // The newest sample so far was kept only as the newest one.

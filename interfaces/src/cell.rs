@@ -2,7 +2,7 @@ use nalgebra::Point2;
 
 /// A cell, given by its column (`x`, to the right) and its row (`y`, upward). The numbers are signed: the neighbor
 /// of a border cell is a cell outside the grid, and never a cell of another row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Deserialize, serde::Serialize)]
 pub struct Cell {
     /// Column, counted from the left.
     pub x: i32,

@@ -2,12 +2,30 @@ use crate::Cell;
 use nalgebra::Point2;
 
 /// The position and the size of a grid: square cells, row-major, row 0 at the lowest y.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(try_from = "FrameParts", into = "FrameParts")]
 pub struct GridFrame {
     origin: Point2<f64>,
     resolution_m: f64,
     width: usize,
     height: usize,
+}
+
+/// The origin (m), the resolution (m), the width and the height.
+type FrameParts = (Point2<f64>, f64, usize, usize);
+
+impl From<GridFrame> for FrameParts {
+    fn from(GridFrame { origin, resolution_m, width, height }: GridFrame) -> Self {
+        (origin, resolution_m, width, height)
+    }
+}
+
+impl TryFrom<FrameParts> for GridFrame {
+    type Error = &'static str;
+
+    fn try_from((origin, resolution_m, width, height): FrameParts) -> Result<Self, Self::Error> {
+        Self::new(origin, resolution_m, width, height).ok_or("not the frame of a grid")
+    }
 }
 
 impl GridFrame {

@@ -2,7 +2,7 @@ use crate::{Cell, GridFrame};
 use std::borrow::Cow;
 
 /// The true state of a cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize, serde::Serialize)]
 pub enum TrueState {
     /// No solid body overlaps the cell. A body that only touches the border of the cell does not overlap the cell.
     #[default]
@@ -14,7 +14,7 @@ pub enum TrueState {
 }
 
 /// A change of the true state of a cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct TrueChange {
     /// The time of the change: seconds, or steps in a grid world.
     pub time: f64,

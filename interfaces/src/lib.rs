@@ -1,5 +1,5 @@
 //! The values and traits that the crates exchange: cells and grids, scans and readings, commands, the
-//! traits [`World`] and [`GroundTruth`], parts chosen by name, checks of settings, text that is safe to print, and
+//! traits [`World`] and [`GroundTruth`], parts chosen by name, the changing values of a part as bytes, checks of settings, text that is safe to print, and
 //! seeded random streams.
 //!
 //! This crate depends on no other crate of the workspace. It has no clock and no input or output.
@@ -20,6 +20,7 @@ mod scan;
 pub mod serde_pose;
 mod settings;
 mod state;
+mod values;
 mod world;
 
 pub use angle::{
@@ -37,4 +38,5 @@ pub use reading::{CellReading, LaserReading, Observation, Reading, VelocitySampl
 pub use scan::{Scan, ScanError};
 pub use settings::{SettingsCheck, SettingsError};
 pub use state::{CellState, Event, Transition};
+pub use values::{Value, ValueError, Values, read_values, restore, runs, snapshot, value, write_values};
 pub use world::World;

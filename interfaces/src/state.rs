@@ -1,7 +1,7 @@
 use crate::Cell;
 
 /// The state of a cell in the map.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize, serde::Serialize)]
 pub enum CellState {
     /// Never observed.
     #[default]
@@ -13,7 +13,7 @@ pub enum CellState {
 }
 
 /// A change of a known cell (paper, section 3).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize, serde::Serialize)]
 pub enum Event {
     /// From free to blocked.
     Block,
@@ -23,7 +23,7 @@ pub enum Event {
 
 /// A change of the state of a cell in an update: a first observation, a change of a known cell, or the correction
 /// of a first observation (the cell becomes unknown again, and then takes its true state).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 pub struct Transition {
     /// The cell that changed.
     pub cell: Cell,

@@ -18,7 +18,7 @@ const LEAST_M: f64 = 0.01;
 const LEAST_RAD: f64 = 0.005;
 
 /// The learned systematic errors.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Calibration {
     /// The true distance per measured distance, and its variance.
     distance: (f64, f64),

@@ -20,7 +20,7 @@ pub(crate) enum Fault {
 }
 
 /// Remembers what is needed to find faults.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct FaultFinder {
     time_s: Option<f64>,
     ranges_m: Vec<f32>,

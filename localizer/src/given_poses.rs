@@ -1,6 +1,6 @@
 use crate::path::Path;
 use crate::sweep::SweepUndo;
-use interfaces::LaserReading;
+use interfaces::{LaserReading, ValueError, value};
 use nalgebra::Isometry2;
 
 /// The poses of the source, taken as they are. The sweep of scans is undone with them.
@@ -21,5 +21,19 @@ impl GivenPoses {
             reading.scan = self.sweeps.scan(&reading, &path);
         }
         reading
+    }
+
+    /// What an earlier reading has left, as bytes.
+    pub fn snapshot(&mut self) -> Vec<u8> {
+        interfaces::snapshot(vec![value(&mut self.last)])
+    }
+
+    /// Goes on from a snapshot.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no snapshot of given poses.
+    pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        interfaces::restore(vec![value(&mut self.last)], snapshot)
     }
 }

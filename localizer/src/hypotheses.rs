@@ -20,7 +20,7 @@ const SAME_M: f64 = 0.1;
 const SAME_RAD: f64 = 0.1;
 
 /// A pose that the robot may have.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Hypothesis {
     pub(crate) pose: Isometry2<f64>,
     pub(crate) covariance: Matrix3<f64>,
@@ -31,7 +31,7 @@ pub(crate) struct Hypothesis {
 }
 
 /// All poses that the robot may have, the best first.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Hypotheses {
     list: Vec<Hypothesis>,
     /// The number of scans since the search.

@@ -1,5 +1,6 @@
 mod estimating;
 mod relocalizing;
+mod saved;
 
 use crate::calibration::Calibration;
 use crate::changing_map::ChangingMap;

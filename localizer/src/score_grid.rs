@@ -17,7 +17,7 @@ const ALONG_M: f64 = 0.08;
 const LEAST_WEIGHT: f64 = 0.1;
 
 /// The scores, from 0 to 255, at all levels.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct ScoreGrid {
     frame: GridFrame,
     /// The margin on the low sides, in cells: a square may begin outside of the map and end inside.

@@ -14,7 +14,7 @@ const END_MARGIN_M: f64 = 0.2;
 const CLEAR_WEIGHT: f64 = 0.5;
 
 /// The length of the surface that a scan saw, in weights of points.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Support {
     /// On surfels.
     pub(crate) confirmed: f64,

@@ -12,7 +12,7 @@ mod tests;
 
 pub(crate) use checking::Checker;
 
-use interfaces::GridFrame;
+use interfaces::{GridFrame, Values, runs, value};
 use nalgebra::{Point2, Vector2};
 
 /// The side of the cells, m.
@@ -33,7 +33,7 @@ const SAME_NORMAL: f64 = 0.8;
 const NONE: u32 = u32::MAX;
 
 /// A short piece of a straight surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Surfel {
     /// A point on the surface, m.
     pub(crate) at: Point2<f64>,
@@ -94,6 +94,18 @@ impl SurfelMap {
             scan: 0,
             knows_rates: false,
         }
+    }
+
+    /// Everything that scans have changed.
+    pub(crate) fn values(&mut self) -> Values<'_> {
+        vec![
+            runs(&mut self.cells),
+            value(&mut self.surfels),
+            value(&mut self.removed),
+            value(&mut self.revision),
+            value(&mut self.scan),
+            value(&mut self.knows_rates),
+        ]
     }
 
     /// The grid of the cells.

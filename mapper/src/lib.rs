@@ -28,7 +28,7 @@ pub use occupancy::{
 use derived::ExpectedChanges;
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, Observation, Reading, ScanError, SettingsCheck, SettingsError,
-    Transition, is_valid_pose,
+    Transition, ValueError, Values, is_valid_pose, value,
 };
 use nalgebra::{Isometry2, Point2};
 
@@ -188,6 +188,39 @@ impl Mapper {
         }
         self.cells.interrupt(time);
         self.expected_changes.note(&self.cells);
+    }
+
+    /// Begins another session, whose first reading will have this time or a later one: the time from the last reading on is
+    /// a gap in the view of every cell, and is left out of the mean time between readings. A time that is not after the
+    /// last reading counts as that of the last reading.
+    pub fn pause(&mut self, time: f64) {
+        self.points.clear();
+        self.cells.pause(time);
+        self.expected_changes.note(&self.cells);
+    }
+
+    /// Everything that readings have changed, as bytes; settings are not in it.
+    pub fn snapshot(&mut self) -> Vec<u8> {
+        interfaces::snapshot(self.values())
+    }
+
+    /// Goes on from the snapshot of a mapper with the same settings and the same frame, bit for bit.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no such snapshot. The mapper must not be used then.
+    pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        interfaces::restore(self.values(), snapshot)?;
+        self.cells.derive();
+        self.points.clear();
+        Ok(())
+    }
+
+    fn values(&mut self) -> Values<'_> {
+        let mut values = self.cells.values();
+        values.extend(self.occupancy.values());
+        values.push(value(&mut self.expected_changes));
+        values
     }
 
     fn project(&mut self, laser: &LaserReading) {

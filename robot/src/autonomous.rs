@@ -1,6 +1,7 @@
 use crate::{Belief, GoalCount, Level, Message, Permission, Pilot, StrategyState};
 use agent::{Agent, Features, Goal, Stay, Travel};
 use controller::{Controller, Drive, Outcome, Situation, Status};
+use interfaces::{Values, value};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 
@@ -32,6 +33,11 @@ pub trait GoalSelector {
 
     /// The strategies, if the selector has any.
     fn strategies(&self, _features: Features) -> Vec<StrategyState> {
+        Vec::new()
+    }
+
+    /// Everything that was selected and learned, as in [`Pilot::values`]. Empty for a selector that remembers nothing.
+    fn values(&mut self, _mapper: &Mapper) -> Values<'_> {
         Vec::new()
     }
 }
@@ -132,6 +138,13 @@ impl<G: GoalSelector, D: Drive> Pilot for Autonomous<G, D> {
     fn is_done(&self) -> bool {
         self.is_done
     }
+
+    fn values(&mut self, mapper: &Mapper) -> Values<'_> {
+        let mut values = self.selector.values(mapper);
+        values.extend(self.controller.values(mapper.states()));
+        values.extend([value(&mut self.goals), value(&mut self.messages), value(&mut self.is_done)]);
+        values
+    }
 }
 
 fn situation<'a>(mapper: &'a Mapper, pose: &'a Isometry2<f64>) -> Situation<'a> {
@@ -174,6 +187,10 @@ impl GoalSelector for Agent {
             Some(name) => format!("{name} (last reward {:.2})", self.last_reward()),
             None => "unseen space".into(),
         }
+    }
+
+    fn values(&mut self, mapper: &Mapper) -> Values<'_> {
+        Agent::values(self, mapper)
     }
 
     fn strategies(&self, features: Features) -> Vec<StrategyState> {

@@ -11,12 +11,14 @@ mod autonomous;
 mod localization;
 mod messages;
 mod pilot;
+mod session;
 mod tour;
 
 pub use autonomous::{Autonomous, Destination, GoalSelector};
 pub use localization::{ExactPoses, Localization, Permission, Posed};
 pub use messages::{Level, Message};
 pub use pilot::{Belief, GoalCount, Pilot, StrategyState};
+pub use session::Session;
 pub use tour::Tour;
 
 use agent::Features;
@@ -25,7 +27,8 @@ use localizer::PoseState;
 use mapper::{Mapper, ReadingError};
 use std::ops::ControlFlow;
 
-/// Runs the robot in `world` until `observe` breaks the loop.
+/// Runs the robot in `world` until `observe` breaks the loop. Returns the last command, which the world has not executed:
+/// to go on, let the world execute it first.
 ///
 /// A reading whose pose is not certain does not enter the map. `observe` is called once per reading, with the pose that
 /// the robot uses: after the mapper has integrated the reading and the pilot has decided, and before the world executes
@@ -40,7 +43,7 @@ pub fn explore<W, L, P, E>(
     mapper: &mut Mapper,
     pilot: &mut P,
     mut observe: impl FnMut(&W, &W::Reading, &Belief, &mut P) -> Result<ControlFlow<()>, E>,
-) -> Result<(), E>
+) -> Result<W::Command, E>
 where
     W: World<Reading: Reading>,
     L: Localization<W::Reading> + ?Sized,
@@ -57,7 +60,7 @@ where
         let belief = Belief { pose, estimate, permission, features, mapper };
         let command = pilot.command(&belief);
         if observe(world, &reading, &belief, pilot)?.is_break() {
-            return Ok(());
+            return Ok(command);
         }
         world.act(&command);
     }

@@ -1,4 +1,4 @@
-use interfaces::LaserReading;
+use interfaces::{LaserReading, ValueError};
 use localizer::{GivenPoses, Localizer, PoseEstimate, PoseState};
 use mapper::Mapper;
 
@@ -6,6 +6,19 @@ use mapper::Mapper;
 pub trait Localization<R> {
     /// The pose of a reading. The map contains all earlier readings whose pose was certain.
     fn localize(&mut self, reading: R, mapper: &Mapper) -> Posed<R>;
+
+    /// Everything that readings have changed, as bytes; settings are not in it.
+    fn snapshot(&mut self) -> Vec<u8>;
+
+    /// Goes on from the snapshot of a localization of the same kind, with the same settings, bit for bit.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no such snapshot. The localization must not be used then.
+    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError>;
+
+    /// Begins another session in the place that was learned, at a pose that is not known.
+    fn begin_session(&mut self);
 }
 
 /// A reading with its pose.
@@ -39,11 +52,33 @@ impl<R> Localization<R> for ExactPoses {
     fn localize(&mut self, reading: R, _: &Mapper) -> Posed<R> {
         Posed { reading, estimate: None, permission: Permission::Drive }
     }
+
+    fn snapshot(&mut self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
+    }
+
+    fn begin_session(&mut self) {}
 }
 
 impl Localization<LaserReading> for GivenPoses {
     fn localize(&mut self, reading: LaserReading, _: &Mapper) -> Posed<LaserReading> {
         Posed { reading: self.unswept(reading), estimate: None, permission: Permission::Drive }
+    }
+
+    fn snapshot(&mut self) -> Vec<u8> {
+        GivenPoses::snapshot(self)
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        GivenPoses::restore(self, snapshot)
+    }
+
+    fn begin_session(&mut self) {
+        *self = GivenPoses::default();
     }
 }
 
@@ -56,5 +91,17 @@ impl Localization<LaserReading> for Localizer {
             PoseState::Tracking | PoseState::Uncertain => Permission::Drive,
         };
         Posed { reading: localized.reading, estimate: Some(localized.estimate), permission }
+    }
+
+    fn snapshot(&mut self) -> Vec<u8> {
+        Localizer::snapshot(self)
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        Localizer::restore(self, snapshot)
+    }
+
+    fn begin_session(&mut self) {
+        Localizer::begin_session(self);
     }
 }

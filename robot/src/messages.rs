@@ -1,5 +1,5 @@
 /// The importance of a [`Message`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 pub enum Level {
     /// A decision of the robot.
     Decision,
@@ -10,7 +10,7 @@ pub enum Level {
 }
 
 /// A message of the log.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 pub struct Message {
     /// The importance of the message.
     pub level: Level,

@@ -1,10 +1,11 @@
 use crate::Message;
 use crate::Permission;
 use agent::Features;
+use interfaces::Values;
 use localizer::PoseEstimate;
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What the robot knows when it decides: the inputs of a pilot.
 #[derive(Clone, Copy, Debug)]
@@ -66,10 +67,16 @@ pub trait Pilot {
     fn is_done(&self) -> bool {
         false
     }
+
+    /// Everything that a reading changes and a later reading needs: what a state file holds of the pilot. `mapper` is that
+    /// of the same state; what follows from it is not in the list. Empty for a pilot that remembers nothing.
+    fn values(&mut self, _mapper: &Mapper) -> Values<'_> {
+        Vec::new()
+    }
 }
 
 /// The number of goals by outcome.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct GoalCount {
     /// Goals that were reached.
     pub reached: u32,

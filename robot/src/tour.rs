@@ -1,5 +1,7 @@
 use crate::{Belief, Destination, GoalSelector};
 use agent::{Stay, Travel};
+use interfaces::{Values, value};
+use mapper::Mapper;
 use nalgebra::Point2;
 
 /// A list of waypoints, visited one after the other.
@@ -26,6 +28,10 @@ impl GoalSelector for Tour {
         let position = *self.waypoints.get(self.next)?;
         self.next += 1;
         Some(Destination { position, stay: Stay::Watch(0.0) })
+    }
+
+    fn values(&mut self, _: &Mapper) -> Values<'_> {
+        vec![value(&mut self.next)]
     }
 
     fn reason(&self) -> String {

@@ -1,7 +1,7 @@
 //! The second pass as the loop of a robot: a log as a world that ignores commands.
 
 use crate::settings::SurveySettings;
-use interfaces::{LaserReading, World};
+use interfaces::{LaserReading, ValueError, World};
 use localizer::{GivenPoses, PoseEstimate, TrajectoryPose};
 use logs::LogError;
 use mapper::Mapper;
@@ -100,6 +100,18 @@ impl Localization<LaserReading> for FoundPoses {
         let (pose, covariance, support) = (reading.pose, Matrix3::zeros(), 1.0);
         let estimate = Some(PoseEstimate { pose, covariance, support, state });
         Posed { reading, estimate, permission: Permission::Drive }
+    }
+
+    fn snapshot(&mut self) -> Vec<u8> {
+        GivenPoses::snapshot(&mut self.given)
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        GivenPoses::restore(&mut self.given, snapshot)
+    }
+
+    fn begin_session(&mut self) {
+        self.given = GivenPoses::default();
     }
 }
 

@@ -23,6 +23,7 @@ mod pose;
 mod prior;
 mod screen;
 mod shards;
+mod state;
 mod targets;
 mod tour;
 mod worlds;

@@ -152,7 +152,7 @@ impl CellRow {
 
 /// The content of summary.json.
 #[derive(Clone, Debug)]
-pub(crate) struct Summary(Value);
+pub(crate) struct Summary(pub(crate) Value);
 
 impl Summary {
     /// The value at a path such as `/goals/reached`.

@@ -4,7 +4,7 @@ use crate::features::Features;
 use crate::sampling::proportional;
 use crate::settings::CuriousSettings;
 use crate::situation::Situation;
-use interfaces::RandomStream;
+use interfaces::{RandomStream, Values, value};
 
 /// The paper's learner (section 4): every strategy has a value function over (p, r) that is learned from rewards,
 /// and is chosen with a probability ∝ exp(V/τ). All values start at 0, so that the first choice is uniform.
@@ -46,6 +46,10 @@ impl Chooser for Curious {
 
     fn value(&self, strategy: usize, features: Features) -> Option<f64> {
         Some(self.values.get(strategy)?.value(features))
+    }
+
+    fn values(&mut self) -> Values<'_> {
+        vec![value(&mut self.values)]
     }
 }
 

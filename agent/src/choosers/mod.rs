@@ -12,7 +12,7 @@ pub use tile_coder::TileCoder;
 
 use crate::features::Features;
 use crate::situation::Situation;
-use interfaces::RandomStream;
+use interfaces::{RandomStream, Values};
 
 /// The result of one goal: the data from which a chooser learns.
 #[derive(Clone, Copy, Debug)]
@@ -41,5 +41,10 @@ pub trait Chooser: std::fmt::Debug + Send {
     /// chooser has no values.
     fn value(&self, _strategy: usize, _features: Features) -> Option<f64> {
         None
+    }
+
+    /// Everything that was learned: what a state file holds of the chooser. Empty for a chooser that learns nothing.
+    fn values(&mut self) -> Values<'_> {
+        Vec::new()
     }
 }

@@ -2,7 +2,7 @@ use super::{Chooser, Trajectory};
 use crate::features::Features;
 use crate::sampling::gamma;
 use crate::situation::Situation;
-use interfaces::RandomStream;
+use interfaces::{RandomStream, Values, value};
 
 /// The number of readings after which the weight of an observation of a strategy is one half.
 const MEMORY: f64 = 5000.0;
@@ -37,7 +37,7 @@ pub struct Progress {
 }
 
 /// The gain and the number of its readings, discounted.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 struct Account {
     gained: f64,
     readings: f64,
@@ -103,6 +103,10 @@ impl Chooser for Progress {
 
     fn value(&self, strategy: usize, _: Features) -> Option<f64> {
         Some(self.efficiencies().nth(strategy)? * self.mean.per_reading())
+    }
+
+    fn values(&mut self) -> Values<'_> {
+        vec![value(&mut self.mean), value(&mut self.strategies)]
     }
 }
 

@@ -12,14 +12,14 @@ const MAX_TILES: usize = 1 << 14;
 /// per tile (section 4). Tiles are stored by column and row: two tiles never share a weight. The weight of a tile
 /// is 0 until something is learned for the tile. A tiling has at most 16,384 tiles: the tiles that were visited longest
 /// ago are forgotten.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub struct TileCoder {
     /// The size of a tile in p and r.
     tile: [f64; 2],
     tilings: Vec<Tiling>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 struct Tiling {
     /// The offset of the tiling in p and r, in tiles, in [0, 1).
     offset: [f64; 2],
@@ -28,7 +28,7 @@ struct Tiling {
     visits: u64,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 struct Tile {
     weight: f64,
     /// The number of the last visit.

@@ -2,7 +2,8 @@ use super::{Pick, Stay, Strategy};
 use crate::settings::AgentSettings;
 use crate::situation::Situation;
 use crate::visibility::ViewHistory;
-use interfaces::{Cell, CellState};
+use interfaces::{Cell, CellState, Values};
+use mapper::Mapper;
 
 /// The duration of the stop at a goal, in the time unit of the readings. The stop is part of the time of a visit:
 /// without it, the next cell would always be worth more than the next room.
@@ -33,6 +34,10 @@ impl Frontier {
 impl Strategy for Frontier {
     fn name(&self) -> &'static str {
         "frontier"
+    }
+
+    fn values(&mut self, mapper: &Mapper) -> Values<'_> {
+        self.history.values(mapper)
     }
 
     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {

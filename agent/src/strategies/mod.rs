@@ -17,7 +17,8 @@ pub use random::Random;
 pub use recency::Recency;
 
 use crate::situation::Situation;
-use interfaces::Cell;
+use interfaces::{Cell, Values};
+use mapper::Mapper;
 
 /// How the agent selects the goal by the weights of a strategy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,5 +66,11 @@ pub trait Strategy: std::fmt::Debug + Send {
     /// What the robot does at the goal that was selected by the last weights.
     fn stay(&mut self, _goal: Cell) -> Stay {
         Stay::Explore
+    }
+
+    /// Everything that a goal changes and a later goal needs: what a state file holds of the strategy. `mapper` is that of
+    /// the same state; what follows from it is not in the list. Empty for a strategy that remembers nothing.
+    fn values(&mut self, _mapper: &Mapper) -> Values<'_> {
+        Vec::new()
     }
 }

@@ -2,7 +2,8 @@ use super::{Pick, Stay, Strategy};
 use crate::settings::AgentSettings;
 use crate::situation::Situation;
 use crate::visibility::ViewHistory;
-use interfaces::{Cell, CellState};
+use interfaces::{Cell, CellState, Values};
+use mapper::Mapper;
 
 /// The duration of the stop at a goal, in the time unit of the readings. The stop is part of the time of a visit.
 const WATCH: f64 = 8.0;
@@ -51,6 +52,10 @@ fn worth(leave: f64, back: f64, elapsed: f64) -> f64 {
 impl Strategy for OptimalRevisiting {
     fn name(&self) -> &'static str {
         "optimal-revisiting"
+    }
+
+    fn values(&mut self, mapper: &Mapper) -> Values<'_> {
+        self.history.values(mapper)
     }
 
     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {

@@ -1,6 +1,6 @@
 use super::{Regions, Visibility};
 use crate::Situation;
-use interfaces::{Cell, GridFrame};
+use interfaces::{Cell, GridFrame, Values, runs, value};
 use mapper::Mapper;
 
 /// Visibility, and for each cell the visits from which it should have been in view. For strategies that select a
@@ -18,7 +18,7 @@ pub(crate) struct ViewHistory {
 }
 
 /// The visits from which a cell should have been in view, whether or not it was seen.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 struct Visits {
     count: u8,
     /// The end time of the last visit.
@@ -33,12 +33,8 @@ impl ViewHistory {
 
     /// Applies the present map, and the finished visit of the last goal. Returns the regions of the map.
     pub(crate) fn update(&mut self, mapper: &Mapper) -> Regions {
-        let (regions, frame) = (self.visibility.update(mapper), *mapper.frame());
-        if self.frame != Some(frame) {
-            self.frame = Some(frame);
-            self.visits = vec![Visits::default(); frame.len()];
-            self.goal = None;
-        }
+        let regions = self.visibility.update(mapper);
+        self.set_frame(*mapper.frame());
         if let Some(goal) = self.goal.take() {
             for &region in self.visibility.seen_from(regions.of(goal)) {
                 for cell in regions.cells(region as usize) {
@@ -48,6 +44,20 @@ impl ViewHistory {
             }
         }
         regions
+    }
+
+    fn set_frame(&mut self, frame: GridFrame) {
+        if self.frame != Some(frame) {
+            self.frame = Some(frame);
+            self.visits = vec![Visits::default(); frame.len()];
+            self.goal = None;
+        }
+    }
+
+    /// The visits so far, and the present one.
+    pub(crate) fn values(&mut self, mapper: &Mapper) -> Values<'_> {
+        self.set_frame(*mapper.frame());
+        vec![runs(&mut self.visits), value(&mut self.goal)]
     }
 
     /// Begins the visit of a goal.

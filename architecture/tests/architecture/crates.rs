@@ -15,7 +15,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("controller", &["interfaces"]),
     ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
     ("survey", &["interfaces", "mapper", "localizer", "logs", "agent", "robot"]),
-    ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot"]),
+    ("state", &["interfaces", "mapper", "localizer", "robot"]),
+    ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "state"]),
     (
         "viewer",
         &[
@@ -45,6 +46,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "controller",
             "robot",
             "survey",
+            "state",
             "evaluation",
             "viewer",
         ],
@@ -69,6 +71,7 @@ const WITHOUT_RERUN: &[&str] = &[
     "controller",
     "robot",
     "survey",
+    "state",
     "evaluation",
 ];
 

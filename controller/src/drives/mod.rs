@@ -9,6 +9,7 @@ pub use diff_drive::{DiffDrive, DiffDriveSettings};
 use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::planner::{Costmap, Moves, Path};
 use crate::situation::Situation;
+use interfaces::Values;
 
 /// The properties of a robot that planning needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,4 +67,10 @@ pub trait Drive {
     /// The next command of a recovery that may free a stuck robot, `elapsed_s` after the recovery began;
     /// `None` when the recovery is over.
     fn recover(&mut self, scene: &Scene, elapsed_s: f64) -> Option<Self::Command>;
+
+    /// Everything that a command changes and a later command needs: what a state file holds of the drive. Empty for a
+    /// drive that remembers nothing.
+    fn values(&mut self) -> Values<'_> {
+        Vec::new()
+    }
 }

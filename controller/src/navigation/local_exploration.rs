@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Local exploration (paper, section 2): each step goes toward the centroid of the last change, or in a random
 /// direction if nothing changed. Counts the steps.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct LocalExploration {
     steps: u32,
     random_steps_in_a_row: u32,

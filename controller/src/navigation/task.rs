@@ -43,7 +43,7 @@ pub(crate) enum Progress<Command> {
 }
 
 /// The navigation to one goal: plans, replans, waits, recovers, gives up.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct NavigationTask {
     goal: Point2<f64>,
     start: Point2<f64>,

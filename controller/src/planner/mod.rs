@@ -11,12 +11,12 @@ pub use path::Path;
 pub use wavefront::Wavefront;
 
 use costmap::line;
-use interfaces::{Cell, CellState, Grid, Transition};
+use interfaces::{Cell, CellState, Grid, Transition, Value, ValueError};
 use nalgebra::Point2;
 use path::corners;
 
 /// The end of a plan.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct PlanEnd {
     /// Whether the path leads to the goal itself.
     pub is_goal: bool,
@@ -190,6 +190,31 @@ impl Planner {
         let end = nearest(self.goal, reach, |cell| self.wavefront.path_cost(*cell).is_some())?;
         self.wavefront.clear();
         self.wavefront.spread(costmap, end, Some(start)).then_some((end, true))
+    }
+
+    /// The last plan. What follows from the map is not in it.
+    pub(crate) fn value(&mut self) -> Box<dyn Value + '_> {
+        struct Plan<'a>(&'a mut Planner);
+
+        impl Value for Plan<'_> {
+            fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+                let Planner { on_path, goal, end, path_blocked, goal_cleared, .. } = &*self.0;
+                (&mut (on_path.clone(), *goal, *end, *path_blocked, *goal_cleared)).write(bytes)
+            }
+
+            fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
+                let planner = &mut *self.0;
+                planner.reset();
+                let mut plan = (Vec::new(), planner.goal, None, false, false);
+                (&mut plan).read(bytes)?;
+                let Planner { on_path, goal, end, path_blocked, goal_cleared, is_on_path, .. } = planner;
+                (*on_path, *goal, *end, *path_blocked, *goal_cleared) = plan;
+                on_path.iter().for_each(|cell| set(is_on_path, *cell, true));
+                Ok(())
+            }
+        }
+
+        Box::new(Plan(self))
     }
 
     fn reset(&mut self) {

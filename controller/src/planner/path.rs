@@ -2,7 +2,7 @@ use interfaces::Cell;
 use nalgebra::{Point2, Vector2};
 
 /// A path of straight lines between points, and the position of the robot on it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct Path {
     points: Vec<Point2<f64>>,
     /// The length of the path from each point to the end, m.

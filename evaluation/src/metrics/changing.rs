@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// The accuracy of the map on swept cells, sampled over a part of a run. A single sample would not be enough: swept
 /// cells are few, and all of them can be correct or incorrect at the same time.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct ChangingAccuracy {
     /// Accuracy on truly free and on truly blocked cells; an unknown cell counts as incorrect.
     all: [Mean; 2],

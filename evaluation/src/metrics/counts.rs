@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 /// How often each value from 0 to `MAX` occurred, for quantiles in bounded memory. Values are rounded to `1 / STEPS`.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(super) struct Counts<const STEPS: u32, const MAX: u32>(BTreeMap<u64, usize>);
 
 impl<const STEPS: u32, const MAX: u32> Counts<STEPS, MAX> {

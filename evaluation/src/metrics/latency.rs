@@ -21,7 +21,7 @@ pub struct Delays {
 }
 
 /// A true change of a cell. It begins with the end of the old state.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct Open {
     /// The index and the center (m) of the cell.
     index: usize,
@@ -38,7 +38,7 @@ struct Open {
 }
 
 /// Measures the delay between a change that a laser shows and the change of the map.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct Latency {
     open: Vec<Open>,
     /// For each cell one more than the position of its change in `open`; 0 without an open change.

@@ -13,7 +13,7 @@ pub(super) fn is_correct(mapped: CellState, truth: TrueState) -> Option<bool> {
 }
 
 /// The quality of the map. Both shares are 0 in a world without cells that can be seen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, Serialize)]
 pub struct MapScores {
     /// The share of the cells that can be seen that have been seen.
     pub coverage: f64,

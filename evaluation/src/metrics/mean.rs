@@ -1,5 +1,5 @@
 /// A running mean.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(super) struct Mean {
     sum: f64,
     pub(super) count: usize,

@@ -12,7 +12,7 @@ const LOCK_IN_RAD: f64 = 0.02;
 const LOCK_IN_S: f64 = 1.0;
 
 /// The errors of the poses that the robot used, compared with the true poses.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct PoseErrors {
     positions_m: Counts<100_000, MAX_ERROR_M>,
     headings_rad: Counts<1_000_000, 4>,

@@ -5,7 +5,7 @@ use mapper::Mapper;
 use serde::Serialize;
 
 /// The quality of the prediction of the state of swept cells out of view, sampled over a part of a run.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct Prediction {
     model: Mean,
     last_seen: Mean,

@@ -6,7 +6,7 @@ use nalgebra::Point2;
 const STILL_M: f64 = 0.1;
 
 /// The longest standstill of every robot so far. Turning on the spot is a standstill.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct Standstills {
     /// For each robot, the position and the time of the beginning of the present standstill, m and s.
     since: Vec<(Point2<f64>, f64)>,

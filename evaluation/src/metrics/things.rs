@@ -13,7 +13,7 @@ const RIGHT_SHARE: f64 = 0.9;
 
 /// The detection of a thing that appeared or disappeared. Times are simulated, s; `None` before the event has
 /// happened.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, serde::Deserialize, Serialize)]
 pub struct ThingReport {
     /// The name of the thing in the world file.
     pub name: String,
@@ -29,14 +29,14 @@ pub struct ThingReport {
     pub right_s: Option<f64>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 struct Thing {
     report: ThingReport,
     cells: Vec<ThingCell>,
 }
 
 /// A cell of a thing whose mapped state was the old one at the event.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct ThingCell {
     index: usize,
     shown_s: Option<f64>,
@@ -44,7 +44,7 @@ struct ThingCell {
 }
 
 /// Measures how soon each thing that appears or disappears is detected.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct Things {
     things: Vec<Thing>,
     events_taken: usize,

@@ -1,7 +1,7 @@
 use interfaces::{GroundTruth, TrueState};
 
 /// The two-state Markov chains of all cells, with the true rates so far: the reference for predictions.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct TrueChains {
     /// For each cell one more than the position of its chain in `chains`; 0 for a cell that has not changed.
     positions: Vec<u32>,
@@ -9,7 +9,7 @@ pub struct TrueChains {
 }
 
 /// The true states of one cell so far. The time in which the cell is partly covered does not count.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct TrueChain {
     state: TrueState,
     /// The time of the last change.

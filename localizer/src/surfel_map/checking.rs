@@ -15,7 +15,7 @@ const DISPLACED_M: f64 = 0.25;
 const LEAST_INCIDENCE: f64 = 0.3;
 
 /// Checks the surfels against scans, a few per scan.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Checker {
     turn: usize,
 }

@@ -12,20 +12,23 @@ const MAX_RECENT: usize = 1 << 16;
 
 /// The times of readings, by [`ReadingIndex`], in bounded memory: those of recent readings, and of older readings those
 /// that are in use.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(super) struct ReadingTimes {
     /// The older readings in use, in order, and their times.
     old: Vec<(ReadingIndex, f64)>,
     /// The times of all readings from `start` on.
+    #[serde(with = "regular_times")]
     recent: Vec<f64>,
     start: ReadingIndex,
     /// The time of the first reading after the prior.
     first: f64,
+    /// For each pause between two sessions: the first reading after it, and the sum of the pauses up to it.
+    pauses: Vec<(ReadingIndex, f64)>,
 }
 
 impl Default for ReadingTimes {
     fn default() -> Self {
-        Self { old: Vec::new(), recent: vec![0.0, 0.0], start: NEVER, first: 0.0 }
+        Self { old: Vec::new(), recent: vec![0.0, 0.0], start: NEVER, first: 0.0, pauses: Vec::new() }
     }
 }
 
@@ -36,6 +39,20 @@ impl ReadingTimes {
             self.first = time;
         }
         self.recent.push(time);
+    }
+
+    /// Begins the first reading after a pause between two sessions: the pause counts as one step.
+    pub(super) fn push_after_pause(&mut self, time: f64) {
+        let last = self.last();
+        let pause = if last > PRIOR { time - self.at(last) - self.period(last) } else { 0.0 };
+        self.push(time);
+        self.pauses.push((last + 1, pause + self.paused(last)));
+    }
+
+    /// The sum of the pauses up to a reading.
+    fn paused(&self, until: ReadingIndex) -> f64 {
+        let count = self.pauses.partition_point(|&(first, _)| first <= until);
+        self.pauses[..count].last().map_or(0.0, |&(_, sum)| sum)
     }
 
     /// The time of a reading. That of a reading that was forgotten is between those of the readings around it, as if
@@ -65,13 +82,13 @@ impl ReadingTimes {
         self.start + (self.recent.len() - 1) as ReadingIndex
     }
 
-    /// The mean time between consecutive readings, up to `until`; 0 before the second reading.
+    /// The mean time between consecutive readings, up to `until`, without pauses; 0 before the second reading.
     pub(super) fn period(&self, until: ReadingIndex) -> f64 {
         let first = PRIOR + 1;
         if until <= first {
             return 0.0;
         }
-        (self.at(until) - self.first) / f64::from(until - first)
+        (self.at(until) - self.first - self.paused(until)) / f64::from(until - first)
     }
 
     /// Whether it is time to [`forget`](Self::forget).
@@ -82,7 +99,8 @@ impl ReadingTimes {
     /// Forgets the times of the older half of the recent readings, and those of old readings, but for those `in_use`.
     pub(super) fn forget(&mut self, in_use: impl Iterator<Item = ReadingIndex>) {
         let mut is_in_use = vec![false; self.old.len() + MAX_RECENT / 2];
-        for reading in in_use.chain([NEVER]) {
+        let around_pauses = self.pauses.iter().flat_map(|&(first, _)| [first - 1, first]);
+        for reading in in_use.chain(around_pauses).chain([NEVER]) {
             let slot = match reading.checked_sub(self.start) {
                 Some(offset) => Ok(self.old.len() + offset as usize),
                 None => self.old.binary_search_by_key(&reading, |&(kept, _)| kept),
@@ -97,9 +115,48 @@ impl ReadingTimes {
     }
 }
 
+/// Times of readings that come about regularly, in about two bytes each: how far each is from where the two before it
+/// lead, in units of the last binary digit.
+mod regular_times {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    /// The bits of the number that continues the two before.
+    fn next([before, last]: [u64; 2]) -> u64 {
+        last.wrapping_add(last.wrapping_sub(before))
+    }
+
+    pub(super) fn serialize<S: Serializer>(times: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
+        let mut last = [0; 2];
+        let off = times.iter().map(|time| {
+            let off = time.to_bits().wrapping_sub(next(last)) as i64;
+            last = [last[1], time.to_bits()];
+            off
+        });
+        off.collect::<Vec<i64>>().serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
+        let mut last = [0; 2];
+        let time = |off: i64| {
+            last = [last[1], next(last).wrapping_add(off as u64)];
+            f64::from_bits(last[1])
+        };
+        Ok(Vec::<i64>::deserialize(deserializer)?.into_iter().map(time).collect())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_pause_does_not_count_as_a_time_between_readings() {
+        let mut times = ReadingTimes::default();
+        (0..5).for_each(|reading| times.push(0.5 * f64::from(reading)));
+        times.push_after_pause(1000.0);
+        (1..=5).for_each(|reading| times.push(1000.0 + 0.5 * f64::from(reading)));
+        assert_eq!((times.period(6), times.period(7), times.period(12)), (0.5, 0.5, 0.5));
+    }
 
     #[test]
     fn times_in_use_stay_exact_and_the_others_are_forgotten() {

@@ -18,7 +18,7 @@ const RENEWAL: u32 = 1 << 14;
 const LANES: usize = 4;
 
 /// The cells that ever changed, in the order of [`CellMap::changed`].
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct ExpectedChanges {
     /// The probability that the cell did not change since the last observation; 1 in view.
     survival: Vec<f64>,

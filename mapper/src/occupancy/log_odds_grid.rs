@@ -7,7 +7,7 @@ use super::footprint::cells_along;
 use super::inverse_sensor_model::{HIT_LOG_ODDS, MISS_LOG_ODDS};
 use super::projection::{BeamReturn, ProjectedScan};
 use crate::change::CellMap;
-use interfaces::CellState;
+use interfaces::{CellState, Values, runs};
 
 /// The bounds of the sum of log-odds.
 const BOUNDS: (f32, f32) = (-2.0, 3.5);
@@ -54,5 +54,9 @@ impl OccupancyModel for LogOddsGrid {
                 self.add(index, if hit == Some(index) { HIT_LOG_ODDS } else { MISS_LOG_ODDS }, cells);
             });
         }
+    }
+
+    fn values(&mut self) -> Values<'_> {
+        vec![runs(&mut self.log_odds)]
     }
 }

@@ -17,7 +17,7 @@ mod surface_grid;
 
 use crate::MapperSettings;
 use crate::change::CellMap;
-use interfaces::Cell;
+use interfaces::{Cell, Values};
 use log_odds_grid::LogOddsGrid;
 pub use projection::{BeamReturn, ProjectedScan};
 use std::fmt;
@@ -35,6 +35,10 @@ pub trait OccupancyModel: CloneModel + fmt::Debug + Send + Sync {
     fn update_cells(&mut self, states: &[(Cell, bool)], cells: &mut CellMap) {
         cells.observe_states(states);
     }
+
+    /// The evidence about all cells, and everything else that an update changes and a later update needs: what a state
+    /// file holds of the model.
+    fn values(&mut self) -> Values<'_>;
 }
 
 /// Clones a boxed model; implemented for every model that is `Clone`.

@@ -47,4 +47,4 @@ pub use spec::{
     FiducialSpec, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec,
     PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
 };
-pub use world::PhysicsWorld;
+pub use world::{PhysicsWorld, WorldSnapshot};

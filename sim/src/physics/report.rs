@@ -17,7 +17,7 @@ pub enum Body {
 
 /// The beginning of a contact between a robot and another body. The two bodies must separate by a millimeter before
 /// the next contact is counted. If two robots touch each other, there is one contact for each of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Contact {
     /// The time at which the contact began, s.
     pub time_s: f64,
@@ -37,7 +37,7 @@ pub struct Contact {
 }
 
 /// The appearance or disappearance of an obstacle.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ObstacleEvent {
     /// The time at which the obstacle really appeared or disappeared, s.
     pub time_s: f64,

@@ -3,8 +3,11 @@
 //! A snapshot does not contain the spec of the fleet. Every part of a fleet lists its changing values once, as
 //! [`Values`]; serde and postcard write them and read them in the same order.
 
+pub(super) use interfaces::{Values, value};
+
+use interfaces::{Value, ValueError, read_values, write_values};
 use nalgebra::Isometry2;
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde::{Deserialize, Serialize};
 
 /// The first eight bytes of a snapshot: the kind of data, and the version of the format.
 const MAGIC: u64 = u64::from_le_bytes(*b"fleet\0\0\x07");
@@ -23,35 +26,7 @@ pub enum SnapshotError {
     OtherSpec,
 }
 
-/// A changing value of a fleet.
-pub(super) trait Value {
-    /// Appends the value to `bytes`.
-    fn write(&self, bytes: &mut Vec<u8>) -> postcard::Result<()>;
-
-    /// Reads the value from the front of `bytes`.
-    fn read(&mut self, bytes: &mut &[u8]) -> postcard::Result<()>;
-}
-
-impl<T: Serialize + DeserializeOwned> Value for &mut T {
-    fn write(&self, bytes: &mut Vec<u8>) -> postcard::Result<()> {
-        postcard::to_io(&**self, bytes).map(|_| ())
-    }
-
-    fn read(&mut self, bytes: &mut &[u8]) -> postcard::Result<()> {
-        (**self, *bytes) = postcard::take_from_bytes(bytes)?;
-        Ok(())
-    }
-}
-
-/// The changing values of a part of a fleet, each a [`value`] or a [`pose`].
-pub(super) type Values<'a> = Vec<Box<dyn Value + 'a>>;
-
-/// A value of any type that serde can write and read.
-pub(super) fn value<'a, T: Serialize + DeserializeOwned>(value: &'a mut T) -> Box<dyn Value + 'a> {
-    Box::new(value)
-}
-
-/// A pose that serde can write and read: nalgebra is built without serde.
+/// A pose that serde can write and read as four numbers.
 #[derive(Clone, Copy, Deserialize, Serialize)]
 pub(super) struct SavedPose(#[serde(with = "interfaces::serde_pose")] pub(super) Isometry2<f64>);
 
@@ -60,12 +35,12 @@ pub(super) fn pose(pose: &mut Isometry2<f64>) -> Box<dyn Value + '_> {
     struct Pose<'a>(&'a mut Isometry2<f64>);
 
     impl Value for Pose<'_> {
-        fn write(&self, bytes: &mut Vec<u8>) -> postcard::Result<()> {
+        fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
             let saved = &mut SavedPose(*self.0);
             saved.write(bytes)
         }
 
-        fn read(&mut self, bytes: &mut &[u8]) -> postcard::Result<()> {
+        fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
             let mut saved = SavedPose(*self.0);
             (&mut saved).read(bytes)?;
             *self.0 = saved.0;
@@ -79,7 +54,7 @@ pub(super) fn pose(pose: &mut Isometry2<f64>) -> Box<dyn Value + '_> {
 /// The snapshot of a fleet with these values. `spec` is the fingerprint of its spec.
 pub(super) fn write(spec: u64, values: Values<'_>) -> Vec<u8> {
     let mut bytes = [MAGIC.to_le_bytes(), spec.to_le_bytes()].concat();
-    if values.into_iter().try_for_each(|value| value.write(&mut bytes)).is_err() {
+    if write_values(values, &mut bytes).is_err() {
         // All values of a fleet can be written. If one could not, the snapshot would be refused when read.
         bytes.clear();
     }
@@ -105,7 +80,7 @@ pub(super) fn check(snapshot: &[u8], spec: u64) -> Result<&[u8], SnapshotError> 
 
 /// Reads values from the front of `bytes`.
 pub(super) fn read(bytes: &mut &[u8], values: Values<'_>) -> Result<(), SnapshotError> {
-    values.into_iter().try_for_each(|mut value| value.read(bytes)).map_err(|_| SnapshotError::Damaged)
+    read_values(bytes, values).map_err(|_| SnapshotError::Damaged)
 }
 
 /// FNV-1a, word by word. It detects damage, but not intentional changes.

@@ -2,8 +2,9 @@ use super::fleet::Fleet;
 use super::ground_truth::PhysicsGroundTruth;
 use super::report::{Body, Contact, ObstacleEvent, ObstacleView};
 use super::robot::RobotView;
+use super::snapshot::{self, SnapshotError};
 use super::spec::WorldSpec;
-use interfaces::{LaserReading, Twist, World};
+use interfaces::{LaserReading, Twist, Values, World, value};
 use nalgebra::{Isometry2, Point2};
 
 /// A world in which one robot is driven, with the ground truth of every cell.
@@ -95,6 +96,27 @@ impl PhysicsWorld {
         self.fleet.obstacles()
     }
 
+    /// Copies the state.
+    pub fn snapshot(&self) -> WorldSnapshot {
+        let Self { fleet, truth, contacts, obstacle_events, .. } = self;
+        let (contacts, obstacle_events) = (contacts.clone(), obstacle_events.clone());
+        WorldSnapshot { fleet: fleet.snapshot(), truth: truth.clone(), contacts, obstacle_events }
+    }
+
+    /// Goes on from the bytes of a snapshot of a world with the same spec, bit for bit.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are not a snapshot, are damaged, or were taken of a world with another spec. The world must not be
+    /// used then.
+    pub fn restore(&mut self, mut snapshot: &[u8]) -> Result<(), SnapshotError> {
+        let mut fleet = Vec::new();
+        snapshot::read(&mut snapshot, vec![value(&mut fleet)])?;
+        self.fleet = Fleet::restored(self.spec.fleet(), &fleet)?;
+        let values = values(&mut self.truth, &mut self.contacts, &mut self.obstacle_events);
+        interfaces::restore(values, snapshot).map_err(|_| SnapshotError::Damaged)
+    }
+
     /// Does one physics step.
     fn advance(&mut self) {
         self.fleet.think(|robot| !robot.is_driven());
@@ -122,6 +144,35 @@ impl PhysicsWorld {
             self.obstacle_events.push(ObstacleEvent { time_s, obstacle, name, appeared, cells });
         });
     }
+}
+
+/// A copy of the state of a world. It takes longer to turn it into bytes than to make it.
+#[derive(Clone, Debug)]
+pub struct WorldSnapshot {
+    fleet: Vec<u8>,
+    truth: PhysicsGroundTruth,
+    contacts: Vec<Contact>,
+    obstacle_events: Vec<ObstacleEvent>,
+}
+
+impl WorldSnapshot {
+    /// The state as bytes: that of the [fleet](Fleet::snapshot), and the ground truth.
+    pub fn into_bytes(mut self) -> Vec<u8> {
+        let mut all = vec![value(&mut self.fleet)];
+        all.extend(values(&mut self.truth, &mut self.contacts, &mut self.obstacle_events));
+        interfaces::snapshot(all)
+    }
+}
+
+/// The values of a world beside those of the fleet.
+fn values<'a>(
+    truth: &'a mut PhysicsGroundTruth,
+    contacts: &'a mut Vec<Contact>,
+    obstacle_events: &'a mut Vec<ObstacleEvent>,
+) -> Values<'a> {
+    let mut values = truth.values();
+    values.extend([value(contacts), value(obstacle_events)]);
+    values
 }
 
 /// The robots that are not driven.

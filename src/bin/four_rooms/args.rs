@@ -89,6 +89,16 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     pub(crate) no_rrd: bool,
 
+    /// Save the state of the run in a file, at the end and every minute. If the file exists, the run goes on from there,
+    /// bit for bit as if it had never ended: give the same world, seed and settings. --duration is the simulated time
+    /// in all; the recording, the moving picture and the trajectories cover what is run now
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) state: Option<PathBuf>,
+
+    /// The wall time between two savings of the state
+    #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration_s, requires = "state", help_heading = "Output")]
+    pub(crate) state_every: f64,
+
     /// Write a moving picture of the run, a GIF file; the run takes some seconds more
     #[arg(long, value_name = "FILE", value_parser = gif, help_heading = "Output")]
     pub(crate) gif: Option<PathBuf>,
@@ -101,6 +111,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "127.0.0.1:9876", value_parser = Live::at, help_heading = "Output")]
     pub(crate) connect: Option<Live>,
 
+    /// Write the run as a bag of ROS 2 too, an MCAP file that Foxglove opens: scans, odometry, tf, maps, changes, goals
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) mcap: Option<PathBuf>,
+
     /// Print only errors
     #[arg(long, short, help_heading = "Output")]
     pub(crate) quiet: bool,
@@ -110,6 +124,17 @@ impl Args {
     /// The strategy of the agent.
     pub(crate) fn strategy(&self) -> Policy {
         self.strategy.clone().unwrap_or_default()
+    }
+}
+
+impl DriveChoice {
+    /// The name on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Agent => "agent",
+            Self::Keyboard => "keyboard",
+            Self::Tour => "tour",
+        }
     }
 }
 

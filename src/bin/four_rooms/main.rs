@@ -4,10 +4,12 @@ mod args;
 mod combination;
 mod output;
 mod parts;
+mod saves;
 
 use agent::Policy;
 use anyhow::{Context, anyhow};
 use args::{Args, DriveChoice};
+use curious::bag::RunBag;
 use curious::program::{
     BEST_STRATEGY_GAIN, Failure, INTERRUPTED, input, interrupt_flag, list_physics_worlds, start,
 };
@@ -20,7 +22,8 @@ use evaluation::physics_trial::PhysicsTrial;
 use interfaces::{Reading, Twist};
 use mapper::ReadingError;
 use parts::Parts;
-use robot::Pilot;
+use robot::{ExactPoses, Pilot};
+use saves::Saves;
 use std::io::stderr;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
@@ -67,9 +70,16 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let Parts { spec, settings, prior } = parts;
     let trial = PhysicsTrial::new(spec, args.seed, settings, prior.clone(), pilot);
     let mut trial = trial.context("cannot make the mapper").map_err(input)?;
+    let mut saves = Saves::open(args, parts, &mut trial)?;
+    let began_s = trial.mapper.time();
     let is_interrupted = interrupt_flag()?; // before any file is made
     let mut folder = RunFolder::open(&args.out).map_err(anyhow::Error::from)?;
     let mut show = show(args, Scene::from(spec.fleet()), &mut folder)?;
+    let bag = args.mcap.as_deref().map(|path| RunBag::create(path, 0.0)).transpose()?;
+    if let Some(bag) = &bag {
+        let inner = std::mem::replace(&mut trial.localization, Box::new(ExactPoses));
+        trial.localization = Box::new(bag.recorded(inner));
+    }
     let file = |name| TrajectoryFile::create(&folder.unfinished().join(name));
     let (mut used, mut truth) = (file("trajectory.tum"), file("trajectory_true.tum"));
     let reported = show.live_problem();
@@ -80,54 +90,81 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
         say(stderr(), "arrows or WASD drive, space stops, Q ends the run\r");
     }
     let speed = args.speed.unwrap_or(if is_keyboard { 1.0 } else { f64::INFINITY });
-    let progress = Progress::of_time(args.duration, args.quiet, is_keyboard);
-    let (mut ended, mut is_shown) = (Ended::Duration, true);
+    let progress = Progress::of_time(args.duration, args.quiet, is_keyboard).from(began_s);
+    if began_s > 0.0 && !args.quiet {
+        progress.say(format_args!("the run goes on from {began_s:.1} s"));
+    }
+    let mut ended = match () {
+        () if trial.pilot.is_done() => Some(Ended::Pilot),
+        () if began_s >= args.duration => Some(Ended::Duration),
+        () => None,
+    };
+    let mut is_shown = true;
     let start = Instant::now();
-    let went = trial.run_with(|world, reading, belief, pilot, observer| -> Result<_, ReadingError> {
-        let show_progress =
-            || progress.show(reading.time(), || map_scores(belief.mapper, world.truth()).coverage);
-        show_progress();
-        used.add(reading.time_s, belief.pose);
-        truth.add(reading.time_s, world.true_pose());
-        let end = match () {
-            () if is_interrupted.load(Ordering::Relaxed) => Some(Ended::Interrupted),
-            () if pilot.is_done() => Some(Ended::Pilot),
-            () if reading.time() >= args.duration => Some(Ended::Duration),
-            () => None,
-        };
-        let measured =
-            Measured { scores: observer.scores(), rate_errors: None, messages: &observer.messages };
-        if let Err(problem) = show.add(&View::new(world, reading, belief, pilot, measured), end.is_some()) {
+    while ended.is_none() {
+        let went = trial.run_with(|world, reading, belief, pilot, observer| -> Result<_, ReadingError> {
+            let show_progress =
+                || progress.show(reading.time(), || map_scores(belief.mapper, world.truth()).coverage);
+            show_progress();
+            bag.iter().for_each(|bag| bag.add(belief, pilot));
+            used.add(reading.time_s, belief.pose);
+            truth.add(reading.time_s, world.true_pose());
+            ended = match () {
+                () if is_interrupted.load(Ordering::Relaxed) => Some(Ended::Interrupted),
+                () if pilot.is_done() => Some(Ended::Pilot),
+                () if reading.time() >= args.duration => Some(Ended::Duration),
+                () => None,
+            };
+            let measured =
+                Measured { scores: observer.scores(), rate_errors: None, messages: &observer.messages };
+            if let Err(problem) =
+                show.add(&View::new(world, reading, belief, pilot, measured), ended.is_some())
+            {
+                is_shown = false;
+                progress.say(format_args!("error: {problem}; the run goes on without it"));
+            }
+            if ended.is_some() || saves.as_ref().is_some_and(Saves::is_due) {
+                return Ok(ControlFlow::Break(()));
+            }
+            if speed.is_finite() {
+                let due = Duration::from_secs_f64((reading.time() - began_s).max(0.0) / speed);
+                // In short naps: an interrupted run ends soon.
+                while start.elapsed() < due && !is_interrupted.load(Ordering::Relaxed) {
+                    std::thread::sleep(due.saturating_sub(start.elapsed()).min(NAP));
+                    show_progress();
+                }
+            }
+            Ok(ControlFlow::Continue(()))
+        });
+        went.map_err(anyhow::Error::from)?;
+        if let Some(Err(problem)) =
+            saves.as_mut().filter(|_| ended.is_none()).map(|saves| saves.save(&mut trial))
+        {
             is_shown = false;
             progress.say(format_args!("error: {problem}; the run goes on without it"));
         }
-        if let Some(end) = end {
-            ended = end;
-            return Ok(ControlFlow::Break(()));
-        }
-        if speed.is_finite() {
-            let due = Duration::from_secs_f64(reading.time() / speed);
-            // In short naps: an interrupted run ends soon.
-            while start.elapsed() < due && !is_interrupted.load(Ordering::Relaxed) {
-                std::thread::sleep(due.saturating_sub(start.elapsed()).min(NAP));
-                show_progress();
-            }
-        }
-        Ok(ControlFlow::Continue(()))
-    });
-    went.map_err(anyhow::Error::from)?;
+    }
+    let ended = ended.unwrap_or(Ended::Interrupted);
     let wall_s = start.elapsed().as_secs_f64();
     progress.finish();
     if let Some(problem) = show.live_problem().filter(|problem| Some(problem) != reported.as_ref()) {
         say(stderr(), format_args!("note: {problem}"));
     }
 
+    if let Some(Err(problem)) = saves.map(|saves| saves.finish(&mut trial)) {
+        is_shown = false;
+        say(stderr(), format_args!("error: cannot save the state: {problem}"));
+    }
+    if let Some(Err(problem)) = bag.map(RunBag::finish) {
+        is_shown = false;
+        say(stderr(), format_args!("error: cannot write the bag: {problem:#}"));
+    }
     for problem in [used, truth].into_iter().filter_map(|file| file.finish().err()) {
         is_shown = false;
         say(stderr(), format_args!("error: cannot write a trajectory: {problem}"));
     }
 
-    let mut summary = output::summary(args, settings, &trial, ended, wall_s);
+    let mut summary = output::summary(args, settings, &trial, ended, began_s, wall_s);
     let PhysicsTrial { mapper, pilot, observer, .. } = trial;
     drop(pilot); // restores the terminal before anything is printed
     output::write(folder, &mapper, &show, &observer.goals, &mut summary)?;

@@ -42,6 +42,7 @@ pub(crate) fn summary(
     settings: &PhysicsSettings,
     trial: &PhysicsTrial<impl Pilot<Command = Twist>>,
     ended: Ended,
+    began_s: f64,
     wall_s: f64,
 ) -> Summary {
     let simulated_s = trial.mapper.time();
@@ -51,11 +52,7 @@ pub(crate) fn summary(
         settings: serde_json::to_value(settings).unwrap_or_default(),
         world: trial.world.spec().name.clone(),
         seed: args.seed,
-        drive: match args.drive {
-            DriveChoice::Agent => "agent",
-            DriveChoice::Keyboard => "keyboard",
-            DriveChoice::Tour => "tour",
-        },
+        drive: args.drive.name(),
         strategy: (args.drive == DriveChoice::Agent).then(|| args.strategy().name()),
         estimator: args.estimator.name(),
         occupancy: args.occupancy.name(),
@@ -67,7 +64,7 @@ pub(crate) fn summary(
         },
         simulated_s,
         wall_s,
-        real_time_factor: simulated_s / wall_s.max(f64::MIN_POSITIVE),
+        real_time_factor: (simulated_s - began_s) / wall_s.max(f64::MIN_POSITIVE),
         files: Vec::new(),
         results: trial.results(),
     }

@@ -14,6 +14,7 @@ use evaluation::physics_trial::PhysicsSettings;
 use interfaces::{CellState, Grid, Twist};
 use robot::{Autonomous, Tour};
 use sim::physics::WorldSpec;
+use state::Facts;
 use std::io::stderr;
 use std::path::Path;
 use worldfile::ros_map;
@@ -71,6 +72,16 @@ impl Parts {
         let TourSpec { waypoints, repeat } = tour.map_err(input)?;
         combination::waypoints(&self.spec, &waypoints).iter().for_each(warn);
         self.settings.pilot(Tour::new(waypoints, repeat), args.seed).map_err(input)
+    }
+
+    /// What the state of a pilot belongs to, beside the settings.
+    pub(crate) fn pilot_facts(&self, args: &Args) -> Facts {
+        let facts = Facts::default().with("--drive", args.drive.name());
+        match (args.drive, &args.tour) {
+            (DriveChoice::Agent, _) => facts.with("--strategy", args.strategy().name()),
+            (DriveChoice::Tour, Some(tour)) => facts.with("--tour", tour.display()),
+            _ => facts,
+        }
     }
 
     pub(crate) fn keyboard(&self) -> Result<Keyboard, Failure> {

@@ -98,6 +98,10 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     pub(crate) no_rrd: bool,
 
+    /// Write the run as a bag of ROS 2 too, an MCAP file that Foxglove opens: scans, odometry, tf, maps, changes, goals
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) mcap: Option<PathBuf>,
+
     /// Print only errors
     #[arg(long, short, help_heading = "Output")]
     pub(crate) quiet: bool,

@@ -38,6 +38,11 @@ impl Job<'_> {
         self.is_interrupted.load(Ordering::Relaxed)
     }
 
+    /// The time of the first reading, in seconds since the epoch; 0 if the logs do not say it.
+    fn begin_s(&self) -> f64 {
+        self.sources.first().and_then(|source| source.log.summary().begin_s).unwrap_or_default()
+    }
+
     /// Prints a line about the work to the error output.
     fn say(&self, line: std::fmt::Arguments) {
         if !self.args.quiet {

@@ -3,12 +3,14 @@
 use crate::Job;
 use crate::logs_in_order::Source;
 use anyhow::{Context, anyhow};
+use curious::bag::RunBag;
 use curious::program::{Failure, input};
 use curious::progress::Progress;
 use curious::terminal::say;
 use evaluation::output::TrajectoryFile;
+use interfaces::LaserReading;
 use mapper::{Mapper, ReadingError};
-use robot::explore;
+use robot::{Localization, explore};
 use std::io::stderr;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -51,12 +53,17 @@ pub(crate) fn learn(job: &Job, sessions: &[Session], folder: &Path) -> Result<Le
         is_shown: true,
     };
     let mut trajectory = TrajectoryFile::create(&folder.join("trajectory.tum"));
+    let bag = job.args.mcap.as_deref().map(|path| RunBag::create(path, job.begin_s())).transpose()?;
     let last = job.sources.len() - 1;
     for (number, (source, session)) in job.sources.iter().zip(sessions).enumerate() {
-        learned.replay(job, source, session, &mut trajectory, number == last)?;
+        learned.replay(job, source, session, (&mut trajectory, bag.as_ref()), number == last)?;
         if learned.is_interrupted {
             break;
         }
+    }
+    if let Some(Err(problem)) = bag.map(RunBag::finish) {
+        learned.is_shown = false;
+        say(stderr(), format_args!("error: cannot write the bag: {problem:#}"));
     }
     if let Err(problem) = trajectory.finish() {
         learned.is_shown = false;
@@ -72,7 +79,7 @@ impl Learned {
         job: &Job,
         source: &Source,
         session: &Session,
-        trajectory: &mut TrajectoryFile,
+        (trajectory, bag): (&mut TrajectoryFile, Option<&RunBag>),
         is_last_log: bool,
     ) -> Result<(), Failure> {
         job.say(format_args!("{}: learning what changes", source.name));
@@ -80,12 +87,17 @@ impl Learned {
         let replay = Replay::new(readings, &job.settings, source.offset_s).map_err(input)?;
         let changed = || anyhow!("{}: the log has changed since the first pass", source.name);
         let mut replay = replay.ok_or_else(|| input(changed()))?;
-        let mut poses = FoundPoses::new(session.poses.clone());
+        let found = Box::new(FoundPoses::new(session.poses.clone()));
+        let mut poses: Box<dyn Localization<LaserReading>> = match bag {
+            Some(bag) => Box::new(bag.recorded(found)),
+            None => found,
+        };
         let progress = Progress::of_scans(source.log.summary().scans, job.args.quiet);
         let Self { mapper, changes, show, is_interrupted, is_shown } = self;
-        explore(&mut replay, &mut poses, mapper, &mut Passenger, |replay, reading, belief, pilot| {
+        explore(&mut replay, poses.as_mut(), mapper, &mut Passenger, |replay, reading, belief, pilot| {
             progress.step();
             changes.note(belief.mapper);
+            bag.into_iter().for_each(|bag| bag.add(belief, pilot));
             trajectory.add(reading.time_s, belief.pose);
             *is_interrupted = job.is_interrupted();
             let is_over = *is_interrupted || replay.is_over();

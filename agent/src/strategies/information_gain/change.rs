@@ -7,7 +7,7 @@
 
 use super::clusters::{Clusters, Position};
 use super::rates::{BINS, Distribution, Gains, RATES, Rates};
-use interfaces::CellState;
+use interfaces::{CellState, Values, value};
 use mapper::Mapper;
 
 /// θ far from all cells that changed, and the weight of this prior, in cells.
@@ -68,6 +68,11 @@ impl Change {
     fn distribution(&self, rates: &Rates, cluster_rate: f64) -> Distribution {
         let around = rates.around(cluster_rate);
         std::array::from_fn(|rate| SAME_RATE * around[rate] + (1.0 - SAME_RATE) * self.distribution[rate])
+    }
+
+    /// What was learned; the distribution of the rates is learned anew for every goal.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        vec![value(&mut self.far), value(&mut self.middle)]
     }
 
     /// Learns the distribution of the rates from the number of changed cells with each rate.

@@ -13,7 +13,7 @@ use crate::situation::Situation;
 use crate::visibility::{Regions, Visibility};
 use change::Change;
 use clusters::{Clusters, Position};
-use interfaces::{Cell, CellState};
+use interfaces::{Cell, CellState, Values, value};
 use mapper::Mapper;
 use occlusion::Occlusion;
 use rates::{Gains, RATES, Rates, WATCHES};
@@ -177,6 +177,12 @@ impl Strategy for InformationGain {
         }
         let watched = |region| view_reliability::watched(mapper, &regions, region);
         self.plan = Some(Plan { regions, watches, watched: (0..regions.count()).map(watched).collect() });
+    }
+
+    fn values(&mut self, _: &Mapper) -> Values<'_> {
+        let mut values = self.change.values();
+        values.push(value(&mut self.reliability));
+        values
     }
 
     fn pick(&self) -> Pick {

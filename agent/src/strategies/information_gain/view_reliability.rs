@@ -9,7 +9,7 @@ const TRUST: f64 = 10.0;
 
 /// A visit: the region, the planned duration, and for each region in view the time that it had been observed
 /// before.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 struct Visit {
     region: usize,
     duration: f64,
@@ -19,7 +19,7 @@ struct Visit {
 /// For each region, the observations from there: for each region in view, the time for which it should have been
 /// seen, and the time for which it was seen. Without this record the robot could stay forever at a place from which
 /// it cannot see the cells that it came for, for example behind an obstacle that waits for the robot itself.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(super) struct ViewReliability {
     observations: Vec<Vec<[f32; 2]>>,
     visit: Option<Visit>,

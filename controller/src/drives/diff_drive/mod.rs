@@ -8,7 +8,7 @@ pub use settings::DiffDriveSettings;
 use super::{Body, Drive, Scene};
 use crate::planner::{Costmap, Moves, Path};
 use collision_monitor::CollisionMonitor;
-use interfaces::{SettingsError, Twist};
+use interfaces::{SettingsError, Twist, Values, value};
 use nalgebra::Point2;
 use std::f64::consts::PI;
 
@@ -70,6 +70,10 @@ impl DiffDrive {
 
 impl Drive for DiffDrive {
     type Command = Twist;
+
+    fn values(&mut self) -> Values<'_> {
+        vec![value(&mut self.is_turning), value(&mut self.last), value(&mut self.last_time_s)]
+    }
 
     fn body(&self) -> Body {
         let DiffDriveSettings { radius_m, tolerance_m, max_linear_mps, .. } = self.settings;

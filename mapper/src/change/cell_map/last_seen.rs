@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, VecDeque};
 const MAX_RECENT: usize = 1 << 14;
 
 /// For each reading, the number of candidates that were last observed by that reading.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(super) struct LastSeenCounts {
     /// For the readings before `start`; only numbers above 0. A candidate that is never observed again does not need
     /// more memory with every reading.

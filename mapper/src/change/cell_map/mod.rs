@@ -4,6 +4,7 @@ mod last_seen;
 mod observing;
 mod queries;
 mod record;
+mod saved;
 mod state_change;
 
 use super::EstimatorChoice;
@@ -87,18 +88,30 @@ impl CellMap {
 
     /// Opens the next reading.
     pub(crate) fn open(&mut self, time: f64) {
+        self.prepare();
+        self.times.push(time);
+    }
+
+    fn prepare(&mut self) {
         self.transitions.clear();
         self.returned.clear();
         if self.times.is_full() {
             self.forget_times();
         }
-        self.times.push(time);
         self.last_seen_counts.open();
     }
 
     /// Opens a reading that observes no cell, and ends the view of all cells.
     pub(crate) fn interrupt(&mut self, time: f64) {
         self.open(time);
+        self.interrupted = self.reading();
+    }
+
+    /// Opens a reading that observes no cell, a step before the first reading after a pause between two sessions.
+    pub(crate) fn pause(&mut self, until: f64) {
+        let (last, period) = (self.time(), self.times.period(self.reading()));
+        self.prepare();
+        self.times.push_after_pause((until - period).max(last));
         self.interrupted = self.reading();
     }
 
@@ -112,8 +125,7 @@ impl CellMap {
     /// A cell is a candidate if it is free, or shares a side with a free cell (a frontier cell or a surface). The
     /// inside of a wall never is a candidate.
     fn update_candidate(&mut self, index: usize) {
-        let is_free = |index: usize| self.state(index) == CellState::Free;
-        let is = is_free(index) || self.frame().beside(index).any(is_free);
+        let is = self.is_free_or_beside(index);
         if is != self.candidates[index] {
             self.candidates[index] = is;
             self.last_seen_counts.count(self.last_reading(index), is);

@@ -3,7 +3,7 @@ use interfaces::CellState;
 use std::num::NonZeroU32;
 
 /// The change record of one cell. The last observation changes with every reading and is stored separately.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(super) struct Record {
     /// The first observation.
     pub(super) first: ReadingIndex,

@@ -44,7 +44,7 @@ impl GapBin {
 }
 
 /// A gap in the view of a cell.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 pub(in crate::change) struct Gap {
     /// The last reading before the gap, and the first after it.
     pub(in crate::change) start: ReadingIndex,
@@ -65,7 +65,7 @@ impl Gap {
 }
 
 /// All gaps of one cell, by length and by the states before and after.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct GapHistogram {
     /// In the order of their keys.
     bins: Vec<GapBin>,

@@ -21,7 +21,7 @@ const DOUBT: f64 = 4.0;
 const BETWEEN: [f64; 2] = [0.15, 0.4];
 
 /// How often two consecutive stays of a cell are equal, over all cells of the map.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(in crate::change) struct Regularity {
     /// For each state: the number of equal pairs, minus the number expected of Markov chains.
     equal: [f64; 2],

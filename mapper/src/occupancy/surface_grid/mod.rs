@@ -33,7 +33,7 @@ use super::projection::ProjectedScan;
 use super::segmentation::Segmentation;
 use crate::change::{CellMap, ReadingIndex};
 use bodies::{Body, NewHit};
-use interfaces::CellState;
+use interfaces::{CellState, Values, runs};
 use nalgebra::Point2;
 pub use settings::SurfaceGridSettings;
 
@@ -41,7 +41,7 @@ pub use settings::SurfaceGridSettings;
 const SURFACE_MEMORY: u16 = 32;
 
 /// The hits in a cell.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
 struct Surface {
     /// The mean of the points that were hit, relative to the lower left corner of the grid, m.
     point_m: [f32; 2],
@@ -121,5 +121,9 @@ impl OccupancyModel for SurfaceGrid {
         }
         self.misses(scan, cells);
         self.bodies(scan, cells);
+    }
+
+    fn values(&mut self) -> Values<'_> {
+        vec![runs(&mut self.surfaces)]
     }
 }

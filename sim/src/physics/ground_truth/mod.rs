@@ -10,7 +10,7 @@ mod tests;
 
 use super::report::Body;
 use super::shape::Rectangle;
-use interfaces::{Cell, GridFrame, GroundTruth, TrueChange, TrueState};
+use interfaces::{Cell, GridFrame, GroundTruth, TrueChange, TrueState, Values, runs, value};
 use nalgebra::Point2;
 use open_share::Cover;
 use robots::UnderChange;
@@ -86,6 +86,24 @@ impl PhysicsGroundTruth {
     /// disappears. `None` for static cells.
     pub fn movers(&self) -> &[Option<Body>] {
         &self.movers
+    }
+
+    /// The values that a snapshot holds; walls and the reachable cells follow from the spec.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        vec![
+            value(&mut self.elapsed_s),
+            runs(&mut self.states),
+            runs(&mut self.fixed),
+            runs(&mut self.overlapped),
+            runs(&mut self.covered),
+            value(&mut self.under),
+            runs(&mut self.armed),
+            runs(&mut self.block_events),
+            runs(&mut self.pass_events),
+            runs(&mut self.movers),
+            runs(&mut self.swept),
+            value(&mut self.changes),
+        ]
     }
 
     /// Starts a new list of changes.

@@ -1,0 +1,98 @@
+//! A run in a physics world in a state file: a run that goes on from there equals one that was never interrupted, bit for
+//! bit.
+
+use crate::observer::Observer;
+use crate::physics_trial::{PhysicsSettings, PhysicsTrial, PoseChoice};
+use interfaces::{Twist, Values, value};
+use robot::Pilot;
+use sim::physics::{WorldSnapshot, WorldSpec};
+use state::{Facts, MindFacts, MindSnapshot, State, StateError};
+use xxhash_rust::xxh3::xxh3_64;
+
+const WORLD: &str = "world";
+const PILOT: &str = "pilot";
+const MEASUREMENTS: &str = "measurements";
+
+/// What the state of a run belongs to.
+#[derive(Clone, Debug)]
+pub struct TrialFacts {
+    mind: MindFacts,
+    world: Facts,
+    pilot: Facts,
+}
+
+impl TrialFacts {
+    /// The facts of a run. `pilot` is what its pilot is made of, beside the settings.
+    pub fn new(spec: &WorldSpec, seed: u64, settings: &PhysicsSettings, pilot: Facts) -> Self {
+        let PhysicsSettings { mapper, agent, controller, drive, pose, localizer } = settings;
+        let localizer = (*pose == PoseChoice::Localized).then_some(localizer);
+        let content = xxh3_64(format!("{spec:?}").as_bytes());
+        let world = Facts::default()
+            .with("world", &spec.name)
+            .with("content of the world", format!("{content:016x}"))
+            .with("seed", seed);
+        let pilot = pilot
+            .with_settings("agent", agent)
+            .with_settings("controller", controller)
+            .with_settings("drive", drive);
+        Self { mind: MindFacts::new(mapper, &spec.frame, pose.name(), localizer), world, pilot }
+    }
+}
+
+/// A copy of the state of a run. A thread can turn it into bytes while the run goes on.
+#[derive(Clone, Debug)]
+pub struct TrialSnapshot {
+    facts: TrialFacts,
+    mind: MindSnapshot,
+    world: WorldSnapshot,
+    pilot: Vec<u8>,
+    observer: Observer,
+}
+
+impl TrialSnapshot {
+    /// The state for a file.
+    pub fn into_state(self) -> State {
+        let Self { facts, mind, world, pilot, mut observer } = self;
+        let state = State::default()
+            .with(WORLD, facts.world.clone(), world.into_bytes())
+            .with(PILOT, facts.pilot, pilot)
+            .with(MEASUREMENTS, facts.world, interfaces::snapshot(vec![value(&mut observer)]));
+        mind.added_to(state)
+    }
+}
+
+impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
+    /// Copies the state of a run between two calls of [`run_with`](Self::run_with). This is short.
+    pub fn snapshot(&mut self, facts: &TrialFacts) -> TrialSnapshot {
+        TrialSnapshot {
+            facts: facts.clone(),
+            mind: facts.mind.snapshot(&self.mapper, self.localization.as_mut()),
+            world: self.world.snapshot(),
+            pilot: interfaces::snapshot(self.pilot_values()),
+            observer: self.observer.clone(),
+        }
+    }
+
+    /// Goes on from a state that a run with the same facts has saved.
+    ///
+    /// # Errors
+    ///
+    /// When the state is of another run; the error names what differs. The run must not be used then.
+    pub fn restore(&mut self, state: &State, facts: &TrialFacts) -> Result<(), StateError> {
+        let misfit = |part: &str| StateError::OtherContent(part.to_owned());
+        let world = state.section(WORLD, &facts.world)?;
+        let (pilot, observer) =
+            (state.section(PILOT, &facts.pilot)?, state.section(MEASUREMENTS, &facts.world)?);
+        facts.mind.restore(state, &mut self.mapper, self.localization.as_mut())?;
+        self.world.restore(world).map_err(|_| misfit(WORLD))?;
+        interfaces::restore(self.pilot_values(), pilot).map_err(|_| misfit(PILOT))?;
+        interfaces::restore(vec![value(&mut self.observer)], observer).map_err(|_| misfit(MEASUREMENTS))
+    }
+
+    /// The values of the pilot and of its last command.
+    fn pilot_values(&mut self) -> Values<'_> {
+        let mut values = self.pilot.values(&self.mapper);
+        values.push(value(&mut self.pending));
+        values
+    }
+}

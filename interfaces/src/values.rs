@@ -1,0 +1,151 @@
+//! The changing values of a part, as bytes, so that the part can go on later where it stopped.
+//!
+//! Every part lists its changing values once, as [`Values`]; serde and postcard write them and read them in the same
+//! order. Settings, and what follows from settings and other values, are not in the list: the part that reads the
+//! values was made with the same settings.
+
+use serde::{Serialize, de::DeserializeOwned};
+
+/// The error for bytes that are not the values of a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("these bytes are not the values of this part")]
+pub struct ValueError;
+
+/// A changing value of a part.
+pub trait Value {
+    /// Appends the value to `bytes`.
+    ///
+    /// # Errors
+    ///
+    /// When the value has no form as bytes.
+    fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError>;
+
+    /// Reads the value from the front of `bytes`.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no such value.
+    fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError>;
+}
+
+impl<T: Serialize + DeserializeOwned> Value for &mut T {
+    fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+        postcard::to_io(&**self, bytes).map(|_| ()).map_err(|_| ValueError)
+    }
+
+    fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
+        (**self, *bytes) = postcard::take_from_bytes(bytes).map_err(|_| ValueError)?;
+        Ok(())
+    }
+}
+
+/// The changing values of a part.
+pub type Values<'a> = Vec<Box<dyn Value + 'a>>;
+
+/// A value of any type that serde can write and read.
+pub fn value<'a, T: Serialize + DeserializeOwned>(value: &'a mut T) -> Box<dyn Value + 'a> {
+    Box::new(value)
+}
+
+/// Appends values to `bytes`.
+///
+/// # Errors
+///
+/// When a value has no form as bytes.
+pub fn write_values(values: Values<'_>, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+    values.into_iter().try_for_each(|value| value.write(bytes))
+}
+
+/// Reads values from the front of `bytes`.
+///
+/// # Errors
+///
+/// When the bytes are not these values.
+pub fn read_values(bytes: &mut &[u8], values: Values<'_>) -> Result<(), ValueError> {
+    values.into_iter().try_for_each(|mut value| value.read(bytes))
+}
+
+/// The snapshot of a part: its changing values.
+pub fn snapshot(values: Values<'_>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    // All our values can be written. If one could not, the snapshot would be refused when it is restored.
+    if write_values(values, &mut bytes).is_err() {
+        bytes.clear();
+    }
+    bytes
+}
+
+/// Reads the values of a part from its snapshot.
+///
+/// # Errors
+///
+/// When the bytes are not the snapshot of such a part; some values are read then.
+pub fn restore(values: Values<'_>, mut snapshot: &[u8]) -> Result<(), ValueError> {
+    read_values(&mut snapshot, values)?;
+    if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
+}
+
+/// One value per cell of a grid, of which many that follow each other are equal: each is written once, with the number of
+/// cells that have it. Reading needs a list of the same length.
+pub fn runs<'a, T: Clone + Serialize + DeserializeOwned>(list: &'a mut [T]) -> Box<dyn Value + 'a> {
+    struct Runs<'a, T>(&'a mut [T]);
+
+    impl<T: Clone + Serialize + DeserializeOwned> Value for Runs<'_, T> {
+        fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+            // Compared by their bytes: 0 and -0 are equal numbers, and differ.
+            let (mut run, mut next, mut length) = (Vec::new(), Vec::new(), 0usize);
+            let end = |run: &[u8], mut length: usize, bytes: &mut Vec<u8>| {
+                (&mut length).write(bytes)?;
+                bytes.extend_from_slice(run);
+                Ok(())
+            };
+            for item in &*self.0 {
+                next.clear();
+                postcard::to_io(item, &mut next).map_err(|_| ValueError)?;
+                if length > 0 && run != next {
+                    end(&run, std::mem::take(&mut length), bytes)?;
+                }
+                length += 1;
+                std::mem::swap(&mut run, &mut next);
+            }
+            if length > 0 { end(&run, length, bytes) } else { Ok(()) }
+        }
+
+        fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
+            let mut rest = &mut *self.0;
+            while !rest.is_empty() {
+                let (length, value): (usize, T);
+                ((length, value), *bytes) = postcard::take_from_bytes(bytes).map_err(|_| ValueError)?;
+                let is_run = (1..=rest.len()).contains(&length);
+                let (run, others) = rest.split_at_mut(if is_run { length } else { return Err(ValueError) });
+                run.fill(value);
+                rest = others;
+            }
+            Ok(())
+        }
+    }
+
+    Box::new(Runs(list))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_and_runs_come_back() {
+        let (mut number, mut list) = (7u64, vec![0.5, 0.5, 0.5, -1.0, 2.0, 2.0]);
+        let mut bytes = Vec::new();
+        write_values(vec![value(&mut number), runs(&mut list)], &mut bytes).unwrap();
+        assert_eq!(bytes.len(), 1 + 3 * 9);
+        let (mut again, mut same) = (0u64, vec![0.0; 6]);
+        let mut front = &bytes[..];
+        read_values(&mut front, vec![value(&mut again), runs(&mut same)]).unwrap();
+        assert!((again, &same) == (number, &list) && front.is_empty());
+        // A shorter and a longer list, and too few bytes.
+        for (cells, length) in [(5, bytes.len()), (7, bytes.len()), (6, bytes.len() - 1)] {
+            let mut other = vec![0.0; cells];
+            assert_eq!(read_values(&mut &bytes[1..length], vec![runs(&mut other)]), Err(ValueError));
+        }
+    }
+}

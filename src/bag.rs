@@ -1,0 +1,175 @@
+//! `--mcap`: a run as a bag of ROS 2.
+
+use evaluation::output::UnfinishedFile;
+use interfaces::{CellState, Grid, LaserReading, ValueError};
+use logs::{LogError, McapWriter};
+use mapper::Mapper;
+use nalgebra::{Isometry2, Point2};
+use robot::{Belief, Localization, Pilot, Posed};
+use std::cell::RefCell;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+use std::rc::Rc;
+
+/// The time between two maps, and between two maps of changes and predictions, s.
+const MAP_S: f64 = 1.0;
+const CHANGES_S: f64 = 10.0;
+/// A cell that changes once in this time has a change of 63 % in the map of changes, s.
+const HORIZON_S: f64 = 600.0;
+
+/// A bag that is being written. It has its name when it is complete. The first error ends the bag, not the run;
+/// [`finish`](Self::finish) reports it.
+pub struct RunBag {
+    file: UnfinishedFile,
+    tape: Rc<RefCell<Tape>>,
+}
+
+/// What is written, and what was written last.
+struct Tape {
+    writer: Result<McapWriter<BufWriter<File>>, LogError>,
+    odometry: Isometry2<f64>,
+    correction: Option<Isometry2<f64>>,
+    goal: Option<Point2<f64>>,
+    path: Vec<Point2<f64>>,
+    next_map_s: f64,
+    next_changes_s: f64,
+}
+
+/// A localization whose readings, as they come from their source, are written to a bag.
+pub struct Recorded<L: ?Sized> {
+    tape: Rc<RefCell<Tape>>,
+    inner: Box<L>,
+}
+
+impl RunBag {
+    /// Creates the bag. `begin_s` is the time 0 of the readings, in seconds since the epoch; 0 in a simulation.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be written.
+    pub fn create(path: &Path, begin_s: f64) -> anyhow::Result<Self> {
+        let file = UnfinishedFile::create(path)?;
+        let to = BufWriter::new(file.file().try_clone()?);
+        let tape = Tape {
+            writer: Ok(McapWriter::new(to, &path.display().to_string(), begin_s)?),
+            odometry: Isometry2::identity(),
+            correction: None,
+            goal: None,
+            path: Vec::new(),
+            next_map_s: f64::NEG_INFINITY,
+            next_changes_s: f64::NEG_INFINITY,
+        };
+        Ok(Self { file, tape: Rc::new(RefCell::new(tape)) })
+    }
+
+    /// A localization that writes every reading to this bag before it gives the reading its pose.
+    pub fn recorded<L: ?Sized>(&self, inner: Box<L>) -> Recorded<L> {
+        Recorded { tape: self.tape.clone(), inner }
+    }
+
+    /// Writes what the robot knows after a reading: its pose, its maps, changes, goal and path.
+    pub fn add(&self, belief: &Belief, pilot: &impl Pilot) {
+        let mut tape = self.tape.borrow_mut();
+        if let Err(problem) = tape.add(belief, pilot.goal(), pilot.path()) {
+            tape.writer = Err(problem);
+        }
+    }
+
+    /// Completes the bag.
+    ///
+    /// # Errors
+    ///
+    /// When a part of it could not be written. There is no file then.
+    pub fn finish(self) -> anyhow::Result<()> {
+        let mut tape = self.tape.borrow_mut();
+        let ended = Err(LogError::Unusable { file: String::new(), why: "the bag is complete".to_owned() });
+        std::mem::replace(&mut tape.writer, ended)?.finish()?;
+        Ok(self.file.finish()?)
+    }
+}
+
+impl Tape {
+    fn reading(&mut self, reading: &LaserReading) {
+        self.odometry = reading.pose;
+        let Ok(writer) = &mut self.writer else { return };
+        if let Err(problem) = writer.reading(reading) {
+            self.writer = Err(problem);
+        }
+    }
+
+    fn add(
+        &mut self,
+        belief: &Belief,
+        goal: Option<Point2<f64>>,
+        path: &[Point2<f64>],
+    ) -> Result<(), LogError> {
+        let (mapper, time_s) = (belief.mapper, belief.mapper.time());
+        let Ok(writer) = &mut self.writer else { return Ok(()) };
+        let correction = belief.pose * self.odometry.inverse();
+        if self.correction != Some(correction) {
+            writer.correction(time_s, &correction)?;
+            self.correction = Some(correction);
+        }
+        let frame = mapper.frame();
+        let changes = mapper.transitions().iter();
+        let events = changes.filter_map(|change| Some((frame.center(change.cell), change.event()?)));
+        let events: Vec<_> = events.collect();
+        if !events.is_empty() {
+            writer.events(time_s, &events)?;
+        }
+        if time_s >= self.next_map_s {
+            self.next_map_s = time_s + MAP_S;
+            writer.grid("/map", time_s, mapper.states(), |state| match state {
+                CellState::Unknown => None,
+                CellState::Free => Some(0.0),
+                CellState::Blocked => Some(1.0),
+            })?;
+        }
+        if time_s >= self.next_changes_s {
+            self.next_changes_s = time_s + CHANGES_S;
+            let change = |index: usize| -f64::exp_m1(-mapper.rate(index) * HORIZON_S);
+            writer.grid("/change_map", time_s, &layer(mapper, change), |share| *share)?;
+            let predicted = layer(mapper, |index| mapper.blocked_probability(index));
+            writer.grid("/predicted_map", time_s, &predicted, |share| *share)?;
+        }
+        if let Some(at) = goal.filter(|_| goal != self.goal) {
+            writer.goal(time_s, &interfaces::pose(at.x, at.y, 0.0))?;
+        }
+        if path != self.path {
+            let poses: Vec<_> = path.iter().map(|at| interfaces::pose(at.x, at.y, 0.0)).collect();
+            writer.path(time_s, &poses)?;
+            self.path = path.to_vec();
+        }
+        self.goal = goal;
+        Ok(())
+    }
+}
+
+/// A value from 0 to 1 for every cell that was seen.
+fn layer(mapper: &Mapper, value: impl Fn(usize) -> f64) -> Grid<Option<f64>> {
+    let mut grid = Grid::filled(*mapper.frame(), None);
+    for (index, cell) in grid.cells_mut().iter_mut().enumerate() {
+        *cell = mapper.was_ever_seen(index).then(|| value(index));
+    }
+    grid
+}
+
+impl<L: Localization<LaserReading> + ?Sized> Localization<LaserReading> for Recorded<L> {
+    fn localize(&mut self, reading: LaserReading, mapper: &Mapper) -> Posed<LaserReading> {
+        self.tape.borrow_mut().reading(&reading);
+        self.inner.localize(reading, mapper)
+    }
+
+    fn snapshot(&mut self) -> Vec<u8> {
+        self.inner.snapshot()
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        self.inner.restore(snapshot)
+    }
+
+    fn begin_session(&mut self) {
+        self.inner.begin_session();
+    }
+}

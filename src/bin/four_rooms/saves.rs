@@ -1,0 +1,56 @@
+//! `--state`: where a run goes on from, and what it leaves for the next one.
+
+use crate::args::Args;
+use crate::parts::Parts;
+use anyhow::anyhow;
+use curious::program::{Failure, input};
+use evaluation::physics_trial::PhysicsTrial;
+use evaluation::trial_state::TrialFacts;
+use interfaces::Twist;
+use robot::Pilot;
+use state::StateFile;
+use std::fmt::Display;
+use std::io;
+use std::time::Duration;
+
+/// The state file of a run.
+pub(crate) struct Saves {
+    file: StateFile,
+    facts: TrialFacts,
+}
+
+impl Saves {
+    /// The file of `--state`. If there is a state in it, the run goes on from there.
+    pub(crate) fn open(
+        args: &Args,
+        parts: &Parts,
+        trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>,
+    ) -> Result<Option<Self>, Failure> {
+        let Some(path) = &args.state else { return Ok(None) };
+        let file = StateFile::new(path).every(Duration::from_secs_f64(args.state_every));
+        let facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args));
+        let failed = |why: &dyn Display| input(anyhow!("{}: {why}", path.display()));
+        if let Some(state) = file.load().map_err(|why| failed(&why))? {
+            trial.restore(&state, &facts).map_err(|why| failed(&why))?;
+        }
+        file.check_writable().map_err(|why| failed(&format_args!("cannot write it: {why}")))?;
+        Ok(Some(Self { file, facts }))
+    }
+
+    pub(crate) fn is_due(&self) -> bool {
+        self.file.is_due()
+    }
+
+    /// Begins to write the state. An error is that of the writing before.
+    pub(crate) fn save(&mut self, trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>) -> io::Result<()> {
+        let snapshot = trial.snapshot(&self.facts);
+        self.file.save(move || snapshot.into_state())
+    }
+
+    /// Writes the state, and waits until it is on the disk.
+    pub(crate) fn finish(mut self, trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>) -> io::Result<()> {
+        // What could not be written before is in this state as well.
+        self.save(trial).ok();
+        self.file.wait()
+    }
+}

@@ -1,0 +1,131 @@
+//! A state as bytes: a header, and a body that postcard writes and LZ4 compresses.
+//!
+//! ```text
+//! 0  the kind of file, 8 bytes
+//! 8  the version of the format, 4 bytes
+//! 12 the checksum of all that follows, 8 bytes: XXH3 with the version as its seed
+//! 20 the length of the body, 4 bytes, and the compressed body
+//! ```
+//!
+//! Numbers are little-endian.
+
+use crate::facts::{Difference, Facts};
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::xxh3_64_with_seed;
+
+/// Count up when the body, or a snapshot in it, changes.
+const VERSION: u32 = 1;
+/// The largest body, bytes: what a mapper with the largest map can take.
+const MAX_BODY: usize = 2 << 30;
+
+/// The error for bytes that are not the state of this run.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum StateError {
+    /// The bytes do not begin like a state.
+    #[error("this is not a state file")]
+    OtherKind,
+    /// The state was written by another version.
+    #[error("this state file has version {found} of the format, and this program reads version {VERSION}")]
+    OtherVersion {
+        /// The version of the bytes.
+        found: u32,
+    },
+    /// Bytes are missing, or were changed.
+    #[error("the state file is damaged: its checksum does not fit")]
+    Damaged,
+    /// The state was saved by a program that has no such part.
+    #[error("the state was saved by another program: it has no part `{0}`")]
+    NoSection(String),
+    /// The state belongs to another run.
+    #[error("the state is of another run: `{name}` is {saved} there, and {expected} here")]
+    OtherFacts {
+        /// What differs.
+        name: String,
+        /// The value of the run that saved the state.
+        saved: String,
+        /// The value of this run.
+        expected: String,
+    },
+    /// The facts are those of this run, but the bytes are not a snapshot of this part.
+    #[error("the part `{0}` of the state does not fit this program")]
+    OtherContent(String),
+}
+
+/// The snapshots of the parts of a run.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct State {
+    sections: Vec<Section>,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+struct Section {
+    name: String,
+    facts: Facts,
+    snapshot: Vec<u8>,
+}
+
+impl State {
+    /// How a state begins.
+    pub(crate) const MAGIC: &[u8; 8] = b"\x89curious";
+
+    /// Adds the snapshot of a part. `facts` is what it belongs to.
+    #[must_use]
+    pub fn with(mut self, name: &str, facts: Facts, snapshot: Vec<u8>) -> Self {
+        self.sections.push(Section { name: name.to_owned(), facts, snapshot });
+        self
+    }
+
+    /// Whether there is a snapshot of a part.
+    pub fn has(&self, name: &str) -> bool {
+        self.sections.iter().any(|section| section.name == name)
+    }
+
+    /// The snapshot of a part.
+    ///
+    /// # Errors
+    ///
+    /// When there is none, and when it belongs to other facts; the error names the first that differs.
+    pub fn section(&self, name: &str, facts: &Facts) -> Result<&[u8], StateError> {
+        let section = self.sections.iter().find(|section| section.name == name);
+        let section = section.ok_or_else(|| StateError::NoSection(name.to_owned()))?;
+        let Some(Difference { name, saved, expected }) = section.facts.difference(facts) else {
+            return Ok(&section.snapshot);
+        };
+        let text = |value: Option<String>| value.map_or("not set".to_owned(), |value| format!("`{value}`"));
+        Err(StateError::OtherFacts { name, saved: text(saved), expected: text(expected) })
+    }
+
+    /// The state as the bytes of a file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        // Strings and lists always can be written. An empty body would be refused.
+        let body = postcard::to_stdvec(self).unwrap_or_default();
+        let packed = lz4_flex::compress_prepend_size(&body);
+        let checksum = xxh3_64_with_seed(&packed, VERSION.into());
+        [&Self::MAGIC[..], &VERSION.to_le_bytes(), &checksum.to_le_bytes(), &packed].concat()
+    }
+
+    /// The state in the bytes of a file.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are another kind of file, are damaged, or come from another version.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, StateError> {
+        let rest = bytes.strip_prefix(Self::MAGIC).ok_or(StateError::OtherKind)?;
+        let (found, rest) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
+        let found = u32::from_le_bytes(*found);
+        let (checksum, packed) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
+        // A flipped bit of the version is damage; another version has another checksum.
+        if u64::from_le_bytes(*checksum) != xxh3_64_with_seed(packed, found.into()) {
+            return Err(StateError::Damaged);
+        }
+        if found != VERSION {
+            return Err(StateError::OtherVersion { found });
+        }
+        let length = packed.first_chunk().map_or(usize::MAX, |length| u32::from_le_bytes(*length) as usize);
+        if length > MAX_BODY {
+            return Err(StateError::Damaged);
+        }
+        let body = lz4_flex::decompress_size_prepended(packed).map_err(|_| StateError::Damaged)?;
+        postcard::from_bytes(&body).map_err(|_| StateError::Damaged)
+    }
+}

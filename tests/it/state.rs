@@ -1,0 +1,121 @@
+//! `--state`: a run goes on from a file as if it had never ended.
+
+use crate::bad_input::refuses;
+use crate::run::{Ended, Run, Summary};
+use std::fs;
+
+const SHORT: &str = "--quiet --no-rrd --state a.state --duration";
+
+/// A run with a state after 10 s.
+fn begun(arguments: &str) -> Run {
+    let run = Run::new();
+    run.goes_well(&format!("{SHORT} 10 {arguments}"));
+    run
+}
+
+/// All results of a run that do not depend on how it was started.
+fn results(run: &Run) -> (serde_json::Value, Vec<u8>) {
+    let Summary(mut summary) = run.summary();
+    for key in ["arguments", "wall_s", "real_time_factor"] {
+        summary.as_object_mut().unwrap().remove(key);
+    }
+    (summary, fs::read(run.out("cell_statistics.csv")).unwrap())
+}
+
+#[test]
+fn a_run_in_two_parts_equals_a_whole_one() {
+    for arguments in [
+        "--seed 100",
+        "--world drifting_house --strategy progress --seed 101",
+        "--drive tour --pose odometry",
+    ] {
+        let parts = begun(arguments);
+        assert_eq!(parts.summary().number("/simulated_s").round(), 10.0);
+        parts.goes_well(&format!("{SHORT} 25 {arguments}"));
+        let whole = Run::quiet(&format!("--duration 25 {arguments}"));
+        assert!(results(&parts) == results(&whole), "{arguments}");
+        // A state that has come so far already only writes its results again.
+        let saved = fs::read(parts.path("a.state")).unwrap();
+        parts.goes_well(&format!("{SHORT} 25 {arguments}"));
+        assert!(results(&parts) == results(&whole) && fs::read(parts.path("a.state")).unwrap() == saved);
+        assert_eq!(parts.names(), ["a.state", "out"]);
+    }
+}
+
+#[test]
+fn a_state_of_something_else_is_refused_and_stays() {
+    let run = begun("");
+    let saved = fs::read(run.path("a.state")).unwrap();
+    fs::remove_dir_all(run.path("out")).unwrap();
+    let refused = |arguments: &str| refuses(&run, &format!("--state a.state {arguments}"), &["a.state"]);
+    insta::assert_snapshot!(refused("--world house"), @"");
+    insta::assert_snapshot!(refused("--seed 3"), @"");
+    insta::assert_snapshot!(refused("--strategy recency"), @"");
+    insta::assert_snapshot!(refused("--estimator paper"), @"");
+    insta::assert_snapshot!(refused("--occupancy naive"), @"");
+    insta::assert_snapshot!(refused("--pose localized"), @"");
+    insta::assert_snapshot!(refused("--drive tour"), @"");
+    assert_eq!(fs::read(run.path("a.state")).unwrap(), saved);
+}
+
+#[test]
+fn a_damaged_state_is_refused_and_stays() {
+    let run = begun("");
+    let saved = fs::read(run.path("a.state")).unwrap();
+    fs::remove_dir_all(run.path("out")).unwrap();
+    let refused = |bytes: &[u8]| {
+        fs::write(run.path("a.state"), bytes).unwrap();
+        let message = refuses(&run, "--state a.state", &["a.state"]);
+        assert_eq!(fs::read(run.path("a.state")).unwrap(), bytes);
+        message
+    };
+    insta::assert_snapshot!(refused(&saved[..saved.len() / 2]), @"error: a.state: the state file is damaged: its checksum does not fit");
+    insta::assert_snapshot!(refused(b""), @"error: a.state: this is not a state file");
+    insta::assert_snapshot!(refused(b"name = \"house\""), @"error: a.state: this is not a state file");
+    let mut flipped = saved;
+    flipped[1000] ^= 1;
+    insta::assert_snapshot!(refused(&flipped), @"error: a.state: the state file is damaged: its checksum does not fit");
+}
+
+#[test]
+fn a_state_that_cannot_be_written_ends_before_the_run() {
+    let run = Run::new();
+    insta::assert_snapshot!(refuses(&run, "--state missing/a.state", &[]), @"error: missing/a.state: cannot write it: No such file or directory (os error 2)");
+    insta::assert_snapshot!(refuses(&run, "--state .", &[]), @"error: .: cannot read it: Is a directory (os error 21)");
+    let ended = run.ends("--state-every 5");
+    assert_eq!(ended.code, Some(2), "{ended:?}");
+}
+
+/// Killed again and again at any point, even while it saves: the file is complete, and the run comes to its end.
+#[test]
+#[cfg(unix)]
+fn a_killed_run_goes_on() {
+    use crate::ending::send;
+    use nix::sys::signal::Signal;
+    use std::time::Duration;
+
+    let run = Run::new();
+    let slow = "--no-rrd --state a.state --state-every 0.05 --duration 1h --speed 40";
+    let mut last_s = 0.0;
+    for round in 0..6_u64 {
+        let child = run.starts(slow);
+        // Until it has saved, and a little longer.
+        let before = fs::metadata(run.path("a.state")).and_then(|file| file.modified()).ok();
+        let has_saved = (0..1200).any(|_| {
+            std::thread::sleep(Duration::from_millis(50));
+            fs::metadata(run.path("a.state")).and_then(|file| file.modified()).ok() != before
+        });
+        assert!(has_saved, "no state");
+        std::thread::sleep(Duration::from_millis(37 * round));
+        send(if round < 5 { Signal::SIGKILL } else { Signal::SIGINT }, &child);
+        let ended = Ended::from(child.wait_with_output().unwrap());
+        assert_eq!(ended.code, (round == 5).then_some(130), "{ended:?}");
+        // The first line says where it began.
+        let began = ended.stderr.lines().find_map(|line| line.strip_prefix("the run goes on from "));
+        let began_s: f64 = began.map_or(0.0, |text| text.trim_end_matches(" s").parse().unwrap());
+        assert!(began_s > last_s || round == 0, "{began_s} after {last_s}");
+        last_s = began_s;
+    }
+    assert!(run.summary().number("/simulated_s") > last_s);
+    assert_eq!(run.names(), ["a.state", "out"]);
+}
