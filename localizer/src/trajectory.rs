@@ -21,6 +21,7 @@ mod matching;
 mod odometry_drift;
 mod places;
 mod refine;
+mod residual;
 mod settings;
 mod sparse;
 mod submap;
@@ -53,6 +54,9 @@ pub struct Trajectory {
     pub poses: Vec<TrajectoryPose>,
     /// The number of places that were recognised.
     pub loops: usize,
+    /// The standard deviation of the distances of scans from the surfaces that were seen in other passes, m: the errors of
+    /// ranges and poses together. `None` if no place was seen twice, or if loops are not closed.
+    pub residual_std_m: Option<f64>,
 }
 
 /// A reading, and its pose relative to a keyframe.
@@ -114,11 +118,14 @@ impl TrajectoryFinder {
 
     /// The trajectory of all readings.
     pub fn finish(mut self) -> Trajectory {
+        let mut residual_std_m = None;
         if self.settings.close_loops {
             self.front_end.end();
             self.search_loops();
             self.closer.finish(&mut self.graph);
-            refine::refine(&self.closer.places, self.front_end.keyframes(), &mut self.graph);
+            let (places, keyframes) = (&self.closer.places, self.front_end.keyframes());
+            refine::refine(places, keyframes, &mut self.graph);
+            residual_std_m = residual::std_m(places, keyframes, &self.graph);
         }
         let loops = self.closer.loops();
         let pose = |reading: &Attached| TrajectoryPose {
@@ -126,6 +133,6 @@ impl TrajectoryFinder {
             pose: self.graph.poses[reading.keyframe] * reading.offset,
             state: reading.state,
         };
-        Trajectory { poses: self.readings.iter().map(pose).collect(), loops }
+        Trajectory { poses: self.readings.iter().map(pose).collect(), loops, residual_std_m }
     }
 }

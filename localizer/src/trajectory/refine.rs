@@ -61,7 +61,7 @@ fn edges(
 }
 
 /// The keyframes around a submap of which they are no part.
-fn near<'a>(submap: &'a FinishedSubmap, graph: &'a PoseGraph) -> impl Iterator<Item = usize> + 'a {
+pub(super) fn near<'a>(submap: &'a FinishedSubmap, graph: &'a PoseGraph) -> impl Iterator<Item = usize> + 'a {
     let middle = graph.poses[submap.anchor].translation.vector;
     let is_near = move |number: &usize| {
         let is_part = (submap.first..=submap.last).contains(number);
