@@ -1,5 +1,6 @@
 //! No deadlocks: no robot stands still for a minute while there is a way to one of its waypoints.
 
+mod causes;
 mod oracle;
 pub(super) mod worlds;
 
