@@ -114,12 +114,7 @@ impl Legs {
     }
 
     /// The distance that the round body can drive along the leg, m, with a free space at both sides.
-    pub(super) fn free_m(
-        &self,
-        reading: &LaserReading,
-        lean: &UnitComplex<f64>,
-        side_margin_m: f64,
-    ) -> f64 {
+    pub(super) fn free_m(&self, reading: &LaserReading, lean: &UnitComplex<f64>, side_margin_m: f64) -> f64 {
         let open_m = self.radius_m + side_margin_m;
         let ahead = self.points(reading, lean).filter(|point| point.x > 0.0 && point.y.abs() < open_m);
         ahead.fold(f64::INFINITY, |free_m, point| free_m.min(self.gap_m(&point)))
