@@ -46,6 +46,26 @@ impl Legs {
         }
     }
 
+    /// The unit vectors of the beams of the laser in the frame of the robot.
+    pub(super) fn beams(&self) -> &[Vector2<f64>] {
+        &self.beams
+    }
+
+    /// Whether something was in the way at the last reading.
+    pub(super) fn is_blocked(&self) -> bool {
+        self.blocked
+    }
+
+    /// The free distance ahead, m, below which the robot stops.
+    pub(super) fn needed_m(&self) -> f64 {
+        self.clearance_m + self.pace.stopping_m
+    }
+
+    /// Starts a new leg with a turn in place, to the exact direction of the leg.
+    pub(super) fn start_turning(&mut self) {
+        (self.turning, self.blocked) = (true, false);
+    }
+
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
         vec![value(&mut self.turning), value(&mut self.blocked)]
@@ -69,7 +89,7 @@ impl Legs {
         }
         let (gap_m, heading_rad) = look(self, &lean);
         let hysteresis_m = if self.blocked { HYSTERESIS_M } else { 0.0 };
-        let needed_m = self.clearance_m + self.pace.stopping_m + hysteresis_m;
+        let needed_m = self.needed_m() + hysteresis_m;
         // A body behind the end of the leg is not in the way.
         self.blocked = gap_m < needed_m.min(remaining_m + END_MARGIN_M);
         if self.blocked {
@@ -91,6 +111,13 @@ impl Legs {
         let ranges_m = reading.scan.ranges_m.iter().zip(&self.beams);
         let points = ranges_m.filter(|(range_m, _)| range_m.is_finite());
         points.map(move |(range_m, beam)| lean * (mount + beam * f64::from(*range_m)))
+    }
+
+    /// The distance that the round body can drive along the leg, m, with a free space at both sides.
+    pub(super) fn free_m(&self, reading: &LaserReading, lean: &UnitComplex<f64>, side_margin_m: f64) -> f64 {
+        let open_m = self.radius_m + side_margin_m;
+        let ahead = self.points(reading, lean).filter(|point| point.x > 0.0 && point.y.abs() < open_m);
+        ahead.fold(f64::INFINITY, |free_m, point| free_m.min(self.gap_m(&point)))
     }
 
     /// The distance that the round body can drive before it touches a point ahead, m.

@@ -1,5 +1,6 @@
 //! The behaviors of robots that drive without commands, by laser and odometry.
 
+mod escape;
 mod legs;
 mod pace;
 mod patience;

@@ -2,6 +2,8 @@ use crate::physics::spec::RobotSpec;
 
 /// Steering toward a heading, 1/s.
 pub(super) const HEADING_GAIN: f64 = 3.0;
+/// The share of the speed and of the turn rate in a narrow place.
+pub(super) const NARROW_SHARE: f64 = 0.25;
 /// The minimum speed of an approach, m/s: with a speed proportional to the distance, the robot would never arrive.
 pub(super) const CREEP_MPS: f64 = 0.02;
 

@@ -14,6 +14,7 @@ const SHARE: f64 = 0.2;
 #[derive(Clone, Debug)]
 pub(super) struct Patience {
     readings: u32,
+    period_s: f64,
     moved_m: f64,
     /// The cosine of the angle that counts as a turn.
     turned_cos: f64,
@@ -25,14 +26,36 @@ pub(super) struct Patience {
 impl Patience {
     /// The patience of `robot` that drives at `speed_mps`.
     pub(super) fn new(robot: &RobotSpec, speed_mps: f64, step_s: f64) -> Self {
+        let turned_rad = TURNED_RAD.min(SHARE * robot.drive.max_angular_radps * PATIENCE_S);
+        Self {
+            turned_cos: libm::cos(turned_rad),
+            ..Self::with_place(robot, speed_mps, step_s, PATIENCE_S, MOVED_M)
+        }
+    }
+
+    /// The patience for a time, s, with a robot that does not leave a place of the radius `place_m`, whether it turns
+    /// or not.
+    pub(super) fn with_place(
+        robot: &RobotSpec,
+        speed_mps: f64,
+        step_s: f64,
+        patience_s: f64,
+        place_m: f64,
+    ) -> Self {
         let period_s = robot.laser.period_steps as f64 * step_s;
         Self {
-            readings: (PATIENCE_S / period_s).ceil() as u32,
-            moved_m: MOVED_M.min(SHARE * speed_mps * PATIENCE_S),
-            turned_cos: libm::cos(TURNED_RAD.min(SHARE * robot.drive.max_angular_radps * PATIENCE_S)),
+            readings: (patience_s / period_s).ceil() as u32,
+            period_s,
+            moved_m: place_m.min(SHARE * speed_mps * patience_s),
+            turned_cos: f64::NEG_INFINITY,
             from: robot.pose,
             waited: 0,
         }
+    }
+
+    /// Shortens the wait that has begun anew to a time, s.
+    pub(super) fn wait_again(&mut self, patience_s: f64) {
+        self.waited = self.readings.saturating_sub((patience_s / self.period_s).ceil() as u32);
     }
 
     /// Whether the robot has waited too long at its pose. It then begins to wait anew.

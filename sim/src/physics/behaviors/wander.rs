@@ -1,4 +1,5 @@
-use super::pace::Pace;
+use super::escape::Escape;
+use super::pace::{NARROW_SHARE, Pace};
 use crate::physics::rays::Beams;
 use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::{RobotSpec, WanderSpec};
@@ -13,18 +14,17 @@ const HYSTERESIS_M: f64 = 0.1;
 /// Shares of the maximum turn rate: for a turn in place, and for the sharpest curve.
 const TURN_SHARE: f64 = 0.5;
 const CURVE_SHARE: f64 = 0.15;
-/// In a narrow place: the width that must be free, as a multiple of the width of the body, the clearance, m, the
-/// additional space after a stop, m, and the share of the speed and of the turn rate.
+/// In a narrow place: the width that must be free, as a multiple of the width of the body, the clearance, m, and the
+/// additional space after a stop, m.
 const NARROW_WIDTH: f64 = 1.02;
 const NARROW_CLEARANCE_M: f64 = 0.02;
 const NARROW_HYSTERESIS_M: f64 = 0.03;
-const NARROW_SHARE: f64 = 0.25;
 /// The number of scans for which a curve lasts.
 const CURVE_SCANS: Range<f64> = 10.0..50.0;
 
 /// Drives without a goal: forward in long random curves. If an obstacle is too near ahead, the robot turns in place
 /// toward the side with more space, until the way is free. If it is not free in any direction, the robot turns and
-/// drives slowly, and keeps less space, until there is more.
+/// drives slowly, and keeps less space, until there is more. If it does not leave its place for long, it escapes.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Wander {
     spec: WanderSpec,
@@ -45,6 +45,7 @@ pub(in crate::physics) struct Wander {
     /// The number of scans for which the robot has turned in place.
     turned_scans: u32,
     is_narrow: bool,
+    escape: Escape,
 }
 
 /// The ranges at which a robot stops (below the first value on any beam) and continues (above the second value).
@@ -75,6 +76,7 @@ impl Wander {
         // A laser outside of the body is treated as if it were on the border of the body: obstacles ahead then seem
         // nearer.
         let mount = robot.laser.mount.translation.vector.cap_magnitude(robot.radius_m);
+        let escape = Escape::new(robot, spec.speed_mps, step_s, beams);
         let beams = super::in_robot_frame(robot, beams);
         let table = |width: f64, free_m: f64| {
             let lengths_m =
@@ -95,6 +97,7 @@ impl Wander {
             narrow: space(narrow_mps, NARROW_WIDTH, NARROW_CLEARANCE_M, NARROW_HYSTERESIS_M),
             period_s,
             full_turn_scans: (std::f64::consts::TAU / turn_rad).ceil() as u32,
+            escape,
             left: beams.iter().map(|beam| beam.y > 0.0).collect(),
             ahead: beams.iter().map(|beam| beam.x > 0.0).collect(),
             random,
@@ -137,6 +140,16 @@ impl Wander {
 
     /// The velocity until the next reading.
     pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {
+        self.escape(reading).unwrap_or_else(|| self.roam(reading))
+    }
+
+    /// The velocity until the next reading, if the robot is escaping. To be called once for each reading.
+    pub(super) fn escape(&mut self, reading: &LaserReading) -> Option<Twist> {
+        self.escape.drive(reading, &mut self.random)
+    }
+
+    /// The velocity until the next reading without an escape.
+    pub(super) fn roam(&mut self, reading: &LaserReading) -> Twist {
         let ranges_m = &reading.scan.ranges_m;
         self.is_narrow = self.is_narrow && self.wide.is_blocked(ranges_m, true);
         let (space, share) = if self.is_narrow { (&self.narrow, NARROW_SHARE) } else { (&self.wide, 1.0) };
@@ -157,14 +170,16 @@ impl Wander {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        vec![
+        let mut values = vec![
             value(&mut self.random),
             value(&mut self.turning),
             value(&mut self.curve_radps),
             value(&mut self.scans_left),
             value(&mut self.turned_scans),
             value(&mut self.is_narrow),
-        ]
+        ];
+        values.extend(self.escape.values());
+        values
     }
 }
 

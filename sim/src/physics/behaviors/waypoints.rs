@@ -18,13 +18,16 @@ const SIDE_MARGIN_M: f64 = 0.03;
 const AWAY_M: f64 = 0.5;
 /// The duration of a detour, s. At random, so that two robots do not meet again and again.
 const DETOUR_S: Range<f64> = 3.0..10.0;
+/// The duration of the detour after an escape, s.
+const LONG_DETOUR_S: Range<f64> = 10.0..30.0;
 
 /// Drives straight from point to point by odometry, turns in place at the points, and waits while the laser
 /// measures an obstacle in the way.
 ///
 /// A robot that has waited too long turns round: it visits the points in reverse order, since the leg behind it was
 /// free. If it is blocked there as well, before it reached a point away from the first place, it makes a detour: it
-/// wanders for some seconds, and then tries the next point.
+/// wanders for some seconds, and then tries the next point. If it does not leave its place for long, it escapes, and
+/// then makes a longer detour.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Waypoints {
     spec: WaypointsSpec,
@@ -113,12 +116,19 @@ impl Waypoints {
 
     /// The velocity until the next reading.
     pub(super) fn decide(&mut self, reading: &LaserReading) -> Twist {
+        let at = Point2::from(reading.pose.translation.vector);
+        let goal = if self.detour_scans > 0 { self.next } else { self.goal(&at) };
+        let Some(goal) = goal else { return Twist::STOP };
+        if let Some(twist) = self.wander.escape(reading) {
+            if self.detour_scans == 0 {
+                self.detour_scans = self.wander.scans(LONG_DETOUR_S);
+            }
+            return twist;
+        }
         if self.detour_scans > 0 {
             self.detour_scans -= 1;
-            return self.wander.decide(reading);
+            return self.wander.roam(reading);
         }
-        let at = Point2::from(reading.pose.translation.vector);
-        let Some(goal) = self.goal(&at) else { return Twist::STOP };
         if self.patience.is_over(&reading.pose) {
             self.give_way(&at, goal);
             return Twist::STOP;
@@ -126,10 +136,7 @@ impl Waypoints {
         let leg = self.spec.points[goal] - at;
         let remaining_m = leg.norm();
         self.legs.drive(reading, &(leg / remaining_m), remaining_m, |legs, lean| {
-            let open_m = legs.radius_m + SIDE_MARGIN_M;
-            let points = legs.points(reading, lean);
-            let ahead = points.filter(|point| point.x > 0.0 && point.y.abs() < open_m);
-            (ahead.fold(f64::INFINITY, |gap_m, point| gap_m.min(legs.gap_m(&point))), 0.0)
+            (legs.free_m(reading, lean, SIDE_MARGIN_M), 0.0)
         })
     }
 

@@ -39,7 +39,8 @@ pub struct WanderSpec {
 }
 
 /// Settings of a drive from point to point. A robot that is blocked for 5 s visits the points in reverse order; if it
-/// is blocked in the same place again, it wanders for 3 to 10 s and tries the next point.
+/// is blocked in the same place again, it wanders for 3 to 10 s and tries the next point; if it does not leave its
+/// place for about half a minute, it escapes in a direction in which its laser sees space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaypointsSpec {
     /// The points, at least one, m.

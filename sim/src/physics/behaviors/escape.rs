@@ -1,0 +1,111 @@
+use super::legs::Legs;
+use super::pace::NARROW_SHARE;
+use super::patience::Patience;
+use crate::physics::rays::Beams;
+use crate::physics::snapshot::{Values, value};
+use crate::physics::spec::RobotSpec;
+use interfaces::{LaserReading, RandomStream, Twist};
+use nalgebra::{Point2, UnitComplex, Vector2};
+use std::f64::consts::{PI, TAU};
+
+/// A robot that stays within this distance, m, for this time, s, and the time of a full turn, does not get away by
+/// its usual rules.
+const PLACE_M: f64 = 0.1;
+const STANDS_S: f64 = 25.0;
+/// The time between two attempts, s.
+const RETRY_S: f64 = 5.0;
+/// The longest distance of an escape, m.
+const FAR_M: f64 = 1.0;
+/// The free space that is kept ahead and beside the body, m.
+const CLEARANCE_M: f64 = 0.02;
+const SIDE_MARGIN_M: f64 = 0.005;
+/// The number of directions that are compared, at most.
+const DIRECTIONS: usize = 90;
+
+/// Ends a standstill: a robot that does not leave its place, whether it turns or not, turns to a direction in which
+/// the laser sees space, and drives there slowly.
+///
+/// The direction is random: the farther it is free, the more probable. A fixed choice could lead back and forth
+/// between two dead ends.
+#[derive(Clone, Debug)]
+pub(super) struct Escape {
+    patience: Patience,
+    legs: Legs,
+    /// The direction of the escape, a unit vector, and its end, m, during an escape.
+    leg: Option<[(f64, f64); 2]>,
+    /// The number of scans until the end of the escape at the latest, and that number at its start.
+    scans_left: u32,
+    most_scans: u32,
+}
+
+impl Escape {
+    /// The escapes of a robot whose usual speed is `speed_mps`.
+    pub(super) fn new(robot: &RobotSpec, speed_mps: f64, step_s: f64, beams: &Beams) -> Self {
+        let (slow_mps, turn_radps) = (NARROW_SHARE * speed_mps, robot.drive.max_angular_radps);
+        let period_s = robot.laser.period_steps as f64 * step_s;
+        // Twice the time that is needed if nothing holds the robot back.
+        let most_s = 2.0 * (PI / turn_radps + FAR_M / slow_mps);
+        Self {
+            patience: Patience::with_place(robot, speed_mps, step_s, STANDS_S + TAU / turn_radps, PLACE_M),
+            legs: Legs::new(robot, slow_mps, CLEARANCE_M, step_s, beams),
+            leg: None,
+            scans_left: 0,
+            most_scans: (most_s / period_s).ceil() as u32,
+        }
+    }
+
+    /// The velocity until the next reading, if the robot is escaping. To be called once for each reading.
+    pub(super) fn drive(&mut self, reading: &LaserReading, random: &mut RandomStream) -> Option<Twist> {
+        let stands = self.patience.is_over(&reading.pose);
+        if stands {
+            self.patience.wait_again(RETRY_S);
+        }
+        if stands && self.leg.is_none() {
+            self.leg = self.free_leg(reading, random);
+            self.scans_left = self.most_scans;
+            self.legs.start_turning();
+        }
+        let [along, end] = self.leg?;
+        let (along, end) = (Vector2::new(along.0, along.1), Point2::new(end.0, end.1));
+        let remaining_m = along.dot(&(end - Point2::from(reading.pose.translation.vector)));
+        self.scans_left = self.scans_left.saturating_sub(1);
+        let twist = self.legs.drive(reading, &along, remaining_m, |legs, lean| {
+            (legs.free_m(reading, lean, SIDE_MARGIN_M), 0.0)
+        });
+        if remaining_m < CLEARANCE_M || self.scans_left == 0 || self.legs.is_blocked() {
+            self.leg = None;
+        }
+        Some(twist)
+    }
+
+    /// A random free direction among those of the beams, and the end of the way there.
+    fn free_leg(&self, reading: &LaserReading, random: &mut RandomStream) -> Option<[(f64, f64); 2]> {
+        let beams = self.legs.beams();
+        let ways: Vec<(Vector2<f64>, f64)> = beams
+            .iter()
+            .step_by(beams.len().div_ceil(DIRECTIONS))
+            .map(|beam| {
+                let lean = UnitComplex::from_cos_sin_unchecked(beam.x, beam.y).inverse();
+                let free_m = self.legs.free_m(reading, &lean, SIDE_MARGIN_M) - self.legs.needed_m();
+                (reading.pose.rotation * beam, free_m.clamp(0.0, FAR_M))
+            })
+            .collect();
+        // Squared: a long way out of a narrow place has few directions.
+        let total: f64 = ways.iter().map(|(_, way_m)| way_m * way_m).sum();
+        let mut drawn = if total > 0.0 { random.uniform(0.0..total) } else { return None };
+        let (along, way_m) = ways.iter().find(|(_, way_m)| {
+            drawn -= way_m * way_m;
+            drawn < 0.0
+        })?;
+        let end = reading.pose.translation.vector + along * *way_m;
+        Some([(along.x, along.y), (end.x, end.y)])
+    }
+
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        let mut values = vec![value(&mut self.leg), value(&mut self.scans_left)];
+        values.extend(self.patience.values());
+        values.extend(self.legs.values());
+        values
+    }
+}
