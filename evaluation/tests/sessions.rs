@@ -7,7 +7,7 @@ use evaluation::trial_state::TrialFacts;
 use interfaces::{LaserReading, Twist, World, heading_rad, pose};
 use localizer::PoseState;
 use mapper::{Mapper, ReadingError};
-use robot::{Autonomous, Session, explore};
+use robot::{Autonomous, Belief, Session, explore};
 use sim::physics::{PhysicsWorld, WorldSpec};
 use state::{Facts, MindFacts, State};
 use std::ops::ControlFlow;
@@ -87,51 +87,25 @@ impl World for Later {
 
 const GAP_S: f64 = 3.0 * 86_400.0;
 
-/// A session from another start and with another seed, in the place that a first session has learned. Returns the mapper
-/// of this session, and the share of the readings with a certain pose, and the largest error of these poses (m, rad).
-fn second_session(
-    spec: &WorldSpec,
-    settings: &PhysicsSettings,
-    first: &mut Trial,
-    length_s: f64,
-) -> (Mapper, f64, f64) {
-    let facts = MindFacts::new(
-        &settings.mapper,
-        &spec.frame,
-        settings.pose.name(),
-        (settings.pose == PoseChoice::Localized).then_some(&settings.localizer),
-    );
-    let saved = facts.snapshot(&first.mapper, first.localization.as_mut()).added_to(State::default());
-    let Trial { world, mut localization, mut mapper, mut pilot, .. } = trial(spec, 101, settings, "curious");
-    facts.restore(&again(&saved), &mut mapper, localization.as_mut()).unwrap();
-    assert!(mapper.states() == first.mapper.states());
-    let session = Session::next(localization.as_mut(), &mut mapper, 0.0, Some(GAP_S));
-    let (end_s, mut world) = (session.offset_s() + length_s, Later { world, session });
-    let (mut certain, mut all, mut error) = (0.0, 0.0, 0.0_f64);
-    let localization = localization.as_mut();
-    explore(
-        &mut world,
-        localization,
-        &mut mapper,
-        &mut pilot,
-        |world, reading, belief, _| -> Result<_, ReadingError> {
-            all += 1.0;
-            if belief.estimate.is_none_or(|estimate| estimate.state == PoseState::Tracking) {
-                certain += 1.0;
-                let off = world.world.true_pose().inv_mul(belief.pose);
-                error = error.max(off.translation.vector.norm()).max(heading_rad(&off).abs());
-            }
-            Ok(if reading.time_s >= end_s { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        },
-    )
-    .unwrap();
-    (mapper, certain / all, error)
+fn mind_facts(spec: &WorldSpec, settings: &PhysicsSettings) -> MindFacts {
+    let localizer = (settings.pose == PoseChoice::Localized).then_some(&settings.localizer);
+    MindFacts::new(&settings.mapper, &spec.frame, settings.pose.name(), localizer)
+}
+
+/// What a run has learned, as another run with another seed reads it from a file.
+fn saved(first: &mut Trial, spec: &WorldSpec, settings: &PhysicsSettings) -> Trial {
+    let facts = mind_facts(spec, settings);
+    let state = facts.snapshot(&first.mapper, first.localization.as_mut()).added_to(State::default());
+    let mut second = trial(spec, 101, settings, "curious");
+    facts.restore(&again(&state), &mut second.mapper, second.localization.as_mut()).unwrap();
+    assert!(second.mapper.states() == first.mapper.states());
+    second
 }
 
 /// Another start of the robot.
 fn moved(spec: &WorldSpec) -> WorldSpec {
     let mut fleet = spec.fleet().clone();
-    fleet.robots[spec.driven_index()].pose = pose(9.5, 3.0, 2.0);
+    fleet.robots[spec.driven_index()].pose = pose(3.5, 4.5, 0.5);
     WorldSpec::driving(fleet, spec.driven_index()).unwrap()
 }
 
@@ -153,25 +127,34 @@ fn two_sessions_add_up_with_the_time_between_as_a_gap() {
     let settings = PhysicsSettings::of(&here).unwrap();
     let mut first = trial(&here, 100, &settings, "curious");
     first.run(90.0).unwrap();
-    let mut alone = trial(&there, 101, &settings, "curious");
-    alone.run(90.0).unwrap();
-    let (both, ..) = second_session(&there, &settings, &mut first, 90.0);
-    let sum: Vec<f64> =
-        exposure(&first.mapper).into_iter().zip(exposure(&alone.mapper)).map(|(a, b)| a + b).collect();
-    for (found, sum) in exposure(&both).into_iter().zip(&sum) {
-        assert!((found / sum - 1.0).abs() < 0.1, "{:?} instead of {sum:?}", exposure(&both));
+    let (mut alone, mut readings) = (trial(&there, 101, &settings, "curious"), Vec::new());
+    let recorded = alone.run_with(|_, reading, _, _, _| -> Result<_, ReadingError> {
+        readings.push(reading.clone());
+        Ok(if reading.time_s >= 90.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    });
+    recorded.unwrap();
+
+    let Trial { mut localization, mapper: mut both, .. } = saved(&mut first, &there, &settings);
+    let session = Session::next(localization.as_mut(), &mut both, readings[0].time_s, Some(GAP_S));
+    for reading in readings {
+        let posed = localization.localize(session.shifted(reading), &both);
+        both.update(&posed.reading).unwrap();
+    }
+    let sum = exposure(&first.mapper).into_iter().zip(exposure(&alone.mapper)).map(|(a, b)| a + b);
+    for (found, sum) in exposure(&both).into_iter().zip(sum) {
+        // A surface that takes several hits to become known is known from the start in the second session.
+        assert!((-0.01..0.06).contains(&(found / sum - 1.0)), "{found} instead of {sum}");
     }
     // The pause is a gap, and no time between readings.
-    let mut seen_in_both = 0;
-    for index in 0..here.frame.len() {
-        let [one, two] = [first.mapper.statistics(index), both.statistics(index)];
-        if first.mapper.was_ever_seen(index) && two.last_seen > GAP_S {
-            seen_in_both += 1;
-            assert!(two.unobserved >= GAP_S && two.first_seen <= one.last_seen.max(90.0), "{two:?}");
-            assert!((two.period - 0.1).abs() < 0.005, "{two:?}");
-        }
+    let seen_twice = |&index: &usize| {
+        first.mapper.statistics(index).watched_free > 5.0 && alone.mapper.was_ever_seen(index)
+    };
+    let cells: Vec<usize> = (0..here.frame.len()).filter(seen_twice).collect();
+    assert!(cells.len() > 1000, "{}", cells.len());
+    for index in cells {
+        let seen = both.statistics(index);
+        assert!(seen.unobserved >= GAP_S && (seen.period - 0.1).abs() < 0.001, "{seen:?}");
     }
-    assert!(seen_in_both > 1000, "{seen_in_both}");
 }
 
 #[test]
@@ -179,8 +162,23 @@ fn a_robot_finds_itself_in_the_map_that_it_has_saved() {
     let here = spec("drifting_house");
     let settings = PhysicsSettings::of(&here).unwrap();
     let mut first = trial(&here, 100, &settings, "curious");
-    first.run(300.0).unwrap();
-    let (both, certain, error) = second_session(&moved(&here), &settings, &mut first, 60.0);
-    assert!(certain > 0.8 && error < 0.1, "{certain}, {error}");
-    assert!(both.time() > GAP_S + 300.0);
+    first.run(150.0).unwrap();
+    let Trial { world, mut localization, mut mapper, mut pilot, .. } =
+        saved(&mut first, &moved(&here), &settings);
+    let session = Session::next(localization.as_mut(), &mut mapper, 0.0, Some(GAP_S));
+    let mut world = Later { world, session };
+    let (mut certain, mut error) = (0, 0.0_f64);
+    let step =
+        |world: &Later, reading: &LaserReading, belief: &Belief, _: &mut _| -> Result<_, ReadingError> {
+            if belief.estimate.is_some_and(|estimate| estimate.state == PoseState::Tracking) {
+                certain += 1;
+                let off = world.world.true_pose().inv_mul(belief.pose);
+                error = error.max(off.translation.vector.norm()).max(heading_rad(&off).abs());
+            }
+            let is_over = reading.time_s >= session.offset_s() + 20.0;
+            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        };
+    explore(&mut world, localization.as_mut(), &mut mapper, &mut pilot, step).unwrap();
+    assert!(certain > 190 && error < 0.05, "{certain}, {error}");
+    assert!(mapper.time() >= GAP_S + 170.0);
 }
