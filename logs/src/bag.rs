@@ -26,6 +26,7 @@ use crate::summary::{LogSummary, since_epoch};
 use crate::times::{self, Times};
 use interfaces::LaserReading;
 use inventory::Inventory;
+use message::{Selection, Topic};
 use messages::Messages;
 use nalgebra::Isometry2;
 use plan::Plan;
@@ -106,7 +107,8 @@ impl Bag {
 
 fn raw_readings(files: &[BagFile], plan: &Arc<Plan>, clock: Clock) -> RawReadings {
     let needed = plan.clone();
-    let messages = Messages::new(files, Arc::new(move |topic| needed.needs(topic)));
+    let is_wanted = Arc::new(move |topic: &Topic| needed.needs(topic));
+    let messages = Messages::new(files, Selection { is_wanted, checks_sums: false });
     RawReadings::new(messages, plan, clock)
 }
 

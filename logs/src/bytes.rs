@@ -17,8 +17,8 @@ pub(crate) enum Bytes {
 }
 
 /// Bytes in any order.
-pub(crate) trait Input: Read + Seek {}
-impl<T: Read + Seek> Input for T {}
+pub(crate) trait Input: Read + Seek + Send {}
+impl<T: Read + Seek + Send> Input for T {}
 
 impl Bytes {
     pub(crate) fn open(&self) -> io::Result<Box<dyn Input>> {

@@ -12,7 +12,7 @@ const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// The lines of a log, one after the other.
 pub(crate) struct Lines {
-    reader: Box<dyn BufRead>,
+    reader: Box<dyn BufRead + Send>,
     pub(crate) file: String,
     /// The number of the last line, from 1.
     pub(crate) number: u64,
@@ -25,7 +25,7 @@ impl Lines {
     /// Opens a log. The compression is recognised by the content.
     pub(crate) fn open(bytes: &Bytes, file: &str) -> Result<Self, LogError> {
         let io = |source| LogError::Io { file: file.to_owned(), source };
-        let mut reader: Box<dyn BufRead> = Box::new(BufReader::new(bytes.open().map_err(io)?));
+        let mut reader: Box<dyn BufRead + Send> = Box::new(BufReader::new(bytes.open().map_err(io)?));
         if reader.fill_buf().map_err(io)?.starts_with(&GZIP) {
             reader = Box::new(BufReader::new(MultiGzDecoder::new(reader)));
         }

@@ -13,10 +13,11 @@ const BEFORE_NAME: usize = 28;
 
 /// A chunk that is being read.
 pub(super) struct Chunk {
-    records: Box<dyn BufRead>,
+    records: Box<dyn BufRead + Send>,
     /// The bytes that are still to come.
     remaining: u64,
-    crc: Crc,
+    /// The checksum so far, if it is compared, and the one that is expected.
+    crc: Option<Crc>,
     expected_crc: u32,
     /// Whether the file ends within the chunk.
     pub(super) is_cut: bool,
@@ -24,7 +25,12 @@ pub(super) struct Chunk {
 
 impl Chunk {
     /// Reads a chunk of `len` bytes, of which the file has `available`.
-    pub(super) fn read(input: &mut dyn Read, len: u64, available: u64) -> Result<Self, String> {
+    pub(super) fn read(
+        input: &mut dyn Read,
+        len: u64,
+        available: u64,
+        checks_sum: bool,
+    ) -> Result<Self, String> {
         if len.min(available) > MOST_PACKED {
             return Err(format!("a chunk of {len} bytes; at most {MOST_PACKED} are read"));
         }
@@ -49,7 +55,7 @@ impl Chunk {
         let mut cursor = Cursor::new(bytes);
         cursor.set_position(start as u64);
         let failed = |error: io::Error| error.to_string();
-        let records: Box<dyn BufRead> = match compression.as_str() {
+        let records: Box<dyn BufRead + Send> = match compression.as_str() {
             "" => Box::new(cursor),
             "zstd" => {
                 Box::new(BufReader::new(zstd::stream::read::Decoder::with_buffer(cursor).map_err(failed)?))
@@ -59,13 +65,15 @@ impl Chunk {
                 return Err(format!("a chunk is compressed with `{other}`; zstd, lz4 and none are read"));
             }
         };
-        Ok(Self { records, remaining: unpacked, crc: Crc::new(), expected_crc, is_cut })
+        Ok(Self { records, remaining: unpacked, crc: checks_sum.then(Crc::new), expected_crc, is_cut })
     }
 
     /// The operation code and the length of the next record; `None` at the end.
     pub(super) fn next_record(&mut self) -> io::Result<Option<(u8, u64)>> {
         if self.remaining == 0 {
-            let is_intact = self.is_cut || self.expected_crc == 0 || self.crc.sum() == self.expected_crc;
+            let is_intact = self.is_cut
+                || self.expected_crc == 0
+                || self.crc.as_ref().is_none_or(|crc| crc.sum() == self.expected_crc);
             return if is_intact { Ok(None) } else { Err(invalid("the checksum of the chunk is wrong")) };
         }
         let mut start = [0; 9];
@@ -104,7 +112,9 @@ impl Chunk {
         if count == 0 {
             return Err(ErrorKind::UnexpectedEof.into());
         }
-        self.crc.update(&bytes[..count]);
+        if let Some(crc) = &mut self.crc {
+            crc.update(&bytes[..count]);
+        }
         use_bytes(&bytes[..count]);
         self.records.consume(count);
         self.remaining -= count as u64;

@@ -72,30 +72,31 @@ impl BagFile {
         if !start.starts_with(&ZSTD) {
             return Ok(None);
         }
-        let bytes = Bytes::Unpacked(Arc::new(unpacked(&bytes)?));
-        let Some(format) = Format::of(&bytes.start()?) else {
-            let what = "compressed with zstd, but what is in it is no bag";
-            return Err(io::Error::new(io::ErrorKind::InvalidData, what));
-        };
-        Ok(Some(Self { name, format, bytes }))
+        let (format, file) = unpacked(&bytes)?;
+        Ok(Some(Self { name, format, bytes: Bytes::Unpacked(Arc::new(file)) }))
     }
 }
 
-/// A temporary file with what is in a compressed one.
-fn unpacked(bytes: &Bytes) -> io::Result<NamedTempFile> {
+/// A temporary file with the bag that is in a compressed file.
+fn unpacked(bytes: &Bytes) -> io::Result<(Format, NamedTempFile)> {
+    let invalid = |what: String| io::Error::new(io::ErrorKind::InvalidData, what);
     let mut input = bytes.open()?;
     let packed = input.seek(io::SeekFrom::End(0))?;
     input.rewind()?;
     let most = packed.saturating_mul(MOST_GROWTH).saturating_add(ANY_GROWTH);
     let mut decoder = zstd::stream::read::Decoder::new(input)?.take(most);
+    let mut start = Vec::new();
+    decoder.by_ref().take(16).read_to_end(&mut start)?;
+    let format = Format::of(&start)
+        .ok_or_else(|| invalid("compressed with zstd, but what is in it is no bag".to_owned()))?;
     let mut file = NamedTempFile::new()?;
+    file.write_all(&start)?;
     io::copy(&mut decoder, &mut file)?;
     file.flush()?;
     if decoder.limit() == 0 {
-        let what = format!("{packed} bytes grow to {most} when they are unpacked, and more");
-        return Err(io::Error::new(io::ErrorKind::InvalidData, what));
+        return Err(invalid(format!("{packed} bytes grow to {most} when they are unpacked, and more")));
     }
-    Ok(file)
+    Ok((format, file))
 }
 
 /// What we need of `metadata.yaml`.

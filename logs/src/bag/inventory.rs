@@ -2,7 +2,7 @@
 
 use super::files::BagFile;
 use super::frames::Frames;
-use super::message::{Message, Topic};
+use super::message::{Message, Selection, Topic};
 use super::messages::Messages;
 use crate::cdr;
 use crate::choice::bare;
@@ -81,8 +81,8 @@ const MOST_SOURCES: usize = 64;
 
 impl Inventory {
     pub(super) fn of(files: &[BagFile]) -> Result<Self, LogError> {
-        let filter = Arc::new(|topic: &Topic| Kind::of_readable(topic).is_some());
-        let mut messages = Messages::new(files, filter);
+        let is_wanted = Arc::new(|topic: &Topic| Kind::of_readable(topic).is_some());
+        let mut messages = Messages::new(files, Selection { is_wanted, checks_sums: true });
         let mut inventory = Self::default();
         let mut first = BTreeMap::new();
         while let Some(message) = messages.next_message()? {

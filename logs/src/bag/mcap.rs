@@ -5,7 +5,7 @@
 
 use super::chunk::Chunk;
 use super::fields::Fields;
-use super::message::{Filter, Message, MessageSource, Topic};
+use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bytes::{Bytes, Input};
 use crate::error::LogError;
 use std::collections::BTreeMap;
@@ -46,7 +46,7 @@ pub(super) struct McapFile {
     chunk: Option<Chunk>,
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
-    filter: Filter,
+    selection: Selection,
     /// Why the file ends too early.
     missing: Option<String>,
     is_over: bool,
@@ -69,7 +69,7 @@ impl From<io::Error> for Stop {
 }
 
 impl McapFile {
-    pub(super) fn open(file: &Arc<str>, bytes: &Bytes, filter: Filter) -> Result<Self, LogError> {
+    pub(super) fn open(file: &Arc<str>, bytes: &Bytes, selection: Selection) -> Result<Self, LogError> {
         let io = |source| LogError::Io { file: file.to_string(), source };
         let mut input = BufReader::with_capacity(1 << 16, bytes.open().map_err(io)?);
         let size = input.seek(SeekFrom::End(0)).map_err(io)?;
@@ -84,7 +84,7 @@ impl McapFile {
             chunk: None,
             schemas: BTreeMap::new(),
             channels: BTreeMap::new(),
-            filter,
+            selection,
             missing: None,
             is_over: false,
         })
@@ -118,7 +118,7 @@ impl McapFile {
             }
             CHUNK => {
                 let available = self.size - (self.record + 9).min(self.size);
-                let chunk = Chunk::read(&mut self.input, length, available);
+                let chunk = Chunk::read(&mut self.input, length, available, self.selection.checks_sums);
                 self.chunk = Some(chunk.map_err(|what| match length > available {
                     true => Stop::Cut,
                     false => Stop::Invalid(what),
@@ -207,7 +207,7 @@ impl McapFile {
             let topic = Topic { name: fields.text()?, type_name, encoding: fields.text()? };
             // Channels are defined again in later chunks.
             if self.channels.get(&id).is_none_or(|known| *known.topic != topic) {
-                let is_wanted = (self.filter)(&topic);
+                let is_wanted = (self.selection.is_wanted)(&topic);
                 self.channels.insert(id, Channel { topic: Arc::new(topic), is_wanted, messages: 0 });
             }
             Some(())

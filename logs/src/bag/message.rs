@@ -14,8 +14,14 @@ pub(crate) struct Topic {
     pub(crate) encoding: String,
 }
 
-/// Whether the messages of a topic are wanted; others are skipped.
-pub(crate) type Filter = Arc<dyn Fn(&Topic) -> bool + Send + Sync>;
+/// What a pass over a bag needs.
+#[derive(Clone)]
+pub(crate) struct Selection {
+    /// Whether the messages of a topic are wanted; others are skipped.
+    pub(crate) is_wanted: Arc<dyn Fn(&Topic) -> bool + Send + Sync>,
+    /// Whether checksums are compared: once is enough, and it takes a third of the time of a pass.
+    pub(crate) checks_sums: bool,
+}
 
 /// A message.
 #[derive(Clone, Debug)]

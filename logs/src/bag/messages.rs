@@ -2,7 +2,7 @@
 
 use super::files::{BagFile, Format, ZSTD};
 use super::mcap::McapFile;
-use super::message::{Filter, Message, MessageSource, Topic};
+use super::message::{Message, MessageSource, Selection, Topic};
 use super::sqlite::SqliteFile;
 use crate::error::LogError;
 use std::io::Read;
@@ -15,27 +15,27 @@ const MOST_BYTES: u64 = 64 << 20;
 /// The messages of a bag, in the order of its files.
 pub(crate) struct Messages {
     files: IntoIter<BagFile>,
-    current: Option<Box<dyn MessageSource>>,
-    filter: Filter,
+    current: Option<Box<dyn MessageSource + Send>>,
+    selection: Selection,
     /// All topics, also those that are not wanted.
     pub(crate) topics: Vec<Arc<Topic>>,
     pub(crate) notes: Vec<String>,
 }
 
 impl Messages {
-    pub(crate) fn new(files: &[BagFile], filter: Filter) -> Self {
+    pub(crate) fn new(files: &[BagFile], selection: Selection) -> Self {
         let files = files.to_vec().into_iter();
-        Self { files, current: None, filter, topics: Vec::new(), notes: Vec::new() }
+        Self { files, current: None, selection, topics: Vec::new(), notes: Vec::new() }
     }
 
     pub(crate) fn next_message(&mut self) -> Result<Option<Message>, LogError> {
         loop {
             let Some(current) = &mut self.current else {
                 let Some(file) = self.files.next() else { return Ok(None) };
-                let filter = self.filter.clone();
+                let selection = self.selection.clone();
                 self.current = Some(match file.format {
-                    Format::Mcap => Box::new(McapFile::open(&file.name, &file.bytes, filter)?),
-                    Format::Sqlite => Box::new(SqliteFile::open(&file.name, &file.bytes, filter)?),
+                    Format::Mcap => Box::new(McapFile::open(&file.name, &file.bytes, selection)?),
+                    Format::Sqlite => Box::new(SqliteFile::open(&file.name, &file.bytes, selection)?),
                 });
                 continue;
             };

@@ -69,20 +69,21 @@ impl Plan {
         };
         let base = match (&choice.base_frame, &moving_frame) {
             (Some(base), _) => bare(base).to_owned(),
-            (None, Some(moving)) => moving.clone(),
-            (None, None) => standing_base(frames, &lasers)?,
+            (None, Some(moving)) if !moving.is_empty() => moving.clone(),
+            // Some drivers do not name the frame whose pose they give.
+            _ => likely_base(frames, &lasers)?,
         };
         let mut world: Vec<&str> =
             frames.names().into_iter().filter(|name| is_odom(name) || is_world(name)).collect();
         world.extend(odometry.map(|odometry| odometry.odom_frame.as_str()));
         let to_base = match &moving_frame {
-            Some(moving) => frames.way(moving, &base, &world).unwrap_or_else(|| {
+            Some(moving) if !moving.is_empty() => frames.way(moving, &base, &world).unwrap_or_else(|| {
                 notes.push(format!(
                     "no transform connects `{moving}`, whose poses are known, with `{base}`: they count as one frame"
                 ));
                 Way::new()
             }),
-            None => Way::new(),
+            _ => Way::new(),
         };
         let lasers = connected(frames, lasers, &base, &world, notes)?;
         Ok(Self { lasers, motion, pose_source, to_base, frames: frames.clone() })
@@ -193,8 +194,8 @@ fn moving_edge(
     Ok(None)
 }
 
-/// The frame of a robot that does not move: that of its first laser, or what all lasers are mounted on.
-fn standing_base(frames: &Frames, lasers: &[&LaserTopic]) -> Result<String, String> {
+/// The frame of a robot that is not named: one above its first laser with the usual name, or what all lasers are mounted on.
+fn likely_base(frames: &Frames, lasers: &[&LaserTopic]) -> Result<String, String> {
     let Some(first) = lasers.first() else { return Ok(String::new()) };
     let above = frames.above(&first.frame)?;
     let parents = above.iter().map(|index| frames.edge(*index).parent.as_str());

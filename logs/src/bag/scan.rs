@@ -6,6 +6,8 @@ use std::f64::consts::TAU;
 
 /// The most beams of a scan: a message that claims more is invalid.
 const MOST_BEAMS: usize = 100_000;
+/// No laser reaches farther, m: some simulators write ∞.
+const FARTHEST_M: f64 = 300.0;
 /// A scan never takes longer than this, s.
 const LONGEST_SWEEP_S: f64 = 10.0;
 
@@ -26,7 +28,7 @@ pub(super) fn converted(message: LaserScan, is_upside_down: bool) -> Result<Scan
         angle_min_rad: side * f64::from(message.angle_min),
         angle_increment_rad: side * increment_rad(&message),
         range_min_m: f64::from(message.range_min),
-        range_max_m: f64::from(message.range_max),
+        range_max_m: f64::from(message.range_max).min(FARTHEST_M),
         sweep_s: f64::from(message.time_increment) * (beams - 1) as f64,
         ranges_m: message.ranges,
     };
@@ -35,7 +37,7 @@ pub(super) fn converted(message: LaserScan, is_upside_down: bool) -> Result<Scan
         return Err(format!("a scan of {} s", scan.sweep_s));
     }
     for range_m in &mut scan.ranges_m {
-        *range_m = meaning(*range_m, message.range_min, message.range_max);
+        *range_m = meaning(*range_m, message.range_min, scan.range_max_m as f32);
     }
     // The order is that of the measurement where this takes time; otherwise, it is counter-clockwise.
     if scan.angle_increment_rad < 0.0 && scan.sweep_s == 0.0 {
@@ -110,6 +112,13 @@ mod tests {
         assert_eq!((sweeping.angle_min_rad, sweeping.angle_increment_rad), (0.5, -0.5));
         assert_eq!(sweeping.ranges_m, [1.0, 2.0, 3.0]);
         assert!((sweeping.sweep_s - 0.02).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_laser_without_limits_has_some() {
+        let message = LaserScan { range_max: f32::INFINITY, ..message(0.0, 0.1, &[1.0, 1e4]) };
+        let scan = converted(message, false).unwrap();
+        assert_eq!((scan.range_max_m, &scan.ranges_m[..]), (FARTHEST_M, &[1.0, f32::INFINITY][..]));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! SQLite databases of rosbag2: the tables `topics` and `messages`.
 
-use super::message::{Filter, Message, MessageSource, Topic};
+use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bytes::Bytes;
 use crate::error::LogError;
 use rusqlite::{Connection, OpenFlags, Row};
@@ -39,7 +39,7 @@ pub(super) struct SqliteFile {
 }
 
 impl SqliteFile {
-    pub(super) fn open(file: &Arc<str>, bytes: &Bytes, filter: Filter) -> Result<Self, LogError> {
+    pub(super) fn open(file: &Arc<str>, bytes: &Bytes, selection: Selection) -> Result<Self, LogError> {
         let failed = |error| database_error(file, &error);
         let io = |source| LogError::Io { file: file.to_string(), source };
         let path = bytes.path().ok_or_else(|| io(io::ErrorKind::Unsupported.into()))?;
@@ -61,7 +61,7 @@ impl SqliteFile {
             let mut rows = statement.query([]).map_err(failed)?;
             while let Some(row) = rows.next().map_err(failed)? {
                 let (id, topic) = topic(row).map_err(failed)?;
-                let is_wanted = filter(&topic);
+                let is_wanted = (selection.is_wanted)(&topic);
                 found.insert(id, (Arc::new(topic), is_wanted, 0));
             }
         }

@@ -67,6 +67,18 @@ fn a_laser_that_is_not_connected_is_refused_or_left_out() {
 }
 
 #[test]
+fn the_frame_of_the_odometry_may_be_unnamed() {
+    let mut bag = Builder::default();
+    bag.mount().odometry("/odom", 0.0, 0.0, 0.0).scan("/scan", 0.0, &scan(0.0, "laser"));
+    let mut odometry: crate::ros::Odometry = crate::cdr::decoded(&bag.messages[1].3).unwrap();
+    odometry.child_frame_id.clear();
+    bag.messages[1].3 = crate::cdr::encoded(&odometry).unwrap();
+    let opened = bag.open(&TopicChoice::default()).unwrap();
+    assert_eq!(opened.summary().notes.len(), 0);
+    assert_eq!(readings(&opened)[0].mount.translation.x, 0.2);
+}
+
+#[test]
 fn frames_in_a_circle_and_tilted_lasers_are_refused() {
     let mut bag = Builder::default();
     bag.odometry("/odom", 0.0, 0.0, 0.0).scan("/scan", 0.0, &scan(0.0, "laser"));

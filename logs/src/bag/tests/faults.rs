@@ -139,7 +139,9 @@ fn other_formats_are_named() {
     let packed = zstd::encode_all(&b"something else"[..], 0).unwrap();
     assert_eq!(refused(&packed), "test: compressed with zstd, but what is in it is no bag");
     // A bomb.
-    let packed = zstd::encode_all(&vec![0; 80 << 20][..], 0).unwrap();
+    let mut zeros = vec![0; 80 << 20];
+    zeros[..16].copy_from_slice(b"SQLite format 3\0");
+    let packed = zstd::encode_all(&zeros[..], 0).unwrap();
     let error = refused(&packed);
     assert!(error.contains("bytes grow to"), "{error}");
 }
