@@ -34,6 +34,8 @@ pub struct Session {
     pub poses: Vec<TrajectoryPose>,
     /// The number of places that were recognised; 0 where no trajectory was searched.
     pub loops: usize,
+    /// The standard deviation of the distances of scans from the surfaces of other passes, m; `None` where it is not known.
+    pub residual_std_m: Option<f64>,
     reaches: Vec<Reach>,
 }
 
@@ -109,13 +111,13 @@ impl FirstPass {
 
     /// The log along its trajectory, in the frame of its first pose.
     pub fn finish(self) -> Session {
-        let (poses, loops) = match self.finder {
+        let (poses, loops, residual_std_m) = match self.finder {
             Some(finder) => {
                 let trajectory = finder.finish();
-                (trajectory.poses, trajectory.loops)
+                (trajectory.poses, trajectory.loops, trajectory.residual_std_m)
             }
-            None => (self.given, 0),
+            None => (self.given, 0, None),
         };
-        Session { poses, loops, reaches: self.reaches }
+        Session { poses, loops, residual_std_m, reaches: self.reaches }
     }
 }

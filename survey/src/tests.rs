@@ -1,1 +1,225 @@
+//! Tests of the parts, and of two logs of one simulated place.
 
+use crate::{
+    Aligner, ChangeLog, FirstPass, FoundPoses, Passenger, PoseMode, Replay, Session, SurveyError,
+    SurveySettings, frame, keepout_mask, permanent, places, remove_shadows, speed_mask,
+};
+use interfaces::{CellReading, CellState, Grid, GridFrame, LaserReading, Scan, Twist, World, heading_rad};
+use logs::LogError;
+use mapper::{Mapper, MapperSettings};
+use nalgebra::{Isometry2, Point2};
+use robot::explore;
+use sim::physics::{OdometryError, PhysicsWorld, WorldSpec};
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+fn scan(ranges_m: Vec<f32>) -> Scan {
+    Scan {
+        angle_min_rad: 0.0,
+        angle_increment_rad: TAU / 360.0,
+        range_min_m: 0.0,
+        range_max_m: 20.0,
+        sweep_s: 0.0,
+        ranges_m,
+    }
+}
+
+#[test]
+fn points_between_two_surfaces_are_removed_and_walls_stay() {
+    let limit = 10_f64.to_radians();
+    // A wall 2 m ahead, seen up to 60° from its normal: the angle to the beam is at least 30°.
+    let wall: Vec<f32> = (0..60).map(|beam| (2.0 / f64::from(beam).to_radians().cos()) as f32).collect();
+    let mut straight = scan(wall.clone());
+    remove_shadows(&mut straight, limit);
+    assert_eq!(straight.ranges_m, wall);
+    // A post 1 m away before a wall: one beam meets both.
+    let mut ranges = vec![3.0; 40];
+    ranges[10..20].fill(1.0);
+    ranges[20] = 2.0;
+    let mut jump = scan(ranges.clone());
+    remove_shadows(&mut jump, limit);
+    let removed: Vec<usize> = (0..40).filter(|beam| jump.ranges_m[*beam].is_nan()).collect();
+    assert_eq!(removed, [9, 10, 19, 20, 21]);
+    // Nothing is removed beside a beam without a hit, and with a limit of 0.
+    let mut open = scan(vec![1.0, f32::INFINITY, 3.0, f32::NAN, 1.0]);
+    remove_shadows(&mut open, limit);
+    assert_eq!(open.ranges_m[..3], [1.0, f32::INFINITY, 3.0]);
+    let mut kept = scan(ranges.clone());
+    remove_shadows(&mut kept, 0.0);
+    assert_eq!(kept.ranges_m, ranges);
+}
+
+/// A map of 10 × 1 cells in which the cells from 2 to 4 are blocked for `blocked` of 10 readings, 100 times.
+fn changing(blocked: usize) -> (Mapper, ChangeLog) {
+    let frame = GridFrame::new(Point2::origin(), 0.1, 10, 1).unwrap();
+    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+    let mut log = ChangeLog::default();
+    for time in 0..1000 {
+        let is_blocked = |x: i32| (2..5).contains(&x) && time % 10 < blocked || x == 9;
+        let cells = (0..10).map(|x| (interfaces::Cell { x, y: 0 }, is_blocked(x))).collect();
+        mapper.update(&CellReading { time: time as f64, pose: Isometry2::identity(), cells }).unwrap();
+        log.note(&mapper);
+    }
+    (mapper, log)
+}
+
+#[test]
+fn a_place_says_where_how_often_and_when_last() {
+    let (mapper, log) = changing(3);
+    let places = places(&mapper, &log);
+    let [place] = &places[..] else { panic!("{places:?}") };
+    assert!((place.x_m - 0.35).abs() < 1e-9 && (place.area_m2 - 0.03).abs() < 1e-9, "{place:?}");
+    assert!((place.low_m[0] - 0.2).abs() < 1e-9 && (place.high_m[0] - 0.5).abs() < 1e-9, "{place:?}");
+    // One cycle in 10 s, and blocked for 3 of them.
+    assert!((place.cycles_per_hour / 360.0 - 1.0).abs() < 0.05, "{place:?}");
+    assert!((place.share_blocked - 0.3).abs() < 0.02, "{place:?}");
+    let [low, high] = place.cycles_per_hour_90.map(Option::unwrap);
+    assert!(low < 360.0 && high > 360.0 && high < 2.0 * low, "{place:?}");
+    assert_eq!((place.last_change_s, place.changes, log.events()), (993.0, 199, 3 * 199));
+}
+
+#[test]
+fn movers_are_not_permanent_and_masks_say_where_they_are() {
+    for (blocked, is_usually) in [(3, false), (8, true)] {
+        let (mapper, _) = changing(blocked);
+        let map = permanent(&mapper);
+        assert_eq!(map.cells()[3], CellState::Free);
+        assert_eq!(map.cells()[9], CellState::Blocked);
+        let keepout = keepout_mask(&mapper);
+        assert_eq!(keepout.cells()[3], if is_usually { 100 } else { 0 });
+        assert_eq!(keepout.cells()[9], 0);
+        // A cycle in 10 s is far more than one in 10 minutes: the slowest. The value reaches 0.5 m far.
+        let slow = speed_mask(&mapper);
+        assert_eq!((slow.cells()[3], slow.cells()[9]), (80, 80));
+    }
+}
+
+/// The readings of a robot that drives through a generated house, by drifting odometry, and its true poses. The house is
+/// still; the drive does not depend on the seed.
+fn drive(seed: u64, seconds: f64) -> (Vec<LaserReading>, Vec<Isometry2<f64>>) {
+    let mut fleet = WorldSpec::generate_house(1003).fleet().clone();
+    let mut robot = fleet.robots.swap_remove(WorldSpec::generate_house(1003).driven_index());
+    robot.odometry = OdometryError { distance_gain: 0.02, turn_gain: -0.02, ..OdometryError::default() };
+    fleet.robots = vec![robot];
+    fleet.obstacles.clear();
+    let mut world = PhysicsWorld::new(&WorldSpec::new(fleet).unwrap(), seed);
+    let (mut readings, mut poses) = (Vec::new(), Vec::new());
+    while world.time_s() < seconds {
+        let reading = world.sense();
+        let scan = &reading.scan;
+        // Straight on where there is room, else turn to the left.
+        let ahead =
+            (0..scan.ranges_m.len()).filter(|beam| interfaces::wrap_rad(scan.angle_rad(*beam)).abs() < 0.6);
+        let room_m = ahead.map(|beam| scan.ranges_m[beam]).fold(f32::INFINITY, f32::min);
+        let turn = if seed.is_multiple_of(2) { 0.7 } else { -0.7 };
+        let command = match room_m > 0.6 {
+            true => Twist { linear_mps: 0.3, angular_radps: 0.1 * turn },
+            false => Twist { linear_mps: 0.0, angular_radps: turn },
+        };
+        poses.push(*world.true_pose());
+        readings.push(reading);
+        world.act(&command);
+    }
+    (readings, poses)
+}
+
+fn first_pass(settings: &SurveySettings, readings: &[LaserReading]) -> Session {
+    let mut pass = FirstPass::new(settings).unwrap();
+    readings.iter().for_each(|reading| pass.add(reading.clone()));
+    pass.finish()
+}
+
+/// The largest distance between true poses and those of a session whose frame has the true pose `origin`, m.
+fn largest_error_m(session: &Session, origin: &Isometry2<f64>, truth: &[Isometry2<f64>]) -> f64 {
+    let pairs = session.poses.iter().zip(truth);
+    let error = |(at, truth): (&localizer::TrajectoryPose, &Isometry2<f64>)| {
+        ((origin * at.pose).translation.vector - truth.translation.vector).norm()
+    };
+    pairs.map(error).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_later_log_finds_its_place_in_the_first_one() {
+    let settings = SurveySettings::of(PoseMode::Localized);
+    let (readings, truth) = drive(2, 120.0);
+    let first = first_pass(&settings, &readings);
+    assert!(largest_error_m(&first, &truth[0], &truth) < 0.1);
+    let mut aligner = Aligner::new(&settings, &first).unwrap();
+    for (reading, found) in readings.iter().zip(&first.poses) {
+        aligner.add(reading.clone(), found).unwrap();
+    }
+    // The second log begins where the first one has ended, with another odometry.
+    let (all, all_truth) = drive(2, 180.0);
+    let (later, later_truth) = (&all[1250..], &all_truth[1250..]);
+    let second = first_pass(&settings, later);
+    let mut search = aligner.search().unwrap();
+    later.iter().zip(&second.poses).for_each(|(reading, found)| search.add(reading, found));
+    let second = second.moved(&search.finish().unwrap());
+    assert!(
+        largest_error_m(&second, &truth[0], later_truth) < 0.15,
+        "{}",
+        largest_error_m(&second, &truth[0], later_truth)
+    );
+
+    // A place that is another one is refused.
+    let mut search = aligner.search().unwrap();
+    let blind = LaserReading { scan: scan(vec![1.0; 360]), ..readings[0].clone() };
+    (0..100).for_each(|_| search.add(&blind, &first.poses[0]));
+    assert_eq!(search.finish(), Err(SurveyError::OtherPlace { certain: 0, readings: 100 }));
+}
+
+#[test]
+fn the_second_pass_draws_the_house_without_changes() {
+    let settings = SurveySettings::of(PoseMode::Localized);
+    let (readings, truth) = drive(3, 90.0);
+    let session = first_pass(&settings, &readings);
+    let frame = frame(std::slice::from_ref(&session), &settings).unwrap();
+    let mut mapper = Mapper::new(&settings.mapper, frame).unwrap();
+    let count = readings.len();
+    let log = readings.into_iter().map(Ok::<_, LogError>);
+    let mut replay = Replay::new(log, &settings, 1000.0).unwrap().unwrap();
+    let (mut changes, mut seen) = (ChangeLog::default(), 0);
+    let mut poses = FoundPoses::new(session.poses.clone());
+    explore(&mut replay, &mut poses, &mut mapper, &mut Passenger, |replay, _, belief, _| {
+        changes.note(belief.mapper);
+        seen += 1;
+        Ok::<_, mapper::ReadingError>(if replay.is_over() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        })
+    })
+    .unwrap();
+    assert!(replay.into_problem().is_none());
+    assert_eq!((seen, mapper.readings()), (count, count));
+    assert!((mapper.time() - 1000.0 - session.poses.last().unwrap().time_s).abs() < 1e-9);
+    // The frame covers all that was seen: no border cell is known.
+    let known = |cells: &Grid<CellState>, index: usize| cells.cells()[index] != CellState::Unknown;
+    let columns = frame.width();
+    assert!((0..columns).all(|index| !known(mapper.states(), index)));
+    assert!((0..frame.height()).all(|row| !known(mapper.states(), row * columns)));
+    // Nothing moves in this house: next to nothing changes.
+    let per_1000 = changes.events() as f64 * 1000.0 / count as f64;
+    assert!(per_1000 <= 20.0, "{per_1000} changes per 1000 scans");
+    // The robot was where the map is free.
+    let to_map = session.poses[0].pose * truth[0].inverse();
+    let free = |pose: &Isometry2<f64>| {
+        let at = Point2::from((to_map * pose).translation.vector);
+        mapper.states().get(frame.cell_at(&at)) == Some(&CellState::Free)
+    };
+    assert!(truth.iter().all(free));
+    assert!(heading_rad(&to_map).is_finite());
+}
+
+#[test]
+fn settings_are_checked() {
+    for settings in [
+        SurveySettings { resolution_m: 0.0, ..SurveySettings::default() },
+        SurveySettings { max_range_m: f64::NAN, ..SurveySettings::default() },
+        SurveySettings { min_shadow_angle_rad: -1.0, ..SurveySettings::default() },
+    ] {
+        assert!(matches!(FirstPass::new(&settings), Err(SurveyError::Settings(_))));
+    }
+    let empty = FirstPass::new(&SurveySettings::default()).unwrap().finish();
+    assert_eq!(frame(&[empty], &SurveySettings::default()), Err(SurveyError::NoPlace));
+}

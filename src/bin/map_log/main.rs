@@ -19,7 +19,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use summary::Summary;
-use survey::SurveySettings;
+use survey::{SurveySettings, learned_noise_m};
 
 fn main() -> ExitCode {
     start(run)
@@ -57,10 +57,13 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let settings = args.settings(&sources).map_err(input)?;
     let is_interrupted = interrupt_flag()?; // before any file is made
     let folder = RunFolder::open(&args.out).map_err(anyhow::Error::from)?;
-    let job = Job { args, sources, settings, is_interrupted };
+    let mut job = Job { args, sources, settings, is_interrupted };
     let Some(sessions) = first_pass::sessions(&job)? else {
         return Ok(ExitCode::from(INTERRUPTED));
     };
+    if let (None, Some(noise_m)) = (args.noise, learned_noise_m(&sessions)) {
+        job.settings.mapper.steady.range_noise_std_m = noise_m;
+    }
     let learned = second_pass::learn(&job, &sessions, folder.unfinished())?;
     let mut summary = Summary::new(&job, &sessions, &learned);
     summary.wall_s = begin.elapsed().as_secs_f64();
