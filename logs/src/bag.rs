@@ -108,7 +108,7 @@ impl Bag {
 fn raw_readings(files: &[BagFile], plan: &Arc<Plan>, clock: Clock) -> RawReadings {
     let needed = plan.clone();
     let is_wanted = Arc::new(move |topic: &Topic| needed.needs(topic));
-    let messages = Messages::new(files, Selection { is_wanted, checks_sums: false });
+    let messages = Messages::new(files.to_vec(), Selection { is_wanted, checks_sums: false });
     RawReadings::new(messages, plan, clock)
 }
 

@@ -1,7 +1,7 @@
 //! Where the bytes of a log come from.
 
 use std::fs::File;
-use std::io::{self, Cursor, Read, Seek};
+use std::io::{self, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tempfile::NamedTempFile;
@@ -10,7 +10,7 @@ use tempfile::NamedTempFile;
 #[derive(Clone, Debug)]
 pub(crate) enum Bytes {
     File(PathBuf),
-    #[cfg_attr(not(test), expect(dead_code, reason = "logs in memory are those of tests"))]
+    #[cfg(test)]
     Memory(Arc<[u8]>),
     /// A file that was unpacked for us; it is removed with its last owner.
     Unpacked(Arc<NamedTempFile>),
@@ -25,7 +25,8 @@ impl Bytes {
         Ok(match self {
             Self::File(path) => Box::new(File::open(path)?),
             Self::Unpacked(file) => Box::new(file.reopen()?),
-            Self::Memory(bytes) => Box::new(Cursor::new(bytes.clone())),
+            #[cfg(test)]
+            Self::Memory(bytes) => Box::new(io::Cursor::new(bytes.clone())),
         })
     }
 
@@ -34,6 +35,7 @@ impl Bytes {
         match self {
             Self::File(path) => Some(path),
             Self::Unpacked(file) => Some(file.path()),
+            #[cfg(test)]
             Self::Memory(_) => None,
         }
     }

@@ -23,8 +23,8 @@ pub(crate) struct Messages {
 }
 
 impl Messages {
-    pub(crate) fn new(files: &[BagFile], selection: Selection) -> Self {
-        let files = files.to_vec().into_iter();
+    pub(crate) fn new(files: Vec<BagFile>, selection: Selection) -> Self {
+        let files = files.into_iter();
         Self { files, current: None, selection, topics: Vec::new(), notes: Vec::new() }
     }
 

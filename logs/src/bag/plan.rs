@@ -201,7 +201,7 @@ fn likely_base(frames: &Frames, lasers: &[&LaserTopic]) -> Result<String, String
     let parents = above.iter().map(|index| frames.edge(*index).parent.as_str());
     let is_robot = |name: &&str| name.rsplit('/').next().is_some_and(|name| name.starts_with("base"));
     let on_ground = |name: &&str| !is_odom(name) && !is_world(name);
-    let root = parents.clone().filter(on_ground).last();
+    let root = parents.clone().rfind(on_ground);
     Ok(parents.clone().find(is_robot).or(root).unwrap_or(&first.frame).to_owned())
 }
 

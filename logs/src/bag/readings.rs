@@ -20,6 +20,8 @@ use std::sync::Arc;
 const MOST_WAITING: usize = 256;
 /// A scan of another laser arrives at most this much later, s.
 const DISORDER_S: f64 = 0.5;
+/// Scans of two lasers that have the same time, as in simulations, come one after the other, s.
+const TURN_S: f64 = 2e-3;
 /// Between scans that are farther apart than this, the clock was set, s.
 const JUMP_S: f64 = 60.0;
 
@@ -74,6 +76,8 @@ pub(super) struct RawReadings {
     /// The number of scans before the clock was set: they do not wait any longer.
     overdue: usize,
     newest_s: f64,
+    /// The time of the last reading, s, and its laser.
+    last: Option<(f64, usize)>,
     is_over: bool,
     pub(super) counts: Counts,
 }
@@ -90,6 +94,7 @@ impl RawReadings {
             waiting: VecDeque::new(),
             overdue: 0,
             newest_s: f64::NEG_INFINITY,
+            last: None,
             is_over: false,
             counts: Counts::default(),
         }
@@ -129,13 +134,21 @@ impl RawReadings {
         is_first && !self.odometry.must_wait(first.time_s)
     }
 
-    fn reading(&mut self, Waiting { time_s, mount, scan, .. }: Waiting) -> LaserReading {
+    fn reading(&mut self, Waiting { time_s, laser, mount, scan }: Waiting) -> LaserReading {
         self.overdue = self.overdue.saturating_sub(1);
         let (pose, twist) = self.odometry.at(time_s);
         let velocities = match scan.sweep_s > 0.0 {
             true => self.odometry.during(time_s - scan.sweep_s, time_s),
             false => Vec::new(),
         };
+        // The last one may have been moved by as many turns as there are lasers.
+        let same_s = -TURN_S * self.plan.lasers.len() as f64..TURN_S;
+        let is_same = |(last_s, last): (f64, usize)| last != laser && same_s.contains(&(time_s - last_s));
+        let time_s = match self.last.filter(|last| is_same(*last)) {
+            Some((last_s, _)) => last_s + TURN_S,
+            None => time_s,
+        };
+        self.last = Some((time_s, laser));
         LaserReading { time_s, pose, twist, velocities, mount, scan }
     }
 

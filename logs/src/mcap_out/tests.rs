@@ -64,7 +64,7 @@ fn read(bytes: &[u8]) -> (LogSummary, Vec<LaserReading>) {
 }
 
 /// The messages of a topic.
-fn messages<'a, T: serde::de::DeserializeOwned>(bytes: &'a [u8], topic: &str) -> Vec<T> {
+fn messages<T: serde::de::DeserializeOwned>(bytes: &[u8], topic: &str) -> Vec<T> {
     let all = MessageStream::new(bytes).unwrap().map(Result::unwrap);
     all.filter(|message| message.channel.topic == topic)
         .map(|message| decoded(&message.data).unwrap())

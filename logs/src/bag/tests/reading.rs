@@ -161,6 +161,23 @@ fn several_lasers_take_turns_by_time() {
 }
 
 #[test]
+fn lasers_may_scan_at_the_same_time() {
+    let mut bag = Builder::default();
+    let still = |child: &str| transform(0.0, "base_link", child, pose(0.1, 0.0, 0.0));
+    bag.tf("/tf_static", 0.0, &[still("a"), still("b"), still("c")]);
+    for step in 0..4 {
+        let time_s = f64::from(step) * 0.1;
+        for frame in ["a", "b", "c"] {
+            bag.scan(&format!("/{frame}"), time_s, &scan(time_s, frame));
+        }
+    }
+    let bag = bag.open(&TopicChoice::default()).unwrap();
+    assert!(bag.summary().notes.is_empty(), "{:?}", bag.summary().notes);
+    let times_s: Vec<f64> = readings(&bag).iter().map(|reading| reading.time_s).collect();
+    assert_near(&times_s[3..6], &[0.1, 0.102, 0.104]);
+}
+
+#[test]
 fn stamps_that_make_no_sense_give_way_to_the_times_of_the_recording() {
     let mut bag = Builder::default();
     for step in 0..5 {
