@@ -6,7 +6,9 @@ pub mod keyboard;
 pub mod program;
 pub mod progress;
 pub mod reachability;
+#[cfg(feature = "recording")]
 pub mod shards;
 pub mod terminal;
+#[cfg(feature = "recording")]
 pub mod trials;
 pub mod worlds;

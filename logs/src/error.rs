@@ -4,12 +4,12 @@ use interfaces::printable;
 #[derive(Debug, thiserror::Error)]
 pub enum LogError {
     /// The file cannot be opened, read or decompressed.
-    #[error("{}: {source}", printable(file))]
+    #[error("{}: {why}", printable(file))]
     Io {
         /// The name of the file.
         file: String,
         /// The error of the system.
-        source: std::io::Error,
+        why: std::io::Error,
     },
     /// A line does not have the form that its first word demands.
     #[error("{}:{line}: {}", printable(file), printable(what))]

@@ -24,7 +24,7 @@ pub(crate) struct Lines {
 impl Lines {
     /// Opens a log. The compression is recognised by the content.
     pub(crate) fn open(bytes: &Bytes, file: &str) -> Result<Self, LogError> {
-        let io = |source| LogError::Io { file: file.to_owned(), source };
+        let io = |why| LogError::Io { file: file.to_owned(), why };
         let mut reader: Box<dyn BufRead + Send> = Box::new(BufReader::new(bytes.open().map_err(io)?));
         if reader.fill_buf().map_err(io)?.starts_with(&GZIP) {
             reader = Box::new(BufReader::new(MultiGzDecoder::new(reader)));
@@ -37,15 +37,15 @@ impl Lines {
         self.line.clear();
         let mut limited = self.reader.by_ref().take(LONGEST);
         let read = limited.read_until(b'\n', &mut self.line);
-        let count = read.map_err(|source| LogError::Io { file: self.file.clone(), source })?;
+        let count = read.map_err(|why| LogError::Io { file: self.file.clone(), why })?;
         if count == 0 {
             return Ok(None);
         }
         self.number += 1;
         self.is_complete = self.line.ends_with(b"\n");
         if !self.is_complete && count as u64 == LONGEST {
-            let source = Error::new(ErrorKind::InvalidData, "a line is longer than 1 MiB: not a log");
-            return Err(LogError::Io { file: self.file.clone(), source });
+            let why = Error::new(ErrorKind::InvalidData, "a line is longer than 1 MiB: not a log");
+            return Err(LogError::Io { file: self.file.clone(), why });
         }
         Ok(Some(String::from_utf8_lossy(&self.line).into_owned()))
     }

@@ -1,5 +1,6 @@
-use interfaces::{LaserReading, SettingsCheck, SettingsError};
-use mapper::MapperSettings;
+use interfaces::{GridFrame, LaserReading, SettingsCheck, SettingsError};
+use mapper::{Mapper, MapperSettings};
+use nalgebra::Point2;
 
 /// How the poses of a log are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
@@ -51,12 +52,20 @@ impl SurveySettings {
         }
     }
 
-    pub(crate) fn check(&self) -> Result<(), SettingsError> {
+    /// Checks all settings.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn check(&self) -> Result<(), SettingsError> {
         let check = SettingsCheck { part: "survey" };
         check.within("resolution_m", self.resolution_m, 0.005..=10.0, "from 0.005 to 10")?;
         check.within("max_range_m", self.max_range_m, 0.1..=1000.0, "from 0.1 to 1000")?;
         let angle = self.min_shadow_angle_rad;
-        check.within("min_shadow_angle_rad", angle, 0.0..=1.5, "from 0 to 1.5")
+        check.within("min_shadow_angle_rad", angle, 0.0..=1.5, "from 0 to 1.5")?;
+        // A mapper checks its settings when it is built: one cell is enough.
+        let cell = GridFrame::new(Point2::origin(), self.resolution_m, 1, 1);
+        cell.map_or(Ok(()), |frame| Mapper::new(&self.mapper, frame).map(drop))
     }
 
     /// A reading without what must not enter a map: ranges that are too long, and points between surfaces.

@@ -17,6 +17,7 @@ mod folder;
 mod grid;
 mod houses;
 mod keyboard;
+mod map_log;
 mod memory;
 mod output;
 mod pose;

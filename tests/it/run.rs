@@ -11,6 +11,8 @@ const FOUR_ROOMS: &str = env!("CARGO_BIN_EXE_four_rooms");
 const GRID_WORLD: &str = env!("CARGO_BIN_EXE_grid_world");
 /// The program for trials in physics worlds.
 const HOUSE_TRIALS: &str = env!("CARGO_BIN_EXE_house_trials");
+/// The program for logs.
+const MAP_LOG: &str = env!("CARGO_BIN_EXE_map_log");
 
 /// A folder in which a program runs. All output goes to the subfolder `out`, unless the arguments name another
 /// folder.
@@ -48,6 +50,11 @@ impl Run {
     /// A run of `house_trials`.
     pub(crate) fn houses() -> Self {
         Self { folder: tempfile::tempdir().unwrap(), program: HOUSE_TRIALS }
+    }
+
+    /// The same folder, for `map_log`.
+    pub(crate) fn with_map_log(self) -> Self {
+        Self { program: MAP_LOG, ..self }
     }
 
     /// A finished run of `four_rooms` without a recording, which must succeed; arguments are separated by spaces.

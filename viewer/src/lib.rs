@@ -1,17 +1,22 @@
 //! The display of a run: the scene of a world, the layers of a map, pictures, a moving picture, and the Rerun
 //! recording.
 //!
-//! This is the only crate that knows Rerun. It reads the state of a run and changes nothing: no result depends on
+//! This is the only crate that knows Rerun, and only with the feature `recording`. It reads the state of a run and changes nothing: no result depends on
 //! the display. The crate must not know command lines, world files, or how a run is made.
 
 pub mod layers;
 mod legend;
 mod outline;
 pub mod pictures;
+#[cfg(feature = "recording")]
+pub mod recording;
+#[cfg(not(feature = "recording"))]
+#[path = "no_recording.rs"]
 pub mod recording;
 pub mod scene;
 pub mod show;
-#[cfg(test)]
+#[cfg(all(test, feature = "recording"))]
 mod tests;
+#[cfg(feature = "recording")]
 pub mod trial;
 pub mod view;

@@ -56,7 +56,7 @@ impl BagFile {
     pub(crate) fn open(path: &Path) -> Result<Option<Self>, LogError> {
         let name: Arc<str> = path.display().to_string().into();
         Self::recognised(name.clone(), Bytes::File(path.to_owned()))
-            .map_err(|source| LogError::Io { file: name.to_string(), source })
+            .map_err(|why| LogError::Io { file: name.to_string(), why })
     }
 
     pub(crate) fn recognised(name: Arc<str>, bytes: Bytes) -> io::Result<Option<Self>> {
@@ -113,7 +113,7 @@ struct Information {
 /// The files of a folder in their order, and a note if that was found out by their names.
 pub(crate) fn in_folder(folder: &Path) -> Result<(Vec<BagFile>, Option<String>), LogError> {
     let metadata = folder.join("metadata.yaml");
-    let io = |source| LogError::Io { file: metadata.display().to_string(), source };
+    let io = |why| LogError::Io { file: metadata.display().to_string(), why };
     let file = match fs::File::open(&metadata) {
         Ok(file) => file,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return by_name(folder),
@@ -152,7 +152,7 @@ pub(crate) fn in_folder(folder: &Path) -> Result<(Vec<BagFile>, Option<String>),
 
 /// All bag files of a folder without metadata, in the order of the numbers in their names.
 fn by_name(folder: &Path) -> Result<(Vec<BagFile>, Option<String>), LogError> {
-    let io = |source| LogError::Io { file: folder.display().to_string(), source };
+    let io = |why| LogError::Io { file: folder.display().to_string(), why };
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(io)? {
         let path = entry.map_err(io)?.path();

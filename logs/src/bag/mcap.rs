@@ -70,7 +70,7 @@ impl From<io::Error> for Stop {
 
 impl McapFile {
     pub(super) fn open(file: &Arc<str>, bytes: &Bytes, selection: Selection) -> Result<Self, LogError> {
-        let io = |source| LogError::Io { file: file.to_string(), source };
+        let io = |why| LogError::Io { file: file.to_string(), why };
         let mut input = BufReader::with_capacity(1 << 16, bytes.open().map_err(io)?);
         let size = input.seek(SeekFrom::End(0)).map_err(io)?;
         let start = MAGIC.len() as u64;

@@ -41,7 +41,7 @@ pub(super) struct SqliteFile {
 impl SqliteFile {
     pub(super) fn open(file: &Arc<str>, bytes: &Bytes, selection: Selection) -> Result<Self, LogError> {
         let failed = |error| database_error(file, &error);
-        let io = |source| LogError::Io { file: file.to_string(), source };
+        let io = |why| LogError::Io { file: file.to_string(), why };
         let path = bytes.path().ok_or_else(|| io(io::ErrorKind::Unsupported.into()))?;
         let size = path.metadata().map_err(io)?.len();
         let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;

@@ -89,5 +89,5 @@ fn failed(name: &str, error: mcap::McapError) -> LogError {
         mcap::McapError::Io(source) => source,
         other => Error::other(other),
     };
-    LogError::Io { file: name.to_owned(), source }
+    LogError::Io { file: name.to_owned(), why: source }
 }

@@ -42,9 +42,7 @@ pub(crate) fn learn(job: &Job, sessions: &[Session], folder: &Path) -> Result<Le
     let first = first.context("the log has no reading").map_err(input)?.map_err(input)?;
     let title = job.sources.iter().map(|source| source.name.as_str()).collect::<Vec<_>>().join(", ");
     let scene = Scene::of_log(&title, frame, &job.settings.filtered(first));
-    let recording = folder.join(RECORDING);
-    let recorder = (!job.args.no_rrd).then(|| Recorder::new(Some(&recording), &[], scene.clone()));
-    let recorder = recorder.transpose().map_err(anyhow::Error::from)?;
+    let recorder = if job.args.no_rrd { None } else { recorder(&folder.join(RECORDING), &scene)? };
     let mut learned = Learned {
         mapper,
         changes: ChangeLog::default(),
@@ -70,6 +68,17 @@ pub(crate) fn learn(job: &Job, sessions: &[Session], folder: &Path) -> Result<Le
         say(stderr(), format_args!("error: cannot write the trajectory: {problem}"));
     }
     Ok(learned)
+}
+
+#[cfg(feature = "recording")]
+fn recorder(path: &Path, scene: &Scene) -> anyhow::Result<Option<Recorder>> {
+    Ok(Some(Recorder::new(Some(path), &[], scene.clone())?))
+}
+
+/// A program without the feature makes no recording.
+#[cfg(not(feature = "recording"))]
+fn recorder(_: &Path, _: &Scene) -> anyhow::Result<Option<Recorder>> {
+    Ok(None)
 }
 
 impl Learned {

@@ -163,7 +163,7 @@ pub(super) fn compressed(by: Compression) -> WriteOptions {
 
 /// A bag of one file.
 pub(super) fn open(bytes: &[u8], choice: &TopicChoice) -> Result<Bag, LogError> {
-    let io = |source| LogError::Io { file: "test".to_owned(), source };
+    let io = |why| LogError::Io { file: "test".to_owned(), why };
     let bytes = if bytes.starts_with(b"SQLite") {
         let mut file = tempfile::NamedTempFile::new().map_err(io)?;
         file.write_all(bytes).map_err(io)?;

@@ -1,0 +1,110 @@
+//! `map_log`: logs and bags become maps of what changes.
+
+use crate::bad_input::refuses;
+use crate::run::{Run, names};
+use std::fs;
+
+/// A folder with `a.mcap`: a robot with drifting odometry in a house, for this long.
+fn with_bag(seconds: u32) -> Run {
+    let run = Run::new();
+    let arguments = format!("--world drifting_house --seed 100 --duration {seconds} --mcap a.mcap");
+    run.goes_well(&format!("--quiet --no-rrd {arguments}"));
+    fs::remove_dir_all(run.path("out")).unwrap();
+    run.with_map_log()
+}
+
+#[test]
+fn a_bag_becomes_a_page_maps_masks_and_numbers() {
+    let run = with_bag(60);
+    let ended = run.goes_well("a.mcap --mcap copy.mcap");
+    for line in ["a.mcap: 601 scans in 60 s", "  route ", "  seen ", "  changes ", "  files     out"] {
+        assert!(ended.stdout.contains(line), "{line}: {}", ended.stdout);
+    }
+    let mut expected = vec![
+        "cell_statistics.csv",
+        "change_probability.png",
+        "figure5.png",
+        "interval.png",
+        "keepout_mask.pgm",
+        "keepout_mask.yaml",
+        "layers.npy",
+        "map.pgm",
+        "map.yaml",
+        "map_log.rrd",
+        "occupancy.png",
+        "permanent.pgm",
+        "permanent.yaml",
+        "places.png",
+        "predicted.png",
+        "recency.png",
+        "report.html",
+        "speed_mask.pgm",
+        "speed_mask.yaml",
+        "summary.json",
+        "trajectory.png",
+        "trajectory.tum",
+    ];
+    let found: Vec<String> = names(&run.path("out"));
+    assert_eq!(found, expected);
+    let summary = run.summary();
+    expected.retain(|name| *name != "summary.json");
+    assert_eq!(summary.0["files"], serde_json::json!(expected));
+    assert_eq!(summary.number("/scans"), 601.0);
+    assert!((30.0..110.0).contains(&summary.number("/seen_m2")), "{}", summary.number("/seen_m2"));
+    assert!(summary.number("/scans_left_out") < 30.0);
+    let poses = fs::read_to_string(run.out("trajectory.tum")).unwrap();
+    assert_eq!(poses.lines().count(), 601);
+    // An array with one layer per name, of the size of the map.
+    let array = fs::read(run.out("layers.npy")).unwrap();
+    assert!(array.starts_with(b"\x93NUMPY"));
+    let page = fs::read_to_string(run.out("report.html")).unwrap();
+    for text in ["Where it changes, and how often", "places.png", "601 scans in 60 s", "never seen"] {
+        assert!(page.contains(text), "{text}");
+    }
+
+    // The copy has the same readings: the same map again, bit for bit, and from the same bag as well.
+    let cells = fs::read(run.out("cell_statistics.csv")).unwrap();
+    for log in ["copy.mcap", "a.mcap"] {
+        run.goes_well(&format!("{log} --quiet --no-rrd"));
+        assert!(fs::read(run.out("cell_statistics.csv")).unwrap() == cells, "{log}");
+    }
+}
+
+#[test]
+fn two_logs_of_one_place_add_up() {
+    let run = with_bag(40);
+    run.goes_well("a.mcap --quiet --no-rrd");
+    let once = run.summary();
+    fs::copy(run.path("a.mcap"), run.path("b.mcap")).unwrap();
+    // The time between them is not known: both begin at 0.
+    let ended = run.ends("a.mcap b.mcap --quiet --no-rrd");
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    let both = run.summary();
+    assert_eq!(both.number("/scans"), 2.0 * once.number("/scans"));
+    assert!((both.number("/seen_m2") / once.number("/seen_m2") - 1.0).abs() < 0.02);
+    assert!(ended.stderr.contains("is not known and counts as an hour"), "{}", ended.stderr);
+}
+
+#[test]
+fn what_is_no_log_is_refused_and_nothing_is_written() {
+    let run = || Run::new().with_map_log();
+    let refused = |name: &str, text: &[u8], arguments: &str| {
+        let run = run();
+        fs::write(run.path(name), text).unwrap();
+        refuses(&run, arguments, &[name])
+    };
+    insta::assert_snapshot!(refuses(&run(), "gone.log", &[]), @"error: gone.log: No such file or directory (os error 2): No such file or directory (os error 2)");
+    insta::assert_snapshot!(refused("a.log", b"hello\n", "a.log"), @"error: a.log: no line is a scan (FLASER or ROBOTLASER1): not a CARMEN log");
+    insta::assert_snapshot!(refused("a.bag", b"#ROSBAG V2.0\n", "a.bag"), @"error: a.bag: a bag of ROS 1; convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install rosbags): a bag of ROS 1; convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install rosbags)");
+    insta::assert_snapshot!(refused("a.mcap", b"\x89MCAP0\r\n", "a.mcap"), @"error: a.mcap: no message: the bag is empty");
+    let scans = "FLASER 3 1.0 1.0 1.0 0 0 0 0 0 0 1.0 host 1.0\n";
+    insta::assert_snapshot!(refused("a.log", scans.as_bytes(), "a.log --resolution 0"), @r#"
+    note: a.log: no ODOM line: the odometry stands still
+    error: survey setting `resolution_m` must be from 0.005 to 10, not 0
+    "#);
+    insta::assert_snapshot!(refused("a.log", scans.as_bytes(), "a.log --noise -1"), @r#"
+    note: a.log: no ODOM line: the odometry stands still
+    a.log: first pass
+    error: mapper setting `steady.range_noise_std_m` must be from 0 to 0.5 m, not -1
+    "#);
+}
