@@ -9,8 +9,9 @@ use nalgebra::{Point2, UnitComplex, Vector2};
 use std::f64::consts::{PI, TAU};
 
 /// A robot that stays within this distance, m, for this time, s, and the time of a full turn, does not get away by
-/// its usual rules.
-const PLACE_M: f64 = 0.1;
+/// its usual rules. The distance is twice that of a robot that is said to stand: otherwise a short move ends the wait,
+/// although the robot remains in a place of that size.
+const PLACE_M: f64 = 0.2;
 const STANDS_S: f64 = 25.0;
 /// The time between two attempts, s.
 const RETRY_S: f64 = 5.0;
