@@ -64,7 +64,7 @@ fn damaged_records_are_named_by_their_offset() {
         format!("test: byte {chunk}: a chunk of 5368709120 bytes, unpacked; at most 1073741824 are read");
     assert_eq!(unpacked, expected);
     let crc = damaged(chunk + 9 + 24, &1_u32.to_le_bytes());
-    assert_eq!(crc, format!("test: byte {chunk}: the checksum of the chunk is wrong"));
+    assert_eq!(crc, format!("test: byte {chunk}: the checksum of the chunk does not match"));
     let records = chunk + 9 + 40;
     let long = damaged(records + 1, &(1_u64 << 40).to_le_bytes());
     assert_eq!(long, format!("test: byte {chunk}: a record is longer than its chunk"));
