@@ -147,6 +147,18 @@ fn other_formats_are_named() {
 }
 
 #[test]
+fn a_database_that_is_cut_off_is_refused() {
+    let mut bag = standing();
+    for step in 0..400 {
+        bag.scan("/scan", 2.0, &scan(2.0 + f64::from(step), "laser"));
+    }
+    let bytes = bag.sqlite();
+    let expected = "test: the database is damaged: database disk image is malformed; `sqlite3 FILE .recover` prints what can \
+                    be saved";
+    assert_eq!(refused(&bytes[..bytes.len() / 2]), expected);
+}
+
+#[test]
 fn other_databases_are_refused() {
     let database = |sql: &str| {
         let file = tempfile::NamedTempFile::new().unwrap();
