@@ -74,7 +74,11 @@ impl Chunk {
             let is_intact = self.is_cut
                 || self.expected_crc == 0
                 || self.crc.as_ref().is_none_or(|crc| crc.sum() == self.expected_crc);
-            return if is_intact { Ok(None) } else { Err(invalid("the checksum of the chunk is wrong")) };
+            return if is_intact {
+                Ok(None)
+            } else {
+                Err(invalid("the checksum of the chunk does not match"))
+            };
         }
         let mut start = [0; 9];
         self.read_exact(&mut start)?;

@@ -23,10 +23,11 @@ pub(super) enum Kind {
 impl Kind {
     /// The kind of a topic by the type of its messages; `None` for all others.
     pub(super) fn of(topic: &Topic) -> Option<Self> {
-        let kind = match topic.type_name.as_str() {
-            "sensor_msgs/msg/LaserScan" => Self::Scans,
-            "nav_msgs/msg/Odometry" => Self::Odometry,
-            "tf2_msgs/msg/TFMessage" => Self::Transforms,
+        // Types of ROS 1 have the same names without `msg`; what has their encoding is named in an error.
+        let kind = match topic.type_name.replacen("/msg/", "/", 1).as_str() {
+            "sensor_msgs/LaserScan" => Self::Scans,
+            "nav_msgs/Odometry" => Self::Odometry,
+            "tf2_msgs/TFMessage" => Self::Transforms,
             _ => return None,
         };
         // Other topics of transforms are those of tools, or copies.

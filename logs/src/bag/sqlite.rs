@@ -3,7 +3,7 @@
 use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bytes::Bytes;
 use crate::error::LogError;
-use rusqlite::{Connection, OpenFlags, Row};
+use rusqlite::{Connection, ErrorCode, OpenFlags, Row};
 use std::collections::{BTreeMap, VecDeque};
 use std::io;
 use std::sync::Arc;
@@ -116,7 +116,15 @@ fn topic(row: &Row<'_>) -> rusqlite::Result<(i64, Topic)> {
 }
 
 fn database_error(file: &Arc<str>, error: &rusqlite::Error) -> LogError {
-    damaged(file, &error.to_string())
+    let hint = match error.sqlite_error_code() {
+        // We do not write to a log, not even to take back what its recorder could not finish.
+        Some(ErrorCode::ReadOnly) => {
+            "; its recorder was stopped within a write, which `sqlite3 FILE .tables` takes back"
+        }
+        Some(ErrorCode::DatabaseCorrupt) => "; `sqlite3 FILE .recover` prints what can be saved",
+        _ => "",
+    };
+    damaged(file, &format!("{error}{hint}"))
 }
 
 fn damaged(file: &Arc<str>, what: &str) -> LogError {

@@ -64,7 +64,7 @@ fn damaged_records_are_named_by_their_offset() {
         format!("test: byte {chunk}: a chunk of 5368709120 bytes, unpacked; at most 1073741824 are read");
     assert_eq!(unpacked, expected);
     let crc = damaged(chunk + 9 + 24, &1_u32.to_le_bytes());
-    assert_eq!(crc, format!("test: byte {chunk}: the checksum of the chunk is wrong"));
+    assert_eq!(crc, format!("test: byte {chunk}: the checksum of the chunk does not match"));
     let records = chunk + 9 + 40;
     let long = damaged(records + 1, &(1_u64 << 40).to_le_bytes());
     assert_eq!(long, format!("test: byte {chunk}: a record is longer than its chunk"));
@@ -144,6 +144,18 @@ fn other_formats_are_named() {
     let packed = zstd::encode_all(&zeros[..], 0).unwrap();
     let error = refused(&packed);
     assert!(error.contains("bytes grow to"), "{error}");
+}
+
+#[test]
+fn a_database_that_is_cut_off_is_refused() {
+    let mut bag = standing();
+    for step in 0..400 {
+        bag.scan("/scan", 2.0, &scan(2.0 + f64::from(step), "laser"));
+    }
+    let bytes = bag.sqlite();
+    let expected = "test: the database is damaged: database disk image is malformed; `sqlite3 FILE .recover` prints what can \
+                    be saved";
+    assert_eq!(refused(&bytes[..bytes.len() / 2]), expected);
 }
 
 #[test]
