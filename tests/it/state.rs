@@ -6,10 +6,10 @@ use std::fs;
 
 const SHORT: &str = "--quiet --no-rrd --state a.state --duration";
 
-/// A run with a state after 10 s.
+/// A run with a state after 4 s.
 fn begun(arguments: &str) -> Run {
     let run = Run::new();
-    run.goes_well(&format!("{SHORT} 10 {arguments}"));
+    run.goes_well(&format!("{SHORT} 4 {arguments}"));
     run
 }
 
@@ -30,13 +30,13 @@ fn a_run_in_two_parts_equals_a_whole_one() {
         "--drive tour --pose odometry",
     ] {
         let parts = begun(arguments);
-        assert_eq!(parts.summary().number("/simulated_s").round(), 10.0);
-        parts.goes_well(&format!("{SHORT} 25 {arguments}"));
-        let whole = Run::quiet(&format!("--duration 25 {arguments}"));
+        assert_eq!(parts.summary().number("/simulated_s").round(), 4.0);
+        parts.goes_well(&format!("{SHORT} 12 {arguments}"));
+        let whole = Run::quiet(&format!("--duration 12 {arguments}"));
         assert!(results(&parts) == results(&whole), "{arguments}");
         // A state that has come so far already only writes its results again.
         let saved = fs::read(parts.path("a.state")).unwrap();
-        parts.goes_well(&format!("{SHORT} 25 {arguments}"));
+        parts.goes_well(&format!("{SHORT} 12 {arguments}"));
         assert!(results(&parts) == results(&whole) && fs::read(parts.path("a.state")).unwrap() == saved);
         assert_eq!(parts.names(), ["a.state", "out"]);
     }
@@ -48,13 +48,13 @@ fn a_state_of_something_else_is_refused_and_stays() {
     let saved = fs::read(run.path("a.state")).unwrap();
     fs::remove_dir_all(run.path("out")).unwrap();
     let refused = |arguments: &str| refuses(&run, &format!("--state a.state {arguments}"), &["a.state"]);
-    insta::assert_snapshot!(refused("--world house"), @"");
-    insta::assert_snapshot!(refused("--seed 3"), @"");
-    insta::assert_snapshot!(refused("--strategy recency"), @"");
-    insta::assert_snapshot!(refused("--estimator paper"), @"");
-    insta::assert_snapshot!(refused("--occupancy naive"), @"");
-    insta::assert_snapshot!(refused("--pose localized"), @"");
-    insta::assert_snapshot!(refused("--drive tour"), @"");
+    insta::assert_snapshot!(refused("--world house"), @"error: a.state: the state is of another run: `world` is `four rooms` there, and `house` here");
+    insta::assert_snapshot!(refused("--seed 3"), @"error: a.state: the state is of another run: `seed` is `0` there, and `3` here");
+    insta::assert_snapshot!(refused("--strategy recency"), @"error: a.state: the state is of another run: `--strategy` is `curious` there, and `recency` here");
+    insta::assert_snapshot!(refused("--estimator paper"), @"error: a.state: the state is of another run: `mapper.estimator` is `two-state-gaps` there, and `paper` here");
+    insta::assert_snapshot!(refused("--occupancy naive"), @"error: a.state: the state is of another run: `mapper.occupancy` is `steady` there, and `naive` here");
+    insta::assert_snapshot!(refused("--pose localized"), @"error: a.state: the state is of another run: `pose` is `exact` there, and `localized` here");
+    insta::assert_snapshot!(refused("--drive tour"), @"error: a.state: the state is of another run: `--drive` is `agent` there, and `tour` here");
     assert_eq!(fs::read(run.path("a.state")).unwrap(), saved);
 }
 

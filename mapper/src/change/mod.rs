@@ -5,6 +5,7 @@ mod estimators;
 mod exposure;
 mod gaps;
 mod reading_times;
+mod shared_cells;
 mod statistics;
 mod transition_kernel;
 

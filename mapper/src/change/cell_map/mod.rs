@@ -10,6 +10,7 @@ mod state_change;
 use super::EstimatorChoice;
 use super::gaps::{CellGaps, GapHistogram, Regularity};
 use super::reading_times::{NEVER, PRIOR, ReadingIndex, ReadingTimes};
+use crate::change::shared_cells::SharedCells;
 use interfaces::{CellState, Grid, Transition};
 use last_seen::LastSeenCounts;
 use record::Record;
@@ -36,7 +37,7 @@ pub struct CellMap {
     observed: Vec<ReadingIndex>,
     records: Vec<Record>,
     /// The gaps of every cell; empty if the estimator has no model of gaps.
-    gaps: Vec<CellGaps>,
+    gaps: SharedCells<CellGaps>,
     regularity: Regularity,
     /// The cells that ever changed, in the order of their first change.
     pub(crate) changed: Vec<u32>,
@@ -59,8 +60,7 @@ impl CellMap {
 
     pub(crate) fn new(prior: Grid<CellState>, estimator: EstimatorChoice, max_gap: f64) -> Self {
         let cells = prior.frame().len();
-        let gaps =
-            if estimator.gap_model().is_some() { vec![CellGaps::default(); cells] } else { Vec::new() };
+        let gaps = SharedCells::new(if estimator.gap_model().is_some() { cells } else { 0 });
         let mut map = Self {
             estimator,
             max_gap,

@@ -6,19 +6,20 @@ use interfaces::{CellState, Values, runs, value};
 impl CellMap {
     /// The changing values; those that follow from them are not in the list.
     pub(crate) fn values(&mut self) -> Values<'_> {
-        vec![
+        let mut values = vec![
             value(&mut self.interrupted),
             runs(self.states.cells_mut()),
             value(&mut self.times),
             runs(&mut self.observed),
             runs(&mut self.records),
-            runs(&mut self.gaps),
             value(&mut self.regularity),
             value(&mut self.changed),
             value(&mut self.returned),
             value(&mut self.transitions),
             value(&mut self.last_seen_counts),
-        ]
+        ];
+        values.extend(self.gaps.values());
+        values
     }
 
     /// Computes what follows from the values.

@@ -1,0 +1,55 @@
+//! What it costs to save the state of a run: `cargo run -p evaluation --example state_size -- WORLD.toml MINUTES…`
+//!
+//! For each number of simulated minutes: how long the loop stops to copy the state (the shortest of many copies, which no
+//! other program has interrupted, and the median), how long a thread takes to turn the copy into bytes, and the size per
+//! known cell.
+
+use agent::Policy;
+use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
+use evaluation::trial_state::TrialFacts;
+use interfaces::CellState;
+use state::Facts;
+use std::error::Error;
+use std::path::Path;
+use std::time::Instant;
+
+const SEED: u64 = 100;
+const COPIES: usize = 40;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let path = arguments.next().ok_or("give a world file and a number of minutes")?;
+    let name = Path::new(&path).file_stem().ok_or("give a world file")?.to_string_lossy();
+    let spec = worldfile::physics::load_world(Path::new(&path))?;
+    let settings = PhysicsSettings::of(&spec)?;
+    let facts = TrialFacts::new(&spec, SEED, &settings, Facts::default());
+    let pilot = settings.pilot(settings.agent(&Policy::default(), SEED)?, SEED)?;
+    let mut trial = PhysicsTrial::new(&spec, SEED, &settings, None, pilot)?;
+    for minutes in arguments {
+        trial.run(60.0 * minutes.parse::<f64>()?)?;
+        let mut copies_ms: Vec<f64> = (0..COPIES)
+            .map(|_| {
+                let start = Instant::now();
+                let copy = trial.snapshot(&facts);
+                let copy_ms = 1e3 * start.elapsed().as_secs_f64();
+                drop(copy);
+                copy_ms
+            })
+            .collect();
+        copies_ms.sort_by(f64::total_cmp);
+        let copy = trial.snapshot(&facts);
+        let start = Instant::now();
+        let bytes = copy.into_state().to_bytes();
+        let write_ms = 1e3 * start.elapsed().as_secs_f64();
+        let known =
+            trial.mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();
+        println!(
+            "{name}, {minutes} min: stop {:.1} ms (median {:.1}), bytes {write_ms:.0} ms, {} kB, {:.1} bytes per known cell",
+            copies_ms[0],
+            copies_ms[COPIES / 2],
+            bytes.len() / 1000,
+            bytes.len() as f64 / known as f64,
+        );
+    }
+    Ok(())
+}
