@@ -18,6 +18,7 @@ mod random;
 mod reading;
 mod scan;
 pub mod serde_pose;
+pub mod serde_time;
 mod settings;
 mod state;
 mod values;
