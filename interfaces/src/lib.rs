@@ -39,5 +39,8 @@ pub use reading::{CellReading, LaserReading, Observation, Reading, VelocitySampl
 pub use scan::{Scan, ScanError};
 pub use settings::{SettingsCheck, SettingsError};
 pub use state::{CellState, Event, Transition};
-pub use values::{Value, ValueError, Values, read_values, restore, runs, snapshot, value, write_values};
+pub use values::{
+    Value, ValueError, Values, read_value, read_values, restore, runs, snapshot, value, write_value,
+    write_values,
+};
 pub use world::World;
