@@ -1,5 +1,5 @@
 use crate::Situation;
-use interfaces::{Cell, CellState, Grid, Value, ValueError};
+use interfaces::{Cell, CellState, Grid, Value, ValueError, read_value, write_value};
 use nalgebra::Point2;
 
 /// The time for which a cell counts as dynamic after a change in or beside it, s.
@@ -29,14 +29,13 @@ impl DynamicObstacleFilter {
             fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
                 let last = self.0.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                 let times = self.0.iter().copied().enumerate();
-                let mut recent: Vec<_> =
+                let recent: Vec<_> =
                     times.filter(|(_, time)| time.is_finite() && last - time <= MEMORY_S).collect();
-                (&mut recent).write(bytes)
+                write_value(&recent, bytes)
             }
 
             fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
-                let mut recent: Vec<(usize, f64)> = Vec::new();
-                (&mut recent).read(bytes)?;
+                let recent: Vec<(usize, f64)> = read_value(bytes)?;
                 self.0.fill(f64::NEG_INFINITY);
                 for (index, time) in recent {
                     *self.0.get_mut(index).ok_or(ValueError)? = time;

@@ -18,6 +18,7 @@ mod random;
 mod reading;
 mod scan;
 pub mod serde_pose;
+pub mod serde_time;
 mod settings;
 mod state;
 mod values;
@@ -38,5 +39,8 @@ pub use reading::{CellReading, LaserReading, Observation, Reading, VelocitySampl
 pub use scan::{Scan, ScanError};
 pub use settings::{SettingsCheck, SettingsError};
 pub use state::{CellState, Event, Transition};
-pub use values::{Value, ValueError, Values, read_values, restore, runs, snapshot, value, write_values};
+pub use values::{
+    Value, ValueError, Values, read_value, read_values, restore, runs, snapshot, value, write_value,
+    write_values,
+};
 pub use world::World;

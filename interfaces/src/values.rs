@@ -30,13 +30,33 @@ pub trait Value {
 
 impl<T: Serialize + DeserializeOwned> Value for &mut T {
     fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
-        postcard::to_io(&**self, bytes).map(|_| ()).map_err(|_| ValueError)
+        write_value(&**self, bytes)
     }
 
     fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
-        (**self, *bytes) = postcard::take_from_bytes(bytes).map_err(|_| ValueError)?;
+        **self = read_value(bytes)?;
         Ok(())
     }
+}
+
+/// Appends one value to `bytes`.
+///
+/// # Errors
+///
+/// When the value has no form as bytes.
+pub fn write_value<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+    postcard::to_io(value, bytes).map(|_| ()).map_err(|_| ValueError)
+}
+
+/// Reads one value from the front of `bytes`.
+///
+/// # Errors
+///
+/// When the bytes are no such value.
+pub fn read_value<T: DeserializeOwned>(bytes: &mut &[u8]) -> Result<T, ValueError> {
+    let value;
+    (value, *bytes) = postcard::take_from_bytes(bytes).map_err(|_| ValueError)?;
+    Ok(value)
 }
 
 /// The changing values of a part.
@@ -94,14 +114,14 @@ pub fn runs<'a, T: Clone + Serialize + DeserializeOwned>(list: &'a mut [T]) -> B
         fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
             // Compared by their bytes: 0 and -0 are equal numbers, and differ.
             let (mut run, mut next, mut length) = (Vec::new(), Vec::new(), 0usize);
-            let end = |run: &[u8], mut length: usize, bytes: &mut Vec<u8>| {
-                (&mut length).write(bytes)?;
+            let end = |run: &[u8], length: usize, bytes: &mut Vec<u8>| {
+                write_value(&length, bytes)?;
                 bytes.extend_from_slice(run);
                 Ok(())
             };
             for item in &*self.0 {
                 next.clear();
-                postcard::to_io(item, &mut next).map_err(|_| ValueError)?;
+                write_value(item, &mut next)?;
                 if length > 0 && run != next {
                     end(&run, std::mem::take(&mut length), bytes)?;
                 }
@@ -114,8 +134,7 @@ pub fn runs<'a, T: Clone + Serialize + DeserializeOwned>(list: &'a mut [T]) -> B
         fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
             let mut rest = &mut *self.0;
             while !rest.is_empty() {
-                let (length, value): (usize, T);
-                ((length, value), *bytes) = postcard::take_from_bytes(bytes).map_err(|_| ValueError)?;
+                let (length, value): (usize, T) = read_value(bytes)?;
                 let is_run = (1..=rest.len()).contains(&length);
                 let (run, others) = rest.split_at_mut(if is_run { length } else { return Err(ValueError) });
                 run.fill(value);

@@ -11,7 +11,7 @@ pub use path::Path;
 pub use wavefront::Wavefront;
 
 use costmap::line;
-use interfaces::{Cell, CellState, Grid, Transition, Value, ValueError};
+use interfaces::{Cell, CellState, Grid, Transition, Value, ValueError, read_value, write_value};
 use nalgebra::Point2;
 use path::corners;
 
@@ -199,16 +199,14 @@ impl Planner {
         impl Value for Plan<'_> {
             fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
                 let Planner { on_path, goal, end, path_blocked, goal_cleared, .. } = &*self.0;
-                (&mut (on_path.clone(), *goal, *end, *path_blocked, *goal_cleared)).write(bytes)
+                write_value(&(on_path, goal, end, path_blocked, goal_cleared), bytes)
             }
 
             fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
                 let planner = &mut *self.0;
                 planner.reset();
-                let mut plan = (Vec::new(), planner.goal, None, false, false);
-                (&mut plan).read(bytes)?;
                 let Planner { on_path, goal, end, path_blocked, goal_cleared, is_on_path, .. } = planner;
-                (*on_path, *goal, *end, *path_blocked, *goal_cleared) = plan;
+                (*on_path, *goal, *end, *path_blocked, *goal_cleared) = read_value(bytes)?;
                 on_path.iter().for_each(|cell| set(is_on_path, *cell, true));
                 Ok(())
             }

@@ -13,10 +13,12 @@ pub struct TrueChains {
 struct TrueChain {
     state: TrueState,
     /// The time of the last change.
+    #[serde(with = "interfaces::serde_time")]
     since: f64,
     /// The last state that was not partly covered.
     last: Option<usize>,
     /// The time free, and blocked, up to `since`.
+    #[serde(with = "interfaces::serde_time")]
     times: [f64; 2],
     /// The number of times that the cell left the state free, and the state blocked, for the other.
     events: [u32; 2],

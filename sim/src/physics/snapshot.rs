@@ -5,7 +5,7 @@
 
 pub(super) use interfaces::{Values, value};
 
-use interfaces::{Value, ValueError, read_values, write_values};
+use interfaces::{Value, ValueError, read_value, read_values, write_value, write_values};
 use nalgebra::Isometry2;
 use serde::{Deserialize, Serialize};
 
@@ -36,14 +36,12 @@ pub(super) fn pose(pose: &mut Isometry2<f64>) -> Box<dyn Value + '_> {
 
     impl Value for Pose<'_> {
         fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
-            let saved = &mut SavedPose(*self.0);
-            saved.write(bytes)
+            write_value(&SavedPose(*self.0), bytes)
         }
 
         fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
-            let mut saved = SavedPose(*self.0);
-            (&mut saved).read(bytes)?;
-            *self.0 = saved.0;
+            let SavedPose(pose) = read_value(bytes)?;
+            *self.0 = pose;
             Ok(())
         }
     }

@@ -11,6 +11,7 @@ pub(super) struct Record {
     /// a gap. This time is not in `watched` yet.
     pub(super) since: ReadingIndex,
     /// The time in view while free, and while blocked, up to `since`.
+    #[serde(with = "interfaces::serde_time")]
     pub(super) watched: [f64; 2],
     /// Block and free events in view.
     pub(super) in_view: [u32; 2],

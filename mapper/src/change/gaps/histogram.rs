@@ -15,6 +15,7 @@ pub struct GapBin {
     /// The number of gaps.
     pub count: u32,
     /// The sum of the lengths of these gaps, in the time unit of the readings.
+    #[serde(with = "interfaces::serde_time")]
     pub total: f64,
 }
 
@@ -49,6 +50,7 @@ pub(in crate::change) struct Gap {
     /// The last reading before the gap, and the first after it.
     pub(in crate::change) start: ReadingIndex,
     pub(in crate::change) end: ReadingIndex,
+    #[serde(with = "interfaces::serde_time")]
     pub(in crate::change) length: f64,
     /// Whether the cell was blocked before and after the gap.
     pub(in crate::change) before: bool,

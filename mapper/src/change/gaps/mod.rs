@@ -96,9 +96,11 @@ pub(super) struct CellGaps {
 struct Weighed {
     weights: GapWeights,
     /// The number of gaps and events, and the time in view, at which the gaps are weighed again.
+    #[serde(with = "interfaces::serde_time")]
     due: [f64; 2],
     /// For each state the length of the last stay that began and ended with an event in view, in steps; 0 before
     /// the first.
+    #[serde(with = "interfaces::serde_time")]
     stays: [f64; 2],
     /// All stays that began and ended with an event in view: their number, and their total number of steps.
     whole_stays: Exposure,
