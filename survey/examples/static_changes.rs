@@ -43,7 +43,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             _ => continue,
         };
         let cells = hits(&reading).filter(|at| at.coords.norm() < settings.max_range_m);
-        hit[part].extend(cells.filter_map(|at| mapper.frame().index(mapper.frame().cell_at(&(found.pose * at)))));
+        hit[part]
+            .extend(cells.filter_map(|at| mapper.frame().index(mapper.frame().cell_at(&(found.pose * at)))));
     }
 
     let readings = log.readings()?;
@@ -52,14 +53,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scans = session.poses.len();
     let mut poses = FoundPoses::new(session.poses);
     explore(&mut replay, &mut poses, &mut mapper, &mut Passenger, |replay, _, _, _| {
-        Ok::<_, ReadingError>(if replay.is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        Ok::<_, ReadingError>(if replay.is_over() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        })
     })?;
 
     let events = |index: usize| u64::from(mapper.statistics(index).events());
     let static_cells = hit[0].intersection(&hit[1]);
     let changes: u64 = static_cells.clone().map(|index| events(*index)).sum();
     let all: u64 = mapper.changed().map(events).sum();
-    println!("noise {:.3} m, {scans} scans, {all} changes of cells", settings.mapper.steady.range_noise_std_m);
+    println!(
+        "noise {:.3} m, {scans} scans, {all} changes of cells",
+        settings.mapper.steady.range_noise_std_m
+    );
     println!(
         "{changes} changes on {} static cells: {:.1} per 1000 scans",
         static_cells.count(),

@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 
 /// Cells that change belong to one place if they are at most this far apart, m.
-const APART_M: f64 = 0.15;
+const APART_M: f64 = 0.3;
 /// A place has at least this area, m²: less is noise of the laser at an edge.
 const LEAST_M2: f64 = 0.02;
 /// The probability with which the interval contains the rate.

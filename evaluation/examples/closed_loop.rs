@@ -1,0 +1,150 @@
+//! The whole way from a robot to a map of changes, against the truth: a robot with bad odometry drives in a simulated
+//! house, by its own estimate, and its scans and odometry are written to several bags. From these the trajectories are
+//! found, the sessions aligned and the rates learned, as `map_log` does it.
+//!
+//! Printed: the log error of the rates, of a mapper that gets the same scans with their true poses, and of the survey of the
+//! bags; the error of the poses.
+//!
+//! ```text
+//! cargo run -p evaluation --example closed_loop -- [WORLD [SEED [MINUTES [SESSIONS]]]]
+//! ```
+
+use agent::Policy;
+use evaluation::metrics::{RateScores, rate_scores};
+use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
+use interfaces::{LaserReading, World};
+use localizer::GivenPoses;
+use logs::{Log, McapWriter, TopicChoice};
+use mapper::{Mapper, ReadingError};
+use nalgebra::Isometry2;
+use robot::explore;
+use std::error::Error;
+use std::fs::File;
+use std::io::BufWriter;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use survey::{
+    Aligner, FirstPass, FoundPoses, Passenger, PoseMode, Replay, Session, SurveySettings, learned_noise_m,
+};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let number = |index: usize, default| arguments.get(index).map_or(Ok(default), |text| text.parse::<u64>());
+    let path = arguments.first().map_or("worlds/drifting_house.toml", String::as_str);
+    let (seed, minutes, sessions) = (number(1, 100)?, number(2, 60)?, number(3, 4)?);
+    let folder = tempfile::tempdir()?;
+
+    let spec = worldfile::physics::load_world(path)?;
+    let settings = PhysicsSettings::of(&spec)?;
+    let pilot = settings.pilot(settings.agent(&Policy::default(), seed)?, seed)?;
+    let mut trial = PhysicsTrial::new(&spec, seed, &settings, None, pilot)?;
+    let mut exact = Mapper::new(&settings.mapper, spec.frame)?;
+    let (mut given, mut truth) = (GivenPoses::default(), vec![Vec::new(); sessions as usize]);
+    let bags: Vec<PathBuf> = (0..sessions).map(|bag| folder.path().join(format!("{bag}.mcap"))).collect();
+    for (number, bag) in bags.iter().enumerate() {
+        let mut writer = McapWriter::new(BufWriter::new(File::create(bag)?), "bag", 1e9)?;
+        let end_s = (number + 1) as f64 * minutes as f64 * 60.0;
+        let mut problem = None;
+        trial.run_with(|world, _, _, _, _| -> Result<_, ReadingError> {
+            // The reading as the robot gets it: without a command no time passes, and the scan is the same.
+            let mut at_the_same_time = world.clone();
+            let raw = at_the_same_time.sense();
+            problem = problem.take().or_else(|| writer.reading(&raw).err());
+            let pose = *world.true_pose();
+            truth[number].push(pose);
+            exact.update(&given.unswept(LaserReading { pose, ..raw }))?;
+            let is_over = world.time_s() >= end_s;
+            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        })?;
+        problem.map_or(Ok(()), Err)?;
+        writer.finish()?;
+    }
+
+    let mut settings = SurveySettings::of(PoseMode::Localized);
+    settings.resolution_m = spec.frame.resolution_m();
+    let logs =
+        bags.iter().map(|bag| Log::open(bag, &TopicChoice::default())).collect::<Result<Vec<_>, _>>()?;
+    let found = sessions_of(&logs, &settings, &truth[0][0])?;
+    if let Some(noise_m) = learned_noise_m(&found) {
+        settings.mapper.steady.range_noise_std_m = noise_m;
+    }
+    let mut mapper = Mapper::new(&settings.mapper, spec.frame)?;
+    let begin_s = logs[0].summary().begin_s.unwrap_or_default();
+    for (log, session) in logs.iter().zip(&found) {
+        let offset_s = log.summary().begin_s.unwrap_or_default() - begin_s;
+        let mut replay = Replay::new(log.readings()?, &settings, offset_s)?.ok_or("a bag has no reading")?;
+        let mut poses = FoundPoses::new(session.poses.clone());
+        explore(&mut replay, &mut poses, &mut mapper, &mut Passenger, |replay, _, _, _| {
+            let is_over = replay.is_over();
+            Ok::<_, ReadingError>(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        })?;
+    }
+
+    println!(
+        "{path}, seed {seed}, {sessions} bags of {minutes} min, noise {:.3} m",
+        settings.mapper.steady.range_noise_std_m
+    );
+    print("same scans, true poses", &rate_scores(&exact, trial.world.truth()));
+    print("live, localized       ", &rate_scores(&trial.mapper, trial.world.truth()));
+    print("survey of the bags    ", &rate_scores(&mapper, trial.world.truth()));
+    for (number, (session, truth)) in found.iter().zip(&truth).enumerate() {
+        let mut errors_m: Vec<f64> = session
+            .poses
+            .iter()
+            .zip(truth)
+            .map(|(found, truth)| (found.pose.translation.vector - truth.translation.vector).norm())
+            .collect();
+        errors_m.sort_by(f64::total_cmp);
+        let at = |share: f64| errors_m[(share * (errors_m.len() - 1) as f64) as usize] * 1000.0;
+        println!(
+            "poses of bag {number}: median {:.0}, 95 % {:.0}, largest {:.0} mm",
+            at(0.5),
+            at(0.95),
+            at(1.0)
+        );
+    }
+    Ok(())
+}
+
+/// The trajectories of all logs in the frame of the world, in which the first pose is `start`.
+fn sessions_of(
+    logs: &[Log],
+    settings: &SurveySettings,
+    start: &Isometry2<f64>,
+) -> Result<Vec<Session>, Box<dyn Error>> {
+    let mut sessions: Vec<Session> = Vec::new();
+    let mut aligner = None;
+    for log in logs {
+        let mut pass = FirstPass::new(settings)?;
+        for reading in log.readings()? {
+            pass.add(reading?);
+        }
+        let session = pass.finish();
+        let Some(aligner) = &aligner else {
+            let session = session.moved(start);
+            let mut first = Aligner::new(settings, &session)?;
+            for (reading, found) in log.readings()?.zip(&session.poses) {
+                first.add(reading?, found)?;
+            }
+            aligner = Some(first);
+            sessions.push(session);
+            continue;
+        };
+        let mut search = aligner.search()?;
+        for (reading, found) in log.readings()?.zip(&session.poses) {
+            search.add(&reading?, found);
+        }
+        sessions.push(session.moved(&search.finish()?));
+    }
+    Ok(sessions)
+}
+
+fn print(what: &str, scores: &RateScores) {
+    let text = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"));
+    println!(
+        "{what}: log error {}, AUC {}, false changes {}",
+        text(scores.log_error),
+        text(scores.rate_auc),
+        scores.false_change_events
+    );
+}
