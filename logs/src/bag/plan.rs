@@ -215,7 +215,7 @@ fn connected(
 ) -> Result<Vec<Laser>, String> {
     let (mut kept, mut refused) = (Vec::new(), Vec::new());
     for LaserTopic { topic, frame, .. } in lasers {
-        frames.above(frame)?;
+        frames.above(frame)?; // not in a circle
         let way = frames.way(base, frame, world).ok_or_else(|| match frames.is_empty() {
             true => format!("is not connected to the robot `{base}`: the bag has no transforms (tf)"),
             false => format!(
