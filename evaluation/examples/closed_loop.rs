@@ -12,17 +12,19 @@
 use agent::Policy;
 use evaluation::metrics::{RateScores, rate_scores};
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
-use interfaces::{LaserReading, World};
+use interfaces::{LaserReading, ValueError};
 use localizer::GivenPoses;
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{Mapper, ReadingError};
 use nalgebra::Isometry2;
-use robot::explore;
+use robot::{ExactPoses, Localization, Posed, explore};
+use std::cell::Cell;
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::rc::Rc;
 use survey::{
     Aligner, FirstPass, FoundPoses, Passenger, PoseMode, Replay, Session, SurveySettings, learned_noise_m,
 };
@@ -39,6 +41,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let pilot = settings.pilot(settings.agent(&Policy::default(), seed)?, seed)?;
     let mut trial = PhysicsTrial::new(&spec, seed, &settings, None, pilot)?;
     let mut exact = Mapper::new(&settings.mapper, spec.frame)?;
+    let raw = Rc::new(Cell::new(None));
+    let inner = std::mem::replace(&mut trial.localization, Box::new(ExactPoses));
+    trial.localization = Box::new(Tap { inner, raw: raw.clone() });
     let (mut given, mut truth) = (GivenPoses::default(), vec![Vec::new(); sessions as usize]);
     let bags: Vec<PathBuf> = (0..sessions).map(|bag| folder.path().join(format!("{bag}.mcap"))).collect();
     for (number, bag) in bags.iter().enumerate() {
@@ -46,9 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let end_s = (number + 1) as f64 * minutes as f64 * 60.0;
         let mut problem = None;
         trial.run_with(|world, _, _, _, _| -> Result<_, ReadingError> {
-            // The reading as the robot gets it: without a command no time passes, and the scan is the same.
-            let mut at_the_same_time = world.clone();
-            let raw = at_the_same_time.sense();
+            let Some(raw) = raw.take() else { return Ok(ControlFlow::Continue(())) };
             problem = problem.take().or_else(|| writer.reading(&raw).err());
             let pose = *world.true_pose();
             truth[number].push(pose);
@@ -104,6 +107,31 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     Ok(())
+}
+
+/// Keeps the last reading as the robot got it, before it gets its estimated pose.
+struct Tap {
+    inner: Box<dyn Localization<LaserReading>>,
+    raw: Rc<Cell<Option<LaserReading>>>,
+}
+
+impl Localization<LaserReading> for Tap {
+    fn localize(&mut self, reading: LaserReading, mapper: &Mapper) -> Posed<LaserReading> {
+        self.raw.set(Some(reading.clone()));
+        self.inner.localize(reading, mapper)
+    }
+
+    fn snapshot(&mut self) -> Vec<u8> {
+        self.inner.snapshot()
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        self.inner.restore(snapshot)
+    }
+
+    fn begin_session(&mut self) {
+        self.inner.begin_session();
+    }
 }
 
 /// The trajectories of all logs in the frame of the world, in which the first pose is `start`.
