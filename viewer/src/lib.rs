@@ -1,17 +1,16 @@
 //! The display of a run: the scene of a world, the layers of a map, pictures, a moving picture, and the Rerun
 //! recording.
 //!
-//! This is the only crate that knows Rerun, and only with the feature `recording`. It reads the state of a run and changes nothing: no result depends on
-//! the display. The crate must not know command lines, world files, or how a run is made.
+//! This is the only crate that knows Rerun, and only with the feature `recording`. It reads the state of a run and changes
+//! nothing: no result depends on the display. The crate must not know command lines, world files, or how a run is made.
 
 pub mod layers;
 mod legend;
+#[cfg(not(feature = "recording"))]
+mod no_recording;
 mod outline;
 pub mod pictures;
 #[cfg(feature = "recording")]
-pub mod recording;
-#[cfg(not(feature = "recording"))]
-#[path = "no_recording.rs"]
 pub mod recording;
 pub mod scene;
 pub mod show;
@@ -20,3 +19,6 @@ mod tests;
 #[cfg(feature = "recording")]
 pub mod trial;
 pub mod view;
+
+#[cfg(not(feature = "recording"))]
+pub use no_recording as recording;

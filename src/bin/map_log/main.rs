@@ -7,6 +7,7 @@ mod output;
 mod report;
 mod second_pass;
 mod summary;
+mod words;
 
 use args::Args;
 use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, start};

@@ -2,6 +2,7 @@
 
 use crate::Job;
 use crate::second_pass::Learned;
+use crate::words::how_often;
 use evaluation::percent::percent;
 use interfaces::CellState;
 use serde::Serialize;
@@ -105,7 +106,7 @@ impl fmt::Display for Summary {
         for (number, place) in (1..).zip(self.places.iter().take(3)) {
             let rate = match self.rates_withheld {
                 Some(_) => String::new(),
-                None => format!(", {}", crate::report::how_often(place)),
+                None => format!(", {}", how_often(place)),
             };
             writeln!(f, "    {number}.      at ({:.1}, {:.1}) m{rate}", place.x_m, place.y_m)?;
         }
