@@ -10,6 +10,7 @@ mod chains;
 mod estimators;
 mod observed;
 mod prior;
+mod saved;
 mod skipped;
 mod things;
 mod walls;
