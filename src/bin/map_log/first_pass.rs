@@ -14,7 +14,11 @@ pub(crate) fn sessions(job: &Job) -> Result<Option<Vec<Session>>, Failure> {
     let mut aligner = None;
     for source in &job.sources {
         let mut pass = FirstPass::new(&job.settings).map_err(input)?;
-        if !each_reading(job, source, "first pass", |reading| Ok(pass.add(reading)))? {
+        let add = |reading| {
+            pass.add(reading);
+            Ok(())
+        };
+        if !each_reading(job, source, "first pass", add)? {
             return Ok(None);
         }
         if job.settings.pose == PoseMode::Localized {

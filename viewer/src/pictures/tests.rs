@@ -32,7 +32,7 @@ fn drawn(ticks: usize) -> Drawn {
     }
     let start = std::time::Instant::now();
     let trails = Trails { true_poses: &trails, believed: &Trail::default() };
-    write_all(folder.path(), &run.scene, &run.mapper, &trails, &goals()).unwrap();
+    write_all(folder.path(), &run.scene, &run.mapper, &trails, &goals(), &Layer::ALL).unwrap();
     println!("drawn in {:?}", start.elapsed());
     Drawn { folder, run }
 }
@@ -175,8 +175,9 @@ fn a_folder_that_cannot_be_written_is_named() {
     let folder = file.path().join("pictures");
     let run = FakeRun::new();
     let trails = Trails { true_poses: &[], believed: &Trail::default() };
-    let error =
-        write_all(&folder, &run.scene, &run.mapper, &trails, &Goals::default()).unwrap_err().to_string();
+    let error = write_all(&folder, &run.scene, &run.mapper, &trails, &Goals::default(), &Layer::ALL)
+        .unwrap_err()
+        .to_string();
     assert!(error.starts_with(&format!("cannot write {}: ", folder.display())), "{error}");
 }
 
@@ -186,4 +187,22 @@ fn pictures_for_inspection() {
     let start = std::time::Instant::now();
     let folder = drawn(6000).folder.keep();
     println!("{} in {:?}", folder.display(), start.elapsed());
+}
+
+#[test]
+fn places_are_numbered_on_the_map_with_what_changed() {
+    let drawn = drawn(600);
+    let mapper = &drawn.run.mapper;
+    let changed = mapper.changed().find(|index| mapper.rate(*index) > 0.0).unwrap();
+    let center = mapper.frame().center(mapper.frame().cell(changed));
+    let corner = nalgebra::Vector2::new(0.5, 0.5);
+    let path = drawn.folder.path().join("places.png");
+    draw_places(&path, "Where it changes", mapper, &[[center - corner, center + corner]]).unwrap();
+    let picture = drawn.picture("places");
+    let panel = Panel::of_scene(mapper.frame(), TimeUnit::Second, places::entries().len());
+    let [x, y] = panel.pixel(&center);
+    assert_eq!(picture.get_pixel(x, y).0, palette::MOVING);
+    // The outline of the place, and its number, which stays legible on a wall.
+    let is_near = |color: Rgb| picture.pixels().filter(|pixel| pixel.0 == color).count();
+    assert!(is_near(palette::CURIOUS) > 50, "{}", is_near(palette::CURIOUS));
 }
