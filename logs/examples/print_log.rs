@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn print(path: &Path, with_readings: bool) -> Result<(), LogError> {
     let log = Log::open(path, &TopicChoice::default())?;
     let mut out = BufWriter::new(std::io::stdout());
-    let io = |source| LogError::Io { file: "standard output".to_owned(), source };
+    let io = |why| LogError::Io { file: "standard output".to_owned(), why };
     if !with_readings {
         return writeln!(out, "{:#?}", log.summary()).map_err(io);
     }

@@ -6,9 +6,9 @@ use nalgebra::{Isometry2, Point2};
 
 /// Two cells that change now and then; the second one is seen in two of three readings.
 fn reading(step: u32) -> CellReading {
-    let mut cells = vec![(Cell::new(0, 0), step / 5 % 2 == 0)];
+    let mut cells = vec![(Cell::new(0, 0), (step / 5).is_multiple_of(2))];
     if step % 12 < 8 {
-        cells.push((Cell::new(1, 1), step / 7 % 3 == 0));
+        cells.push((Cell::new(1, 1), (step / 7).is_multiple_of(3)));
     }
     CellReading { time: 0.1 * f64::from(step), pose: Isometry2::identity(), cells }
 }
