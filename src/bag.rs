@@ -22,11 +22,11 @@ const HORIZON_S: f64 = 600.0;
 /// [`finish`](Self::finish) reports it.
 pub struct RunBag {
     file: UnfinishedFile,
-    tape: Rc<RefCell<Tape>>,
+    state: Rc<RefCell<BagState>>,
 }
 
 /// What is written, and what was written last.
-struct Tape {
+struct BagState {
     writer: Result<McapWriter<BufWriter<File>>, LogError>,
     odometry: Isometry2<f64>,
     correction: Option<Isometry2<f64>>,
@@ -38,7 +38,7 @@ struct Tape {
 
 /// A localization whose readings, as they come from their source, are written to a bag.
 pub struct Recorded<L: ?Sized> {
-    tape: Rc<RefCell<Tape>>,
+    state: Rc<RefCell<BagState>>,
     inner: Box<L>,
 }
 
@@ -51,7 +51,7 @@ impl RunBag {
     pub fn create(path: &Path, begin_s: f64) -> anyhow::Result<Self> {
         let file = UnfinishedFile::create(path)?;
         let to = BufWriter::new(file.file().try_clone()?);
-        let tape = Tape {
+        let state = BagState {
             writer: Ok(McapWriter::new(to, &path.display().to_string(), begin_s)?),
             odometry: Isometry2::identity(),
             correction: None,
@@ -60,19 +60,19 @@ impl RunBag {
             next_map_s: f64::NEG_INFINITY,
             next_changes_s: f64::NEG_INFINITY,
         };
-        Ok(Self { file, tape: Rc::new(RefCell::new(tape)) })
+        Ok(Self { file, state: Rc::new(RefCell::new(state)) })
     }
 
     /// A localization that writes every reading to this bag before it gives the reading its pose.
     pub fn recorded<L: ?Sized>(&self, inner: Box<L>) -> Recorded<L> {
-        Recorded { tape: self.tape.clone(), inner }
+        Recorded { state: self.state.clone(), inner }
     }
 
     /// Writes what the robot knows after a reading: its pose, its maps, changes, goal and path.
     pub fn add(&self, belief: &Belief, pilot: &impl Pilot) {
-        let mut tape = self.tape.borrow_mut();
-        if let Err(problem) = tape.add(belief, pilot.goal(), pilot.path()) {
-            tape.writer = Err(problem);
+        let mut state = self.state.borrow_mut();
+        if let Err(problem) = state.add(belief, pilot.goal(), pilot.path()) {
+            state.writer = Err(problem);
         }
     }
 
@@ -82,14 +82,14 @@ impl RunBag {
     ///
     /// When a part of it could not be written. There is no file then.
     pub fn finish(self) -> anyhow::Result<()> {
-        let mut tape = self.tape.borrow_mut();
+        let mut state = self.state.borrow_mut();
         let ended = Err(LogError::Unusable { file: String::new(), why: "the bag is complete".to_owned() });
-        std::mem::replace(&mut tape.writer, ended)?.finish()?;
+        std::mem::replace(&mut state.writer, ended)?.finish()?;
         Ok(self.file.finish()?)
     }
 }
 
-impl Tape {
+impl BagState {
     fn reading(&mut self, reading: &LaserReading) {
         self.odometry = reading.pose;
         let Ok(writer) = &mut self.writer else { return };
@@ -157,7 +157,7 @@ fn layer(mapper: &Mapper, value: impl Fn(usize) -> f64) -> Grid<Option<f64>> {
 
 impl<L: Localization<LaserReading> + ?Sized> Localization<LaserReading> for Recorded<L> {
     fn localize(&mut self, reading: LaserReading, mapper: &Mapper) -> Posed<LaserReading> {
-        self.tape.borrow_mut().reading(&reading);
+        self.state.borrow_mut().reading(&reading);
         self.inner.localize(reading, mapper)
     }
 

@@ -26,7 +26,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::rc::Rc;
 use survey::{
-    Aligner, FirstPass, FoundPoses, Passenger, PoseMode, Replay, Session, SurveySettings, learned_noise_m,
+    Aligner, FirstPass, FoundPoses, NoPilot, PoseMode, Replay, Session, SurveySettings, learned_noise_m,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -77,7 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let offset_s = log.summary().begin_s.unwrap_or_default() - begin_s;
         let mut replay = Replay::new(log.readings()?, &settings, offset_s)?.ok_or("a bag has no reading")?;
         let mut poses = FoundPoses::new(session.poses.clone());
-        explore(&mut replay, &mut poses, &mut mapper, &mut Passenger, |replay, _, _, _| {
+        explore(&mut replay, &mut poses, &mut mapper, &mut NoPilot, |replay, _, _, _| {
             let is_over = replay.is_over();
             Ok::<_, ReadingError>(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         })?;

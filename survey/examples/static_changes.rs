@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
-use survey::{FirstPass, FoundPoses, Passenger, PoseMode, Replay, SurveySettings, frame, learned_noise_m};
+use survey::{FirstPass, FoundPoses, NoPilot, PoseMode, Replay, SurveySettings, frame, learned_noise_m};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let Some(file) = std::env::args().nth(1) else { return Err("usage: static_changes LOG".into()) };
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [session] = sessions;
     let scans = session.poses.len();
     let mut poses = FoundPoses::new(session.poses);
-    explore(&mut replay, &mut poses, &mut mapper, &mut Passenger, |replay, _, _, _| {
+    explore(&mut replay, &mut poses, &mut mapper, &mut NoPilot, |replay, _, _, _| {
         Ok::<_, ReadingError>(if replay.is_over() {
             ControlFlow::Break(())
         } else {

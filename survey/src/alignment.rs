@@ -1,4 +1,4 @@
-//! Where the frame of a later log lies in the map of the earlier ones.
+//! Where the frame of a later log lies in the map of the first one.
 
 use crate::permanent::permanent;
 use crate::session::{Session, SurveyError, frame};
@@ -10,8 +10,8 @@ use nalgebra::{Isometry2, Vector2};
 
 /// How far later logs may leave the extent of the first one and still be aligned there, m.
 const AROUND_M: f64 = 10.0;
-/// At least this share of the readings must have a certain pose in the map of the earlier logs.
-const LEAST_CERTAIN: f64 = 0.1;
+/// At least this share of the readings must have a certain pose in the map of the first log.
+const LEAST_CERTAIN: f64 = 0.3;
 
 /// The map of the first log, in which later logs find their place.
 #[derive(Debug)]
@@ -66,7 +66,7 @@ impl Aligner {
     }
 }
 
-/// The search for the place of a log in the map of the earlier ones.
+/// The search for the place of a log in the map of the first one.
 #[derive(Debug)]
 pub struct Search<'a> {
     mapper: &'a Mapper,

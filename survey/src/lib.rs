@@ -34,7 +34,7 @@ pub use masks::{keepout_mask, speed_mask};
 pub use noise::learned_noise_m;
 pub use permanent::permanent;
 pub use places::{Place, places};
-pub use replay::{FoundPoses, Passenger, Replay};
+pub use replay::{FoundPoses, NoPilot, Replay};
 pub use session::{FirstPass, Session, SurveyError, frame};
 pub use settings::{PoseMode, SurveySettings};
 pub use shadows::remove_shadows;

@@ -2,7 +2,7 @@ use crate::session::Session;
 
 /// The noise of the mapper, in standard deviations of the residuals of a trajectory. The residuals are taken on surfaces
 /// that several passes have seen; at edges, plants and glass they have long tails, each of which would count as a change.
-const PER_RESIDUAL: f64 = 4.0;
+const PER_RESIDUAL: f64 = 5.0;
 /// The least and the largest noise, m.
 const LEAST_M: f64 = 0.02;
 const LARGEST_M: f64 = 0.1;

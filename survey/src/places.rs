@@ -42,24 +42,25 @@ pub struct Place {
     pub last_change_s: f64,
 }
 
-/// The places where something changes, those with the most cycles first: the number of cells times their rate.
+/// The places where something changes, those with the most cycles first: the area times the lower end of the interval of
+/// the rate, so that places that were seen for seconds do not come first.
 pub fn places(mapper: &Mapper, log: &ChangeLog) -> Vec<Place> {
     let mut left: BTreeSet<usize> = mapper.changed().collect();
     let mut found = Vec::new();
     while let Some(first) = left.pop_first() {
-        let cells = together(mapper, first, &mut left);
+        let cells = connected_cells(mapper, first, &mut left);
         let area_m2 = cells.len() as f64 * mapper.frame().resolution_m().powi(2);
         if area_m2 >= LEAST_M2 {
             found.extend(place(mapper, log, &cells, area_m2));
         }
     }
-    let activity = |place: &Place| place.area_m2 * place.cycles_per_hour;
+    let activity = |place: &Place| place.area_m2 * place.cycles_per_hour_90[0].unwrap_or_default();
     found.sort_by(|a, b| activity(b).total_cmp(&activity(a)));
     found
 }
 
-/// The cells of `left` that belong together with `first`; they are removed from `left`.
-fn together(mapper: &Mapper, first: usize, left: &mut BTreeSet<usize>) -> Vec<usize> {
+/// The cells of `left` that are connected with `first`; they are removed from `left`.
+fn connected_cells(mapper: &Mapper, first: usize, left: &mut BTreeSet<usize>) -> Vec<usize> {
     let frame = mapper.frame();
     let reach = (APART_M / frame.resolution_m()).round().max(1.0) as i32;
     let (mut cells, mut next) = (vec![first], 0);

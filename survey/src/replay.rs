@@ -117,9 +117,9 @@ impl Localization<LaserReading> for FoundPoses {
 
 /// A pilot that gives no command.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Passenger;
+pub struct NoPilot;
 
-impl Pilot for Passenger {
+impl Pilot for NoPilot {
     type Command = ();
 
     fn command(&mut self, _: &Belief) {}

@@ -5,6 +5,7 @@ use crate::settings::{PoseMode, SurveySettings};
 use interfaces::{GridFrame, LaserReading, SettingsError};
 use localizer::{PoseState, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
 use nalgebra::Isometry2;
+use std::ops::Add;
 
 /// The error for logs from which no map can be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -15,12 +16,12 @@ pub enum SurveyError {
     /// No reading has a pose on a map.
     #[error("no reading has a certain pose from which the place has a size")]
     NoPlace,
-    /// The place of a log is not that of the logs before.
+    /// The place of a log is not that of the first one.
     #[error(
-        "the place is not recognised in the map of the earlier logs: the pose was certain for {certain} of {readings} scans"
+        "the place is not recognised in the map of the first log: the pose was certain for {certain} of {readings} scans"
     )]
     OtherPlace {
-        /// The number of readings with a certain pose in the map of the earlier logs.
+        /// The number of readings with a certain pose in the map of the first log.
         certain: usize,
         /// The number of readings.
         readings: usize,
@@ -43,7 +44,7 @@ impl Session {
     /// The length of the trajectory, m.
     pub fn length_m(&self) -> f64 {
         let position = |at: &TrajectoryPose| at.pose.translation.vector;
-        self.poses.windows(2).map(|pair| (position(&pair[1]) - position(&pair[0])).norm()).sum()
+        self.poses.windows(2).map(|pair| (position(&pair[1]) - position(&pair[0])).norm()).fold(0.0, Add::add)
     }
 
     /// The number of readings whose scan does not support their pose.

@@ -1,7 +1,7 @@
 //! Tests of the parts, and of two logs of one simulated place.
 
 use crate::{
-    Aligner, ChangeLog, FirstPass, FoundPoses, Passenger, PoseMode, Replay, Session, SurveyError,
+    Aligner, ChangeLog, FirstPass, FoundPoses, NoPilot, PoseMode, Replay, Session, SurveyError,
     SurveySettings, frame, keepout_mask, permanent, places, remove_shadows, speed_mask,
 };
 use interfaces::{CellReading, CellState, Grid, GridFrame, LaserReading, Scan, Twist, World, heading_rad};
@@ -180,7 +180,7 @@ fn the_second_pass_draws_the_house_without_changes() {
     let mut replay = Replay::new(log, &settings, 1000.0).unwrap().unwrap();
     let (mut changes, mut seen) = (ChangeLog::default(), 0);
     let mut poses = FoundPoses::new(session.poses.clone());
-    explore(&mut replay, &mut poses, &mut mapper, &mut Passenger, |replay, _, belief, _| {
+    explore(&mut replay, &mut poses, &mut mapper, &mut NoPilot, |replay, _, belief, _| {
         changes.note(belief.mapper);
         seen += 1;
         Ok::<_, mapper::ReadingError>(if replay.is_over() {

@@ -71,7 +71,7 @@ pub(crate) struct Args {
     )]
     pub(crate) max_range: f64,
 
-    /// The errors of ranges and poses together: what a change must stand out from, m [default: 4 times the distance of scans
+    /// The errors of ranges and poses together: what a change must stand out from, m [default: 5 times the distance of scans
     /// from the surfaces of other passes, from 0.02 to 0.1; 0.06 if no place was passed twice; with exact poses 0.03]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, help_heading = "Map")]
     pub(crate) noise: Option<f64>,
@@ -99,7 +99,7 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     pub(crate) no_rrd: bool,
 
-    /// Write the run as a bag of ROS 2 too, an MCAP file that Foxglove opens: scans, odometry, tf, maps, changes, goals
+    /// Write the run as a bag of ROS 2 too, an MCAP file that Foxglove opens: scans, odometry, tf, maps, changes
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mcap: Option<PathBuf>,
 

@@ -25,6 +25,9 @@ pub(crate) fn sessions(job: &Job) -> Result<Option<Vec<Session>>, Failure> {
             job.say(format_args!("{}: closing loops", source.name));
         }
         let session = pass.finish();
+        if job.is_interrupted() {
+            return Ok(None);
+        }
         if job.settings.pose != PoseMode::Localized || job.sources.len() == 1 {
             sessions.push(session);
             continue;

@@ -24,11 +24,14 @@ pub(crate) fn page(summary: &Summary) -> String {
             }
             body {
                 h1 { "Where it changes, and how often" }
+                @if summary.is_interrupted {
+                    p { strong { "Interrupted: " } "the maps show only the part up to then; the numbers of scans, of time and of metres are those of the whole log." }
+                }
                 (overview(summary))
                 @if let Some(why) = &summary.rates_withheld { p { strong { "No rates: " } (why) "." } }
                 h2 { "Where" }
-                (picture("places.png", "Red: cells that changed while the robot looked or between two looks. The numbers are \
-                                        those of the table. Gray: never seen."))
+                (picture("places.png", "Pink: cells that changed while the robot looked or between two looks, drawn twice as \
+                                        large as they are. The numbers are those of the table. Light blue: never seen."))
                 (table(&summary.places, has_rates))
                 @if summary.place_count > summary.places.len() {
                     p { (summary.place_count - summary.places.len()) " more places with less change are in the pictures." }
@@ -47,7 +50,7 @@ pub(crate) fn page(summary: &Summary) -> String {
                 }
                 h2 { "What was never seen" }
                 p {
-                    "The gray areas of the maps. Nothing is known about them. The laser sees one horizontal plane: what is above \
+                    "The light blue areas of the maps. Nothing is known about them. The laser sees one horizontal plane: what is above \
                      or below it, or made of clear glass, is not in the map."
                 }
                 (picture("trajectory.png", "The route of the robot."))
@@ -81,14 +84,14 @@ fn overview(summary: &Summary) -> Markup {
 
 fn table(places: &[Place], has_rates: bool) -> Markup {
     if places.is_empty() {
-        return html! { p { "Nothing changed where the robot looked." } };
+        return html! { p { "No area of 0.02 m² or more changed where the robot looked." } };
     }
     html! {
         table {
             tr {
-                th { "place" } th { "at (m)" } th { "area" } th { "changes seen" }
+                th { "place" } th { "at (m)" } th { "area" } th { "most changes of a cell" }
                 @if has_rates {
-                    th { "how often" } th { "90 % range" } th { "blocked" } th { "looked at for" } th { "last change" }
+                    th { "how often" } th { "90 % range" } th { "blocked" } th { "looked at for" } th { "last change, after the begin" }
                 }
             }
             @for (number, place) in (1..).zip(places) {
@@ -102,7 +105,7 @@ fn table(places: &[Place], has_rates: bool) -> Markup {
                         td { (range(place)) }
                         td { (percent(place.share_blocked)) " of the time" }
                         td { (length_of(place.observed_s)) }
-                        td { "after " (length_of(place.last_change_s)) }
+                        td { (length_of(place.last_change_s)) }
                     }
                 }
             }

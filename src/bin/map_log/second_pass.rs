@@ -14,7 +14,7 @@ use robot::{Localization, explore};
 use std::io::stderr;
 use std::ops::ControlFlow;
 use std::path::Path;
-use survey::{ChangeLog, FoundPoses, Passenger, Replay, Session, frame};
+use survey::{ChangeLog, FoundPoses, NoPilot, Replay, Session, frame};
 use viewer::recording::Recorder;
 use viewer::scene::Scene;
 use viewer::show::Show;
@@ -103,7 +103,11 @@ impl Learned {
         };
         let progress = Progress::of_scans(source.log.summary().scans, job.args.quiet);
         let Self { mapper, changes, show, is_interrupted, is_shown } = self;
-        explore(&mut replay, poses.as_mut(), mapper, &mut Passenger, |replay, reading, belief, pilot| {
+        if mapper.readings() > 0 {
+            // The time since the log before counts as not observed.
+            mapper.pause(source.offset_s);
+        }
+        explore(&mut replay, poses.as_mut(), mapper, &mut NoPilot, |replay, reading, belief, pilot| {
             progress.step();
             changes.note(belief.mapper);
             bag.into_iter().for_each(|bag| bag.add(belief, pilot));

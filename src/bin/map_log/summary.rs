@@ -94,7 +94,7 @@ impl fmt::Display for Summary {
         let pose = match self.settings.pose {
             PoseMode::Exact => "poses of the log",
             PoseMode::Odometry => "odometry, with its drift",
-            PoseMode::Localized => "found",
+            PoseMode::Localized => "localized",
         };
         writeln!(
             f,

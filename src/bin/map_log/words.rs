@@ -2,11 +2,19 @@
 
 use survey::Place;
 
-/// How often something changes at a place, in words.
+/// With fewer changes, or where the ends of the interval are farther apart than this factor, a single figure says too much.
+const FEW: u32 = 3;
+const WIDE: f64 = 10.0;
+
+/// How often something changes at a place, in words: the estimate, or the range where little was seen.
 pub(crate) fn how_often(place: &Place) -> String {
+    let [low, high] = place.cycles_per_hour_90.map(Option::unwrap_or_default);
     match place.cycles_per_hour {
-        rate if rate > 0.0 => format!("once in {}", length_of(3600.0 / rate)),
-        _ => "too rarely to tell".to_owned(),
+        // Few observations: the estimate is mostly the prior.
+        rate if rate <= 0.0 || place.changes < FEW || high > WIDE * low => {
+            format!("once in {}", range(place))
+        }
+        rate => format!("once in {}", length_of(3600.0 / rate)),
     }
 }
 
@@ -17,7 +25,8 @@ pub(crate) fn range(place: &Place) -> String {
     match (fast, slow) {
         (Some(fast), Some(slow)) => format!("{fast} to {slow}"),
         (Some(fast), None) => format!("{fast} or more"),
-        (None, _) => "unknown".to_owned(),
+        (None, Some(slow)) => format!("{slow} or less"),
+        (None, None) => "an unknown time".to_owned(),
     }
 }
 

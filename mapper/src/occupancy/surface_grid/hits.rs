@@ -59,7 +59,10 @@ impl SurfaceGrid {
         let is_free = cells.state(index) == CellState::Free;
         let frame = *cells.frame();
         let is_inside = |point: Point2<f64>| frame.index(frame.cell_at(&point)) == Some(index);
-        let near = self.surface_near(end, noise_m, if is_free { hits_to_stand } else { 0 }, cells);
+        // Where the noise is larger than a cell, an unknown cell along the same wall must not wait for it.
+        let (reach_m, min_hits) =
+            if is_free { (noise_m, hits_to_stand) } else { (noise_m.min(frame.resolution_m()), 0) };
+        let near = self.surface_near(end, reach_m, min_hits, cells);
         if let Some(near) = near {
             self.support(near, None, cells);
         }
