@@ -47,6 +47,8 @@ pub(super) struct McapFile {
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
     selection: Selection,
+    /// Whether the file ends as its writer ends it: then no record can reach beyond the end.
+    is_complete: bool,
     /// Why the file ends too early.
     missing: Option<String>,
     is_over: bool,
@@ -74,6 +76,7 @@ impl McapFile {
         let mut input = BufReader::with_capacity(1 << 16, bytes.open().map_err(io)?);
         let size = input.seek(SeekFrom::End(0)).map_err(io)?;
         let start = MAGIC.len() as u64;
+        let is_complete = ends_with_magic(&mut input, size).map_err(io)?;
         input.seek(SeekFrom::Start(start)).map_err(io)?;
         Ok(Self {
             input,
@@ -85,6 +88,7 @@ impl McapFile {
             schemas: BTreeMap::new(),
             channels: BTreeMap::new(),
             selection,
+            is_complete,
             missing: None,
             is_over: false,
         })
@@ -235,6 +239,11 @@ impl McapFile {
         }))
     }
 
+    fn invalid(&mut self, what: String) -> LogError {
+        self.is_over = true;
+        LogError::Byte { file: self.file.to_string(), byte: self.record, what }
+    }
+
     fn cut(&mut self) {
         self.is_over = true;
         self.missing = Some(format!(
@@ -242,6 +251,18 @@ impl McapFile {
             self.file, self.record
         ));
     }
+}
+
+/// Whether a file of `size` bytes has the last bytes of a complete file, after its first ones.
+fn ends_with_magic(input: &mut (impl Read + Seek), size: u64) -> io::Result<bool> {
+    let length = MAGIC.len() as u64;
+    if size < 2 * length {
+        return Ok(false);
+    }
+    let mut end = [0; MAGIC.len()];
+    input.seek(SeekFrom::Start(size - length))?;
+    input.read_exact(&mut end)?;
+    Ok(end == MAGIC)
 }
 
 /// The length of a record that is read as a whole.
@@ -258,11 +279,12 @@ impl MessageSource for McapFile {
             match self.step() {
                 Ok(Some(message)) => return Ok(Some(message)),
                 Ok(None) => {}
-                Err(Stop::Cut) => self.cut(),
-                Err(Stop::Invalid(what)) => {
-                    self.is_over = true;
-                    return Err(LogError::Byte { file: self.file.to_string(), byte: self.record, what });
+                Err(Stop::Cut) if self.is_complete => {
+                    let what = "a record ends beyond the end of the file, which is not cut off";
+                    return Err(self.invalid(what.to_owned()));
                 }
+                Err(Stop::Cut) => self.cut(),
+                Err(Stop::Invalid(what)) => return Err(self.invalid(what)),
             }
         }
         Ok(None)

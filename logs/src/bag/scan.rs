@@ -62,7 +62,7 @@ fn increment_rad(message: &LaserScan) -> f64 {
 fn meaning(range_m: f32, min_m: f32, max_m: f32) -> f32 {
     if range_m.is_finite() && (range_m < min_m || range_m <= 0.0) {
         f32::NAN
-    } else if range_m > max_m {
+    } else if range_m >= max_m {
         f32::INFINITY
     } else {
         range_m
@@ -93,7 +93,8 @@ mod tests {
     fn ranges_out_of_the_limits_have_a_meaning() {
         let ranges = [0.05, 0.1, 10.0, 10.5, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
         let scan = converted(message(0.0, 0.1, &ranges), false).unwrap();
-        let expected = [f32::NAN, 0.1, 10.0, f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+        let expected =
+            [f32::NAN, 0.1, f32::INFINITY, f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
         assert_eq!(format!("{:?}", scan.ranges_m), format!("{expected:?}"));
         assert_eq!(scan.sweep_s, 0.0);
     }

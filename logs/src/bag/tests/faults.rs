@@ -59,6 +59,10 @@ fn damaged_records_are_named_by_their_offset() {
     };
     let expected = format!("test: byte {chunk}: a record (code 6) of 1152921504606846976 bytes");
     assert_eq!(damaged(chunk + 1, &(1_u64 << 60).to_le_bytes()), expected);
+    let longer = damaged(chunk + 1, &(1_u64 << 30).to_le_bytes());
+    let expected =
+        format!("test: byte {chunk}: a record ends beyond the end of the file, which is not cut off");
+    assert_eq!(longer, expected);
     let unpacked = damaged(chunk + 9 + 16, &(5_u64 << 30).to_le_bytes());
     let expected =
         format!("test: byte {chunk}: a chunk of 5368709120 bytes, unpacked; at most 1073741824 are read");
