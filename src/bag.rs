@@ -11,12 +11,11 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 use std::rc::Rc;
+use survey::CHANGE_HORIZON_S;
 
 /// The time between two maps, and between two maps of changes and predictions, s.
 const MAP_S: f64 = 1.0;
 const CHANGES_S: f64 = 10.0;
-/// A cell that changes once in this time has a change of 63 % in the map of changes, s.
-const HORIZON_S: f64 = 600.0;
 
 /// A bag that is being written. It has its name when it is complete. The first error ends the bag, not the run;
 /// [`finish`](Self::finish) reports it.
@@ -128,7 +127,7 @@ impl BagState {
         }
         if time_s >= self.next_changes_s {
             self.next_changes_s = time_s + CHANGES_S;
-            let change = |index: usize| -f64::exp_m1(-mapper.rate(index) * HORIZON_S);
+            let change = |index: usize| mapper.change_probability_within(index, CHANGE_HORIZON_S);
             writer.grid("/change_map", time_s, &layer(mapper, change), |share| *share)?;
             let predicted = layer(mapper, |index| mapper.blocked_probability(index));
             writer.grid("/predicted_map", time_s, &predicted, |share| *share)?;

@@ -30,7 +30,7 @@ mod tests;
 
 pub use alignment::{Aligner, Search};
 pub use change_log::ChangeLog;
-pub use masks::{keepout_mask, speed_mask};
+pub use masks::{CHANGE_HORIZON_S, keepout_mask, speed_mask};
 pub use noise::learned_noise_m;
 pub use permanent::permanent;
 pub use places::{Place, places};
