@@ -1,11 +1,11 @@
 //! `--mcap`: a run as a bag of ROS 2.
 
 use evaluation::output::UnfinishedFile;
-use interfaces::{CellState, Grid, LaserReading, ValueError};
+use interfaces::{CellState, Grid, LaserReading};
 use logs::{LogError, McapWriter};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
-use robot::{Belief, Localization, Pilot, Posed};
+use robot::{Belief, Localization, Pilot, Tapped};
 use std::cell::RefCell;
 use std::fs::File;
 use std::io::BufWriter;
@@ -35,12 +35,6 @@ struct BagState {
     next_changes_s: f64,
 }
 
-/// A localization whose readings, as they come from their source, are written to a bag.
-pub struct Recorded<L: ?Sized> {
-    state: Rc<RefCell<BagState>>,
-    inner: Box<L>,
-}
-
 impl RunBag {
     /// Creates the bag. `begin_s` is the time 0 of the readings, in seconds since the epoch; 0 in a simulation.
     ///
@@ -63,8 +57,12 @@ impl RunBag {
     }
 
     /// A localization that writes every reading to this bag before it gives the reading its pose.
-    pub fn recorded<L: ?Sized>(&self, inner: Box<L>) -> Recorded<L> {
-        Recorded { state: self.state.clone(), inner }
+    pub fn recorded<L>(&self, inner: Box<L>) -> impl Localization<LaserReading> + use<L>
+    where
+        L: Localization<LaserReading> + ?Sized,
+    {
+        let state = self.state.clone();
+        Tapped::new(inner, move |reading: &LaserReading| state.borrow_mut().reading(reading))
     }
 
     /// Writes what the robot knows after a reading: its pose, its maps, changes, goal and path.
@@ -152,23 +150,4 @@ fn layer(mapper: &Mapper, value: impl Fn(usize) -> f64) -> Grid<Option<f64>> {
         *cell = mapper.was_ever_seen(index).then(|| value(index));
     }
     grid
-}
-
-impl<L: Localization<LaserReading> + ?Sized> Localization<LaserReading> for Recorded<L> {
-    fn localize(&mut self, reading: LaserReading, mapper: &Mapper) -> Posed<LaserReading> {
-        self.state.borrow_mut().reading(&reading);
-        self.inner.localize(reading, mapper)
-    }
-
-    fn snapshot(&mut self) -> Vec<u8> {
-        self.inner.snapshot()
-    }
-
-    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        self.inner.restore(snapshot)
-    }
-
-    fn begin_session(&mut self) {
-        self.inner.begin_session();
-    }
 }
