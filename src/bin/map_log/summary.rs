@@ -7,7 +7,7 @@ use evaluation::percent::percent;
 use interfaces::CellState;
 use serde::Serialize;
 use std::fmt;
-use survey::{Place, PoseMode, Session, SurveySettings, places};
+use survey::{Place, PoseMode, Route, SurveySettings, places};
 
 /// The number of places in the summary and in the report.
 const MOST_PLACES: usize = 20;
@@ -51,7 +51,7 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    pub(crate) fn new(job: &Job, sessions: &[Session], learned: &Learned) -> Self {
+    pub(crate) fn new(job: &Job, routes: &[Route], learned: &Learned) -> Self {
         let mapper = &learned.mapper;
         let summaries = || job.sources.iter().map(|source| source.log.summary());
         let cell_m2 = mapper.frame().resolution_m().powi(2);
@@ -69,9 +69,9 @@ impl Summary {
             scans: summaries().map(|summary| summary.scans).sum(),
             duration_s: summaries().map(|summary| summary.duration_s).sum(),
             notes: summaries().flat_map(|summary| summary.notes.clone()).collect(),
-            trajectory_m: sessions.iter().map(Session::length_m).sum(),
-            loops: sessions.iter().map(|session| session.loops).sum(),
-            scans_left_out: sessions.iter().map(Session::uncertain).sum(),
+            trajectory_m: routes.iter().map(Route::length_m).sum(),
+            loops: routes.iter().map(|route| route.loops).sum(),
+            scans_left_out: routes.iter().map(Route::uncertain).sum(),
             seen_m2: seen as f64 * cell_m2,
             changed_share: mapper.changed().count() as f64 / seen.max(1) as f64,
             changes: learned.changes.events(),
