@@ -34,7 +34,7 @@ pub use change_log::ChangeLog;
 pub use masks::{CHANGE_HORIZON_S, keepout_mask, speed_mask};
 pub use passes::{PassError, RouteProgress, Stage, learn, routes};
 pub use permanent::permanent;
-pub use places::{Place, places};
+pub use places::{Place, PlaceRates, places};
 pub use replay::{FoundPoses, NoPilot, Replay};
 pub use route::{FirstPass, Route, SurveyError, frame};
 pub use settings::{PoseMode, SurveySettings};

@@ -73,11 +73,12 @@ fn a_place_says_where_how_often_and_when_last() {
     assert!((place.x_m - 0.35).abs() < 1e-9 && (place.area_m2 - 0.03).abs() < 1e-9, "{place:?}");
     assert!((place.low_m[0] - 0.2).abs() < 1e-9 && (place.high_m[0] - 0.5).abs() < 1e-9, "{place:?}");
     // One cycle in 10 s, and blocked for 3 of them.
-    assert!((place.cycles_per_hour / 360.0 - 1.0).abs() < 0.05, "{place:?}");
-    assert!((place.share_blocked - 0.3).abs() < 0.02, "{place:?}");
-    let [low, high] = place.cycles_per_hour_90.map(Option::unwrap);
+    let rates = place.rates.as_ref().unwrap();
+    assert!((rates.cycles_per_hour / 360.0 - 1.0).abs() < 0.05, "{place:?}");
+    assert!((rates.share_blocked - 0.3).abs() < 0.02, "{place:?}");
+    let [low, high] = rates.cycles_per_hour_90.map(Option::unwrap);
     assert!(low < 360.0 && high > 360.0 && high < 2.0 * low, "{place:?}");
-    assert_eq!((place.last_change_s, place.changes, log.events()), (993.0, 199, 3 * 199));
+    assert_eq!((rates.last_change_s, place.changes, log.events()), (993.0, 199, 3 * 199));
 }
 
 #[test]
