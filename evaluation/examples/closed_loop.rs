@@ -1,9 +1,9 @@
-//! From a robot to a map of changes, against the truth: a robot with bad odometry drives in a simulated
-//! house, by its own estimate, and its scans and odometry are written to several bags. From these the trajectories are
-//! found and aligned, and the rates learned, as `map_log` does it.
+//! From a robot to a map of changes, against the truth: a robot with bad odometry drives in a simulated house, by its
+//! own estimate, and its scans and odometry are written to several bags. From these the trajectories are found and
+//! aligned, and the rates are learned, as `map_log` does it.
 //!
-//! Printed: the log error of the rates, of a mapper that gets the same scans with their true poses, and of the survey of the
-//! bags; the error of the poses.
+//! Printed: the log error of the rates, of a mapper that gets the same scans with their true poses, and of the survey
+//! of the bags; the error of the poses.
 //!
 //! ```text
 //! cargo run -p evaluation --example closed_loop -- [WORLD [SEED [MINUTES [SESSIONS]]]]

@@ -53,8 +53,8 @@ pub struct LaserReading {
 }
 
 impl LaserReading {
-    /// The points that the beams hit, in the frame of the robot, m: one per range within the limits of the scan (REP-117),
-    /// in the order of the beams.
+    /// The points that the beams hit, in the frame of the robot, m: one per range within the limits of the scan
+    /// (REP-117), in the order of the beams.
     pub fn hits(&self) -> impl Iterator<Item = Point2<f64>> {
         let scan = &self.scan;
         let limits_m = scan.range_min_m..=scan.range_max_m;

@@ -59,8 +59,8 @@ pub struct RouteProgress {
     pub readings: usize,
 }
 
-/// The first pass over the logs of one place: the route of every log, in the frame of the first one. Only trajectories that
-/// are found can be aligned: with other poses every log keeps its own frame.
+/// The first pass over the logs of one place: the route of every log, in the frame of the first one. Only trajectories
+/// that are found can be aligned: with other poses every log keeps its own frame.
 ///
 /// `watch` is called when a stage begins and after each of its readings, and interrupts the pass with a `Break`.
 ///
