@@ -111,7 +111,7 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     #[test]
-    fn hits_are_points_before_the_robot_and_only_measured_ranges_are_hits() {
+    fn hits_are_in_the_frame_of_the_robot_and_within_the_limits() {
         let nothing = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 0.05, 8.5];
         let reading = LaserReading {
             time_s: 0.0,

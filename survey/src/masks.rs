@@ -8,7 +8,7 @@ use mapper::Mapper;
 /// of the full speed, and a limit of 0 % as no limit: the value stays below 100.
 const SLOWEST: f64 = 80.0;
 /// The time in which a change matters to a robot on its route, s: maps of changes show the probability of a change
-/// [within](Mapper::change_probability_within) this time. It is 0.63 where the mean time between two cycles is this long.
+/// [within](Mapper::change_probability_within) this time. It is 0.63 where a cycle takes this long on average.
 pub const CHANGE_HORIZON_S: f64 = 600.0;
 /// The robot slows down at this distance from what changes, m.
 const DISTANCE_M: f64 = 0.5;

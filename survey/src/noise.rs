@@ -9,8 +9,8 @@ const LEAST_M: f64 = 0.02;
 const LARGEST_M: f64 = 0.1;
 
 impl SurveySettings {
-    /// Sets the noise that the mapper must expect by what the routes say about the errors of ranges and poses together: 5
-    /// times the largest residual, from 0.02 to 0.1 m. The noise stays as it is if no place was seen twice.
+    /// Sets the noise that the mapper must expect by what the routes say about the errors of ranges and poses together:
+    /// 5 times the largest residual, from 0.02 to 0.1 m. The noise stays as it is if no place was seen twice.
     pub fn learn_noise(&mut self, routes: &[Route]) {
         let residuals_m = routes.iter().filter_map(|route| route.residual_std_m);
         if let Some(largest_m) = residuals_m.reduce(f64::max) {

@@ -34,8 +34,8 @@ impl Mapper {
         self.change_probability_within(index, self.recency(index))
     }
 
-    /// The probability that the cell changes within this time, from 0 to 1 (equation 2 for this time); 0 for a cell that
-    /// never changed.
+    /// The probability that the cell changes within this time, from 0 to 1 (equation 2 for this time); 0 for a cell
+    /// that never changed.
     #[inline]
     pub fn change_probability_within(&self, index: usize, time: f64) -> f64 {
         change_probability(time, self.rate(index))
