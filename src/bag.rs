@@ -1,22 +1,21 @@
 //! `--mcap`: a run as a bag of ROS 2.
 
 use evaluation::output::UnfinishedFile;
-use interfaces::{CellState, Grid, LaserReading, ValueError};
+use interfaces::{CellState, Grid, LaserReading};
 use logs::{LogError, McapWriter};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
-use robot::{Belief, Localization, Pilot, Posed};
+use robot::{Belief, Localization, Pilot, Tapped};
 use std::cell::RefCell;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 use std::rc::Rc;
+use survey::CHANGE_HORIZON_S;
 
 /// The time between two maps, and between two maps of changes and predictions, s.
 const MAP_S: f64 = 1.0;
 const CHANGES_S: f64 = 10.0;
-/// A cell that changes once in this time has a change of 63 % in the map of changes, s.
-const HORIZON_S: f64 = 600.0;
 
 /// A bag that is being written. It has its name when it is complete. The first error ends the bag, not the run;
 /// [`finish`](Self::finish) reports it.
@@ -34,12 +33,6 @@ struct BagState {
     path: Vec<Point2<f64>>,
     next_map_s: f64,
     next_changes_s: f64,
-}
-
-/// A localization whose readings, as they come from their source, are written to a bag.
-pub struct Recorded<L: ?Sized> {
-    state: Rc<RefCell<BagState>>,
-    inner: Box<L>,
 }
 
 impl RunBag {
@@ -64,8 +57,12 @@ impl RunBag {
     }
 
     /// A localization that writes every reading to this bag before it gives the reading its pose.
-    pub fn recorded<L: ?Sized>(&self, inner: Box<L>) -> Recorded<L> {
-        Recorded { state: self.state.clone(), inner }
+    pub fn recorded<L>(&self, inner: Box<L>) -> impl Localization<LaserReading> + use<L>
+    where
+        L: Localization<LaserReading> + ?Sized,
+    {
+        let state = self.state.clone();
+        Tapped::new(inner, move |reading: &LaserReading| state.borrow_mut().reading(reading))
     }
 
     /// Writes what the robot knows after a reading: its pose, its maps, changes, goal and path.
@@ -128,7 +125,7 @@ impl BagState {
         }
         if time_s >= self.next_changes_s {
             self.next_changes_s = time_s + CHANGES_S;
-            let change = |index: usize| -f64::exp_m1(-mapper.rate(index) * HORIZON_S);
+            let change = |index: usize| mapper.change_probability_within(index, CHANGE_HORIZON_S);
             writer.grid("/change_map", time_s, &layer(mapper, change), |share| *share)?;
             let predicted = layer(mapper, |index| mapper.blocked_probability(index));
             writer.grid("/predicted_map", time_s, &predicted, |share| *share)?;
@@ -153,23 +150,4 @@ fn layer(mapper: &Mapper, value: impl Fn(usize) -> f64) -> Grid<Option<f64>> {
         *cell = mapper.was_ever_seen(index).then(|| value(index));
     }
     grid
-}
-
-impl<L: Localization<LaserReading> + ?Sized> Localization<LaserReading> for Recorded<L> {
-    fn localize(&mut self, reading: LaserReading, mapper: &Mapper) -> Posed<LaserReading> {
-        self.state.borrow_mut().reading(&reading);
-        self.inner.localize(reading, mapper)
-    }
-
-    fn snapshot(&mut self) -> Vec<u8> {
-        self.inner.snapshot()
-    }
-
-    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        self.inner.restore(snapshot)
-    }
-
-    fn begin_session(&mut self) {
-        self.inner.begin_session();
-    }
 }

@@ -1,9 +1,9 @@
-//! The whole way from a robot to a map of changes, against the truth: a robot with bad odometry drives in a simulated
-//! house, by its own estimate, and its scans and odometry are written to several bags. From these the trajectories are
-//! found, the sessions aligned and the rates learned, as `map_log` does it.
+//! From a robot to a map of changes, against the truth: a robot with bad odometry drives in a simulated house, by its
+//! own estimate, and its scans and odometry are written to several bags. From these the trajectories are found and
+//! aligned, and the rates are learned, as `map_log` does it.
 //!
-//! Printed: the log error of the rates, of a mapper that gets the same scans with their true poses, and of the survey of the
-//! bags; the error of the poses.
+//! Printed: the log error of the rates, of a mapper that gets the same scans with their true poses, and of the survey
+//! of the bags; the error of the poses.
 //!
 //! ```text
 //! cargo run -p evaluation --example closed_loop -- [WORLD [SEED [MINUTES [SESSIONS]]]]
@@ -12,12 +12,11 @@
 use agent::Policy;
 use evaluation::metrics::{RateScores, rate_scores};
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
-use interfaces::{LaserReading, ValueError};
+use interfaces::LaserReading;
 use localizer::GivenPoses;
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{Mapper, ReadingError};
-use nalgebra::Isometry2;
-use robot::{ExactPoses, Localization, Posed, explore};
+use robot::{ExactPoses, Tapped};
 use std::cell::Cell;
 use std::error::Error;
 use std::fs::File;
@@ -25,9 +24,7 @@ use std::io::BufWriter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::rc::Rc;
-use survey::{
-    Aligner, FirstPass, FoundPoses, NoPilot, PoseMode, Replay, Session, SurveySettings, learned_noise_m,
-};
+use survey::{FoundPoses, PoseMode, Replay, Route, SurveySettings, learn, routes};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -43,7 +40,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut exact = Mapper::new(&settings.mapper, spec.frame)?;
     let raw = Rc::new(Cell::new(None));
     let inner = std::mem::replace(&mut trial.localization, Box::new(ExactPoses));
-    trial.localization = Box::new(Tap { inner, raw: raw.clone() });
+    let show = {
+        let raw = raw.clone();
+        move |reading: &LaserReading| raw.set(Some(reading.clone()))
+    };
+    trial.localization = Box::new(Tapped::new(inner, show));
     let (mut given, mut truth) = (GivenPoses::default(), vec![Vec::new(); sessions as usize]);
     let bags: Vec<PathBuf> = (0..sessions).map(|bag| folder.path().join(format!("{bag}.mcap"))).collect();
     for (number, bag) in bags.iter().enumerate() {
@@ -67,20 +68,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     settings.resolution_m = spec.frame.resolution_m();
     let logs =
         bags.iter().map(|bag| Log::open(bag, &TopicChoice::default())).collect::<Result<Vec<_>, _>>()?;
-    let found = sessions_of(&logs, &settings, &truth[0][0])?;
-    if let Some(noise_m) = learned_noise_m(&found) {
-        settings.mapper.steady.range_noise_std_m = noise_m;
-    }
+    let routes = routes(&logs.iter().collect::<Vec<_>>(), &settings, |_| ControlFlow::Continue(()))?;
+    settings.learn_noise(&routes);
+    // From the frame of the first bag to that of the world.
+    let routes: Vec<Route> = routes.into_iter().map(|route| route.moved(&truth[0][0])).collect();
     let mut mapper = Mapper::new(&settings.mapper, spec.frame)?;
     let begin_s = logs[0].summary().begin_s.unwrap_or_default();
-    for (log, session) in logs.iter().zip(&found) {
+    for (log, route) in logs.iter().zip(&routes) {
         let offset_s = log.summary().begin_s.unwrap_or_default() - begin_s;
-        let mut replay = Replay::new(log.readings()?, &settings, offset_s)?.ok_or("a bag has no reading")?;
-        let mut poses = FoundPoses::new(session.poses.clone());
-        explore(&mut replay, &mut poses, &mut mapper, &mut NoPilot, |replay, _, _, _| {
-            let is_over = replay.is_over();
-            Ok::<_, ReadingError>(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        })?;
+        let replay = Replay::new(log.readings()?, &settings, offset_s)?.ok_or("a bag has no reading")?;
+        let mut poses = FoundPoses::new(route.poses.clone());
+        learn(replay, &mut poses, &mut mapper, |_, _, _| ControlFlow::Continue(()))?;
     }
 
     println!(
@@ -90,8 +88,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     print("same scans, true poses", &rate_scores(&exact, trial.world.truth()));
     print("live, localized       ", &rate_scores(&trial.mapper, trial.world.truth()));
     print("survey of the bags    ", &rate_scores(&mapper, trial.world.truth()));
-    for (number, (session, truth)) in found.iter().zip(&truth).enumerate() {
-        let mut errors_m: Vec<f64> = session
+    for (number, (route, truth)) in routes.iter().zip(&truth).enumerate() {
+        let mut errors_m: Vec<f64> = route
             .poses
             .iter()
             .zip(truth)
@@ -107,64 +105,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     Ok(())
-}
-
-/// Keeps the last reading as the robot got it, before it gets its estimated pose.
-struct Tap {
-    inner: Box<dyn Localization<LaserReading>>,
-    raw: Rc<Cell<Option<LaserReading>>>,
-}
-
-impl Localization<LaserReading> for Tap {
-    fn localize(&mut self, reading: LaserReading, mapper: &Mapper) -> Posed<LaserReading> {
-        self.raw.set(Some(reading.clone()));
-        self.inner.localize(reading, mapper)
-    }
-
-    fn snapshot(&mut self) -> Vec<u8> {
-        self.inner.snapshot()
-    }
-
-    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        self.inner.restore(snapshot)
-    }
-
-    fn begin_session(&mut self) {
-        self.inner.begin_session();
-    }
-}
-
-/// The trajectories of all logs in the frame of the world, in which the first pose is `start`.
-fn sessions_of(
-    logs: &[Log],
-    settings: &SurveySettings,
-    start: &Isometry2<f64>,
-) -> Result<Vec<Session>, Box<dyn Error>> {
-    let mut sessions: Vec<Session> = Vec::new();
-    let mut aligner = None;
-    for log in logs {
-        let mut pass = FirstPass::new(settings)?;
-        for reading in log.readings()? {
-            pass.add(reading?);
-        }
-        let session = pass.finish();
-        let Some(aligner) = &aligner else {
-            let session = session.moved(start);
-            let mut first = Aligner::new(settings, &session)?;
-            for (reading, found) in log.readings()?.zip(&session.poses) {
-                first.add(reading?, found)?;
-            }
-            aligner = Some(first);
-            sessions.push(session);
-            continue;
-        };
-        let mut search = aligner.search()?;
-        for (reading, found) in log.readings()?.zip(&session.poses) {
-            search.add(&reading?, found);
-        }
-        sessions.push(session.moved(&search.finish()?));
-    }
-    Ok(sessions)
 }
 
 fn print(what: &str, scores: &RateScores) {

@@ -6,7 +6,7 @@ use crate::physics_trial::{PhysicsSettings, PhysicsTrial, PoseChoice};
 use interfaces::{Twist, Values, value};
 use robot::Pilot;
 use sim::physics::{WorldSnapshot, WorldSpec};
-use state::{Facts, MindFacts, MindSnapshot, State, StateError};
+use state::{Facts, LearnedFacts, LearnedSnapshot, State, StateError};
 use xxhash_rust::xxh3::xxh3_64;
 
 const WORLD: &str = "world";
@@ -16,7 +16,7 @@ const MEASUREMENTS: &str = "measurements";
 /// What the state of a run belongs to.
 #[derive(Clone, Debug)]
 pub struct TrialFacts {
-    mind: MindFacts,
+    learned: LearnedFacts,
     world: Facts,
     pilot: Facts,
 }
@@ -35,7 +35,7 @@ impl TrialFacts {
             .with_settings("agent", agent)
             .with_settings("controller", controller)
             .with_settings("drive", drive);
-        Self { mind: MindFacts::new(mapper, &spec.frame, pose.name(), localizer), world, pilot }
+        Self { learned: LearnedFacts::new(mapper, &spec.frame, pose.name(), localizer), world, pilot }
     }
 }
 
@@ -43,7 +43,7 @@ impl TrialFacts {
 #[derive(Clone, Debug)]
 pub struct TrialSnapshot {
     facts: TrialFacts,
-    mind: MindSnapshot,
+    learned: LearnedSnapshot,
     world: WorldSnapshot,
     pilot: Vec<u8>,
     observer: Observer,
@@ -52,12 +52,12 @@ pub struct TrialSnapshot {
 impl TrialSnapshot {
     /// The state for a file.
     pub fn into_state(self) -> State {
-        let Self { facts, mind, world, pilot, mut observer } = self;
+        let Self { facts, learned, world, pilot, mut observer } = self;
         let state = State::default()
             .with(WORLD, facts.world.clone(), world.into_bytes())
             .with(PILOT, facts.pilot, pilot)
             .with(MEASUREMENTS, facts.world, interfaces::snapshot(vec![value(&mut observer)]));
-        mind.added_to(state)
+        learned.added_to(state)
     }
 }
 
@@ -66,7 +66,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     pub fn snapshot(&mut self, facts: &TrialFacts) -> TrialSnapshot {
         TrialSnapshot {
             facts: facts.clone(),
-            mind: facts.mind.snapshot(&self.mapper, self.localization.as_mut()),
+            learned: facts.learned.snapshot(&self.mapper, self.localization.as_mut()),
             world: self.world.snapshot(),
             pilot: interfaces::snapshot(self.pilot_values()),
             observer: self.observer.clone(),
@@ -83,7 +83,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         let world = state.section(WORLD, &facts.world)?;
         let (pilot, observer) =
             (state.section(PILOT, &facts.pilot)?, state.section(MEASUREMENTS, &facts.world)?);
-        facts.mind.restore(state, &mut self.mapper, self.localization.as_mut())?;
+        facts.learned.restore(state, &mut self.mapper, self.localization.as_mut())?;
         self.world.restore(world).map_err(|_| misfit(WORLD))?;
         interfaces::restore(self.pilot_values(), pilot).map_err(|_| misfit(PILOT))?;
         interfaces::restore(vec![value(&mut self.observer)], observer).map_err(|_| misfit(MEASUREMENTS))

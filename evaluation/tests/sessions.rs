@@ -9,7 +9,7 @@ use localizer::PoseState;
 use mapper::{Mapper, ReadingError};
 use robot::{Autonomous, Belief, Session, explore};
 use sim::physics::{PhysicsWorld, WorldSpec};
-use state::{Facts, MindFacts, State};
+use state::{Facts, LearnedFacts, State};
 use std::ops::ControlFlow;
 
 type Trial = PhysicsTrial<Autonomous<Agent, DiffDrive>>;
@@ -87,14 +87,14 @@ impl World for Later {
 
 const GAP_S: f64 = 3.0 * 86_400.0;
 
-fn mind_facts(spec: &WorldSpec, settings: &PhysicsSettings) -> MindFacts {
+fn learned_facts(spec: &WorldSpec, settings: &PhysicsSettings) -> LearnedFacts {
     let localizer = (settings.pose == PoseChoice::Localized).then_some(&settings.localizer);
-    MindFacts::new(&settings.mapper, &spec.frame, settings.pose.name(), localizer)
+    LearnedFacts::new(&settings.mapper, &spec.frame, settings.pose.name(), localizer)
 }
 
 /// What a run has learned, as another run with another seed reads it from a file.
 fn saved(first: &mut Trial, spec: &WorldSpec, settings: &PhysicsSettings) -> Trial {
-    let facts = mind_facts(spec, settings);
+    let facts = learned_facts(spec, settings);
     let state = facts.snapshot(&first.mapper, first.localization.as_mut()).added_to(State::default());
     let mut second = trial(spec, 101, settings, "curious");
     facts.restore(&again(&state), &mut second.mapper, second.localization.as_mut()).unwrap();

@@ -1,5 +1,5 @@
 use crate::{Cell, Scan, Twist};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2, Vector2};
 
 /// What every reading contains, in every world.
 pub trait Reading {
@@ -52,6 +52,20 @@ pub struct LaserReading {
     pub scan: Scan,
 }
 
+impl LaserReading {
+    /// The points that the beams hit, in the frame of the robot, m: one per range within the limits of the scan
+    /// (REP-117), in the order of the beams.
+    pub fn hits(&self) -> impl Iterator<Item = Point2<f64>> {
+        let scan = &self.scan;
+        let limits_m = scan.range_min_m..=scan.range_max_m;
+        let ranges_m = scan.ranges_m.iter().map(|range_m| f64::from(*range_m)).enumerate();
+        ranges_m.filter(move |(_, range_m)| limits_m.contains(range_m)).map(|(beam, range_m)| {
+            let along = crate::rotation(scan.angle_rad(beam)) * Vector2::new(range_m, 0.0);
+            self.mount * Point2::from(along)
+        })
+    }
+}
+
 impl Reading for LaserReading {
     fn time(&self) -> f64 {
         self.time_s
@@ -88,5 +102,36 @@ impl Reading for CellReading {
 
     fn observation(&self) -> Observation<'_> {
         Observation::Cells(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn hits_are_in_the_frame_of_the_robot_and_within_the_limits() {
+        let nothing = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 0.05, 8.5];
+        let reading = LaserReading {
+            time_s: 0.0,
+            pose: crate::pose(5.0, 5.0, 1.0), // has no influence
+            twist: Twist::STOP,
+            velocities: Vec::new(),
+            mount: crate::pose(0.2, 0.0, FRAC_PI_2),
+            scan: Scan {
+                angle_min_rad: -FRAC_PI_2,
+                angle_increment_rad: FRAC_PI_2 / 6.0,
+                range_min_m: 0.1,
+                range_max_m: 8.0,
+                sweep_s: 0.0,
+                ranges_m: [&[2.0][..], &nothing, &[8.0]].concat(),
+            },
+        };
+        let hits: Vec<_> = reading.hits().collect();
+        // The first beam points ahead of the robot, the last one to its left.
+        let expected = [Point2::new(2.2, 0.0), Point2::new(0.2, 8.0)];
+        assert_eq!(hits.len(), expected.len());
+        assert!(hits.iter().zip(&expected).all(|(hit, at)| (hit - at).norm() < 1e-12), "{hits:?}");
     }
 }

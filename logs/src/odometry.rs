@@ -94,8 +94,8 @@ fn between(from: &(f64, Isometry2<f64>), to: &(f64, Isometry2<f64>), share: f64)
     let (from_s, from) = from;
     let elapsed_s = to.0 - from_s;
     let turn_rad = wrap_rad(heading_rad(&to.1) - heading_rad(from));
-    let way = to.1.translation.vector - from.translation.vector;
-    let at = from.translation.vector + way * share;
+    let step = to.1.translation.vector - from.translation.vector;
+    let at = from.translation.vector + step * share;
     let twist = Twist {
         linear_mps: from.inv_mul(&to.1).translation.x / elapsed_s,
         angular_radps: turn_rad / elapsed_s,

@@ -12,6 +12,7 @@ mod localization;
 mod messages;
 mod pilot;
 mod session;
+mod tapped;
 mod tour;
 
 pub use autonomous::{Autonomous, Destination, GoalSelector};
@@ -19,6 +20,7 @@ pub use localization::{ExactPoses, Localization, Permission, Posed};
 pub use messages::{Level, Message};
 pub use pilot::{Belief, GoalCount, Pilot, StrategyState};
 pub use session::Session;
+pub use tapped::Tapped;
 pub use tour::Tour;
 
 use agent::Features;

@@ -36,6 +36,11 @@ impl Session {
         Self { offset_s: start_s - first_s }
     }
 
+    /// A session whose source counts its times from another begin: `offset_s` is added to them, s.
+    pub fn with_offset(offset_s: f64) -> Self {
+        Self { offset_s }
+    }
+
     /// What is added to the times of the source, s.
     pub fn offset_s(&self) -> f64 {
         self.offset_s

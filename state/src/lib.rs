@@ -2,8 +2,8 @@
 //!
 //! A [`State`] is a list of named sections of bytes, each with the [`Facts`] that it belongs to: the world, the
 //! resolution, the settings. The bytes are the snapshots of the parts of a run. To read a section needs the facts of the
-//! present run; a section of other facts is refused. [`MindFacts`] writes and reads the parts that every robot has: what
-//! it has learned about a place.
+//! present run; a section of other facts is refused. [`LearnedFacts`] writes and reads the parts that every robot has:
+//! what it has learned about a place.
 //!
 //! A file is written under a temporary name, brought to the disk, and renamed: at any time, there is a complete file
 //! under the name. It holds a checksum, so that a damaged file is refused. [`StateFile`] writes in a thread of its own.
@@ -11,9 +11,9 @@
 mod facts;
 mod file;
 mod format;
-mod mind;
+mod learned;
 
 pub use facts::Facts;
 pub use file::{LoadError, StateFile};
 pub use format::{State, StateError};
-pub use mind::{MindFacts, MindSnapshot};
+pub use learned::{LearnedFacts, LearnedSnapshot};

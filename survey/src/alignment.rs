@@ -1,7 +1,7 @@
 //! Where the frame of a later log lies in the map of the first one.
 
 use crate::permanent::permanent;
-use crate::session::{Session, SurveyError, frame};
+use crate::route::{Route, SurveyError, frame};
 use crate::settings::SurveySettings;
 use interfaces::{GridFrame, LaserReading, heading_rad, wrap_rad};
 use localizer::{Localizer, LocalizerSettings, PoseState, Start, TrajectoryPose};
@@ -21,12 +21,12 @@ pub struct Aligner {
 }
 
 impl Aligner {
-    /// An empty map around the first session.
+    /// An empty map around the route of the first log.
     ///
     /// # Errors
     ///
-    /// When the session has no extent, or a setting is out of range.
-    pub fn new(settings: &SurveySettings, first: &Session) -> Result<Self, SurveyError> {
+    /// When the route has no extent, or a setting is out of range.
+    pub fn new(settings: &SurveySettings, first: &Route) -> Result<Self, SurveyError> {
         let extent = frame(std::slice::from_ref(first), settings)?;
         let around = (AROUND_M / extent.resolution_m()).ceil();
         let origin = extent.origin() - Vector2::repeat(around * extent.resolution_m());
@@ -62,31 +62,38 @@ impl Aligner {
             ..LocalizerSettings::default()
         };
         let localizer = Localizer::in_map(&settings, &permanent(&self.mapper), Start::Unknown)?;
-        Ok(Search { mapper: &self.mapper, localizer, pairs: Vec::new(), readings: 0 })
+        Ok(Search {
+            settings: &self.settings,
+            mapper: &self.mapper,
+            localizer,
+            pairs: Vec::new(),
+            readings: 0,
+        })
     }
 }
 
 /// The search for the place of a log in the map of the first one.
 #[derive(Debug)]
 pub struct Search<'a> {
+    settings: &'a SurveySettings,
     mapper: &'a Mapper,
     localizer: Localizer,
-    /// The pose in the map, and the pose of the session, of every reading that is certain in both.
+    /// The pose in the map, and the pose on the route of the log, of every reading that is certain in both.
     pairs: Vec<[Isometry2<f64>; 2]>,
     readings: usize,
 }
 
 impl Search<'_> {
-    /// Adds the next reading of the log, with the pose that its own session has for it.
-    pub fn add(&mut self, reading: &LaserReading, found: &TrajectoryPose) {
+    /// Adds the next reading of the log, with its pose on the route of this log.
+    pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) {
         self.readings += 1;
-        let estimate = self.localizer.localize(reading, self.mapper).estimate;
+        let estimate = self.localizer.localize(&self.settings.filtered(reading), self.mapper).estimate;
         if estimate.state == PoseState::Tracking && found.state == PoseState::Tracking {
             self.pairs.push([estimate.pose, found.pose]);
         }
     }
 
-    /// The pose of the frame of the session in the map: the median of all readings that are certain in both.
+    /// The pose of the frame of the route in the map: the median of all readings that are certain in both.
     ///
     /// # Errors
     ///

@@ -1,4 +1,3 @@
-use interfaces::Event;
 use mapper::Mapper;
 use std::collections::BTreeMap;
 
@@ -6,15 +5,17 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default)]
 pub struct ChangeLog {
     last_s: BTreeMap<usize, f64>,
-    events: [u64; 2],
+    events: u64,
 }
 
 impl ChangeLog {
     /// Notes the changes of the last update.
     pub fn note(&mut self, mapper: &Mapper) {
         for transition in mapper.transitions() {
-            let Some(event) = transition.event() else { continue };
-            self.events[usize::from(event == Event::Block)] += 1;
+            if transition.event().is_none() {
+                continue;
+            }
+            self.events += 1;
             if let Some(index) = mapper.frame().index(transition.cell) {
                 self.last_s.insert(index, mapper.time());
             }
@@ -28,6 +29,6 @@ impl ChangeLog {
 
     /// The number of changes of all cells.
     pub fn events(&self) -> u64 {
-        self.events.iter().sum()
+        self.events
     }
 }

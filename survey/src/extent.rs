@@ -17,14 +17,11 @@ pub(crate) struct Reach([[f32; 2]; DIRECTIONS]);
 impl Reach {
     /// The reach of a reading; the position of the robot counts as a hit.
     pub(crate) fn of(reading: &LaserReading) -> Self {
-        let scan = &reading.scan;
         let mut farthest = [(0.0, Point2::origin()); DIRECTIONS];
         let directions: [Vector2<f64>; DIRECTIONS] = std::array::from_fn(|number| {
             interfaces::rotation(std::f64::consts::TAU * number as f64 / DIRECTIONS as f64) * Vector2::x()
         });
-        for (beam, range_m) in scan.ranges_m.iter().enumerate().filter(|(_, range_m)| range_m.is_finite()) {
-            let along = interfaces::rotation(scan.angle_rad(beam)) * Vector2::new(f64::from(*range_m), 0.0);
-            let hit = reading.mount * Point2::from(along);
+        for hit in reading.hits() {
             for (kept, direction) in farthest.iter_mut().zip(&directions) {
                 let distance_m = hit.coords.dot(direction);
                 if distance_m > kept.0 {

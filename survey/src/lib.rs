@@ -3,14 +3,14 @@
 //! A log is read twice:
 //!
 //! ```text
-//! first pass:   log ─▶ trajectory and reach                  [`FirstPass`] ─▶ [`Session`]
-//! between:      later log ─▶ its place in the first one      [`Aligner`], [`Search`]
+//! first pass:   log ─▶ trajectory and reach                  [`FirstPass`] ─▶ [`Route`]
+//!               later log ─▶ its place in the first one      [`Aligner`], [`Search`]
 //! second pass:  log ─▶ found poses ─▶ mapper ─▶ changes      [`Replay`], [`FoundPoses`], [`ChangeLog`]
 //! ```
 //!
-//! The second pass is the loop of every robot, [`robot::explore`], with a source that ignores commands and a pilot that
-//! gives none. From its map follow the [places](places()) where something changes, and the [map](permanent()) of what is
-//! permanent.
+//! [`routes()`] is the first pass over all logs, and [`learn()`] the second pass over one log. The second pass is the
+//! loop of every robot, [`robot::explore`], with a source that ignores commands and a pilot that gives none. From its
+//! map follow the [places](places()) where something changes, and the [map](permanent()) of what is permanent.
 //!
 //! This crate knows logs, trajectories and maps. It must not know files, pictures or programs.
 
@@ -19,10 +19,11 @@ mod change_log;
 mod extent;
 mod masks;
 mod noise;
+mod passes;
 mod permanent;
 mod places;
 mod replay;
-mod session;
+mod route;
 mod settings;
 mod shadows;
 #[cfg(test)]
@@ -30,11 +31,11 @@ mod tests;
 
 pub use alignment::{Aligner, Search};
 pub use change_log::ChangeLog;
-pub use masks::{keepout_mask, speed_mask};
-pub use noise::learned_noise_m;
+pub use masks::{CHANGE_HORIZON_S, keepout_mask, speed_mask};
+pub use passes::{PassError, RouteProgress, Stage, learn, routes};
 pub use permanent::permanent;
-pub use places::{Place, places};
+pub use places::{Place, PlaceRates, places};
 pub use replay::{FoundPoses, NoPilot, Replay};
-pub use session::{FirstPass, Session, SurveyError, frame};
+pub use route::{FirstPass, Route, SurveyError, frame};
 pub use settings::{PoseMode, SurveySettings};
 pub use shadows::remove_shadows;

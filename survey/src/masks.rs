@@ -7,8 +7,9 @@ use mapper::Mapper;
 /// The value where a cell changes all the time. The speed filter takes the mask value v as a limit of 100 − v percent
 /// of the full speed, and a limit of 0 % as no limit: the value stays below 100.
 const SLOWEST: f64 = 80.0;
-/// A cell that changes once in this time has a probability of 0.63 to change within it, s.
-const HORIZON_S: f64 = 600.0;
+/// The time in which a change matters to a robot on its route, s: maps of changes show the probability of a change
+/// [within](Mapper::change_probability_within) this time. It is 0.63 where a cycle takes this long on average.
+pub const CHANGE_HORIZON_S: f64 = 600.0;
 /// The robot slows down at this distance from what changes, m.
 const DISTANCE_M: f64 = 0.5;
 /// A cell that changes is kept out of if it is blocked for at least this share of the time.
@@ -22,7 +23,7 @@ pub fn speed_mask(mapper: &Mapper) -> Grid<u8> {
     let mut mask = Grid::filled(frame, 0);
     let reach = (DISTANCE_M / frame.resolution_m()).round() as i32;
     for index in mapper.changed() {
-        let value = (SLOWEST * -f64::exp_m1(-mapper.rate(index) * HORIZON_S)).round() as u8;
+        let value = (SLOWEST * mapper.change_probability_within(index, CHANGE_HORIZON_S)).round() as u8;
         let center = frame.cell(index);
         for y in -reach..=reach {
             for x in (-reach..=reach).filter(|x| x * x + y * y <= reach * reach) {

@@ -30,6 +30,14 @@ pub struct Place {
     pub area_m2: f64,
     /// The number of changes that were seen in the cell with the most changes.
     pub changes: u32,
+    /// How often it changes; `None` where the times of the log are unusable.
+    #[serde(flatten)]
+    pub rates: Option<PlaceRates>,
+}
+
+/// How often a place changes, and when: it follows from the times of the readings.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlaceRates {
     /// The cycles per hour (blocked, free, blocked again) of the cell with the median rate.
     pub cycles_per_hour: f64,
     /// The ends of the 90 % credible interval of this rate, 1/h; the upper one is `null` without an upper bound.
@@ -54,7 +62,10 @@ pub fn places(mapper: &Mapper, log: &ChangeLog) -> Vec<Place> {
             found.extend(place(mapper, log, &cells, area_m2));
         }
     }
-    let activity = |place: &Place| place.area_m2 * place.cycles_per_hour_90[0].unwrap_or_default();
+    let activity = |place: &Place| {
+        let least_per_hour = place.rates.as_ref().and_then(|rates| rates.cycles_per_hour_90[0]);
+        place.area_m2 * least_per_hour.unwrap_or_default()
+    };
     found.sort_by(|a, b| activity(b).total_cmp(&activity(a)));
     found
 }
@@ -89,6 +100,13 @@ fn place(mapper: &Mapper, log: &ChangeLog, cells: &[usize], area_m2: f64) -> Opt
     let median = by_rate[by_rate.len() / 2];
     let interval = mapper.credible_interval(median, MASS);
     let bound = |rate_hz: f64| Some(rate_hz * HOUR_S).filter(|rate| rate.is_finite());
+    let rates = PlaceRates {
+        cycles_per_hour: mapper.rate(median) * HOUR_S,
+        cycles_per_hour_90: [bound(interval.0), bound(interval.1)],
+        share_blocked: mean(&|index| share_blocked(mapper, index)),
+        observed_s: mean(&|index| mapper.statistics(index).observed()),
+        last_change_s: cells.iter().filter_map(|index| log.last_s(*index)).reduce(f64::max)?,
+    };
     Some(Place {
         x_m: centers.iter().map(|at| at.x).sum::<f64>() / centers.len() as f64,
         y_m: centers.iter().map(|at| at.y).sum::<f64>() / centers.len() as f64,
@@ -96,10 +114,6 @@ fn place(mapper: &Mapper, log: &ChangeLog, cells: &[usize], area_m2: f64) -> Opt
         high_m: [high.x + half_m, high.y + half_m],
         area_m2,
         changes: cells.iter().map(|index| mapper.statistics(*index).events()).max()?,
-        cycles_per_hour: mapper.rate(median) * HOUR_S,
-        cycles_per_hour_90: [bound(interval.0), bound(interval.1)],
-        share_blocked: mean(&|index| share_blocked(mapper, index)),
-        observed_s: mean(&|index| mapper.statistics(index).observed()),
-        last_change_s: cells.iter().filter_map(|index| log.last_s(*index)).reduce(f64::max)?,
+        rates: Some(rates),
     })
 }

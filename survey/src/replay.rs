@@ -6,14 +6,13 @@ use localizer::{GivenPoses, PoseEstimate, TrajectoryPose};
 use logs::LogError;
 use mapper::Mapper;
 use nalgebra::Matrix3;
-use robot::{Belief, Localization, Permission, Pilot, Posed};
+use robot::{Belief, Localization, Permission, Pilot, Posed, Session};
 
 /// A log as a world. It has at least one reading; the last one is repeated at the end, see [`Replay::is_over`].
 pub struct Replay<I> {
     readings: I,
     settings: SurveySettings,
-    /// What is added to the times of the log, s.
-    offset_s: f64,
+    session: Session,
     now: LaserReading,
     next: Option<LaserReading>,
     problem: Option<LogError>,
@@ -27,10 +26,16 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
     /// When the first reading cannot be read.
     pub fn new(mut readings: I, settings: &SurveySettings, offset_s: f64) -> Result<Option<Self>, LogError> {
         let Some(now) = readings.next().transpose()? else { return Ok(None) };
+        let session = Session::with_offset(offset_s);
         let mut replay =
-            Self { readings, settings: settings.clone(), offset_s, now, next: None, problem: None };
+            Self { readings, settings: settings.clone(), session, now, next: None, problem: None };
         replay.read();
         Ok(Some(replay))
+    }
+
+    /// The time of the present reading, s.
+    pub fn time_s(&self) -> f64 {
+        self.now.time_s + self.session.offset_s()
     }
 
     /// Whether the present reading is the last one.
@@ -57,10 +62,7 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> World for Replay<I> {
     type Command = ();
 
     fn sense(&mut self) -> LaserReading {
-        let mut reading = self.settings.filtered(self.now.clone());
-        reading.time_s += self.offset_s;
-        reading.velocities.iter_mut().for_each(|sample| sample.time_s += self.offset_s);
-        reading
+        self.session.shifted(self.settings.filtered(self.now.clone()))
     }
 
     fn poses_are_exact(&self) -> bool {

@@ -35,7 +35,7 @@ pub struct SurveySettings {
 const HIDING_S: f64 = 8.0;
 
 impl SurveySettings {
-    /// The default settings for a way to use poses. A real laser has points between surfaces; poses that were found from
+    /// The default settings for a use of poses. A real laser has points between surfaces; poses that were found from
     /// scans have errors of some centimetres.
     pub fn of(pose: PoseMode) -> Self {
         let mut mapper = MapperSettings { max_gap: HIDING_S, ..MapperSettings::default() };

@@ -1,17 +1,19 @@
 //! Tests of the parts, and of two logs of one simulated place.
 
 use crate::{
-    Aligner, ChangeLog, FirstPass, FoundPoses, NoPilot, PoseMode, Replay, Session, SurveyError,
-    SurveySettings, frame, keepout_mask, permanent, places, remove_shadows, speed_mask,
+    Aligner, ChangeLog, FirstPass, FoundPoses, PassError, PoseMode, Replay, Route, RouteProgress, Stage,
+    SurveyError, SurveySettings, frame, keepout_mask, learn, permanent, places, remove_shadows, routes,
+    speed_mask,
 };
 use interfaces::{CellReading, CellState, Grid, GridFrame, LaserReading, Scan, Twist, World, heading_rad};
-use logs::LogError;
+use logs::{Log, LogError, McapWriter, TopicChoice};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
-use robot::explore;
 use sim::physics::{OdometryError, PhysicsWorld, WorldSpec};
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
+use std::fs::File;
+use std::ops::{ControlFlow, Range};
+use std::path::Path;
 
 fn scan(ranges_m: Vec<f32>) -> Scan {
     Scan {
@@ -71,11 +73,12 @@ fn a_place_says_where_how_often_and_when_last() {
     assert!((place.x_m - 0.35).abs() < 1e-9 && (place.area_m2 - 0.03).abs() < 1e-9, "{place:?}");
     assert!((place.low_m[0] - 0.2).abs() < 1e-9 && (place.high_m[0] - 0.5).abs() < 1e-9, "{place:?}");
     // One cycle in 10 s, and blocked for 3 of them.
-    assert!((place.cycles_per_hour / 360.0 - 1.0).abs() < 0.05, "{place:?}");
-    assert!((place.share_blocked - 0.3).abs() < 0.02, "{place:?}");
-    let [low, high] = place.cycles_per_hour_90.map(Option::unwrap);
+    let rates = place.rates.as_ref().unwrap();
+    assert!((rates.cycles_per_hour / 360.0 - 1.0).abs() < 0.05, "{place:?}");
+    assert!((rates.share_blocked - 0.3).abs() < 0.02, "{place:?}");
+    let [low, high] = rates.cycles_per_hour_90.map(Option::unwrap);
     assert!(low < 360.0 && high > 360.0 && high < 2.0 * low, "{place:?}");
-    assert_eq!((place.last_change_s, place.changes, log.events()), (993.0, 199, 3 * 199));
+    assert_eq!((rates.last_change_s, place.changes, log.events()), (993.0, 199, 3 * 199));
 }
 
 #[test]
@@ -123,15 +126,15 @@ fn drive(seed: u64, seconds: f64) -> (Vec<LaserReading>, Vec<Isometry2<f64>>) {
     (readings, poses)
 }
 
-fn first_pass(settings: &SurveySettings, readings: &[LaserReading]) -> Session {
+fn first_pass(settings: &SurveySettings, readings: &[LaserReading]) -> Route {
     let mut pass = FirstPass::new(settings).unwrap();
     readings.iter().for_each(|reading| pass.add(reading.clone()));
     pass.finish()
 }
 
-/// The largest distance between true poses and those of a session whose frame has the true pose `origin`, m.
-fn largest_error_m(session: &Session, origin: &Isometry2<f64>, truth: &[Isometry2<f64>]) -> f64 {
-    let pairs = session.poses.iter().zip(truth);
+/// The largest distance between true poses and those of a route whose frame has the true pose `origin`, m.
+fn largest_error_m(route: &Route, origin: &Isometry2<f64>, truth: &[Isometry2<f64>]) -> f64 {
+    let pairs = route.poses.iter().zip(truth);
     let error = |(at, truth): (&localizer::TrajectoryPose, &Isometry2<f64>)| {
         ((origin * at.pose).translation.vector - truth.translation.vector).norm()
     };
@@ -153,7 +156,7 @@ fn a_later_log_finds_its_place_in_the_first_one() {
     let (later, later_truth) = (&all[1250..], &all_truth[1250..]);
     let second = first_pass(&settings, later);
     let mut search = aligner.search().unwrap();
-    later.iter().zip(&second.poses).for_each(|(reading, found)| search.add(reading, found));
+    later.iter().zip(&second.poses).for_each(|(reading, found)| search.add(reading.clone(), found));
     let second = second.moved(&search.finish().unwrap());
     assert!(
         largest_error_m(&second, &truth[0], later_truth) < 0.15,
@@ -164,35 +167,72 @@ fn a_later_log_finds_its_place_in_the_first_one() {
     // A place that is another one is refused.
     let mut search = aligner.search().unwrap();
     let blind = LaserReading { scan: scan(vec![1.0; 360]), ..readings[0].clone() };
-    (0..100).for_each(|_| search.add(&blind, &first.poses[0]));
+    (0..100).for_each(|_| search.add(blind.clone(), &first.poses[0]));
     assert_eq!(search.finish(), Err(SurveyError::OtherPlace { certain: 0, readings: 100 }));
+}
+
+/// A bag with these readings.
+fn bag(path: &Path, readings: &[LaserReading]) -> Log {
+    let mut writer = McapWriter::new(File::create(path).unwrap(), "bag", 1e9).unwrap();
+    readings.iter().for_each(|reading| writer.reading(reading).unwrap());
+    writer.finish().unwrap();
+    Log::open(path, &TopicChoice::default()).unwrap()
+}
+
+#[test]
+fn the_first_pass_finds_the_routes_of_all_logs_in_one_frame() {
+    let settings = SurveySettings::of(PoseMode::Localized);
+    let (readings, truth) = drive(2, 90.0);
+    let folder = tempfile::tempdir().unwrap();
+    let parts = [0..600, 300..readings.len()];
+    let path = |part: &Range<usize>| folder.path().join(format!("{}.mcap", part.start));
+    let logs = parts.each_ref().map(|part| bag(&path(part), &readings[part.clone()]));
+    let logs = logs.each_ref();
+    let mut stages: Vec<(usize, Stage, usize)> = Vec::new();
+    let found = routes(&logs, &settings, |RouteProgress { log, stage, readings }| {
+        match stages.last_mut().filter(|_| readings > 0) {
+            Some(last) => *last = (log, stage, readings),
+            None => stages.push((log, stage, readings)),
+        }
+        ControlFlow::Continue(())
+    });
+    let of_a_log =
+        |log: usize, last| [Stage::Trajectory, Stage::Loops, last].map(|it| (log, it, parts[log].len()));
+    assert_eq!(stages, [of_a_log(0, Stage::Map), of_a_log(1, Stage::Search)].concat());
+    for (route, part) in found.unwrap().iter().zip(&parts) {
+        let error_m = largest_error_m(route, &truth[0], &truth[part.clone()]);
+        assert!(error_m < 0.15, "{error_m}");
+    }
+
+    let mut calls = 0;
+    let interrupted = routes(&logs, &settings, |progress| {
+        calls += 1;
+        if progress.readings == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert!(matches!(interrupted, Err(PassError::Interrupted)));
+    assert_eq!(calls, 4);
 }
 
 #[test]
 fn the_second_pass_draws_the_house_without_changes() {
     let settings = SurveySettings::of(PoseMode::Localized);
     let (readings, truth) = drive(3, 90.0);
-    let session = first_pass(&settings, &readings);
-    let frame = frame(std::slice::from_ref(&session), &settings).unwrap();
+    let route = first_pass(&settings, &readings);
+    let frame = frame(std::slice::from_ref(&route), &settings).unwrap();
     let mut mapper = Mapper::new(&settings.mapper, frame).unwrap();
     let count = readings.len();
     let log = readings.into_iter().map(Ok::<_, LogError>);
-    let mut replay = Replay::new(log, &settings, 1000.0).unwrap().unwrap();
+    let replay = Replay::new(log, &settings, 1000.0).unwrap().unwrap();
     let (mut changes, mut seen) = (ChangeLog::default(), 0);
-    let mut poses = FoundPoses::new(session.poses.clone());
-    explore(&mut replay, &mut poses, &mut mapper, &mut NoPilot, |replay, _, belief, _| {
+    let mut poses = FoundPoses::new(route.poses.clone());
+    learn(replay, &mut poses, &mut mapper, |_, _, belief| {
         changes.note(belief.mapper);
         seen += 1;
-        Ok::<_, mapper::ReadingError>(if replay.is_over() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        })
+        ControlFlow::Continue(())
     })
     .unwrap();
-    assert!(replay.into_problem().is_none());
     assert_eq!((seen, mapper.readings()), (count, count));
-    assert!((mapper.time() - 1000.0 - session.poses.last().unwrap().time_s).abs() < 1e-9);
+    assert!((mapper.time() - 1000.0 - route.poses.last().unwrap().time_s).abs() < 1e-9);
     // The frame covers all that was seen: no border cell is known.
     let known = |cells: &Grid<CellState>, index: usize| cells.cells()[index] != CellState::Unknown;
     let columns = frame.width();
@@ -202,7 +242,7 @@ fn the_second_pass_draws_the_house_without_changes() {
     let per_1000 = changes.events() as f64 * 1000.0 / count as f64;
     assert!(per_1000 <= 20.0, "{per_1000} changes per 1000 scans");
     // The robot was where the map is free.
-    let to_map = session.poses[0].pose * truth[0].inverse();
+    let to_map = route.poses[0].pose * truth[0].inverse();
     let free = |pose: &Isometry2<f64>| {
         let at = Point2::from((to_map * pose).translation.vector);
         mapper.states().get(frame.cell_at(&at)) == Some(&CellState::Free)

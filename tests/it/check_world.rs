@@ -168,7 +168,7 @@ fn nothing_that_is_printed_has_control_characters() {
 }
 
 #[test]
-fn what_is_wrong_is_told_of_every_file() {
+fn what_is_wrong_is_reported_for_every_file() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(
         folder.path().join("ragged.toml"),

@@ -11,7 +11,7 @@ fn quiet_is_silent() {
 }
 
 #[test]
-fn the_end_is_told_in_sentences_and_progress_in_plain_lines() {
+fn the_end_is_reported_in_sentences_and_progress_in_plain_lines() {
     let ended = Run::new().goes_well("--no-rrd --duration 120 --speed 100");
     let lines: Vec<&str> = ended.stdout.lines().collect();
     assert!(lines[0].starts_with("agent in four rooms: 2.0 simulated minutes in "), "{}", lines[0]);
@@ -52,7 +52,7 @@ fn worlds_are_listed() {
 }
 
 #[test]
-fn the_version_is_told() {
+fn the_version_is_printed() {
     let expected = concat!("four_rooms ", env!("CARGO_PKG_VERSION"), "\n");
     assert_eq!(Run::new().goes_well("--version").stdout, expected);
 }

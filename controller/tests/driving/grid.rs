@@ -119,7 +119,7 @@ fn it_follows_a_block_one_action_per_step_up_to_the_bound() {
 }
 
 #[test]
-fn it_watches_at_a_goal_for_as_long_as_it_was_told() {
+fn it_watches_at_a_goal_for_the_given_time() {
     let mut world = World::new(&["R....."]);
     let mut controller = controller();
     controller.watch_at(Point2::new(2.5, 0.5), 3.0);

@@ -1,6 +1,5 @@
 //! The difference to poses of an earlier estimation, and which of both trajectories makes the sharper map.
 
-use crate::hits;
 use interfaces::{LaserReading, heading_rad, wrap_rad};
 use localizer::Trajectory;
 use logs::{Log, LogError};
@@ -62,7 +61,7 @@ fn cells(poses: impl Iterator<Item = Isometry2<f64>>, readings: &[LaserReading])
     let mut cells = BTreeSet::new();
     for (pose, reading) in poses.zip(readings) {
         let from_laser = pose * reading.mount.inverse();
-        let near = hits(reading).filter(|hit| hit.coords.norm() < FARTHEST_M);
+        let near = reading.hits().filter(|hit| hit.coords.norm() < FARTHEST_M);
         cells.extend(near.map(|hit| {
             let at = (from_laser * hit) / CELL_M;
             (at.x.floor() as i32, at.y.floor() as i32)

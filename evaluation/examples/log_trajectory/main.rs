@@ -13,7 +13,6 @@ mod comparison;
 mod picture;
 
 use evaluation::output::TrajectoryFile;
-use interfaces::LaserReading;
 use localizer::{PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
 use logs::{Log, TopicChoice};
 use std::error::Error;
@@ -79,14 +78,4 @@ fn print_trajectory(trajectory: &Trajectory, per_scan_ms: f64) {
             std_m * 100.0
         );
     }
-}
-
-/// The points that a reading hit, in the frame of the robot.
-fn hits(reading: &LaserReading) -> impl Iterator<Item = nalgebra::Point2<f64>> + '_ {
-    let scan = &reading.scan;
-    let hit = |(beam, range_m): (usize, &f32)| {
-        let along = interfaces::rotation(scan.angle_rad(beam)) * nalgebra::Vector2::x();
-        range_m.is_finite().then(|| reading.mount * nalgebra::Point2::from(along * f64::from(*range_m)))
-    };
-    scan.ranges_m.iter().enumerate().filter_map(hit)
 }

@@ -1,7 +1,6 @@
 //! All points along a trajectory as a picture: the darker, the more often a place was hit. A wall that is there twice
 //! shows at once.
 
-use crate::hits;
 use image::{Rgb, RgbImage};
 use interfaces::LaserReading;
 use localizer::Trajectory;
@@ -24,13 +23,13 @@ pub(crate) fn write(
 ) -> Result<(), Box<dyn std::error::Error>> {
     let mut points = Vec::new();
     for (pose, reading) in trajectory.poses.iter().zip(readings) {
-        let near = hits(reading).filter(|hit| hit.coords.norm() < FARTHEST_M);
+        let near = reading.hits().filter(|hit| hit.coords.norm() < FARTHEST_M);
         points.extend(near.map(|hit| pose.pose * hit));
     }
-    let way: Vec<Point2<f64>> =
+    let route: Vec<Point2<f64>> =
         trajectory.poses.iter().map(|pose| pose.pose.translation.vector.into()).collect();
-    let Some(first) = way.first() else { return Ok(()) };
-    let (low, high) = points.iter().chain(&way).fold((*first, *first), |(low, high), point| {
+    let Some(first) = route.first() else { return Ok(()) };
+    let (low, high) = points.iter().chain(&route).fold((*first, *first), |(low, high), point| {
         (low.coords.inf(&point.coords).into(), high.coords.sup(&point.coords).into())
     });
     let size: Vector2<f64> = high - low;
@@ -49,7 +48,7 @@ pub(crate) fn write(
         let share = (f64::from(counts[(y * width + x) as usize]) / BLACK).min(1.0).sqrt();
         Rgb([(255.0 * (1.0 - share)) as u8; 3])
     });
-    for point in &way {
+    for point in &route {
         let (x, y) = pixel(point);
         image.put_pixel(x, y, Rgb([220, 60, 30]));
     }

@@ -23,8 +23,8 @@ pub(super) struct Edge {
     pub(super) moves: bool,
 }
 
-/// A way through transforms: the edges, and whether they are taken from the parent to the child.
-pub(super) type Way = Vec<(usize, bool)>;
+/// A chain of transforms: the edges, and whether each is taken from the parent to the child.
+pub(super) type Chain = Vec<(usize, bool)>;
 
 /// All transforms.
 #[derive(Clone, Debug, Default)]
@@ -86,7 +86,7 @@ impl Frames {
     ///
     /// # Errors
     ///
-    /// When the frames form a circle.
+    /// When the frames form a cycle.
     pub(super) fn above(&self, frame: &str) -> Result<Vec<usize>, String> {
         let (mut above, mut at) = (Vec::new(), bare(frame));
         loop {
@@ -98,21 +98,21 @@ impl Frames {
                 return Ok(above);
             };
             if above.contains(&edge) {
-                return Err(format!("the frames form a circle: {} is above itself", self.edges[edge].child));
+                return Err(format!("the frames form a cycle: {} is above itself", self.edges[edge].child));
             }
             above.push(edge);
             at = &self.edges[edge].parent;
         }
     }
 
-    /// The shortest way from one frame to another that does not lead through the frames of the world.
-    pub(super) fn way(&self, from: &str, to: &str, world: &[&str]) -> Option<Way> {
+    /// The shortest chain from one frame to another that does not contain the frames of the world.
+    pub(super) fn chain(&self, from: &str, to: &str, world: &[&str]) -> Option<Chain> {
         let (from, to) = (bare(from), bare(to));
-        let mut ways: BTreeMap<&str, Way> = BTreeMap::from([(from, Way::new())]);
+        let mut chains: BTreeMap<&str, Chain> = BTreeMap::from([(from, Chain::new())]);
         let mut open = VecDeque::from([from]);
         while let Some(at) = open.pop_front() {
             if at == to {
-                return ways.remove(at);
+                return chains.remove(at);
             }
             for (index, edge) in self.edges.iter().enumerate() {
                 let (next, is_down) = match () {
@@ -120,10 +120,10 @@ impl Frames {
                     () if edge.child == at => (&edge.parent[..], false),
                     () => continue,
                 };
-                if !ways.contains_key(next) && !world.contains(&next) {
-                    let mut way = ways[at].clone();
-                    way.push((index, is_down));
-                    ways.insert(next, way);
+                if !chains.contains_key(next) && !world.contains(&next) {
+                    let mut chain = chains[at].clone();
+                    chain.push((index, is_down));
+                    chains.insert(next, chain);
                     open.push_back(next);
                 }
             }
@@ -131,9 +131,9 @@ impl Frames {
         None
     }
 
-    /// The pose of the frame at the end of a way in the frame at its begin.
-    pub(super) fn along(&self, way: &Way) -> Isometry3<f64> {
-        way.iter().fold(Isometry3::identity(), |pose, (index, is_down)| {
+    /// The pose of the frame at the end of a chain in the frame at its begin.
+    pub(super) fn along(&self, chain: &Chain) -> Isometry3<f64> {
+        chain.iter().fold(Isometry3::identity(), |pose, (index, is_down)| {
             let edge = self.edges[*index].pose;
             if *is_down { pose * edge } else { pose * edge.inverse() }
         })

@@ -1,6 +1,6 @@
 //! What to use of a bag: which lasers, where they are mounted, and where the poses come from.
 
-use super::frames::{Frames, Way, is_odom, is_world, mounted};
+use super::frames::{Chain, Frames, is_odom, is_world, mounted};
 use super::inventory::{Inventory, Kind, LaserTopic, OdometryTopic};
 use super::message::Topic;
 use crate::choice::{TopicChoice, bare};
@@ -12,7 +12,7 @@ pub(super) struct Laser {
     pub(super) topic: String,
     pub(super) frame: String,
     /// From the frame of the robot to that of the laser.
-    pub(super) way: Way,
+    pub(super) chain: Chain,
 }
 
 /// Where the poses come from.
@@ -32,7 +32,7 @@ pub(super) struct Plan {
     pub(super) motion: Motion,
     pub(super) pose_source: PoseSource,
     /// From the frame whose poses are known to that of the robot.
-    pub(super) to_base: Way,
+    pub(super) to_base: Chain,
     /// With the first poses.
     pub(super) frames: Frames,
 }
@@ -77,13 +77,13 @@ impl Plan {
             frames.names().into_iter().filter(|name| is_odom(name) || is_world(name)).collect();
         world.extend(odometry.map(|odometry| odometry.odom_frame.as_str()));
         let to_base = match &moving_frame {
-            Some(moving) if !moving.is_empty() => frames.way(moving, &base, &world).unwrap_or_else(|| {
+            Some(moving) if !moving.is_empty() => frames.chain(moving, &base, &world).unwrap_or_else(|| {
                 notes.push(format!(
                     "no transform connects `{moving}`, whose poses are known, with `{base}`: they count as one frame"
                 ));
-                Way::new()
+                Chain::new()
             }),
-            _ => Way::new(),
+            _ => Chain::new(),
         };
         let lasers = connected(frames, lasers, &base, &world, notes)?;
         Ok(Self { lasers, motion, pose_source, to_base, frames: frames.clone() })
@@ -215,17 +215,17 @@ fn connected(
 ) -> Result<Vec<Laser>, String> {
     let (mut kept, mut refused) = (Vec::new(), Vec::new());
     for LaserTopic { topic, frame, .. } in lasers {
-        frames.above(frame)?; // not in a circle
-        let way = frames.way(base, frame, world).ok_or_else(|| match frames.is_empty() {
+        frames.above(frame)?; // not in a cycle
+        let chain = frames.chain(base, frame, world).ok_or_else(|| match frames.is_empty() {
             true => format!("is not connected to the robot `{base}`: the bag has no transforms (tf)"),
             false => format!(
                 "is not connected to the robot `{base}` by transforms; the frames are {}",
                 listed(frames.names().into_iter())
             ),
         });
-        let checked = way.and_then(|way| mounted(&frames.along(&way)).map(|_| way));
+        let checked = chain.and_then(|chain| mounted(&frames.along(&chain)).map(|_| chain));
         match checked {
-            Ok(way) => kept.push(Laser { topic: topic.clone(), frame: frame.clone(), way }),
+            Ok(chain) => kept.push(Laser { topic: topic.clone(), frame: frame.clone(), chain }),
             Err(why) => refused.push(format!("the laser `{frame}` of {topic} {why}")),
         }
     }

@@ -163,7 +163,7 @@ impl RawReadings {
         let is_this = |laser: &Laser| laser.frame == frame && laser.topic == *topic;
         let Some(laser) = self.plan.lasers.iter().position(is_this) else { return Ok(()) };
         let begin_s = self.clock.time_s(&found.header, message);
-        let mounted = mounted(&self.frames.along(&self.plan.lasers[laser].way));
+        let mounted = mounted(&self.frames.along(&self.plan.lasers[laser].chain));
         let scan =
             mounted.and_then(|(mount, is_upside_down)| Ok((mount, scan::converted(found, is_upside_down)?)));
         let (mount, scan) = match scan {

@@ -33,8 +33,8 @@ pub(super) struct Channels<W: Write + Seek> {
 
 impl<W: Write + Seek> Channels<W> {
     pub(super) fn new(to: W, name: &str) -> Result<Self, LogError> {
-        let options =
-            WriteOptions::new().profile("ros2").library("curious").compression(Some(Compression::Zstd));
+        let options = WriteOptions::library(WriteOptions::new().profile("ros2"), "curious")
+            .compression(Some(Compression::Zstd));
         let writer = options.create(to).map_err(|error| failed(name, error))?;
         Ok(Self { writer, name: name.to_owned(), known: BTreeMap::new() })
     }

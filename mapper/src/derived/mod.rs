@@ -31,7 +31,14 @@ impl Mapper {
     /// The probability that the cell changed since it was last observed (equation 2).
     #[inline]
     pub fn change_probability(&self, index: usize) -> f64 {
-        change_probability(self.recency(index), self.rate(index))
+        self.change_probability_within(index, self.recency(index))
+    }
+
+    /// The probability that the cell changes within this time, from 0 to 1 (equation 2 for this time); 0 for a cell
+    /// that never changed.
+    #[inline]
+    pub fn change_probability_within(&self, index: usize, time: f64) -> f64 {
+        change_probability(time, self.rate(index))
     }
 
     /// The time since the cell was last observed. A cell that was never observed counts as last seen at time 0.

@@ -90,6 +90,12 @@ pub(crate) fn assert_sound(mapper: &Mapper) {
         assert!(rate.is_finite() && rate >= 0.0, "rate {rate} of {seen:?}");
         let probability = mapper.change_probability(index);
         assert!((0.0..=1.0).contains(&probability), "P(E > 0) = {probability} of {seen:?}");
+        let cycle = mapper.interval(index);
+        let (within, expected) = match cycle.is_finite() {
+            true => (mapper.change_probability_within(index, cycle), 1.0 - (-1.0_f64).exp()),
+            false => (mapper.change_probability_within(index, 1e9), 0.0),
+        };
+        assert!((within - expected).abs() < 1e-9, "{within} within a cycle of {cycle}");
         let blocked = mapper.blocked_probability(index);
         assert!((0.0..=1.0).contains(&blocked), "P(blocked) = {blocked} of {seen:?}");
         let (low, high) = mapper.credible_interval(index, 0.9);

@@ -137,11 +137,12 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
             Ok(ControlFlow::Continue(()))
         });
         went.map_err(anyhow::Error::from)?;
-        if let Some(Err(problem)) =
-            saves.as_mut().filter(|_| ended.is_none()).map(|saves| saves.save(&mut trial))
+        if ended.is_none()
+            && let Some(saves) = &mut saves
+            && let Err(problem) = saves.save(&mut trial)
         {
             is_shown = false;
-            progress.say(format_args!("error: {problem}; the run goes on without it"));
+            progress.say(format_args!("error: cannot save the state: {problem}; the run goes on"));
         }
     }
     let ended = ended.unwrap_or(Ended::Interrupted);

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use summary::Summary;
-use survey::{SurveySettings, learned_noise_m};
+use survey::SurveySettings;
 
 fn main() -> ExitCode {
     start(run)
@@ -59,14 +59,14 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let is_interrupted = interrupt_flag()?; // before any file is made
     let folder = RunFolder::open(&args.out).map_err(anyhow::Error::from)?;
     let mut job = Job { args, sources, settings, is_interrupted };
-    let Some(sessions) = first_pass::sessions(&job)? else {
+    let Some(routes) = first_pass::routes(&job)? else {
         return Ok(ExitCode::from(INTERRUPTED));
     };
-    if let (None, Some(noise_m)) = (args.noise, learned_noise_m(&sessions)) {
-        job.settings.mapper.steady.range_noise_std_m = noise_m;
+    if args.noise.is_none() {
+        job.settings.learn_noise(&routes);
     }
-    let learned = second_pass::learn(&job, &sessions, folder.unfinished())?;
-    let mut summary = Summary::new(&job, &sessions, &learned);
+    let learned = second_pass::learn(&job, &routes, folder.unfinished())?;
+    let mut summary = Summary::new(&job, &routes, &learned);
     summary.wall_s = begin.elapsed().as_secs_f64();
     output::write(folder, &learned, &mut summary)?;
     if !args.quiet {

@@ -44,22 +44,7 @@ pub(crate) fn write(folder: RunFolder, learned: &Learned, summary: &mut Summary)
     let page = report::page(summary);
     write_file(&to.join("report.html"), |file| file.write_all(page.as_bytes()))?;
     summary.files = folder.results()?;
-    let mut value = serde_json::to_value(&*summary)?;
-    if !has_rates {
-        without_times(&mut value);
-    }
-    let text = serde_json::to_string_pretty(&value)?;
+    let text = serde_json::to_string_pretty(summary)?;
     write_file(&to.join(SUMMARY), |file| writeln!(file, "{text}"))?;
     Ok(folder.finish(SUMMARY, &[])?)
-}
-
-/// Removes what has a meaning only with times.
-fn without_times(summary: &mut serde_json::Value) {
-    const OF_PLACES: [&str; 5] =
-        ["cycles_per_hour", "cycles_per_hour_90", "share_blocked", "observed_s", "last_change_s"];
-    let places = summary["places"].as_array_mut().into_iter().flatten();
-    for place in places.filter_map(|place| place.as_object_mut()) {
-        OF_PLACES.iter().for_each(|key| drop(place.remove(*key)));
-    }
-    summary["duration_s"] = serde_json::Value::Null;
 }

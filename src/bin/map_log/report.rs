@@ -67,11 +67,10 @@ pub(crate) fn page(summary: &Summary) -> String {
 }
 
 fn overview(summary: &Summary) -> Markup {
-    let has_rates = summary.rates_withheld.is_none();
     html! {
         p {
             (summary.scans) " scans"
-            @if has_rates { " in " (length_of(summary.duration_s)) }
+            @if let Some(duration_s) = summary.duration_s { " in " (length_of(duration_s)) }
             ", " (format!("{:.0}", summary.trajectory_m)) " m travelled, "
             (format!("{:.0}", summary.seen_m2)) " m² seen. "
             (percent(summary.changed_share)) " of this area changed at least once, in " (summary.place_count) " places. "
@@ -100,12 +99,12 @@ fn table(places: &[Place], has_rates: bool) -> Markup {
                     td { (format!("{:.1}, {:.1}", place.x_m, place.y_m)) }
                     td { (format!("{:.2} m²", place.area_m2)) }
                     td { (place.changes) }
-                    @if has_rates {
-                        td { (how_often(place)) }
-                        td { (range(place)) }
-                        td { (percent(place.share_blocked)) " of the time" }
-                        td { (length_of(place.observed_s)) }
-                        td { (length_of(place.last_change_s)) }
+                    @if let Some(rates) = &place.rates {
+                        td { (how_often(place.changes, rates)) }
+                        td { (range(rates)) }
+                        td { (percent(rates.share_blocked)) " of the time" }
+                        td { (length_of(rates.observed_s)) }
+                        td { (length_of(rates.last_change_s)) }
                     }
                 }
             }

@@ -9,12 +9,12 @@ use curious::progress::Progress;
 use curious::terminal::say;
 use evaluation::output::TrajectoryFile;
 use interfaces::LaserReading;
-use mapper::{Mapper, ReadingError};
-use robot::{Localization, explore};
+use mapper::Mapper;
+use robot::{Belief, Localization};
 use std::io::stderr;
 use std::ops::ControlFlow;
 use std::path::Path;
-use survey::{ChangeLog, FoundPoses, NoPilot, Replay, Session, frame};
+use survey::{ChangeLog, FoundPoses, NoPilot, Replay, Route, frame};
 use viewer::recording::Recorder;
 use viewer::scene::Scene;
 use viewer::show::Show;
@@ -35,8 +35,8 @@ pub(crate) struct Learned {
 }
 
 /// Learns from all logs along their trajectories. The recording and the trajectory are written to `folder`.
-pub(crate) fn learn(job: &Job, sessions: &[Session], folder: &Path) -> Result<Learned, Failure> {
-    let frame = frame(sessions, &job.settings).map_err(input)?;
+pub(crate) fn learn(job: &Job, routes: &[Route], folder: &Path) -> Result<Learned, Failure> {
+    let frame = frame(routes, &job.settings).map_err(input)?;
     let mapper = Mapper::new(&job.settings.mapper, frame).map_err(input)?;
     let first = job.sources[0].log.readings().map_err(input)?.next();
     let first = first.context("the log has no reading").map_err(input)?.map_err(input)?;
@@ -53,8 +53,8 @@ pub(crate) fn learn(job: &Job, sessions: &[Session], folder: &Path) -> Result<Le
     let mut trajectory = TrajectoryFile::create(&folder.join("trajectory.tum"));
     let bag = job.args.mcap.as_deref().map(|path| RunBag::create(path, job.begin_s())).transpose()?;
     let last = job.sources.len() - 1;
-    for (number, (source, session)) in job.sources.iter().zip(sessions).enumerate() {
-        learned.replay(job, source, session, (&mut trajectory, bag.as_ref()), number == last)?;
+    for (number, (source, route)) in job.sources.iter().zip(routes).enumerate() {
+        learned.replay(job, source, route, (&mut trajectory, bag.as_ref()), number == last)?;
         if learned.is_interrupted {
             break;
         }
@@ -87,7 +87,7 @@ impl Learned {
         &mut self,
         job: &Job,
         source: &Source,
-        session: &Session,
+        route: &Route,
         (trajectory, bag): (&mut TrajectoryFile, Option<&RunBag>),
         is_last_log: bool,
     ) -> Result<(), Failure> {
@@ -95,38 +95,30 @@ impl Learned {
         let readings = source.log.readings().map_err(input)?;
         let replay = Replay::new(readings, &job.settings, source.offset_s).map_err(input)?;
         let changed = || anyhow!("{}: the log has changed since the first pass", source.name);
-        let mut replay = replay.ok_or_else(|| input(changed()))?;
-        let found = Box::new(FoundPoses::new(session.poses.clone()));
+        let replay = replay.ok_or_else(|| input(changed()))?;
+        let found = Box::new(FoundPoses::new(route.poses.clone()));
         let mut poses: Box<dyn Localization<LaserReading>> = match bag {
             Some(bag) => Box::new(bag.recorded(found)),
             None => found,
         };
         let progress = Progress::of_scans(source.log.summary().scans, job.args.quiet);
         let Self { mapper, changes, show, is_interrupted, is_shown } = self;
-        if mapper.readings() > 0 {
-            // The time since the log before counts as not observed.
-            mapper.pause(source.offset_s);
-        }
-        explore(&mut replay, poses.as_mut(), mapper, &mut NoPilot, |replay, reading, belief, pilot| {
+        let observe = |replay: &Replay<_>, reading: &LaserReading, belief: &Belief| {
             progress.step();
             changes.note(belief.mapper);
-            bag.into_iter().for_each(|bag| bag.add(belief, pilot));
+            bag.into_iter().for_each(|bag| bag.add(belief, &NoPilot));
             trajectory.add(reading.time_s, belief.pose);
             *is_interrupted = job.is_interrupted();
-            let is_over = *is_interrupted || replay.is_over();
-            let view = View::new(replay, reading, belief, pilot, Measured::default());
-            let is_last = *is_interrupted || is_over && is_last_log;
+            let view = View::new(replay, reading, belief, &NoPilot, Measured::default());
+            let is_last = *is_interrupted || replay.is_over() && is_last_log;
             if let Err(problem) = show.add(&view, is_last) {
                 *is_shown = false;
                 progress.say(format_args!("error: {problem}; the run goes on without it"));
             }
-            Ok::<_, ReadingError>(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        })
-        .map_err(input)?;
+            if *is_interrupted { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        survey::learn(replay, poses.as_mut(), mapper, observe).map_err(input)?;
         progress.finish();
-        match replay.into_problem() {
-            Some(problem) => Err(input(problem)),
-            None => Ok(()),
-        }
+        Ok(())
     }
 }

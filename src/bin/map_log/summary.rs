@@ -7,7 +7,7 @@ use evaluation::percent::percent;
 use interfaces::CellState;
 use serde::Serialize;
 use std::fmt;
-use survey::{Place, PoseMode, Session, SurveySettings, places};
+use survey::{Place, PoseMode, Route, SurveySettings, places};
 
 /// The number of places in the summary and in the report.
 const MOST_PLACES: usize = 20;
@@ -22,8 +22,8 @@ pub(crate) struct Summary {
     /// The logs, in the order of their times.
     pub(crate) logs: Vec<String>,
     pub(crate) scans: usize,
-    /// The duration of all logs, without the time between them, s.
-    pub(crate) duration_s: f64,
+    /// The duration of all logs, without the time between them, s; `null` if their times are unusable.
+    pub(crate) duration_s: Option<f64>,
     /// What was repaired or left out in the log.
     pub(crate) notes: Vec<String>,
     /// The length of the trajectory, m.
@@ -51,7 +51,7 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    pub(crate) fn new(job: &Job, sessions: &[Session], learned: &Learned) -> Self {
+    pub(crate) fn new(job: &Job, routes: &[Route], learned: &Learned) -> Self {
         let mapper = &learned.mapper;
         let summaries = || job.sources.iter().map(|source| source.log.summary());
         let cell_m2 = mapper.frame().resolution_m().powi(2);
@@ -59,6 +59,10 @@ impl Summary {
         let mut places = places(mapper, &learned.changes);
         let place_count = places.len();
         places.truncate(MOST_PLACES);
+        let has_times = summaries().all(|summary| summary.has_times);
+        if !has_times {
+            places.iter_mut().for_each(|place| place.rates = None);
+        }
         let why = "the times of the log are unusable, so that no rate, duration or date can be given: the map shows where \
                    something changed, not how often";
         Self {
@@ -67,15 +71,15 @@ impl Summary {
             settings: job.settings.clone(),
             logs: job.sources.iter().map(|source| source.name.clone()).collect(),
             scans: summaries().map(|summary| summary.scans).sum(),
-            duration_s: summaries().map(|summary| summary.duration_s).sum(),
+            duration_s: has_times.then(|| summaries().map(|summary| summary.duration_s).sum()),
             notes: summaries().flat_map(|summary| summary.notes.clone()).collect(),
-            trajectory_m: sessions.iter().map(Session::length_m).sum(),
-            loops: sessions.iter().map(|session| session.loops).sum(),
-            scans_left_out: sessions.iter().map(Session::uncertain).sum(),
+            trajectory_m: routes.iter().map(Route::length_m).sum(),
+            loops: routes.iter().map(|route| route.loops).sum(),
+            scans_left_out: routes.iter().map(Route::uncertain).sum(),
             seen_m2: seen as f64 * cell_m2,
             changed_share: mapper.changed().count() as f64 / seen.max(1) as f64,
             changes: learned.changes.events(),
-            rates_withheld: (!summaries().all(|summary| summary.has_times)).then(|| why.to_owned()),
+            rates_withheld: (!has_times).then(|| why.to_owned()),
             place_count,
             places,
             is_interrupted: learned.is_interrupted,
@@ -88,8 +92,8 @@ impl Summary {
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let per_scan_ms = self.wall_s * 1e3 / self.scans.max(1) as f64;
-        let seconds = format!("{:.0} s", self.duration_s);
-        let duration = if self.rates_withheld.is_some() { "an unknown time" } else { seconds.as_str() };
+        let seconds = |duration_s| format!("{duration_s:.0} s");
+        let duration = self.duration_s.map_or("an unknown time".to_owned(), seconds);
         writeln!(f, "{}: {} scans in {duration}", self.logs.join(", "), self.scans)?;
         let pose = match self.settings.pose {
             PoseMode::Exact => "poses of the log",
@@ -104,10 +108,8 @@ impl fmt::Display for Summary {
         writeln!(f, "  seen      {:.0} m², {} of it changed", self.seen_m2, percent(self.changed_share))?;
         writeln!(f, "  changes   {} of cells, in {} places", self.changes, self.place_count)?;
         for (number, place) in (1..).zip(self.places.iter().take(3)) {
-            let rate = match self.rates_withheld {
-                Some(_) => String::new(),
-                None => format!(", {}", how_often(place)),
-            };
+            let rate = place.rates.as_ref().map(|rates| format!(", {}", how_often(place.changes, rates)));
+            let rate = rate.unwrap_or_default();
             writeln!(f, "    {number}.      at ({:.1}, {:.1}) m{rate}", place.x_m, place.y_m)?;
         }
         if let Some(why) = &self.rates_withheld {

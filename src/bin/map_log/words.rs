@@ -1,27 +1,28 @@
 //! Times and rates in words.
 
-use survey::Place;
+use survey::PlaceRates;
 
 /// With fewer changes, or where the ends of the interval are farther apart than this factor, a single figure says too much.
 const FEW: u32 = 3;
 const WIDE: f64 = 10.0;
 
-/// How often something changes at a place, in words: the estimate, or the range where little was seen.
-pub(crate) fn how_often(place: &Place) -> String {
-    let [low, high] = place.cycles_per_hour_90.map(Option::unwrap_or_default);
-    match place.cycles_per_hour {
+/// How often something changes at a place with this number of changes, in words: the estimate, or the range where little
+/// was seen.
+pub(crate) fn how_often(changes: u32, rates: &PlaceRates) -> String {
+    let [low, high] = rates.cycles_per_hour_90.map(Option::unwrap_or_default);
+    match rates.cycles_per_hour {
         // Few observations: the estimate is mostly the prior.
-        rate if rate <= 0.0 || place.changes < FEW || high > WIDE * low => {
-            format!("once in {}", range(place))
+        rate if rate <= 0.0 || changes < FEW || high > WIDE * low => {
+            format!("once in {}", range(rates))
         }
         rate => format!("once in {}", length_of(3600.0 / rate)),
     }
 }
 
 /// The range of the time of one cycle that contains the true one with 90 % probability, in words.
-pub(crate) fn range(place: &Place) -> String {
+pub(crate) fn range(rates: &PlaceRates) -> String {
     let time = |rate: Option<f64>| rate.filter(|rate| *rate > 0.0).map(|rate| length_of(3600.0 / rate));
-    let [slow, fast] = place.cycles_per_hour_90.map(time);
+    let [slow, fast] = rates.cycles_per_hour_90.map(time);
     match (fast, slow) {
         (Some(fast), Some(slow)) => format!("{fast} to {slow}"),
         (Some(fast), None) => format!("{fast} or more"),

@@ -121,7 +121,7 @@ proptest! {
     }
 }
 
-/// The worst megabytes that come to mind, each read within seconds and 1 GiB: run alone as
+/// The worst megabytes that are known, each read within seconds and 1 GiB: run alone as
 /// `(ulimit -v 1048576; TEST-PROGRAM worst_megabytes --ignored --nocapture)`.
 #[test]
 #[ignore = "slow; for measuring memory and time"]

@@ -23,12 +23,16 @@ fn ctrl_c_keeps_the_finished_trials() {
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{ended:?}");
 
-    let told: usize = line.split(' ').next().unwrap().parse().unwrap();
+    let reported: usize = line.split(' ').next().unwrap().parse().unwrap();
     let report = report(&run);
     assert_eq!(report["interrupted"], true);
     let rows = rows(&run);
     let finished: BTreeSet<_> = rows.iter().map(|row| (row.strategy.clone(), row.seed)).collect();
-    assert!((told..200_000).contains(&finished.len()), "{} finished, {told} told", finished.len());
+    assert!(
+        (reported..200_000).contains(&finished.len()),
+        "{} finished, {reported} reported",
+        finished.len()
+    );
     assert_eq!(rows.len(), 80 * finished.len(), "only whole trials are kept");
     let counted: u64 = ["recency", "random"]
         .map(|name| report["runs"][0]["strategies"][name]["trials"].as_u64().unwrap())

@@ -131,8 +131,8 @@ fn it_agrees_with_the_trials() {
             let ends = |strategy| at_the_end(&rows, [world, estimator, strategy], value);
             for strategy in STRATEGIES {
                 assert_eq!(ends(strategy).len(), 3);
-                let told = number(&run["strategies"][strategy][name]);
-                assert!((told - mean(&ends(strategy))).abs() < 1e-12, "{name} of {strategy} in {world}");
+                let reported = number(&run["strategies"][strategy][name]);
+                assert!((reported - mean(&ends(strategy))).abs() < 1e-12, "{name} of {strategy} in {world}");
             }
             for comparison in run["comparisons"].as_array().unwrap().iter().filter(|it| it["metric"] == name)
             {

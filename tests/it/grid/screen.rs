@@ -32,7 +32,7 @@ fn worlds_are_listed() {
 }
 
 #[test]
-fn the_version_is_told() {
+fn the_version_is_printed() {
     let expected = concat!("grid_world ", env!("CARGO_PKG_VERSION"), "\n");
     assert_eq!(Run::grid().goes_well("--version").stdout, expected);
 }

@@ -142,13 +142,13 @@ fn main() -> ExitCode {
 
 /// Simulates the robots for some seconds.
 fn run(fleet: &mut Fleet, seconds: f64, controller: &mut impl Controller) {
-    let mut told = Instant::now();
+    let mut printed = Instant::now();
     // As many steps as `run_until` the end would take.
     while fleet.time_s() < seconds - 5e-7 {
         fleet.step(controller);
-        if told.elapsed() > SILENCE {
+        if printed.elapsed() > SILENCE {
             eprintln!("{:.2} of {seconds} s", fleet.time_s());
-            told = Instant::now();
+            printed = Instant::now();
         }
     }
 }

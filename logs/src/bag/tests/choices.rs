@@ -79,7 +79,7 @@ fn the_frame_of_the_odometry_may_be_unnamed() {
 }
 
 #[test]
-fn frames_in_a_circle_and_tilted_lasers_are_refused() {
+fn frames_in_a_cycle_and_tilted_lasers_are_refused() {
     let mut bag = Builder::default();
     bag.odometry("/odom", 0.0, 0.0, 0.0).scan("/scan", 0.0, &scan(0.0, "laser"));
     let tilted = crate::ros::Rotation { x: 0.0, y: 0.5, z: 0.0, w: 0.75_f64.sqrt() };
@@ -93,7 +93,7 @@ fn frames_in_a_circle_and_tilted_lasers_are_refused() {
     );
     let still = |parent: &str, child: &str| transform(0.0, parent, child, pose(0.0, 0.0, 0.0));
     bag.tf("/tf_static", 0.0, &[still("a", "laser"), still("laser", "a")]);
-    assert_eq!(bag.refused(), "test: the frames form a circle: laser is above itself");
+    assert_eq!(bag.refused(), "test: the frames form a cycle: laser is above itself");
 }
 
 #[test]

@@ -59,7 +59,8 @@ impl SurfaceGrid {
         let is_free = cells.state(index) == CellState::Free;
         let frame = *cells.frame();
         let is_inside = |point: Point2<f64>| frame.index(frame.cell_at(&point)) == Some(index);
-        // Where the noise is larger than a cell, an unknown cell along the same wall must not wait for it.
+        // An unknown cell near a blocked one takes more hits. Noise that is larger than a cell must not delay the cells
+        // that are farther along the same wall: for an unknown cell, at most one cell away is near.
         let (reach_m, min_hits) =
             if is_free { (noise_m, hits_to_stand) } else { (noise_m.min(frame.resolution_m()), 0) };
         let near = self.surface_near(end, reach_m, min_hits, cells);

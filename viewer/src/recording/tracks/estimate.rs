@@ -16,7 +16,7 @@ const STDS: f64 = 2.0;
 const ENLARGED: f64 = 20.0;
 /// The corners of a round outline.
 const CORNERS: u32 = 32;
-/// One of this many beams is drawn as a point.
+/// One of this many hits is drawn as a point.
 const EVERY: usize = 4;
 
 /// Adds all entities of the estimate; nothing for a robot whose poses are exact.
@@ -72,13 +72,8 @@ fn ellipse(estimate: &PoseEstimate) -> Strip {
     closed(&Vec::from_iter((0..CORNERS).map(corner)))
 }
 
-/// The end points of the scan at the believed pose.
+/// Some of the hits of the scan, at the believed pose.
 fn hits(view: &View) -> Vec<[f32; 2]> {
     let Some(Sight::Laser(reading)) = view.sight() else { return Vec::new() };
-    let (laser, scan) = (reading.pose * reading.mount, &reading.scan);
-    let beams = scan.ranges_m.iter().enumerate().step_by(EVERY).filter(|(_, range_m)| range_m.is_finite());
-    let end = |(beam, range_m): (usize, &f32)| {
-        laser * Point2::from(interfaces::rotation(scan.angle_rad(beam)) * Vector2::x() * f64::from(*range_m))
-    };
-    beams.map(|beam| position(&end(beam))).collect()
+    reading.hits().step_by(EVERY).map(|hit| position(&(reading.pose * hit))).collect()
 }

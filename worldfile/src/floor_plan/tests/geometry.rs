@@ -46,7 +46,7 @@ fn the_blocked_part_of_a_picture() {
 }
 
 #[test]
-fn a_plan_lies_where_it_is_told() {
+fn a_plan_lies_at_its_origin() {
     let plan = FloorPlan {
         bitmap: bitmap(" #\n  ").into(),
         pixel_m: Vector2::new(0.5, 0.25),

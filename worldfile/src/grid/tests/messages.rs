@@ -213,7 +213,7 @@ fn missing_file() {
 }
 
 #[test]
-fn everything_that_is_wrong_is_told_at_once() {
+fn everything_that_is_wrong_is_reported_at_once() {
     let text = "name = ''\nsensor_radius = 0\nmap = '''\n#####\n#...#\n#####\n'''\n\
                 [[block]]\nname = 'b'\ndwell = 0\ncourse = 'loop'\npath = [[1, 1], [2, 1]]\n";
     let error = crate::grid::parse("many.toml", text).unwrap_err();

@@ -158,9 +158,9 @@ proptest! {
                 changes.push(index);
             }
             let truth = world.truth();
-            let mut told = changed(&world);
-            told.sort_unstable();
-            prop_assert_eq!(told, changes);
+            let mut reported = changed(&world);
+            reported.sort_unstable();
+            prop_assert_eq!(reported, changes);
             prop_assert!((0..cells).all(|index| truth.is_blocked(index) == now[index]));
             prop_assert!(!now[spec.frame().index(world.robot()).unwrap()]);
             before = now;

@@ -100,7 +100,7 @@ fn accelerating_is_what_it_says() {
 }
 
 #[test]
-fn every_drive_gets_where_it_is_told_to_go() {
+fn every_drive_reaches_its_goal() {
     for drive in KINDS {
         for (x, y, heading) in
             [(4.5, 3.2, 0.5), (1.5, 2.0, 2.0), (3.0, 4.5, -1.0), (2.9, 3.1, 0.0), (3.0, 3.0, 3.0)]

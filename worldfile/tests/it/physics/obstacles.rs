@@ -19,8 +19,8 @@ fn it_comes_and_goes_on_time_and_is_solid_meanwhile() {
         assert_eq!(truth.state(truth.frame().index(Cell::new(64, 40)).unwrap()), expected);
     }
     let events = world.obstacle_events();
-    let told: Vec<_> = events.iter().map(|e| (e.name.as_str(), e.appeared, e.cells.len())).collect();
-    assert_eq!(told, [("box", true, 64), ("box", false, 64)]);
+    let reported: Vec<_> = events.iter().map(|e| (e.name.as_str(), e.appeared, e.cells.len())).collect();
+    assert_eq!(reported, [("box", true, 64), ("box", false, 64)]);
     assert!((events[0].time_s - 1.0).abs() < 1e-9 && (events[1].time_s - 2.05).abs() < 1e-9);
 }
 

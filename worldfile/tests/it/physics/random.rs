@@ -226,6 +226,6 @@ fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
     }
     deepest.check();
     assert!(robots > 4 * worlds as usize, "too few robots fitted in: {robots}");
-    assert!(things > 1000 * worlds as usize, "hardly anything moved: {things}");
-    assert!(contacts > robots, "they hardly ever met: {contacts}");
+    assert!(things > 1000 * worlds as usize, "too few things moved: {things}");
+    assert!(contacts > robots, "too few contacts: {contacts}");
 }

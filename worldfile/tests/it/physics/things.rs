@@ -194,7 +194,7 @@ fn door(kind: &str, keys: &str) -> String {
 }
 
 #[test]
-fn doors_turn_and_slide_as_told() {
+fn doors_turn_and_slide_by_their_script() {
     let script = "opening = \"scripted\"\nswitches_s = [1.0, 5.0]\nmove_s = 2.0";
     for (kind, more, half_way, open) in [
         ("hinged_door", "", [3.0 - 0.5 * 0.5_f64.sqrt(), 1.0 + 0.5 * 0.5_f64.sqrt()], [2.5, 1.0]),

@@ -1,4 +1,4 @@
-//! One log along its trajectory, and the cells that cover several of them.
+//! The route of a log, and the cells that cover several of them.
 
 use crate::extent::{self, Reach};
 use crate::settings::{PoseMode, SurveySettings};
@@ -30,7 +30,7 @@ pub enum SurveyError {
 
 /// A log along its trajectory.
 #[derive(Clone, Debug)]
-pub struct Session {
+pub struct Route {
     /// One pose per reading, in the frame of the map.
     pub poses: Vec<TrajectoryPose>,
     /// The number of places that were recognised; 0 where no trajectory was searched.
@@ -40,7 +40,7 @@ pub struct Session {
     reaches: Vec<Reach>,
 }
 
-impl Session {
+impl Route {
     /// The length of the trajectory, m.
     pub fn length_m(&self) -> f64 {
         let position = |at: &TrajectoryPose| at.pose.translation.vector;
@@ -52,7 +52,7 @@ impl Session {
         self.poses.iter().filter(|pose| pose.state != PoseState::Tracking).count()
     }
 
-    /// The session in another frame, whose pose of this frame is `by`.
+    /// The route in another frame, whose pose of this frame is `by`.
     #[must_use]
     pub fn moved(mut self, by: &Isometry2<f64>) -> Self {
         self.poses.iter_mut().for_each(|at| at.pose = by * at.pose);
@@ -60,13 +60,13 @@ impl Session {
     }
 }
 
-/// The cells that cover what was seen in all sessions.
+/// The cells that cover what was seen along all routes.
 ///
 /// # Errors
 ///
 /// When no reading has a certain pose, or when the place is too large for a map.
-pub fn frame(sessions: &[Session], settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
-    let readings = sessions.iter().flat_map(|session| session.poses.iter().zip(&session.reaches));
+pub fn frame(routes: &[Route], settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
+    let readings = routes.iter().flat_map(|route| route.poses.iter().zip(&route.reaches));
     let used = readings.filter(|(pose, _)| pose.state == PoseState::Tracking);
     let placed = used.map(|(pose, reach)| (&pose.pose, reach));
     extent::frame(placed, settings.resolution_m).ok_or(SurveyError::NoPlace)
@@ -111,7 +111,7 @@ impl FirstPass {
     }
 
     /// The log along its trajectory, in the frame of its first pose.
-    pub fn finish(self) -> Session {
+    pub fn finish(self) -> Route {
         let (poses, loops, residual_std_m) = match self.finder {
             Some(finder) => {
                 let trajectory = finder.finish();
@@ -119,6 +119,6 @@ impl FirstPass {
             }
             None => (self.given, 0, None),
         };
-        Session { poses, loops, residual_std_m, reaches: self.reaches }
+        Route { poses, loops, residual_std_m, reaches: self.reaches }
     }
 }

@@ -12,12 +12,12 @@ const LOCALIZATION: &str = "localization";
 
 /// The settings that what was learned belongs to.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MindFacts {
+pub struct LearnedFacts {
     mapper: Facts,
     localization: Facts,
 }
 
-impl MindFacts {
+impl LearnedFacts {
     /// The facts of a mapper with this frame, and of a localization. `pose` is the name of the kind of localization;
     /// `localizer` is `None` if the poses are given.
     pub fn new(
@@ -40,12 +40,12 @@ impl MindFacts {
     }
 
     /// Copies what was learned. This is short; to turn the copy into bytes takes longer.
-    pub fn snapshot<L>(&self, mapper: &Mapper, localization: &mut L) -> MindSnapshot
+    pub fn snapshot<L>(&self, mapper: &Mapper, localization: &mut L) -> LearnedSnapshot
     where
         L: Localization<LaserReading> + ?Sized,
     {
         let (mapper, localization) = (mapper.clone(), localization.snapshot());
-        MindSnapshot { facts: self.clone(), mapper, localization }
+        LearnedSnapshot { facts: self.clone(), mapper, localization }
     }
 
     /// Goes on with what was learned. The mapper and the localization were made with the settings of these facts.
@@ -75,13 +75,13 @@ impl MindFacts {
 
 /// A copy of what was learned. A thread can turn it into bytes while the robot goes on.
 #[derive(Clone, Debug)]
-pub struct MindSnapshot {
-    facts: MindFacts,
+pub struct LearnedSnapshot {
+    facts: LearnedFacts,
     mapper: Mapper,
     localization: Vec<u8>,
 }
 
-impl MindSnapshot {
+impl LearnedSnapshot {
     /// Adds what was learned to a state.
     pub fn added_to(self, state: State) -> State {
         let Self { facts, mut mapper, localization } = self;
