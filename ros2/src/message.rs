@@ -1,6 +1,6 @@
 //! What the nodes send and receive: messages, and the topics that carry them.
 
-pub use logs::ros::{
+pub(crate) use logs::ros::{
     Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Pose, PoseStamped, PoseWithCovariance,
     Time, TransformStamped, Transforms, TwistWithCovariance, Vector,
 };

@@ -95,7 +95,7 @@ impl<L: Link> CuriousNode<L> {
     /// # Errors
     ///
     /// When a parameter is out of range, or when the state cannot be used.
-    pub fn new(link: L, parameters: &Parameters, state: Option<&Path>, output: Output) -> anyhow::Result<Self> {
+    pub fn new(mut link: L, parameters: &Parameters, state: Option<&Path>, output: Output) -> anyhow::Result<Self> {
         parameters.check()?;
         let settings = settings(parameters);
         let frame = frame(parameters)?;
@@ -115,7 +115,10 @@ impl<L: Link> CuriousNode<L> {
             Some(saves) => saves.restore(&mut mapper, localization.as_mut(), &mut pilot)?,
             None => None,
         };
-        if continued.is_some() {
+        let mut maps = PublishedMaps::new(parameters.map_update_interval_s);
+        if let Some(last) = continued {
+            let header = outputs::header(last, &parameters.map_frame);
+            maps.after(&mapper, &header, Instant::now()).into_iter().for_each(|(topic, map)| link.send(topic, map));
             notes.say(&format!("the map goes on from {} readings", mapper.readings()));
         }
         let Parameters { map_frame, odom_frame, base_frame, .. } = parameters.clone();
@@ -128,7 +131,7 @@ impl<L: Link> CuriousNode<L> {
             mapper,
             localization,
             pilot,
-            maps: PublishedMaps::new(parameters.map_update_interval_s),
+            maps,
             markers: Markers::default(),
             saves,
             notes,
