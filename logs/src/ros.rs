@@ -7,8 +7,8 @@ mod grid;
 mod messages;
 mod scan;
 
-pub(crate) use frames::{is_odom, is_world};
 pub use frames::{Frames, Way, flat, mounted};
+pub(crate) use frames::{is_odom, is_world};
 pub use messages::{
     Covariance, Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, PointCloud2,
     PointField, Pose, PoseStamped, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms,

@@ -1,6 +1,7 @@
 //! The connection by DDS: the only part that knows the client library.
 
 mod actions;
+mod discovery;
 mod publishers;
 mod subscribers;
 
@@ -10,6 +11,7 @@ use crate::message::{Message, PoseStamped, Quality, Topic};
 use crate::value::Value;
 use actions::Navigator;
 use anyhow::{Context as _, anyhow};
+use discovery::Discovery;
 use futures::executor::block_on;
 use publishers::Publishers;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
@@ -19,7 +21,7 @@ use ros2_client::{
     ServiceTypeName,
 };
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, Ipv4Addr};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -54,6 +56,8 @@ type SaveState = Server<TriggerRequest, TriggerResponse>;
 pub struct DdsLink {
     events: Receiver<Event>,
     publishers: Publishers,
+    discovery: Discovery,
+    problems: VecDeque<String>,
     navigator: Option<Navigator>,
     save_state: Option<Arc<SaveState>>,
     requests: BTreeMap<u64, RmwRequestId>,
@@ -92,6 +96,8 @@ impl DdsLink {
         Ok(Self {
             events,
             publishers,
+            discovery: Discovery::new(context, wiring),
+            problems: VecDeque::new(),
             navigator,
             save_state,
             requests: BTreeMap::new(),
@@ -120,13 +126,16 @@ impl Link for DdsLink {
     }
 
     fn receive(&mut self, patience: Duration) -> Option<Event> {
-        if let Some(problem) = self.publishers.take_problem() {
+        self.problems.extend(self.publishers.take_problem());
+        self.problems.extend(self.discovery.problems());
+        if let Some(problem) = self.problems.pop_front() {
             return Some(Event::Problem(problem));
         }
         let end = Instant::now() + patience;
         loop {
             let left = end.saturating_duration_since(Instant::now());
-            let nap = if self.navigator.as_ref().is_some_and(Navigator::is_busy) { left.min(POLL) } else { left };
+            let nap =
+                if self.navigator.as_ref().is_some_and(Navigator::is_busy) { left.min(POLL) } else { left };
             if let Ok(event) = self.events.recv_timeout(nap) {
                 return Some(self.numbered(event));
             }

@@ -14,6 +14,8 @@
 
 mod dds;
 mod environment;
+#[cfg(test)]
+mod fake;
 mod link;
 mod maps;
 mod message;

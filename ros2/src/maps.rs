@@ -79,7 +79,8 @@ impl PublishedMaps {
             };
             let change = |index| share(index, -f64::exp_m1(-mapper.rate(index) * HORIZON_S));
             let predicted = |index| share(index, mapper.blocked_probability(index));
-            messages.push((Topic::ChangeMap, message(&cut(mapper.states(), frame, |_, index| change(index)))));
+            messages
+                .push((Topic::ChangeMap, message(&cut(mapper.states(), frame, |_, index| change(index)))));
             let predicted = cut(mapper.states(), frame, |_, index| predicted(index));
             messages.push((Topic::PredictedMap, message(&predicted)));
         }

@@ -135,10 +135,7 @@ mod tests {
             let names = Names::new("curious_node", &ros);
             names.and_then(|names| names.resolved("topic", "scan", &ros)).unwrap_err().to_string()
         };
-        assert_eq!(
-            error("-r scan:=/a//b"),
-            "`/a//b` is not a valid name of a topic: a part of it is empty"
-        );
+        assert_eq!(error("-r scan:=/a//b"), "`/a//b` is not a valid name of a topic: a part of it is empty");
         assert_eq!(
             error("-r scan:=é"),
             "`/é` is not a valid name of a topic: it may contain letters without accents, digits and underscores"

@@ -95,7 +95,12 @@ impl<L: Link> CuriousNode<L> {
     /// # Errors
     ///
     /// When a parameter is out of range, or when the state cannot be used.
-    pub fn new(mut link: L, parameters: &Parameters, state: Option<&Path>, output: Output) -> anyhow::Result<Self> {
+    pub fn new(
+        mut link: L,
+        parameters: &Parameters,
+        state: Option<&Path>,
+        output: Output,
+    ) -> anyhow::Result<Self> {
         parameters.check()?;
         let settings = settings(parameters);
         let frame = frame(parameters)?;
@@ -118,7 +123,9 @@ impl<L: Link> CuriousNode<L> {
         let mut maps = PublishedMaps::new(parameters.map_update_interval_s);
         if let Some(last) = continued {
             let header = outputs::header(last, &parameters.map_frame);
-            maps.after(&mapper, &header, Instant::now()).into_iter().for_each(|(topic, map)| link.send(topic, map));
+            maps.after(&mapper, &header, Instant::now())
+                .into_iter()
+                .for_each(|(topic, map)| link.send(topic, map));
             notes.say(&format!("the map goes on from {} readings", mapper.readings()));
         }
         let Parameters { map_frame, odom_frame, base_frame, .. } = parameters.clone();
@@ -249,7 +256,11 @@ impl<L: Link> CuriousNode<L> {
         self.report.mapped += u64::from(state == PoseState::Tracking);
         if state != self.state && (state == PoseState::Lost || self.state == PoseState::Lost) {
             let is_lost = state == PoseState::Lost;
-            self.notes.say(if is_lost { "the pose of the robot is not known" } else { "the pose is known again" });
+            self.notes.say(if is_lost {
+                "the pose of the robot is not known"
+            } else {
+                "the pose is known again"
+            });
         }
         self.state = state;
         if state != PoseState::Lost {
@@ -368,11 +379,17 @@ impl<L: Link> CuriousNode<L> {
 
     fn save_now(&mut self) -> Answer {
         let Some(name) = self.saves.as_ref().map(Saves::name) else {
-            return Answer { is_done: false, text: "there is no state file: start the node with --state FILE".into() };
+            return Answer {
+                is_done: false,
+                text: "there is no state file: start the node with --state FILE".into(),
+            };
         };
         // What could not be written before is in this state as well.
         if self.save().is_none() {
-            return Answer { is_done: false, text: "there is nothing to save before the first reading".into() };
+            return Answer {
+                is_done: false,
+                text: "there is nothing to save before the first reading".into(),
+            };
         }
         match self.saves.as_mut().map_or(Ok(()), Saves::wait) {
             Ok(()) => Answer { is_done: true, text: format!("the state is saved in {name}") },

@@ -272,12 +272,18 @@ impl Parameters {
         let is_period = period == 0.0 || (0.005..=10.0).contains(&period);
         check.valid("transform_publish_period", period, "0, or from 0.005 to 10", is_period)?;
         check.within("transform_timeout", self.transform_timeout_s, 0.0..=10.0, "from 0 to 10")?;
-        for (name, frame) in
-            [("map_frame", &self.map_frame), ("odom_frame", &self.odom_frame), ("base_frame", &self.base_frame)]
-        {
+        for (name, frame) in [
+            ("map_frame", &self.map_frame),
+            ("odom_frame", &self.odom_frame),
+            ("base_frame", &self.base_frame),
+        ] {
             if frame.is_empty() {
                 let found = Value::Text(String::new());
-                return Err(ParameterError::Value { name: name.into(), expected: "the name of a frame", found });
+                return Err(ParameterError::Value {
+                    name: name.into(),
+                    expected: "the name of a frame",
+                    found,
+                });
             }
         }
         if !matches!(self.scan_reliability.as_str(), "best_effort" | "reliable") {
@@ -355,7 +361,10 @@ mod tests {
         assert!(error("resolutoin", "1").starts_with("there is no parameter `resolutoin`; there are mode, "));
         assert_eq!(error("resolution", "fine"), "the parameter `resolution` must be a number, not `fine`");
         assert_eq!(error("resolution", "0"), "node setting `resolution` must be from 0.005 to 1, not 0");
-        assert_eq!(error("mode", "localization"), "the parameter `mode` must be map or explore, not `localization`");
+        assert_eq!(
+            error("mode", "localization"),
+            "the parameter `mode` must be map or explore, not `localization`"
+        );
         assert_eq!(error("base_frame", ""), "the parameter `base_frame` must be the name of a frame, not ``");
         assert_eq!(
             error("transform_publish_period", "0.001"),

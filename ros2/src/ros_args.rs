@@ -127,10 +127,7 @@ mod tests {
         let (others, ros) = split(line).unwrap();
         assert_eq!(others, ["node", "--state", "s", "--mode", "map"]);
         let parameters: Vec<_> = ros.parameters_of("node").collect();
-        assert_eq!(
-            parameters,
-            [("resolution", &Value::Float(0.1)), ("mode", &Value::Text("map".into()))]
-        );
+        assert_eq!(parameters, [("resolution", &Value::Float(0.1)), ("mode", &Value::Text("map".into()))]);
         assert_eq!(ros.parameters_of("other").count(), 3);
         assert_eq!(ros.remapped("node", |from| from == "scan"), Some("/front"));
         assert_eq!(ros.remapped("node", |from| from == "__ns"), Some("/robot"));

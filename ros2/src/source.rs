@@ -118,7 +118,8 @@ impl Source {
     /// The next reading that is complete.
     pub(crate) fn next(&mut self, now: Instant) -> Option<LiveReading> {
         let first = self.waiting.front()?;
-        let is_overdue = now.duration_since(first.since) >= PATIENCE || self.waiting.len() > 1 && first.is_restart;
+        let is_overdue =
+            now.duration_since(first.since) >= PATIENCE || self.waiting.len() > 1 && first.is_restart;
         if self.motions.must_wait(first.end_ns) && !is_overdue {
             return None;
         }
@@ -245,7 +246,9 @@ impl Source {
         if is_static {
             return;
         }
-        let Some(way) = self.frames.way(&self.names.odom, &self.names.base, &[&self.names.map]) else { return };
+        let Some(way) = self.frames.way(&self.names.odom, &self.names.base, &[&self.names.map]) else {
+            return;
+        };
         let is_on_way = |(edge, _): &&(usize, i64)| way.iter().any(|(other, _)| other == edge);
         if let Some((_, stamp_ns)) = edges.iter().filter(is_on_way).max_by_key(|(_, stamp_ns)| stamp_ns) {
             self.motions.add_transform(*stamp_ns, &self.frames.along(&way));

@@ -25,7 +25,8 @@ impl Value {
             _ => {}
         }
         let first = text.chars().next();
-        let is_quoted = matches!(first, Some('"' | '\'')) && text.len() > 1 && text.chars().next_back() == first;
+        let is_quoted =
+            matches!(first, Some('"' | '\'')) && text.len() > 1 && text.chars().next_back() == first;
         if is_quoted {
             return Self::Text(text[1..text.len() - 1].to_owned());
         }

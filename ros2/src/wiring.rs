@@ -25,7 +25,11 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
             _ => topic.default_name(),
         };
         let quality = match topic {
-            Topic::Scan => Quality { is_reliable: parameters.scan_reliability == "reliable", depth: SCANS, ..topic.quality() },
+            Topic::Scan => Quality {
+                is_reliable: parameters.scan_reliability == "reliable",
+                depth: SCANS,
+                ..topic.quality()
+            },
             _ => topic.quality(),
         };
         Ok((topic, names.resolved("topic", name, ros)?, quality))
@@ -77,8 +81,14 @@ pub fn simulation_wiring(names: &Names, ros: &RosArgs) -> Result<Wiring, NameErr
     Ok(Wiring {
         name: names.node().to_owned(),
         namespace: names.namespace().to_owned(),
-        subscribed: [Topic::Velocity, Topic::StampedVelocity].into_iter().map(named).collect::<Result<_, _>>()?,
-        published: published.into_iter().map(|topic| named(topic).map(with_scan)).collect::<Result<_, _>>()?,
+        subscribed: [Topic::Velocity, Topic::StampedVelocity]
+            .into_iter()
+            .map(named)
+            .collect::<Result<_, _>>()?,
+        published: published
+            .into_iter()
+            .map(|topic| named(topic).map(with_scan))
+            .collect::<Result<_, _>>()?,
         save_state: None,
         navigate_to_pose: None,
         parameters: Vec::new(),

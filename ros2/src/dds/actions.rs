@@ -31,9 +31,16 @@ impl ros2_client::Message for Any {}
 enum State {
     Idle,
     /// The goal was sent.
-    Sent { request: RmwRequestId, goal: GoalId, since: Instant },
+    Sent {
+        request: RmwRequestId,
+        goal: GoalId,
+        since: Instant,
+    },
     /// Nav2 drives there, and will send a result.
-    Accepted { result: RmwRequestId, goal: GoalId },
+    Accepted {
+        result: RmwRequestId,
+        goal: GoalId,
+    },
     /// The goal could not be sent.
     Failed,
 }
@@ -55,7 +62,8 @@ impl Navigator {
             status_subscription: profile(&Quality::LATCHED),
         };
         let kind = ActionTypeName::new("nav2_msgs", "NavigateToPose");
-        let client = node.create_action_client(ServiceMapping::Enhanced, &Name::parse(name)?, &kind, policies)?;
+        let client =
+            node.create_action_client(ServiceMapping::Enhanced, &Name::parse(name)?, &kind, policies)?;
         Ok(Self { client, state: State::Idle })
     }
 

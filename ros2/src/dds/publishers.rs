@@ -75,7 +75,8 @@ fn open<M: Serialize + 'static>(
     content: fn(Message) -> Option<M>,
 ) -> anyhow::Result<(Send, Gid)> {
     let (package, kind) = topic.type_name();
-    let on = node.create_topic(&Name::parse(name)?, MessageTypeName::new(package, kind), &profile(quality))?;
+    let on =
+        node.create_topic(&Name::parse(name)?, MessageTypeName::new(package, kind), &profile(quality))?;
     let publisher = node.create_publisher::<M>(&on, None)?;
     let id = publisher.gid();
     let send = move |message| {

@@ -1,5 +1,6 @@
 //! What the node receives: a thread that waits for all topics at once.
 
+use super::discovery::{dds_type, ros_type};
 use super::profile;
 use crate::link::{Event, Wiring};
 use crate::message::{Message, Quality, Topic};
@@ -61,7 +62,8 @@ fn open<M: DeserializeOwned + Send + Sync + 'static>(
     message: fn(M) -> Message,
 ) -> anyhow::Result<BoxStream<'static, Received>> {
     let (package, kind) = topic.type_name();
-    let on = node.create_topic(&Name::parse(name)?, MessageTypeName::new(package, kind), &profile(quality))?;
+    let on =
+        node.create_topic(&Name::parse(name)?, MessageTypeName::new(package, kind), &profile(quality))?;
     let subscription = node.create_subscription::<M>(&on, None)?;
     let stream = unfold(subscription, move |subscription| async move {
         let taken = subscription.async_take().await;
@@ -75,7 +77,7 @@ fn open<M: DeserializeOwned + Send + Sync + 'static>(
 struct Filter {
     context: Context,
     own: BTreeSet<Gid>,
-    /// The types of the publishers that were seen, and the topics on which one with another type was reported.
+    /// The types of the publishers that were seen.
     known: BTreeMap<Gid, String>,
 }
 
@@ -84,35 +86,29 @@ const MOST_KNOWN: usize = 1000;
 
 impl Filter {
     fn event(&mut self, Received { topic, content }: Received) -> Option<Event> {
-        let (package, kind) = topic.type_name();
-        let expected = format!("{package}::msg::dds_::{kind}_");
+        let expected = dds_type(topic);
         let (message, info) = match content {
             Ok(content) => content,
-            Err(ReadError::Deserialization { .. }) => {
-                let other = self.other_type(topic, &expected);
-                let what = other.unwrap_or_else(|| format!("is damaged: it is no {package}/msg/{kind}"));
-                return Some(Event::Problem(format!("a message on `{}` {what}", topic.default_name())));
+            // A topic with two types is read with both.
+            Err(ReadError::Deserialization { .. })
+                if matches!(topic, Topic::Velocity | Topic::StampedVelocity) =>
+            {
+                return None;
             }
             Err(why) => {
-                let name = topic.default_name();
-                return Some(Event::Problem(format!("a message on `{name}` cannot be read: {why}")));
+                let (name, kind) = (topic.default_name(), ros_type(&expected));
+                return Some(Event::Problem(format!(
+                    "a message on `{name}` cannot be read as {kind}: {why}"
+                )));
             }
         };
         let publisher = info.publisher_gid();
         if self.own.contains(&publisher) {
             return None;
         }
-        match self.type_of(publisher) {
-            Some(found) if found != expected => {
-                // The same topic may be subscribed with both types.
-                if matches!(topic, Topic::Velocity | Topic::StampedVelocity) {
-                    return None;
-                }
-                let what = format!("has the type {}, not {package}/msg/{kind}", ros_type(&found));
-                Some(Event::Problem(format!("a message on `{}` {what}: it is ignored", topic.default_name())))
-            }
-            _ => Some(Event::Message(topic, message)),
-        }
+        // What has another type is reported where publishers are discovered.
+        let is_other = self.type_of(publisher).is_some_and(|found| found != expected);
+        (!is_other).then_some(Event::Message(topic, message))
     }
 
     /// The type of a publisher; `None` if it is not known yet.
@@ -130,19 +126,4 @@ impl Filter {
         self.known.insert(publisher, found.clone());
         Some(found)
     }
-
-    /// Whether someone publishes another type on a topic, in words.
-    fn other_type(&self, topic: Topic, expected: &str) -> Option<String> {
-        let writers = self.context.domain_participant().discovered_writers();
-        let name = format!("/{}", topic.default_name().trim_start_matches('/'));
-        let is_other = |found: &&str| *found != expected;
-        let on = writers.iter().filter(|writer| writer.publication_topic_data.topic_name.ends_with(&name));
-        let other = on.map(|writer| writer.publication_topic_data.type_name.as_str()).find(is_other)?;
-        Some(format!("has the type {}: it is ignored", ros_type(other)))
-    }
-}
-
-/// A type as ROS writes it: `sensor_msgs/msg/LaserScan` for `sensor_msgs::msg::dds_::LaserScan_`.
-fn ros_type(dds: &str) -> String {
-    dds.replace("::dds_::", "/").replace("::", "/").trim_end_matches('_').to_owned()
 }

@@ -1,8 +1,8 @@
 //! The messages that tell other nodes what the robot does.
 
 use crate::message::{
-    Color, Header, Marker, Markers as MarkersMessage, Message, Pose, PoseStamped, Time, Topic, TransformStamped,
-    Transforms, Twist, TwistStamped, Vector,
+    Color, Header, Marker, Markers as MarkersMessage, Message, Pose, PoseStamped, Time, Topic,
+    TransformStamped, Transforms, Twist, TwistStamped, Vector,
 };
 use nalgebra::{Isometry2, Point2};
 

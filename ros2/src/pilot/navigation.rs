@@ -118,8 +118,7 @@ impl NavigationPilot {
             Stay::Watch(duration_s) => duration_s,
         };
         let way = at.coords - belief.pose.translation.vector;
-        self.target =
-            Some(Target { at, stay_s, nearest_m: way.norm(), nearest_s: time_s, reached_s: None });
+        self.target = Some(Target { at, stay_s, nearest_m: way.norm(), nearest_s: time_s, reached_s: None });
         let reason = GoalSelector::reason(&self.agent);
         self.log(Level::Decision, format!("{reason}: to ({:.2}, {:.2})", at.x, at.y));
         let heading = if way.norm() > 1e-3 { way.y.atan2(way.x) } else { heading_rad(belief.pose) };
