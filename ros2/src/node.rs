@@ -4,7 +4,7 @@ mod outputs;
 #[cfg(test)]
 mod tests;
 
-use crate::link::{Answer, Event, Link};
+use crate::link::{Answer, Event, Link, Request};
 use crate::maps::PublishedMaps;
 use crate::message::{Message, Time, Topic};
 use crate::notes::{Notes, Output};
@@ -61,6 +61,13 @@ pub struct NodeReport {
     pub longest_us: u64,
 }
 
+/// Who has asked to save the state.
+#[derive(Clone, Copy, Debug)]
+enum Asker {
+    Signal,
+    Request(Request),
+}
+
 /// A node that maps what a robot sees, and can explore.
 pub struct CuriousNode<L: Link> {
     link: L,
@@ -73,6 +80,8 @@ pub struct CuriousNode<L: Link> {
     maps: PublishedMaps,
     markers: Markers,
     saves: Option<Saves>,
+    /// Those who wait until the state is saved.
+    askers: Vec<Asker>,
     notes: Notes,
     /// The time of the first reading by its clock, s.
     first_s: Option<f64>,
@@ -141,6 +150,7 @@ impl<L: Link> CuriousNode<L> {
             maps,
             markers: Markers::default(),
             saves,
+            askers: Vec::new(),
             notes,
             first_s: None,
             session: Session::default(),
@@ -163,8 +173,7 @@ impl<L: Link> CuriousNode<L> {
     pub fn run(&mut self, signals: &Signals) -> anyhow::Result<NodeReport> {
         while !signals.stop.load(Ordering::Relaxed) {
             if signals.save.swap(false, Ordering::Relaxed) {
-                let Answer { text, .. } = self.save_now();
-                self.notes.say(&text);
+                self.save_for(Asker::Signal);
             }
             self.turn(self.nap());
         }
@@ -215,10 +224,7 @@ impl<L: Link> CuriousNode<L> {
                 }
             }
             Event::Message(topic, message) => self.source.take(topic, message, now),
-            Event::SaveState(request) => {
-                let answer = self.save_now();
-                self.link.answer(request, answer);
-            }
+            Event::SaveState(request) => self.save_for(Asker::Request(request)),
             Event::Navigation(navigation) => self.pilot.navigated(navigation),
             Event::Problem(text) => self.notes.note(&text, now),
         }
@@ -347,6 +353,7 @@ impl<L: Link> CuriousNode<L> {
             let why = self.source.obstacle().unwrap_or_else(|| format!("no scans on {topic}"));
             self.notes.note(&format!("waiting: {why}"), now);
         }
+        self.answer_askers();
         if self.saves.as_ref().is_some_and(Saves::is_due) && self.report.readings > 0 {
             if let Some(Err(why)) = self.save() {
                 self.notes.note(&format!("the state cannot be saved: {why}"), now);
@@ -377,33 +384,59 @@ impl<L: Link> CuriousNode<L> {
         Some(saves.save(stamp, mapper, localization.as_mut(), pilot))
     }
 
-    fn save_now(&mut self) -> Answer {
-        let Some(name) = self.saves.as_ref().map(Saves::name) else {
-            return Answer {
-                is_done: false,
-                text: "there is no state file: start the node with --state FILE".into(),
-            };
-        };
+    /// Begins to save the state for someone who has asked for it. The answer comes when the file is written.
+    fn save_for(&mut self, asker: Asker) {
+        let refused = |text: &str| Answer { is_done: false, text: text.to_owned() };
+        if self.saves.is_none() {
+            self.answer(asker, refused("there is no state file: start the node with --state FILE"));
+            return;
+        }
         // What could not be written before is in this state as well.
         if self.save().is_none() {
-            return Answer {
-                is_done: false,
-                text: "there is nothing to save before the first reading".into(),
-            };
+            self.answer(asker, refused("there is nothing to save before the first reading"));
+            return;
         }
-        match self.saves.as_mut().map_or(Ok(()), Saves::wait) {
+        self.askers.push(asker);
+    }
+
+    /// Answers those who wait for the file, when it is written.
+    fn answer_askers(&mut self) {
+        if self.askers.is_empty() || self.saves.as_ref().is_some_and(Saves::is_writing) {
+            return;
+        }
+        let answer = self.written();
+        for asker in std::mem::take(&mut self.askers) {
+            self.answer(asker, answer.clone());
+        }
+    }
+
+    /// Waits until the file is written.
+    fn written(&mut self) -> Answer {
+        let Some(saves) = &mut self.saves else { return Answer { is_done: false, text: String::new() } };
+        let name = saves.name();
+        match saves.wait() {
             Ok(()) => Answer { is_done: true, text: format!("the state is saved in {name}") },
             Err(why) => Answer { is_done: false, text: format!("{name}: cannot save the state: {why}") },
+        }
+    }
+
+    fn answer(&mut self, asker: Asker, answer: Answer) {
+        match asker {
+            Asker::Signal => self.notes.say(&answer.text),
+            Asker::Request(request) => self.link.answer(request, answer),
         }
     }
 
     fn finish(&mut self) -> anyhow::Result<NodeReport> {
         self.stop_robot();
         self.link.navigate(None);
-        if self.saves.is_some() && self.last.is_some() {
-            let Answer { is_done, text } = self.save_now();
-            if !is_done {
-                return Err(anyhow!(text));
+        if self.save().is_some() {
+            let answer = self.written();
+            for asker in std::mem::take(&mut self.askers) {
+                self.answer(asker, answer.clone());
+            }
+            if !answer.is_done {
+                return Err(anyhow!(answer.text));
             }
         }
         Ok(self.report())

@@ -82,6 +82,11 @@ impl Saves {
         })
     }
 
+    /// Whether the file is being written now.
+    pub(crate) fn is_writing(&self) -> bool {
+        self.file.is_writing()
+    }
+
     /// Waits until the file is written.
     pub(crate) fn wait(&mut self) -> std::io::Result<()> {
         self.file.wait()

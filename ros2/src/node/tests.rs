@@ -144,6 +144,9 @@ fn what_was_learned_survives_a_restart() {
     pair.run(5.0);
     pair.others.others(|others| others.events.push_back(Event::SaveState(Request(8))));
     pair.node.turn(Duration::ZERO);
+    while pair.others.others(|others| others.answers.is_empty()) {
+        pair.node.turn(Duration::ZERO);
+    }
     let (request, saved) = answer(&pair);
     assert_eq!((request, saved.is_done), (Request(8), true), "{}", saved.text);
     let learned = pair.node.mapper().clone();
