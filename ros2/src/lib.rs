@@ -37,7 +37,8 @@ pub use dds::DdsLink;
 pub use environment::{Environment, EnvironmentError, Range};
 pub use link::{Answer, Event, Link, Navigation, Request, Wiring};
 pub use message::{
-    Bool, Clock, Color, Marker, Markers, Message, Quality, Topic, Twist as TwistMessage, TwistStamped,
+    Bool, Clock, Color, Marker, Markers, Message, Quality, Texture, Topic, Twist as TwistMessage,
+    TwistStamped,
 };
 pub use names::{NameError, Names};
 pub use node::{CuriousNode, NodeReport, Signals};

@@ -79,13 +79,16 @@ pub struct Marker {
     pub points: Vec<Vector>,
     /// The colors of the points.
     pub colors: Vec<Color>,
-    /// A texture: its name, the picture (header, format, bytes), and the coordinates of the points in it.
-    pub texture: (String, (Header, String, Vec<u8>), Vec<(f32, f32)>),
+    /// A texture.
+    pub texture: Texture,
     /// A text.
     pub text: String,
     /// A mesh: its name, a file (name, bytes), and whether the materials of the file are used.
     pub mesh: (String, (String, Vec<u8>), bool),
 }
+
+/// The texture of a [`Marker`]: its name, the picture (header, format, bytes), and the coordinates of the points in it.
+pub type Texture = (String, (Header, String, Vec<u8>), Vec<(f32, f32)>);
 
 impl Marker {
     /// The shape of an arrow.
@@ -111,7 +114,7 @@ pub enum Message {
     /// A scan of a laser.
     Scan(LaserScan),
     /// A pose and a velocity by odometry.
-    Odometry(Odometry),
+    Odometry(Box<Odometry>),
     /// Transforms between frames.
     Transforms(Transforms),
     /// The time of a simulation.

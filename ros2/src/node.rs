@@ -354,10 +354,9 @@ impl<L: Link> CuriousNode<L> {
             self.notes.note(&format!("waiting: {why}"), now);
         }
         self.answer_askers();
-        if self.saves.as_ref().is_some_and(Saves::is_due) && self.report.readings > 0 {
-            if let Some(Err(why)) = self.save() {
-                self.notes.note(&format!("the state cannot be saved: {why}"), now);
-            }
+        let is_due = self.saves.as_ref().is_some_and(Saves::is_due) && self.report.readings > 0;
+        if is_due && let Some(Err(why)) = self.save() {
+            self.notes.note(&format!("the state cannot be saved: {why}"), now);
         }
     }
 

@@ -170,8 +170,8 @@ impl<L: Link> SimulatedRobot<L> {
         let Some([odometry, truth]) = view else { return };
         let transform = odometry.pose.pose;
         self.publish_transform(Topic::Transforms, time_s, (ODOM, BASE), transform);
-        self.link.send(Topic::Odometry, Message::Odometry(odometry));
-        self.link.send(Topic::GroundTruth, Message::Odometry(truth));
+        self.link.send(Topic::Odometry, Message::Odometry(Box::new(odometry)));
+        self.link.send(Topic::GroundTruth, Message::Odometry(Box::new(truth)));
     }
 
     fn publish_scan(&mut self, reading: &LaserReading) {

@@ -34,7 +34,10 @@ impl Publishers {
             let at = (*topic, name.as_str(), quality);
             let (send, id) = match topic {
                 Topic::Scan => open(node, at, only!(Scan)),
-                Topic::Odometry | Topic::GroundTruth => open(node, at, only!(Odometry)),
+                Topic::Odometry | Topic::GroundTruth => open(node, at, |message| match message {
+                    Message::Odometry(content) => Some(*content),
+                    _ => None,
+                }),
                 Topic::Transforms | Topic::StaticTransforms => open(node, at, only!(Transforms)),
                 Topic::Clock => open(node, at, only!(Clock)),
                 Topic::Velocity => open(node, at, only!(Twist)),

@@ -30,7 +30,9 @@ pub(super) fn start(
         let at = (*topic, name.as_str(), quality);
         streams.push(match topic {
             Topic::Scan => open(node, at, Message::Scan),
-            Topic::Odometry | Topic::GroundTruth => open(node, at, Message::Odometry),
+            Topic::Odometry | Topic::GroundTruth => {
+                open(node, at, |odometry| Message::Odometry(Box::new(odometry)))
+            }
             Topic::Transforms | Topic::StaticTransforms => open(node, at, Message::Transforms),
             Topic::Clock => open(node, at, Message::Clock),
             Topic::Velocity => open(node, at, Message::Twist),

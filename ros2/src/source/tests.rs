@@ -24,12 +24,12 @@ fn transform(time_s: f64, parent: &str, child: &str, pose: Isometry2<f64>) -> Me
 }
 
 fn odometry(time_s: f64, child: &str, pose: Isometry2<f64>) -> Message {
-    Message::Odometry(Odometry {
+    Message::Odometry(Box::new(Odometry {
         header: header(time_s, "odom"),
         child_frame_id: child.to_owned(),
         pose: PoseWithCovariance { pose: Pose::in_plane(&pose), covariance: Default::default() },
         twist: TwistWithCovariance::default(),
-    })
+    }))
 }
 
 fn scan(time_s: f64, frame: &str) -> Message {
