@@ -131,7 +131,7 @@ impl Default for Parameters {
             scan_topic: text("/scan"),
             odom_topic: text("odom"),
             resolution_m: 0.05,
-            map_size_m: 50.0,
+            map_size_m: 40.0,
             max_laser_range_m: 20.0,
             range_noise_m: 0.02,
             map_update_interval_s: 5.0,

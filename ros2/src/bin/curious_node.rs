@@ -62,7 +62,7 @@ PARAMETERS (--ros-args -p name:=value)
                           frames of REP-105 [map, odom, base_footprint; base_link if there is no other]
   scan_topic, odom_topic  [/scan, odom]
   resolution              side of a cell, m [0.05]
-  map_size                side of the map around the start, m [50.0]
+  map_size                side of the map around the start, m [40.0]
   max_laser_range         longer ranges are not used, m [20.0]
   range_noise             standard deviation of ranges, m [0.02]
   map_update_interval     time between two whole maps, s; longer for large maps [5.0]

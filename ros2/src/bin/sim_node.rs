@@ -39,7 +39,7 @@ SUBSCRIBES
 
 PUBLISHES
   scan          sensor_msgs/LaserScan in the frame laser
-  odom          nav_msgs/Odometry from odom to base_link, 50 Hz, with the errors of the world file
+  odom          nav_msgs/Odometry from odom to base_link, at most 50 Hz, with the errors of the world file
   ground_truth  nav_msgs/Odometry from world to base_link: the true pose
   /tf           odom to base_link
   /tf_static    base_link to laser
