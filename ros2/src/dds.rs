@@ -5,7 +5,7 @@ mod discovery;
 mod publishers;
 mod subscribers;
 
-use crate::environment::{Environment, Range};
+use crate::environment::{Environment, Range, Services};
 use crate::link::{Answer, Event, Link, Request, Wiring};
 use crate::message::{Message, PoseStamped, Quality, Topic};
 use crate::value::Value;
@@ -77,13 +77,17 @@ impl DdsLink {
         let context = context(environment).context("cannot open the network")?;
         let name = NodeName::new(&wiring.namespace, &wiring.name)?;
         let mut node = context.new_node(name, options(wiring))?;
+        let mapping = match environment.services {
+            Services::Enhanced => ServiceMapping::Enhanced,
+            Services::Cyclone => ServiceMapping::Cyclone,
+        };
         let publishers = Publishers::new(&mut node, wiring)?;
         let navigator = wiring.navigate_to_pose.as_deref();
-        let navigator = navigator.map(|name| Navigator::new(&mut node, name)).transpose()?;
+        let navigator = navigator.map(|name| Navigator::new(&mut node, name, mapping)).transpose()?;
         let (to, events) = mpsc::channel();
         let (requests, coming) = mpsc::channel();
         let save_state = wiring.save_state.as_deref();
-        let save_state = save_state.map(|name| save_state_server(&mut node, name)).transpose()?;
+        let save_state = save_state.map(|name| save_state_server(&mut node, name, mapping)).transpose()?;
         subscribers::start(&mut node, &context, wiring, publishers.ids(), &to)?;
         if let Some(server) = &save_state {
             listen(server.clone(), requests, to)?;
@@ -217,10 +221,10 @@ fn profile(quality: &Quality) -> QosProfile {
     }
 }
 
-fn save_state_server(node: &mut Node, name: &str) -> anyhow::Result<Arc<SaveState>> {
+fn save_state_server(node: &mut Node, name: &str, mapping: ServiceMapping) -> anyhow::Result<Arc<SaveState>> {
     let (service, quality) = (ServiceTypeName::new("std_srvs", "Trigger"), profile(&Quality::DEFAULT));
     let name = Name::parse(name)?;
-    Ok(Arc::new(node.create_server(ServiceMapping::Enhanced, &name, &service, quality.clone(), quality)?))
+    Ok(Arc::new(node.create_server(mapping, &name, &service, quality.clone(), quality)?))
 }
 
 /// Waits for requests in a thread of its own, which ends with the program.

@@ -12,6 +12,16 @@ pub enum Range {
     Off,
 }
 
+/// How requests and answers are matched on the wire: the implementations of ROS differ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Services {
+    /// By what DDS writes beside a message: Fast DDS, the default of ROS, and others.
+    #[default]
+    Enhanced,
+    /// By a header in the message: CycloneDDS.
+    Cyclone,
+}
+
 /// The domain of a node, and how far it reaches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Environment {
@@ -19,6 +29,8 @@ pub struct Environment {
     pub domain: u16,
     /// `ROS_AUTOMATIC_DISCOVERY_RANGE`; before Jazzy `ROS_LOCALHOST_ONLY`.
     pub range: Range,
+    /// `RMW_IMPLEMENTATION`: that of the nodes with which services and actions are exchanged. Topics need no choice.
+    pub services: Services,
 }
 
 /// The largest domain whose ports exist.
@@ -75,7 +87,11 @@ impl Environment {
                 _ => return Err(EnvironmentError { name, expected: "0 or 1".to_owned(), found }),
             },
         };
-        Ok(Self { domain, range })
+        let services = match variable("RMW_IMPLEMENTATION").as_deref() {
+            Some("rmw_cyclonedds_cpp") => Services::Cyclone,
+            _ => Services::Enhanced,
+        };
+        Ok(Self { domain, range, services })
     }
 }
 
@@ -92,15 +108,20 @@ mod tests {
 
     #[test]
     fn the_environment_is_that_of_ros() {
-        assert_eq!(read(&[]), Ok(Environment { domain: 0, range: Range::Subnet }));
+        assert_eq!(
+            read(&[]),
+            Ok(Environment { domain: 0, range: Range::Subnet, services: Services::Enhanced })
+        );
         assert_eq!(read(&[("ROS_DOMAIN_ID", "")]), Ok(Environment::default()));
         assert_eq!(
             read(&[("ROS_DOMAIN_ID", "42"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")]),
-            Ok(Environment { domain: 42, range: Range::Localhost })
+            Ok(Environment { domain: 42, range: Range::Localhost, services: Services::Enhanced })
         );
         let both = [("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"), ("ROS_LOCALHOST_ONLY", "1")];
         assert_eq!(read(&both).unwrap().range, Range::Localhost);
         assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")]).unwrap().range, Range::Off);
+        let cyclone = read(&[("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")]).unwrap();
+        assert_eq!(cyclone.services, Services::Cyclone);
     }
 
     #[test]

@@ -34,7 +34,7 @@ mod value;
 mod wiring;
 
 pub use dds::DdsLink;
-pub use environment::{Environment, EnvironmentError, Range};
+pub use environment::{Environment, EnvironmentError, Range, Services};
 pub use link::{Answer, Event, Link, Navigation, Request, Wiring};
 pub use message::{
     Bool, Clock, Color, Marker, Markers, Message, Quality, Texture, Topic, Twist as TwistMessage,

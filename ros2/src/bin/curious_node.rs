@@ -80,6 +80,7 @@ PARAMETERS (--ros-args -p name:=value)
 
 ENVIRONMENT
   ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_LOCALHOST_ONLY
+  RMW_IMPLEMENTATION      rmw_cyclonedds_cpp: services and actions are those of nodes with CycloneDDS
 
 EXAMPLES
   curious_node --state office.state

@@ -52,7 +52,7 @@ pub(super) struct Navigator {
 }
 
 impl Navigator {
-    pub(super) fn new(node: &mut Node, name: &str) -> anyhow::Result<Self> {
+    pub(super) fn new(node: &mut Node, name: &str, mapping: ServiceMapping) -> anyhow::Result<Self> {
         let service = profile(&Quality::DEFAULT);
         let policies = ActionClientQosPolicies {
             goal_service: service.clone(),
@@ -62,8 +62,7 @@ impl Navigator {
             status_subscription: profile(&Quality::LATCHED),
         };
         let kind = ActionTypeName::new("nav2_msgs", "NavigateToPose");
-        let client =
-            node.create_action_client(ServiceMapping::Enhanced, &Name::parse(name)?, &kind, policies)?;
+        let client = node.create_action_client(mapping, &Name::parse(name)?, &kind, policies)?;
         Ok(Self { client, state: State::Idle })
     }
 
