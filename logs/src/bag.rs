@@ -6,14 +6,12 @@
 mod chunk;
 mod fields;
 mod files;
-mod frames;
 mod inventory;
 mod mcap;
 mod message;
 mod messages;
 mod plan;
 mod readings;
-mod scan;
 mod sqlite;
 #[cfg(test)]
 mod tests;

@@ -15,7 +15,7 @@ mod lines;
 mod log;
 mod mcap_out;
 mod odometry;
-mod ros;
+pub mod ros;
 mod summary;
 mod times;
 
@@ -23,4 +23,5 @@ pub use choice::TopicChoice;
 pub use error::LogError;
 pub use log::{Log, Readings};
 pub use mcap_out::McapWriter;
+pub use odometry::Odometry;
 pub use summary::{LogSummary, PoseSource};

@@ -8,8 +8,8 @@ mod tests;
 
 use crate::error::LogError;
 use crate::ros::{
-    Header, LaserScan, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, PoseWithCovariance, Time,
-    TransformStamped, Transforms, TwistWithCovariance, Vector,
+    Header, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, PoseWithCovariance, Time,
+    TransformStamped, Transforms, TwistWithCovariance, Vector, scan_message,
 };
 use channels::Channels;
 use grids::Grids;
@@ -80,10 +80,7 @@ impl<W: Write + Seek> McapWriter<W> {
         let laser = self.laser(end_ns, &reading.mount)?;
         self.odometry(reading, end_ns)?;
         let topic = numbered("/scan", laser);
-        let mut scan = scan_message(reading, numbered("laser", laser));
-        // What a reader finds from the stamp and the rounded times of the beams is the end of the scan.
-        let sweep_s = f64::from(scan.time_increment) * scan.ranges.len().saturating_sub(1) as f64;
-        scan.header.stamp = Time::from_ns(end_ns.saturating_sub((sweep_s * 1e9).round() as i64));
+        let scan = scan_message(reading, numbered("laser", laser), end_ns);
         self.channels.write(&topic, "sensor_msgs/LaserScan", end_ns, &scan)
     }
 
@@ -243,24 +240,6 @@ fn numbered(name: &str, laser: usize) -> String {
 
 fn header(ns: i64, frame: &str) -> Header {
     Header { stamp: Time::from_ns(ns), frame_id: frame.to_owned() }
-}
-
-/// The scan as a message that is not stamped.
-fn scan_message(reading: &LaserReading, frame_id: String) -> LaserScan {
-    let scan = &reading.scan;
-    let steps = scan.ranges_m.len().saturating_sub(1);
-    LaserScan {
-        header: Header { stamp: Time::default(), frame_id },
-        angle_min: scan.angle_min_rad as f32,
-        angle_max: scan.angle_rad(steps) as f32,
-        angle_increment: scan.angle_increment_rad as f32,
-        time_increment: (scan.sweep_s / steps.max(1) as f64) as f32,
-        scan_time: scan.sweep_s as f32,
-        range_min: scan.range_min_m as f32,
-        range_max: scan.range_max_m as f32,
-        ranges: scan.ranges_m.clone(),
-        intensities: Vec::new(),
-    }
 }
 
 /// The motion with a velocity in a time, along an arc.

@@ -1,4 +1,4 @@
-//! The odometry of a log: the sum of its motions, and its pose at the time of a scan.
+//! Odometry: the sum of its motions, and its pose at the time of a scan.
 
 use interfaces::{Twist, VelocitySample, heading_rad, wrap_rad};
 use nalgebra::Isometry2;
@@ -10,9 +10,9 @@ const LEAST_OVERLAP_S: f64 = 1e-6;
 /// The number of poses that are kept: some messages arrive later than others.
 const KEPT: usize = 256;
 
-/// The recent poses.
+/// The recent poses of a robot by odometry, as the sum of its motions since the first one: the first pose is the origin.
 #[derive(Debug, Default)]
-pub(crate) struct Odometry {
+pub struct Odometry {
     /// The first and the last pose as written.
     first: Option<Isometry2<f64>>,
     written: Option<Isometry2<f64>>,
@@ -22,7 +22,7 @@ pub(crate) struct Odometry {
 
 impl Odometry {
     /// Adds a pose as written.
-    pub(crate) fn add(&mut self, time_s: f64, pose: Isometry2<f64>) {
+    pub fn add(&mut self, time_s: f64, pose: Isometry2<f64>) {
         let motion = self.written.map_or(Isometry2::identity(), |before| before.inv_mul(&pose));
         self.first.get_or_insert(pose);
         self.written = Some(pose);
@@ -35,12 +35,12 @@ impl Odometry {
     }
 
     /// The first pose, as written: the origin of all others.
-    pub(crate) fn origin(&self) -> Isometry2<f64> {
+    pub fn origin(&self) -> Isometry2<f64> {
         self.first.unwrap_or_default()
     }
 
     /// Motions are measured from this pose on.
-    pub(crate) fn set_origin(&mut self, pose: Isometry2<f64>) {
+    pub fn set_origin(&mut self, pose: Isometry2<f64>) {
         self.written = Some(pose);
         // The older poses were written in another frame, but their motions are true.
     }
@@ -51,12 +51,12 @@ impl Odometry {
     }
 
     /// Whether a later pose can be nearer to this time.
-    pub(crate) fn must_wait(&self, time_s: f64) -> bool {
+    pub fn must_wait(&self, time_s: f64) -> bool {
         self.samples.last().is_some_and(|(last_s, _)| *last_s < time_s && time_s - last_s < LONGEST_GAP_S)
     }
 
     /// The pose and the velocity at a time; the newest pose where the time is not between two poses.
-    pub(crate) fn at(&self, time_s: f64) -> (Isometry2<f64>, Twist) {
+    pub fn at(&self, time_s: f64) -> (Isometry2<f64>, Twist) {
         let around = |pair: &&[(f64, Isometry2<f64>)]| pair[0].0 <= time_s && time_s <= pair[1].0;
         match self.samples.windows(2).rev().find(around) {
             Some([from, to]) if to.0 - from.0 <= LONGEST_GAP_S && to.0 > from.0 => {
@@ -67,7 +67,7 @@ impl Odometry {
     }
 
     /// The mean velocities between the poses in an interval, the earliest first; the last one ends with the interval.
-    pub(crate) fn during(&self, from_s: f64, to_s: f64) -> Vec<VelocitySample> {
+    pub fn during(&self, from_s: f64, to_s: f64) -> Vec<VelocitySample> {
         let overlaps = |pair: &&[(f64, Isometry2<f64>)]| {
             pair[0].0 + LEAST_OVERLAP_S < to_s
                 && from_s + LEAST_OVERLAP_S < pair[1].0
@@ -82,7 +82,7 @@ impl Odometry {
     }
 
     /// The newest pose and its velocity.
-    pub(crate) fn newest(&self) -> (Isometry2<f64>, Twist) {
+    pub fn newest(&self) -> (Isometry2<f64>, Twist) {
         match self.samples.as_slice() {
             [.., from, to] if to.0 > from.0 && to.0 - from.0 <= LONGEST_GAP_S => between(from, to, 1.0),
             _ => (self.last(), Twist::STOP),

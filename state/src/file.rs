@@ -87,6 +87,11 @@ impl StateFile {
         self.last.elapsed() >= self.every && self.writing.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
+    /// Whether a state is being written now.
+    pub fn is_writing(&self) -> bool {
+        self.writing.as_ref().is_some_and(|writing| !writing.is_finished())
+    }
+
     /// Begins to write a state. `state` is called in the thread that writes: what takes long belongs there.
     ///
     /// # Errors

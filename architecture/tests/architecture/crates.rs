@@ -51,12 +51,29 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "viewer",
         ],
     ),
+    (
+        "ros2",
+        &[
+            "interfaces",
+            "sim",
+            "worldfile",
+            "mapper",
+            "localizer",
+            "logs",
+            "agent",
+            "controller",
+            "robot",
+            "survey",
+            "state",
+        ],
+    ),
     ("architecture", &[]),
     ("benches", WITHOUT_RERUN),
 ];
 
 /// Packages that only these crates may have as a dependency.
-const RESERVED: &[(&str, &[&str])] = &[("rerun", &["viewer", "curious"]), ("rapier2d", &["sim"])];
+const RESERVED: &[(&str, &[&str])] =
+    &[("rerun", &["viewer", "curious"]), ("rapier2d", &["sim"]), ("ros2-client", &["ros2"])];
 
 /// The libraries that must build without Rerun; the benches use them and nothing else.
 const WITHOUT_RERUN: &[&str] = &[
@@ -73,6 +90,7 @@ const WITHOUT_RERUN: &[&str] = &[
     "survey",
     "state",
     "evaluation",
+    "ros2",
 ];
 
 #[test]

@@ -1,13 +1,12 @@
 //! The first pass over a bag: which topics and frames there are.
 
 use super::files::BagFile;
-use super::frames::Frames;
 use super::message::{Message, Selection, Topic};
 use super::messages::Messages;
 use crate::cdr;
 use crate::choice::bare;
 use crate::error::LogError;
-use crate::ros::{Header, Odometry, Transforms};
+use crate::ros::{Frames, Header, Odometry, Transforms};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;

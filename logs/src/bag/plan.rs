@@ -1,9 +1,9 @@
 //! What to use of a bag: which lasers, where they are mounted, and where the poses come from.
 
-use super::frames::{Chain, Frames, is_odom, is_world, mounted};
 use super::inventory::{Inventory, Kind, LaserTopic, OdometryTopic};
 use super::message::Topic;
 use crate::choice::{TopicChoice, bare};
+use crate::ros::{Chain, Frames, is_odom, is_world, mounted};
 use crate::summary::PoseSource;
 
 /// A laser that is used.

@@ -1,16 +1,14 @@
 //! The second pass over a bag, and all later ones: reading by reading.
 
-use super::frames::{Frames, flat, mounted};
 use super::inventory::Kind;
 use super::message::Message;
 use super::messages::Messages;
 use super::plan::{Laser, Motion, Plan};
-use super::scan;
 use crate::cdr;
 use crate::choice::bare;
 use crate::error::LogError;
 use crate::odometry::Odometry;
-use crate::ros::{self, Header, LaserScan, Transforms};
+use crate::ros::{self, Frames, Header, LaserScan, Transforms, flat, mounted, scan_of};
 use interfaces::{LaserReading, Scan};
 use nalgebra::Isometry2;
 use std::collections::VecDeque;
@@ -164,8 +162,7 @@ impl RawReadings {
         let Some(laser) = self.plan.lasers.iter().position(is_this) else { return Ok(()) };
         let begin_s = self.clock.time_s(&found.header, message);
         let mounted = mounted(&self.frames.along(&self.plan.lasers[laser].chain));
-        let scan =
-            mounted.and_then(|(mount, is_upside_down)| Ok((mount, scan::converted(found, is_upside_down)?)));
+        let scan = mounted.and_then(|(mount, is_upside_down)| Ok((mount, scan_of(found, is_upside_down)?)));
         let (mount, scan) = match scan {
             Ok(scan) => scan,
             Err(what) => {

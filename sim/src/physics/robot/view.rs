@@ -33,6 +33,11 @@ pub struct RobotView<'a> {
 }
 
 impl<'a> RobotView<'a> {
+    /// The pose and the velocity by odometry, with its errors, m and rad, m/s and rad/s.
+    pub fn odometry(&self) -> (Isometry2<f64>, Twist) {
+        (*self.robot.odometry.pose(), self.robot.odometry_twist())
+    }
+
     /// The latest reading of the main laser scanner; `None` before the first measurement. As with all sensors, the
     /// reading is computed when it is first read.
     pub fn reading(&self) -> Option<&'a LaserReading> {

@@ -13,22 +13,22 @@ const LEAST_MOTION: f64 = 1e-6;
 
 /// A transform between two frames.
 #[derive(Clone, Debug)]
-pub(super) struct Edge {
-    pub(super) parent: String,
-    pub(super) child: String,
+pub(crate) struct Edge {
+    pub(crate) parent: String,
+    pub(crate) child: String,
     /// The newest pose of the child in the frame of the parent.
-    pub(super) pose: Isometry3<f64>,
+    pub(crate) pose: Isometry3<f64>,
     /// The number of poses, and whether they differ.
-    pub(super) poses: usize,
-    pub(super) moves: bool,
+    pub(crate) poses: usize,
+    pub(crate) moves: bool,
 }
 
 /// A chain of transforms: the edges, and whether each is taken from the parent to the child.
-pub(super) type Chain = Vec<(usize, bool)>;
+pub type Chain = Vec<(usize, bool)>;
 
-/// All transforms.
+/// The transforms between the frames of a robot (tf). The newest one between two frames holds.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Frames {
+pub struct Frames {
     edges: Vec<Edge>,
     /// The edges by child and parent.
     known: BTreeMap<(String, String), usize>,
@@ -40,7 +40,7 @@ impl Frames {
     /// # Errors
     ///
     /// When there are too many frames.
-    pub(super) fn set(&mut self, parent: &str, child: &str, pose: Isometry3<f64>) -> Result<usize, String> {
+    pub fn set(&mut self, parent: &str, child: &str, pose: Isometry3<f64>) -> Result<usize, String> {
         let key = (bare(child).to_owned(), bare(parent).to_owned());
         if let Some(index) = self.known.get(&key) {
             let edge = &mut self.edges[*index];
@@ -60,20 +60,20 @@ impl Frames {
     }
 
     /// Sets a transform back to an earlier pose.
-    pub(super) fn rewind(&mut self, index: usize, pose: Isometry3<f64>) {
+    pub(crate) fn rewind(&mut self, index: usize, pose: Isometry3<f64>) {
         self.edges[index].pose = pose;
     }
 
-    pub(super) fn edge(&self, index: usize) -> &Edge {
+    pub(crate) fn edge(&self, index: usize) -> &Edge {
         &self.edges[index]
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.edges.is_empty()
     }
 
     /// The names of all frames, in order.
-    pub(super) fn names(&self) -> Vec<&str> {
+    pub fn names(&self) -> Vec<&str> {
         let mut names: Vec<&str> =
             self.edges.iter().flat_map(|edge| [&edge.parent[..], &edge.child[..]]).collect();
         names.sort_unstable();
@@ -87,7 +87,7 @@ impl Frames {
     /// # Errors
     ///
     /// When the frames form a cycle.
-    pub(super) fn above(&self, frame: &str) -> Result<Vec<usize>, String> {
+    pub(crate) fn above(&self, frame: &str) -> Result<Vec<usize>, String> {
         let (mut above, mut at) = (Vec::new(), bare(frame));
         loop {
             let to = |index: &usize| self.edges[*index].child == at;
@@ -106,7 +106,7 @@ impl Frames {
     }
 
     /// The shortest chain from one frame to another that does not contain the frames of the world.
-    pub(super) fn chain(&self, from: &str, to: &str, world: &[&str]) -> Option<Chain> {
+    pub fn chain(&self, from: &str, to: &str, world: &[&str]) -> Option<Chain> {
         let (from, to) = (bare(from), bare(to));
         let mut chains: BTreeMap<&str, Chain> = BTreeMap::from([(from, Chain::new())]);
         let mut open = VecDeque::from([from]);
@@ -132,7 +132,7 @@ impl Frames {
     }
 
     /// The pose of the frame at the end of a chain in the frame at its begin.
-    pub(super) fn along(&self, chain: &Chain) -> Isometry3<f64> {
+    pub fn along(&self, chain: &Chain) -> Isometry3<f64> {
         chain.iter().fold(Isometry3::identity(), |pose, (index, is_down)| {
             let edge = self.edges[*index].pose;
             if *is_down { pose * edge } else { pose * edge.inverse() }
@@ -141,17 +141,17 @@ impl Frames {
 }
 
 /// Whether this is the name of a frame of odometry (REP-105).
-pub(super) fn is_odom(frame: &str) -> bool {
+pub(crate) fn is_odom(frame: &str) -> bool {
     frame.rsplit('/').next().is_some_and(|name| name.starts_with("odom"))
 }
 
 /// Whether this is the name of a frame in which the world stands still.
-pub(super) fn is_world(frame: &str) -> bool {
+pub(crate) fn is_world(frame: &str) -> bool {
     matches!(frame.rsplit('/').next(), Some("map" | "world" | "earth"))
 }
 
 /// A pose without height, roll and pitch.
-pub(super) fn flat(pose: &Isometry3<f64>) -> Isometry2<f64> {
+pub fn flat(pose: &Isometry3<f64>) -> Isometry2<f64> {
     let ahead = pose.rotation * Vector3::x();
     // A robot that stands on end has no heading.
     let length = (ahead.x * ahead.x + ahead.y * ahead.y).sqrt();
@@ -165,7 +165,7 @@ pub(super) fn flat(pose: &Isometry3<f64>) -> Isometry2<f64> {
 /// # Errors
 ///
 /// When it is tilted.
-pub(super) fn mounted(pose: &Isometry3<f64>) -> Result<(Isometry2<f64>, bool), String> {
+pub fn mounted(pose: &Isometry3<f64>) -> Result<(Isometry2<f64>, bool), String> {
     let up = (pose.rotation * Vector3::z()).z;
     if up.abs() < LEAST_UPRIGHT {
         return Err(format!("is tilted by {:.0}° and does not scan a plane", up.abs().acos().to_degrees()));

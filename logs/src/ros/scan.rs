@@ -1,7 +1,7 @@
-//! `sensor_msgs/LaserScan` as a scan of ours.
+//! `sensor_msgs/LaserScan` and a scan of ours.
 
-use crate::ros::LaserScan;
-use interfaces::Scan;
+use super::messages::{Header, LaserScan, Time};
+use interfaces::{LaserReading, Scan};
 use std::f64::consts::TAU;
 
 /// The most beams of a scan: a message that claims more is invalid.
@@ -18,7 +18,7 @@ const LONGEST_SWEEP_S: f64 = 10.0;
 /// # Errors
 ///
 /// When the fields are no scan.
-pub(super) fn converted(message: LaserScan, is_upside_down: bool) -> Result<Scan, String> {
+pub fn converted(message: LaserScan, is_upside_down: bool) -> Result<Scan, String> {
     let beams = message.ranges.len();
     if !(1..=MOST_BEAMS).contains(&beams) {
         return Err(format!("{beams} ranges; a scan has 1 to {MOST_BEAMS}"));
@@ -48,6 +48,30 @@ pub(super) fn converted(message: LaserScan, is_upside_down: bool) -> Result<Scan
     Ok(scan)
 }
 
+/// The scan of a reading as a message that is stamped with the time of its first beam, by the rounded times of its beams:
+/// from them, a reader finds the time of the last beam, `end_ns`.
+pub fn message(reading: &LaserReading, frame_id: String, end_ns: i64) -> LaserScan {
+    let scan = &reading.scan;
+    let steps = scan.ranges_m.len().saturating_sub(1);
+    let time_increment = (scan.sweep_s / steps.max(1) as f64) as f32;
+    let sweep_s = f64::from(time_increment) * steps as f64;
+    LaserScan {
+        header: Header {
+            stamp: Time::from_ns(end_ns.saturating_sub((sweep_s * 1e9).round() as i64)),
+            frame_id,
+        },
+        angle_min: scan.angle_min_rad as f32,
+        angle_max: scan.angle_rad(steps) as f32,
+        angle_increment: scan.angle_increment_rad as f32,
+        time_increment,
+        scan_time: scan.sweep_s as f32,
+        range_min: scan.range_min_m as f32,
+        range_max: scan.range_max_m as f32,
+        ranges: scan.ranges_m.clone(),
+        intensities: Vec::new(),
+    }
+}
+
 /// The angle between beams. Some drivers leave it at 0, or name the one of another number of beams: then it follows from
 /// the first and the last angle.
 fn increment_rad(message: &LaserScan) -> f64 {
@@ -72,9 +96,8 @@ fn meaning(range_m: f32, min_m: f32, max_m: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ros::Header;
 
-    fn message(angle_min: f32, angle_increment: f32, ranges: &[f32]) -> LaserScan {
+    fn laser_scan(angle_min: f32, angle_increment: f32, ranges: &[f32]) -> LaserScan {
         LaserScan {
             header: Header::default(),
             angle_min,
@@ -92,7 +115,7 @@ mod tests {
     #[test]
     fn ranges_out_of_the_limits_have_a_meaning() {
         let ranges = [0.05, 0.1, 10.0, 10.5, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
-        let scan = converted(message(0.0, 0.1, &ranges), false).unwrap();
+        let scan = converted(laser_scan(0.0, 0.1, &ranges), false).unwrap();
         let expected =
             [f32::NAN, 0.1, f32::INFINITY, f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
         assert_eq!(format!("{:?}", scan.ranges_m), format!("{expected:?}"));
@@ -101,14 +124,14 @@ mod tests {
 
     #[test]
     fn beams_turn_counter_clockwise_where_they_are_measured_at_once() {
-        let clockwise = converted(message(0.5, -0.5, &[1.0, 2.0, 3.0]), false).unwrap();
+        let clockwise = converted(laser_scan(0.5, -0.5, &[1.0, 2.0, 3.0]), false).unwrap();
         assert_eq!((clockwise.angle_min_rad, clockwise.angle_increment_rad), (-0.5, 0.5));
         assert_eq!(clockwise.ranges_m, [3.0, 2.0, 1.0]);
         // A laser upside down: its left is our right.
-        let hanging = converted(message(0.0, 0.5, &[1.0, 2.0]), true).unwrap();
+        let hanging = converted(laser_scan(0.0, 0.5, &[1.0, 2.0]), true).unwrap();
         assert_eq!((hanging.angle_min_rad, hanging.angle_increment_rad), (-0.5, 0.5));
         assert_eq!(hanging.ranges_m, [2.0, 1.0]);
-        let sweeping = LaserScan { time_increment: 0.01, ..message(0.5, -0.5, &[1.0, 2.0, 3.0]) };
+        let sweeping = LaserScan { time_increment: 0.01, ..laser_scan(0.5, -0.5, &[1.0, 2.0, 3.0]) };
         let sweeping = converted(sweeping, false).unwrap();
         assert_eq!((sweeping.angle_min_rad, sweeping.angle_increment_rad), (0.5, -0.5));
         assert_eq!(sweeping.ranges_m, [1.0, 2.0, 3.0]);
@@ -117,14 +140,14 @@ mod tests {
 
     #[test]
     fn a_laser_without_limits_has_some() {
-        let message = LaserScan { range_max: f32::INFINITY, ..message(0.0, 0.1, &[1.0, 1e4]) };
+        let message = LaserScan { range_max: f32::INFINITY, ..laser_scan(0.0, 0.1, &[1.0, 1e4]) };
         let scan = converted(message, false).unwrap();
         assert_eq!((scan.range_max_m, &scan.ranges_m[..]), (FARTHEST_M, &[1.0, f32::INFINITY][..]));
     }
 
     #[test]
     fn nonsense_is_refused() {
-        let good = message(0.0, 0.1, &[1.0, 2.0]);
+        let good = laser_scan(0.0, 0.1, &[1.0, 2.0]);
         let refused = |message: LaserScan| converted(message, false).unwrap_err();
         assert_eq!(
             refused(LaserScan { ranges: Vec::new(), ..good.clone() }),

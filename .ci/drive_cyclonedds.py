@@ -1,0 +1,301 @@
+"""CycloneDDS as another vendor, with messages written down by hand: what the packages of rclpy lack (tf, parts of maps,
+markers), and a stand-in for Nav2's action server.
+
+Arguments: a folder for files, the program curious_node, the program sim_node.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+DOMAIN = 100 + os.getpid() % 90
+os.environ["ROS_DOMAIN_ID"] = str(DOMAIN)
+os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+os.environ["CYCLONEDDS_URI"] = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface name='lo'/></Interfaces>"
+  "<AllowMulticast>false</AllowMulticast></General><Discovery><Peers><Peer address='127.0.0.1'/></Peers>"
+  "<ParticipantIndex>auto</ParticipantIndex></Discovery></Domain></CycloneDDS>")
+
+from dataclasses import dataclass
+from cyclonedds.idl import IdlStruct
+from cyclonedds.idl.types import array, float32, float64, int8, int32, int64, sequence, uint8, uint16, uint32, uint64
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.topic import Topic
+from cyclonedds.sub import DataReader
+from cyclonedds.pub import DataWriter
+from cyclonedds.core import Qos, Policy
+from cyclonedds.util import duration
+
+
+
+@dataclass
+class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
+    sec: int32
+    nanosec: uint32
+
+
+@dataclass
+class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
+    stamp: Time
+    frame_id: str
+
+
+@dataclass
+class Vector3(IdlStruct, typename="geometry_msgs::msg::dds_::Vector3_"):
+    x: float64
+    y: float64
+    z: float64
+
+
+@dataclass
+class Quaternion(IdlStruct, typename="geometry_msgs::msg::dds_::Quaternion_"):
+    x: float64
+    y: float64
+    z: float64
+    w: float64
+
+
+@dataclass
+class Pose(IdlStruct, typename="geometry_msgs::msg::dds_::Pose_"):
+    position: Vector3
+    orientation: Quaternion
+
+
+@dataclass
+class PoseStamped(IdlStruct, typename="geometry_msgs::msg::dds_::PoseStamped_"):
+    header: Header
+    pose: Pose
+
+
+@dataclass
+class Transform(IdlStruct, typename="geometry_msgs::msg::dds_::Transform_"):
+    translation: Vector3
+    rotation: Quaternion
+
+
+@dataclass
+class TransformStamped(IdlStruct, typename="geometry_msgs::msg::dds_::TransformStamped_"):
+    header: Header
+    child_frame_id: str
+    transform: Transform
+
+
+@dataclass
+class TFMessage(IdlStruct, typename="tf2_msgs::msg::dds_::TFMessage_"):
+    transforms: sequence[TransformStamped]
+
+
+@dataclass
+class OccupancyGridUpdate(IdlStruct, typename="map_msgs::msg::dds_::OccupancyGridUpdate_"):
+    header: Header
+    x: int32
+    y: int32
+    width: uint32
+    height: uint32
+    data: sequence[int8]
+
+
+@dataclass
+class Color(IdlStruct, typename="std_msgs::msg::dds_::ColorRGBA_"):
+    r: float32
+    g: float32
+    b: float32
+    a: float32
+
+
+@dataclass
+class Duration(IdlStruct, typename="builtin_interfaces::msg::dds_::Duration_"):
+    sec: int32
+    nanosec: uint32
+
+
+@dataclass
+class Image(IdlStruct, typename="sensor_msgs::msg::dds_::CompressedImage_"):
+    header: Header
+    format: str
+    data: sequence[uint8]
+
+
+@dataclass
+class UV(IdlStruct, typename="visualization_msgs::msg::dds_::UVCoordinate_"):
+    u: float32
+    v: float32
+
+
+@dataclass
+class MeshFile(IdlStruct, typename="visualization_msgs::msg::dds_::MeshFile_"):
+    filename: str
+    data: sequence[uint8]
+
+
+@dataclass
+class Marker(IdlStruct, typename="visualization_msgs::msg::dds_::Marker_"):
+    header: Header
+    ns: str
+    id: int32
+    type: int32
+    action: int32
+    pose: Pose
+    scale: Vector3
+    color: Color
+    lifetime: Duration
+    frame_locked: bool
+    points: sequence[Vector3]
+    colors: sequence[Color]
+    texture_resource: str
+    texture: Image
+    uv_coordinates: sequence[UV]
+    text: str
+    mesh_resource: str
+    mesh_file: MeshFile
+    mesh_use_embedded_materials: bool
+
+
+@dataclass
+class MarkerArray(IdlStruct, typename="visualization_msgs::msg::dds_::MarkerArray_"):
+    markers: sequence[Marker]
+
+
+@dataclass
+class SendGoalRequest(IdlStruct, typename="nav2_msgs::action::dds_::NavigateToPose_SendGoal_Request_"):
+    guid: uint64
+    seq: int64
+    goal_id: array[uint8, 16]
+    pose: PoseStamped
+    behavior_tree: str
+
+
+@dataclass
+class SendGoalResponse(IdlStruct, typename="nav2_msgs::action::dds_::NavigateToPose_SendGoal_Response_"):
+    guid: uint64
+    seq: int64
+    accepted: bool
+    stamp: Time
+
+
+@dataclass
+class GetResultRequest(IdlStruct, typename="nav2_msgs::action::dds_::NavigateToPose_GetResult_Request_"):
+    guid: uint64
+    seq: int64
+    goal_id: array[uint8, 16]
+
+
+@dataclass
+class GetResultResponse(IdlStruct, typename="nav2_msgs::action::dds_::NavigateToPose_GetResult_Response_"):
+    guid: uint64
+    seq: int64
+    status: int8
+    error_code: uint16
+    error_msg: str
+
+RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(100))
+WORK, CURIOUS, SIM = sys.argv[1:4]
+LOG = os.path.join(WORK, "cyclonedds.log")
+participant = DomainParticipant(DOMAIN)
+
+
+def reader(name, kind):
+    return DataReader(participant, Topic(participant, name, kind), qos=RELIABLE)
+
+
+def writer(name, kind):
+    return DataWriter(participant, Topic(participant, name, kind), qos=RELIABLE)
+
+
+def check(name, is_right, found=""):
+    print(f"{'ok  ' if is_right else 'FAIL'} CycloneDDS: {name}{f': {found}' if found != '' else ''}", flush=True)
+    if not is_right:
+        print(open(LOG).read(), flush=True)
+        sys.exit(1)
+
+
+def explore(*settings):
+    """Starts the node, whose services are those of CycloneDDS."""
+    environment = {**os.environ, "RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}
+    command = [CURIOUS, "--mode", "explore", "--ros-args", "-p", "robot_radius:=0.2", *settings]
+    return subprocess.Popen(command, env=environment, stderr=open(LOG, "w"))
+
+
+def spin(seconds, turn, until):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and not until():
+        turn()
+        time.sleep(0.02)
+    return until()
+
+
+def end(node):
+    node.send_signal(signal.SIGINT)
+    check("the node ends", node.wait(20) == 0)
+
+
+def test_messages():
+    readers = {
+        "tf": reader("rt/tf", TFMessage),
+        "updates": reader("rt/map_updates", OccupancyGridUpdate),
+        "markers": reader("rt/explore/goals", MarkerArray),
+    }
+    node = explore()
+    heard = {name: [] for name in readers}
+
+    def turn():
+        for name, messages in heard.items():
+            messages += readers[name].take(100)
+
+    def transforms():
+        return {(t.header.frame_id, t.child_frame_id): t for m in heard["tf"] for t in m.transforms}
+
+    def is_complete():
+        return {("map", "odom"), ("odom", "base_link")} <= set(transforms()) and heard["updates"] and heard["markers"]
+
+    check("tf, map_updates and markers come", spin(40, turn, is_complete), {n: len(m) for n, m in heard.items()})
+    turned = transforms()["map", "odom"].transform.rotation
+    check("the rotation is one", abs(turned.z**2 + turned.w**2 - 1) < 1e-9 and turned.x == turned.y == 0)
+    is_whole = all(len(u.data) == u.width * u.height and set(u.data) <= {-1, 0, 100} for u in heard["updates"])
+    check("every update is a rectangle of three values", is_whole)
+    markers = [marker for array in heard["markers"] for marker in array.markers]
+    is_drawn = all(m.ns == "goals" and m.header.frame_id == "map" and len(m.points) != 1 for m in markers)
+    check("every marker can be drawn", is_drawn and {m.type for m in markers} <= {0, 4})
+    end(node)
+
+
+def test_action():
+    goals = reader("rq/navigate_to_pose/_action/send_goalRequest", SendGoalRequest)
+    answers = writer("rr/navigate_to_pose/_action/send_goalReply", SendGoalResponse)
+    wanted = reader("rq/navigate_to_pose/_action/get_resultRequest", GetResultRequest)
+    results = writer("rr/navigate_to_pose/_action/get_resultReply", GetResultResponse)
+    node = explore("-p", "navigator:=nav2")
+    asked, given = [], []
+
+    def turn():
+        for goal in goals.take(10):
+            asked.append(goal)
+            # The second goal is refused.
+            answers.write(SendGoalResponse(goal.guid, goal.seq, len(asked) != 2, Time(0, 0)))
+        for request in wanted.take(10):
+            given.append(request)
+            # The second goal that was accepted is aborted.
+            status = 6 if len(given) == 2 else 4
+            results.write(GetResultResponse(request.guid, request.seq, status, 0, ""))
+
+    check("goals come one after the other", spin(40, turn, lambda: len(given) > 4), (len(asked), len(given)))
+    check("each accepted goal has one result", len(asked) - len(given) in (1, 2))
+    check("goals are in the map", {goal.pose.header.frame_id for goal in asked} == {"map"})
+    said = open(LOG).read()
+    check("a refused goal is said", said.count("Nav2 has refused the goal") == 1)
+    check("an aborted goal is said", said.count("Nav2 has given the goal up") == 1)
+    end(node)
+
+
+def main():
+    simulation = subprocess.Popen([SIM, "house"], stderr=subprocess.DEVNULL)
+    try:
+        test_messages()
+        test_action()
+    finally:
+        simulation.kill()
+
+
+if __name__ == "__main__":
+    main()

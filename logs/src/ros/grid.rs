@@ -1,0 +1,55 @@
+//! Maps as messages: as a whole, or the part that changed.
+
+use super::messages::{Header, OccupancyGrid, OccupancyGridUpdate, Pose};
+use interfaces::{Cell, Grid};
+use nalgebra::Isometry2;
+
+impl OccupancyGrid {
+    /// The message of a map of percents, −1 where unknown.
+    pub fn of(grid: &Grid<i8>, header: Header) -> Self {
+        let frame = grid.frame();
+        let origin = Isometry2::translation(frame.origin().x, frame.origin().y);
+        Self {
+            map_load_time: header.stamp,
+            header,
+            resolution: frame.resolution_m() as f32,
+            width: frame.width() as u32,
+            height: frame.height() as u32,
+            origin: Pose::in_plane(&origin),
+            data: grid.cells().to_vec(),
+        }
+    }
+}
+
+impl OccupancyGridUpdate {
+    /// The smallest rectangle that contains every cell in which two maps with the same frame differ; `None` if none does.
+    pub fn between(before: &Grid<i8>, after: &Grid<i8>, header: Header) -> Option<Self> {
+        let (low, high) = difference(before, after)?;
+        Some(Self::part(after, low, high, header))
+    }
+
+    /// The rectangle of a map with these corners, both inclusive. Cells outside of the map are left out.
+    pub fn part(grid: &Grid<i8>, low: Cell, high: Cell, header: Header) -> Self {
+        let cells = (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| Cell::new(x, y)));
+        Self {
+            header,
+            x: low.x,
+            y: low.y,
+            width: (high.x - low.x + 1) as u32,
+            height: (high.y - low.y + 1) as u32,
+            data: cells.filter_map(|cell| grid.get(cell).copied()).collect(),
+        }
+    }
+}
+
+/// The corners of the rectangle in which two maps differ, both inclusive.
+fn difference(before: &Grid<i8>, after: &Grid<i8>) -> Option<(Cell, Cell)> {
+    let pairs = before.cells().iter().zip(after.cells()).enumerate();
+    let changed = pairs.filter(|(_, (before, after))| before != after).map(|(index, _)| index);
+    changed.map(|index| after.frame().cell(index)).map(|cell| (cell, cell)).reduce(
+        |(low, high), (cell, _)| {
+            let low = Cell::new(low.x.min(cell.x), low.y.min(cell.y));
+            (low, Cell::new(high.x.max(cell.x), high.y.max(cell.y)))
+        },
+    )
+}

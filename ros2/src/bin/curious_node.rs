@@ -1,0 +1,142 @@
+//! Maps what a live robot sees, and where the place changes; can explore.
+
+use anyhow::{Context, anyhow};
+use clap::{Parser, ValueEnum};
+use ros2::program::{Failure, input, output, say, start};
+use ros2::{CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, Signals, Value, curious_wiring};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// Maps what a live robot of ROS 2 sees, and learns where and how often the place changes
+///
+/// The node needs no installation of ROS. It subscribes to scans, transforms and odometry, and publishes the map, the map of
+/// changes, the prediction, and the transform from the map to the odometry. With `--mode explore` it also drives the robot.
+#[derive(Debug, Parser)]
+#[command(name = "curious_node", version, after_long_help = MANUAL, max_term_width = 100)]
+struct Args {
+    /// What the node does; the same as `--ros-args -p mode:=MODE`
+    #[arg(long, value_enum)]
+    mode: Option<ModeArg>,
+    /// Goes on from this file if it exists, and saves to it: every minute, at the end, at the signal USR1, and when the
+    /// service `~/save_state` is called
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ModeArg {
+    /// Only maps, while someone else drives
+    Map,
+    /// Drives to where looking is worth most
+    Explore,
+}
+
+const MANUAL: &str = "\
+SUBSCRIBES
+  scan_topic (/scan)      sensor_msgs/LaserScan, sensor-data QoS
+  /tf, /tf_static         tf2_msgs/TFMessage: odom_frame to base_frame, base_frame to the laser
+  odom_topic (odom)       nav_msgs/Odometry: used if /tf has no odometry
+  explore/resume          std_msgs/Bool: false pauses exploring, true resumes it
+
+PUBLISHES
+  map                     nav_msgs/OccupancyGrid: -1, 0, 100; reliable, transient local
+  map_updates             map_msgs/OccupancyGridUpdate: what changed, at once
+  change_map              nav_msgs/OccupancyGrid: 0 to 100, where the place changes within ten minutes
+  predicted_map           nav_msgs/OccupancyGrid: 0 to 100, where it is probably blocked now
+  /tf                     tf2_msgs/TFMessage: map_frame to odom_frame
+  cmd_vel                 geometry_msgs/TwistStamped, or Twist with enable_stamped_cmd_vel:=false
+  goal_pose               geometry_msgs/PoseStamped, with navigator:=goal_pose
+  explore/goals           visualization_msgs/MarkerArray: the goal and the path
+
+SERVICES AND ACTIONS
+  ~/save_state            std_srvs/Trigger: saves the state
+  navigate_to_pose        nav2_msgs/NavigateToPose, with navigator:=nav2: a client
+
+PARAMETERS (--ros-args -p name:=value)
+  mode                    map | explore [map]
+  navigator               cmd_vel | nav2 | goal_pose: what drives to the goals [cmd_vel]
+  pose                    localized | odometry | exact: how the pose is known [localized]
+  map_frame, odom_frame, base_frame
+                          frames of REP-105 [map, odom, base_footprint; base_link if there is no other]
+  scan_topic, odom_topic  [/scan, odom]
+  resolution              side of a cell, m [0.05]
+  map_size                side of the map around the start, m [40.0]
+  max_laser_range         longer ranges are not used, m [20.0]
+  range_noise             standard deviation of ranges, m [0.02]
+  map_update_interval     time between two whole maps, s; longer for large maps [5.0]
+  transform_publish_period
+                          time between two transforms, s; 0: none [0.02]
+  transform_timeout       how long a transform holds after a scan, s [0.2]
+  robot_radius            m [0.22]
+  max_vel_x, max_vel_theta, acc_lim_x, acc_lim_theta
+                          limits, m/s, rad/s, m/s^2, rad/s^2 [0.26, 1.0, 2.5, 3.2]
+  enable_stamped_cmd_vel  [true]
+  strategy, seed          how goals are selected [curious, 1]
+  qos_overrides./scan.subscription.reliability
+                          best_effort | reliable [best_effort]
+  use_sim_time            without effect: all times are those of the messages
+
+ENVIRONMENT
+  ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_LOCALHOST_ONLY
+  RMW_IMPLEMENTATION      rmw_cyclonedds_cpp: services and actions are those of nodes with CycloneDDS
+
+EXAMPLES
+  curious_node --state office.state
+  curious_node --mode explore --ros-args -p robot_radius:=0.18 -p max_vel_x:=0.5 -r scan:=/front/scan
+  curious_node --mode explore --ros-args -p navigator:=nav2 -r __ns:=/robot1
+
+EXIT CODES
+  0 ended by Ctrl-C, SIGTERM or SIGHUP; 1 the node failed; 2 an argument or the state file is not valid";
+
+fn main() -> ExitCode {
+    start(run)
+}
+
+fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
+    let names = Names::new("curious_node", &ros).map_err(input)?;
+    let mut parameters = Parameters::default();
+    for (name, value) in ros.parameters_of(names.node()) {
+        parameters.set(name, value).map_err(input)?;
+    }
+    if let Some(mode) = args.mode {
+        let name = if matches!(mode, ModeArg::Map) { "map" } else { "explore" };
+        parameters.set("mode", &Value::Text(name.to_owned())).map_err(input)?;
+    }
+    parameters.check().map_err(input)?;
+    let environment = Environment::read(|name| std::env::var(name).ok()).map_err(input)?;
+    let wiring = curious_wiring(&parameters, &names, &ros).map_err(input)?;
+    let signals = signals()?;
+    let link = DdsLink::open(&wiring, &environment)?;
+    let node = CuriousNode::new(link, &parameters, args.state.as_deref(), output(names.node()));
+    let mut node = node.map_err(input)?;
+    say(&format!("[{}] waiting for scans on {}", names.node(), parameters.scan_topic));
+    let report = node.run(&signals)?;
+    let [invalid, unplaced, late] = report.unused;
+    say(&format!(
+        "[{}] {} scans: {} readings, {} in the map; {invalid} not valid, {unplaced} without a pose, {late} late; longest \
+         turn {:.1} ms",
+        names.node(),
+        report.received,
+        report.readings,
+        report.mapped,
+        report.longest_us as f64 * 1e-3
+    ));
+    Ok(())
+}
+
+/// Listens for signals.
+fn signals() -> anyhow::Result<Arc<Signals>> {
+    let signals = Arc::new(Signals::default());
+    let to = signals.clone();
+    ctrlc::set_handler(move || to.stop.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
+    #[cfg(unix)]
+    {
+        let to = signals.clone();
+        let mut usr1 = signal_hook::iterator::Signals::new([signal_hook::consts::SIGUSR1])
+            .map_err(|why| anyhow!("cannot listen for SIGUSR1: {why}"))?;
+        std::thread::spawn(move || usr1.forever().for_each(|_| to.save.store(true, Ordering::Relaxed)));
+    }
+    Ok(signals)
+}

@@ -1,0 +1,88 @@
+//! A simulated world as a robot of ROS 2.
+
+use anyhow::{Context, anyhow};
+use clap::Parser;
+use ros2::program::{Failure, input, say, start};
+use ros2::{DdsLink, Environment, Names, RosArgs, SimulatedRobot, SimulationSettings, simulation_wiring};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Simulates a robot of ROS 2 in one of this project's worlds
+///
+/// The node needs no installation of ROS. The driven robot of the world publishes scans, odometry and transforms, and obeys
+/// velocities; doors, things and other robots of the world move by themselves.
+#[derive(Debug, Parser)]
+#[command(name = "sim_node", version, after_long_help = MANUAL, max_term_width = 100)]
+struct Args {
+    /// A world that ships, or a world file
+    #[arg(value_name = "WORLD", default_value = "four_rooms")]
+    world: String,
+    /// The seed of everything random
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// The simulated time per real time
+    #[arg(long, default_value_t = 1.0, value_parser = speed)]
+    speed: f64,
+    /// Ends after this simulated time, s
+    #[arg(long, value_name = "SECONDS", default_value_t = f64::INFINITY)]
+    duration: f64,
+    /// Times are those of the wall clock at the start, and not from 0: for nodes without use_sim_time; for speed 1
+    #[arg(long)]
+    wall_time: bool,
+}
+
+const MANUAL: &str = "\
+SUBSCRIBES
+  cmd_vel       geometry_msgs/TwistStamped and geometry_msgs/Twist; the robot stops 0.5 s after the last one
+
+PUBLISHES
+  scan          sensor_msgs/LaserScan in the frame laser
+  odom          nav_msgs/Odometry from odom to base_link, at most 50 Hz, with the errors of the world file
+  ground_truth  nav_msgs/Odometry from world to base_link: the true pose
+  /tf           odom to base_link
+  /tf_static    base_link to laser
+  /clock        rosgraph_msgs/Clock
+
+ENVIRONMENT
+  ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_LOCALHOST_ONLY
+
+EXAMPLES
+  sim_node house --speed 5
+  sim_node worlds/office.toml --ros-args -r __ns:=/robot1
+
+EXIT CODES
+  0 ended by Ctrl-C, or by --duration; 1 the node failed; 2 an argument or the world is not valid";
+
+fn speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse::<f64>().unwrap_or(f64::NAN);
+    if (0.01..=1000.0).contains(&speed) { Ok(speed) } else { Err("must be from 0.01 to 1000".to_owned()) }
+}
+
+fn main() -> ExitCode {
+    start(run)
+}
+
+fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
+    let names = Names::new("sim_node", &ros).map_err(input)?;
+    if let Some((name, _)) = ros.parameters_of(names.node()).find(|(name, _)| *name != "use_sim_time") {
+        return Err(input(anyhow!("there is no parameter `{name}`: sim_node has options, see --help")));
+    }
+    let world = worldfile::shipped::load(&args.world).map_err(input)?;
+    let environment = Environment::read(|name| std::env::var(name).ok()).map_err(input)?;
+    let wiring = simulation_wiring(&names, &ros).map_err(input)?;
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = stop.clone();
+    let handler = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+    handler.context("cannot listen for Ctrl-C")?;
+    let link = DdsLink::open(&wiring, &environment)?;
+    let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let begin_ns = if args.wall_time { i64::try_from(since_epoch.as_nanos()).unwrap_or(0) } else { 0 };
+    let settings = SimulationSettings { seed: args.seed, speed: args.speed, begin_ns };
+    let mut robot = SimulatedRobot::new(link, &world, settings);
+    say(&format!("[{}] {}: {:.0} times real time", names.node(), world.name, args.speed));
+    let scans = robot.run(&stop, args.duration);
+    say(&format!("[{}] {scans} scans in {:.1} s", names.node(), robot.time_s()));
+    Ok(())
+}

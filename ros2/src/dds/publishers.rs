@@ -1,0 +1,90 @@
+//! What the node sends.
+
+use super::profile;
+use crate::link::Wiring;
+use crate::message::{Message, Quality, Topic};
+use ros2_client::{Gid, MessageTypeName, Name, Node};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Sends a message of one type.
+type Send = Box<dyn Fn(Message) -> Result<(), String>>;
+
+/// The publishers of a node.
+pub(super) struct Publishers {
+    by_topic: BTreeMap<Topic, Send>,
+    ids: BTreeSet<Gid>,
+    problem: Option<String>,
+}
+
+/// The content of a message that holds this variant.
+macro_rules! only {
+    ($variant:ident) => {
+        |message| match message {
+            Message::$variant(content) => Some(content),
+            _ => None,
+        }
+    };
+}
+
+impl Publishers {
+    pub(super) fn new(node: &mut Node, wiring: &Wiring) -> anyhow::Result<Self> {
+        let (mut by_topic, mut ids) = (BTreeMap::new(), BTreeSet::new());
+        for (topic, name, quality) in &wiring.published {
+            let at = (*topic, name.as_str(), quality);
+            let (send, id) = match topic {
+                Topic::Scan => open(node, at, only!(Scan)),
+                Topic::Odometry | Topic::GroundTruth => open(node, at, |message| match message {
+                    Message::Odometry(content) => Some(*content),
+                    _ => None,
+                }),
+                Topic::Transforms | Topic::StaticTransforms => open(node, at, only!(Transforms)),
+                Topic::Clock => open(node, at, only!(Clock)),
+                Topic::Velocity => open(node, at, only!(Twist)),
+                Topic::StampedVelocity => open(node, at, only!(TwistStamped)),
+                Topic::Resume => open(node, at, only!(Bool)),
+                Topic::Map | Topic::ChangeMap | Topic::PredictedMap => open(node, at, only!(Grid)),
+                Topic::MapUpdates => open(node, at, only!(GridUpdate)),
+                Topic::Markers => open(node, at, only!(Markers)),
+                Topic::GoalPose => open(node, at, only!(Pose)),
+            }?;
+            by_topic.insert(*topic, send);
+            ids.insert(id);
+        }
+        Ok(Self { by_topic, ids, problem: None })
+    }
+
+    /// The publishers of this node, on the network.
+    pub(super) fn ids(&self) -> BTreeSet<Gid> {
+        self.ids.clone()
+    }
+
+    pub(super) fn send(&mut self, topic: Topic, message: Message) {
+        let Some(send) = self.by_topic.get(&topic) else { return };
+        if let Err(why) = send(message) {
+            self.problem = Some(format!("a message on `{}` was not sent: {why}", topic.default_name()));
+        }
+    }
+
+    /// Why a message was not sent since the last call.
+    pub(super) fn take_problem(&mut self) -> Option<String> {
+        self.problem.take()
+    }
+}
+
+fn open<M: Serialize + 'static>(
+    node: &mut Node,
+    (topic, name, quality): (Topic, &str, &Quality),
+    content: fn(Message) -> Option<M>,
+) -> anyhow::Result<(Send, Gid)> {
+    let (package, kind) = topic.type_name();
+    let on =
+        node.create_topic(&Name::parse(name)?, MessageTypeName::new(package, kind), &profile(quality))?;
+    let publisher = node.create_publisher::<M>(&on, None)?;
+    let id = publisher.gid();
+    let send = move |message| {
+        let content = content(message).ok_or("it has another type")?;
+        publisher.publish(content).map_err(|why| why.to_string())
+    };
+    Ok((Box::new(send), id))
+}

@@ -1,0 +1,140 @@
+//! What the environment says about the network, as for every node of ROS.
+
+/// With which hosts a node speaks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Range {
+    /// With all hosts that multicast reaches.
+    #[default]
+    Subnet,
+    /// Only with programs on this host.
+    Localhost,
+    /// With nobody.
+    Off,
+}
+
+/// How requests and answers are matched on the wire: the implementations of ROS differ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Services {
+    /// By what DDS writes beside a message: Fast DDS, the default of ROS, and others.
+    #[default]
+    Enhanced,
+    /// By a header in the message: CycloneDDS.
+    Cyclone,
+}
+
+/// The domain of a node, and how far it reaches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Environment {
+    /// `ROS_DOMAIN_ID`: nodes of other domains are not seen.
+    pub domain: u16,
+    /// `ROS_AUTOMATIC_DISCOVERY_RANGE`; before Jazzy `ROS_LOCALHOST_ONLY`.
+    pub range: Range,
+    /// `RMW_IMPLEMENTATION`: that of the nodes with which services and actions are exchanged. Topics need no choice.
+    pub services: Services,
+}
+
+/// The largest domain whose ports exist.
+const MAX_DOMAIN: u16 = 232;
+
+/// The error for a variable of the environment.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{name} must be {expected}, not `{found}`")]
+pub struct EnvironmentError {
+    name: &'static str,
+    expected: String,
+    found: String,
+}
+
+impl Environment {
+    /// Reads the variables. `variable` gives the value of one; an empty one counts as not set.
+    ///
+    /// # Errors
+    ///
+    /// When a value is not valid.
+    pub fn read(variable: impl Fn(&str) -> Option<String>) -> Result<Self, EnvironmentError> {
+        let variable = |name| variable(name).filter(|value| !value.is_empty());
+        let name = "ROS_DOMAIN_ID";
+        let domain = match variable(name) {
+            None => 0,
+            Some(found) => match found.parse() {
+                Ok(domain) if domain <= MAX_DOMAIN => domain,
+                _ => {
+                    let expected = format!("a whole number from 0 to {MAX_DOMAIN}");
+                    return Err(EnvironmentError { name, expected, found });
+                }
+            },
+        };
+        let name = "ROS_AUTOMATIC_DISCOVERY_RANGE";
+        let range = match variable(name) {
+            None => Range::Subnet,
+            Some(found) => match found.as_str() {
+                "SUBNET" | "SYSTEM_DEFAULT" => Range::Subnet,
+                "LOCALHOST" => Range::Localhost,
+                "OFF" => Range::Off,
+                _ => {
+                    let expected = "SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT".to_owned();
+                    return Err(EnvironmentError { name, expected, found });
+                }
+            },
+        };
+        // As in ROS, the older variable wins.
+        let name = "ROS_LOCALHOST_ONLY";
+        let range = match variable(name) {
+            None => range,
+            Some(found) => match found.as_str() {
+                "1" => Range::Localhost,
+                "0" => range,
+                _ => return Err(EnvironmentError { name, expected: "0 or 1".to_owned(), found }),
+            },
+        };
+        let services = match variable("RMW_IMPLEMENTATION").as_deref() {
+            Some("rmw_cyclonedds_cpp") => Services::Cyclone,
+            _ => Services::Enhanced,
+        };
+        Ok(Self { domain, range, services })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(variables: &[(&str, &str)]) -> Result<Environment, String> {
+        let variable = |name: &str| {
+            variables.iter().find(|(other, _)| *other == name).map(|(_, value)| (*value).to_owned())
+        };
+        Environment::read(variable).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_environment_is_that_of_ros() {
+        assert_eq!(
+            read(&[]),
+            Ok(Environment { domain: 0, range: Range::Subnet, services: Services::Enhanced })
+        );
+        assert_eq!(read(&[("ROS_DOMAIN_ID", "")]), Ok(Environment::default()));
+        assert_eq!(
+            read(&[("ROS_DOMAIN_ID", "42"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")]),
+            Ok(Environment { domain: 42, range: Range::Localhost, services: Services::Enhanced })
+        );
+        let both = [("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"), ("ROS_LOCALHOST_ONLY", "1")];
+        assert_eq!(read(&both).unwrap().range, Range::Localhost);
+        assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")]).unwrap().range, Range::Off);
+        let cyclone = read(&[("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")]).unwrap();
+        assert_eq!(cyclone.services, Services::Cyclone);
+    }
+
+    #[test]
+    fn what_is_not_valid_is_refused() {
+        let error = |name, value| read(&[(name, value)]).unwrap_err();
+        assert_eq!(
+            error("ROS_DOMAIN_ID", "233"),
+            "ROS_DOMAIN_ID must be a whole number from 0 to 232, not `233`"
+        );
+        assert_eq!(
+            error("ROS_AUTOMATIC_DISCOVERY_RANGE", "localhost"),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE must be SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT, not `localhost`"
+        );
+        assert_eq!(error("ROS_LOCALHOST_ONLY", "yes"), "ROS_LOCALHOST_ONLY must be 0 or 1, not `yes`");
+    }
+}

@@ -1,0 +1,50 @@
+//! Live nodes for ROS 2, without an installation of ROS.
+//!
+//! ```text
+//! network ─Event─▶ Link ─▶ Source ─reading─▶ robot::explore ─order─▶ Link ─Message─▶ network
+//! ```
+//!
+//! - [`CuriousNode`]: the robot of this project on a live robot. What arrives becomes readings; each reading is one turn
+//!   of the loop of every robot, [`robot::explore`]; maps, transforms and orders are published.
+//! - [`SimulatedRobot`]: a simulated world as a robot of ROS, as `stage_ros2` is for Stage.
+//! - [`Link`]: what both need of a network. [`DdsLink`] is the only implementation that knows the client library; the tests
+//!   have one without a network.
+//!
+//! Nothing depends on this crate.
+
+mod dds;
+mod environment;
+#[cfg(test)]
+mod fake;
+mod link;
+mod maps;
+mod message;
+mod names;
+mod node;
+mod notes;
+mod order;
+mod parameters;
+mod pilot;
+pub mod program;
+mod ros_args;
+mod saves;
+mod simulated;
+mod source;
+mod value;
+mod wiring;
+
+pub use dds::DdsLink;
+pub use environment::{Environment, EnvironmentError, Range, Services};
+pub use link::{Answer, Event, Link, Navigation, Request, Wiring};
+pub use message::{
+    Bool, Clock, Color, Marker, Markers, Message, Quality, Texture, Topic, Twist as TwistMessage,
+    TwistStamped,
+};
+pub use names::{NameError, Names};
+pub use node::{CuriousNode, NodeReport, Signals};
+pub use notes::Output;
+pub use parameters::{Mode, Navigator, ParameterError, Parameters, PoseSource};
+pub use ros_args::{RosArgs, RosArgsError};
+pub use simulated::{SimulatedRobot, SimulationSettings};
+pub use value::Value;
+pub use wiring::{curious_wiring, simulation_wiring};

@@ -1,0 +1,161 @@
+//! The maps that are published: only the part that is known, rarely as a whole, and what changes at once.
+
+use crate::message::{Header, Message, OccupancyGrid, OccupancyGridUpdate, Topic};
+use interfaces::{Cell, CellState, Grid, GridFrame};
+use mapper::Mapper;
+use nalgebra::{Point2, Vector2};
+use std::time::{Duration, Instant};
+use survey::CHANGE_HORIZON_S;
+
+/// The border of a published map lies on multiples of this number of cells, so that its frame rarely changes.
+const BLOCK: i32 = 64;
+/// A map of more cells is published less often, in proportion: with the default buffers of an operating system, larger
+/// messages arrive late.
+const MANY_CELLS: f64 = 600.0 * 600.0;
+/// The time between two maps of changes and predictions, at least.
+const CHANGES: Duration = Duration::from_secs(10);
+
+/// What was published, and when.
+pub(crate) struct PublishedMaps {
+    interval: Duration,
+    /// The map as subscribers know it.
+    shown: Option<Grid<i8>>,
+    whole: Option<Instant>,
+    changes: Option<Instant>,
+    /// Whether something changed since the last whole map.
+    is_changed: bool,
+}
+
+impl PublishedMaps {
+    /// Publishes a map once in this time.
+    pub(crate) fn new(interval_s: f64) -> Self {
+        Self {
+            interval: Duration::from_secs_f64(interval_s),
+            shown: None,
+            whole: None,
+            changes: None,
+            is_changed: true,
+        }
+    }
+
+    /// The messages after a reading. `header` has the time of the reading and the frame of the map.
+    pub(crate) fn after(&mut self, mapper: &Mapper, header: &Header, now: Instant) -> Vec<(Topic, Message)> {
+        let mut messages = Vec::new();
+        self.is_changed |= !mapper.transitions().is_empty();
+        if self.is_due(now) && self.is_changed {
+            self.show_whole(mapper, header, now, &mut messages);
+        } else if let Some(update) = self.update(mapper, header) {
+            messages.push((Topic::MapUpdates, Message::GridUpdate(update)));
+        }
+        messages
+    }
+
+    fn is_due(&self, now: Instant) -> bool {
+        let cells = self.shown.as_ref().map_or(0, |shown| shown.cells().len());
+        let interval = self.interval.mul_f64((cells as f64 / MANY_CELLS).max(1.0));
+        self.whole.is_none_or(|whole| now.duration_since(whole) >= interval)
+    }
+
+    fn show_whole(
+        &mut self,
+        mapper: &Mapper,
+        header: &Header,
+        now: Instant,
+        messages: &mut Vec<(Topic, Message)>,
+    ) {
+        let Some(frame) = known_part(mapper.states()) else { return };
+        let message = |grid: &Grid<i8>| Message::Grid(OccupancyGrid::of(grid, header.clone()));
+        let map = cut(mapper.states(), frame, |state, _| percent(*state));
+        messages.push((Topic::Map, message(&map)));
+        self.shown = Some(map);
+        self.whole = Some(now);
+        self.is_changed = false;
+        if self.changes.is_none_or(|last| now.duration_since(last) >= CHANGES) {
+            self.changes = Some(now);
+            let share = |index, share: f64| match mapper.was_ever_seen(index) {
+                true => (share.clamp(0.0, 1.0) * 100.0).round() as i8,
+                false => -1,
+            };
+            let change = |index| share(index, mapper.change_probability_within(index, CHANGE_HORIZON_S));
+            let predicted = |index| share(index, mapper.blocked_probability(index));
+            messages
+                .push((Topic::ChangeMap, message(&cut(mapper.states(), frame, |_, index| change(index)))));
+            let predicted = cut(mapper.states(), frame, |_, index| predicted(index));
+            messages.push((Topic::PredictedMap, message(&predicted)));
+        }
+    }
+
+    /// The rectangle of the published map in which cells changed with the last reading.
+    fn update(&mut self, mapper: &Mapper, header: &Header) -> Option<OccupancyGridUpdate> {
+        let shown = self.shown.as_mut()?;
+        let offset = offset(shown.frame(), mapper.frame());
+        let (mut low, mut high): (Option<Cell>, Option<Cell>) = (None, None);
+        for transition in mapper.transitions() {
+            let cell = Cell::new(transition.cell.x - offset.x, transition.cell.y - offset.y);
+            let state = mapper.states().get(transition.cell).copied().unwrap_or(CellState::Unknown);
+            let Some(known) = shown.get_mut(cell).filter(|known| **known != percent(state)) else { continue };
+            *known = percent(state);
+            low = Some(low.map_or(cell, |low| Cell::new(low.x.min(cell.x), low.y.min(cell.y))));
+            high = Some(high.map_or(cell, |high| Cell::new(high.x.max(cell.x), high.y.max(cell.y))));
+        }
+        let (low, high) = low.zip(high)?;
+        Some(OccupancyGridUpdate::part(shown, low, high, header.clone()))
+    }
+}
+
+/// The value of a cell in an occupancy grid.
+fn percent(state: CellState) -> i8 {
+    match state {
+        CellState::Unknown => -1,
+        CellState::Free => 0,
+        CellState::Blocked => 100,
+    }
+}
+
+/// The frame of the known cells, with borders on multiples of [`BLOCK`]; `None` if nothing is known.
+fn known_part(map: &Grid<CellState>) -> Option<GridFrame> {
+    let frame = map.frame();
+    let rows = map.cells().chunks(frame.width()).zip(0..);
+    let mut known: Option<(Cell, Cell)> = None;
+    for (row, y) in rows {
+        let is_known = |state: &CellState| *state != CellState::Unknown;
+        let Some(left) = row.iter().position(is_known) else { continue };
+        let right = row.iter().rposition(is_known).unwrap_or(left);
+        let (left, right) = (left as i32, right as i32);
+        known = Some(match known {
+            None => (Cell::new(left, y), Cell::new(right, y)),
+            Some((low, high)) => (Cell::new(low.x.min(left), low.y), Cell::new(high.x.max(right), y)),
+        });
+    }
+    let (low, high) = known?;
+    let begin = |at: i32| at / BLOCK * BLOCK;
+    let end = |at: i32, size: usize| ((at / BLOCK + 1) * BLOCK).min(size as i32);
+    let (x, y) = (begin(low.x), begin(low.y));
+    let (width, height) = (end(high.x, frame.width()) - x, end(high.y, frame.height()) - y);
+    let origin = frame.origin() + Vector2::new(f64::from(x), f64::from(y)) * frame.resolution_m();
+    GridFrame::new(origin, frame.resolution_m(), width as usize, height as usize)
+}
+
+/// The part of a map in a frame.
+fn cut(map: &Grid<CellState>, frame: GridFrame, value: impl Fn(&CellState, usize) -> i8) -> Grid<i8> {
+    let offset = offset(&frame, map.frame());
+    let mut part = Grid::filled(frame, -1);
+    let width = frame.width();
+    for (row, y) in part.cells_mut().chunks_mut(width).zip(offset.y..) {
+        for (cell, x) in row.iter_mut().zip(offset.x..) {
+            if let Some(index) = map.frame().index(Cell::new(x, y)) {
+                *cell = value(&map.cells()[index], index);
+            }
+        }
+    }
+    part
+}
+
+/// The cell of the whole map in which a part of it begins.
+fn offset(part: &GridFrame, whole: &GridFrame) -> Cell {
+    let half = Vector2::repeat(0.5 * whole.resolution_m());
+    whole.cell_at(&(Point2::from(part.origin()) + half))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,84 @@
+use super::*;
+use interfaces::{CellReading, Event};
+use mapper::MapperSettings;
+use nalgebra::Isometry2;
+
+/// A mapper of 300 × 200 cells that has seen some cells.
+fn mapper() -> Mapper {
+    let frame = GridFrame::new(Point2::new(-15.0, -10.0), 0.1, 300, 200).unwrap();
+    Mapper::new(&MapperSettings::default(), frame).unwrap()
+}
+
+fn see(mapper: &mut Mapper, time: f64, cells: &[(i32, i32, bool)]) {
+    let cells = cells.iter().map(|(x, y, is_blocked)| (Cell::new(*x, *y), *is_blocked)).collect();
+    mapper.update(&CellReading { time, pose: Isometry2::identity(), cells }).unwrap();
+}
+
+fn grid(message: &(Topic, Message)) -> (Topic, &OccupancyGrid) {
+    let (topic, Message::Grid(grid)) = message else { panic!("{message:?}") };
+    (*topic, grid)
+}
+
+#[test]
+fn only_the_known_part_is_published() {
+    let (mut mapper, mut maps, start) = (mapper(), PublishedMaps::new(5.0), Instant::now());
+    assert_eq!(maps.after(&mapper, &Header::default(), start), []);
+    see(&mut mapper, 1.0, &[(70, 130, false), (71, 130, true)]);
+    let messages = maps.after(&mapper, &Header::default(), start);
+    let topics: Vec<Topic> = messages.iter().map(|message| grid(message).0).collect();
+    assert_eq!(topics, [Topic::Map, Topic::ChangeMap, Topic::PredictedMap]);
+    let (_, map) = grid(&messages[0]);
+    // From 64 to 128 across, and from 128 to 192 up.
+    assert_eq!((map.width, map.height), (64, 64));
+    assert!((map.origin.position.x - (-15.0 + 6.4)).abs() < 1e-9);
+    assert!((map.origin.position.y - (-10.0 + 12.8)).abs() < 1e-9);
+    let row = 2 * 64;
+    assert_eq!(map.data[row + 5..row + 9], [-1, 0, 100, -1]);
+    assert_eq!(map.data.iter().filter(|value| **value != -1).count(), 2);
+    // At the upper border, the map ends before the next block.
+    see(&mut mapper, 2.0, &[(299, 199, true)]);
+    let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(5));
+    let (_, map) = grid(&messages[0]);
+    assert_eq!((map.width, map.height), (300 - 64, 200 - 128));
+}
+
+#[test]
+fn changes_are_published_at_once_and_maps_rarely() {
+    let (mut mapper, mut maps, start) = (mapper(), PublishedMaps::new(5.0), Instant::now());
+    see(&mut mapper, 0.0, &[(70, 130, false), (71, 130, true)]);
+    maps.after(&mapper, &Header::default(), start);
+    // Nothing new.
+    see(&mut mapper, 0.1, &[(70, 130, false)]);
+    assert_eq!(maps.after(&mapper, &Header::default(), start), []);
+    see(&mut mapper, 0.2, &[(71, 130, false), (73, 131, true), (1, 1, true)]);
+    let event = mapper.transitions().iter().find_map(|change| change.event());
+    assert_eq!(event, Some(Event::Free));
+    let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(1));
+    let [(Topic::MapUpdates, Message::GridUpdate(update))] = messages.as_slice() else {
+        panic!("{messages:?}")
+    };
+    assert_eq!((update.x, update.y, update.width, update.height), (7, 2, 3, 2));
+    assert_eq!(update.data, [0, -1, -1, -1, -1, 100]);
+    // What is outside of the published part comes with the next whole map, and the changes ten seconds after the first.
+    see(&mut mapper, 0.3, &[(70, 130, false)]);
+    let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(6));
+    assert_eq!(messages.iter().map(|message| grid(message).0).collect::<Vec<_>>(), [Topic::Map]);
+    assert_eq!(grid(&messages[0]).1.width, 128);
+    see(&mut mapper, 0.4, &[(70, 130, true)]);
+    let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(12));
+    assert_eq!(messages.len(), 3);
+}
+
+#[test]
+fn large_maps_are_published_less_often() {
+    let frame = GridFrame::new(Point2::origin(), 0.1, 1200, 600).unwrap();
+    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+    let (mut maps, start) = (PublishedMaps::new(5.0), Instant::now());
+    see(&mut mapper, 0.0, &[(0, 0, true), (1199, 599, true)]);
+    assert_eq!(maps.after(&mapper, &Header::default(), start).len(), 3);
+    see(&mut mapper, 1.0, &[(5, 5, true)]);
+    // 720,000 cells: twice the interval.
+    let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(9));
+    assert!(matches!(messages[..], [(Topic::MapUpdates, _)]));
+    assert_eq!(maps.after(&mapper, &Header::default(), start + Duration::from_secs(10)).len(), 3);
+}

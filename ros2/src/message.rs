@@ -1,0 +1,242 @@
+//! What the nodes send and receive: messages, and the topics that carry them.
+
+pub(crate) use logs::ros::{
+    Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Pose, PoseStamped, PoseWithCovariance,
+    Time, TransformStamped, Transforms, TwistWithCovariance, Vector,
+};
+
+use serde::{Deserialize, Serialize};
+
+/// `rosgraph_msgs/Clock`.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Clock {
+    /// The time of a simulation.
+    pub clock: Time,
+}
+
+/// `geometry_msgs/Twist`: m/s and rad/s, in the frame of the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Twist {
+    /// The linear velocity, m/s.
+    pub linear: Vector,
+    /// The angular velocity, rad/s.
+    pub angular: Vector,
+}
+
+/// `geometry_msgs/TwistStamped`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct TwistStamped {
+    /// The time of the command, and the frame of the robot.
+    pub header: Header,
+    /// The velocity.
+    pub twist: Twist,
+}
+
+/// `std_msgs/Bool`.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Bool {
+    /// The value.
+    pub data: bool,
+}
+
+/// `std_msgs/ColorRGBA`, each from 0 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Color {
+    /// Red.
+    pub r: f32,
+    /// Green.
+    pub g: f32,
+    /// Blue.
+    pub b: f32,
+    /// Opacity.
+    pub a: f32,
+}
+
+/// `visualization_msgs/Marker`, as in Humble and later. The shapes of this project need no texture, text or mesh.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Marker {
+    /// The time, and the frame of all points.
+    pub header: Header,
+    /// The group of the marker.
+    pub ns: String,
+    /// The number of the marker in its group: a later marker with the same number replaces it.
+    pub id: i32,
+    /// The shape, one of the constants of this type.
+    pub shape: i32,
+    /// What to do, one of the constants of this type.
+    pub action: i32,
+    /// The pose of the shape.
+    pub pose: Pose,
+    /// The size of the shape, m.
+    pub scale: Vector,
+    /// The color of the shape.
+    pub color: Color,
+    /// How long the marker is shown, s and ns; 0: until it is replaced.
+    pub lifetime: (i32, u32),
+    /// Whether the marker moves along with its frame.
+    pub frame_locked: bool,
+    /// The points of a line.
+    pub points: Vec<Vector>,
+    /// The colors of the points.
+    pub colors: Vec<Color>,
+    /// A texture.
+    pub texture: Texture,
+    /// A text.
+    pub text: String,
+    /// A mesh: its name, a file (name, bytes), and whether the materials of the file are used.
+    pub mesh: (String, (String, Vec<u8>), bool),
+}
+
+/// The texture of a [`Marker`]: its name, the picture (header, format, bytes), and the coordinates of the points in it.
+pub type Texture = (String, (Header, String, Vec<u8>), Vec<(f32, f32)>);
+
+impl Marker {
+    /// The shape of an arrow.
+    pub const ARROW: i32 = 0;
+    /// The shape of a line through the points.
+    pub const LINE_STRIP: i32 = 4;
+    /// Shows the marker.
+    pub const ADD: i32 = 0;
+    /// Removes the marker.
+    pub const DELETE: i32 = 2;
+}
+
+/// `visualization_msgs/MarkerArray`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Markers {
+    /// The markers.
+    pub markers: Vec<Marker>,
+}
+
+/// A message of any type.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Message {
+    /// A scan of a laser.
+    Scan(LaserScan),
+    /// A pose and a velocity by odometry.
+    Odometry(Box<Odometry>),
+    /// Transforms between frames.
+    Transforms(Transforms),
+    /// The time of a simulation.
+    Clock(Clock),
+    /// A velocity.
+    Twist(Twist),
+    /// A velocity with a time.
+    TwistStamped(TwistStamped),
+    /// Yes or no.
+    Bool(Bool),
+    /// A map.
+    Grid(OccupancyGrid),
+    /// A part of a map that has changed.
+    GridUpdate(OccupancyGridUpdate),
+    /// Shapes to be drawn.
+    Markers(Markers),
+    /// A pose.
+    Pose(PoseStamped),
+}
+
+/// What a topic is for. Its name is a setting of the node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Topic {
+    /// The scans of the laser.
+    Scan,
+    /// The odometry.
+    Odometry,
+    /// Transforms that change.
+    Transforms,
+    /// Transforms that never change.
+    StaticTransforms,
+    /// The time of a simulation.
+    Clock,
+    /// Velocities for the robot, without a time.
+    Velocity,
+    /// Velocities for the robot, with a time. Its name is the same as that of [`Topic::Velocity`].
+    StampedVelocity,
+    /// Whether the robot explores, or waits.
+    Resume,
+    /// The map.
+    Map,
+    /// The parts of the map that changed since it was sent as a whole.
+    MapUpdates,
+    /// Where the place changes.
+    ChangeMap,
+    /// Where the place is probably blocked now.
+    PredictedMap,
+    /// The goal and the path of the robot, to be drawn.
+    Markers,
+    /// The pose to which Nav2 drives.
+    GoalPose,
+    /// The true pose of a simulated robot.
+    GroundTruth,
+}
+
+/// How messages are delivered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quality {
+    /// Whether lost messages are sent again.
+    pub is_reliable: bool,
+    /// Whether a later subscriber gets the last messages ("transient local").
+    pub is_latched: bool,
+    /// The number of messages that are kept.
+    pub depth: usize,
+}
+
+impl Quality {
+    /// The sensor-data profile of ROS.
+    pub const SENSOR: Self = Self { is_reliable: false, is_latched: false, depth: 5 };
+    /// The default profile of ROS.
+    pub const DEFAULT: Self = Self { is_reliable: true, is_latched: false, depth: 10 };
+    /// The profile of maps.
+    pub const LATCHED: Self = Self { is_reliable: true, is_latched: true, depth: 1 };
+}
+
+impl Topic {
+    /// The name that other nodes expect, relative to the namespace of the node, except for those that are absolute.
+    pub fn default_name(self) -> &'static str {
+        match self {
+            Self::Scan => "scan",
+            Self::Odometry => "odom",
+            Self::Transforms => "/tf",
+            Self::StaticTransforms => "/tf_static",
+            Self::Clock => "/clock",
+            Self::Velocity | Self::StampedVelocity => "cmd_vel",
+            Self::Resume => "explore/resume",
+            Self::Map => "map",
+            Self::MapUpdates => "map_updates",
+            Self::ChangeMap => "change_map",
+            Self::PredictedMap => "predicted_map",
+            Self::Markers => "explore/goals",
+            Self::GoalPose => "goal_pose",
+            Self::GroundTruth => "ground_truth",
+        }
+    }
+
+    /// The type of its messages: a package and a name.
+    pub fn type_name(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Scan => ("sensor_msgs", "LaserScan"),
+            Self::Odometry | Self::GroundTruth => ("nav_msgs", "Odometry"),
+            Self::Transforms | Self::StaticTransforms => ("tf2_msgs", "TFMessage"),
+            Self::Clock => ("rosgraph_msgs", "Clock"),
+            Self::Velocity => ("geometry_msgs", "Twist"),
+            Self::StampedVelocity => ("geometry_msgs", "TwistStamped"),
+            Self::Resume => ("std_msgs", "Bool"),
+            Self::Map | Self::ChangeMap | Self::PredictedMap => ("nav_msgs", "OccupancyGrid"),
+            Self::MapUpdates => ("map_msgs", "OccupancyGridUpdate"),
+            Self::Markers => ("visualization_msgs", "MarkerArray"),
+            Self::GoalPose => ("geometry_msgs", "PoseStamped"),
+        }
+    }
+
+    /// How its messages are delivered, as subscribers and publishers of ROS expect it.
+    pub fn quality(self) -> Quality {
+        match self {
+            Self::Scan => Quality::SENSOR,
+            Self::Transforms => Quality { depth: 100, ..Quality::DEFAULT },
+            Self::StaticTransforms => Quality { depth: 100, ..Quality::LATCHED },
+            Self::Map | Self::ChangeMap | Self::PredictedMap => Quality::LATCHED,
+            Self::Clock => Quality { is_reliable: false, ..Quality::DEFAULT },
+            _ => Quality::DEFAULT,
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! The names of a node, its topics and services: relative, absolute, private, remapped.
+
+use crate::ros_args::RosArgs;
+
+/// The error for a name that ROS does not allow.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` is not a valid name of a {kind}: {why}")]
+pub struct NameError {
+    kind: &'static str,
+    name: String,
+    why: &'static str,
+}
+
+/// The names of a node.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Names {
+    node: String,
+    namespace: String,
+}
+
+impl Names {
+    /// The names of a node with this default name, after the remapping of `__node` and `__ns`.
+    ///
+    /// # Errors
+    ///
+    /// When a name is not valid.
+    pub fn new(default_node: &str, ros: &RosArgs) -> Result<Self, NameError> {
+        let special = |long: &str, short: &str| {
+            ros.remapped(default_node, |from| from == long || from == short).map(str::to_owned)
+        };
+        let node = special("__node", "__name").unwrap_or_else(|| default_node.to_owned());
+        let namespace = special("__ns", "__ns").unwrap_or_else(|| "/".to_owned());
+        if node.contains('/') {
+            return Err(NameError { kind: "node", name: node, why: "it must not contain a slash" });
+        }
+        check("node", &node)?;
+        if !namespace.starts_with('/') {
+            return Err(NameError { kind: "namespace", name: namespace, why: "it must begin with a slash" });
+        }
+        if namespace != "/" {
+            check("namespace", &namespace)?;
+        }
+        Ok(Self { node, namespace })
+    }
+
+    /// The name of the node.
+    pub fn node(&self) -> &str {
+        &self.node
+    }
+
+    /// Its namespace.
+    pub fn namespace(&self) -> &str {
+        &self.namespace
+    }
+
+    /// The full name of a topic or service: `scan` in the namespace, `/scan` as it is, `~/save_state` below the name of the
+    /// node; after remapping.
+    ///
+    /// # Errors
+    ///
+    /// When the name, or what it is remapped to, is not valid.
+    pub fn resolved(&self, kind: &'static str, name: &str, ros: &RosArgs) -> Result<String, NameError> {
+        let full = self.full(name);
+        let to = ros.remapped(&self.node, |from| from == name || self.full(from) == full);
+        let full = to.map_or(full, |to| self.full(to));
+        check(kind, &full)?;
+        Ok(full)
+    }
+
+    fn full(&self, name: &str) -> String {
+        let namespace = self.namespace.trim_end_matches('/');
+        match name.strip_prefix("~/") {
+            Some(private) => format!("{namespace}/{}/{private}", self.node),
+            None if name.starts_with('/') => name.to_owned(),
+            None => format!("{namespace}/{name}"),
+        }
+    }
+}
+
+/// Checks the parts of a name between slashes.
+fn check(kind: &'static str, name: &str) -> Result<(), NameError> {
+    let invalid = |why| Err(NameError { kind, name: name.to_owned(), why });
+    for part in name.strip_prefix('/').unwrap_or(name).split('/') {
+        let is_valid = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        if part.is_empty() {
+            return invalid("a part of it is empty");
+        }
+        if !part.chars().all(is_valid) {
+            return invalid("it may contain letters without accents, digits and underscores");
+        }
+        if part.starts_with(|c: char| c.is_ascii_digit()) {
+            return invalid("a part of it begins with a digit");
+        }
+        if part.contains("__") {
+            return invalid("it contains two underscores in a row");
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ros(line: &str) -> RosArgs {
+        let line = format!("--ros-args {line}");
+        RosArgs::split(line.split_whitespace().map(str::to_owned)).unwrap().1
+    }
+
+    #[test]
+    fn names_are_resolved_as_in_ros() {
+        let plain = ros("");
+        let names = Names::new("curious_node", &plain).unwrap();
+        let resolved = |name| names.resolved("topic", name, &plain).unwrap();
+        assert_eq!(resolved("scan"), "/scan");
+        assert_eq!(resolved("/scan"), "/scan");
+        assert_eq!(resolved("~/save_state"), "/curious_node/save_state");
+        assert_eq!(names.namespace(), "/");
+
+        let ros = ros("-r __ns:=/robot -r __node:=mapper -r scan:=front/scan -r /tf:=tf -r map:=/map");
+        let names = Names::new("curious_node", &ros).unwrap();
+        let resolved = |name| names.resolved("topic", name, &ros).unwrap();
+        assert_eq!(resolved("scan"), "/robot/front/scan");
+        assert_eq!(resolved("/robot/scan"), "/robot/front/scan");
+        assert_eq!(resolved("/tf"), "/robot/tf");
+        assert_eq!(resolved("map"), "/map");
+        assert_eq!(resolved("odom"), "/robot/odom");
+        assert_eq!(resolved("~/save_state"), "/robot/mapper/save_state");
+    }
+
+    #[test]
+    fn invalid_names_are_refused() {
+        let error = |line: &str| {
+            let ros = ros(line);
+            let names = Names::new("curious_node", &ros);
+            names.and_then(|names| names.resolved("topic", "scan", &ros)).unwrap_err().to_string()
+        };
+        assert_eq!(error("-r scan:=/a//b"), "`/a//b` is not a valid name of a topic: a part of it is empty");
+        assert_eq!(
+            error("-r scan:=é"),
+            "`/é` is not a valid name of a topic: it may contain letters without accents, digits and underscores"
+        );
+        assert_eq!(
+            error("-r scan:=/2nd"),
+            "`/2nd` is not a valid name of a topic: a part of it begins with a digit"
+        );
+        assert_eq!(
+            error("-r __ns:=robot"),
+            "`robot` is not a valid name of a namespace: it must begin with a slash"
+        );
+        assert_eq!(
+            error("-r __node:=a/b"),
+            "`a/b` is not a valid name of a node: it must not contain a slash"
+        );
+    }
+}

@@ -1,0 +1,108 @@
+//! The messages that tell other nodes what the robot does.
+
+use crate::message::{
+    Color, Header, Marker, Markers as MarkersMessage, Message, Pose, PoseStamped, Time, Topic,
+    TransformStamped, Transforms, Twist, TwistStamped, Vector,
+};
+use nalgebra::{Isometry2, Point2};
+
+/// The color of the goal and its path.
+const COLOR: Color = Color { r: 0.9, g: 0.3, b: 0.1, a: 1.0 };
+/// The length of the arrow at a goal, and the width of a path, m.
+const ARROW_M: f64 = 0.5;
+const LINE_M: f64 = 0.05;
+
+pub(super) fn header(stamp: Time, frame: &str) -> Header {
+    Header { stamp, frame_id: frame.to_owned() }
+}
+
+/// The transform from the map to the odometry, which holds for `ahead_s` after its time.
+pub(super) fn transform(pose: &Isometry2<f64>, stamp: Time, ahead_s: f64, map: &str, odom: &str) -> Message {
+    let stamp = Time::from_ns(stamp.ns().saturating_add((ahead_s * 1e9) as i64));
+    let transform = TransformStamped {
+        header: header(stamp, map),
+        child_frame_id: odom.to_owned(),
+        transform: Pose::in_plane(pose),
+    };
+    Message::Transforms(Transforms { transforms: vec![transform] })
+}
+
+pub(super) fn velocity(
+    twist: &interfaces::Twist,
+    is_stamped: bool,
+    stamp: Time,
+    base: &str,
+) -> (Topic, Message) {
+    let twist = Twist {
+        linear: Vector { x: twist.linear_mps, ..Vector::default() },
+        angular: Vector { z: twist.angular_radps, ..Vector::default() },
+    };
+    match is_stamped {
+        true => {
+            let message = TwistStamped { header: header(stamp, base), twist };
+            (Topic::StampedVelocity, Message::TwistStamped(message))
+        }
+        false => (Topic::Velocity, Message::Twist(twist)),
+    }
+}
+
+pub(super) fn goal(pose: &Isometry2<f64>, stamp: Time, map: &str) -> PoseStamped {
+    PoseStamped { header: header(stamp, map), pose: Pose::in_plane(pose) }
+}
+
+/// The goal and the path as they were drawn last.
+#[derive(Debug, Default)]
+pub(super) struct Markers {
+    goal: Option<Point2<f64>>,
+    path: Vec<Point2<f64>>,
+}
+
+impl Markers {
+    /// The message that draws what has changed; `None` if nothing has.
+    pub(super) fn changed(
+        &mut self,
+        goal: Option<Point2<f64>>,
+        path: &[Point2<f64>],
+        header: &Header,
+    ) -> Option<Message> {
+        let mut markers = Vec::new();
+        if goal != self.goal {
+            self.goal = goal;
+            let above = goal.map(|at| vec![point(&at, ARROW_M), point(&at, 0.0)]);
+            let scale = Vector { x: 0.1, y: 0.2, z: 0.0 };
+            markers.push(marker(header, 0, Marker::ARROW, scale, above));
+        }
+        if path != self.path {
+            self.path = path.to_vec();
+            let line = (path.len() > 1).then(|| path.iter().map(|at| point(at, 0.0)).collect());
+            let scale = Vector { x: LINE_M, ..Vector::default() };
+            markers.push(marker(header, 1, Marker::LINE_STRIP, scale, line));
+        }
+        (!markers.is_empty()).then_some(Message::Markers(MarkersMessage { markers }))
+    }
+}
+
+fn point(at: &Point2<f64>, z: f64) -> Vector {
+    Vector { x: at.x, y: at.y, z }
+}
+
+/// A marker with these points; without points, the marker is removed.
+fn marker(header: &Header, id: i32, shape: i32, scale: Vector, points: Option<Vec<Vector>>) -> Marker {
+    Marker {
+        header: header.clone(),
+        ns: "goals".to_owned(),
+        id,
+        shape,
+        action: if points.is_some() { Marker::ADD } else { Marker::DELETE },
+        pose: Pose::in_plane(&Isometry2::identity()),
+        scale,
+        color: COLOR,
+        lifetime: (0, 0),
+        frame_locked: false,
+        points: points.unwrap_or_default(),
+        colors: Vec::new(),
+        texture: Default::default(),
+        text: String::new(),
+        mesh: Default::default(),
+    }
+}

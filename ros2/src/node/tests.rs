@@ -1,0 +1,225 @@
+use super::*;
+use crate::fake::FakeLink;
+use crate::link::{Navigation, Request};
+use crate::message::{Bool, TwistStamped};
+use crate::parameters::{Mode, Navigator};
+use crate::simulated::{SimulatedRobot, SimulationSettings};
+use interfaces::{CellState, Grid};
+use std::sync::{Arc, Mutex};
+
+/// A simulated robot, a node, and all that goes between them.
+struct Pair {
+    sim: SimulatedRobot<FakeLink>,
+    robot: FakeLink,
+    node: CuriousNode<FakeLink>,
+    others: FakeLink,
+    said: Arc<Mutex<Vec<String>>>,
+}
+
+fn parameters(mode: Mode) -> Parameters {
+    Parameters { mode, map_size_m: 40.0, max_vel_x_mps: 0.4, robot_radius_m: 0.2, ..Parameters::default() }
+}
+
+fn node(
+    parameters: &Parameters,
+    state: Option<&Path>,
+) -> (CuriousNode<FakeLink>, FakeLink, Arc<Mutex<Vec<String>>>) {
+    let (others, said) = (FakeLink::default(), Arc::new(Mutex::new(Vec::new())));
+    let to = said.clone();
+    let output = Box::new(move |text: &str| to.lock().unwrap().push(text.to_owned()));
+    let node = CuriousNode::new(others.clone(), parameters, state, output).unwrap();
+    (node, others, said)
+}
+
+impl Pair {
+    fn new(parameters: &Parameters, begin_s: i64, state: Option<&Path>) -> Self {
+        let world = worldfile::shipped::load("house").unwrap();
+        let robot = FakeLink::default();
+        let settings = SimulationSettings { seed: 1, speed: 1.0, begin_ns: begin_s * 1_000_000_000 };
+        let sim = SimulatedRobot::new(robot.clone(), &world, settings);
+        let (node, others, said) = node(parameters, state);
+        Self { sim, robot, node, others, said }
+    }
+
+    /// Runs for some simulated time.
+    fn run(&mut self, duration_s: f64) {
+        let end_s = self.sim.time_s() + duration_s;
+        while self.sim.time_s() < end_s {
+            self.sim.step();
+            let sent = self.robot.others(|others| std::mem::take(&mut others.heard));
+            for (topic, message) in sent {
+                if !matches!(topic, Topic::Clock | Topic::GroundTruth) {
+                    self.others.sends(topic, message);
+                    self.node.turn(Duration::ZERO);
+                }
+            }
+            let ordered = self.others.others(|others| {
+                others.heard.extract_if(.., |(topic, _)| *topic == Topic::StampedVelocity).collect::<Vec<_>>()
+            });
+            for (topic, message) in ordered {
+                self.sim.take(Event::Message(topic, message));
+            }
+        }
+    }
+
+    fn is_said(&self, words: &str) -> bool {
+        self.said.lock().unwrap().iter().any(|text| text.contains(words))
+    }
+}
+
+fn known(map: &Grid<CellState>) -> usize {
+    map.cells().iter().filter(|state| **state != CellState::Unknown).count()
+}
+
+#[test]
+fn a_robot_that_someone_else_drives_is_mapped() {
+    let mut pair = Pair::new(&parameters(Mode::Map), 0, None);
+    pair.run(5.0);
+    let report = pair.node.report();
+    // The last scan waits for a later pose.
+    assert!(report.received - report.readings <= 1, "{report:?}");
+    assert_eq!((report.unused, report.readings), ([0; 3], report.mapped));
+    assert!(report.readings >= 48, "{report:?}");
+    assert!(known(pair.node.mapper().states()) > 1000);
+    assert_eq!(pair.others.heard(Topic::StampedVelocity), []);
+    let maps = pair.others.heard(Topic::Map);
+    let Some(Message::Grid(map)) = maps.first() else { panic!("no map") };
+    assert_eq!(map.header.frame_id, "map");
+    let transforms = pair.others.heard(Topic::Transforms);
+    let Some(Message::Transforms(last)) = transforms.last() else { panic!("no transform") };
+    let (stamp, found) = (last.transforms[0].header.stamp, &last.transforms[0]);
+    assert_eq!((found.header.frame_id.as_str(), found.child_frame_id.as_str()), ("map", "odom"));
+    // The robot starts at the origin of the map, and stands: the transform undoes its pose by odometry.
+    let at = found.transform.isometry().unwrap();
+    let start = worldfile::shipped::load("house").unwrap().driven().pose;
+    let back = start.inverse();
+    assert!((at.translation.x - back.translation.x).abs() < 0.01, "{at} {back}");
+    assert!((at.translation.y - back.translation.y).abs() < 0.01, "{at} {back}");
+    assert!(stamp.ns() > 4_900_000_000, "{stamp:?}");
+}
+
+#[test]
+fn a_robot_explores_and_waits() {
+    let mut pair = Pair::new(&parameters(Mode::Explore), 1_700_000_000, None);
+    pair.run(4.0);
+    let before = known(pair.node.mapper().states());
+    pair.run(40.0);
+    assert!(known(pair.node.mapper().states()) > before + 5000, "{before}");
+    let report = pair.node.report();
+    assert!(report.mapped * 10 >= report.readings * 9, "{report:?}");
+    assert!(pair.is_said("to ("), "no goal");
+    assert!(!pair.others.heard(Topic::Markers).is_empty());
+    pair.others.sends(Topic::Resume, Message::Bool(Bool { data: false }));
+    pair.run(1.0);
+    pair.others.others(|others| others.heard.clear());
+    let mut orders = Vec::new();
+    for _ in 0..10 {
+        pair.sim.step();
+        for (topic, message) in pair.robot.others(|others| std::mem::take(&mut others.heard)) {
+            pair.others.sends(topic, message);
+            pair.node.turn(Duration::ZERO);
+        }
+        orders.extend(pair.others.heard(Topic::StampedVelocity));
+    }
+    assert!(!orders.is_empty());
+    for order in orders {
+        let Message::TwistStamped(TwistStamped { twist, .. }) = order else { panic!("{order:?}") };
+        assert_eq!((twist.linear.x, twist.angular.z), (0.0, 0.0));
+    }
+    assert!(pair.is_said("exploring is paused"));
+}
+
+#[test]
+fn what_was_learned_survives_a_restart() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.state");
+    let map = parameters(Mode::Map);
+    let mut pair = Pair::new(&map, 1_700_000_000, Some(&path));
+    pair.others.others(|others| others.events.push_back(Event::SaveState(Request(7))));
+    pair.node.turn(Duration::ZERO);
+    let answer = |pair: &Pair| pair.others.others(|others| others.answers.pop()).unwrap();
+    let (request, early) = answer(&pair);
+    assert_eq!((request, early.is_done), (Request(7), false));
+    assert_eq!(early.text, "there is nothing to save before the first reading");
+    pair.run(5.0);
+    pair.others.others(|others| others.events.push_back(Event::SaveState(Request(8))));
+    pair.node.turn(Duration::ZERO);
+    while pair.others.others(|others| others.answers.is_empty()) {
+        pair.node.turn(Duration::ZERO);
+    }
+    let (request, saved) = answer(&pair);
+    assert_eq!((request, saved.is_done), (Request(8), true), "{}", saved.text);
+    let learned = pair.node.mapper().clone();
+
+    // An hour later, at the same place.
+    let mut again = Pair::new(&map, 1_700_003_600, Some(&path));
+    assert!(again.is_said("the map goes on from"));
+    assert_eq!(again.others.heard(Topic::Map).len(), 1);
+    assert_eq!(again.node.mapper().states(), learned.states());
+    again.run(5.0);
+    let time_s = again.node.mapper().time();
+    assert!((time_s - learned.time() - 3600.0).abs() < 6.0, "{time_s} {}", learned.time());
+    assert!(again.node.report().mapped > 30, "{:?}", again.node.report());
+
+    let coarse = Parameters { resolution_m: 0.1, ..map };
+    let refused = CuriousNode::new(FakeLink::default(), &coarse, Some(&path), Box::new(|_| ()));
+    let error = format!("{:#}", refused.err().unwrap());
+    assert!(error.contains("`map.resolution_m` is `0.05` there, and `0.1` here"), "{error}");
+}
+
+#[test]
+fn without_a_file_nothing_is_saved() {
+    let (mut node, others, _) = node(&parameters(Mode::Map), None);
+    others.others(|others| others.events.push_back(Event::SaveState(Request(1))));
+    node.turn(Duration::ZERO);
+    let (_, answer) = others.others(|others| others.answers.pop()).unwrap();
+    assert_eq!(answer.text, "there is no state file: start the node with --state FILE");
+}
+
+#[test]
+fn nav2_gets_goals_one_after_the_other() {
+    let nav2 = Parameters { navigator: Navigator::Nav2, ..parameters(Mode::Explore) };
+    let mut pair = Pair::new(&nav2, 0, None);
+    pair.run(4.0);
+    let goals = |pair: &Pair| pair.others.others(|others| others.goals.clone());
+    let first = goals(&pair);
+    assert_eq!(first.len(), 1, "{first:?}");
+    assert_eq!(first[0].as_ref().unwrap().header.frame_id, "map");
+    let tells = |pair: &Pair, navigation| {
+        pair.others.others(|others| others.events.push_back(Event::Navigation(navigation)));
+    };
+    tells(&pair, Navigation::Accepted);
+    pair.run(1.0);
+    assert_eq!(goals(&pair).len(), 1);
+    tells(&pair, Navigation::GivenUp);
+    pair.run(1.0);
+    assert_eq!(goals(&pair).len(), 2);
+    // A goal that is refused is followed by another one, but not at once.
+    tells(&pair, Navigation::Refused);
+    pair.run(3.0);
+    assert_eq!(goals(&pair).len(), 2);
+    pair.run(3.0);
+    assert_eq!(goals(&pair).len(), 3);
+    pair.others.sends(Topic::Resume, Message::Bool(Bool { data: false }));
+    pair.run(1.0);
+    assert_eq!(goals(&pair).last(), Some(&None));
+    pair.others.sends(Topic::Resume, Message::Bool(Bool { data: true }));
+    pair.run(1.0);
+    assert!(goals(&pair).last().unwrap().is_some());
+    // The robot does not move: after a while, the goal is given up.
+    tells(&pair, Navigation::Accepted);
+    pair.run(32.0);
+    assert!(pair.is_said("the robot comes no nearer to the goal"));
+}
+
+#[test]
+fn a_robot_that_falls_silent_is_stopped() {
+    let mut pair = Pair::new(&parameters(Mode::Explore), 0, None);
+    pair.run(8.0);
+    pair.others.others(|others| others.heard.clear());
+    std::thread::sleep(BLIND);
+    pair.node.turn(Duration::ZERO);
+    let orders = pair.others.heard(Topic::StampedVelocity);
+    let [Message::TwistStamped(TwistStamped { twist, .. })] = orders.as_slice() else { panic!("{orders:?}") };
+    assert_eq!((twist.linear.x, twist.angular.z), (0.0, 0.0));
+}

@@ -1,0 +1,76 @@
+//! Sentences for the error output, each one once in a while.
+
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+/// The time until the same sentence is written again.
+const REPEAT: Duration = Duration::from_secs(60);
+/// The most different sentences that are remembered: names come from the network.
+const MOST: usize = 1000;
+
+/// Where sentences go.
+pub type Output = Box<dyn FnMut(&str) + Send>;
+
+/// Writes sentences. A sentence that differs from an earlier one only in numbers is written once a minute.
+pub(crate) struct Notes {
+    output: Output,
+    written: BTreeMap<String, (Instant, u64)>,
+}
+
+impl Notes {
+    pub(crate) fn new(output: Output) -> Self {
+        Self { output, written: BTreeMap::new() }
+    }
+
+    /// Writes a sentence that is said once.
+    pub(crate) fn say(&mut self, text: &str) {
+        (self.output)(&interfaces::printable(text));
+    }
+
+    /// Writes a sentence that may be said often.
+    pub(crate) fn note(&mut self, text: &str, now: Instant) {
+        let kind: String = text.chars().filter(|c| !c.is_ascii_digit() && *c != '.' && *c != '-').collect();
+        let again = match self.written.get_mut(&kind) {
+            Some((last, unwritten)) if now.duration_since(*last) < REPEAT => {
+                *unwritten += 1;
+                return;
+            }
+            Some((_, unwritten)) => *unwritten,
+            None => 0,
+        };
+        if self.written.len() >= MOST {
+            self.written.clear();
+        }
+        self.written.insert(kind, (now, 0));
+        match again {
+            0 => self.say(text),
+            again => self.say(&format!("{text} ({again} times more since the last time)")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::{Arc, Mutex};
+
+    #[test]
+    fn a_sentence_is_written_once_a_minute() {
+        let written = Arc::new(Mutex::new(Vec::new()));
+        let to = written.clone();
+        let mut notes = Notes::new(Box::new(move |text| to.lock().unwrap().push(text.to_owned())));
+        let start = Instant::now();
+        for step in 0..130 {
+            notes.note(&format!("{step} scans are not valid"), start + Duration::from_secs(step));
+        }
+        notes.note("other\x1b[31m", start);
+        let expected = [
+            "0 scans are not valid",
+            "60 scans are not valid (59 times more since the last time)",
+            "120 scans are not valid (59 times more since the last time)",
+        ];
+        let written = written.lock().unwrap();
+        assert_eq!(written[..3], expected);
+        assert!(!written[3].contains('\x1b'));
+    }
+}

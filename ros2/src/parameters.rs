@@ -1,0 +1,374 @@
+//! The parameters of the mapping node, named as those of `slam_toolbox` and Nav2 where these have them.
+
+use crate::value::Value;
+use interfaces::{SettingsCheck, SettingsError};
+
+/// The error for a parameter.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ParameterError {
+    /// There is no such parameter.
+    #[error("there is no parameter `{name}`; there are {known}")]
+    Unknown {
+        /// The name as given.
+        name: String,
+        /// The names of all parameters.
+        known: String,
+    },
+    /// The value has another type, or is not one of those that are possible.
+    #[error("the parameter `{name}` must be {expected}, not `{found}`")]
+    Value {
+        /// The name.
+        name: String,
+        /// The valid values.
+        expected: &'static str,
+        /// The value as given.
+        found: Value,
+    },
+    /// The value is out of range.
+    #[error(transparent)]
+    Range(#[from] SettingsError),
+}
+
+/// What the node does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// It maps, and gives no command.
+    #[default]
+    Map,
+    /// It explores.
+    Explore,
+}
+
+/// What drives the robot to goals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Navigator {
+    /// The controller of this project, by velocities.
+    #[default]
+    CmdVel,
+    /// Nav2, by its action NavigateToPose.
+    Nav2,
+    /// Whatever listens to the topic `goal_pose`.
+    GoalPose,
+}
+
+/// How the pose of the robot is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PoseSource {
+    /// The odometry is exact.
+    Exact,
+    /// The odometry, as it drifts.
+    Odometry,
+    /// The pose that fits the scan to the map.
+    #[default]
+    Localized,
+}
+
+/// All parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameters {
+    /// `mode`.
+    pub mode: Mode,
+    /// `navigator`.
+    pub navigator: Navigator,
+    /// `pose`.
+    pub pose: PoseSource,
+    /// `map_frame`, `odom_frame` and `base_frame`: the frames of REP-105.
+    pub map_frame: String,
+    /// See [`Parameters::map_frame`].
+    pub odom_frame: String,
+    /// See [`Parameters::map_frame`].
+    pub base_frame: String,
+    /// `scan_topic`.
+    pub scan_topic: String,
+    /// `odom_topic`: for a robot whose odometry is not in tf.
+    pub odom_topic: String,
+    /// `resolution`: the side of a cell, m.
+    pub resolution_m: f64,
+    /// `map_size`: the sides of the map, whose center is where the robot starts, m.
+    pub map_size_m: f64,
+    /// `max_laser_range`: longer ranges are not used, m.
+    pub max_laser_range_m: f64,
+    /// `range_noise`: the standard deviation of ranges, m.
+    pub range_noise_m: f64,
+    /// `map_update_interval`: the time between two maps, s.
+    pub map_update_interval_s: f64,
+    /// `transform_publish_period`: the time between two transforms from map to odometry, s; 0: none.
+    pub transform_publish_period_s: f64,
+    /// `transform_timeout`: how long a transform holds after the last reading, s.
+    pub transform_timeout_s: f64,
+    /// `enable_stamped_cmd_vel`: whether velocities are `TwistStamped`, as Nav2 has it since Kilted, or `Twist`.
+    pub enable_stamped_cmd_vel: bool,
+    /// `robot_radius`, m.
+    pub robot_radius_m: f64,
+    /// `max_vel_x`, m/s.
+    pub max_vel_x_mps: f64,
+    /// `max_vel_theta`, rad/s.
+    pub max_vel_theta_radps: f64,
+    /// `acc_lim_x`, m/s².
+    pub acc_lim_x_mps2: f64,
+    /// `acc_lim_theta`, rad/s².
+    pub acc_lim_theta_radps2: f64,
+    /// `strategy`: how goals are selected.
+    pub strategy: String,
+    /// `seed` of the random decisions.
+    pub seed: i64,
+    /// `use_sim_time`: without effect, since all times are those of the messages.
+    pub use_sim_time: bool,
+    /// `qos_overrides./scan.subscription.reliability`: `best_effort` or `reliable`.
+    pub scan_reliability: String,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        let text = str::to_owned;
+        Self {
+            mode: Mode::default(),
+            navigator: Navigator::default(),
+            pose: PoseSource::default(),
+            map_frame: text("map"),
+            odom_frame: text("odom"),
+            base_frame: text("base_footprint"),
+            scan_topic: text("/scan"),
+            odom_topic: text("odom"),
+            resolution_m: 0.05,
+            map_size_m: 40.0,
+            max_laser_range_m: 20.0,
+            range_noise_m: 0.02,
+            map_update_interval_s: 5.0,
+            transform_publish_period_s: 0.02,
+            transform_timeout_s: 0.2,
+            enable_stamped_cmd_vel: true,
+            robot_radius_m: 0.22,
+            max_vel_x_mps: 0.26,
+            max_vel_theta_radps: 1.0,
+            acc_lim_x_mps2: 2.5,
+            acc_lim_theta_radps2: 3.2,
+            strategy: text("curious"),
+            seed: 1,
+            use_sim_time: false,
+            scan_reliability: text("best_effort"),
+        }
+    }
+}
+
+/// Where the value of a parameter is.
+enum Slot<'a> {
+    Mode(&'a mut Mode),
+    Navigator(&'a mut Navigator),
+    Pose(&'a mut PoseSource),
+    Text(&'a mut String),
+    Float(&'a mut f64),
+    Integer(&'a mut i64),
+    Bool(&'a mut bool),
+}
+
+/// The names of all parameters.
+const NAMES: [&str; 25] = [
+    "mode",
+    "navigator",
+    "pose",
+    "map_frame",
+    "odom_frame",
+    "base_frame",
+    "scan_topic",
+    "odom_topic",
+    "resolution",
+    "map_size",
+    "max_laser_range",
+    "range_noise",
+    "map_update_interval",
+    "transform_publish_period",
+    "transform_timeout",
+    "enable_stamped_cmd_vel",
+    "robot_radius",
+    "max_vel_x",
+    "max_vel_theta",
+    "acc_lim_x",
+    "acc_lim_theta",
+    "strategy",
+    "seed",
+    "use_sim_time",
+    "qos_overrides./scan.subscription.reliability",
+];
+
+impl Parameters {
+    /// Sets a parameter.
+    ///
+    /// # Errors
+    ///
+    /// When there is no such parameter, or when it has no such value. Ranges are checked by [`check`](Self::check).
+    pub fn set(&mut self, name: &str, value: &Value) -> Result<(), ParameterError> {
+        let Some(slot) = self.slot(name) else {
+            return Err(ParameterError::Unknown { name: name.to_owned(), known: NAMES.join(", ") });
+        };
+        let expected = match (slot, value) {
+            (Slot::Mode(mode), Value::Text(text)) => match text.as_str() {
+                "map" | "mapping" => return assigned(mode, Mode::Map),
+                "explore" => return assigned(mode, Mode::Explore),
+                _ => MODES,
+            },
+            (Slot::Navigator(navigator), Value::Text(text)) => match text.as_str() {
+                "cmd_vel" => return assigned(navigator, Navigator::CmdVel),
+                "nav2" => return assigned(navigator, Navigator::Nav2),
+                "goal_pose" => return assigned(navigator, Navigator::GoalPose),
+                _ => NAVIGATORS,
+            },
+            (Slot::Pose(pose), Value::Text(text)) => match text.as_str() {
+                "exact" => return assigned(pose, PoseSource::Exact),
+                "odometry" => return assigned(pose, PoseSource::Odometry),
+                "localized" => return assigned(pose, PoseSource::Localized),
+                _ => POSES,
+            },
+            (Slot::Text(to), Value::Text(text)) => return assigned(to, text.clone()),
+            (Slot::Float(to), Value::Float(number)) => return assigned(to, *number),
+            (Slot::Float(to), Value::Integer(number)) => return assigned(to, *number as f64),
+            (Slot::Integer(to), Value::Integer(number)) => return assigned(to, *number),
+            (Slot::Bool(to), Value::Bool(value)) => return assigned(to, *value),
+            (Slot::Mode(_), _) => MODES,
+            (Slot::Navigator(_), _) => NAVIGATORS,
+            (Slot::Pose(_), _) => POSES,
+            (Slot::Text(_), _) => "a text",
+            (Slot::Float(_), _) => "a number",
+            (Slot::Integer(_), _) => "a whole number",
+            (Slot::Bool(_), _) => "true or false",
+        };
+        Err(ParameterError::Value { name: name.to_owned(), expected, found: value.clone() })
+    }
+
+    /// All parameters with their values.
+    pub fn list(&self) -> Vec<(String, Value)> {
+        let mut copy = self.clone();
+        let value = |slot: Slot| match slot {
+            Slot::Mode(Mode::Map) => Value::Text("map".into()),
+            Slot::Mode(Mode::Explore) => Value::Text("explore".into()),
+            Slot::Navigator(Navigator::CmdVel) => Value::Text("cmd_vel".into()),
+            Slot::Navigator(Navigator::Nav2) => Value::Text("nav2".into()),
+            Slot::Navigator(Navigator::GoalPose) => Value::Text("goal_pose".into()),
+            Slot::Pose(PoseSource::Exact) => Value::Text("exact".into()),
+            Slot::Pose(PoseSource::Odometry) => Value::Text("odometry".into()),
+            Slot::Pose(PoseSource::Localized) => Value::Text("localized".into()),
+            Slot::Text(text) => Value::Text(text.clone()),
+            Slot::Float(number) => Value::Float(*number),
+            Slot::Integer(number) => Value::Integer(*number),
+            Slot::Bool(value) => Value::Bool(*value),
+        };
+        let named = |name: &str| copy.slot(name).map(|slot| (name.to_owned(), value(slot)));
+        NAMES.into_iter().filter_map(named).collect()
+    }
+
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    ///
+    /// When a value is out of range.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        let check = SettingsCheck { part: "node" };
+        check.within("resolution", self.resolution_m, 0.005..=1.0, "from 0.005 to 1")?;
+        check.within("map_size", self.map_size_m, 1.0..=1000.0, "from 1 to 1000")?;
+        check.within("max_laser_range", self.max_laser_range_m, 0.1..=1000.0, "from 0.1 to 1000")?;
+        check.within("range_noise", self.range_noise_m, 0.0..=0.5, "from 0 to 0.5")?;
+        check.within("map_update_interval", self.map_update_interval_s, 0.1..=3600.0, "from 0.1 to 3600")?;
+        let period = self.transform_publish_period_s;
+        let is_period = period == 0.0 || (0.005..=10.0).contains(&period);
+        check.valid("transform_publish_period", period, "0, or from 0.005 to 10", is_period)?;
+        check.within("transform_timeout", self.transform_timeout_s, 0.0..=10.0, "from 0 to 10")?;
+        for (name, frame) in [
+            ("map_frame", &self.map_frame),
+            ("odom_frame", &self.odom_frame),
+            ("base_frame", &self.base_frame),
+        ] {
+            if frame.is_empty() {
+                let found = Value::Text(String::new());
+                return Err(ParameterError::Value {
+                    name: name.into(),
+                    expected: "the name of a frame",
+                    found,
+                });
+            }
+        }
+        if !matches!(self.scan_reliability.as_str(), "best_effort" | "reliable") {
+            let found = Value::Text(self.scan_reliability.clone());
+            let name = "qos_overrides./scan.subscription.reliability".to_owned();
+            return Err(ParameterError::Value { name, expected: "best_effort or reliable", found });
+        }
+        Ok(())
+    }
+
+    fn slot(&mut self, name: &str) -> Option<Slot<'_>> {
+        Some(match name {
+            "mode" => Slot::Mode(&mut self.mode),
+            "navigator" => Slot::Navigator(&mut self.navigator),
+            "pose" => Slot::Pose(&mut self.pose),
+            "map_frame" => Slot::Text(&mut self.map_frame),
+            "odom_frame" => Slot::Text(&mut self.odom_frame),
+            "base_frame" => Slot::Text(&mut self.base_frame),
+            "scan_topic" => Slot::Text(&mut self.scan_topic),
+            "odom_topic" => Slot::Text(&mut self.odom_topic),
+            "resolution" => Slot::Float(&mut self.resolution_m),
+            "map_size" => Slot::Float(&mut self.map_size_m),
+            "max_laser_range" => Slot::Float(&mut self.max_laser_range_m),
+            "range_noise" => Slot::Float(&mut self.range_noise_m),
+            "map_update_interval" => Slot::Float(&mut self.map_update_interval_s),
+            "transform_publish_period" => Slot::Float(&mut self.transform_publish_period_s),
+            "transform_timeout" => Slot::Float(&mut self.transform_timeout_s),
+            "enable_stamped_cmd_vel" => Slot::Bool(&mut self.enable_stamped_cmd_vel),
+            "robot_radius" => Slot::Float(&mut self.robot_radius_m),
+            "max_vel_x" => Slot::Float(&mut self.max_vel_x_mps),
+            "max_vel_theta" => Slot::Float(&mut self.max_vel_theta_radps),
+            "acc_lim_x" => Slot::Float(&mut self.acc_lim_x_mps2),
+            "acc_lim_theta" => Slot::Float(&mut self.acc_lim_theta_radps2),
+            "strategy" => Slot::Text(&mut self.strategy),
+            "seed" => Slot::Integer(&mut self.seed),
+            "use_sim_time" => Slot::Bool(&mut self.use_sim_time),
+            "qos_overrides./scan.subscription.reliability" => Slot::Text(&mut self.scan_reliability),
+            _ => return None,
+        })
+    }
+}
+
+const MODES: &str = "map or explore";
+const NAVIGATORS: &str = "cmd_vel, nav2 or goal_pose";
+const POSES: &str = "exact, odometry or localized";
+
+fn assigned<T>(to: &mut T, value: T) -> Result<(), ParameterError> {
+    *to = value;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_parameter_has_a_name_a_value_and_a_slot() {
+        let list = Parameters::default().list();
+        assert_eq!(list.len(), NAMES.len());
+        let mut set = Parameters { seed: 5, mode: Mode::Explore, ..Parameters::default() };
+        for (name, value) in &list {
+            set.set(name, value).unwrap();
+        }
+        assert_eq!(set, Parameters::default());
+        assert_eq!(set.check(), Ok(()));
+    }
+
+    #[test]
+    fn invalid_parameters_are_named() {
+        let error = |name, value: &str| {
+            let mut parameters = Parameters::default();
+            let set = parameters.set(name, &Value::parse(value));
+            set.and_then(|()| parameters.check()).unwrap_err().to_string()
+        };
+        assert!(error("resolutoin", "1").starts_with("there is no parameter `resolutoin`; there are mode, "));
+        assert_eq!(error("resolution", "fine"), "the parameter `resolution` must be a number, not `fine`");
+        assert_eq!(error("resolution", "0"), "node setting `resolution` must be from 0.005 to 1, not 0");
+        assert_eq!(
+            error("mode", "localization"),
+            "the parameter `mode` must be map or explore, not `localization`"
+        );
+        assert_eq!(error("base_frame", ""), "the parameter `base_frame` must be the name of a frame, not ``");
+        assert_eq!(
+            error("transform_publish_period", "0.001"),
+            "node setting `transform_publish_period` must be 0, or from 0.005 to 10, not 0.001"
+        );
+    }
+}

@@ -1,0 +1,196 @@
+//! A simulated world as a robot of ROS.
+
+use crate::link::{Event, Link};
+use crate::message::{
+    Clock, Header, Message, Odometry, Pose, PoseWithCovariance, Time, Topic, TransformStamped, Transforms,
+    TwistWithCovariance, Vector,
+};
+use interfaces::{LaserReading, Twist};
+use logs::ros::scan_message;
+use nalgebra::Isometry2;
+use sim::physics::{Command, Controller, Fleet, RobotView, WorldSpec};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// The frames of the robot, by REP-105.
+const ODOM: &str = "odom";
+const BASE: &str = "base_link";
+const LASER: &str = "laser";
+/// The robot stops if no command comes for this time, s.
+const WATCHDOG_S: f64 = 0.5;
+/// The time between two poses by odometry, s.
+const ODOMETRY_S: f64 = 0.02;
+/// The longest wait for a command.
+const NAP: Duration = Duration::from_millis(50);
+/// A simulation that is behind by more than this does not catch up: its time goes slower.
+const BEHIND: Duration = Duration::from_millis(500);
+
+/// Settings of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SimulationSettings {
+    /// The seed of all random streams.
+    pub seed: u64,
+    /// The simulated time per real time.
+    pub speed: f64,
+    /// The time at the start, ns since the epoch.
+    pub begin_ns: i64,
+}
+
+/// The driven robot of a simulated world. It publishes its scans, its odometry, transforms, and the time, and obeys
+/// velocities; other robots of the world do what their behavior says.
+pub struct SimulatedRobot<L: Link> {
+    link: L,
+    fleet: Fleet,
+    driven: usize,
+    settings: SimulationSettings,
+    /// The time of the last command, s.
+    commanded_s: Option<f64>,
+    next_odometry_s: f64,
+    mount: Option<Isometry2<f64>>,
+    scans: u64,
+}
+
+/// Takes the scans of a robot, without a command.
+struct Scans {
+    driven: usize,
+    reading: Option<LaserReading>,
+}
+
+impl Controller for Scans {
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command> {
+        if robot.index == self.driven {
+            self.reading = robot.reading().cloned();
+        }
+        None
+    }
+}
+
+impl<L: Link> SimulatedRobot<L> {
+    /// The robot at its start.
+    pub fn new(link: L, spec: &WorldSpec, settings: SimulationSettings) -> Self {
+        Self {
+            link,
+            fleet: Fleet::new(spec.fleet(), settings.seed),
+            driven: spec.driven_index(),
+            settings,
+            commanded_s: None,
+            next_odometry_s: 0.0,
+            mount: None,
+            scans: 0,
+        }
+    }
+
+    /// Runs until `stop` is set, or until `duration_s` of simulated time are over. Returns the number of scans.
+    pub fn run(&mut self, stop: &AtomicBool, duration_s: f64) -> u64 {
+        let mut start = Instant::now();
+        while !stop.load(Ordering::Relaxed) && self.fleet.time_s() < duration_s {
+            self.step();
+            let due = Duration::from_secs_f64(self.fleet.time_s() / self.settings.speed);
+            start = start.max(Instant::now().checked_sub(due + BEHIND).unwrap_or(start));
+            loop {
+                let left = due.saturating_sub(start.elapsed());
+                let event = self.link.receive(left.min(NAP));
+                let is_idle = event.is_none();
+                event.into_iter().for_each(|event| self.take(event));
+                if left.is_zero() && is_idle || stop.load(Ordering::Relaxed) {
+                    break;
+                }
+            }
+        }
+        self.scans
+    }
+
+    /// Simulates one step, and publishes what is new.
+    pub fn step(&mut self) {
+        let time_s = self.fleet.time_s();
+        if self.commanded_s.is_some_and(|commanded_s| time_s - commanded_s > WATCHDOG_S) {
+            self.command(Twist::STOP);
+            self.commanded_s = None;
+        }
+        self.link.send(Topic::Clock, Message::Clock(Clock { clock: self.stamp(time_s) }));
+        let mut scans = Scans { driven: self.driven, reading: None };
+        let view = self.view(time_s);
+        self.fleet.step(&mut scans);
+        if time_s >= self.next_odometry_s - 1e-9 || scans.reading.is_some() {
+            self.next_odometry_s = time_s + ODOMETRY_S;
+            self.publish_odometry(time_s, view);
+        }
+        if let Some(reading) = scans.reading {
+            self.publish_scan(&reading);
+        }
+    }
+
+    /// The simulated time, s.
+    pub fn time_s(&self) -> f64 {
+        self.fleet.time_s()
+    }
+
+    /// Takes a command; what else comes is ignored.
+    pub fn take(&mut self, event: Event) {
+        let twist = match event {
+            Event::Message(_, Message::Twist(twist)) => twist,
+            Event::Message(_, Message::TwistStamped(stamped)) => stamped.twist,
+            _ => return,
+        };
+        self.commanded_s = Some(self.fleet.time_s());
+        // A command that is not finite stops the robot.
+        self.command(Twist { linear_mps: twist.linear.x, angular_radps: twist.angular.z });
+    }
+
+    fn command(&mut self, twist: Twist) {
+        self.fleet.command(self.driven, twist);
+    }
+
+    fn stamp(&self, time_s: f64) -> Time {
+        Time::from_ns(self.ns(time_s))
+    }
+
+    fn ns(&self, time_s: f64) -> i64 {
+        self.settings.begin_ns.saturating_add((time_s * 1e9).round() as i64)
+    }
+
+    /// The odometry, and the true pose and velocity, at a time.
+    fn view(&self, time_s: f64) -> Option<[Odometry; 2]> {
+        let robot = self.fleet.robots().nth(self.driven)?;
+        let (pose, twist) = robot.odometry();
+        let message = |frame: &str, pose: &Isometry2<f64>, twist: &Twist| Odometry {
+            header: Header { stamp: self.stamp(time_s), frame_id: frame.to_owned() },
+            child_frame_id: BASE.to_owned(),
+            pose: PoseWithCovariance { pose: Pose::in_plane(pose), covariance: Default::default() },
+            twist: TwistWithCovariance {
+                linear: Vector { x: twist.linear_mps, ..Vector::default() },
+                angular: Vector { z: twist.angular_radps, ..Vector::default() },
+                covariance: Default::default(),
+            },
+        };
+        Some([message(ODOM, &pose, &twist), message("world", &robot.pose, &robot.twist)])
+    }
+
+    fn publish_odometry(&mut self, time_s: f64, view: Option<[Odometry; 2]>) {
+        let Some([odometry, truth]) = view else { return };
+        let transform = odometry.pose.pose;
+        self.publish_transform(Topic::Transforms, time_s, (ODOM, BASE), transform);
+        self.link.send(Topic::Odometry, Message::Odometry(Box::new(odometry)));
+        self.link.send(Topic::GroundTruth, Message::Odometry(Box::new(truth)));
+    }
+
+    fn publish_scan(&mut self, reading: &LaserReading) {
+        if self.mount != Some(reading.mount) {
+            self.mount = Some(reading.mount);
+            let mount = Pose::in_plane(&reading.mount);
+            self.publish_transform(Topic::StaticTransforms, reading.time_s, (BASE, LASER), mount);
+        }
+        let scan = scan_message(reading, LASER.to_owned(), self.ns(reading.time_s));
+        self.link.send(Topic::Scan, Message::Scan(scan));
+        self.scans += 1;
+    }
+
+    fn publish_transform(&mut self, topic: Topic, time_s: f64, (parent, child): (&str, &str), pose: Pose) {
+        let transform = TransformStamped {
+            header: Header { stamp: self.stamp(time_s), frame_id: parent.to_owned() },
+            child_frame_id: child.to_owned(),
+            transform: pose,
+        };
+        self.link.send(topic, Message::Transforms(Transforms { transforms: vec![transform] }));
+    }
+}
