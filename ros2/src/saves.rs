@@ -74,11 +74,11 @@ impl Saves {
         pilot: &mut impl Pilot,
     ) -> std::io::Result<()> {
         let learned = self.facts.snapshot(mapper, localization);
-        let (facts, learned) = (self.pilot.clone(), interfaces::snapshot(pilot.values(mapper)));
+        let (facts, driven) = (self.pilot.clone(), interfaces::snapshot(pilot.values(mapper)));
         let clock = last.ns().to_le_bytes().to_vec();
         self.file.save(move || {
             let state = learned.added_to(State::default()).with(CLOCK, Facts::default(), clock);
-            state.with(PILOT, facts, learned)
+            state.with(PILOT, facts, driven)
         })
     }
 
