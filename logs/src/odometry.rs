@@ -50,6 +50,11 @@ impl Odometry {
         self.samples.last().map_or(Isometry2::identity(), |(_, pose)| *pose)
     }
 
+    /// The times of the oldest and the newest pose that are kept, s; `None` without a pose.
+    pub fn span_s(&self) -> Option<(f64, f64)> {
+        Some((self.samples.first()?.0, self.samples.last()?.0))
+    }
+
     /// Whether a later pose can be nearer to this time.
     pub fn must_wait(&self, time_s: f64) -> bool {
         self.samples.last().is_some_and(|(last_s, _)| *last_s < time_s && time_s - last_s < LONGEST_GAP_S)

@@ -24,13 +24,15 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, Ipv4Addr};
 use std::sync::Arc;
-use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::mpsc::{self, Receiver, Sender, SyncSender};
 use std::time::{Duration, Instant};
 
-/// How long a message waits if a subscriber does not keep up. The robot does not wait longer than this.
+/// How long a message that must not be lost waits if a subscriber does not keep up.
 const WAIT: Duration = Duration::from_millis(20);
 /// The time between two looks at what Nav2 answers.
 const POLL: Duration = Duration::from_millis(20);
+/// Events that wait for the node. If there are more, messages are lost on the network, as their QoS has it.
+const MOST_EVENTS: usize = 4096;
 /// Requests that wait for an answer; more are forgotten.
 const MOST_REQUESTS: usize = 100;
 
@@ -84,7 +86,7 @@ impl DdsLink {
         let publishers = Publishers::new(&mut node, wiring)?;
         let navigator = wiring.navigate_to_pose.as_deref();
         let navigator = navigator.map(|name| Navigator::new(&mut node, name, mapping)).transpose()?;
-        let (to, events) = mpsc::channel();
+        let (to, events) = mpsc::sync_channel(MOST_EVENTS);
         let (requests, coming) = mpsc::channel();
         let save_state = wiring.save_state.as_deref();
         let save_state = save_state.map(|name| save_state_server(&mut node, name, mapping)).transpose()?;
@@ -125,8 +127,8 @@ impl DdsLink {
 }
 
 impl Link for DdsLink {
-    fn send(&mut self, topic: Topic, message: Message) {
-        self.publishers.send(topic, message);
+    fn send(&mut self, topic: Topic, message: Message) -> bool {
+        self.publishers.send(topic, message)
     }
 
     fn receive(&mut self, patience: Duration) -> Option<Event> {
@@ -209,10 +211,10 @@ fn is_same(own: &Value, value: &ParameterValue) -> bool {
     }
 }
 
-fn profile(quality: &Quality) -> QosProfile {
+fn profile(quality: &Quality, when_full: WhenFull) -> QosProfile {
     QosProfile {
         reliability: match quality.is_reliable {
-            true => Reliability::Reliable { when_full: WhenFull::Wait(WAIT) },
+            true => Reliability::Reliable { when_full },
             false => Reliability::BestEffort,
         },
         durability: if quality.is_latched { Durability::TransientLocal } else { Durability::Volatile },
@@ -222,13 +224,18 @@ fn profile(quality: &Quality) -> QosProfile {
 }
 
 fn save_state_server(node: &mut Node, name: &str, mapping: ServiceMapping) -> anyhow::Result<Arc<SaveState>> {
-    let (service, quality) = (ServiceTypeName::new("std_srvs", "Trigger"), profile(&Quality::DEFAULT));
+    let (service, quality) =
+        (ServiceTypeName::new("std_srvs", "Trigger"), profile(&Quality::DEFAULT, WhenFull::Wait(WAIT)));
     let name = Name::parse(name)?;
     Ok(Arc::new(node.create_server(mapping, &name, &service, quality.clone(), quality)?))
 }
 
 /// Waits for requests in a thread of its own, which ends with the program.
-fn listen(server: Arc<SaveState>, requests: Sender<RmwRequestId>, to: Sender<Event>) -> anyhow::Result<()> {
+fn listen(
+    server: Arc<SaveState>,
+    requests: Sender<RmwRequestId>,
+    to: SyncSender<Event>,
+) -> anyhow::Result<()> {
     let wait = move || {
         loop {
             let event = match block_on(server.async_receive_request()) {

@@ -10,6 +10,8 @@ use std::time::Duration;
 #[derive(Debug, Default)]
 pub(crate) struct Others {
     pub(crate) events: VecDeque<Event>,
+    /// Whether they do not keep up.
+    pub(crate) is_slow: bool,
     pub(crate) heard: Vec<(Topic, Message)>,
     pub(crate) answers: Vec<(Request, Answer)>,
     pub(crate) goals: Vec<Option<PoseStamped>>,
@@ -38,8 +40,13 @@ impl FakeLink {
 }
 
 impl Link for FakeLink {
-    fn send(&mut self, topic: Topic, message: Message) {
-        self.others(|others| others.heard.push((topic, message)));
+    fn send(&mut self, topic: Topic, message: Message) -> bool {
+        self.others(|others| {
+            if !others.is_slow {
+                others.heard.push((topic, message));
+            }
+            !others.is_slow
+        })
     }
 
     fn receive(&mut self, _: Duration) -> Option<Event> {

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 /// The connection of a node with other nodes. No method fails: what goes wrong is an [`Event::Problem`].
 pub trait Link {
-    /// Sends a message.
-    fn send(&mut self, topic: Topic, message: Message);
+    /// Sends a message. `false`: it was not sent, since a subscriber does not keep up.
+    fn send(&mut self, topic: Topic, message: Message) -> bool;
 
     /// The next event. Waits for it at most this long.
     fn receive(&mut self, patience: Duration) -> Option<Event>;

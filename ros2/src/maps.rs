@@ -50,6 +50,11 @@ impl PublishedMaps {
         messages
     }
 
+    /// Publishes the whole map again as soon as it is time: one was not sent.
+    pub(crate) fn repeat(&mut self) {
+        self.is_changed = true;
+    }
+
     fn is_due(&self, now: Instant) -> bool {
         let cells = self.shown.as_ref().map_or(0, |shown| shown.cells().len());
         let interval = self.interval.mul_f64((cells as f64 / MANY_CELLS).max(1.0));

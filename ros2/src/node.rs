@@ -132,9 +132,9 @@ impl<L: Link> CuriousNode<L> {
         let mut maps = PublishedMaps::new(parameters.map_update_interval_s);
         if let Some(last) = continued {
             let header = outputs::header(last, &parameters.map_frame);
-            maps.after(&mapper, &header, Instant::now())
-                .into_iter()
-                .for_each(|(topic, map)| link.send(topic, map));
+            for (topic, message) in maps.after(&mapper, &header, Instant::now()) {
+                link.send(topic, message);
+            }
             notes.say(&format!("the map goes on from {} readings", mapper.readings()));
         }
         let Parameters { map_frame, odom_frame, base_frame, .. } = parameters.clone();
@@ -297,7 +297,9 @@ impl<L: Link> CuriousNode<L> {
         self.publish_transform(now);
         let header = outputs::header(stamp, &self.parameters.map_frame);
         for (topic, message) in self.maps.after(&self.mapper, &header, now) {
-            self.link.send(topic, message);
+            if !self.link.send(topic, message) {
+                self.maps.repeat();
+            }
         }
         let path: Vec<Point2<f64>> = self.pilot.path().to_vec();
         if let Some(message) = self.markers.changed(self.pilot.goal(), &path, &header) {

@@ -115,19 +115,26 @@ impl Source {
         }
     }
 
-    /// The next reading that is complete.
+    /// The next reading that is complete. A scan without a pose at its time is left out.
     pub(crate) fn next(&mut self, now: Instant) -> Option<LiveReading> {
-        let first = self.waiting.front()?;
-        let is_overdue =
-            now.duration_since(first.since) >= PATIENCE || self.waiting.len() > 1 && first.is_restart;
-        if self.motions.must_wait(first.end_ns) && !is_overdue {
-            return None;
+        loop {
+            let first = self.waiting.front()?;
+            let is_overdue = now.duration_since(first.since) >= PATIENCE;
+            if self.motions.must_wait(first.end_ns) && !is_overdue {
+                return None;
+            }
+            let Waiting { end_ns, mount, scan, is_restart, .. } = self.waiting.pop_front()?;
+            if !self.motions.covers(end_ns) {
+                self.count.unplaced += 1;
+                self.is_restart |= is_restart;
+                self.notes.push("a scan is left out: there is no pose of the robot at its time".to_owned());
+                continue;
+            }
+            let Motion { pose, in_odom, twist, velocities } = self.motions.at(end_ns, scan.sweep_s);
+            let time_s = self.motions.time_s(end_ns);
+            let reading = LaserReading { time_s, pose, twist, velocities, mount, scan };
+            return Some(LiveReading { reading, in_odom, stamp: Time::from_ns(end_ns), is_restart });
         }
-        let Waiting { end_ns, mount, scan, is_restart, .. } = self.waiting.pop_front()?;
-        let Motion { pose, in_odom, twist, velocities } = self.motions.at(end_ns, scan.sweep_s);
-        let time_s = self.motions.time_s(end_ns);
-        let reading = LaserReading { time_s, pose, twist, velocities, mount, scan };
-        Some(LiveReading { reading, in_odom, stamp: Time::from_ns(end_ns), is_restart })
     }
 
     /// Why there is no reading, in one sentence; `None` if it is not known.

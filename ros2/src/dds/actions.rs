@@ -1,9 +1,10 @@
 //! Nav2's action NavigateToPose.
 
-use super::profile;
+use super::{WAIT, profile};
 use crate::link::Navigation;
 use crate::message::{PoseStamped, Quality};
 use ros2_client::action::{ActionClient, ActionClientQosPolicies, GoalId, GoalStatusEnum};
+use ros2_client::qos::WhenFull;
 use ros2_client::{ActionTypeName, Name, Node, RmwRequestId, ServiceMapping};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
@@ -53,13 +54,13 @@ pub(super) struct Navigator {
 
 impl Navigator {
     pub(super) fn new(node: &mut Node, name: &str, mapping: ServiceMapping) -> anyhow::Result<Self> {
-        let service = profile(&Quality::DEFAULT);
+        let service = profile(&Quality::DEFAULT, WhenFull::Wait(WAIT));
         let policies = ActionClientQosPolicies {
             goal_service: service.clone(),
             result_service: service.clone(),
             cancel_service: service.clone(),
             feedback_subscription: service,
-            status_subscription: profile(&Quality::LATCHED),
+            status_subscription: profile(&Quality::LATCHED, WhenFull::Fail),
         };
         let kind = ActionTypeName::new("nav2_msgs", "NavigateToPose");
         let client = node.create_action_client(mapping, &Name::parse(name)?, &kind, policies)?;

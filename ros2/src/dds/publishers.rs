@@ -1,9 +1,10 @@
 //! What the node sends.
 
-use super::profile;
+use super::{WAIT, profile};
 use crate::link::Wiring;
 use crate::message::{Message, Quality, Topic};
-use ros2_client::{Gid, MessageTypeName, Name, Node};
+use ros2_client::qos::WhenFull;
+use ros2_client::{Gid, MessageTypeName, Name, Node, WriteError};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -59,11 +60,11 @@ impl Publishers {
         self.ids.clone()
     }
 
-    pub(super) fn send(&mut self, topic: Topic, message: Message) {
-        let Some(send) = self.by_topic.get(&topic) else { return };
-        if let Err(why) = send(message) {
-            self.problem = Some(format!("a message on `{}` was not sent: {why}", topic.default_name()));
-        }
+    /// Sends a message; `false` if it is not sent.
+    pub(super) fn send(&mut self, topic: Topic, message: Message) -> bool {
+        let Some(Err(why)) = self.by_topic.get(&topic).map(|send| send(message)) else { return true };
+        self.problem = Some(format!("a message on `{}` was not sent: {why}", topic.default_name()));
+        false
     }
 
     /// Why a message was not sent since the last call.
@@ -78,13 +79,19 @@ fn open<M: Serialize + 'static>(
     content: fn(Message) -> Option<M>,
 ) -> anyhow::Result<(Send, Gid)> {
     let (package, kind) = topic.type_name();
-    let on =
-        node.create_topic(&Name::parse(name)?, MessageTypeName::new(package, kind), &profile(quality))?;
+    // The robot does not wait for a subscriber that does not keep up: the next message replaces this one. A map, or a scan of the
+    // simulator, is not replaced so soon.
+    let is_waiting = quality.is_latched || topic == Topic::Scan;
+    let profile = profile(quality, if is_waiting { WhenFull::Wait(WAIT) } else { WhenFull::Fail });
+    let on = node.create_topic(&Name::parse(name)?, MessageTypeName::new(package, kind), &profile)?;
     let publisher = node.create_publisher::<M>(&on, None)?;
     let id = publisher.gid();
     let send = move |message| {
         let content = content(message).ok_or("it has another type")?;
-        publisher.publish(content).map_err(|why| why.to_string())
+        publisher.publish(content).map_err(|why| match why {
+            WriteError::WouldBlock { .. } => "a subscriber does not keep up".to_owned(),
+            why => why.to_string(),
+        })
     };
     Ok((Box::new(send), id))
 }

@@ -6,10 +6,11 @@ use crate::link::{Event, Wiring};
 use crate::message::{Message, Quality, Topic};
 use futures::executor::block_on_stream;
 use futures::stream::{BoxStream, StreamExt, select_all, unfold};
+use ros2_client::qos::WhenFull;
 use ros2_client::{Context, Gid, MessageInfo, MessageTypeName, Name, Node, ReadError};
 use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::SyncSender;
 
 /// A message, or why it is none, on a topic.
 struct Received {
@@ -23,7 +24,7 @@ pub(super) fn start(
     context: &Context,
     wiring: &Wiring,
     own: BTreeSet<Gid>,
-    to: &Sender<Event>,
+    to: &SyncSender<Event>,
 ) -> anyhow::Result<()> {
     let mut streams = Vec::new();
     for (topic, name, quality) in &wiring.subscribed {
@@ -64,8 +65,11 @@ fn open<M: DeserializeOwned + Send + Sync + 'static>(
     message: fn(M) -> Message,
 ) -> anyhow::Result<BoxStream<'static, Received>> {
     let (package, kind) = topic.type_name();
-    let on =
-        node.create_topic(&Name::parse(name)?, MessageTypeName::new(package, kind), &profile(quality))?;
+    let on = node.create_topic(
+        &Name::parse(name)?,
+        MessageTypeName::new(package, kind),
+        &profile(quality, WhenFull::Fail),
+    )?;
     let subscription = node.create_subscription::<M>(&on, None)?;
     let stream = unfold(subscription, move |subscription| async move {
         let taken = subscription.async_take().await;

@@ -223,3 +223,15 @@ fn a_robot_that_falls_silent_is_stopped() {
     let [Message::TwistStamped(TwistStamped { twist, .. })] = orders.as_slice() else { panic!("{orders:?}") };
     assert_eq!((twist.linear.x, twist.angular.z), (0.0, 0.0));
 }
+
+#[test]
+fn a_map_that_was_not_sent_is_sent_again() {
+    let mut pair = Pair::new(&Parameters { map_update_interval_s: 0.1, ..parameters(Mode::Map) }, 0, None);
+    pair.others.others(|others| others.is_slow = true);
+    pair.run(1.0);
+    assert_eq!(pair.others.heard(Topic::Map), []);
+    pair.others.others(|others| others.is_slow = false);
+    std::thread::sleep(Duration::from_millis(100));
+    pair.run(0.3);
+    assert!(!pair.others.heard(Topic::Map).is_empty());
+}

@@ -7,6 +7,8 @@ use nalgebra::{Isometry2, Isometry3};
 
 /// A pose that is older than the last one by more than this comes from a clock that has started anew, ns.
 const RESTART_NS: i64 = 1_000_000_000;
+/// A pose that is older than a scan by more than this is not the pose of the scan, s.
+const LATEST_S: f64 = 0.1;
 /// Odometry on a topic is used if no transform has come for this time, ns.
 const WAIT_FOR_TF_NS: i64 = 2_000_000_000;
 
@@ -84,6 +86,15 @@ impl Motions {
     /// Whether a later pose can be nearer to this time.
     pub(super) fn must_wait(&self, ns: i64) -> bool {
         self.track().poses.must_wait(self.time_s(ns))
+    }
+
+    /// Whether the pose at a time is known.
+    pub(super) fn covers(&self, ns: i64) -> bool {
+        let time_s = self.time_s(ns);
+        self.track()
+            .poses
+            .span_s()
+            .is_some_and(|(oldest_s, newest_s)| oldest_s <= time_s && time_s <= newest_s + LATEST_S)
     }
 
     /// The motion at a time, at the end of a scan that took `sweep_s`.
