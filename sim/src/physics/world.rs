@@ -75,6 +75,11 @@ impl PhysicsWorld {
         &self.spec
     }
 
+    /// The simulated robots and obstacles.
+    pub fn fleet(&self) -> &Fleet {
+        &self.fleet
+    }
+
     /// The ground truth of every cell, for metrics only.
     pub fn truth(&self) -> &PhysicsGroundTruth {
         &self.truth
