@@ -14,6 +14,7 @@ pub struct Batch<T> {
     observation_len: usize,
     info_len: usize,
     is_parallel: bool,
+    is_autoreset: bool,
 }
 
 /// The results of a step, each with one part per task; in a task, one part per agent.
@@ -77,15 +78,16 @@ struct Job<'a, T> {
     last_observations: &'a mut [f32],
     info: &'a mut [f32],
     was_reset: &'a mut bool,
+    is_autoreset: bool,
 }
 
 impl<T: Task> Job<'_, T> {
     fn run(self) {
-        let Self { task, actions, next_seed, observations, mut outcome, last_observations, info, was_reset } = self;
+        let Self { task, actions, next_seed, observations, mut outcome, last_observations, info, was_reset, .. } = self;
         let Outcome { rewards, terminated, truncated } = &mut outcome;
         task.step(actions, Outcome { rewards, terminated, truncated });
         task.info(info);
-        *was_reset = outcome.is_over();
+        *was_reset = self.is_autoreset && outcome.is_over();
         if *was_reset {
             task.observe(last_observations);
             task.reset(next_seed);
@@ -105,6 +107,7 @@ impl<T: Task> Batch<T> {
             observation_len: of(|task| task.parts().iter().map(|part| part.values()).sum()),
             info_len: of(|task| task.info_names().len()),
             is_parallel: tasks.len() > 1,
+            is_autoreset: true,
             tasks,
         }
     }
@@ -113,6 +116,11 @@ impl<T: Task> Batch<T> {
     /// thread alone. The results are the same.
     pub fn set_parallel(&mut self, is_parallel: bool) {
         self.is_parallel = is_parallel;
+    }
+
+    /// Whether a task that is over is reset in the same step (the default), or stands still until it is reset.
+    pub fn set_autoreset(&mut self, is_autoreset: bool) {
+        self.is_autoreset = is_autoreset;
     }
 
     /// The tasks.
@@ -191,6 +199,7 @@ impl<T: Task> Batch<T> {
         if let Some(at) = actions.iter().position(|action| !(action.abs() <= 1.0 + ROUNDING)) {
             return Err(TaskError::Action { environment: at / actions_len.max(1), value: actions[at] });
         }
+        let is_autoreset = self.is_autoreset;
         let results = observations.chunks_mut(values.max(1)).zip(last_observations.chunks_mut(values.max(1)));
         let ends = rewards.chunks_mut(agents).zip(terminated.chunks_mut(agents)).zip(truncated.chunks_mut(agents));
         let jobs = self.tasks.iter_mut().zip(actions.chunks(actions_len)).zip(next_seeds).zip(results).zip(ends);
@@ -199,7 +208,7 @@ impl<T: Task> Batch<T> {
             let ((((task, actions), &next_seed), (observations, last_observations)), ends) = inputs;
             let ((rewards, terminated), truncated) = ends;
             let outcome = Outcome { rewards, terminated, truncated };
-            Job { task, actions, next_seed, observations, outcome, last_observations, info, was_reset }
+            Job { task, actions, next_seed, observations, outcome, last_observations, info, was_reset, is_autoreset }
         });
         if self.is_parallel {
             // A few pieces per thread: episodes end at different times, and a reset takes longer than a step.
