@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 use robot::explore;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 use survey::{ChangeLog, FirstPass, FoundPoses, NoPilot, PoseMode, Replay, SurveySettings};
 
 /// A log of a robot: a CARMEN log (also with gzip), a bag of ROS 2 (MCAP or SQLite, a file or a folder).
@@ -22,7 +23,7 @@ pub(crate) struct Log {
 /// The readings of a log.
 #[pyclass(module = "curious")]
 pub(crate) struct Readings {
-    readings: ::logs::Readings,
+    readings: Mutex<::logs::Readings>,
 }
 
 #[pymethods]
@@ -73,7 +74,7 @@ impl Log {
     }
 
     fn __iter__(&self) -> PyResult<Readings> {
-        Ok(Readings { readings: self.log.readings().map_err(value_error)? })
+        Ok(Readings { readings: Mutex::new(self.log.readings().map_err(value_error)?) })
     }
 
     fn __repr__(&self) -> String {
@@ -88,7 +89,7 @@ impl Readings {
     }
 
     fn __next__(&mut self, py: Python<'_>) -> PyResult<Option<Reading>> {
-        let readings = &mut self.readings;
+        let readings = self.readings.get_mut().unwrap_or_else(PoisonError::into_inner);
         let next = py.detach(|| readings.next()).transpose().map_err(value_error)?;
         Ok(next.map(Reading::of))
     }

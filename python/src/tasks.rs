@@ -157,11 +157,11 @@ impl Batch {
     ) -> PyResult<Self> {
         Self::check_count(environments)?;
         let (spec, settings) = (spec_of(py, world)?, drive_settings(settings)?);
-        let tasks = py.detach(|| {
+        let tasks: Result<Vec<Drive>, TaskError> = py.detach(|| {
             let place = Arc::new(DrivePlace::new(&spec, settings)?);
             Ok((0..environments).map(|_| Drive::new(&place)).collect())
         });
-        let tasks = tasks.map_err(|error: TaskError| value_error(error))?;
+        let tasks = tasks.map_err(value_error)?;
         Self::with(Tasks::Drive(environments::Batch::new(tasks)), environments, threads)
     }
 
@@ -178,11 +178,11 @@ impl Batch {
         Self::check_count(environments)?;
         let specs = worlds.iter().map(|world| Spec { fleet: spec_of(py, &world)? }.driving(None));
         let (specs, settings) = (specs.collect::<PyResult<Vec<_>>>()?, explore_settings(settings)?);
-        let tasks = py.detach(|| {
+        let tasks: Result<Vec<Explore>, TaskError> = py.detach(|| {
             let place = Arc::new(ExplorePlace::new(&specs, settings)?);
             (0..environments).map(|_| Explore::new(&place)).collect()
         });
-        let tasks = tasks.map_err(|error: TaskError| value_error(error))?;
+        let tasks = tasks.map_err(value_error)?;
         Self::with(Tasks::Explore(environments::Batch::new(tasks)), environments, threads)
     }
 
@@ -233,12 +233,9 @@ impl Batch {
         let (rows, values) = (self.rows(), self.observation_len());
         let seeds = seeds.as_array().to_vec();
         let (tasks, pool) = (&mut self.tasks, self.pool.as_ref());
-        let observations = py.detach(|| {
-            let mut observations = vec![0.0; rows * values];
-            on(pool, || each!(tasks, batch => batch.reset(&seeds, &mut observations)))?;
-            Ok(observations)
-        });
-        let observations = observations.map_err(|error: TaskError| value_error(error))?;
+        let mut observations = vec![0.0; rows * values];
+        py.detach(|| on(pool, || each!(tasks, batch => batch.reset(&seeds, &mut observations))))
+            .map_err(value_error)?;
         self.is_ready = true;
         observations.into_pyarray(py).reshape([rows, values])
     }
