@@ -2,7 +2,10 @@ use crate::convert::{Numbers, no_robot, pose, pose_array, snapshot_error, value_
 use crate::reading::Reading;
 use crate::spec::spec_of;
 use interfaces::{LaserReading, Purpose, RandomStream};
-use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods, PyReadwriteArray2};
+use numpy::{
+    AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods, PyReadwriteArray2,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -147,7 +150,10 @@ impl Fleet {
                      values as it has beams"
                 )));
             }
-            let ranges_m = out.as_slice_mut().map_err(|_| value_error("`out` must be contiguous, in C order"))?;
+            if !out.is_c_contiguous() {
+                return Err(value_error("`out` must be contiguous, in C order"));
+            }
+            let ranges_m = out.as_slice_mut().map_err(value_error)?;
             py.detach(|| {
                 fleet.look_all();
                 fleet.copy_scans(ranges_m)

@@ -164,6 +164,30 @@ impl Spec {
         text.ok_or_else(|| world_error(format!("the world `{}` cannot be written as a world file", self.fleet.name)))
     }
 
+    /// A spec never changes: a copy is the same object.
+    fn __copy__(this: Bound<'_, Self>) -> Bound<'_, Self> {
+        this
+    }
+
+    fn __deepcopy__<'py>(this: Bound<'py, Self>, _memo: &Bound<'py, PyAny>) -> Bound<'py, Self> {
+        this
+    }
+
+    /// For pickle: the text of the world.
+    fn __reduce__<'py>(this: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        let text = this.get().to_toml()?;
+        let same = worldfile::physics::parse_fleet_with("world.toml", &text, &Disk).map_err(world_error)?;
+        if same != *this.get().fleet {
+            let name = &this.get().fleet.name;
+            return Err(PyValueError::new_err(format!("the world `{name}` changes when it is written as text")));
+        }
+        Ok((this.get_type().getattr("from_toml")?, (text,)))
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.fleet == other.fleet
+    }
+
     fn __repr__(&self) -> String {
         let robots = self.fleet.robots.len();
         format!("<curious.Spec {:?}: {} walls, {robots} robots>", self.fleet.name, self.fleet.walls.len())

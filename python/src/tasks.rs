@@ -3,7 +3,10 @@ use crate::spec::{Spec, spec_of};
 use environments::{
     Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Picture, ResultsMut, Task, TaskError,
 };
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{
+    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
@@ -281,9 +284,9 @@ impl Batch {
             return Err(value_error(format!("the actions have the shape {shape:?}, and must have ({rows}, 2)")));
         }
         let copied: Vec<f32>;
-        let actions = match actions.as_slice() {
-            Ok(actions) => actions,
-            Err(_) => {
+        let actions = match actions.as_slice().ok().filter(|_| actions.is_c_contiguous()) {
+            Some(actions) => actions,
+            None => {
                 copied = actions.as_array().iter().copied().collect();
                 &copied
             }

@@ -1,5 +1,7 @@
 """The environments."""
 
+import warnings
+
 import curious
 import numpy as np
 import pytest
@@ -164,7 +166,11 @@ def test_the_path_leads_to_the_goal():
 def test_pettingzoo(fleet_toml):
     pettingzoo = pytest.importorskip("pettingzoo")
     from curious.pettingzoo import DriveParallelEnv
-    from pettingzoo.test import parallel_api_test, parallel_seed_test
+
+    with warnings.catch_warnings():
+        # The import itself warns in some versions.
+        warnings.simplefilter("ignore")
+        from pettingzoo.test import parallel_api_test, parallel_seed_test
 
     def make() -> pettingzoo.ParallelEnv:
         spec = curious.Spec.from_toml(fleet_toml)

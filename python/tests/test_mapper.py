@@ -141,10 +141,9 @@ def carmen(path, scans=300):
     for step in range(scans):
         ranges = half.copy()
         if step // 50 % 2:
-            ranges[85:96] = 1.0
+            ranges[70:111] = 1.0
         numbers = " ".join(f"{value:.3f}" for value in ranges)
         time = 1e9 + 0.1 * step
-        lines.append(f"ODOM 0 0 0 0 0 0 {time:.3f} host {time:.3f}")
         lines.append(f"FLASER 181 {numbers} 0 0 0 0 0 0 {time:.3f} host {time:.3f}")
     path.write_text("\n".join(lines) + "\n")
 

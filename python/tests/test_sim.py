@@ -1,5 +1,7 @@
 """Fleets and worlds."""
 
+import copy
+import pickle
 import threading
 
 import curious
@@ -42,8 +44,8 @@ def test_the_same_seed_is_the_same_run_and_a_reset_a_new_start(fleet_toml):
     np.testing.assert_array_equal(drive(fleet), first)
     np.testing.assert_array_equal(drive(curious.Fleet(spec, seed=3, threads=True)), first)
     assert not np.array_equal(drive(curious.Fleet(spec, seed=4)), first)
-    copy = fleet.copy()
-    np.testing.assert_array_equal(drive(copy), drive(fleet))
+    fork = fleet.copy()
+    np.testing.assert_array_equal(drive(fork), drive(fleet))
 
 
 def test_snapshots(fleet_toml):
@@ -107,13 +109,15 @@ def test_worlds_from_everywhere(tmp_path, fleet_toml):
     assert "four_rooms" in curious.Spec.shipped()
     house = curious.Spec.house(7)
     assert house.name == "house-7" and house.driven == [0]
+    for same in (pickle.loads(pickle.dumps(house)), copy.deepcopy(house)):
+        assert same == house and same != curious.Spec.house(8)
     again = curious.Spec.from_toml(house.to_toml())
     assert again.robots == house.robots and again.shape == house.shape
     path = tmp_path / "mine.toml"
     path.write_text(fleet_toml)
     assert curious.Fleet(path).names == ["a", "b", "c"]
     stage = tmp_path / "yard.world"
-    stage.write_text('define r position ( size [0.4 0.4 0.3] ranger ( sensor ( range [0 5] fov 180 samples 19 ) ) )\n'
+    stage.write_text('define r position ( size [0.4 0.4 0.3] ranger ( sensor ( range [0 5] fov 180 samples 19 ) ) blobfinder () )\n'
                      'model ( size [4 0.2 1] pose [0 2 0 0] )\nr ( pose [0 0 0 0] name "one" )\n')
     with pytest.warns(UserWarning) as warned:
         fleet = curious.Fleet(curious.Spec.from_stage(stage))
