@@ -1,6 +1,6 @@
 use crate::convert::{Numbers, Ranges, grid, points_array, snapshot_error, value_error, world_error};
 use crate::reading::{Laser, Reading, laser_reading};
-use crate::spec::{Spec, spec_of};
+use crate::spec::{driving, spec_of};
 use crate::world::World;
 use evaluation::physics_trial::PhysicsSettings;
 use interfaces::{CellState, GridFrame};
@@ -97,7 +97,7 @@ impl Mapper {
     ) -> PyResult<Self> {
         let spec = match world.cast::<World>() {
             Ok(world) => world.borrow().world.spec().clone(),
-            Err(_) => Spec { fleet: spec_of(py, world)? }.driving(robot)?,
+            Err(_) => driving(&spec_of(py, world)?, robot)?,
         };
         let settings = PhysicsSettings::of(&spec).map_err(world_error)?.mapper;
         let settings = settings_of(settings, estimator, occupancy, max_gap, None)?;

@@ -1,34 +1,54 @@
-use crate::convert::{load_error, world_error};
+use crate::convert::{load_error, no_robot, world_error};
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods};
-use pyo3::exceptions::{PyFileNotFoundError, PyUserWarning, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyUserWarning};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 use sim::physics::{FleetSpec, WorldSpec};
 use std::ffi::CString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use worldfile::{Disk, Severity};
+use worldfile::{Disk, Files, Severity};
 
 /// The specification of a world: walls, obstacles, robots. It never changes; fleets, worlds and tasks are made from it.
 #[pyclass(frozen, module = "curious")]
 pub(crate) struct Spec {
     pub(crate) fleet: Arc<FleetSpec>,
+    source: Source,
+}
+
+/// Where a spec comes from: what makes the same one in another process.
+#[derive(Clone)]
+pub(crate) enum Source {
+    /// The name of a shipped world.
+    Shipped(String),
+    /// The text of a world file, and its name.
+    Text { name: String, text: String },
+    /// The seed of a generated house.
+    House(u64),
 }
 
 impl Spec {
-    fn new(fleet: FleetSpec) -> Self {
-        Self { fleet: Arc::new(fleet) }
+    fn new(fleet: FleetSpec, source: Source) -> Self {
+        Self { fleet: Arc::new(fleet), source }
     }
 
-    /// The same world with exactly one driven robot: the only one, or the one with an index.
-    pub(crate) fn driving(&self, robot: Option<usize>) -> PyResult<WorldSpec> {
-        let fleet = (*self.fleet).clone();
-        let robots = fleet.robots.len();
-        match robot {
-            None => WorldSpec::new(fleet).map_err(|error| {
-                world_error(format!("the world `{}`: {error}; `robot` chooses one", self.fleet.name))
-            }),
-            Some(robot) => WorldSpec::driving(fleet, robot).ok_or_else(|| crate::convert::no_robot(robot, robots)),
-        }
+    fn of_text(name: &str, text: String) -> PyResult<Self> {
+        let fleet = worldfile::physics::parse_fleet_with(name, &text, &Disk).map_err(world_error)?;
+        Ok(Self::new(fleet, Source::Text { name: name.to_owned(), text }))
+    }
+
+    fn from_seed(seed: u64) -> Self {
+        Self::new(WorldSpec::generate_house(seed).fleet().clone(), Source::House(seed))
+    }
+}
+
+/// The same world with exactly one driven robot: the only one, or the one with an index.
+pub(crate) fn driving(fleet: &Arc<FleetSpec>, robot: Option<usize>) -> PyResult<WorldSpec> {
+    let (name, robots) = (&fleet.name, fleet.robots.len());
+    match robot {
+        None => WorldSpec::new((**fleet).clone())
+            .map_err(|error| world_error(format!("the world `{name}`: {error}; `robot` chooses one"))),
+        Some(robot) => WorldSpec::driving((**fleet).clone(), robot).ok_or_else(|| no_robot(robot, robots)),
     }
 }
 
@@ -50,22 +70,25 @@ impl Spec {
             return Self::from_stage(py, name);
         }
         let shipped = name.to_str().filter(|name| worldfile::shipped::text(name).is_some());
-        let is_driven_by_one = shipped.is_some() || !name.exists();
-        if is_driven_by_one {
-            let name = name.to_string_lossy();
-            return Ok(Self::new(worldfile::shipped::load(&name).map_err(load_error)?.fleet().clone()));
+        if shipped.is_some() || !name.exists() {
+            let name = name.to_string_lossy().into_owned();
+            let world = worldfile::shipped::load(&name).map_err(load_error)?;
+            return Ok(Self::new(world.fleet().clone(), Source::Shipped(name)));
         }
-        let text = std::fs::read_to_string(&name)
-            .map_err(|error| PyValueError::new_err(format!("cannot read the world file `{}`: {error}", name.display())))?;
-        let fleet = worldfile::physics::parse_fleet_with(&name.to_string_lossy(), &text, &Disk);
-        Ok(Self::new(fleet.map_err(world_error)?))
+        let text = Disk.read(&name, worldfile::MAX_TEXT_BYTES).and_then(|bytes| {
+            String::from_utf8(bytes).map_err(|_| std::io::Error::other("it is not a text in UTF-8"))
+        });
+        let text = text.map_err(|error| {
+            world_error(format!("cannot read the world file `{}`: {error}", name.display()))
+        })?;
+        Self::of_text(&name.to_string_lossy(), text)
     }
 
     /// The world of a text in TOML. `name` is the name of the file in messages; floor plans are read from its folder.
     #[staticmethod]
     #[pyo3(signature = (text, name = "world.toml"))]
-    fn from_toml(text: &str, name: &str) -> PyResult<Self> {
-        Ok(Self::new(worldfile::physics::parse_fleet_with(name, text, &Disk).map_err(world_error)?))
+    fn from_toml(text: String, name: &str) -> PyResult<Self> {
+        Self::of_text(name, text)
     }
 
     /// The world of a file of the simulator Stage. Differences between the two are Python warnings.
@@ -80,19 +103,21 @@ impl Spec {
             let message = CString::new(message.replace('\0', " "))?;
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 2)?;
         }
-        Ok(Self::new(fleet))
+        let text = stage::read(&path, &Disk).0.map(|world| world.to_toml()).unwrap_or_default();
+        Ok(Self::new(fleet, Source::Text { name: path.with_extension("toml").display().to_string(), text }))
     }
 
     /// The generated house of a seed: rooms at a corridor, doors, furniture, people. The same seed gives the same house.
     #[staticmethod]
     fn house(seed: u64) -> Self {
-        Self::new(WorldSpec::generate_house(seed).fleet().clone())
+        Self::from_seed(seed)
     }
 
     /// The world of the driving task.
     #[staticmethod]
     fn driving_hall() -> Self {
-        Self::new(environments::driving_hall())
+        let (name, text) = ("driving_hall.toml".to_owned(), environments::DRIVING_HALL.to_owned());
+        Self::new(environments::driving_hall(), Source::Text { name, text })
     }
 
     /// The names of the worlds that are part of the package.
@@ -158,10 +183,14 @@ impl Spec {
         values.into_pyarray(py).reshape([self.fleet.walls.len(), 4, 2])
     }
 
-    /// The world as the text of a world file.
+    /// The world as the text of a world file. Pictures that the file names are not in it.
     fn to_toml(&self) -> PyResult<String> {
-        let text = worldfile::physics::to_toml(&self.fleet);
-        text.ok_or_else(|| world_error(format!("the world `{}` cannot be written as a world file", self.fleet.name)))
+        match &self.source {
+            Source::Text { text, .. } => Some(text.clone()),
+            Source::Shipped(name) => worldfile::shipped::text(name).map(str::to_owned),
+            Source::House(_) => worldfile::physics::to_toml(&self.fleet),
+        }
+        .ok_or_else(|| world_error(format!("the world `{}` cannot be written as a world file", self.fleet.name)))
     }
 
     /// A spec never changes: a copy is the same object.
@@ -173,15 +202,14 @@ impl Spec {
         this
     }
 
-    /// For pickle: the text of the world.
-    fn __reduce__<'py>(this: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
-        let text = this.get().to_toml()?;
-        let same = worldfile::physics::parse_fleet_with("world.toml", &text, &Disk).map_err(world_error)?;
-        if same != *this.get().fleet {
-            let name = &this.get().fleet.name;
-            return Err(PyValueError::new_err(format!("the world `{name}` changes when it is written as text")));
-        }
-        Ok((this.get_type().getattr("from_toml")?, (text,)))
+    /// For pickle: the name, the text or the seed of the world.
+    fn __reduce__<'py>(this: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let (py, class) = (this.py(), this.get_type());
+        Ok(match &this.get().source {
+            Source::Shipped(name) => (class.getattr("load")?, (name,).into_pyobject(py)?),
+            Source::Text { name, text } => (class.getattr("from_toml")?, (text, name).into_pyobject(py)?),
+            Source::House(seed) => (class.getattr("house")?, (*seed,).into_pyobject(py)?),
+        })
     }
 
     fn __eq__(&self, other: &Self) -> bool {

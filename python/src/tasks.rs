@@ -1,5 +1,5 @@
 use crate::convert::{snapshot_error, value_error};
-use crate::spec::{Spec, spec_of};
+use crate::spec::{driving, spec_of};
 use environments::{
     Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Picture, ResultsMut, Task, TaskError,
 };
@@ -179,7 +179,7 @@ impl Batch {
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         Self::check_count(environments)?;
-        let specs = worlds.iter().map(|world| Spec { fleet: spec_of(py, &world)? }.driving(None));
+        let specs = worlds.iter().map(|world| driving(&spec_of(py, &world)?, None));
         let (specs, settings) = (specs.collect::<PyResult<Vec<_>>>()?, explore_settings(settings)?);
         let tasks: Result<Vec<Explore>, TaskError> = py.detach(|| {
             let place = Arc::new(ExplorePlace::new(&specs, settings)?);

@@ -2,7 +2,7 @@
 
 use crate::convert::{pose_array, value_error, world_error};
 use crate::mapper::Mapper;
-use crate::spec::{Spec, spec_of};
+use crate::spec::{driving, spec_of};
 use agent::{Policy, Situation as Inputs, Strategy};
 use evaluation::report::Metric;
 use evaluation::trials::{Experiment, PhysicsRobot, TrialStrategy, run_trial};
@@ -154,7 +154,7 @@ pub(crate) fn trial<'py>(
     if seconds == 0 {
         return Err(value_error("a trial takes at least 1 s"));
     }
-    let spec: WorldSpec = Spec { fleet: spec_of(py, world)? }.driving(robot)?;
+    let spec: WorldSpec = driving(&spec_of(py, world)?, robot)?;
     let error = FirstError::default();
     let strategy = match strategy {
         Some(strategy) => strategy_of(strategy, &error)?,

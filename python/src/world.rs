@@ -1,7 +1,7 @@
 use crate::convert::{grid, pose_array, snapshot_error, value_error};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
-use crate::spec::{Spec, spec_of};
+use crate::spec::{driving, spec_of};
 use evaluation::metrics::{map_scores, rate_scores};
 use interfaces::{GroundTruth, TrueState, Twist, World as _};
 use numpy::{PyArray1, PyArray2};
@@ -22,7 +22,7 @@ impl World {
     #[new]
     #[pyo3(signature = (world, seed = 0, *, robot = None, exact = false))]
     fn new(py: Python<'_>, world: &Bound<'_, PyAny>, seed: u64, robot: Option<usize>, exact: bool) -> PyResult<Self> {
-        let spec = Spec { fleet: spec_of(py, world)? }.driving(robot)?;
+        let spec = driving(&spec_of(py, world)?, robot)?;
         let mut world = py.detach(|| PhysicsWorld::new(&spec, seed));
         if exact {
             world.correct_odometry();

@@ -109,6 +109,8 @@ def test_worlds_from_everywhere(tmp_path, fleet_toml):
     assert "four_rooms" in curious.Spec.shipped()
     house = curious.Spec.house(7)
     assert house.name == "house-7" and house.driven == [0]
+    for spec in (curious.Spec.load("office"), curious.Spec.driving_hall(), curious.Spec.from_toml(fleet_toml)):
+        assert pickle.loads(pickle.dumps(spec)) == spec != house
     for same in (pickle.loads(pickle.dumps(house)), copy.deepcopy(house)):
         assert same == house and same != curious.Spec.house(8)
     again = curious.Spec.from_toml(house.to_toml())
