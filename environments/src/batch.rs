@@ -83,7 +83,17 @@ struct Job<'a, T> {
 
 impl<T: Task> Job<'_, T> {
     fn run(self) {
-        let Self { task, actions, next_seed, observations, mut outcome, last_observations, info, was_reset, .. } = self;
+        let Self {
+            task,
+            actions,
+            next_seed,
+            observations,
+            mut outcome,
+            last_observations,
+            info,
+            was_reset,
+            ..
+        } = self;
         let Outcome { rewards, terminated, truncated } = &mut outcome;
         task.step(actions, Outcome { rewards, terminated, truncated });
         task.info(info);
@@ -166,7 +176,11 @@ impl<T: Task> Batch<T> {
             task.reset(*seed);
             task.observe(observations);
         };
-        if self.is_parallel { jobs.par_bridge().for_each(run) } else { jobs.for_each(run) }
+        if self.is_parallel {
+            jobs.par_bridge().for_each(run)
+        } else {
+            jobs.for_each(run)
+        }
         Ok(())
     }
 
@@ -201,21 +215,34 @@ impl<T: Task> Batch<T> {
         }
         let is_autoreset = self.is_autoreset;
         let results = observations.chunks_mut(values.max(1)).zip(last_observations.chunks_mut(values.max(1)));
-        let ends = rewards.chunks_mut(agents).zip(terminated.chunks_mut(agents)).zip(truncated.chunks_mut(agents));
-        let jobs = self.tasks.iter_mut().zip(actions.chunks(actions_len)).zip(next_seeds).zip(results).zip(ends);
+        let ends =
+            rewards.chunks_mut(agents).zip(terminated.chunks_mut(agents)).zip(truncated.chunks_mut(agents));
+        let jobs =
+            self.tasks.iter_mut().zip(actions.chunks(actions_len)).zip(next_seeds).zip(results).zip(ends);
         let jobs = jobs.zip(info.chunks_mut(infos.max(1))).zip(was_reset);
         let jobs = jobs.map(|((inputs, info), was_reset)| {
             let ((((task, actions), &next_seed), (observations, last_observations)), ends) = inputs;
             let ((rewards, terminated), truncated) = ends;
             let outcome = Outcome { rewards, terminated, truncated };
-            Job { task, actions, next_seed, observations, outcome, last_observations, info, was_reset, is_autoreset }
+            Job {
+                task,
+                actions,
+                next_seed,
+                observations,
+                outcome,
+                last_observations,
+                info,
+                was_reset,
+                is_autoreset,
+            }
         });
         if self.is_parallel {
             // A few pieces per thread: episodes end at different times, and a reset takes longer than a step.
             let mut jobs: Vec<Option<Job<'_, T>>> = jobs.map(Some).collect();
             let pieces = 4 * rayon::current_num_threads();
             let piece = jobs.len().div_ceil(pieces).max(1);
-            jobs.par_chunks_mut(piece).for_each(|jobs| jobs.iter_mut().filter_map(Option::take).for_each(Job::run));
+            jobs.par_chunks_mut(piece)
+                .for_each(|jobs| jobs.iter_mut().filter_map(Option::take).for_each(Job::run));
         } else {
             jobs.for_each(Job::run);
         }

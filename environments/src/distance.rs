@@ -54,7 +54,8 @@ impl Distances {
         let own = frame.index(cell).filter(|index| self.costs[*index] != UNREACHED);
         own.or_else(|| {
             let near = (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| Cell::new(cell.x + dx, cell.y + dy)));
-            let reached = near.filter_map(|cell| frame.index(cell)).filter(|index| self.costs[*index] != UNREACHED);
+            let reached =
+                near.filter_map(|cell| frame.index(cell)).filter(|index| self.costs[*index] != UNREACHED);
             reached.min_by_key(|index| self.costs[*index])
         })
     }
@@ -67,12 +68,18 @@ impl Distances {
 
     /// The unit vector from `point` (m) to the place that is `ahead_m` farther along the shortest path; `None` at the
     /// goal, and where there is no path.
-    pub(crate) fn direction(&self, frame: &GridFrame, point: &Point2<f64>, ahead_m: f64) -> Option<Vector2<f64>> {
+    pub(crate) fn direction(
+        &self,
+        frame: &GridFrame,
+        point: &Point2<f64>,
+        ahead_m: f64,
+    ) -> Option<Vector2<f64>> {
         let mut index = self.cell_near(frame, point)?;
         let end = self.costs[index].saturating_sub((ahead_m / frame.resolution_m() * f64::from(SIDE)) as u16);
         while self.costs[index] > end {
             let cell = frame.cell(index);
-            let near = NEIGHBORS.iter().filter_map(|(dx, dy, _)| frame.index(Cell::new(cell.x + dx, cell.y + dy)));
+            let near =
+                NEIGHBORS.iter().filter_map(|(dx, dy, _)| frame.index(Cell::new(cell.x + dx, cell.y + dy)));
             index = near.min_by_key(|near| self.costs[*near])?;
         }
         (frame.center(frame.cell(index)) - point).try_normalize(1e-6)
@@ -98,7 +105,8 @@ mod tests {
     fn the_path_goes_round_a_wall() {
         // The goal is in the lower left corner, a wall stands in the middle column below the top row.
         let map = ["....", ".#..", ".#.."];
-        let is_free: Vec<bool> = map.iter().rev().flat_map(|row| row.bytes().map(|cell| cell == b'.')).collect();
+        let is_free: Vec<bool> =
+            map.iter().rev().flat_map(|row| row.bytes().map(|cell| cell == b'.')).collect();
         let frame = GridFrame::new(Point2::origin(), 1.0, 4, 3).unwrap();
         let distances = Distances::new(&frame, &is_free, 0);
         let at_m = |x, y| distances.at_m(&frame, &Point2::new(x, y));

@@ -193,7 +193,8 @@ impl Task for Drive {
             let hits = contacts.filter(|contact| contact.robot == of.robot && contact.moving).count() as u32;
             let progress = &mut self.agents[agent];
             if progress.is_done {
-                (rewards[agent], terminated[agent], truncated[agent]) = (0.0, progress.is_at_goal, !progress.is_at_goal);
+                (rewards[agent], terminated[agent], truncated[agent]) =
+                    (0.0, progress.is_at_goal, !progress.is_at_goal);
                 continue;
             }
             let distances = place.distances(agent, progress.goal);
@@ -263,7 +264,8 @@ impl Task for Drive {
         for (agent, (info, progress)) in info.chunks_mut(3).zip(&self.agents).enumerate() {
             let at = self.at(self.place.robots[agent].robot);
             let away_m = nalgebra::distance(&at, &self.place.goal(agent, progress.goal));
-            let values = [f32::from(u8::from(progress.is_at_goal)), progress.collisions as f32, away_m as f32];
+            let values =
+                [f32::from(u8::from(progress.is_at_goal)), progress.collisions as f32, away_m as f32];
             info.copy_from_slice(&values);
         }
     }
@@ -278,7 +280,8 @@ impl Task for Drive {
         interfaces::restore(vec![value(&mut fleet), value(&mut agents), value(&mut steps)], snapshot)
             .map_err(|_| SnapshotError::Damaged)?;
         let goals = agents.iter().enumerate().map(|(agent, progress)| (agent, progress.goal));
-        let is_known = |(agent, goal): (usize, usize)| agent < self.agents.len() && goal < self.place.goals(agent);
+        let is_known =
+            |(agent, goal): (usize, usize)| agent < self.agents.len() && goal < self.place.goals(agent);
         if agents.len() != self.agents.len() || !goals.into_iter().all(is_known) {
             return Err(SnapshotError::OtherSpec);
         }

@@ -7,7 +7,8 @@ use crate::task::{Outcome, Part, Task, TaskError};
 use evaluation::metrics::{MAX_LOG_ERROR, mean_log_error};
 use evaluation::physics_trial::PhysicsSettings;
 use interfaces::{
-    CellState, LaserReading, Purpose, RandomStream, SettingsCheck, SettingsError, Twist, World, heading_rad, value,
+    CellState, LaserReading, Purpose, RandomStream, SettingsCheck, SettingsError, Twist, World, heading_rad,
+    value,
 };
 use localizer::GivenPoses;
 use mapper::{Mapper, MapperSettings};
@@ -27,6 +28,8 @@ pub struct ExploreSettings {
     pub beams: Option<usize>,
     /// The number of readings from one measurement of the log error to the next.
     pub error_every: u32,
+    /// The number of readings from one refresh of the map in the observation to the next.
+    pub map_every: u32,
     /// The reward per map update (a known cell that is found changed), divided by the number of cells in the width of the
     /// robot.
     pub update_reward: f64,
@@ -42,6 +45,7 @@ impl Default for ExploreSettings {
             max_steps: 3000,
             beams: Some(180),
             error_every: 10,
+            map_every: 5,
             update_reward: 1.0,
             error_reward: 10.0,
             collision_reward: -0.5,
@@ -54,6 +58,7 @@ impl ExploreSettings {
         let check = SettingsCheck { part: "exploring task" };
         check.within("max_steps", self.max_steps, 1.0..=1e9, "from 1 to 1000000000")?;
         check.within("error_every", self.error_every, 1.0..=1e9, "from 1 to 1000000000")?;
+        check.within("map_every", self.map_every, 1.0..=1e9, "from 1 to 1000000000")?;
         if let Some(beams) = self.beams {
             check.within("beams", beams as f64, 2.0..=1e4, "from 2 to 10000")?;
         }
@@ -132,7 +137,8 @@ impl One {
 /// The observation has three parts. `scan`: from 0 to 1, share of the maximum range; 1 without a return, 0 where invalid.
 /// `state`: position (shares of the size of the world), cosine and sine of the heading, linear and angular velocity
 /// (shares of the maximum). `map`: four layers of patches of 0.5 m, row 0 at the lowest y: share that was seen, share that
-/// is blocked, how long ago it was seen, mean probability of a change since then; from 0 to 1.
+/// is blocked, how long ago it was seen, mean probability of a change since then; from 0 to 1. The map is refreshed at
+/// every fifth reading.
 ///
 /// The two actions are the wanted linear and angular velocity, as shares of the maximum. One step is one scan of the laser
 /// of the world.
@@ -146,6 +152,8 @@ pub struct Explore {
     poses: GivenPoses,
     reading: LaserReading,
     episode: Episode,
+    /// The map of the observation.
+    layers: Vec<f32>,
 }
 
 /// The present episode, for snapshots.
@@ -171,7 +179,8 @@ impl Explore {
         let mapper = Mapper::new(&one.mapper, world.spec().frame)?;
         let reading = world.sense();
         let (poses, episode) = (GivenPoses::default(), Episode::default());
-        Ok(Self { place: Arc::clone(place), number: 0, world, mapper, poses, reading, episode })
+        let layers = vec![0.0; place.patches.len()];
+        Ok(Self { place: Arc::clone(place), number: 0, world, mapper, poses, reading, episode, layers })
     }
 
     /// The simulated world.
@@ -261,6 +270,7 @@ impl Task for Explore {
         self.world.reset(seed);
         self.sense();
         self.episode.log_error = self.log_error();
+        self.place.patches.write(&self.mapper, &mut self.layers);
     }
 
     fn step(&mut self, actions: &[f32], outcome: Outcome<'_>) {
@@ -268,7 +278,10 @@ impl Task for Explore {
         let (settings, one) = (&place.settings, &place.worlds[self.number]);
         let drive = &self.world.spec().driven().drive;
         let [linear, angular] = [0, 1].map(|index| f64::from(actions.get(index).copied().unwrap_or(0.0)));
-        let twist = Twist { linear_mps: linear * drive.max_linear_mps, angular_radps: angular * drive.max_angular_radps };
+        let twist = Twist {
+            linear_mps: linear * drive.max_linear_mps,
+            angular_radps: angular * drive.max_angular_radps,
+        };
         self.world.act(&twist);
         let hits = self.world.contacts().iter().filter(|contact| contact.moving).count() as u32;
         self.sense();
@@ -281,6 +294,9 @@ impl Task for Explore {
             let log_error = self.log_error();
             reward += settings.error_reward * (self.episode.log_error - log_error);
             self.episode.log_error = log_error;
+        }
+        if is_over || self.episode.steps.is_multiple_of(settings.map_every) {
+            place.patches.write(&self.mapper, &mut self.layers);
         }
         let Outcome { rewards, terminated, truncated } = outcome;
         (rewards[0], terminated[0], truncated[0]) = (reward as f32, false, is_over);
@@ -309,7 +325,7 @@ impl Task for Explore {
         for (state, value) in state.iter_mut().zip(values) {
             *state = value.clamp(-1.0, 1.0) as f32;
         }
-        place.patches.write(&self.mapper, map);
+        map.copy_from_slice(&self.layers);
     }
 
     fn info(&self, info: &mut [f32]) {
@@ -321,7 +337,7 @@ impl Task for Explore {
     fn snapshot(&self) -> Vec<u8> {
         let (mut world, mut mapper) = (self.world.snapshot().into_bytes(), self.mapper.clone().snapshot());
         let (mut poses, mut reading) = (self.poses.clone().snapshot(), self.reading.clone());
-        let (mut number, mut episode) = (self.number, self.episode);
+        let (mut number, mut episode, mut layers) = (self.number, self.episode, self.layers.clone());
         interfaces::snapshot(vec![
             value(&mut number),
             value(&mut world),
@@ -329,12 +345,14 @@ impl Task for Explore {
             value(&mut poses),
             value(&mut reading),
             value(&mut episode),
+            value(&mut layers),
         ])
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
         let (mut world, mut mapper, mut poses) = (Vec::new(), Vec::new(), Vec::new());
         let (mut number, mut episode, mut reading) = (0_usize, Episode::default(), self.reading.clone());
+        let mut layers = Vec::new();
         let values = vec![
             value(&mut number),
             value(&mut world),
@@ -342,16 +360,17 @@ impl Task for Explore {
             value(&mut poses),
             value(&mut reading),
             value(&mut episode),
+            value(&mut layers),
         ];
         interfaces::restore(values, snapshot).map_err(|_| SnapshotError::Damaged)?;
-        if number >= self.place.worlds.len() {
+        if number >= self.place.worlds.len() || layers.len() != self.layers.len() {
             return Err(SnapshotError::OtherSpec);
         }
         self.take(number);
         self.world.restore(&world)?;
         self.mapper.restore(&mapper).map_err(|_| SnapshotError::Damaged)?;
         self.poses.restore(&poses).map_err(|_| SnapshotError::Damaged)?;
-        (self.reading, self.episode) = (reading, episode);
+        (self.reading, self.episode, self.layers) = (reading, episode, layers);
         Ok(())
     }
 }

@@ -22,11 +22,18 @@ pub(crate) struct Patches {
 
 impl Patches {
     pub(crate) fn covering<'a>(frames: impl Iterator<Item = &'a GridFrame>) -> Self {
-        let count = |cells: usize, frame: &GridFrame| (cells as f64 * frame.resolution_m() / PATCH_M - 1e-6).ceil() as usize;
+        let count = |cells: usize, frame: &GridFrame| {
+            (cells as f64 * frame.resolution_m() / PATCH_M - 1e-6).ceil() as usize
+        };
         frames.fold(Self { rows: 1, columns: 1 }, |most, frame| Self {
             rows: most.rows.max(count(frame.height(), frame)),
             columns: most.columns.max(count(frame.width(), frame)),
         })
+    }
+
+    /// The number of values of all layers.
+    pub(crate) fn len(&self) -> usize {
+        LAYERS * self.rows * self.columns
     }
 
     /// Writes four layers, row 0 at the lowest y, each with values from 0 to 1: the share of the patch that was seen, the

@@ -86,7 +86,8 @@ impl Picture {
     /// Fills a convex polygon with corners counter-clockwise.
     pub(crate) fn polygon(&mut self, corners: &[Point2<f64>], color: Rgb) {
         let Some(first) = corners.first() else { return };
-        let (low, high) = corners.iter().fold((*first, *first), |(low, high), at| (low.inf(at), high.sup(at)));
+        let (low, high) =
+            corners.iter().fold((*first, *first), |(low, high), at| (low.inf(at), high.sup(at)));
         let is_inside = |at: &Point2<f64>| {
             corners.iter().enumerate().all(|(index, from)| {
                 let to = corners[(index + 1) % corners.len()];
@@ -97,11 +98,18 @@ impl Picture {
     }
 
     /// Colors the pixels in a rectangle whose center `is_inside`.
-    fn fill(&mut self, low: Point2<f64>, high: Point2<f64>, color: Rgb, is_inside: impl Fn(&Point2<f64>) -> bool) {
+    fn fill(
+        &mut self,
+        low: Point2<f64>,
+        high: Point2<f64>,
+        color: Rgb,
+        is_inside: impl Fn(&Point2<f64>) -> bool,
+    ) {
         let Scale { low: origin, pixels_per_m } = self.frame;
         let [low, high] = [low, high].map(|at| (at - origin) * pixels_per_m);
         for row in (low.y.floor().max(0.0) as usize)..(high.y.ceil().max(0.0) as usize).min(self.height) {
-            for column in (low.x.floor().max(0.0) as usize)..(high.x.ceil().max(0.0) as usize).min(self.width) {
+            for column in (low.x.floor().max(0.0) as usize)..(high.x.ceil().max(0.0) as usize).min(self.width)
+            {
                 let at = origin + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) / pixels_per_m;
                 if is_inside(&at) {
                     let pixel = ((self.height - 1 - row) * self.width + column) * 3;

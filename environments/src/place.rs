@@ -124,7 +124,8 @@ impl Agent {
         let mut is_free = vec![false; coarse.frame.len()];
         cells.iter().for_each(|&cell| is_free[cell] = true);
         let most = MAX_GOALS.min(MAX_DISTANCES / coarse.frame.len()).clamp(1, cells.len());
-        let goal = |number: usize| Goal { cell: cells[number * cells.len() / most], distances: OnceLock::new() };
+        let goal =
+            |number: usize| Goal { cell: cells[number * cells.len() / most], distances: OnceLock::new() };
         let goals = (0..most).map(goal).collect();
         Some(Self { robot, starts, goals, is_free })
     }

@@ -78,7 +78,9 @@ impl Part {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TaskError {
     /// No robot of the world executes commands.
-    #[error("no robot of the world `{world}` is driven: give one of them `behaviour = {{ kind = \"driven\" }}`")]
+    #[error(
+        "no robot of the world `{world}` is driven: give one of them `behaviour = {{ kind = \"driven\" }}`"
+    )]
     NoDrivenRobot {
         /// The name of the world.
         world: String,
@@ -92,7 +94,9 @@ pub enum TaskError {
         world: String,
     },
     /// The driven robots differ in their sensors.
-    #[error("the robot `{robot}` has a laser with {found} beams, and the first driven robot one with {expected}")]
+    #[error(
+        "the robot `{robot}` has a laser with {found} beams, and the first driven robot one with {expected}"
+    )]
     OtherBeams {
         /// The name of the robot.
         robot: String,

@@ -1,8 +1,8 @@
 //! The tasks as a learner uses them.
 
 use environments::{
-    Batch, Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Results, Task, TaskError,
-    driving_hall,
+    Batch, Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Results, Task,
+    TaskError, driving_hall,
 };
 use sim::physics::{SnapshotError, WorldSpec};
 use std::sync::Arc;
@@ -15,7 +15,8 @@ fn action(environment: usize, step: usize) -> [f32; 2] {
 
 /// The bits of observations, rewards and ends.
 fn bits(results: &Results) -> Vec<u32> {
-    let numbers = results.observations.iter().chain(&results.rewards).chain(&results.info).map(|value| value.to_bits());
+    let numbers =
+        results.observations.iter().chain(&results.rewards).chain(&results.info).map(|value| value.to_bits());
     numbers.chain(results.terminated.iter().chain(&results.truncated).map(|is| u32::from(*is))).collect()
 }
 
@@ -35,12 +36,14 @@ fn run<T: Task>(tasks: Vec<T>, first: usize, threads: usize, steps: usize) -> Ve
     batch.set_parallel(threads > 1);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let mut results = batch.results();
-    let seed = |episode: u64| (0..count).map(|index| 1000 * episode + (first + index) as u64).collect::<Vec<u64>>();
+    let seed =
+        |episode: u64| (0..count).map(|index| 1000 * episode + (first + index) as u64).collect::<Vec<u64>>();
     pool.install(|| batch.reset(&seed(0), &mut results.observations)).unwrap();
     let (mut rows, values) = (vec![Vec::new(); count], batch.observation_len());
     let mut resets = 0;
     for step in 0..steps {
-        let actions: Vec<f32> = (first..first + count).flat_map(|environment| action(environment, step)).collect();
+        let actions: Vec<f32> =
+            (first..first + count).flat_map(|environment| action(environment, step)).collect();
         pool.install(|| batch.step(&actions, &seed(1 + step as u64), &mut results)).unwrap();
         resets += results.was_reset.iter().filter(|was| **was).count();
         for (index, row) in rows.iter_mut().enumerate() {
@@ -62,7 +65,8 @@ fn alone_and_in_a_batch_on_any_number_of_threads_the_bits_are_the_same() {
     for (index, row) in together.iter().enumerate() {
         assert_eq!(run(tasks(1), index, 1, 150)[0], *row, "environment {index}");
     }
-    let place = explore_place(ExploreSettings { max_steps: 25, beams: Some(60), ..ExploreSettings::default() });
+    let place =
+        explore_place(ExploreSettings { max_steps: 25, beams: Some(60), ..ExploreSettings::default() });
     let tasks = |count| (0..count).map(|_| Explore::new(&place).unwrap()).collect::<Vec<_>>();
     let together = run(tasks(4), 0, 1, 60);
     assert_eq!(run(tasks(4), 0, 2, 60), together);
@@ -127,7 +131,13 @@ fn the_goals_of_the_hall_are_far_and_can_be_reached() {
     }
     let reached = results.terminated.iter().filter(|is| **is).count();
     assert!(reached >= 85, "{reached} of 100 goals");
-    assert!(results.terminated.iter().zip(&results.truncated).all(|(terminated, truncated)| terminated != truncated));
+    assert!(
+        results
+            .terminated
+            .iter()
+            .zip(&results.truncated)
+            .all(|(terminated, truncated)| terminated != truncated)
+    );
     // The same seeds are the same episodes again.
     batch.reset(&(0..100).collect::<Vec<u64>>(), &mut results.observations).unwrap();
     assert_eq!(results.observations, first);

@@ -12,7 +12,7 @@
     A robot maps houses in which doors open and people walk. Observation, a dict: ``scan``, shape (180,); ``state``,
     shape (6,): position (shares of the size of the world), cosine and sine of the heading, linear and angular velocity
     (shares of the maximum); ``map``, shape (4, rows, columns), patches of 0.5 m, row 0 at the lowest y: share that was
-    seen, share that is blocked, how long ago it was seen, probability of a change since then. Action as above. Reward:
+    seen, share that is blocked, how long ago it was seen, probability of a change since then (refreshed at every fifth step). Action as above. Reward:
     the map updates of the reading, per cell of the robot's width, and 10 times the fall of the log error of the rates.
     The episode is truncated after 3000 steps of 0.1 s.
 
@@ -298,7 +298,7 @@ class DriveVectorEnv(_Vector):
 class ExploreEnv(_Single):
     """Exploring houses that change; see the module. ``worlds``: a list of ``Spec``, names or paths; each episode is in one.
 
-    Settings: ``max_steps``, ``beams``, ``error_every``, ``update_reward``, ``error_reward``, ``collision_reward``.
+    Settings: ``max_steps``, ``beams``, ``error_every``, ``map_every``, ``update_reward``, ``error_reward``, ``collision_reward``.
     """
 
     _make = staticmethod(_explore)

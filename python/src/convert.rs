@@ -68,9 +68,14 @@ pub(crate) fn no_robot(robot: usize, robots: usize) -> PyErr {
 pub(crate) fn pose(pose: &Numbers<'_>) -> PyResult<Isometry2<f64>> {
     let values: Vec<f64> = pose.as_array().iter().copied().collect();
     match values[..] {
-        [x, y, heading] if values.iter().all(|value| value.is_finite()) => Ok(interfaces::pose(x, y, heading)),
+        [x, y, heading] if values.iter().all(|value| value.is_finite()) => {
+            Ok(interfaces::pose(x, y, heading))
+        }
         [_, _, _] => Err(value_error(format!("a pose is finite, and not {values:?}"))),
-        _ => Err(value_error(format!("a pose is [x, y, heading] (m, m, rad), and not {} numbers", values.len()))),
+        _ => Err(value_error(format!(
+            "a pose is [x, y, heading] (m, m, rad), and not {} numbers",
+            values.len()
+        ))),
     }
 }
 
@@ -85,7 +90,10 @@ pub(crate) fn pose_array<'py>(py: Python<'py>, pose: &Isometry2<f64>) -> Bound<'
 }
 
 /// Points as an array with two columns.
-pub(crate) fn points_array<'py>(py: Python<'py>, points: &[Point2<f64>]) -> PyResult<Bound<'py, PyArray2<f64>>> {
+pub(crate) fn points_array<'py>(
+    py: Python<'py>,
+    points: &[Point2<f64>],
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let values: Vec<f64> = points.iter().flat_map(|point| [point.x, point.y]).collect();
     values.into_pyarray(py).reshape([points.len(), 2])
 }

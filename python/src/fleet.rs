@@ -42,7 +42,8 @@ impl Fleet {
         }
         for (&robot, row) in self.driven.iter().zip(commands.rows()) {
             let left_mps = if columns == 3 { row[1] } else { 0.0 };
-            self.fleet.command(robot, Velocity { forward_mps: row[0], left_mps, turn_radps: row[columns - 1] });
+            self.fleet
+                .command(robot, Velocity { forward_mps: row[0], left_mps, turn_radps: row[columns - 1] });
         }
         Ok(())
     }
@@ -184,7 +185,8 @@ impl Fleet {
     /// The true velocities of all robots, shape (robots, 3): forward (m/s), left (m/s), angular (rad/s).
     fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let robots = self.fleet.robots();
-        let velocities = robots.flat_map(|robot| [robot.twist.linear_mps, robot.left_mps, robot.twist.angular_radps]);
+        let velocities =
+            robots.flat_map(|robot| [robot.twist.linear_mps, robot.left_mps, robot.twist.angular_radps]);
         let velocities: Vec<f64> = velocities.collect();
         let count = velocities.len() / 3;
         velocities.into_pyarray(py).reshape([count, 3])
@@ -271,6 +273,11 @@ impl Fleet {
 
     fn __repr__(&self) -> String {
         let spec = self.fleet.spec();
-        format!("<curious.Fleet {:?}: {} robots at {:.3} s>", spec.name, spec.robots.len(), self.fleet.time_s())
+        format!(
+            "<curious.Fleet {:?}: {} robots at {:.3} s>",
+            spec.name,
+            spec.robots.len(),
+            self.fleet.time_s()
+        )
     }
 }

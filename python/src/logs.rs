@@ -78,7 +78,11 @@ impl Log {
     }
 
     fn __repr__(&self) -> String {
-        format!("<curious.Log: {} readings in {:.1} s>", self.log.summary().scans, self.log.summary().duration_s)
+        format!(
+            "<curious.Log: {} readings in {:.1} s>",
+            self.log.summary().scans,
+            self.log.summary().duration_s
+        )
     }
 }
 
@@ -129,9 +133,9 @@ pub(crate) fn map_log(
             return Err(value_error(format!("`pose` is localized, odometry or exact, and not {other:?}")));
         }
     };
-    let mut settings = SurveySettings { resolution_m: cell, max_range_m: max_range, ..SurveySettings::of(mode) };
-    settings.mapper =
-        crate::mapper::settings_of(settings.mapper, estimator, None, None, range_noise)?;
+    let mut settings =
+        SurveySettings { resolution_m: cell, max_range_m: max_range, ..SurveySettings::of(mode) };
+    settings.mapper = crate::mapper::settings_of(settings.mapper, estimator, None, None, range_noise)?;
     py.detach(|| learn(&log.log, settings, range_noise.is_none())).map_err(value_error)
 }
 
@@ -224,7 +228,8 @@ impl Survey {
 
     /// The middle of each place, shape (places, 2), m.
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let points: Vec<_> = self.places.iter().map(|place| nalgebra::Point2::new(place.x_m, place.y_m)).collect();
+        let points: Vec<_> =
+            self.places.iter().map(|place| nalgebra::Point2::new(place.x_m, place.y_m)).collect();
         points_array(py, &points)
     }
 

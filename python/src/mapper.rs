@@ -26,7 +26,8 @@ impl Mapper {
         value: impl Fn(&mapper::Mapper, usize) -> T + Sync,
     ) -> PyResult<Bound<'py, PyArray2<T>>> {
         let mapper = &self.mapper;
-        let values: Vec<T> = py.detach(|| (0..mapper.frame().len()).map(|index| value(mapper, index)).collect());
+        let values: Vec<T> =
+            py.detach(|| (0..mapper.frame().len()).map(|index| value(mapper, index)).collect());
         grid(py, mapper.frame(), values)
     }
 }
@@ -77,9 +78,12 @@ impl Mapper {
         max_gap: Option<f64>,
         range_noise: Option<f64>,
     ) -> PyResult<Self> {
-        let frame = GridFrame::covering(Point2::new(origin.0, origin.1), width, height, cell).ok_or_else(|| {
-            value_error(format!("a map of {width} m x {height} m with cells of {cell} m: it must have 1 to 2^26 cells"))
-        })?;
+        let frame =
+            GridFrame::covering(Point2::new(origin.0, origin.1), width, height, cell).ok_or_else(|| {
+                value_error(format!(
+                    "a map of {width} m x {height} m with cells of {cell} m: it must have 1 to 2^26 cells"
+                ))
+            })?;
         let settings = settings_of(MapperSettings::default(), estimator, occupancy, max_gap, range_noise)?;
         Ok(Self { mapper: mapper::Mapper::new(&settings, frame).map_err(value_error)? })
     }
@@ -247,9 +251,12 @@ impl Mapper {
     /// free_events (changes in view), block_events_after_gap and free_events_after_gap.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let statistics = PyDict::new(py);
-        statistics.set_item("watched_free", self.array(py, |map, cell| map.statistics(cell).watched_free)?)?;
-        statistics.set_item("watched_blocked", self.array(py, |map, cell| map.statistics(cell).watched_blocked)?)?;
-        statistics.set_item("block_events", self.array(py, |map, cell| map.statistics(cell).block_events)?)?;
+        statistics
+            .set_item("watched_free", self.array(py, |map, cell| map.statistics(cell).watched_free)?)?;
+        statistics
+            .set_item("watched_blocked", self.array(py, |map, cell| map.statistics(cell).watched_blocked)?)?;
+        statistics
+            .set_item("block_events", self.array(py, |map, cell| map.statistics(cell).block_events)?)?;
         statistics.set_item("free_events", self.array(py, |map, cell| map.statistics(cell).free_events)?)?;
         let after_gap = self.array(py, |map, cell| map.statistics(cell).block_events_after_gap)?;
         statistics.set_item("block_events_after_gap", after_gap)?;

@@ -148,7 +148,9 @@ impl Reading {
             range_m.is_finite() && (scan.range_min_m..=scan.range_max_m).contains(&range_m)
         });
         let hits = beams.flat_map(|(beam, range_m)| {
-            let at = laser * interfaces::rotation(scan.angle_rad(beam)) * nalgebra::Point2::new(f64::from(*range_m), 0.0);
+            let at = laser
+                * interfaces::rotation(scan.angle_rad(beam))
+                * nalgebra::Point2::new(f64::from(*range_m), 0.0);
             [at.x, at.y]
         });
         let values: Vec<f64> = hits.collect();

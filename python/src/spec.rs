@@ -190,7 +190,9 @@ impl Spec {
             Source::Shipped(name) => worldfile::shipped::text(name).map(str::to_owned),
             Source::House(_) => worldfile::physics::to_toml(&self.fleet),
         }
-        .ok_or_else(|| world_error(format!("the world `{}` cannot be written as a world file", self.fleet.name)))
+        .ok_or_else(|| {
+            world_error(format!("the world `{}` cannot be written as a world file", self.fleet.name))
+        })
     }
 
     /// A spec never changes: a copy is the same object.

@@ -1,7 +1,8 @@
 use crate::convert::{snapshot_error, value_error};
 use crate::spec::{driving, spec_of};
 use environments::{
-    Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Picture, ResultsMut, Task, TaskError,
+    Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Picture, ResultsMut, Task,
+    TaskError,
 };
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
@@ -81,7 +82,9 @@ impl Batch {
             return Ok(());
         }
         let count = self.environments;
-        Err(PyIndexError::new_err(format!("there is no environment {environment}: there are {count}, counted from 0")))
+        Err(PyIndexError::new_err(format!(
+            "there is no environment {environment}: there are {count}, counted from 0"
+        )))
     }
 
     fn check_count(environments: usize) -> PyResult<()> {
@@ -131,6 +134,7 @@ fn explore_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<ExploreSet
             "max_steps" => settings.max_steps = value.extract()?,
             "beams" => settings.beams = value.extract()?,
             "error_every" => settings.error_every = value.extract()?,
+            "map_every" => settings.map_every = value.extract()?,
             "update_reward" => settings.update_reward = value.extract()?,
             "error_reward" => settings.error_reward = value.extract()?,
             "collision_reward" => settings.collision_reward = value.extract()?,
@@ -140,10 +144,13 @@ fn explore_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<ExploreSet
     Ok(settings)
 }
 
-const EXPLORE_KEYS: &str = "max_steps, beams, error_every, update_reward, error_reward, collision_reward";
+const EXPLORE_KEYS: &str =
+    "max_steps, beams, error_every, map_every, update_reward, error_reward, collision_reward";
 
 fn unknown(task: &str, key: &str, known: &str) -> PyErr {
-    pyo3::exceptions::PyTypeError::new_err(format!("the {task} task has no setting `{key}`; there are {known}"))
+    pyo3::exceptions::PyTypeError::new_err(format!(
+        "the {task} task has no setting `{key}`; there are {known}"
+    ))
 }
 
 #[pymethods]
@@ -281,7 +288,9 @@ impl Batch {
         let (rows, values, environments) = (self.rows(), self.observation_len(), self.environments);
         let shape = actions.as_array().dim();
         if shape != (rows, 2) {
-            return Err(value_error(format!("the actions have the shape {shape:?}, and must have ({rows}, 2)")));
+            return Err(value_error(format!(
+                "the actions have the shape {shape:?}, and must have ({rows}, 2)"
+            )));
         }
         let copied: Vec<f32>;
         let actions = match actions.as_slice().ok().filter(|_| actions.is_c_contiguous()) {
@@ -326,7 +335,12 @@ impl Batch {
 
     /// One environment from above, shape (rows, columns, 3), uint8; the longer side has `size` pixels.
     #[pyo3(signature = (environment = 0, size = 480))]
-    fn picture<'py>(&self, py: Python<'py>, environment: usize, size: usize) -> PyResult<Bound<'py, PyArray3<u8>>> {
+    fn picture<'py>(
+        &self,
+        py: Python<'py>,
+        environment: usize,
+        size: usize,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
         self.check(environment)?;
         let Picture { width, height, pixels, .. } = match &self.tasks {
             Tasks::Drive(batch) => batch.tasks()[environment].picture(size),

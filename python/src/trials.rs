@@ -201,7 +201,9 @@ pub(crate) fn trial<'py>(
     let result = result.ok_or_else(|| value_error("there is no trial"))?.map_err(world_error)?;
     let trial = result.ok_or_else(|| value_error("the trial was canceled"))?;
     let (dict, samples) = (PyDict::new(py), PyDict::new(py));
-    for (name, value) in [("world", &trial.world), ("strategy", &trial.strategy), ("estimator", &trial.estimator)] {
+    for (name, value) in
+        [("world", &trial.world), ("strategy", &trial.strategy), ("estimator", &trial.estimator)]
+    {
         dict.set_item(name, value)?;
     }
     dict.set_item("seed", trial.seed)?;

@@ -21,7 +21,13 @@ impl World {
     /// one. `exact`: readings have the true pose in place of that by odometry.
     #[new]
     #[pyo3(signature = (world, seed = 0, *, robot = None, exact = false))]
-    fn new(py: Python<'_>, world: &Bound<'_, PyAny>, seed: u64, robot: Option<usize>, exact: bool) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        world: &Bound<'_, PyAny>,
+        seed: u64,
+        robot: Option<usize>,
+        exact: bool,
+    ) -> PyResult<Self> {
         let spec = driving(&spec_of(py, world)?, robot)?;
         let mut world = py.detach(|| PhysicsWorld::new(&spec, seed));
         if exact {
@@ -100,7 +106,8 @@ impl World {
         if mapper.mapper.frame() != truth.frame() {
             return Err(value_error("the map has other cells than the world: make it by `Mapper.of(world)`"));
         }
-        let (rates, map) = py.detach(|| (rate_scores(&mapper.mapper, truth), map_scores(&mapper.mapper, truth)));
+        let (rates, map) =
+            py.detach(|| (rate_scores(&mapper.mapper, truth), map_scores(&mapper.mapper, truth)));
         let scores = PyDict::new(py);
         for (name, value) in [
             ("log_error", rates.log_error),

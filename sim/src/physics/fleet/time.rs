@@ -68,7 +68,8 @@ impl Fleet {
         let robots = self.robots.iter().map(|robot| robot.pose);
         let obstacles = self.obstacles.iter();
         let obstacles = obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose));
-        let recent = if sweeps { self.past.recent(self.spec(), robots, obstacles) } else { Recent::default() };
+        let recent =
+            if sweeps { self.past.recent(self.spec(), robots, obstacles) } else { Recent::default() };
         Arc::new(Surroundings { step: self.step, time_s: self.time_s(), scene, tagged, recent })
     }
 
