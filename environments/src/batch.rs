@@ -210,7 +210,7 @@ impl<T: Task> Batch<T> {
         check("truncated", truncated.len(), tasks * agents)?;
         check("info", info.len(), tasks * infos)?;
         check("resets", was_reset.len(), tasks)?;
-        if let Some(at) = actions.iter().position(|action| !(action.abs() <= 1.0 + ROUNDING)) {
+        if let Some(at) = actions.iter().position(|action| action.is_nan() || action.abs() > 1.0 + ROUNDING) {
             return Err(TaskError::Action { environment: at / actions_len.max(1), value: actions[at] });
         }
         let is_autoreset = self.is_autoreset;

@@ -9,7 +9,7 @@ use sim::physics::{Fleet, SnapshotError};
 use std::sync::Arc;
 
 /// The distance ahead on the shortest path at which the point lies that the observation shows, m.
-const AHEAD_M: f64 = 1.0;
+const AHEAD_M: f64 = 0.6;
 /// The numbers of an observation beside the scan.
 const STATE: usize = 7;
 

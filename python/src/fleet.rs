@@ -21,6 +21,9 @@ pub(crate) struct Fleet {
     beams: Option<usize>,
 }
 
+/// A contact: time, robot, what it touched, x, y, whether the robot moved.
+type ContactRow = (f64, usize, (&'static str, usize), f64, f64, bool);
+
 impl Fleet {
     fn check_robot(&self, robot: usize) -> PyResult<()> {
         let robots = self.fleet.spec().robots.len();
@@ -194,7 +197,7 @@ impl Fleet {
 
     /// The contacts that began in the last `step` or `run`: (time (s), robot, with, x (m), y (m), moving). `with` is
     /// "wall", "obstacle" or "robot", and its index.
-    fn contacts(&self) -> Vec<(f64, usize, (&'static str, usize), f64, f64, bool)> {
+    fn contacts(&self) -> Vec<ContactRow> {
         let contacts = self.fleet.contacts().iter().map(|contact| {
             let with = match contact.with {
                 Body::Wall(index) => ("wall", index),
