@@ -112,7 +112,7 @@ impl<T: Task> Batch<T> {
         let first = tasks.first();
         let of = |value: fn(&T) -> usize| first.map_or(0, value);
         Self {
-            agents: of(Task::agents),
+            agents: of(Task::agents).max(1),
             action_len: of(Task::action_len),
             observation_len: of(|task| task.parts().iter().map(|part| part.values()).sum()),
             info_len: of(|task| task.info_names().len()),
@@ -217,8 +217,13 @@ impl<T: Task> Batch<T> {
         let results = observations.chunks_mut(values.max(1)).zip(last_observations.chunks_mut(values.max(1)));
         let ends =
             rewards.chunks_mut(agents).zip(terminated.chunks_mut(agents)).zip(truncated.chunks_mut(agents));
-        let jobs =
-            self.tasks.iter_mut().zip(actions.chunks(actions_len)).zip(next_seeds).zip(results).zip(ends);
+        let jobs = self
+            .tasks
+            .iter_mut()
+            .zip(actions.chunks(actions_len.max(1)))
+            .zip(next_seeds)
+            .zip(results)
+            .zip(ends);
         let jobs = jobs.zip(info.chunks_mut(infos.max(1))).zip(was_reset);
         let jobs = jobs.map(|((inputs, info), was_reset)| {
             let ((((task, actions), &next_seed), (observations, last_observations)), ends) = inputs;

@@ -199,3 +199,33 @@ fn invalid_input_is_refused_and_changes_nothing() {
     assert!(matches!(error, TaskError::NoDrivenRobot { .. }), "{error}");
     assert_eq!(ExplorePlace::new(&[], ExploreSettings::default()).err(), Some(TaskError::NoWorld));
 }
+
+/// FNV-1a over all bits of observations and rewards, of actions that are exact in binary. `python/tests/test_envs.py` has the
+/// same steps and the same numbers: Python and Rust give the same bits.
+fn golden<T: Task>(tasks: Vec<T>) -> u64 {
+    let count = tasks.len();
+    let mut batch = Batch::new(tasks);
+    let mut results = batch.results();
+    let seeds = |first: usize| (first..first + count).map(|seed| seed as u64).collect::<Vec<u64>>();
+    batch.reset(&seeds(0), &mut results.observations).unwrap();
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    for step in 0..60 {
+        let action = |index: usize| ((index * 7 + step * 3) % 17) as f32 / 8.0 - 1.0;
+        let actions: Vec<f32> = (0..2 * count).map(action).collect();
+        batch.step(&actions, &seeds(100 + step), &mut results).unwrap();
+        for value in results.observations.iter().chain(&results.rewards) {
+            hash = (hash ^ u64::from(value.to_bits())).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+    hash
+}
+
+#[test]
+fn golden_hashes() {
+    let place = drive_place(DriveSettings { max_steps: 40, ..DriveSettings::default() });
+    let driving = golden((0..3).map(|_| Drive::new(&place)).collect());
+    let place =
+        explore_place(ExploreSettings { max_steps: 40, beams: Some(20), ..ExploreSettings::default() });
+    let exploring = golden((0..2).map(|_| Explore::new(&place).unwrap()).collect());
+    assert_eq!([driving, exploring], [10_209_087_274_166_477_871, 5_893_106_538_825_299_669]);
+}

@@ -9,7 +9,7 @@ use numpy::{
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use sim::physics::{Body, FreePoses, Velocity};
+use sim::physics::{Body, Contact, FreePoses, Velocity};
 
 /// A world with any number of robots. The same spec, seed and commands give the same bits as in Rust, on any number of
 /// threads.
@@ -19,7 +19,12 @@ pub(crate) struct Fleet {
     driven: Vec<usize>,
     /// The number of beams of each robot, if it is the same.
     beams: Option<usize>,
+    /// The contacts that began in the last `step` or `run`.
+    contacts: Vec<Contact>,
 }
+
+/// The simulated time after which a signal of the user is noticed, s.
+const SIGNALS_S: f64 = 10.0;
 
 /// A contact: time, robot, what it touched, x, y, whether the robot moved.
 type ContactRow = (f64, usize, (&'static str, usize), f64, f64, bool);
@@ -28,6 +33,21 @@ impl Fleet {
     fn check_robot(&self, robot: usize) -> PyResult<()> {
         let robots = self.fleet.spec().robots.len();
         if robot < robots { Ok(()) } else { Err(no_robot(robot, robots)) }
+    }
+
+    /// Simulates until a time, s. Ctrl-C ends it.
+    fn run_until(&mut self, py: Python<'_>, end_s: f64) -> PyResult<()> {
+        let Self { fleet, contacts, .. } = self;
+        contacts.clear();
+        loop {
+            let next_s = end_s.min(fleet.time_s() + SIGNALS_S);
+            py.detach(|| fleet.run_until(next_s, &mut ()));
+            contacts.extend_from_slice(fleet.contacts());
+            if next_s >= end_s {
+                return Ok(());
+            }
+            py.check_signals()?;
+        }
     }
 
     fn set_commands(&mut self, commands: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<()> {
@@ -64,7 +84,7 @@ impl Fleet {
         let beams = Some(first).filter(|beams| spec.robots.iter().all(|robot| robot.laser.beams == *beams));
         let mut fleet = py.detach(|| sim::physics::Fleet::new(&spec, seed));
         fleet.set_parallel_lasers(threads);
-        Ok(Self { fleet, driven, beams })
+        Ok(Self { fleet, driven, beams, contacts: Vec::new() })
     }
 
     /// The time since the start, s.
@@ -110,10 +130,7 @@ impl Fleet {
         steps: u32,
     ) -> PyResult<()> {
         commands.as_ref().map_or(Ok(()), |commands| self.set_commands(commands))?;
-        let fleet = &mut self.fleet;
-        let end_s = fleet.time_s() + f64::from(steps) * fleet.spec().step_s;
-        py.detach(|| fleet.run_until(end_s, &mut ()));
-        Ok(())
+        self.run_until(py, self.fleet.time_s() + f64::from(steps) * self.fleet.spec().step_s)
     }
 
     /// Simulates for some time, s.
@@ -121,10 +138,7 @@ impl Fleet {
         if !(seconds.is_finite() && seconds >= 0.0) {
             return Err(value_error(format!("a duration is 0 s or more, and not {seconds}")));
         }
-        let fleet = &mut self.fleet;
-        let end_s = fleet.time_s() + seconds;
-        py.detach(|| fleet.run_until(end_s, &mut ()));
-        Ok(())
+        self.run_until(py, self.fleet.time_s() + seconds)
     }
 
     /// Measures with the main laser of a robot now: scan and pose are of the same instant.
@@ -198,7 +212,7 @@ impl Fleet {
     /// The contacts that began in the last `step` or `run`: (time (s), robot, with, x (m), y (m), moving). `with` is
     /// "wall", "obstacle" or "robot", and its index.
     fn contacts(&self) -> Vec<ContactRow> {
-        let contacts = self.fleet.contacts().iter().map(|contact| {
+        let contacts = self.contacts.iter().map(|contact| {
             let with = match contact.with {
                 Body::Wall(index) => ("wall", index),
                 Body::Obstacle(index) => ("obstacle", index),
@@ -271,7 +285,8 @@ impl Fleet {
 
     /// An independent copy.
     fn copy(&self) -> Self {
-        Self { fleet: self.fleet.clone(), driven: self.driven.clone(), beams: self.beams }
+        let (driven, contacts) = (self.driven.clone(), self.contacts.clone());
+        Self { fleet: self.fleet.clone(), driven, beams: self.beams, contacts }
     }
 
     fn __repr__(&self) -> String {

@@ -136,15 +136,34 @@ pub(crate) fn map_log(
     let mut settings =
         SurveySettings { resolution_m: cell, max_range_m: max_range, ..SurveySettings::of(mode) };
     settings.mapper = crate::mapper::settings_of(settings.mapper, estimator, None, None, range_noise)?;
-    py.detach(|| learn(&log.log, settings, range_noise.is_none())).map_err(value_error)
+    py.detach(|| learn(&log.log, settings, range_noise.is_none()))
 }
 
-fn learn(log: &::logs::Log, mut settings: SurveySettings, learns_noise: bool) -> Result<Survey, String> {
-    fn text(error: impl std::fmt::Display) -> String {
-        error.to_string()
+/// Notices a signal of the user once in many readings.
+fn check_signals(readings: usize) -> PyResult<()> {
+    if readings.is_multiple_of(256) { Python::attach(|py| py.check_signals()) } else { Ok(()) }
+}
+
+/// Why the second pass stopped.
+struct Stop(PyErr);
+
+impl From<PyErr> for Stop {
+    fn from(error: PyErr) -> Self {
+        Self(error)
     }
+}
+
+impl From<mapper::ReadingError> for Stop {
+    fn from(error: mapper::ReadingError) -> Self {
+        Self(value_error(error))
+    }
+}
+
+fn learn(log: &::logs::Log, mut settings: SurveySettings, learns_noise: bool) -> PyResult<Survey> {
+    use value_error as text;
     let mut pass = FirstPass::new(&settings).map_err(text)?;
-    for reading in log.readings().map_err(text)? {
+    for (number, reading) in log.readings().map_err(text)?.enumerate() {
+        check_signals(number)?;
         pass.add(reading.map_err(text)?);
     }
     let sessions = [pass.finish()];
@@ -154,18 +173,19 @@ fn learn(log: &::logs::Log, mut settings: SurveySettings, learns_noise: bool) ->
     let frame = survey::frame(&sessions, &settings).map_err(text)?;
     let mut mapper = mapper::Mapper::new(&settings.mapper, frame).map_err(text)?;
     let replay = Replay::new(log.readings().map_err(text)?, &settings, 0.0).map_err(text)?;
-    let mut replay = replay.ok_or("the log has changed since the first pass")?;
+    let mut replay = replay.ok_or_else(|| text("the log has changed since the first pass"))?;
     let mut changes = ChangeLog::default();
     let [session] = sessions;
     let mut poses = FoundPoses::new(session.poses.clone());
     explore(&mut replay, &mut poses, &mut mapper, &mut NoPilot, |replay, _, belief, _| {
         changes.note(belief.mapper);
-        Ok::<_, mapper::ReadingError>(match replay.is_over() {
+        check_signals(belief.mapper.readings())?;
+        Ok::<_, Stop>(match replay.is_over() {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         })
     })
-    .map_err(text)?;
+    .map_err(|Stop(error)| error)?;
     if let Some(problem) = replay.into_problem() {
         return Err(text(problem));
     }

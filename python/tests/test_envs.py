@@ -203,3 +203,26 @@ def test_stable_baselines3():
     assert dones.all() and all(info["TimeLimit.truncated"] for info in infos)
     assert infos[0]["terminal_observation"].shape == (71,) and infos[0]["episode"]["l"] == 20
     PPO("MlpPolicy", env, n_steps=16, batch_size=64, n_epochs=1, device="cpu").learn(256)
+
+
+#: The numbers of `golden_hashes` in `environments/tests/tasks.rs`.
+GOLDEN = {"drive": 10209087274166477871, "explore": 5893106538825299669}
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("kind", GOLDEN)
+def test_python_and_rust_give_the_same_bits(kind, threads):
+    if kind == "drive":
+        batch = curious.Batch.drive(curious.Spec.driving_hall(), 3, threads, max_steps=40)
+    else:
+        houses = [curious.Spec.house(3), curious.Spec.house(5)]
+        batch = curious.Batch.explore(houses, 2, threads, max_steps=40, beams=20)
+    count, value = batch.environments, 0xCBF29CE484222325
+    batch.reset(np.arange(count, dtype=np.uint64))
+    for step in range(60):
+        actions = np.float32((np.arange(2 * count) * 7 + step * 3) % 17) / np.float32(8.0) - np.float32(1.0)
+        seeds = np.arange(100 + step, 100 + step + count, dtype=np.uint64)
+        observations, rewards, *_ = batch.step(actions.reshape(count, 2), seeds)
+        for bits in np.concatenate([observations.ravel(), rewards]).view(np.uint32).tolist():
+            value = ((value ^ bits) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
+    assert value == GOLDEN[kind]
