@@ -155,6 +155,32 @@ fn tick_of_a_fleet(bencher: Bencher<'_, '_>, robots: usize) {
     });
 }
 
+/// A new fleet, a reset of one that ran, and a clone.
+#[divan::bench(args = WORLDS)]
+fn start_new(bencher: Bencher<'_, '_>, name: &str) {
+    let spec = world(name).spec().fleet().clone();
+    bencher.bench_local(|| black_box(Fleet::new(&spec, 1)));
+}
+
+/// See [`start_new`].
+#[divan::bench(args = WORLDS)]
+fn start_reset(bencher: Bencher<'_, '_>, name: &str) {
+    let mut fleet = Fleet::new(world(name).spec(), 0);
+    fleet.run_until(5.0, &mut ());
+    let mut seed = 0;
+    bencher.bench_local(|| {
+        seed += 1;
+        fleet.reset(black_box(seed));
+    });
+}
+
+/// See [`start_new`].
+#[divan::bench(args = WORLDS)]
+fn start_clone(bencher: Bencher<'_, '_>, name: &str) {
+    let fleet = Fleet::new(world(name).spec(), 0);
+    bencher.bench_local(|| black_box(fleet.clone()));
+}
+
 /// Writing a fleet as bytes, and reading it.
 #[divan::bench]
 fn snapshot_of_100(bencher: Bencher<'_, '_>) {

@@ -46,6 +46,8 @@ pub enum Purpose {
     WorldGenerator,
     /// Generator of random houses. Stream `3 << 48`.
     HouseGenerator,
+    /// Learning tasks: worlds, start poses and goals. Stream `4 << 48`.
+    Task,
 }
 
 impl Purpose {
@@ -68,6 +70,7 @@ impl Purpose {
             Self::GridController => 2 << 32,
             Self::WorldGenerator => 0,
             Self::HouseGenerator => 3 << 48,
+            Self::Task => 4 << 48,
         }
     }
 }
@@ -197,7 +200,7 @@ mod tests {
                 Purpose::Carried(index),
             ]
         };
-        let once = [Purpose::Agent, Purpose::Controller, Purpose::HouseGenerator];
+        let once = [Purpose::Agent, Purpose::Controller, Purpose::HouseGenerator, Purpose::Task];
         let physics = (0..1000).flat_map(per_index).chain(once);
         let blocks = (0..1000).map(Purpose::BlockTransition);
         let grid = blocks.chain([Purpose::RobotTransition, Purpose::GridAgent, Purpose::GridController]);

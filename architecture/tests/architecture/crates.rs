@@ -17,6 +17,24 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("survey", &["interfaces", "mapper", "localizer", "logs", "agent", "robot"]),
     ("state", &["interfaces", "mapper", "localizer", "robot"]),
     ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "state"]),
+    ("environments", &["interfaces", "sim", "worldfile", "mapper", "localizer", "evaluation"]),
+    (
+        "curious-robot",
+        &[
+            "interfaces",
+            "sim",
+            "worldfile",
+            "stage",
+            "mapper",
+            "localizer",
+            "logs",
+            "agent",
+            "robot",
+            "survey",
+            "evaluation",
+            "environments",
+        ],
+    ),
     (
         "viewer",
         &[
@@ -75,7 +93,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
 const RESERVED: &[(&str, &[&str])] =
     &[("rerun", &["viewer", "curious"]), ("rapier2d", &["sim"]), ("ros2-client", &["ros2"])];
 
-/// The libraries that must build without Rerun; the benches use them and nothing else.
+/// The libraries that must build without Rerun; the benches and the Python package use them and nothing else.
 const WITHOUT_RERUN: &[&str] = &[
     "interfaces",
     "sim",
@@ -91,6 +109,7 @@ const WITHOUT_RERUN: &[&str] = &[
     "state",
     "evaluation",
     "ros2",
+    "environments",
 ];
 
 #[test]
@@ -122,7 +141,7 @@ fn only_the_viewer_and_the_programs_need_rerun() {
     let packages = packages();
     for name in WITHOUT_RERUN
         .iter()
-        .chain(&["benches"])
+        .chain(&["benches", "curious-robot"])
         .filter(|name| packages.iter().any(|package| package.name == **name))
     {
         let needs = needs(name);

@@ -13,6 +13,7 @@ pub mod convex;
 mod drives;
 mod fleet;
 mod form;
+mod free_poses;
 mod free_space;
 mod generate;
 mod ground_truth;
@@ -32,8 +33,9 @@ mod world;
 
 pub use box_tree::BoxTree;
 pub use command::{Acceleration, Command, Velocity};
-pub use fleet::{Controller, Fleet, TeleportError};
+pub use fleet::{Controller, Fleet, LengthError, TeleportError};
 pub use form::Form;
+pub use free_poses::FreePoses;
 pub use free_space::FreeSpace;
 pub use generate::{Furniture, HOUSE_RANGES, HouseRanges, Place};
 pub use ground_truth::PhysicsGroundTruth;

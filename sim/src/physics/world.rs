@@ -6,14 +6,18 @@ use super::snapshot::{self, SnapshotError};
 use super::spec::WorldSpec;
 use interfaces::{LaserReading, Twist, Values, World, value};
 use nalgebra::{Isometry2, Point2};
+use std::sync::Arc;
 
 /// A world in which one robot is driven, with the ground truth of every cell.
 ///
-/// The same spec, seed and commands give the same bits, on every machine.
+/// The same spec, seed and commands give the same bits, on every machine. A clone is independent.
+#[derive(Clone)]
 pub struct PhysicsWorld {
-    spec: WorldSpec,
+    spec: Arc<WorldSpec>,
     fleet: Fleet,
     truth: PhysicsGroundTruth,
+    /// The ground truth at the start, which is the same for every seed.
+    start: Arc<PhysicsGroundTruth>,
     contacts: Vec<Contact>,
     obstacle_events: Vec<ObstacleEvent>,
     /// Whether readings have the true pose in place of that by odometry.
@@ -25,7 +29,7 @@ impl PhysicsWorld {
     /// the decisions of robots and doors, each with a separate stream.
     pub fn new(spec: &WorldSpec, seed: u64) -> Self {
         let fleet = Fleet::new(spec.fleet(), seed);
-        let start = fleet.robot(spec.driven_index()).at();
+        let start = fleet.inner(spec.driven_index()).at();
         let mut truth = PhysicsGroundTruth::new(spec.frame, &spec.walls, &start);
         let boxes = fleet.standing_boxes();
         for (index, obstacle) in spec.obstacles.iter().enumerate().filter(|(i, _)| fleet.is_standing(*i)) {
@@ -33,17 +37,27 @@ impl PhysicsWorld {
             truth.change_box(&obstacle.start(), &boxes, mover);
         }
         for index in others(spec) {
-            truth.move_robot(index, &fleet.robot(index).form());
+            truth.move_robot(index, &fleet.inner(index).form());
         }
         truth.begin();
         Self {
-            spec: spec.clone(),
+            spec: Arc::new(spec.clone()),
             fleet,
+            start: Arc::new(truth.clone()),
             truth,
             contacts: Vec::new(),
             obstacle_events: Vec::new(),
             is_corrected: false,
         }
+    }
+
+    /// Resets the world to the start, with the same seed or another one: the result is that of [`PhysicsWorld::new`], bit
+    /// for bit. Corrected odometry stays so. The place is kept: a reset takes a small part of the time.
+    pub fn reset(&mut self, seed: u64) {
+        self.fleet.reset(seed);
+        self.truth.clone_from(&self.start);
+        self.contacts.clear();
+        self.obstacle_events.clear();
     }
 
     /// From now on, readings have the true pose in place of that by odometry: for comparisons. Nothing else changes.
@@ -61,6 +75,11 @@ impl PhysicsWorld {
         &self.spec
     }
 
+    /// The simulated robots and obstacles.
+    pub fn fleet(&self) -> &Fleet {
+        &self.fleet
+    }
+
     /// The ground truth of every cell, for metrics only.
     pub fn truth(&self) -> &PhysicsGroundTruth {
         &self.truth
@@ -68,7 +87,7 @@ impl PhysicsWorld {
 
     /// The true pose of the driven robot, for metrics only.
     pub fn true_pose(&self) -> &Isometry2<f64> {
-        &self.fleet.robot(self.spec.driven_index()).pose
+        &self.fleet.inner(self.spec.driven_index()).pose
     }
 
     /// The contacts of the driven robot that began in the last [`act`](World::act), in the order of their beginning.
@@ -112,7 +131,7 @@ impl PhysicsWorld {
     pub fn restore(&mut self, mut snapshot: &[u8]) -> Result<(), SnapshotError> {
         let mut fleet = Vec::new();
         snapshot::read(&mut snapshot, vec![value(&mut fleet)])?;
-        self.fleet = Fleet::restored(self.spec.fleet(), &fleet)?;
+        self.fleet.restore(&fleet)?;
         let values = values(&mut self.truth, &mut self.contacts, &mut self.obstacle_events);
         interfaces::restore(values, snapshot).map_err(|_| SnapshotError::Damaged)
     }
@@ -124,7 +143,7 @@ impl PhysicsWorld {
         let time_s = self.time_s();
         self.truth.set_time(time_s);
         for index in others(&self.spec) {
-            let robot = self.fleet.robot(index);
+            let robot = self.fleet.inner(index);
             if robot.has_moved() {
                 self.truth.move_robot(index, &robot.form());
             }
@@ -189,7 +208,8 @@ impl World for PhysicsWorld {
     /// of the robot measure at most as often. Two calls at the same time return the same reading.
     fn sense(&mut self) -> LaserReading {
         let robot = self.fleet.look(self.spec.driven_index());
-        let mut reading = robot.reading().expect("the main laser scanner has just measured").clone();
+        let reading = robot.and_then(|robot| robot.reading());
+        let mut reading = reading.expect("the main laser scanner has just measured").clone();
         if self.is_corrected {
             reading.pose = *self.true_pose();
         }

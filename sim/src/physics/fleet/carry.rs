@@ -46,7 +46,7 @@ impl Fleet {
                 interfaces::pose(at.x, at.y, heading_rad)
             });
             let is_good = |pose: &Isometry2<f64>| {
-                self.carrying.reaches(index, &pose.translation.vector.into())
+                self.start.carrying.reaches(index, &pose.translation.vector.into())
                     && self.check_fit(index, pose).is_ok()
             };
             if let Some(pose) = poses.find(is_good) {

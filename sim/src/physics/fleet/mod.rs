@@ -1,11 +1,14 @@
 //! Any number of robots in one world.
 
+mod bulk;
 mod carry;
 mod controller;
 mod snapshots;
+mod start;
 mod teleport;
 mod time;
 
+pub use bulk::LengthError;
 pub use controller::Controller;
 pub use teleport::TeleportError;
 
@@ -14,15 +17,15 @@ use super::command::Command;
 use super::form::Form;
 use super::obstacles::Obstacle;
 use super::past::Past;
-use super::rays::{Disc, Scene};
+use super::rays::Scene;
 use super::report::{Body, Contact, ObstacleView};
 use super::robot::{Robot, RobotView};
-use super::sensors::{SharedBeams, Tagged};
+use super::sensors::Tagged;
 use super::shape::Rectangle;
-use super::spec::{FleetSpec, RobotSpec};
-use carry::Carrying;
+use super::spec::FleetSpec;
 use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
+use start::Start;
 use std::sync::Arc;
 
 /// A world with any number of robots.
@@ -31,20 +34,15 @@ use std::sync::Arc;
 /// independent, and behaves in the same way under the same commands.
 #[derive(Clone)]
 pub struct Fleet {
-    spec: FleetSpec,
+    start: Arc<Start>,
     seed: u64,
     /// Steps since the start. Time is a multiple of the step, so that it never drifts.
     step: u64,
     bodies: Bodies,
     robots: Vec<Robot>,
     obstacles: Vec<Obstacle>,
-    /// The robots that have corners.
-    cornered: Vec<usize>,
-    /// Whether any robot has a fiducial finder.
-    has_fiducial_finders: bool,
     scene: Scene,
     past: Past,
-    carrying: Arc<Carrying>,
     contacts: Vec<Contact>,
     /// The obstacles that moved in the last step, with the shape before the step.
     moved: Vec<(usize, Rectangle)>,
@@ -54,57 +52,21 @@ pub struct Fleet {
 impl Fleet {
     /// The world of `spec` at its start. All random streams are seeded by `seed`: sensor noise, odometry noise, and
     /// the decisions of robots and doors, each with a separate stream.
+    ///
+    /// Most of the time is for the place, which is the same for every seed. For another seed in the same place,
+    /// [`Fleet::reset`] a fleet, or a clone: this takes a small part of the time.
     pub fn new(spec: &FleetSpec, seed: u64) -> Self {
-        let mut bodies = Bodies::new(spec);
-        for (index, wall) in spec.walls.iter().enumerate() {
-            bodies.add_box(Body::Wall(index), wall);
-        }
-        let mut beams = SharedBeams::default();
-        let mut robots = Vec::with_capacity(spec.robots.len());
-        for (index, robot) in spec.robots.iter().enumerate() {
-            bodies.add_robot(robot, spec.step_s);
-            robots.push(Robot::new(robot, index, bodies.pose(index), spec.step_s, seed, &mut beams));
-        }
-        let obstacles =
-            spec.obstacles.iter().enumerate().map(|(i, o)| Obstacle::new(o, i, seed, &mut bodies));
-        let obstacles = obstacles.collect();
-        // A robot with corners is a disc of radius 0, and a polygon after those of the obstacles.
-        let radius_m = |robot: &Robot| if robot.spec.corners.is_empty() { robot.spec.radius_m } else { 0.0 };
-        let discs = robots.iter().map(|robot| Disc { center: robot.at(), radius_m: radius_m(robot) });
-        let cornered = spec.robots.iter().enumerate().filter(|(_, robot)| !robot.corners.is_empty());
-        let cornered: Vec<usize> = cornered.map(|(index, _)| index).collect();
-        let range_m = spec.robots.iter().map(RobotSpec::range_m).fold(0.0, f64::max);
-        let polygons = spec.obstacles.len() + cornered.len();
-        let scene = Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), polygons, range_m);
-        let mut fleet = Self {
-            spec: spec.clone(),
-            seed,
-            step: 0,
-            bodies,
-            robots,
-            obstacles,
-            cornered,
-            has_fiducial_finders: spec.robots.iter().any(|robot| robot.fiducial.is_some()),
-            scene,
-            past: Past::new(spec),
-            carrying: Arc::new(Carrying::new(spec)),
-            contacts: Vec::new(),
-            moved: Vec::new(),
-            parallel_lasers: false,
-        };
-        fleet.show_obstacles();
-        (0..fleet.robots.len()).for_each(|index| fleet.show_robot(index));
-        fleet
+        Self::begin(Arc::new(Start::new(spec)), seed)
     }
 
     /// The time since the start, s.
     pub fn time_s(&self) -> f64 {
-        self.step as f64 * self.spec.step_s
+        self.step as f64 * self.spec().step_s
     }
 
     /// The spec of the world.
     pub fn spec(&self) -> &FleetSpec {
-        &self.spec
+        &self.start.spec
     }
 
     /// All robots, in the order of the spec.
@@ -112,9 +74,14 @@ impl Fleet {
         self.robots.iter().map(Robot::view)
     }
 
+    /// One robot (by index); `None` if there is no such robot.
+    pub fn robot(&self, robot: usize) -> Option<RobotView<'_>> {
+        self.robots.get(robot).map(Robot::view)
+    }
+
     /// The corners of all walls, counter-clockwise, m.
     pub fn walls(&self) -> impl ExactSizeIterator<Item = [Point2<f64>; 4]> {
-        self.spec.walls.iter().map(Rectangle::corners)
+        self.spec().walls.iter().map(Rectangle::corners)
     }
 
     /// The obstacles that are present now, at their present poses.
@@ -147,22 +114,14 @@ impl Fleet {
         std::mem::take(&mut self.contacts)
     }
 
-    /// One robot.
-    pub(super) fn robot(&self, robot: usize) -> &Robot {
-        &self.robots[robot]
-    }
-
-    /// Measures with the sensors of a robot now: with its main laser scanner, and with all other sensors that are
-    /// due.
-    pub(super) fn look(&mut self, robot: usize) -> &Robot {
-        let surroundings = self.surroundings(self.robots[robot].sweeps());
-        self.robots[robot].look(&surroundings);
+    /// One robot, with everything that only this crate reads.
+    pub(super) fn inner(&self, robot: usize) -> &Robot {
         &self.robots[robot]
     }
 
     /// All present bodies with a tag, robots first; none if no robot has a fiducial finder.
     pub(in crate::physics) fn tagged(&self) -> Vec<Tagged> {
-        if !self.has_fiducial_finders {
+        if !self.start.has_fiducial_finders {
             return Vec::new();
         }
         let robots = self.robots.iter().enumerate().filter_map(|(index, robot)| {
@@ -182,7 +141,7 @@ impl Fleet {
     /// The walls, and the obstacles that are present now.
     pub(super) fn standing_boxes(&self) -> Vec<Rectangle> {
         let standing = self.obstacles.iter().filter(|obstacle| obstacle.is_standing());
-        self.spec.walls.iter().copied().chain(standing.map(|obstacle| obstacle.shape)).collect()
+        self.spec().walls.iter().copied().chain(standing.map(|obstacle| obstacle.shape)).collect()
     }
 
     /// Whether an obstacle is present now.
@@ -214,20 +173,12 @@ impl Fleet {
 
     /// Updates a robot in the scene that lasers see.
     fn show_robot(&mut self, index: usize) {
-        let robot = &self.robots[index];
-        self.scene.move_disc(index, robot.at());
-        if let Ok(polygon) = self.cornered.binary_search(&index) {
-            let corners = robot.spec.corners.iter().map(|corner| robot.pose * corner);
-            self.scene.set_polygon(self.obstacles.len() + polygon, Some(index), corners);
-        }
+        self.start.show_robot(&mut self.scene, index, &self.robots[index].pose);
     }
 
     /// Updates an obstacle in the scene that lasers see.
     fn show_obstacle(&mut self, index: usize) {
-        let obstacle = &self.obstacles[index];
-        let corners = obstacle.shape.corners();
-        let corners: &[Point2<f64>] = if obstacle.is_standing() { &corners } else { &[] };
-        self.scene.set_polygon(index, None, corners.iter().copied());
+        start::show_obstacle(&mut self.scene, index, &self.obstacles[index]);
     }
 }
 

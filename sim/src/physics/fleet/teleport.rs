@@ -52,17 +52,17 @@ impl Fleet {
         Ok(())
     }
 
-    /// Checks that a robot fits at `pose`.
+    /// Checks that a robot (by index) fits at `pose` now.
     ///
     /// # Errors
     ///
     /// The errors of [`Fleet::teleport`].
-    pub(super) fn check_fit(&self, robot: usize, pose: &Isometry2<f64>) -> Result<(), TeleportError> {
-        let Some(spec) = self.spec.robots.get(robot) else {
+    pub fn check_fit(&self, robot: usize, pose: &Isometry2<f64>) -> Result<(), TeleportError> {
+        let Some(spec) = self.spec().robots.get(robot) else {
             return Err(TeleportError::NoSuchRobot { robot, robots: self.robots.len() });
         };
         let at = Point2::from(pose.translation.vector);
-        let ((low, high), form) = (corners(&self.spec.frame), spec.form(pose));
+        let ((low, high), form) = (corners(&self.spec().frame), spec.form(pose));
         let (least, most) = form.bounds();
         let inside_m = (least - low).min().min((high - most).min());
         let is_finite = at.x.is_finite() && at.y.is_finite() && heading_rad(pose).is_finite();

@@ -68,14 +68,16 @@ impl Fleet {
         let robots = self.robots.iter().map(|robot| robot.pose);
         let obstacles = self.obstacles.iter();
         let obstacles = obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose));
-        let recent = if sweeps { self.past.recent(&self.spec, robots, obstacles) } else { Recent::default() };
+        let recent =
+            if sweeps { self.past.recent(self.spec(), robots, obstacles) } else { Recent::default() };
         Arc::new(Surroundings { step: self.step, time_s: self.time_s(), scene, tagged, recent })
     }
 
     /// Moves robots and obstacles by one physics step.
     pub(in crate::physics) fn advance(&mut self) {
+        let step_s = self.spec().step_s;
         for robot in &mut self.robots {
-            robot.start_step(&mut self.bodies, self.spec.step_s);
+            robot.start_step(&mut self.bodies, step_s);
         }
         let before: Vec<Rectangle> = self.obstacles.iter().map(|obstacle| obstacle.shape).collect();
         self.step += 1;
@@ -83,7 +85,7 @@ impl Fleet {
         self.start_obstacles();
         self.bodies.step();
         for index in 0..self.robots.len() {
-            self.robots[index].end_step(&self.bodies, time_s, self.spec.step_s);
+            self.robots[index].end_step(&self.bodies, time_s, step_s);
             if self.robots[index].has_moved() {
                 self.show_robot(index);
             }
@@ -111,9 +113,9 @@ impl Fleet {
         if !self.obstacles.iter().any(Obstacle::moves_itself) {
             return;
         }
-        let (time_s, blockers) = (self.time_s(), self.blockers());
+        let (time_s, step_s, blockers) = (self.time_s(), self.spec().step_s, self.blockers());
         for obstacle in &mut self.obstacles {
-            obstacle.start_step(time_s, self.spec.step_s, &mut self.bodies, &blockers);
+            obstacle.start_step(time_s, step_s, &mut self.bodies, &blockers);
         }
     }
 

@@ -49,6 +49,15 @@ impl Obstacle {
         Self { spec: spec.clone(), shape, state }
     }
 
+    /// The obstacle with an index at the start, with random streams of another seed. This one must be at the start.
+    pub(super) fn reseeded(&self, index: usize, seed: u64) -> Self {
+        let mut obstacle = self.clone();
+        if let (State::Door(_, door), Motion::Door(spec)) = (&mut obstacle.state, &self.spec.motion) {
+            **door = Door::new(spec, index, seed);
+        }
+        obstacle
+    }
+
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
         vec![pose(&mut self.shape.pose), value(&mut self.state)]

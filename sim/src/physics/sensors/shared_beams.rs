@@ -3,7 +3,7 @@ use crate::physics::spec::LaserSpec;
 use std::sync::Arc;
 
 /// The beams of all lasers and sonars. Sensors with the same beams share them.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(in crate::physics) struct SharedBeams {
     known: Vec<(Key, Arc<Beams>)>,
 }

@@ -12,6 +12,7 @@ mod houses;
 mod jams;
 mod keys;
 mod laser;
+mod learning;
 mod obstacles;
 mod odometry;
 mod patrol;

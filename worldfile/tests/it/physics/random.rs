@@ -28,7 +28,7 @@ impl Chance {
 
 /// A closed room with walls at all angles, and robots of all sizes with every kind of drive. Parts that do not fit
 /// are left out.
-fn world(seed: u64) -> FleetSpec {
+pub(super) fn world(seed: u64) -> FleetSpec {
     let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
     let mut text = format!("name = \"random\"\n[map]\nsize_m = [{SIDE_M:?}, {SIDE_M:?}]\ncell_m = 0.1\n");
     let corners = [[0.0, 0.0], [SIDE_M, 0.0], [SIDE_M, SIDE_M], [0.0, SIDE_M]];

@@ -6,7 +6,7 @@ use interfaces::LaserReading;
 use proptest::prelude::*;
 
 /// Every kind of robot and obstacle, and two robots that collide.
-fn zoo() -> FleetSpec {
+pub(super) fn zoo() -> FleetSpec {
     let kinds = [
         ("\"wander\"\nspeed_mps = 0.4", [2.0, 2.0]),
         ("\"circle\"\nspeed_mps = 0.4\nturn_radius_m = 1.0", [3.0, 3.0]),

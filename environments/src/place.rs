@@ -1,0 +1,137 @@
+//! The place of driving tasks: what is the same in every episode, built once and shared.
+
+use crate::distance::Distances;
+use crate::drive::DriveSettings;
+use crate::task::TaskError;
+use interfaces::{GridFrame, RandomStream};
+use nalgebra::Point2;
+use sim::physics::{Fleet, FleetSpec, FreePoses};
+use std::sync::OnceLock;
+
+/// The side of the cells of paths, m.
+const PATH_CELL_M: f64 = 0.1;
+/// The greatest number of goals, and the greatest number of distances that are kept for them.
+const MAX_GOALS: usize = 256;
+const MAX_DISTANCES: usize = 16 << 20;
+/// The number of goals that are drawn before the farthest of them is taken.
+const ATTEMPTS: usize = 100;
+
+/// The world of driving tasks, with the goals of each driven robot and the shortest paths to them.
+pub struct DrivePlace {
+    pub(crate) settings: DriveSettings,
+    pub(crate) fleet: Fleet,
+    /// The robots that are driven.
+    pub(crate) robots: Vec<Agent>,
+    /// The number of physics steps from one decision to the next.
+    pub(crate) steps: u64,
+    /// The length of the diagonal of the world, m.
+    pub(crate) diagonal_m: f64,
+    /// The cells of paths.
+    pub(crate) frame: GridFrame,
+}
+
+/// What a driven robot can reach.
+pub(crate) struct Agent {
+    /// The index of the robot.
+    pub(crate) robot: usize,
+    pub(crate) starts: FreePoses,
+    goals: Vec<Goal>,
+    is_free: Vec<bool>,
+}
+
+/// A goal, with the distances to it as soon as they are needed.
+struct Goal {
+    cell: usize,
+    distances: OnceLock<Distances>,
+}
+
+impl DrivePlace {
+    /// The place for a world, in which every driven robot is an agent.
+    ///
+    /// # Errors
+    ///
+    /// When no robot is driven, a driven robot has no free space at its start or another laser than the first, or a
+    /// setting is out of range.
+    pub fn new(spec: &FleetSpec, settings: DriveSettings) -> Result<Self, TaskError> {
+        settings.check()?;
+        let steps = (settings.decision_s / spec.step_s).round();
+        if steps < 1.0 || (steps * spec.step_s - settings.decision_s).abs() > 1e-6 {
+            return Err(TaskError::Decision { decision_s: settings.decision_s, step_s: spec.step_s });
+        }
+        let (width_m, height_m) = size_m(&spec.frame);
+        let cell_m = spec.frame.resolution_m().max(PATH_CELL_M);
+        let frame = GridFrame::covering(spec.frame.origin(), width_m, height_m, cell_m).unwrap_or(spec.frame);
+        let coarse = FleetSpec { frame, ..spec.clone() };
+        let driven: Vec<usize> = spec.driven_robots().collect();
+        let first = driven.first().ok_or_else(|| TaskError::NoDrivenRobot { world: spec.name.clone() })?;
+        let expected = spec.robots[*first].laser.beams;
+        let agent = |&robot: &usize| {
+            let (name, found) = (&spec.robots[robot].name, spec.robots[robot].laser.beams);
+            if found != expected {
+                return Err(TaskError::OtherBeams { robot: name.clone(), found, expected });
+            }
+            Agent::new(&coarse, robot)
+                .ok_or_else(|| TaskError::NoSpace { robot: name.clone(), world: spec.name.clone() })
+        };
+        let robots = driven.iter().map(agent).collect::<Result<_, _>>()?;
+        let (fleet, diagonal_m) = (Fleet::new(spec, 0), width_m.hypot(height_m));
+        Ok(Self { settings, fleet, robots, steps: steps as u64, diagonal_m, frame })
+    }
+
+    /// The number of beams of each agent.
+    pub(crate) fn beams(&self) -> usize {
+        self.fleet.spec().robots[self.robots[0].robot].laser.beams
+    }
+
+    /// The position of a goal of an agent, m.
+    pub(crate) fn goal(&self, agent: usize, goal: usize) -> Point2<f64> {
+        self.frame.center(self.frame.cell(self.robots[agent].goals[goal].cell))
+    }
+
+    /// The number of goals of an agent.
+    pub(crate) fn goals(&self, agent: usize) -> usize {
+        self.robots[agent].goals.len()
+    }
+
+    /// The distances to a goal of an agent.
+    pub(crate) fn distances(&self, agent: usize, goal: usize) -> &Distances {
+        let Agent { goals, is_free, .. } = &self.robots[agent];
+        let Goal { cell, distances } = &goals[goal];
+        distances.get_or_init(|| Distances::new(&self.frame, is_free, *cell))
+    }
+
+    /// Draws a goal of an agent that is far enough from `from` (m), or else the farthest of a hundred.
+    pub(crate) fn draw_goal(&self, agent: usize, from: &Point2<f64>, random: &mut RandomStream) -> usize {
+        let (mut best, mut best_m) = (0, -1.0);
+        for _ in 0..ATTEMPTS {
+            let goal = (random.uniform(0.0..self.goals(agent) as f64) as usize).min(self.goals(agent) - 1);
+            let away_m = nalgebra::distance(from, &self.goal(agent, goal));
+            if away_m >= self.settings.min_goal_m {
+                return goal;
+            }
+            if away_m > best_m {
+                (best, best_m) = (goal, away_m);
+            }
+        }
+        best
+    }
+}
+
+impl Agent {
+    fn new(coarse: &FleetSpec, robot: usize) -> Option<Self> {
+        let starts = FreePoses::reachable(coarse, robot)?;
+        let cells = starts.cells();
+        let mut is_free = vec![false; coarse.frame.len()];
+        cells.iter().for_each(|&cell| is_free[cell] = true);
+        let most = MAX_GOALS.min(MAX_DISTANCES / coarse.frame.len()).clamp(1, cells.len());
+        let goal =
+            |number: usize| Goal { cell: cells[number * cells.len() / most], distances: OnceLock::new() };
+        let goals = (0..most).map(goal).collect();
+        Some(Self { robot, starts, goals, is_free })
+    }
+}
+
+/// The width and the height of a frame, m.
+pub(crate) fn size_m(frame: &GridFrame) -> (f64, f64) {
+    (frame.width() as f64 * frame.resolution_m(), frame.height() as f64 * frame.resolution_m())
+}

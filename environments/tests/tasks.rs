@@ -1,0 +1,231 @@
+//! The tasks as a learner uses them.
+
+use environments::{
+    Batch, Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Results, Task,
+    TaskError, driving_hall,
+};
+use sim::physics::{SnapshotError, WorldSpec};
+use std::sync::Arc;
+
+/// An action that depends on the environment and the step.
+fn action(environment: usize, step: usize) -> [f32; 2] {
+    let phase = environment as f64 * 0.7 + step as f64 * 0.13;
+    [libm::cos(phase) as f32, libm::sin(phase * 1.7) as f32]
+}
+
+/// The bits of observations, rewards and ends.
+fn bits(results: &Results) -> Vec<u32> {
+    let numbers =
+        results.observations.iter().chain(&results.rewards).chain(&results.info).map(|value| value.to_bits());
+    numbers.chain(results.terminated.iter().chain(&results.truncated).map(|is| u32::from(*is))).collect()
+}
+
+fn drive_place(settings: DriveSettings) -> Arc<DrivePlace> {
+    Arc::new(DrivePlace::new(&driving_hall(), settings).unwrap())
+}
+
+fn explore_place(settings: ExploreSettings) -> Arc<ExplorePlace> {
+    let houses: Vec<WorldSpec> = [3, 5].map(WorldSpec::generate_house).into();
+    Arc::new(ExplorePlace::new(&houses, settings).unwrap())
+}
+
+/// The bits of every step of a batch, environment by environment, with episodes that end in between.
+fn run<T: Task>(tasks: Vec<T>, first: usize, threads: usize, steps: usize) -> Vec<Vec<u32>> {
+    let count = tasks.len();
+    let mut batch = Batch::new(tasks);
+    batch.set_parallel(threads > 1);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let mut results = batch.results();
+    let seed =
+        |episode: u64| (0..count).map(|index| 1000 * episode + (first + index) as u64).collect::<Vec<u64>>();
+    pool.install(|| batch.reset(&seed(0), &mut results.observations)).unwrap();
+    let (mut rows, values) = (vec![Vec::new(); count], batch.observation_len());
+    let mut resets = 0;
+    for step in 0..steps {
+        let actions: Vec<f32> =
+            (first..first + count).flat_map(|environment| action(environment, step)).collect();
+        pool.install(|| batch.step(&actions, &seed(1 + step as u64), &mut results)).unwrap();
+        resets += results.was_reset.iter().filter(|was| **was).count();
+        for (index, row) in rows.iter_mut().enumerate() {
+            let observation = &results.observations[index * values..(index + 1) * values];
+            row.extend(observation.iter().map(|value| value.to_bits()));
+            row.push(results.rewards[index].to_bits());
+        }
+    }
+    assert!(resets > 0, "no episode ended");
+    rows
+}
+
+#[test]
+fn alone_and_in_a_batch_on_any_number_of_threads_the_bits_are_the_same() {
+    let place = drive_place(DriveSettings { max_steps: 40, ..DriveSettings::default() });
+    let tasks = |count| (0..count).map(|_| Drive::new(&place)).collect::<Vec<_>>();
+    let together = run(tasks(7), 0, 1, 150);
+    assert_eq!(run(tasks(7), 0, 3, 150), together);
+    for (index, row) in together.iter().enumerate() {
+        assert_eq!(run(tasks(1), index, 1, 150)[0], *row, "environment {index}");
+    }
+    let place =
+        explore_place(ExploreSettings { max_steps: 25, beams: Some(60), ..ExploreSettings::default() });
+    let tasks = |count| (0..count).map(|_| Explore::new(&place).unwrap()).collect::<Vec<_>>();
+    let together = run(tasks(4), 0, 1, 60);
+    assert_eq!(run(tasks(4), 0, 2, 60), together);
+    assert_eq!(run(tasks(1), 2, 1, 60)[0], together[2]);
+}
+
+#[test]
+fn a_snapshot_goes_on_bit_by_bit() {
+    fn check<T: Task>(mut here: Batch<T>, mut there: Batch<T>) {
+        let (mut results, mut other) = (here.results(), there.results());
+        here.reset(&[5], &mut results.observations).unwrap();
+        there.reset(&[6], &mut other.observations).unwrap();
+        for step in 0..30 {
+            here.step(&action(0, step), &[9], &mut results).unwrap();
+        }
+        let snapshot = here.tasks()[0].snapshot();
+        there.tasks_mut()[0].restore(&snapshot).unwrap();
+        assert_eq!(there.tasks()[0].snapshot(), snapshot);
+        for step in 30..60 {
+            here.step(&action(0, step), &[9], &mut results).unwrap();
+            there.step(&action(0, step), &[9], &mut other).unwrap();
+            assert_eq!(bits(&results), bits(&other));
+        }
+        assert_eq!(there.tasks_mut()[0].restore(&snapshot[1..]), Err(SnapshotError::Damaged));
+    }
+    let place = drive_place(DriveSettings::default());
+    check(Batch::new(vec![Drive::new(&place)]), Batch::new(vec![Drive::new(&place)]));
+    let place = explore_place(ExploreSettings { beams: Some(60), ..ExploreSettings::default() });
+    let one = || Batch::new(vec![Explore::new(&place).unwrap()]);
+    check(one(), one());
+}
+
+/// Follows the direction of the shortest path, and slows down where the scan is near ahead.
+fn follow(observation: &[f32]) -> [f32; 2] {
+    let (scan, state) = observation.split_at(observation.len() - 7);
+    let (cos, sin) = (f64::from(state[3]), f64::from(state[4]));
+    let turn = (libm::atan2(sin, cos) * 1.2).clamp(-1.0, 1.0);
+    let ahead = scan.len() / 2;
+    let near = scan[ahead - 4..=ahead + 4].iter().fold(1.0_f32, |least, range| least.min(*range));
+    let speed = if cos < 0.5 { 0.0 } else { (f64::from(near) * 4.0 - 0.2).clamp(0.1, 1.0) * cos };
+    [speed as f32, turn as f32]
+}
+
+#[test]
+fn the_goals_of_the_hall_are_far_and_can_be_reached() {
+    let place = drive_place(DriveSettings::default());
+    let mut batch = Batch::new((0..100).map(|_| Drive::new(&place)).collect());
+    batch.set_autoreset(false);
+    let mut results = batch.results();
+    batch.reset(&(0..100).collect::<Vec<u64>>(), &mut results.observations).unwrap();
+    for task in batch.tasks() {
+        let at = task.fleet().robot(0).unwrap().pose.translation.vector;
+        assert!((task.goal(0).unwrap().coords - at).norm() >= 3.0);
+    }
+    let first = results.observations.clone();
+    for _ in 0..400 {
+        let len = batch.observation_len();
+        let actions: Vec<f32> = results.observations.chunks(len).flat_map(follow).collect();
+        batch.step(&actions, &[0; 100], &mut results).unwrap();
+        assert!(results.observations.iter().all(|value| (-1.0..=1.0).contains(value)));
+        assert!(!results.was_reset.contains(&true));
+    }
+    let reached = results.terminated.iter().filter(|is| **is).count();
+    assert!(reached >= 90, "{reached} of 100 goals");
+    assert!(
+        results
+            .terminated
+            .iter()
+            .zip(&results.truncated)
+            .all(|(terminated, truncated)| terminated != truncated)
+    );
+    // The same seeds are the same episodes again.
+    batch.reset(&(0..100).collect::<Vec<u64>>(), &mut results.observations).unwrap();
+    assert_eq!(results.observations, first);
+}
+
+#[test]
+fn exploring_earns_map_updates_and_the_fall_of_the_log_error() {
+    let settings = ExploreSettings { max_steps: 600, collision_reward: 0.0, ..ExploreSettings::default() };
+    let place = explore_place(settings.clone());
+    let mut batch = Batch::new(vec![Explore::new(&place).unwrap()]);
+    batch.set_autoreset(false);
+    let mut results = batch.results();
+    batch.reset(&[4], &mut results.observations).unwrap();
+    let mut sum = 0.0;
+    for step in 0..600 {
+        let turn = if step % 100 < 60 { 0.0 } else { 0.6 };
+        batch.step(&[0.5, turn], &[0], &mut results).unwrap();
+        assert!(results.observations.iter().all(|value| (-1.0..=1.0).contains(value)), "step {step}");
+        sum += f64::from(results.rewards[0]);
+    }
+    assert_eq!((results.terminated[0], results.truncated[0]), (false, true));
+    let [_, updates, log_error, _] = results.info[..] else { panic!("{:?}", results.info) };
+    let task = &batch.tasks()[0];
+    assert!(updates > 0.0 && (task.mapper().time() - 60.0).abs() < 1e-9);
+    let robot = task.world().spec().driven();
+    let cells_wide = 2.0 * robot.radius_m / task.world().spec().frame.resolution_m();
+    let fall = evaluation::metrics::MAX_LOG_ERROR - f64::from(log_error);
+    let expected = settings.update_reward * f64::from(updates) / cells_wide + settings.error_reward * fall;
+    assert!((sum - expected).abs() < 1e-3 * expected.abs().max(1.0), "{sum} and not {expected}");
+}
+
+#[test]
+fn invalid_input_is_refused_and_changes_nothing() {
+    let place = drive_place(DriveSettings::default());
+    let mut batch = Batch::new((0..2).map(|_| Drive::new(&place)).collect());
+    let mut results = batch.results();
+    batch.reset(&[1, 2], &mut results.observations).unwrap();
+    let before = [0, 1].map(|index| batch.tasks()[index].snapshot());
+    let message = |error: Result<(), TaskError>| error.unwrap_err().to_string();
+    for (value, printed) in [(f32::NAN, "NaN"), (1.5, "1.5"), (f32::NEG_INFINITY, "-inf")] {
+        let error = message(batch.step(&[0.0, 0.0, 0.0, value], &[3, 4], &mut results));
+        assert_eq!(error, format!("action {printed} of environment 1 is not from -1 to 1"));
+    }
+    assert_eq!(message(batch.step(&[0.0; 3], &[3, 4], &mut results)), "actions: 3 values, and not 4");
+    assert_eq!(message(batch.step(&[0.0; 4], &[3], &mut results)), "seeds: 1 values, and not 2");
+    assert_eq!([0, 1].map(|index| batch.tasks()[index].snapshot()), before);
+    let refused = |settings| DrivePlace::new(&driving_hall(), settings).err().unwrap().to_string();
+    assert_eq!(
+        refused(DriveSettings { decision_s: 0.25, ..DriveSettings::default() }),
+        "a decision every 0.25 s is not a whole number of physics steps of 0.1 s"
+    );
+    assert_eq!(
+        refused(DriveSettings { goal_radius_m: 0.0, ..DriveSettings::default() }),
+        "driving task setting `goal_radius_m` must be a positive number, not 0"
+    );
+    let mut nobody = driving_hall();
+    nobody.robots.remove(0);
+    let error = DrivePlace::new(&nobody, DriveSettings::default()).err().unwrap();
+    assert!(matches!(error, TaskError::NoDrivenRobot { .. }), "{error}");
+    assert_eq!(ExplorePlace::new(&[], ExploreSettings::default()).err(), Some(TaskError::NoWorld));
+}
+
+/// FNV-1a over all bits of observations and rewards, of actions that are exact in binary. `python/tests/test_envs.py` has the
+/// same steps and the same numbers: Python and Rust give the same bits.
+fn golden<T: Task>(tasks: Vec<T>) -> u64 {
+    let count = tasks.len();
+    let mut batch = Batch::new(tasks);
+    let mut results = batch.results();
+    let seeds = |first: usize| (first..first + count).map(|seed| seed as u64).collect::<Vec<u64>>();
+    batch.reset(&seeds(0), &mut results.observations).unwrap();
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    for step in 0..60 {
+        let action = |index: usize| ((index * 7 + step * 3) % 17) as f32 / 8.0 - 1.0;
+        let actions: Vec<f32> = (0..2 * count).map(action).collect();
+        batch.step(&actions, &seeds(100 + step), &mut results).unwrap();
+        for value in results.observations.iter().chain(&results.rewards) {
+            hash = (hash ^ u64::from(value.to_bits())).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+    hash
+}
+
+#[test]
+fn golden_hashes() {
+    let place = drive_place(DriveSettings { max_steps: 40, ..DriveSettings::default() });
+    let driving = golden((0..3).map(|_| Drive::new(&place)).collect());
+    let place =
+        explore_place(ExploreSettings { max_steps: 40, beams: Some(20), ..ExploreSettings::default() });
+    let exploring = golden((0..2).map(|_| Explore::new(&place).unwrap()).collect());
+    assert_eq!([driving, exploring], [10_209_087_274_166_477_871, 5_893_106_538_825_299_669]);
+}

@@ -1,0 +1,69 @@
+"""Worlds with lasers, a mapper that learns where a place changes, and learning tasks.
+
+>>> import curious
+>>> fleet = curious.Fleet("four_rooms", seed=7)
+>>> fleet.step([[0.5, 0.0]], steps=20)
+>>> fleet.look(0).ranges.shape
+(720,)
+
+Units are SI: metres, seconds, radians. Poses are ``[x, y, heading]``. Arrays of cells have the shape (rows, columns),
+and row 0 has the lowest y. The same world, seed and commands give the same bits as in Rust.
+
+Where Gymnasium is installed, the environments ``curious/Drive-v0`` and ``curious/Explore-v0`` are registered.
+"""
+
+from ._native import (
+    Batch,
+    Estimate,
+    Fleet,
+    Localizer,
+    Log,
+    Mapper,
+    Reading,
+    Situation,
+    SnapshotError,
+    Spec,
+    Survey,
+    World,
+    WorldError,
+    __version__,
+    map_log,
+    strategies,
+    trial,
+)
+
+__all__ = [
+    "Batch",
+    "Estimate",
+    "Fleet",
+    "Localizer",
+    "Log",
+    "Mapper",
+    "Reading",
+    "Situation",
+    "SnapshotError",
+    "Spec",
+    "Survey",
+    "World",
+    "WorldError",
+    "__version__",
+    "map_log",
+    "strategies",
+    "trial",
+]
+
+
+def _register() -> None:
+    try:
+        import gymnasium
+    except ImportError:
+        return
+    for name in ("Drive", "Explore"):
+        gymnasium.register(
+            id=f"curious/{name}-v0",
+            entry_point=f"curious.envs:{name}Env",
+            vector_entry_point=f"curious.envs:{name}VectorEnv",
+        )
+
+
+_register()

@@ -1,0 +1,310 @@
+"""Environments with Gymnasium's interface: one world, or many worlds that one call steps on several threads.
+
+``DriveEnv`` and ``DriveVectorEnv``
+    A robot drives to a goal among moving things. Observation, shape (beams + 7,), float32: the scan (0 to 1: share of
+    the maximum range; 1 without a return), then distance to the goal (share of the diagonal of the world), cosine and
+    sine of its direction, cosine and sine of the direction of the shortest path (as a global planner would give it),
+    linear and angular velocity (shares of the maximum). Action, shape (2,), float32, from -1 to 1: linear and angular
+    velocity as shares of the maximum. Reward: metres of the shortest path, 10 at the goal, -0.5 per collision, -0.01
+    per step. The episode terminates at the goal, and is truncated after 400 steps of 0.1 s.
+
+``ExploreEnv`` and ``ExploreVectorEnv``
+    A robot maps houses in which doors open and people walk. Observation, a dict: ``scan``, shape (180,); ``state``,
+    shape (6,): position (shares of the size of the world), cosine and sine of the heading, linear and angular velocity
+    (shares of the maximum); ``map``, shape (4, rows, columns), patches of 0.5 m, row 0 at the lowest y: share that was
+    seen, share that is blocked, how long ago it was seen, probability of a change since then (refreshed at every fifth step). Action as above. Reward:
+    the map updates of the reading, per cell of the robot's width, and 10 times the fall of the log error of the rates.
+    The episode is truncated after 3000 steps of 0.1 s.
+
+Everything random comes from ``np_random``: ``reset`` draws the seed of the world from it, and ``info["world_seed"]`` has
+it, so that Rust can repeat the episode. The vector environments reset an environment in the same step in which its
+episode ends (``AutoresetMode.SAME_STEP``): ``info["final_obs"]`` keeps the last observation, ``info["final_info"]`` the
+last information. An episode of environment ``i`` of a vector environment with seed ``s`` has the same bits as that of a
+single environment with seed ``s + i``.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Sequence
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
+
+from ._native import Batch, Spec
+
+__all__ = ["DriveEnv", "DriveVectorEnv", "ExploreEnv", "ExploreVectorEnv"]
+
+#: The generated houses in which a robot explores by default.
+HOUSES = range(8)
+
+
+def _draw(random: np.random.Generator) -> int:
+    """The seed of a world."""
+    return int(random.integers(0, 1 << 63))
+
+
+def _observation_space(parts: list[tuple[str, list[int]]]) -> spaces.Space:
+    def box(name: str, shape: list[int]) -> spaces.Box:
+        low = 0.0 if name in ("scan", "map") else -1.0
+        return spaces.Box(low, 1.0, tuple(shape), np.float32)
+
+    if len(parts) == 1:
+        return box(*parts[0])
+    return spaces.Dict({name: box(name, shape) for name, shape in parts})
+
+
+def _split(parts: list[tuple[str, list[int]]], rows: np.ndarray) -> Any:
+    """The parts of some observations, as views of the same memory."""
+    if len(parts) == 1:
+        return rows
+    result, begin = {}, 0
+    for name, shape in parts:
+        end = begin + int(np.prod(shape))
+        result[name] = rows[..., begin:end].reshape(rows.shape[:-1] + tuple(shape))
+        begin = end
+    return result
+
+
+def _drive(num_envs: int, threads: int, world: Any = None, **settings: Any) -> Batch:
+    return Batch.drive(Spec.driving_hall() if world is None else world, num_envs, threads, **settings)
+
+
+def _explore(num_envs: int, threads: int, worlds: Sequence[Any] | None = None, **settings: Any) -> Batch:
+    specs = [Spec.house(seed) for seed in HOUSES] if worlds is None else list(worlds)
+    return Batch.explore(specs, num_envs, threads, **settings)
+
+
+class _Single(gymnasium.Env):
+    """One environment."""
+
+    metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 10}
+    _make: Any
+
+    def __init__(self, render_mode: str | None = None, render_size: int = 480, **settings: Any) -> None:
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            raise ValueError(f"render_mode must be one of {self.metadata['render_modes']}, not {render_mode!r}")
+        self.render_mode = render_mode
+        self.render_size = render_size
+        self._batch: Batch | None = type(self)._make(1, 1, **settings)
+        self._batch.autoreset = False
+        self._parts = self._batch.parts
+        self._names = self._batch.info_names
+        self.observation_space = _observation_space(self._parts)
+        self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+        self._world_seed = 0
+        self._screen: Any = None
+        self._no_seeds = np.zeros(1, np.uint64)
+
+    @property
+    def batch(self) -> Batch:
+        """The native part. ``ClosedEnvironmentError`` after ``close``."""
+        if self._batch is None:
+            raise gymnasium.error.ClosedEnvironmentError("the environment is closed: make a new one")
+        return self._batch
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begin an episode. ``options={"world_seed": n}`` repeats a world."""
+        batch = self.batch
+        super().reset(seed=seed)
+        self._world_seed = _draw(self.np_random)
+        if options and "world_seed" in options:
+            self._world_seed = int(options["world_seed"])
+        rows = batch.reset_one(0, self._world_seed)
+        if self.render_mode == "human":
+            self.render()
+        return _split(self._parts, rows[0]), {"world_seed": self._world_seed}
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Simulate one step. ``ValueError``: the action has the wrong shape, is NaN or out of range."""
+        actions = _actions(action, 1)
+        rows, rewards, terminated, truncated, values, _, _ = self.batch.step(actions, self._no_seeds)
+        info: dict[str, Any] = dict(zip(self._names, values[0].tolist()))
+        info["world_seed"] = self._world_seed
+        if self.render_mode == "human":
+            self.render()
+        return (
+            _split(self._parts, rows[0]),
+            float(rewards[0]),
+            bool(terminated[0]),
+            bool(truncated[0]),
+            info,
+        )
+
+    def render(self) -> np.ndarray | None:
+        """The world from above: an array (``rgb_array``), or a window (``human``; needs ``pygame``)."""
+        if self.render_mode is None:
+            gymnasium.logger.warn("render() needs render_mode='rgb_array' or 'human' when the environment is made")
+            return None
+        picture = self.batch.picture(0, self.render_size)
+        if self.render_mode == "rgb_array":
+            return picture
+        self._show(picture)
+        return None
+
+    def _show(self, picture: np.ndarray) -> None:
+        try:
+            import pygame
+        except ImportError as error:
+            raise gymnasium.error.DependencyNotInstalled("render_mode='human' needs `pip install pygame`") from error
+        if self._screen is None:
+            pygame.init()
+            self._screen = pygame.display.set_mode((picture.shape[1], picture.shape[0]))
+            pygame.display.set_caption(str(type(self).__name__))
+        pygame.event.pump()
+        self._screen.blit(pygame.surfarray.make_surface(np.swapaxes(picture, 0, 1)), (0, 0))
+        pygame.display.flip()
+
+    def snapshot(self) -> bytes:
+        """The state of the world and of the task; not that of ``np_random``."""
+        return self.batch.snapshot(0)
+
+    def restore(self, snapshot: bytes) -> Any:
+        """Return to a snapshot of an environment with the same settings; returns the observation."""
+        return _split(self._parts, self.batch.restore(0, snapshot)[0])
+
+    def close(self) -> None:
+        """Free everything. A closed environment cannot be used."""
+        self._batch = None
+        if self._screen is not None:
+            import pygame
+
+            pygame.quit()
+            self._screen = None
+
+
+def _actions(actions: Any, rows: int) -> np.ndarray:
+    """The actions as float32 of shape (rows, 2)."""
+    array = np.asarray(actions, dtype=np.float32)
+    if array.size != rows * 2 or array.shape[-1:] != (2,):
+        expected = "(2,)" if rows == 1 else f"({rows}, 2)"
+        raise ValueError(f"the actions have the shape {array.shape}, and must have {expected}")
+    return array.reshape(rows, 2)
+
+
+class _Vector(gymnasium.vector.VectorEnv):
+    """Many environments: one call steps all of them, on several threads."""
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 10, "autoreset_mode": AutoresetMode.SAME_STEP}
+    _make: Any
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        threads: int = 0,
+        render_mode: str | None = None,
+        render_size: int = 240,
+        **settings: Any,
+    ) -> None:
+        self.num_envs = num_envs
+        self.render_mode = render_mode
+        self.render_size = render_size
+        self._batch: Batch | None = type(self)._make(num_envs, threads, **settings)
+        self._parts = self._batch.parts
+        self._names = self._batch.info_names
+        self.single_observation_space = _observation_space(self._parts)
+        self.single_action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._randoms = [seeding.np_random(None)[0] for _ in range(num_envs)]
+        self._world_seeds = np.zeros(num_envs, np.uint64)
+        self._next_seeds = np.zeros(num_envs, np.uint64)
+        self._all = np.ones(num_envs, bool)
+
+    @property
+    def batch(self) -> Batch:
+        """The native part. ``ClosedEnvironmentError`` after ``close``."""
+        if self._batch is None:
+            raise gymnasium.error.ClosedEnvironmentError("the environment is closed: make a new one")
+        return self._batch
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Begin an episode in every environment. With a number ``s``, environment ``i`` has the seed ``s + i``."""
+        batch = self.batch
+        if seed is not None:
+            seeds = [seed + index for index in range(self.num_envs)] if isinstance(seed, (int, np.integer)) else seed
+            if len(seeds) != self.num_envs:
+                raise ValueError(f"there are {len(seeds)} seeds for {self.num_envs} environments")
+            for index, single in enumerate(seeds):
+                if single is not None:
+                    self._randoms[index] = seeding.np_random(single)[0]
+        self._world_seeds = np.array([_draw(random) for random in self._randoms], np.uint64)
+        self._next_seeds = np.array([_draw(random) for random in self._randoms], np.uint64)
+        rows = batch.reset(self._world_seeds)
+        return _split(self._parts, rows), {"world_seed": self._world_seeds.copy(), "_world_seed": self._all.copy()}
+
+    def step(self, actions: Any) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        """Simulate one step of every environment. ``ValueError``: an action is NaN or out of range."""
+        rows, rewards, terminated, truncated, values, was_reset, last = self.batch.step(
+            _actions(actions, self.num_envs), self._next_seeds
+        )
+        info: dict[str, Any] = {name: values[:, column] for column, name in enumerate(self._names)}
+        if last is not None:
+            ended = np.flatnonzero(was_reset)
+            final_obs = np.empty(self.num_envs, object)
+            for index in ended:
+                final_obs[index] = _split(self._parts, last[index])
+            final_info: dict[str, Any] = {name: info[name].copy() for name in self._names}
+            final_info["world_seed"] = self._world_seeds.copy()
+            final_info.update({f"_{name}": was_reset.copy() for name in [*self._names, "world_seed"]})
+            info.update(final_obs=final_obs, _final_obs=was_reset, final_info=final_info, _final_info=was_reset.copy())
+            for index in ended:
+                self._world_seeds[index] = self._next_seeds[index]
+                self._next_seeds[index] = _draw(self._randoms[index])
+        info["world_seed"] = self._world_seeds.copy()
+        info.update({f"_{name}": self._all for name in [*self._names, "world_seed"]})
+        return _split(self._parts, rows), rewards.astype(np.float64), terminated, truncated, info
+
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """The environments from above, one array each."""
+        if self.render_mode is None:
+            return None
+        return tuple(self.batch.picture(index, self.render_size) for index in range(self.num_envs))
+
+    def snapshot(self, index: int) -> bytes:
+        """The state of one environment; not that of its random numbers for seeds."""
+        return self.batch.snapshot(index)
+
+    def restore(self, index: int, snapshot: bytes) -> Any:
+        """Return one environment to a snapshot; returns its observation."""
+        return _split(self._parts, self.batch.restore(index, snapshot)[0])
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Free everything."""
+        self._batch = None
+
+
+class DriveEnv(_Single):
+    """Driving to goals among moving things; see the module. ``world``: a ``Spec``, a name or a path, with one driven robot.
+
+    Settings: ``decision_s``, ``max_steps``, ``goal_radius`` (m), ``min_goal`` (m), ``shows_path``, ``goal_reward``,
+    ``progress_reward``, ``collision_reward``, ``step_reward``.
+    """
+
+    _make = staticmethod(_drive)
+
+
+class DriveVectorEnv(_Vector):
+    """Many of ``DriveEnv``. ``threads``: 0 for all, 1 for none beside the caller."""
+
+    _make = staticmethod(_drive)
+
+
+class ExploreEnv(_Single):
+    """Exploring houses that change; see the module. ``worlds``: a list of ``Spec``, names or paths; each episode is in one.
+
+    Settings: ``max_steps``, ``beams``, ``error_every``, ``map_every``, ``update_reward``, ``error_reward``, ``collision_reward``.
+    """
+
+    _make = staticmethod(_explore)
+
+
+class ExploreVectorEnv(_Vector):
+    """Many of ``ExploreEnv``. ``threads``: 0 for all, 1 for none beside the caller."""
+
+    _make = staticmethod(_explore)

@@ -1,0 +1,108 @@
+//! Errors and arrays.
+
+use interfaces::{GridFrame, heading_rad};
+use nalgebra::{Isometry2, Point2};
+use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike1, PyArrayMethods};
+use pyo3::exceptions::{PyFileNotFoundError, PyIndexError, PyValueError};
+use pyo3::prelude::*;
+use std::fmt::Display;
+
+pyo3::create_exception!(
+    curious,
+    WorldError,
+    PyValueError,
+    "The error for a world that is invalid, with the message of the command line: file, line, key, a valid value."
+);
+pyo3::create_exception!(
+    curious,
+    SnapshotError,
+    PyValueError,
+    "The error for bytes that are not a snapshot of the same world, or are damaged."
+);
+
+/// Numbers, as a list, a tuple or an array of any type.
+pub(crate) type Numbers<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
+/// Ranges of a scan, as a list, a tuple or an array of any type.
+pub(crate) type Ranges<'py> = PyArrayLike1<'py, f32, AllowTypeChange>;
+
+/// A `ValueError` with the message of an error.
+pub(crate) fn value_error(error: impl Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// A `WorldError` with the message of an error.
+pub(crate) fn world_error(error: impl Display) -> PyErr {
+    WorldError::new_err(error.to_string())
+}
+
+/// The error for a world that cannot be loaded.
+pub(crate) fn load_error(error: worldfile::shipped::LoadError) -> PyErr {
+    match error {
+        worldfile::shipped::LoadError::Unknown { .. } => PyFileNotFoundError::new_err(error.to_string()),
+        other => world_error(other),
+    }
+}
+
+/// A `SnapshotError` with the message of an error.
+pub(crate) fn snapshot_error(error: impl Display) -> PyErr {
+    SnapshotError::new_err(error.to_string())
+}
+
+/// The error for a log: an `OSError` of the fitting kind if the file cannot be read.
+pub(crate) fn log_error(path: &std::path::Path, error: logs::LogError) -> PyErr {
+    match error {
+        logs::LogError::Io { why, .. } if why.kind() == std::io::ErrorKind::NotFound => {
+            PyFileNotFoundError::new_err(format!("there is no log `{}`", path.display()))
+        }
+        logs::LogError::Io { .. } => pyo3::exceptions::PyOSError::new_err(error.to_string()),
+        other => value_error(other),
+    }
+}
+
+/// The error for a robot that does not exist.
+pub(crate) fn no_robot(robot: usize, robots: usize) -> PyErr {
+    PyIndexError::new_err(format!("there is no robot {robot}: there are {robots}, counted from 0"))
+}
+
+/// Three numbers, finite: x and y (m), heading (rad).
+pub(crate) fn pose(pose: &Numbers<'_>) -> PyResult<Isometry2<f64>> {
+    let values: Vec<f64> = pose.as_array().iter().copied().collect();
+    match values[..] {
+        [x, y, heading] if values.iter().all(|value| value.is_finite()) => {
+            Ok(interfaces::pose(x, y, heading))
+        }
+        [_, _, _] => Err(value_error(format!("a pose is finite, and not {values:?}"))),
+        _ => Err(value_error(format!(
+            "a pose is [x, y, heading] (m, m, rad), and not {} numbers",
+            values.len()
+        ))),
+    }
+}
+
+/// A pose as x and y (m), heading (rad).
+pub(crate) fn pose_values(pose: &Isometry2<f64>) -> [f64; 3] {
+    [pose.translation.x, pose.translation.y, heading_rad(pose)]
+}
+
+/// A pose as an array.
+pub(crate) fn pose_array<'py>(py: Python<'py>, pose: &Isometry2<f64>) -> Bound<'py, PyArray1<f64>> {
+    pose_values(pose).to_vec().into_pyarray(py)
+}
+
+/// Points as an array with two columns.
+pub(crate) fn points_array<'py>(
+    py: Python<'py>,
+    points: &[Point2<f64>],
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let values: Vec<f64> = points.iter().flat_map(|point| [point.x, point.y]).collect();
+    values.into_pyarray(py).reshape([points.len(), 2])
+}
+
+/// One value per cell as an array of rows; row 0 has the lowest y.
+pub(crate) fn grid<'py, T: numpy::Element>(
+    py: Python<'py>,
+    frame: &GridFrame,
+    values: Vec<T>,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    values.into_pyarray(py).reshape([frame.height(), frame.width()])
+}

@@ -1,0 +1,259 @@
+use crate::convert::{log_error, points_array, pose_values, value_error};
+use crate::mapper::Mapper;
+use crate::reading::Reading;
+use ::logs::{PoseSource, TopicChoice};
+use localizer::PoseState;
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use robot::explore;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+use survey::{ChangeLog, FirstPass, FoundPoses, NoPilot, PoseMode, Replay, SurveySettings};
+
+/// A log of a robot: a CARMEN log (also with gzip), a bag of ROS 2 (MCAP or SQLite, a file or a folder).
+///
+/// Iterate over it for its readings. Their times are since the first one, their poses are those of the odometry.
+#[pyclass(frozen, module = "curious")]
+pub(crate) struct Log {
+    log: ::logs::Log,
+}
+
+/// The readings of a log.
+#[pyclass(module = "curious")]
+pub(crate) struct Readings {
+    readings: Mutex<::logs::Readings>,
+}
+
+#[pymethods]
+impl Log {
+    /// Opens a log. `scan_topics`, `odom_topic`, `base_frame`: for bags; by default all of them are found. `OSError`: it
+    /// cannot be read; `ValueError`: it is damaged or has no usable scan.
+    #[new]
+    #[pyo3(signature = (path, *, scan_topics = Vec::new(), odom_topic = None, base_frame = None))]
+    fn new(
+        py: Python<'_>,
+        path: PathBuf,
+        scan_topics: Vec<String>,
+        odom_topic: Option<String>,
+        base_frame: Option<String>,
+    ) -> PyResult<Self> {
+        let choice = TopicChoice { scan_topics, odom_topic, base_frame };
+        let log = py.detach(|| ::logs::Log::open(&path, &choice)).map_err(|error| log_error(&path, error))?;
+        Ok(Self { log })
+    }
+
+    /// The time from the first to the last reading, s.
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.log.summary().duration_s
+    }
+
+    /// The time of the first reading in seconds since 1970; None if the log does not say it.
+    #[getter]
+    fn begin(&self) -> Option<f64> {
+        self.log.summary().begin_s
+    }
+
+    /// What was repaired or left out, each a sentence.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.log.summary().notes.clone()
+    }
+
+    /// Whether the laser stands: no pose of the log moves.
+    #[getter]
+    fn stands(&self) -> bool {
+        let summary = self.log.summary();
+        summary.pose_source == PoseSource::Standing || summary.odometry_poses == 0
+    }
+
+    fn __len__(&self) -> usize {
+        self.log.summary().scans
+    }
+
+    fn __iter__(&self) -> PyResult<Readings> {
+        Ok(Readings { readings: Mutex::new(self.log.readings().map_err(value_error)?) })
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<curious.Log: {} readings in {:.1} s>",
+            self.log.summary().scans,
+            self.log.summary().duration_s
+        )
+    }
+}
+
+#[pymethods]
+impl Readings {
+    fn __iter__(this: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        this
+    }
+
+    fn __next__(&mut self, py: Python<'_>) -> PyResult<Option<Reading>> {
+        let readings = self.readings.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let next = py.detach(|| readings.next()).transpose().map_err(value_error)?;
+        Ok(next.map(Reading::of))
+    }
+}
+
+/// What `map_log` has learned.
+#[pyclass(frozen, module = "curious")]
+pub(crate) struct Survey {
+    mapper: mapper::Mapper,
+    places: Vec<survey::Place>,
+    poses: Vec<localizer::TrajectoryPose>,
+    permanent: interfaces::Grid<interfaces::CellState>,
+}
+
+/// Maps a log, and learns where the place changes: the program `map_log` for one log. The log is read twice: the first
+/// pass finds the trajectory, the second one learns the changes.
+///
+/// `pose`: "localized" (the trajectory is found from scans and odometry), "odometry", "exact"; by default "localized", or
+/// "exact" where the laser stands. `cell`: m. `max_range`: longer ranges are not used, m.
+#[pyfunction]
+#[pyo3(signature = (log, *, pose = None, cell = 0.05, max_range = 20.0, estimator = None, range_noise = None))]
+pub(crate) fn map_log(
+    py: Python<'_>,
+    log: &Log,
+    pose: Option<&str>,
+    cell: f64,
+    max_range: f64,
+    estimator: Option<&str>,
+    range_noise: Option<f64>,
+) -> PyResult<Survey> {
+    let mode = match pose {
+        None if log.stands() => PoseMode::Exact,
+        None | Some("localized") => PoseMode::Localized,
+        Some("odometry") => PoseMode::Odometry,
+        Some("exact") => PoseMode::Exact,
+        Some(other) => {
+            return Err(value_error(format!("`pose` is localized, odometry or exact, and not {other:?}")));
+        }
+    };
+    let mut settings =
+        SurveySettings { resolution_m: cell, max_range_m: max_range, ..SurveySettings::of(mode) };
+    settings.mapper = crate::mapper::settings_of(settings.mapper, estimator, None, None, range_noise)?;
+    py.detach(|| learn(&log.log, settings, range_noise.is_none()))
+}
+
+/// Notices a signal of the user once in many readings.
+fn check_signals(readings: usize) -> PyResult<()> {
+    if readings.is_multiple_of(256) { Python::attach(|py| py.check_signals()) } else { Ok(()) }
+}
+
+/// Why the second pass stopped.
+struct Stop(PyErr);
+
+impl From<PyErr> for Stop {
+    fn from(error: PyErr) -> Self {
+        Self(error)
+    }
+}
+
+impl From<mapper::ReadingError> for Stop {
+    fn from(error: mapper::ReadingError) -> Self {
+        Self(value_error(error))
+    }
+}
+
+fn learn(log: &::logs::Log, mut settings: SurveySettings, learns_noise: bool) -> PyResult<Survey> {
+    use value_error as text;
+    let mut pass = FirstPass::new(&settings).map_err(text)?;
+    for (number, reading) in log.readings().map_err(text)?.enumerate() {
+        check_signals(number)?;
+        pass.add(reading.map_err(text)?);
+    }
+    let sessions = [pass.finish()];
+    if let Some(noise_m) = survey::learned_noise_m(&sessions).filter(|_| learns_noise) {
+        settings.mapper.steady.range_noise_std_m = noise_m;
+    }
+    let frame = survey::frame(&sessions, &settings).map_err(text)?;
+    let mut mapper = mapper::Mapper::new(&settings.mapper, frame).map_err(text)?;
+    let replay = Replay::new(log.readings().map_err(text)?, &settings, 0.0).map_err(text)?;
+    let mut replay = replay.ok_or_else(|| text("the log has changed since the first pass"))?;
+    let mut changes = ChangeLog::default();
+    let [session] = sessions;
+    let mut poses = FoundPoses::new(session.poses.clone());
+    explore(&mut replay, &mut poses, &mut mapper, &mut NoPilot, |replay, _, belief, _| {
+        changes.note(belief.mapper);
+        check_signals(belief.mapper.readings())?;
+        Ok::<_, Stop>(match replay.is_over() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        })
+    })
+    .map_err(|Stop(error)| error)?;
+    if let Some(problem) = replay.into_problem() {
+        return Err(text(problem));
+    }
+    let (places, permanent) = (survey::places(&mapper, &changes), survey::permanent(&mapper));
+    Ok(Survey { mapper, places, poses: session.poses, permanent })
+}
+
+#[pymethods]
+impl Survey {
+    /// The map, and what was learned about its cells.
+    #[getter]
+    fn mapper(&self) -> Mapper {
+        Mapper { mapper: self.mapper.clone() }
+    }
+
+    /// The trajectory, shape (readings, 4): time (s), x (m), y (m), heading (rad).
+    #[getter]
+    fn trajectory<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = self.poses.iter().flat_map(|found| {
+            let [x, y, heading] = pose_values(&found.pose);
+            [found.time_s, x, y, heading]
+        });
+        rows.collect::<Vec<f64>>().into_pyarray(py).reshape([self.poses.len(), 4])
+    }
+
+    /// Whether each pose of the trajectory is certain.
+    #[getter]
+    fn certain(&self) -> Vec<bool> {
+        self.poses.iter().map(|found| found.state == PoseState::Tracking).collect()
+    }
+
+    /// The map of what is permanent, int8: -1 unknown, 0 free, 1 blocked.
+    #[getter]
+    fn permanent<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i8>>> {
+        let states = self.permanent.cells().iter().map(|state| crate::mapper::state(*state)).collect();
+        crate::convert::grid(py, self.permanent.frame(), states)
+    }
+
+    /// The places where something changes, those with the most cycles first, each a dict: x, y (m), low, high (m), area
+    /// (m²), changes, cycles_per_hour, cycles_per_hour_90, share_blocked, observed (s), last_change (s).
+    #[getter]
+    fn places<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let dict = |place: &survey::Place| {
+            let dict = PyDict::new(py);
+            dict.set_item("x", place.x_m)?;
+            dict.set_item("y", place.y_m)?;
+            dict.set_item("low", place.low_m)?;
+            dict.set_item("high", place.high_m)?;
+            dict.set_item("area", place.area_m2)?;
+            dict.set_item("changes", place.changes)?;
+            dict.set_item("cycles_per_hour", place.cycles_per_hour)?;
+            dict.set_item("cycles_per_hour_90", place.cycles_per_hour_90)?;
+            dict.set_item("share_blocked", place.share_blocked)?;
+            dict.set_item("observed", place.observed_s)?;
+            dict.set_item("last_change", place.last_change_s)?;
+            Ok(dict)
+        };
+        self.places.iter().map(dict).collect()
+    }
+
+    /// The middle of each place, shape (places, 2), m.
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let points: Vec<_> =
+            self.places.iter().map(|place| nalgebra::Point2::new(place.x_m, place.y_m)).collect();
+        points_array(py, &points)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<curious.Survey: {} places that change>", self.places.len())
+    }
+}

@@ -1,0 +1,311 @@
+use crate::convert::{Numbers, Ranges, grid, points_array, snapshot_error, value_error, world_error};
+use crate::reading::{Laser, Reading, laser_reading};
+use crate::spec::{driving, spec_of};
+use crate::world::World;
+use evaluation::physics_trial::PhysicsSettings;
+use interfaces::{CellState, GridFrame};
+use mapper::MapperSettings;
+use nalgebra::Point2;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+/// A map of a place that changes: its cells, and how often each of them changes.
+///
+/// Arrays of cells have the shape (rows, columns); row 0 has the lowest y. The center of cell [row, column] is
+/// `origin + ([column, row] + 0.5) * cell` (m).
+#[pyclass(module = "curious")]
+pub(crate) struct Mapper {
+    pub(crate) mapper: mapper::Mapper,
+}
+
+impl Mapper {
+    fn array<'py, T: numpy::Element>(
+        &self,
+        py: Python<'py>,
+        value: impl Fn(&mapper::Mapper, usize) -> T + Sync,
+    ) -> PyResult<Bound<'py, PyArray2<T>>> {
+        let mapper = &self.mapper;
+        let values: Vec<T> =
+            py.detach(|| (0..mapper.frame().len()).map(|index| value(mapper, index)).collect());
+        grid(py, mapper.frame(), values)
+    }
+}
+
+/// The settings with another estimator, occupancy model, gap and range noise.
+pub(crate) fn settings_of(
+    mut settings: MapperSettings,
+    estimator: Option<&str>,
+    occupancy: Option<&str>,
+    max_gap: Option<f64>,
+    range_noise: Option<f64>,
+) -> PyResult<MapperSettings> {
+    if let Some(name) = estimator {
+        settings.estimator = name.parse().map_err(value_error)?;
+    }
+    if let Some(name) = occupancy {
+        settings.occupancy = name.parse().map_err(value_error)?;
+    }
+    settings.max_gap = max_gap.unwrap_or(settings.max_gap);
+    settings.steady.range_noise_std_m = range_noise.unwrap_or(settings.steady.range_noise_std_m);
+    Ok(settings)
+}
+
+impl Mapper {
+    /// The number of rows and columns.
+    pub(crate) fn size(&self) -> (usize, usize) {
+        (self.mapper.frame().height(), self.mapper.frame().width())
+    }
+}
+
+#[pymethods]
+impl Mapper {
+    /// An empty map of `width` x `height` m with cells of `cell` m, whose lower left corner is `origin` (m).
+    ///
+    /// `estimator`: `Mapper.estimators()`. `occupancy`: "steady" or "naive". `max_gap`: a cell that is hidden for at most
+    /// this time stays in view, s. `range_noise`: the standard deviation of a range, m.
+    #[new]
+    #[pyo3(signature = (width, height, *, origin = (0.0, 0.0), cell = 0.05, estimator = None, occupancy = None,
+        max_gap = Some(8.0), range_noise = None))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        width: f64,
+        height: f64,
+        origin: (f64, f64),
+        cell: f64,
+        estimator: Option<&str>,
+        occupancy: Option<&str>,
+        max_gap: Option<f64>,
+        range_noise: Option<f64>,
+    ) -> PyResult<Self> {
+        let frame =
+            GridFrame::covering(Point2::new(origin.0, origin.1), width, height, cell).ok_or_else(|| {
+                value_error(format!(
+                    "a map of {width} m x {height} m with cells of {cell} m: it must have 1 to 2^26 cells"
+                ))
+            })?;
+        let settings = settings_of(MapperSettings::default(), estimator, occupancy, max_gap, range_noise)?;
+        Ok(Self { mapper: mapper::Mapper::new(&settings, frame).map_err(value_error)? })
+    }
+
+    /// An empty map for a world (`World`, `Spec`, name or path), with its cells and the settings that the programs use.
+    #[staticmethod]
+    #[pyo3(signature = (world, *, robot = None, estimator = None, occupancy = None, max_gap = None))]
+    fn of(
+        py: Python<'_>,
+        world: &Bound<'_, PyAny>,
+        robot: Option<usize>,
+        estimator: Option<&str>,
+        occupancy: Option<&str>,
+        max_gap: Option<f64>,
+    ) -> PyResult<Self> {
+        let spec = match world.cast::<World>() {
+            Ok(world) => world.borrow().world.spec().clone(),
+            Err(_) => driving(&spec_of(py, world)?, robot)?,
+        };
+        let settings = PhysicsSettings::of(&spec).map_err(world_error)?.mapper;
+        let settings = settings_of(settings, estimator, occupancy, max_gap, None)?;
+        Ok(Self { mapper: mapper::Mapper::new(&settings, spec.frame).map_err(value_error)? })
+    }
+
+    /// The names of the estimators of rates.
+    #[staticmethod]
+    fn estimators() -> Vec<&'static str> {
+        mapper::EstimatorChoice::all().iter().map(mapper::EstimatorChoice::name).collect()
+    }
+
+    /// Updates the map with a scan from a known pose.
+    ///
+    /// `time`: s, never earlier than the last one. `ranges`: m, shape (beams,): inf no return, -inf too close, NaN invalid.
+    /// `pose`: of the robot in the frame of the map, x (m), y (m), heading (rad). `angle_min`, `angle_increment`: rad; by
+    /// default the beams cover a full turn from straight behind. `range_min`, `range_max`: m. `mount`: the pose of the
+    /// laser on the robot. `ValueError`: the scan is invalid; the map then stays as it was.
+    #[pyo3(signature = (time, ranges, pose, *, angle_min = -std::f64::consts::PI, angle_increment = None,
+        range_min = 0.0, range_max = 10.0, mount = None))]
+    #[allow(clippy::too_many_arguments)]
+    fn update(
+        &mut self,
+        py: Python<'_>,
+        time: f64,
+        ranges: Ranges<'_>,
+        pose: Numbers<'_>,
+        angle_min: f64,
+        angle_increment: Option<f64>,
+        range_min: f64,
+        range_max: f64,
+        mount: Option<Numbers<'_>>,
+    ) -> PyResult<()> {
+        let laser = Laser { angle_min, angle_increment, range_min, range_max, mount, sweep: 0.0 };
+        let reading = laser_reading(time, &ranges, &pose, &laser, [0.0, 0.0])?;
+        let mapper = &mut self.mapper;
+        py.detach(|| mapper.update(&reading)).map_err(value_error)
+    }
+
+    /// Updates the map with a reading, whose pose is taken as exact.
+    fn update_reading(&mut self, py: Python<'_>, reading: &Reading) -> PyResult<()> {
+        let mapper = &mut self.mapper;
+        py.detach(|| mapper.update(&reading.reading)).map_err(value_error)
+    }
+
+    /// Leaves a reading out of the map, because its pose is not certain: the time since the last one counts as not observed.
+    fn skip(&mut self, reading: &Reading) {
+        self.mapper.skip(&reading.reading);
+    }
+
+    /// Begins another session at a time (s): the time since the last reading counts as not observed.
+    fn pause(&mut self, time: f64) {
+        self.mapper.pause(time);
+    }
+
+    /// The time of the last reading, s.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.mapper.time()
+    }
+
+    /// The number of readings.
+    #[getter]
+    fn readings(&self) -> usize {
+        self.mapper.readings()
+    }
+
+    /// The number of rows and columns.
+    #[getter]
+    fn shape(&self) -> (usize, usize) {
+        self.size()
+    }
+
+    /// The side of a cell, m.
+    #[getter]
+    fn cell(&self) -> f64 {
+        self.mapper.frame().resolution_m()
+    }
+
+    /// The lower left corner, m.
+    #[getter]
+    fn origin<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let origin = self.mapper.frame().origin();
+        vec![origin.x, origin.y].into_pyarray(py)
+    }
+
+    /// The map, int8: -1 unknown, 0 free, 1 blocked.
+    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i8>>> {
+        self.array(py, |mapper, index| state(mapper.states().cells()[index]))
+    }
+
+    /// The rate of every cell, cycles per second; 0: it never changed.
+    fn rates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.array(py, mapper::Mapper::rate)
+    }
+
+    /// The mean duration of a cycle, s; inf: the cell never changed.
+    fn intervals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.array(py, mapper::Mapper::interval)
+    }
+
+    /// The intervals that contain the rates with a probability: two arrays, low and high, cycles per second.
+    #[pyo3(signature = (mass = 0.9))]
+    #[allow(clippy::type_complexity)]
+    fn credible_intervals<'py>(
+        &self,
+        py: Python<'py>,
+        mass: f64,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
+        if !(mass > 0.0 && mass < 1.0) {
+            return Err(value_error(format!("the probability must be above 0 and below 1, not {mass}")));
+        }
+        let mapper = &self.mapper;
+        let (low, high): (Vec<f64>, Vec<f64>) = py.detach(|| {
+            let interval = mapper.credible_intervals(mass);
+            (0..mapper.frame().len()).map(interval).unzip()
+        });
+        Ok((grid(py, mapper.frame(), low)?, grid(py, mapper.frame(), high)?))
+    }
+
+    /// The probability that each cell is blocked now; 0.5 where unknown.
+    fn blocked_probability<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.array(py, mapper::Mapper::blocked_probability)
+    }
+
+    /// The probability that each cell changed since it was last seen.
+    fn change_probability<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.array(py, mapper::Mapper::change_probability)
+    }
+
+    /// The time since each cell was last seen, s; a cell that was never seen counts as seen at time 0.
+    fn recency<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.array(py, mapper::Mapper::recency)
+    }
+
+    /// Whether each cell was ever seen.
+    fn seen<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        self.array(py, mapper::Mapper::was_ever_seen)
+    }
+
+    /// Whether each cell can be a goal of an explorer: it is free, or beside a free cell.
+    fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        self.array(py, mapper::Mapper::is_candidate)
+    }
+
+    /// What was observed of every cell, by name: watched_free and watched_blocked (s in view), block_events and
+    /// free_events (changes in view), block_events_after_gap and free_events_after_gap.
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let statistics = PyDict::new(py);
+        statistics
+            .set_item("watched_free", self.array(py, |map, cell| map.statistics(cell).watched_free)?)?;
+        statistics
+            .set_item("watched_blocked", self.array(py, |map, cell| map.statistics(cell).watched_blocked)?)?;
+        statistics
+            .set_item("block_events", self.array(py, |map, cell| map.statistics(cell).block_events)?)?;
+        statistics.set_item("free_events", self.array(py, |map, cell| map.statistics(cell).free_events)?)?;
+        let after_gap = self.array(py, |map, cell| map.statistics(cell).block_events_after_gap)?;
+        statistics.set_item("block_events_after_gap", after_gap)?;
+        let after_gap = self.array(py, |map, cell| map.statistics(cell).free_events_after_gap)?;
+        statistics.set_item("free_events_after_gap", after_gap)?;
+        Ok(statistics)
+    }
+
+    /// The changes of cells in the last update, shape (changes, 4), int32: row, column, state before, state after.
+    fn changes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i32>>> {
+        let transitions = self.mapper.transitions();
+        let values = transitions.iter().flat_map(|change| {
+            [change.cell.y, change.cell.x, i32::from(state(change.before)), i32::from(state(change.after))]
+        });
+        values.collect::<Vec<i32>>().into_pyarray(py).reshape([transitions.len(), 4])
+    }
+
+    /// The end points of the last scan, shape (points, 2), m.
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        points_array(py, self.mapper.points())
+    }
+
+    /// Everything that was learned, as bytes.
+    fn snapshot<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        let mapper = &mut self.mapper;
+        PyBytes::new(py, &py.detach(|| mapper.snapshot()))
+    }
+
+    /// Returns to the snapshot of a map with the same cells and settings. `SnapshotError`: the bytes are not one; nothing
+    /// changes then.
+    fn restore(&mut self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
+        let mut restored = self.mapper.clone();
+        py.detach(|| restored.restore(snapshot)).map_err(snapshot_error)?;
+        self.mapper = restored;
+        Ok(())
+    }
+
+    fn __repr__(&self) -> String {
+        let (rows, columns) = self.size();
+        let (cell, readings) = (self.cell(), self.mapper.readings());
+        format!("<curious.Mapper: {rows} x {columns} cells of {cell} m, {readings} readings>")
+    }
+}
+
+/// A state as a number.
+pub(crate) fn state(state: CellState) -> i8 {
+    match state {
+        CellState::Unknown => -1,
+        CellState::Free => 0,
+        CellState::Blocked => 1,
+    }
+}

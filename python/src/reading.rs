@@ -1,0 +1,166 @@
+use crate::convert::{Numbers, Ranges, pose, pose_array};
+use interfaces::{LaserReading, Scan, Twist};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+
+/// A laser scan, and the pose of the robot at the same time.
+///
+/// `ranges` has one value per beam, m: +inf no return, -inf too close, NaN invalid (REP-117). The direction of beam `i`
+/// in the frame of the laser is `angle_min + i * angle_increment` (rad).
+#[pyclass(frozen, module = "curious")]
+pub(crate) struct Reading {
+    pub(crate) reading: LaserReading,
+}
+
+impl Reading {
+    pub(crate) fn of(reading: LaserReading) -> Self {
+        Self { reading }
+    }
+}
+
+/// The properties of a laser.
+pub(crate) struct Laser<'py> {
+    pub(crate) angle_min: f64,
+    pub(crate) angle_increment: Option<f64>,
+    pub(crate) range_min: f64,
+    pub(crate) range_max: f64,
+    pub(crate) mount: Option<Numbers<'py>>,
+    pub(crate) sweep: f64,
+}
+
+/// A reading of own numbers. Without an angle between beams they cover a full turn.
+pub(crate) fn laser_reading(
+    time: f64,
+    ranges: &Ranges<'_>,
+    at: &Numbers<'_>,
+    laser: &Laser<'_>,
+    twist: [f64; 2],
+) -> PyResult<LaserReading> {
+    let ranges_m: Vec<f32> = ranges.as_array().iter().copied().collect();
+    let angle_increment_rad =
+        laser.angle_increment.unwrap_or(std::f64::consts::TAU / ranges_m.len().max(1) as f64);
+    Ok(LaserReading {
+        time_s: time,
+        pose: pose(at)?,
+        twist: Twist { linear_mps: twist[0], angular_radps: twist[1] },
+        velocities: Vec::new(),
+        mount: laser.mount.as_ref().map(pose).transpose()?.unwrap_or_default(),
+        scan: Scan {
+            angle_min_rad: laser.angle_min,
+            angle_increment_rad,
+            range_min_m: laser.range_min,
+            range_max_m: laser.range_max,
+            sweep_s: laser.sweep,
+            ranges_m,
+        },
+    })
+}
+
+#[pymethods]
+impl Reading {
+    /// A reading of your own: see `Mapper.update` for the arguments.
+    #[new]
+    #[pyo3(signature = (time, ranges, pose, *, angle_min = -std::f64::consts::PI, angle_increment = None,
+        range_min = 0.0, range_max = 10.0, mount = None, sweep = 0.0, velocity = [0.0, 0.0]))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        time: f64,
+        ranges: Ranges<'_>,
+        pose: Numbers<'_>,
+        angle_min: f64,
+        angle_increment: Option<f64>,
+        range_min: f64,
+        range_max: f64,
+        mount: Option<Numbers<'_>>,
+        sweep: f64,
+        velocity: [f64; 2],
+    ) -> PyResult<Self> {
+        let laser = Laser { angle_min, angle_increment, range_min, range_max, mount, sweep };
+        Ok(Self::of(laser_reading(time, &ranges, &pose, &laser, velocity)?))
+    }
+
+    /// The time, s.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.reading.time_s
+    }
+
+    /// The ranges, m, shape (beams,), float32.
+    #[getter]
+    fn ranges<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &self.reading.scan.ranges_m)
+    }
+
+    /// The pose of the robot by odometry: x (m), y (m), heading (rad).
+    #[getter]
+    fn pose<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        pose_array(py, &self.reading.pose)
+    }
+
+    /// Linear (m/s) and angular (rad/s) velocity by odometry.
+    #[getter]
+    fn velocity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &[self.reading.twist.linear_mps, self.reading.twist.angular_radps])
+    }
+
+    /// The pose of the laser in the frame of the robot: x (m), y (m), heading (rad).
+    #[getter]
+    fn mount<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        pose_array(py, &self.reading.mount)
+    }
+
+    /// The direction of the first beam, rad.
+    #[getter]
+    fn angle_min(&self) -> f64 {
+        self.reading.scan.angle_min_rad
+    }
+
+    /// The angle between two beams, rad.
+    #[getter]
+    fn angle_increment(&self) -> f64 {
+        self.reading.scan.angle_increment_rad
+    }
+
+    /// The minimum range, m.
+    #[getter]
+    fn range_min(&self) -> f64 {
+        self.reading.scan.range_min_m
+    }
+
+    /// The maximum range, m.
+    #[getter]
+    fn range_max(&self) -> f64 {
+        self.reading.scan.range_max_m
+    }
+
+    /// The time from the first to the last beam, s.
+    #[getter]
+    fn sweep(&self) -> f64 {
+        self.reading.scan.sweep_s
+    }
+
+    /// The end points of the beams that hit something, in the frame of the pose, shape (points, 2), m.
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, numpy::PyArray2<f64>>> {
+        let LaserReading { pose, mount, scan, .. } = &self.reading;
+        let laser = pose * mount;
+        let beams = scan.ranges_m.iter().enumerate().filter(|(_, range_m)| {
+            let range_m = f64::from(**range_m);
+            range_m.is_finite() && (scan.range_min_m..=scan.range_max_m).contains(&range_m)
+        });
+        let hits = beams.flat_map(|(beam, range_m)| {
+            let at = laser
+                * interfaces::rotation(scan.angle_rad(beam))
+                * nalgebra::Point2::new(f64::from(*range_m), 0.0);
+            [at.x, at.y]
+        });
+        let values: Vec<f64> = hits.collect();
+        let count = values.len() / 2;
+        PyArray1::from_vec(py, values).reshape([count, 2])
+    }
+
+    fn __repr__(&self) -> String {
+        let [x, y, heading] = crate::convert::pose_values(&self.reading.pose);
+        let (time, beams) = (self.reading.time_s, self.reading.scan.ranges_m.len());
+        format!("<curious.Reading at {time:.3} s: {beams} beams from [{x:.3}, {y:.3}, {heading:.3}]>")
+    }
+}

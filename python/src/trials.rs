@@ -1,0 +1,228 @@
+//! Trials of exploring robots, with strategies of the library or of Python.
+
+use crate::convert::{pose_array, value_error, world_error};
+use crate::mapper::Mapper;
+use crate::spec::{driving, spec_of};
+use agent::{Policy, Situation as Inputs, Strategy};
+use evaluation::report::Metric;
+use evaluation::trials::{Experiment, PhysicsRobot, TrialStrategy, run_trial};
+use interfaces::Values;
+use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLikeDyn, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use sim::physics::WorldSpec;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What a strategy of Python knows when it weighs the cells.
+#[pyclass(frozen, module = "curious")]
+pub(crate) struct Situation {
+    mapper: Py<Mapper>,
+    pose: nalgebra::Isometry2<f64>,
+    travel: Vec<f64>,
+}
+
+#[pymethods]
+impl Situation {
+    /// A copy of the map.
+    #[getter]
+    fn mapper(&self, py: Python<'_>) -> Py<Mapper> {
+        self.mapper.clone_ref(py)
+    }
+
+    /// The pose of the robot: x (m), y (m), heading (rad).
+    #[getter]
+    fn pose<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        pose_array(py, &self.pose)
+    }
+
+    /// The travel time to every cell, s, shape (rows, columns); inf where no path is known. None unless the strategy has
+    /// the attribute `needs_travel = True`.
+    #[getter]
+    fn travel<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        if self.travel.is_empty() {
+            return Ok(None);
+        }
+        let (rows, columns) = self.mapper.borrow(py).size();
+        Ok(Some(self.travel.clone().into_pyarray(py).reshape([rows, columns])?))
+    }
+}
+
+/// The first error of a strategy of Python.
+type FirstError = Arc<Mutex<Option<PyErr>>>;
+
+/// A strategy of Python.
+struct OfPython {
+    strategy: Py<PyAny>,
+    needs_travel: bool,
+    error: FirstError,
+}
+
+impl std::fmt::Debug for OfPython {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("a strategy of Python")
+    }
+}
+
+impl OfPython {
+    fn try_weigh(&self, inputs: &Inputs<'_>, weights: &mut [f64]) -> PyResult<()> {
+        Python::attach(|py| {
+            let mapper = Py::new(py, Mapper { mapper: inputs.mapper.clone() })?;
+            let situation = Situation { mapper, pose: *inputs.pose, travel: inputs.travel.to_vec() };
+            let found = self.strategy.bind(py).call_method1("weigh", (situation,))?;
+            let found: PyArrayLikeDyn<'_, f64, AllowTypeChange> = found.extract()?;
+            let (array, frame) = (found.as_array(), inputs.mapper.frame());
+            if array.shape() != [frame.height(), frame.width()] {
+                return Err(value_error(format!(
+                    "`weigh` returned an array of the shape {:?}, and must return one weight per cell: ({}, {})",
+                    array.shape(),
+                    frame.height(),
+                    frame.width()
+                )));
+            }
+            weights.iter_mut().zip(array.iter()).for_each(|(weight, value)| *weight = *value);
+            Ok(())
+        })
+    }
+}
+
+impl Strategy for OfPython {
+    fn name(&self) -> &'static str {
+        "python"
+    }
+
+    fn weigh(&mut self, inputs: &Inputs<'_>, weights: &mut [f64]) {
+        if let Err(error) = self.try_weigh(inputs, weights) {
+            self.error.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        }
+    }
+
+    fn needs_travel(&self) -> bool {
+        self.needs_travel
+    }
+
+    fn values(&mut self, _: &mapper::Mapper) -> Values<'_> {
+        Vec::new()
+    }
+}
+
+/// The strategy with a name, or an object with a method `weigh`.
+fn strategy_of(strategy: &Bound<'_, PyAny>, error: &FirstError) -> PyResult<TrialStrategy> {
+    if let Ok(name) = strategy.extract::<String>() {
+        return TrialStrategy::all().find(|known| known.name() == name).ok_or_else(|| {
+            let names: Vec<&str> = TrialStrategy::all().map(|known| known.name()).collect();
+            value_error(format!("no strategy is called `{name}`; there are {}", names.join(", ")))
+        });
+    }
+    if !strategy.hasattr("weigh")? {
+        let what = "a strategy is a name, or an object with a method `weigh(situation)` that returns one weight per cell";
+        return Err(pyo3::exceptions::PyTypeError::new_err(what));
+    }
+    let needs_travel = match strategy.getattr_opt("needs_travel")? {
+        Some(needs) => needs.is_truthy()?,
+        None => false,
+    };
+    let (strategy, error) = (strategy.clone().unbind(), Arc::clone(error));
+    let policy = Policy::single("python", "what a strategy of Python says", move |_| OfPython {
+        strategy: Python::attach(|py| strategy.clone_ref(py)),
+        needs_travel,
+        error: Arc::clone(&error),
+    });
+    Ok(TrialStrategy::Agent(policy))
+}
+
+/// Lets a robot explore a world for some time, and scores what it has learned.
+///
+/// `strategy`: the name of one of the library (`curious.strategies()`), or an object with a method
+/// `weigh(situation) -> array` of one weight per cell, shape (rows, columns): a goal is drawn with a probability in
+/// proportion to the weight of its patch. `estimator`: see `Mapper.estimators()`.
+///
+/// Returns a dict: the last value of every metric, `samples` (a dict of lists over the time), `strategy_share`,
+/// `collisions`, `false_change_events`, `map_hash`. The same arguments give the same result, also in `house_trials`.
+/// An exception of the strategy ends the trial.
+#[pyfunction]
+#[pyo3(signature = (world, strategy = None, *, seed = 0, seconds = 600, estimator = None, robot = None))]
+pub(crate) fn trial<'py>(
+    py: Python<'py>,
+    world: &Bound<'py, PyAny>,
+    strategy: Option<&Bound<'py, PyAny>>,
+    seed: u64,
+    seconds: u64,
+    estimator: Option<&str>,
+    robot: Option<usize>,
+) -> PyResult<Bound<'py, PyDict>> {
+    if seconds == 0 {
+        return Err(value_error("a trial takes at least 1 s"));
+    }
+    let spec: WorldSpec = driving(&spec_of(py, world)?, robot)?;
+    let error = FirstError::default();
+    let strategy = match strategy {
+        Some(strategy) => strategy_of(strategy, &error)?,
+        None => TrialStrategy::Agent(Policy::default()),
+    };
+    let estimator = match estimator {
+        Some(name) => name.parse().map_err(value_error)?,
+        None => mapper::MapperSettings::default().estimator,
+    };
+    let experiment = Experiment {
+        worlds: vec![spec],
+        estimators: vec![estimator],
+        strategies: vec![strategy],
+        trials: 1,
+        seed,
+        length: seconds,
+        robot: PhysicsRobot::default(),
+    };
+    let failed = || error.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+    let interrupted = Mutex::new(None);
+    let mut readings = 0_u32;
+    let result = py.detach(|| {
+        let jobs = experiment.jobs();
+        let job = jobs.into_iter().next();
+        job.map(|job| {
+            run_trial(&job, |_| {
+                readings = readings.wrapping_add(1);
+                // Ctrl-C ends the trial.
+                if readings.is_multiple_of(256)
+                    && let Err(signal) = Python::attach(|py| py.check_signals())
+                {
+                    *interrupted.lock().unwrap_or_else(PoisonError::into_inner) = Some(signal);
+                    return false;
+                }
+                !failed()
+            })
+        })
+    });
+    for first in [&interrupted, &*error] {
+        if let Some(error) = first.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            return Err(error);
+        }
+    }
+    let result = result.ok_or_else(|| value_error("there is no trial"))?.map_err(world_error)?;
+    let trial = result.ok_or_else(|| value_error("the trial was canceled"))?;
+    let (dict, samples) = (PyDict::new(py), PyDict::new(py));
+    for (name, value) in
+        [("world", &trial.world), ("strategy", &trial.strategy), ("estimator", &trial.estimator)]
+    {
+        dict.set_item(name, value)?;
+    }
+    dict.set_item("seed", trial.seed)?;
+    samples.set_item("time", trial.samples.iter().map(|sample| sample.time).collect::<Vec<u64>>())?;
+    for metric in Metric::ALL {
+        let values: Vec<f64> = trial.samples.iter().map(|sample| metric.of(sample)).collect();
+        dict.set_item(metric.name(), values.last().copied())?;
+        samples.set_item(metric.name(), values)?;
+    }
+    dict.set_item("samples", samples)?;
+    dict.set_item("strategy_share", trial.strategy_share.into_iter().collect::<BTreeMap<_, _>>())?;
+    dict.set_item("collisions", trial.collisions)?;
+    dict.set_item("false_change_events", trial.false_change_events)?;
+    dict.set_item("map_hash", trial.map_hash)?;
+    Ok(dict)
+}
+
+/// The names of the strategies of the library.
+#[pyfunction]
+pub(crate) fn strategies() -> Vec<&'static str> {
+    TrialStrategy::all().map(|strategy| strategy.name()).collect()
+}

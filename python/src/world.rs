@@ -1,0 +1,150 @@
+use crate::convert::{grid, pose_array, snapshot_error, value_error};
+use crate::mapper::Mapper;
+use crate::reading::Reading;
+use crate::spec::{driving, spec_of};
+use evaluation::metrics::{map_scores, rate_scores};
+use interfaces::{GroundTruth, TrueState, Twist, World as _};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use sim::physics::PhysicsWorld;
+
+/// A world in which one robot is driven, with the ground truth of every cell.
+#[pyclass(module = "curious")]
+pub(crate) struct World {
+    pub(crate) world: PhysicsWorld,
+}
+
+#[pymethods]
+impl World {
+    /// The world (`Spec`, name or path) at its start. `robot`: the index of the driven robot, where it is not the only
+    /// one. `exact`: readings have the true pose in place of that by odometry.
+    #[new]
+    #[pyo3(signature = (world, seed = 0, *, robot = None, exact = false))]
+    fn new(
+        py: Python<'_>,
+        world: &Bound<'_, PyAny>,
+        seed: u64,
+        robot: Option<usize>,
+        exact: bool,
+    ) -> PyResult<Self> {
+        let spec = driving(&spec_of(py, world)?, robot)?;
+        let mut world = py.detach(|| PhysicsWorld::new(&spec, seed));
+        if exact {
+            world.correct_odometry();
+        }
+        Ok(Self { world })
+    }
+
+    /// The time since the start, s.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.world.time_s()
+    }
+
+    /// The index of the driven robot.
+    #[getter]
+    fn driven(&self) -> usize {
+        self.world.spec().driven_index()
+    }
+
+    /// Whether the poses of readings are exact.
+    #[getter]
+    fn poses_are_exact(&self) -> bool {
+        self.world.poses_are_exact()
+    }
+
+    /// The scan of the driven robot now, with its pose by odometry.
+    fn sense(&mut self, py: Python<'_>) -> Reading {
+        let world = &mut self.world;
+        Reading::of(py.detach(|| world.sense()))
+    }
+
+    /// Drives with a linear (m/s) and an angular (rad/s) velocity until the next scan is due.
+    fn act(&mut self, py: Python<'_>, linear: f64, angular: f64) -> PyResult<()> {
+        if !(linear.is_finite() && angular.is_finite()) {
+            return Err(value_error(format!("a command is finite, and not [{linear}, {angular}]")));
+        }
+        let world = &mut self.world;
+        py.detach(|| world.act(&Twist { linear_mps: linear, angular_radps: angular }));
+        Ok(())
+    }
+
+    /// The true pose of the driven robot: x (m), y (m), heading (rad).
+    #[getter]
+    fn true_pose<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        pose_array(py, self.world.true_pose())
+    }
+
+    /// The number of collisions of the moving robot in the last `act`.
+    #[getter]
+    fn collisions(&self) -> usize {
+        self.world.contacts().iter().filter(|contact| contact.moving).count()
+    }
+
+    /// The true state of every cell, shape (rows, columns), int8: 0 free, 1 blocked, -1 partly covered.
+    fn true_states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i8>>> {
+        let truth = self.world.truth();
+        let state = |index| match truth.state(index) {
+            TrueState::Free => 0,
+            TrueState::Blocked => 1,
+            TrueState::PartlyCovered => -1,
+        };
+        grid(py, truth.frame(), (0..truth.frame().len()).map(state).collect())
+    }
+
+    /// The true rate of every cell so far, shape (rows, columns), cycles per second.
+    fn true_rates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let truth = self.world.truth();
+        grid(py, truth.frame(), (0..truth.frame().len()).map(|index| truth.cycle_rate(index)).collect())
+    }
+
+    /// The scores of a map of this world, by the names of the reports: log_error, rate_error, false_rate_hz, rate_auc,
+    /// coverage, map_quality. None: not defined yet.
+    fn score<'py>(&self, py: Python<'py>, mapper: &Mapper) -> PyResult<Bound<'py, PyDict>> {
+        let truth = self.world.truth();
+        if mapper.mapper.frame() != truth.frame() {
+            return Err(value_error("the map has other cells than the world: make it by `Mapper.of(world)`"));
+        }
+        let (rates, map) =
+            py.detach(|| (rate_scores(&mapper.mapper, truth), map_scores(&mapper.mapper, truth)));
+        let scores = PyDict::new(py);
+        for (name, value) in [
+            ("log_error", rates.log_error),
+            ("rate_error", rates.rate_error),
+            ("rate_auc", rates.rate_auc),
+            ("false_rate_hz", Some(rates.false_rate_hz)),
+            ("coverage", Some(map.coverage)),
+            ("map_quality", Some(map.map_quality)),
+        ] {
+            scores.set_item(name, value)?;
+        }
+        Ok(scores)
+    }
+
+    /// Returns to the start, with another seed.
+    #[pyo3(signature = (seed = 0))]
+    fn reset(&mut self, py: Python<'_>, seed: u64) {
+        let world = &mut self.world;
+        py.detach(|| world.reset(seed));
+    }
+
+    /// The state as bytes.
+    fn snapshot<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        let world = &self.world;
+        PyBytes::new(py, &py.detach(|| world.snapshot().into_bytes()))
+    }
+
+    /// Returns to a snapshot of the same world. `SnapshotError`: the bytes are not one; nothing changes then.
+    fn restore(&mut self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
+        let world = &mut self.world;
+        let mut restored = world.clone();
+        py.detach(|| restored.restore(snapshot)).map_err(snapshot_error)?;
+        *world = restored;
+        Ok(())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<curious.World {:?} at {:.3} s>", self.world.spec().name, self.world.time_s())
+    }
+}

@@ -1,0 +1,228 @@
+"""The environments."""
+
+import warnings
+
+import curious
+import numpy as np
+import pytest
+
+gymnasium = pytest.importorskip("gymnasium")
+from gymnasium.utils.env_checker import check_env  # noqa: E402
+from gymnasium.vector import AutoresetMode  # noqa: E402
+
+NAMES = ["curious/Drive-v0", "curious/Explore-v0"]
+SMALL = {
+    "curious/Drive-v0": {"max_steps": 25},
+    "curious/Explore-v0": {"worlds": [curious.Spec.house(1), curious.Spec.house(4)], "max_steps": 25, "beams": 60},
+}
+
+
+def flat(observation) -> np.ndarray:
+    parts = observation.values() if isinstance(observation, dict) else [observation]
+    return np.concatenate([np.asarray(part).ravel() for part in parts])
+
+
+def action(environment: int, step: int) -> np.ndarray:
+    return np.array([np.cos(environment + 0.1 * step), np.sin(environment * 1.7 + 0.3 * step)], np.float32)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_check_env_has_no_warning(name):
+    # Warnings are errors in this suite.
+    env = gymnasium.make(name, render_mode="rgb_array", **SMALL[name])
+    check_env(env.unwrapped)
+    env.close()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_vector_environment_has_the_bits_of_single_ones(name):
+    count, steps = 5, 70
+    vector = gymnasium.make_vec(name, num_envs=count, vectorization_mode="vector_entry_point", **SMALL[name])
+    assert vector.metadata["autoreset_mode"] == AutoresetMode.SAME_STEP
+    alone = type(vector.unwrapped)(num_envs=count, threads=1, **SMALL[name])
+    single = gymnasium.make(name, **SMALL[name])
+    rows, info = vector.reset(seed=40)
+    rows_alone, _ = alone.reset(seed=40)
+    np.testing.assert_array_equal(flat(rows), flat(rows_alone))
+    recorded, ends = [], 0
+    seeds = [int(info["world_seed"][2])]
+    for step in range(steps):
+        actions = np.stack([action(index, step) for index in range(count)])
+        rows, rewards, terminated, truncated, info = vector.step(actions)
+        rows_alone, rewards_alone, *_ = alone.step(actions)
+        np.testing.assert_array_equal(flat(rows), flat(rows_alone))
+        np.testing.assert_array_equal(rewards, rewards_alone)
+        of_two = {key: part[2] for key, part in rows.items()} if isinstance(rows, dict) else rows[2]
+        ended = bool(terminated[2] or truncated[2])
+        last = info["final_obs"][2] if ended else of_two
+        recorded.append((flat(last), rewards[2], terminated[2], truncated[2]))
+        if ended:
+            ends += 1
+            assert info["_final_obs"][2] and info["_final_info"][2]
+            assert int(info["final_info"]["world_seed"][2]) == seeds[-1]
+            seeds.append(int(info["world_seed"][2]))
+    assert ends >= 2
+    observation, info = single.reset(seed=42)
+    episode = 0
+    for step in range(steps):
+        assert info["world_seed"] == seeds[episode]
+        observation, reward, terminated, truncated, info = single.step(action(2, step))
+        expected = recorded[step]
+        np.testing.assert_array_equal(flat(observation), expected[0])
+        assert (np.float32(reward), terminated, truncated) == (np.float32(expected[1]), expected[2], expected[3])
+        if terminated or truncated:
+            episode += 1
+            observation, info = single.reset()
+    # A world can be repeated by its seed alone.
+    again, _ = single.reset(options={"world_seed": seeds[0]})
+    first, _ = single.reset(seed=42)
+    np.testing.assert_array_equal(flat(again), flat(first))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_snapshots_and_pictures(name):
+    env = gymnasium.make(name, render_mode="rgb_array", **SMALL[name]).unwrapped
+    env.reset(seed=1)
+    for step in range(5):
+        env.step(action(0, step))
+    snapshot, picture = env.snapshot(), env.render()
+    assert picture.dtype == np.uint8 and picture.shape[2] == 3 and max(picture.shape) == 480
+    expected = [flat(env.step(action(0, step))[0]) for step in range(5, 10)]
+    assert not np.array_equal(env.render(), picture)
+    env.reset(seed=2)
+    env.restore(snapshot)
+    np.testing.assert_array_equal(env.render(), picture)
+    for step in range(5, 10):
+        np.testing.assert_array_equal(flat(env.step(action(0, step))[0]), expected[step - 5])
+    with pytest.raises(curious.SnapshotError):
+        env.restore(snapshot[:-3])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_invalid_actions_are_refused(name):
+    env = gymnasium.make(name, **SMALL[name]).unwrapped
+    with pytest.raises(RuntimeError, match="call reset"):
+        env.step([0.0, 0.0])
+    env.reset(seed=1)
+    before = env.snapshot()
+    for invalid, message in [
+        ([np.nan, 0.0], "action NaN of environment 0"),
+        ([0.0, 1.5], "action 1.5 of environment 0 is not from -1 to 1"),
+        ([0.0, 0.0, 0.0], "shape"),
+        (0.5, "shape"),
+        ("fast", "could not convert|invalid"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            env.step(invalid)
+    assert env.snapshot() == before
+    env.close()
+    env.close()
+    for call in (env.reset, lambda: env.step([0.0, 0.0]), env.snapshot):
+        with pytest.raises(gymnasium.error.ClosedEnvironmentError):
+            call()
+    vector = gymnasium.make_vec(name, num_envs=2, vectorization_mode="vector_entry_point", **SMALL[name])
+    vector.reset(seed=[3, 4])
+    with pytest.raises(ValueError, match="environment 1"):
+        vector.step(np.array([[0.0, 0.0], [0.0, 2.0]]))
+    with pytest.raises(ValueError, match="shape"):
+        vector.step(np.zeros((3, 2)))
+    with pytest.raises(ValueError, match="3 seeds for 2"):
+        vector.reset(seed=[1, 2, 3])
+    vector.close()
+
+
+def test_settings():
+    with pytest.raises(TypeError, match="no setting `speed`; there are decision_s"):
+        gymnasium.make("curious/Drive-v0", speed=3)
+    with pytest.raises(ValueError, match="goal_radius_m"):
+        gymnasium.make("curious/Drive-v0", goal_radius=-1.0)
+    with pytest.raises(ValueError, match="number of environments"):
+        curious.Batch.drive(curious.Spec.driving_hall(), 0)
+    with pytest.raises(ValueError, match="at least one world"):
+        gymnasium.make("curious/Explore-v0", worlds=[])
+    env = gymnasium.make("curious/Drive-v0", world="house", decision_s=0.2, min_goal=4.0)
+    observation, _ = env.reset(seed=1)
+    assert observation.shape == (727,)
+    batch = env.unwrapped.batch
+    assert np.hypot(*(np.array(batch.goal()) - batch.poses()[0, :2])) >= 4.0
+
+
+def test_the_path_leads_to_the_goal():
+    env = gymnasium.make_vec("curious/Drive-v0", num_envs=64, vectorization_mode="vector_entry_point")
+    rows, _ = env.reset(seed=0)
+    success, is_over = np.zeros(64, bool), np.zeros(64, bool)
+    while not is_over.all():
+        cos, sin, near = rows[:, -4], rows[:, -3], rows[:, 28:37].min(axis=1)
+        turn = np.clip(1.2 * np.arctan2(sin, cos), -1.0, 1.0)
+        speed = np.where(cos < 0.5, 0.0, np.clip(4.0 * near - 0.2, 0.1, 1.0) * cos)
+        rows, _, terminated, truncated, info = env.step(np.stack([speed, turn], axis=1).clip(-1.0, 1.0))
+        success |= terminated & ~is_over
+        is_over |= terminated | truncated
+        if terminated.any():
+            final = info["final_info"]
+            assert (final["is_success"] == terminated)[final["_is_success"]].all()
+    assert success.mean() >= 0.9
+
+
+def test_pettingzoo(fleet_toml):
+    pettingzoo = pytest.importorskip("pettingzoo")
+    from curious.pettingzoo import DriveParallelEnv
+
+    with warnings.catch_warnings():
+        # The import itself warns in some versions.
+        warnings.simplefilter("ignore")
+        from pettingzoo.test import parallel_api_test, parallel_seed_test
+
+    def make() -> pettingzoo.ParallelEnv:
+        spec = curious.Spec.from_toml(fleet_toml)
+        return DriveParallelEnv(spec, render_mode="rgb_array", max_steps=50, min_goal=1.0)
+
+    parallel_api_test(make(), num_cycles=200)
+    parallel_seed_test(make)
+    env = make()
+    observations, _ = env.reset(seed=1)
+    assert set(observations) == {"a", "b"} and env.render().shape[2] == 3
+    with pytest.raises(ValueError, match="no action for b"):
+        env.step({"a": [0.0, 0.0]})
+    with pytest.raises(ValueError, match="the action of a"):
+        env.step({"a": [0.0], "b": [0.0, 0.0]})
+
+
+def test_stable_baselines3():
+    pytest.importorskip("stable_baselines3")
+    from curious.envs import DriveVectorEnv
+    from curious.sb3 import SB3VecEnv
+    from stable_baselines3 import PPO
+
+    env = SB3VecEnv(DriveVectorEnv(num_envs=8, max_steps=20))
+    env.seed(3)
+    observations = env.reset()
+    assert observations.shape == (8, 71)
+    for _ in range(20):
+        observations, rewards, dones, infos = env.step(np.zeros((8, 2), np.float32))
+    assert dones.all() and all(info["TimeLimit.truncated"] for info in infos)
+    assert infos[0]["terminal_observation"].shape == (71,) and infos[0]["episode"]["l"] == 20
+    PPO("MlpPolicy", env, n_steps=16, batch_size=64, n_epochs=1, device="cpu").learn(256)
+
+
+#: The numbers of `golden_hashes` in `environments/tests/tasks.rs`.
+GOLDEN = {"drive": 10209087274166477871, "explore": 5893106538825299669}
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("kind", GOLDEN)
+def test_python_and_rust_give_the_same_bits(kind, threads):
+    if kind == "drive":
+        batch = curious.Batch.drive(curious.Spec.driving_hall(), 3, threads, max_steps=40)
+    else:
+        houses = [curious.Spec.house(3), curious.Spec.house(5)]
+        batch = curious.Batch.explore(houses, 2, threads, max_steps=40, beams=20)
+    count, value = batch.environments, 0xCBF29CE484222325
+    batch.reset(np.arange(count, dtype=np.uint64))
+    for step in range(60):
+        actions = np.float32((np.arange(2 * count) * 7 + step * 3) % 17) / np.float32(8.0) - np.float32(1.0)
+        seeds = np.arange(100 + step, 100 + step + count, dtype=np.uint64)
+        observations, rewards, *_ = batch.step(actions.reshape(count, 2), seeds)
+        for bits in np.concatenate([observations.ravel(), rewards]).view(np.uint32).tolist():
+            value = ((value ^ bits) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
+    assert value == GOLDEN[kind]
