@@ -6,11 +6,10 @@ use localizer::PoseState;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use robot::explore;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
-use survey::{ChangeLog, FirstPass, FoundPoses, NoPilot, PoseMode, Replay, SurveySettings};
+use survey::{ChangeLog, FoundPoses, PoseMode, Replay, SurveySettings};
 
 /// A log of a robot: a CARMEN log (also with gzip), a bag of ROS 2 (MCAP or SQLite, a file or a folder).
 ///
@@ -139,58 +138,51 @@ pub(crate) fn map_log(
     py.detach(|| learn(&log.log, settings, range_noise.is_none()))
 }
 
-/// Notices a signal of the user once in many readings.
-fn check_signals(readings: usize) -> PyResult<()> {
-    if readings.is_multiple_of(256) { Python::attach(|py| py.check_signals()) } else { Ok(()) }
-}
+/// A signal of the user, which is looked for once in many readings.
+#[derive(Default)]
+struct Signal(Option<PyErr>);
 
-/// Why the second pass stopped.
-struct Stop(PyErr);
-
-impl From<PyErr> for Stop {
-    fn from(error: PyErr) -> Self {
-        Self(error)
+impl Signal {
+    fn check(&mut self, readings: usize) -> ControlFlow<()> {
+        if readings.is_multiple_of(256) {
+            self.0 = Python::attach(|py| py.check_signals()).err();
+        }
+        if self.0.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
-}
 
-impl From<mapper::ReadingError> for Stop {
-    fn from(error: mapper::ReadingError) -> Self {
-        Self(value_error(error))
+    /// The result of a pass that the signal may have ended.
+    fn or<T>(&mut self, result: Result<T, survey::PassError>) -> PyResult<T> {
+        match self.0.take() {
+            Some(signal) => Err(signal),
+            None => result.map_err(value_error),
+        }
     }
 }
 
 fn learn(log: &::logs::Log, mut settings: SurveySettings, learns_noise: bool) -> PyResult<Survey> {
     use value_error as text;
-    let mut pass = FirstPass::new(&settings).map_err(text)?;
-    for (number, reading) in log.readings().map_err(text)?.enumerate() {
-        check_signals(number)?;
-        pass.add(reading.map_err(text)?);
+    let mut signal = Signal::default();
+    let routes = survey::routes(&[log], &settings, |progress| signal.check(progress.readings));
+    let routes = signal.or(routes)?;
+    if learns_noise {
+        settings.learn_noise(&routes);
     }
-    let sessions = [pass.finish()];
-    if let Some(noise_m) = survey::learned_noise_m(&sessions).filter(|_| learns_noise) {
-        settings.mapper.steady.range_noise_std_m = noise_m;
-    }
-    let frame = survey::frame(&sessions, &settings).map_err(text)?;
+    let frame = survey::frame(&routes, &settings).map_err(text)?;
     let mut mapper = mapper::Mapper::new(&settings.mapper, frame).map_err(text)?;
     let replay = Replay::new(log.readings().map_err(text)?, &settings, 0.0).map_err(text)?;
-    let mut replay = replay.ok_or_else(|| text("the log has changed since the first pass"))?;
+    let replay = replay.ok_or_else(|| text("the log has changed since the first pass"))?;
     let mut changes = ChangeLog::default();
-    let [session] = sessions;
-    let mut poses = FoundPoses::new(session.poses.clone());
-    explore(&mut replay, &mut poses, &mut mapper, &mut NoPilot, |replay, _, belief, _| {
+    let poses: Vec<_> = routes.into_iter().flat_map(|route| route.poses).collect();
+    let learned = survey::learn(replay, &mut FoundPoses::new(poses.clone()), &mut mapper, |_, _, belief| {
         changes.note(belief.mapper);
-        check_signals(belief.mapper.readings())?;
-        Ok::<_, Stop>(match replay.is_over() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        })
-    })
-    .map_err(|Stop(error)| error)?;
-    if let Some(problem) = replay.into_problem() {
-        return Err(text(problem));
+        signal.check(belief.mapper.readings())
+    });
+    signal.or(learned)?;
+    let (mut places, permanent) = (survey::places(&mapper, &changes), survey::permanent(&mapper));
+    if !log.summary().has_times {
+        places.iter_mut().for_each(|place| place.rates = None);
     }
-    let (places, permanent) = (survey::places(&mapper, &changes), survey::permanent(&mapper));
-    Ok(Survey { mapper, places, poses: session.poses, permanent })
+    Ok(Survey { mapper, places, poses, permanent })
 }
 
 #[pymethods]
@@ -225,7 +217,8 @@ impl Survey {
     }
 
     /// The places where something changes, those with the most cycles first, each a dict: x, y (m), low, high (m), area
-    /// (m²), changes, cycles_per_hour, cycles_per_hour_90, share_blocked, observed (s), last_change (s).
+    /// (m²), changes, cycles_per_hour, cycles_per_hour_90, share_blocked, observed (s), last_change (s); the last five are
+    /// None where the times of the log are unusable.
     #[getter]
     fn places<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let dict = |place: &survey::Place| {
@@ -236,11 +229,12 @@ impl Survey {
             dict.set_item("high", place.high_m)?;
             dict.set_item("area", place.area_m2)?;
             dict.set_item("changes", place.changes)?;
-            dict.set_item("cycles_per_hour", place.cycles_per_hour)?;
-            dict.set_item("cycles_per_hour_90", place.cycles_per_hour_90)?;
-            dict.set_item("share_blocked", place.share_blocked)?;
-            dict.set_item("observed", place.observed_s)?;
-            dict.set_item("last_change", place.last_change_s)?;
+            let rates = place.rates.as_ref();
+            dict.set_item("cycles_per_hour", rates.map(|rates| rates.cycles_per_hour))?;
+            dict.set_item("cycles_per_hour_90", rates.map(|rates| rates.cycles_per_hour_90))?;
+            dict.set_item("share_blocked", rates.map(|rates| rates.share_blocked))?;
+            dict.set_item("observed", rates.map(|rates| rates.observed_s))?;
+            dict.set_item("last_change", rates.map(|rates| rates.last_change_s))?;
             Ok(dict)
         };
         self.places.iter().map(dict).collect()
