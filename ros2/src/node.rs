@@ -1,10 +1,13 @@
 //! The mapping node: the loop of every robot, once per reading that arrives, and what other nodes hear of it.
 
 mod outputs;
+mod publishing;
+mod saving;
+mod setup;
 #[cfg(test)]
 mod tests;
 
-use crate::link::{Answer, Event, Link, Request};
+use crate::link::{Event, Link};
 use crate::maps::PublishedMaps;
 use crate::message::{Message, Time, Topic};
 use crate::notes::{Notes, Output};
@@ -13,18 +16,19 @@ use crate::parameters::{Parameters, PoseSource};
 use crate::pilot::LivePilot;
 use crate::saves::Saves;
 use crate::source::{FrameNames, LiveReading, ScanCount, Source};
-use anyhow::{Context, anyhow};
-use interfaces::{GridFrame, LaserReading, World};
+use anyhow::anyhow;
+use interfaces::{LaserReading, World};
 use localizer::{GivenPoses, Localizer, LocalizerSettings, PoseState};
 use mapper::{Mapper, ReadingError};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Isometry2;
 use outputs::Markers;
-use robot::{Level, Localization, Pilot, Session, explore};
+use robot::{Localization, Session, explore};
+use saving::Asker;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use survey::{PoseMode, SurveySettings};
+use survey::SurveySettings;
 
 /// The longest wait for an event.
 const NAP: Duration = Duration::from_millis(100);
@@ -59,13 +63,6 @@ pub struct NodeReport {
     pub unused: [u64; 3],
     /// The longest time from the arrival of an event to the end of its processing, µs.
     pub longest_us: u64,
-}
-
-/// Who has asked to save the state.
-#[derive(Clone, Copy, Debug)]
-enum Asker {
-    Signal,
-    Request(Request),
 }
 
 /// A node that maps what a robot sees, and can explore.
@@ -111,8 +108,8 @@ impl<L: Link> CuriousNode<L> {
         output: Output,
     ) -> anyhow::Result<Self> {
         parameters.check()?;
-        let settings = settings(parameters);
-        let frame = frame(parameters)?;
+        let settings = setup::settings(parameters);
+        let frame = setup::frame(parameters)?;
         let mut mapper = Mapper::new(&settings.mapper, frame)?;
         let noise = parameters.range_noise_m;
         let localizer = LocalizerSettings { range_noise_std_m: noise, ..LocalizerSettings::default() };
@@ -292,55 +289,6 @@ impl<L: Link> CuriousNode<L> {
         self.session.shifted(reading)
     }
 
-    fn publish_reading(&mut self, stamp: Time, order: Order, now: Instant) {
-        self.obey(order, stamp);
-        self.publish_transform(now);
-        let header = outputs::header(stamp, &self.parameters.map_frame);
-        for (topic, message) in self.maps.after(&self.mapper, &header, now) {
-            if !self.link.send(topic, message) {
-                self.maps.repeat();
-            }
-        }
-        let path: Vec<Point2<f64>> = self.pilot.path().to_vec();
-        if let Some(message) = self.markers.changed(self.pilot.goal(), &path, &header) {
-            self.link.send(Topic::Markers, message);
-        }
-        for message in self.pilot.take_messages() {
-            if message.level != Level::Event {
-                self.notes.say(&message.text);
-            }
-        }
-    }
-
-    fn obey(&mut self, order: Order, stamp: Time) {
-        match order {
-            Order::None => {}
-            Order::Velocity(twist) => {
-                self.is_stopped = false;
-                let is_stamped = self.parameters.enable_stamped_cmd_vel;
-                let (topic, message) = outputs::velocity(&twist, is_stamped, stamp, self.source.base());
-                self.link.send(topic, message);
-            }
-            Order::Goal(pose) => {
-                let goal = outputs::goal(&pose, stamp, &self.parameters.map_frame);
-                if self.parameters.navigator == crate::parameters::Navigator::Nav2 {
-                    self.link.navigate(Some(goal.clone()));
-                } else {
-                    self.link.send(Topic::GoalPose, Message::Pose(goal));
-                }
-            }
-            Order::Cancel => self.link.navigate(None),
-        }
-    }
-
-    fn stop_robot(&mut self) {
-        if !self.is_stopped {
-            let stamp = self.last.map_or(Time::default(), |(stamp, _)| stamp);
-            self.obey(Order::Velocity(interfaces::Twist::STOP), stamp);
-            self.is_stopped = true;
-        }
-    }
-
     fn tick(&mut self, now: Instant) {
         let period_s = self.parameters.transform_publish_period_s;
         if period_s > 0.0 && now >= self.next_transform {
@@ -359,72 +307,6 @@ impl<L: Link> CuriousNode<L> {
         let is_due = self.saves.as_ref().is_some_and(Saves::is_due) && self.report.readings > 0;
         if is_due && let Some(Err(why)) = self.save() {
             self.notes.note(&format!("the state cannot be saved: {why}"), now);
-        }
-    }
-
-    fn publish_transform(&mut self, now: Instant) {
-        let period_s = self.parameters.transform_publish_period_s;
-        let (Some(map_to_odom), Some((stamp, at))) = (&self.map_to_odom, self.last) else { return };
-        if period_s <= 0.0 {
-            return;
-        }
-        // A robot that has fallen silent does not move in the map for long.
-        let timeout_s = self.parameters.transform_timeout_s;
-        let since_s = now.duration_since(at).as_secs_f64().min(timeout_s);
-        let Parameters { map_frame, odom_frame, .. } = &self.parameters;
-        let message = outputs::transform(map_to_odom, stamp, since_s + timeout_s, map_frame, odom_frame);
-        self.link.send(Topic::Transforms, message);
-        self.next_transform = now + Duration::from_secs_f64(period_s);
-    }
-
-    /// Begins to save the state; `None` without a file, or before the first reading.
-    fn save(&mut self) -> Option<std::io::Result<()>> {
-        let Self { mapper, localization, pilot, last, .. } = self;
-        let (stamp, _) = (*last)?;
-        let saves = self.saves.as_mut()?;
-        Some(saves.save(stamp, mapper, localization.as_mut(), pilot))
-    }
-
-    /// Begins to save the state for someone who has asked for it. The answer comes when the file is written.
-    fn save_for(&mut self, asker: Asker) {
-        let refused = |text: &str| Answer { is_done: false, text: text.to_owned() };
-        if self.saves.is_none() {
-            self.answer(asker, refused("there is no state file: start the node with --state FILE"));
-            return;
-        }
-        // What could not be written before is in this state as well.
-        if self.save().is_none() {
-            self.answer(asker, refused("there is nothing to save before the first reading"));
-            return;
-        }
-        self.askers.push(asker);
-    }
-
-    /// Answers those who wait for the file, when it is written.
-    fn answer_askers(&mut self) {
-        if self.askers.is_empty() || self.saves.as_ref().is_some_and(Saves::is_writing) {
-            return;
-        }
-        let answer = self.written();
-        for asker in std::mem::take(&mut self.askers) {
-            self.answer(asker, answer.clone());
-        }
-    }
-
-    /// Waits until the file is written.
-    fn written(&mut self) -> Answer {
-        let Some(saves) = &mut self.saves else { return Answer { is_done: false, text: String::new() } };
-        let name = saves.name();
-        match saves.wait() {
-            Ok(()) => Answer { is_done: true, text: format!("the state is saved in {name}") },
-            Err(why) => Answer { is_done: false, text: format!("{name}: cannot save the state: {why}") },
-        }
-    }
-
-    fn answer(&mut self, asker: Asker, answer: Answer) {
-        match asker {
-            Asker::Signal => self.notes.say(&answer.text),
-            Asker::Request(request) => self.link.answer(request, answer),
         }
     }
 
@@ -460,29 +342,4 @@ impl World for Moment {
     }
 
     fn act(&mut self, _: &Order) {}
-}
-
-fn settings(parameters: &Parameters) -> SurveySettings {
-    let mode = match parameters.pose {
-        PoseSource::Exact => PoseMode::Exact,
-        PoseSource::Odometry => PoseMode::Odometry,
-        PoseSource::Localized => PoseMode::Localized,
-    };
-    let mut settings = SurveySettings {
-        resolution_m: parameters.resolution_m,
-        max_range_m: parameters.max_laser_range_m,
-        ..SurveySettings::of(mode)
-    };
-    settings.mapper.steady.range_noise_std_m = parameters.range_noise_m;
-    settings
-}
-
-/// The cells of the map. Its center is where the robot starts, or where the odometry is 0.
-fn frame(parameters: &Parameters) -> anyhow::Result<GridFrame> {
-    let Parameters { map_size_m: size_m, resolution_m, .. } = *parameters;
-    let half_cells = (size_m / 2.0 / resolution_m).ceil();
-    let origin = Point2::new(-half_cells * resolution_m, -half_cells * resolution_m);
-    let cells = 2 * half_cells as usize;
-    let frame = GridFrame::new(origin, resolution_m, cells, cells);
-    frame.with_context(|| format!("a map of {cells} × {cells} cells is too large: reduce `map_size`"))
 }

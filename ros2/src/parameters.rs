@@ -1,6 +1,11 @@
 //! The parameters of the mapping node, named as those of `slam_toolbox` and Nav2 where these have them.
 
+mod choices;
+
+pub use choices::{Mode, Navigator, PoseSource};
+
 use crate::value::Value;
+use choices::Choice;
 use interfaces::{SettingsCheck, SettingsError};
 
 /// The error for a parameter.
@@ -27,40 +32,6 @@ pub enum ParameterError {
     /// The value is out of range.
     #[error(transparent)]
     Range(#[from] SettingsError),
-}
-
-/// What the node does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mode {
-    /// It maps, and gives no command.
-    #[default]
-    Map,
-    /// It explores.
-    Explore,
-}
-
-/// What drives the robot to goals.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Navigator {
-    /// The controller of this project, by velocities.
-    #[default]
-    CmdVel,
-    /// Nav2, by its action NavigateToPose.
-    Nav2,
-    /// Whatever listens to the topic `goal_pose`.
-    GoalPose,
-}
-
-/// How the pose of the robot is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PoseSource {
-    /// The odometry is exact.
-    Exact,
-    /// The odometry, as it drifts.
-    Odometry,
-    /// The pose that fits the scan to the map.
-    #[default]
-    Localized,
 }
 
 /// All parameters.
@@ -201,52 +172,42 @@ impl Parameters {
         let Some(slot) = self.slot(name) else {
             return Err(ParameterError::Unknown { name: name.to_owned(), known: NAMES.join(", ") });
         };
-        let expected = match (slot, value) {
-            (Slot::Mode(mode), Value::Text(text)) => match text.as_str() {
-                "map" | "mapping" => return assigned(mode, Mode::Map),
-                "explore" => return assigned(mode, Mode::Explore),
-                _ => MODES,
+        let set = match slot {
+            Slot::Mode(mode) => choose(mode, value),
+            Slot::Navigator(navigator) => choose(navigator, value),
+            Slot::Pose(pose) => choose(pose, value),
+            Slot::Text(to) => match value {
+                Value::Text(text) => assign(to, text.clone()),
+                _ => Err("a text"),
             },
-            (Slot::Navigator(navigator), Value::Text(text)) => match text.as_str() {
-                "cmd_vel" => return assigned(navigator, Navigator::CmdVel),
-                "nav2" => return assigned(navigator, Navigator::Nav2),
-                "goal_pose" => return assigned(navigator, Navigator::GoalPose),
-                _ => NAVIGATORS,
+            Slot::Float(to) => match value {
+                Value::Float(number) => assign(to, *number),
+                Value::Integer(number) => assign(to, *number as f64),
+                _ => Err("a number"),
             },
-            (Slot::Pose(pose), Value::Text(text)) => match text.as_str() {
-                "exact" => return assigned(pose, PoseSource::Exact),
-                "odometry" => return assigned(pose, PoseSource::Odometry),
-                "localized" => return assigned(pose, PoseSource::Localized),
-                _ => POSES,
+            Slot::Integer(to) => match value {
+                Value::Integer(number) => assign(to, *number),
+                _ => Err("a whole number"),
             },
-            (Slot::Text(to), Value::Text(text)) => return assigned(to, text.clone()),
-            (Slot::Float(to), Value::Float(number)) => return assigned(to, *number),
-            (Slot::Float(to), Value::Integer(number)) => return assigned(to, *number as f64),
-            (Slot::Integer(to), Value::Integer(number)) => return assigned(to, *number),
-            (Slot::Bool(to), Value::Bool(value)) => return assigned(to, *value),
-            (Slot::Mode(_), _) => MODES,
-            (Slot::Navigator(_), _) => NAVIGATORS,
-            (Slot::Pose(_), _) => POSES,
-            (Slot::Text(_), _) => "a text",
-            (Slot::Float(_), _) => "a number",
-            (Slot::Integer(_), _) => "a whole number",
-            (Slot::Bool(_), _) => "true or false",
+            Slot::Bool(to) => match value {
+                Value::Bool(value) => assign(to, *value),
+                _ => Err("true or false"),
+            },
         };
-        Err(ParameterError::Value { name: name.to_owned(), expected, found: value.clone() })
+        set.map_err(|expected| ParameterError::Value {
+            name: name.to_owned(),
+            expected,
+            found: value.clone(),
+        })
     }
 
     /// All parameters with their values.
     pub fn list(&self) -> Vec<(String, Value)> {
         let mut copy = self.clone();
         let value = |slot: Slot| match slot {
-            Slot::Mode(Mode::Map) => Value::Text("map".into()),
-            Slot::Mode(Mode::Explore) => Value::Text("explore".into()),
-            Slot::Navigator(Navigator::CmdVel) => Value::Text("cmd_vel".into()),
-            Slot::Navigator(Navigator::Nav2) => Value::Text("nav2".into()),
-            Slot::Navigator(Navigator::GoalPose) => Value::Text("goal_pose".into()),
-            Slot::Pose(PoseSource::Exact) => Value::Text("exact".into()),
-            Slot::Pose(PoseSource::Odometry) => Value::Text("odometry".into()),
-            Slot::Pose(PoseSource::Localized) => Value::Text("localized".into()),
+            Slot::Mode(mode) => Value::Text(mode.name().to_owned()),
+            Slot::Navigator(navigator) => Value::Text(navigator.name().to_owned()),
+            Slot::Pose(pose) => Value::Text(pose.name().to_owned()),
             Slot::Text(text) => Value::Text(text.clone()),
             Slot::Float(number) => Value::Float(*number),
             Slot::Integer(number) => Value::Integer(*number),
@@ -326,49 +287,20 @@ impl Parameters {
     }
 }
 
-const MODES: &str = "map or explore";
-const NAVIGATORS: &str = "cmd_vel, nav2 or goal_pose";
-const POSES: &str = "exact, odometry or localized";
+/// Takes a value by its name.
+///
+/// # Errors
+///
+/// The valid values.
+fn choose<C: Choice>(to: &mut C, value: &Value) -> Result<(), &'static str> {
+    let Value::Text(name) = value else { return Err(C::EXPECTED) };
+    assign(to, C::named(name).ok_or(C::EXPECTED)?)
+}
 
-fn assigned<T>(to: &mut T, value: T) -> Result<(), ParameterError> {
+fn assign<T>(to: &mut T, value: T) -> Result<(), &'static str> {
     *to = value;
     Ok(())
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_parameter_has_a_name_a_value_and_a_slot() {
-        let list = Parameters::default().list();
-        assert_eq!(list.len(), NAMES.len());
-        let mut set = Parameters { seed: 5, mode: Mode::Explore, ..Parameters::default() };
-        for (name, value) in &list {
-            set.set(name, value).unwrap();
-        }
-        assert_eq!(set, Parameters::default());
-        assert_eq!(set.check(), Ok(()));
-    }
-
-    #[test]
-    fn invalid_parameters_are_named() {
-        let error = |name, value: &str| {
-            let mut parameters = Parameters::default();
-            let set = parameters.set(name, &Value::parse(value));
-            set.and_then(|()| parameters.check()).unwrap_err().to_string()
-        };
-        assert!(error("resolutoin", "1").starts_with("there is no parameter `resolutoin`; there are mode, "));
-        assert_eq!(error("resolution", "fine"), "the parameter `resolution` must be a number, not `fine`");
-        assert_eq!(error("resolution", "0"), "node setting `resolution` must be from 0.005 to 1, not 0");
-        assert_eq!(
-            error("mode", "localization"),
-            "the parameter `mode` must be map or explore, not `localization`"
-        );
-        assert_eq!(error("base_frame", ""), "the parameter `base_frame` must be the name of a frame, not ``");
-        assert_eq!(
-            error("transform_publish_period", "0.001"),
-            "node setting `transform_publish_period` must be 0, or from 0.005 to 10, not 0.001"
-        );
-    }
-}
+mod tests;

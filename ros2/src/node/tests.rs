@@ -1,6 +1,7 @@
 use super::*;
 use crate::fake::FakeLink;
 use crate::link::{Navigation, Request};
+use crate::message::Message;
 use crate::message::{Bool, TwistStamped};
 use crate::parameters::{Mode, Navigator};
 use crate::simulated::{SimulatedRobot, SimulationSettings};

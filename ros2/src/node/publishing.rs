@@ -1,0 +1,77 @@
+//! What other nodes hear of a reading.
+
+use super::{CuriousNode, outputs};
+use crate::link::Link;
+use crate::message::{Message, Time, Topic};
+use crate::order::Order;
+use crate::parameters::{Navigator, Parameters};
+use interfaces::Twist;
+use nalgebra::Point2;
+use robot::{Level, Pilot};
+use std::time::{Duration, Instant};
+
+impl<L: Link> CuriousNode<L> {
+    pub(super) fn publish_reading(&mut self, stamp: Time, order: Order, now: Instant) {
+        self.obey(order, stamp);
+        self.publish_transform(now);
+        let header = outputs::header(stamp, &self.parameters.map_frame);
+        for (topic, message) in self.maps.after(&self.mapper, &header, now) {
+            if !self.link.send(topic, message) {
+                self.maps.repeat();
+            }
+        }
+        let path: Vec<Point2<f64>> = self.pilot.path().to_vec();
+        if let Some(message) = self.markers.changed(self.pilot.goal(), &path, &header) {
+            self.link.send(Topic::Markers, message);
+        }
+        for message in self.pilot.take_messages() {
+            if message.level != Level::Event {
+                self.notes.say(&message.text);
+            }
+        }
+    }
+
+    pub(super) fn obey(&mut self, order: Order, stamp: Time) {
+        match order {
+            Order::None => {}
+            Order::Velocity(twist) => {
+                self.is_stopped = false;
+                let is_stamped = self.parameters.enable_stamped_cmd_vel;
+                let (topic, message) = outputs::velocity(&twist, is_stamped, stamp, self.source.base());
+                self.link.send(topic, message);
+            }
+            Order::Goal(pose) => {
+                let goal = outputs::goal(&pose, stamp, &self.parameters.map_frame);
+                if self.parameters.navigator == Navigator::Nav2 {
+                    self.link.navigate(Some(goal.clone()));
+                } else {
+                    self.link.send(Topic::GoalPose, Message::Pose(goal));
+                }
+            }
+            Order::Cancel => self.link.navigate(None),
+        }
+    }
+
+    pub(super) fn stop_robot(&mut self) {
+        if !self.is_stopped {
+            let stamp = self.last.map_or(Time::default(), |(stamp, _)| stamp);
+            self.obey(Order::Velocity(Twist::STOP), stamp);
+            self.is_stopped = true;
+        }
+    }
+
+    pub(super) fn publish_transform(&mut self, now: Instant) {
+        let period_s = self.parameters.transform_publish_period_s;
+        let (Some(map_to_odom), Some((stamp, at))) = (&self.map_to_odom, self.last) else { return };
+        if period_s <= 0.0 {
+            return;
+        }
+        // A robot that has fallen silent does not move in the map for long.
+        let timeout_s = self.parameters.transform_timeout_s;
+        let since_s = now.duration_since(at).as_secs_f64().min(timeout_s);
+        let Parameters { map_frame, odom_frame, .. } = &self.parameters;
+        let message = outputs::transform(map_to_odom, stamp, since_s + timeout_s, map_frame, odom_frame);
+        self.link.send(Topic::Transforms, message);
+        self.next_transform = now + Duration::from_secs_f64(period_s);
+    }
+}

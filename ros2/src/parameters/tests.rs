@@ -1,0 +1,34 @@
+use super::*;
+
+#[test]
+fn every_parameter_has_a_name_a_value_and_a_slot() {
+    let list = Parameters::default().list();
+    assert_eq!(list.len(), NAMES.len());
+    let mut set = Parameters { seed: 5, mode: Mode::Explore, ..Parameters::default() };
+    for (name, value) in &list {
+        set.set(name, value).unwrap();
+    }
+    assert_eq!(set, Parameters::default());
+    assert_eq!(set.check(), Ok(()));
+}
+
+#[test]
+fn invalid_parameters_are_named() {
+    let error = |name, value: &str| {
+        let mut parameters = Parameters::default();
+        let set = parameters.set(name, &Value::parse(value));
+        set.and_then(|()| parameters.check()).unwrap_err().to_string()
+    };
+    assert!(error("resolutoin", "1").starts_with("there is no parameter `resolutoin`; there are mode, "));
+    assert_eq!(error("resolution", "fine"), "the parameter `resolution` must be a number, not `fine`");
+    assert_eq!(error("resolution", "0"), "node setting `resolution` must be from 0.005 to 1, not 0");
+    assert_eq!(
+        error("mode", "localization"),
+        "the parameter `mode` must be map or explore, not `localization`"
+    );
+    assert_eq!(error("base_frame", ""), "the parameter `base_frame` must be the name of a frame, not ``");
+    assert_eq!(
+        error("transform_publish_period", "0.001"),
+        "node setting `transform_publish_period` must be 0, or from 0.005 to 10, not 0.001"
+    );
+}
