@@ -168,7 +168,6 @@ fn accumulate(
     gate_m: f64,
     gates: &Gates,
 ) -> NormalEquations {
-    let variance = gates.noise_m * gates.noise_m + SURFEL_STD_M * SURFEL_STD_M;
     let mut sums = NormalEquations::default();
     // Well inside of the gate: what moved by a little more than the noise must not pull.
     let scale_m = gate_m / 2.0;
@@ -182,6 +181,8 @@ fn accumulate(
         if gates.by_rates {
             weight *= surfel.steadiness;
         }
+        let noise_m = gates.noise_m * point.noise_share;
+        let variance = noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M;
         let certain = weight / variance * kernel(off_m, scale_m);
         let (j, share) = (derivative(&arm, &surfel.normal), placement.share(point));
         let (hessian, gradient) = (j * j.transpose() * certain, j * (off_m * certain));

@@ -11,8 +11,10 @@
 
 mod driver;
 mod options;
+mod recovery;
 mod relocations;
 mod score;
+mod shelves;
 
 use driver::Driver;
 use interfaces::{LaserReading, World};
@@ -54,6 +56,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
         let reading = options.distort(world.sense());
         let true_pose = *world.true_pose();
         exact.update(&true_poses.unswept(LaserReading { pose: true_pose, ..reading.clone() }))?;
+        let odometry = reading.pose;
         let begin = Instant::now();
         let localized = if options.odometry_only {
             score::by_odometry(start * first_odometry.inv_mul(&reading.pose), reading)
@@ -67,6 +70,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
             estimated.update(&localized.reading)?;
         }
         score.observe(estimate, &true_pose, &exact, enters_map.then_some(&estimated), elapsed);
+        score.recovery.observe(world.time_s(), estimate, &true_pose, &odometry);
         if options.trace {
             score::trace(world.time_s(), estimate, &true_pose);
         }
