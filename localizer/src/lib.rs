@@ -58,10 +58,3 @@ pub use given_poses::GivenPoses;
 pub use localizer::Localizer;
 pub use settings::{LocalizerSettings, OdometryTrust};
 pub use trajectory::{Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
-
-#[doc(hidden)]
-pub fn param(index: usize, default: f64) -> f64 {
-    static P: std::sync::OnceLock<Vec<f64>> = std::sync::OnceLock::new();
-    let p = P.get_or_init(|| std::env::var("PARAMS").unwrap_or_default().split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect());
-    p.get(index).copied().filter(|x| !x.is_nan()).unwrap_or(default)
-}

@@ -9,6 +9,7 @@
 //! cargo run -p evaluation --example drift -- world=worlds/house.toml closed=1
 //! ```
 
+mod corners;
 mod driver;
 mod options;
 mod recovery;
@@ -16,6 +17,7 @@ mod relocations;
 mod score;
 mod shelves;
 
+use corners::Corners;
 use driver::Driver;
 use interfaces::{LaserReading, World};
 use localizer::{GivenPoses, Localizer, PoseState};
@@ -51,6 +53,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
     let mut localizer = Localizer::from_nothing(&settings.localizer, &spec.frame, start)?;
     let mut driver = Driver::new(&settings, seed)?;
     let mut score = Score::new(&spec.frame);
+    let mut corners = Corners::new(&spec.frame);
     let first_odometry = world.sense().pose;
     while world.time_s() < options.minutes * 60.0 {
         let reading = options.distort(world.sense());
@@ -70,6 +73,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
             estimated.update(&localized.reading)?;
         }
         score.observe(estimate, &true_pose, &exact, enters_map.then_some(&estimated), elapsed);
+        corners.observe(world.time_s(), estimate, &true_pose);
         score.recovery.observe(world.time_s(), estimate, &true_pose, &odometry);
         if options.trace {
             score::trace(world.time_s(), estimate, &true_pose);

@@ -62,13 +62,17 @@ impl Recovery {
     }
 
     pub(crate) fn print(&self) {
+        if self.wrong > 0 {
+            println!("    certain and more than {WRONG_M} m off in {} scans", self.wrong);
+        }
+        let count = self.times_s.len() + self.overtaken;
+        if count == 0 {
+            return;
+        }
         let [median_s, most_s, worst_s] = [0.5, 0.95, 1.0].map(|share| quantile(&self.times_s, share));
         println!(
-            "    {} displacements: recovered after {median_s:.1} / {most_s:.1} / {worst_s:.1} s, {} not before the next; \
-             certain and more than {WRONG_M} m off in {} scans",
-            self.times_s.len() + self.overtaken,
+            "    {count} displacements: recovered after {median_s:.1} / {most_s:.1} / {worst_s:.1} s, {} not before the next",
             self.overtaken,
-            self.wrong,
         );
     }
 }

@@ -42,7 +42,7 @@ pub(crate) fn room(seed: u64) -> Option<WorldSpec> {
         let (length_m, is_along_x) = if side % 2 == 0 { (size.x, true) } else { (size.y, false) };
         let mut at_m = WALL_M + CLEARANCE_M + 0.4;
         loop {
-            let (shelf_m, depth_m) = (random.uniform(0.8..2.0), random.uniform(0.25..0.4));
+            let (shelf_m, depth_m) = (random.uniform(1.0..2.0), random.uniform(0.25..0.4));
             let end_m = at_m + shelf_m;
             if end_m > length_m - WALL_M - CLEARANCE_M - 0.4 {
                 break;
@@ -59,7 +59,7 @@ pub(crate) fn room(seed: u64) -> Option<WorldSpec> {
                 (Point2::new(across_m, at_m.midpoint(end_m)), Vector2::new(depth_m, shelf_m))
             };
             obstacles.push(shelf(format!("shelf {}", obstacles.len() + 1), center, sides, &shifts));
-            at_m = end_m + random.uniform(0.1..0.4);
+            at_m = end_m + random.uniform(0.3..1.0);
         }
     }
     let fleet = FleetSpec {

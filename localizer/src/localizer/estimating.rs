@@ -114,7 +114,7 @@ impl Localizer {
         let LocalizerSettings { max_position_std_m, max_heading_std_rad, .. } = self.settings;
         // An error of the heading shifts near surfaces little.
         let lever_m = tracked.support.lever_m().max(LEAST_LEVER_M);
-        let max_heading_std_rad = max_heading_std_rad * (crate::param(0, LEVER_M) / lever_m).max(1.0);
+        let max_heading_std_rad = max_heading_std_rad * (LEVER_M / lever_m).max(1.0);
         let of_limits = (estimate.position_std_m() / max_position_std_m)
             .max(estimate.heading_std_rad() / max_heading_std_rad)
             / scale;
