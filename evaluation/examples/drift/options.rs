@@ -26,6 +26,8 @@ pub(crate) struct Options {
     still: bool,
     /// A room with shelves that shift, in place of a house.
     shelves: bool,
+    /// The robot rests while they shift.
+    rest: bool,
     /// Jumps of the odometry, and the robot carried away.
     jump: DisplacementSpec,
     carried: DisplacementSpec,
@@ -62,6 +64,7 @@ impl Options {
             sweep_s: 0.0,
             still: false,
             shelves: false,
+            rest: false,
             jump: NO_DISPLACEMENT,
             carried: NO_DISPLACEMENT,
             drift: 1.0,
@@ -92,6 +95,7 @@ impl Options {
                 "sweep" => options.sweep_s = number()?,
                 "still" => options.still = is_on,
                 "shelves" => options.shelves = is_on,
+                "rest" => options.rest = is_on,
                 "jump_m" => options.jump.distance_m = number()?,
                 "jump_deg" => options.jump.turn_rad = number()?.to_radians(),
                 "jump_s" => options.jump.every_s = number()?,
@@ -152,6 +156,11 @@ impl Options {
         (laser.beams, laser.noise_std_m, laser.dropout) = (self.beams, self.noise_m, self.dropout);
         (laser.fov_rad, laser.sweep_s) = (self.fov_rad, self.sweep_s);
         WorldSpec::driving(fleet, driven).ok_or_else(|| "no robot".into())
+    }
+
+    /// Whether the robot rests at a time, since shelves are about to shift or have just shifted.
+    pub(crate) fn rests_at(&self, time_s: f64) -> bool {
+        self.shelves && self.rest && shelves::is_near_shift(time_s)
     }
 
     /// The reading with the faults of the sensors.

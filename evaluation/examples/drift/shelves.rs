@@ -74,6 +74,11 @@ pub(crate) fn room(seed: u64) -> Option<WorldSpec> {
     WorldSpec::new(fleet).ok()
 }
 
+/// Whether the shelves shift within a second.
+pub(crate) fn is_near_shift(time_s: f64) -> bool {
+    (time_s + 1.0) % STAY_S < 2.0
+}
+
 fn shelf(name: String, center: Point2<f64>, sides: Vector2<f64>, shifts: &[Vector2<f64>]) -> ObstacleSpec {
     let (mut keys, mut before) = (vec![(0.0, center)], center);
     for (number, shift) in shifts.iter().enumerate() {
