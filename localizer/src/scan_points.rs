@@ -3,6 +3,10 @@
 //! A point counts by the length of the surface that it stands for: a door leaf beside the robot fills a third of all
 //! beams, and yet is only one metre of surface.
 
+#[cfg(test)]
+mod tests;
+
+use crate::moments::Moments;
 use interfaces::{LaserReading, Scan};
 use nalgebra::{Isometry2, Point2, Vector2};
 
@@ -16,11 +20,10 @@ pub(crate) const FULL_WEIGHT_M: f64 = 0.04;
 /// Neighboring end points that are farther apart than this, and than the spacing of beams explains, are on different
 /// surfaces, m.
 const JOIN_M: f64 = 0.1;
-/// The number of beam spacings (range · increment) up to which neighboring end points are on one surface: below an
-/// angle of incidence of about 20° a beam grazes the surface, and its point is not used.
+/// The number of beam spacings (range · increment) up to which neighboring end points are on one surface: below about 20°
+/// between beam and surface, the beam grazes it, and the end point of a third beam must confirm the surface.
 const JOIN_SPACINGS: f64 = 3.0;
-
-/// End points of beams that graze one surface may be this far apart, m: as far as the third beam confirms the line.
+/// End points of beams that graze one surface may be this far apart, m.
 const GRAZING_M: f64 = 1.0;
 /// The third end point lies off the line by at most this many standard deviations of the range noise across the surface,
 /// and this much more (m); and by no more than the largest distance, m.
@@ -95,58 +98,6 @@ impl Directions {
             self.units = (0..scan.ranges_m.len()).map(unit).collect();
             self.geometry = geometry;
         }
-    }
-}
-
-/// The sums of the coordinates, and of their products, of a run of points.
-#[derive(Clone, Copy, Debug, Default)]
-struct Moments {
-    count: f64,
-    x: f64,
-    y: f64,
-    xx: f64,
-    xy: f64,
-    yy: f64,
-}
-
-impl Moments {
-    fn plus(mut self, point: &Point2<f64>) -> Self {
-        self.count += 1.0;
-        self.x += point.x;
-        self.y += point.y;
-        self.xx += point.x * point.x;
-        self.xy += point.x * point.y;
-        self.yy += point.y * point.y;
-        self
-    }
-
-    fn minus(&self, other: &Self) -> Self {
-        Self {
-            count: self.count - other.count,
-            x: self.x - other.x,
-            y: self.y - other.y,
-            xx: self.xx - other.xx,
-            xy: self.xy - other.xy,
-            yy: self.yy - other.yy,
-        }
-    }
-
-    /// The unit normal of the line through the points (total least squares), and the mean square distance from it.
-    fn line(&self) -> Option<(Vector2<f64>, f64)> {
-        let (mean_x, mean_y) = (self.x / self.count, self.y / self.count);
-        let xx = self.xx / self.count - mean_x * mean_x;
-        let xy = self.xy / self.count - mean_x * mean_y;
-        let yy = self.yy / self.count - mean_y * mean_y;
-        let (half_sum, half_difference) = ((xx + yy) / 2.0, (xx - yy) / 2.0);
-        let root = (half_difference * half_difference + xy * xy).sqrt();
-        // The direction along the line is the eigenvector of the larger eigenvalue, half_sum + root.
-        let along = if half_difference >= 0.0 {
-            Vector2::new(half_difference + root, xy)
-        } else {
-            Vector2::new(xy, root - half_difference)
-        };
-        let length = along.norm();
-        (length > 1e-12).then(|| (Vector2::new(-along.y, along.x) / length, (half_sum - root).max(0.0)))
     }
 }
 
@@ -246,13 +197,7 @@ impl ScanPoints {
         }
     }
 
-    fn point(
-        &self,
-        beam: usize,
-        scan: &Scan,
-        is_closed: bool,
-        rules: &PointRules,
-    ) -> Option<ScanPoint> {
+    fn point(&self, beam: usize, scan: &Scan, is_closed: bool, rules: &PointRules) -> Option<ScanPoint> {
         let at = self.hits[beam]?;
         let beams = self.hits.len();
         let range_m = f64::from(scan.ranges_m[beam]);

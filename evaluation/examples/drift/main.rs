@@ -78,7 +78,9 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
         if options.trace {
             score::trace(world.time_s(), estimate, &true_pose);
         }
-        let rests = world.time_s() < 2.0 || options.rests_at(world.time_s()) || options.closed && estimate.state == PoseState::Lost;
+        let rests = world.time_s() < 2.0
+            || options.rests_at(world.time_s())
+            || options.closed && estimate.state == PoseState::Lost;
         let command = if options.closed {
             driver.command(&estimated, &estimate.pose, rests)
         } else {

@@ -31,9 +31,8 @@ pub(crate) fn room(seed: u64) -> Option<WorldSpec> {
     let walls = walls.map(|(min, max)| Rectangle::between(min.into(), max.into())).to_vec();
     let shifts: Vec<Vector2<f64>> = (0..(LARGEST_MINUTES * 60.0 / STAY_S) as usize)
         .map(|number| {
-            let shift = interfaces::rotation(random.uniform(-3.0..3.0))
-                * Vector2::x()
-                * random.uniform(0.04..0.08);
+            let shift =
+                interfaces::rotation(random.uniform(-3.0..3.0)) * Vector2::x() * random.uniform(0.04..0.08);
             if number % 2 == 0 { shift } else { Vector2::zeros() }
         })
         .collect();
