@@ -2,11 +2,15 @@
 //!
 //! A robot drives to random goals in a world. Two maps learn from the same scans: one with the true poses, one with the
 //! estimated poses. Printed: the error of the pose, the time without a certain pose, the false changes of both maps
-//! (changes of cells that nothing ever touched), and the time per scan.
+//! (changes of cells that nothing ever touched), and the time per scan; after jumps of the odometry (`jump_m`, `jump_deg`)
+//! and a robot that is carried (`carried_m`, `carried_deg`), the time until the pose is found; in runs of hours, where the
+//! estimates put fixed corners.
 //!
 //! ```text
 //! cargo run -p evaluation --example drift -- generate=1000 seed=1000 minutes=20 beams=360 noise=0.01
 //! cargo run -p evaluation --example drift -- world=worlds/house.toml closed=1
+//! cargo run -p evaluation --example drift -- carried_m=3 carried_deg=180
+//! cargo run -p evaluation --example drift -- shelves=1
 //! ```
 
 mod corners;

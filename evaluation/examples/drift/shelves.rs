@@ -5,6 +5,7 @@ use nalgebra::{Point2, Vector2};
 use sim::physics::shape::Rectangle;
 use sim::physics::{FleetSpec, Motion, ObstacleSpec, PathSpec, WorldSpec};
 
+/// The thickness of the walls, m.
 const WALL_M: f64 = 0.1;
 /// The distance of the shelves from the wall: they never touch it, m.
 const CLEARANCE_M: f64 = 0.12;
@@ -12,6 +13,7 @@ const CLEARANCE_M: f64 = 0.12;
 const STAY_S: f64 = 30.0;
 /// The duration of a shift, s: one step of the simulation.
 const SHIFT_S: f64 = 0.05;
+/// The shelves shift for this long, min.
 const LARGEST_MINUTES: f64 = 60.0;
 
 /// A room of random size with shelves along its walls. Every half minute all of them shift by the same 4 to 8 cm, or back.
@@ -36,6 +38,21 @@ pub(crate) fn room(seed: u64) -> Option<WorldSpec> {
             if number % 2 == 0 { shift } else { Vector2::zeros() }
         })
         .collect();
+    let obstacles = shelves(&size, &shifts, &mut random);
+    let fleet = FleetSpec {
+        name: format!("shelves-{seed}"),
+        description: "A room with shelves that shift.".to_owned(),
+        frame: GridFrame::covering(Point2::origin(), size.x, size.y, 0.05)?,
+        step_s: house.fleet().step_s,
+        walls,
+        obstacles,
+        robots: vec![robot],
+    };
+    WorldSpec::new(fleet).ok()
+}
+
+/// Shelves along the four walls, with gaps between them.
+fn shelves(size: &Vector2<f64>, shifts: &[Vector2<f64>], random: &mut RandomStream) -> Vec<ObstacleSpec> {
     let mut obstacles = Vec::new();
     for side in 0..4 {
         let (length_m, is_along_x) = if side % 2 == 0 { (size.x, true) } else { (size.y, false) };
@@ -57,20 +74,11 @@ pub(crate) fn room(seed: u64) -> Option<WorldSpec> {
             } else {
                 (Point2::new(across_m, at_m.midpoint(end_m)), Vector2::new(depth_m, shelf_m))
             };
-            obstacles.push(shelf(format!("shelf {}", obstacles.len() + 1), center, sides, &shifts));
+            obstacles.push(shelf(format!("shelf {}", obstacles.len() + 1), center, sides, shifts));
             at_m = end_m + random.uniform(0.3..1.0);
         }
     }
-    let fleet = FleetSpec {
-        name: format!("shelves-{seed}"),
-        description: "A room with shelves that shift.".to_owned(),
-        frame: GridFrame::covering(Point2::origin(), size.x, size.y, 0.05)?,
-        step_s: house.fleet().step_s,
-        walls,
-        obstacles,
-        robots: vec![robot],
-    };
-    WorldSpec::new(fleet).ok()
+    obstacles
 }
 
 /// Whether the shelves shift within a second.
