@@ -18,8 +18,8 @@ const BETTER: f64 = 0.05;
 /// Where this share of the points lies exactly in place and stands against every motion of the robot, the pose is that
 /// of the odometry, though the rest moved as if the robot had moved.
 const STAYED_SHARE: f64 = 0.012;
-/// With a larger standard deviation of the predicted position (m), the odometry cannot say that the robot stayed: in a narrow
-/// place, some points always lie in place by chance.
+/// With a larger standard deviation of the predicted position (m), the odometry cannot say that the robot stayed: in a
+/// narrow place, some points always lie in place by chance.
 const VAGUE_M: f64 = 0.05;
 /// The same where the rest does not fit any other pose, and the least support.
 const ONLY_SHARE: f64 = 0.1;
