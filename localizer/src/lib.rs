@@ -11,7 +11,8 @@
 //!
 //! - Scans are matched with a map of short straight surfaces (surfels) that stop to move after a number of hits, by
 //!   point-to-line Gauss-Newton with a prior from odometry: Censi (2008), Segal, Haehnel & Thrun (2009).
-//! - Points count by the length of surface that they stand for.
+//! - Points count by the length of surface that they stand for, and by how much the range noise moves them off it: beams
+//!   that graze a wall fix the heading best.
 //! - A scan that sweeps is undone along the path that the velocities of the odometry describe, and is matched as an elastic
 //!   scan: the pose at its begin and the pose at its end are estimated together, and a beam in between follows both
 //!   (as Dellenbach et al. 2022, "CT-ICP", but with the begin tied to the last estimate by its covariance).
@@ -38,6 +39,7 @@ mod given_poses;
 mod hypotheses;
 mod localizer;
 mod matcher;
+mod moments;
 mod motion;
 mod path;
 mod placement;

@@ -10,7 +10,7 @@ use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::path::Path;
 use crate::placement::shifted;
-use crate::scan_points::ScanPoints;
+use crate::scan_points::{PointRules, ScanPoints};
 use crate::score_grid::ScoreGrid;
 use crate::settings::LocalizerSettings;
 use crate::support::ClearBeams;
@@ -217,15 +217,16 @@ impl Localizer {
         motion: &Isometry2<f64>,
         elapsed_s: f64,
     ) {
-        let LocalizerSettings { range_noise_std_m, weigh_by_arc_length, .. } = self.settings;
-        let (noise_m, by_arc_length) = (range_noise_std_m, weigh_by_arc_length);
+        let LocalizerSettings { range_noise_std_m: noise_m, weigh_by_arc_length: by_arc_length, .. } =
+            self.settings;
+        let rules = PointRules { noise_m, by_arc_length, grazing: true };
         match Path::of_sweep(reading, motion, elapsed_s) {
             Some(path) => {
                 posed.scan = self.sweeps.scan(reading, &path);
                 let passed = |beam| path.passed(reading.scan.age_s(beam));
-                self.points.update(posed, passed, noise_m, by_arc_length);
+                self.points.update(posed, passed, &rules);
             }
-            None => self.points.update(posed, |_| 1.0, noise_m, by_arc_length),
+            None => self.points.update(posed, |_| 1.0, &rules),
         }
         self.clear.update(&posed.scan);
     }

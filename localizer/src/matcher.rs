@@ -19,6 +19,10 @@ const STEP_RAD: f64 = 2e-5;
 /// poses with an error.
 pub(crate) const SURFEL_STD_M: f64 = 0.003;
 
+/// The kernel of a point is as narrow as its noise across the surface, down to this share: a beam that grazes a surface
+/// counts much, and must not pull where it hits another surface.
+const LEAST_KERNEL: f64 = 0.3;
+
 /// A pose with the inverse of its covariance, in the frame of the map.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prior {
@@ -168,8 +172,8 @@ fn accumulate(
     gate_m: f64,
     gates: &Gates,
 ) -> NormalEquations {
-    let variance = gates.noise_m * gates.noise_m + SURFEL_STD_M * SURFEL_STD_M;
     let mut sums = NormalEquations::default();
+    let largest = gates.noise_m * gates.noise_m + SURFEL_STD_M * SURFEL_STD_M;
     // Well inside of the gate: what moved by a little more than the noise must not pull.
     let scale_m = gate_m / 2.0;
     for point in points {
@@ -182,7 +186,10 @@ fn accumulate(
         if gates.by_rates {
             weight *= surfel.steadiness;
         }
-        let certain = weight / variance * kernel(off_m, scale_m);
+        let noise_m = gates.noise_m * point.noise_share;
+        let variance = noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M;
+        let kernel = kernel(off_m, scale_m * (variance / largest).sqrt().max(LEAST_KERNEL));
+        let certain = weight / variance * kernel;
         let (j, share) = (derivative(&arm, &surfel.normal), placement.share(point));
         let (hessian, gradient) = (j * j.transpose() * certain, j * (off_m * certain));
         sums.hessian += hessian * (share * share);
@@ -194,8 +201,8 @@ fn accumulate(
             sums.begin_gradient += gradient * rest;
         }
         sums.squares += off_m * off_m * certain;
-        sums.weight += weight * kernel(off_m, scale_m);
-        sums.points += point.weight * kernel(off_m, scale_m);
+        sums.weight += weight * kernel;
+        sums.points += point.weight * kernel;
     }
     // Trust decides between surfels; it does not make a scan worth less than the odometry.
     if sums.weight > 0.0 {

@@ -100,6 +100,11 @@ pub(crate) struct Predicted {
 }
 
 impl Predicted {
+    /// The standard deviation of the position, m.
+    pub(crate) fn spread_m(&self) -> f64 {
+        (self.covariance[(0, 0)] + self.covariance[(1, 1)]).sqrt()
+    }
+
     /// The prior of a match; `None` if the covariance cannot be inverted.
     pub(crate) fn prior(&self) -> Option<Prior> {
         Some(Prior { pose: self.pose, information: self.covariance.try_inverse()?, begin: self.begin })

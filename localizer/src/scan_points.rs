@@ -3,6 +3,10 @@
 //! A point counts by the length of the surface that it stands for: a door leaf beside the robot fills a third of all
 //! beams, and yet is only one metre of surface.
 
+#[cfg(test)]
+mod tests;
+
+use crate::moments::Moments;
 use interfaces::{LaserReading, Scan};
 use nalgebra::{Isometry2, Point2, Vector2};
 
@@ -16,9 +20,18 @@ pub(crate) const FULL_WEIGHT_M: f64 = 0.04;
 /// Neighboring end points that are farther apart than this, and than the spacing of beams explains, are on different
 /// surfaces, m.
 const JOIN_M: f64 = 0.1;
-/// The number of beam spacings (range · increment) up to which neighboring end points are on one surface: below an
-/// angle of incidence of about 20° a beam grazes the surface, and its point is not used.
+/// The number of beam spacings (range · increment) up to which neighboring end points are on one surface: below about 20°
+/// between beam and surface, the beam grazes it, and the end point of a third beam must confirm the surface.
 const JOIN_SPACINGS: f64 = 3.0;
+/// End points of beams that graze one surface may be this far apart, m.
+const GRAZING_M: f64 = 1.0;
+/// The third end point lies off the line by at most this many standard deviations of the range noise across the surface,
+/// and this much more (m); and by no more than the largest distance, m.
+const GRAZING_STDS: f64 = 8.0;
+const GRAZING_MARGIN_M: f64 = 0.002;
+const GRAZING_MOST_M: f64 = 0.03;
+/// The least cosine of the angle of incidence: below it, the surface is rarely straight enough.
+const LEAST_INCIDENCE: f64 = 0.06;
 
 /// Points lie on a straight surface if their mean square distance from the line is below that of this many standard
 /// deviations of the range noise, and this much more, m.
@@ -34,11 +47,25 @@ pub(crate) struct ScanPoint {
     pub(crate) normal: Vector2<f64>,
     /// The weight, from 0 to 1.
     pub(crate) weight: f64,
+    /// The share of the range noise that moves the point off its surface: the cosine of the angle of incidence, or 1.
+    pub(crate) noise_share: f64,
     /// The number of the beam.
     pub(crate) beam: usize,
     /// The share of the way since the last scan that the robot had gone when the beam was measured: from 0 to 1, the end
     /// of the scan.
     pub(crate) passed: f64,
+}
+
+/// How points are made of end points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PointRules {
+    /// The standard deviation of the range noise, m.
+    pub(crate) noise_m: f64,
+    /// Whether points count by the length of surface that they stand for.
+    pub(crate) by_arc_length: bool,
+    /// Whether beams that graze a surface make points. The range noise shifts them along the surface, and little off it:
+    /// along a corridor they are the best evidence for the heading.
+    pub(crate) grazing: bool,
 }
 
 /// The points of one scan. Its buffers are used again for the next scan.
@@ -74,58 +101,6 @@ impl Directions {
     }
 }
 
-/// The sums of the coordinates, and of their products, of a run of points.
-#[derive(Clone, Copy, Debug, Default)]
-struct Moments {
-    count: f64,
-    x: f64,
-    y: f64,
-    xx: f64,
-    xy: f64,
-    yy: f64,
-}
-
-impl Moments {
-    fn plus(mut self, point: &Point2<f64>) -> Self {
-        self.count += 1.0;
-        self.x += point.x;
-        self.y += point.y;
-        self.xx += point.x * point.x;
-        self.xy += point.x * point.y;
-        self.yy += point.y * point.y;
-        self
-    }
-
-    fn minus(&self, other: &Self) -> Self {
-        Self {
-            count: self.count - other.count,
-            x: self.x - other.x,
-            y: self.y - other.y,
-            xx: self.xx - other.xx,
-            xy: self.xy - other.xy,
-            yy: self.yy - other.yy,
-        }
-    }
-
-    /// The unit normal of the line through the points (total least squares), and the mean square distance from it.
-    fn line(&self) -> Option<(Vector2<f64>, f64)> {
-        let (mean_x, mean_y) = (self.x / self.count, self.y / self.count);
-        let xx = self.xx / self.count - mean_x * mean_x;
-        let xy = self.xy / self.count - mean_x * mean_y;
-        let yy = self.yy / self.count - mean_y * mean_y;
-        let (half_sum, half_difference) = ((xx + yy) / 2.0, (xx - yy) / 2.0);
-        let root = (half_difference * half_difference + xy * xy).sqrt();
-        // The direction along the line is the eigenvector of the larger eigenvalue, half_sum + root.
-        let along = if half_difference >= 0.0 {
-            Vector2::new(half_difference + root, xy)
-        } else {
-            Vector2::new(xy, root - half_difference)
-        };
-        let length = along.norm();
-        (length > 1e-12).then(|| (Vector2::new(-along.y, along.x) / length, (half_sum - root).max(0.0)))
-    }
-}
-
 impl ScanPoints {
     /// The points of the scan, in the order of the beams.
     pub(crate) fn points(&self) -> &[ScanPoint] {
@@ -138,14 +113,12 @@ impl ScanPoints {
     }
 
     /// Replaces the points by those of `reading`. Beams without a return, and points where no straight surface can be
-    /// recognised (edges, single points, surfaces that the beams graze) are left out.
-    /// `passed` gives [`ScanPoint::passed`] of a beam.
+    /// recognised (edges, single points) are left out. `passed` gives [`ScanPoint::passed`] of a beam.
     pub(crate) fn update(
         &mut self,
         reading: &LaserReading,
         passed: impl Fn(usize) -> f64,
-        range_noise_std_m: f64,
-        by_arc_length: bool,
+        rules: &PointRules,
     ) {
         let LaserReading { scan, mount, .. } = reading;
         self.directions.update(scan, mount);
@@ -157,19 +130,19 @@ impl ScanPoints {
             let is_hit = range_m >= scan.range_min_m && range_m <= scan.range_max_m && range_m > 0.0;
             is_hit.then(|| origin + unit * range_m)
         }));
-        self.join(scan);
+        self.join(scan, rules);
         self.sum();
         self.points.clear();
         let is_closed = scan.is_full_turn() && beams > 2;
         for beam in 0..beams {
-            if let Some(point) = self.point(beam, scan, is_closed, range_noise_std_m, by_arc_length) {
+            if let Some(point) = self.point(beam, scan, is_closed, rules) {
                 self.points.push(ScanPoint { passed: passed(beam), ..point });
             }
         }
     }
 
     /// Finds neighboring end points on one surface.
-    fn join(&mut self, scan: &Scan) {
+    fn join(&mut self, scan: &Scan, rules: &PointRules) {
         let beams = self.hits.len();
         self.joined.clear();
         self.joined.resize(beams, false);
@@ -179,9 +152,35 @@ impl ScanPoints {
             if let (Some(a), Some(b)) = (self.hits[beam], self.hits[next]) {
                 let nearer_m = f64::from(scan.ranges_m[beam].min(scan.ranges_m[next]));
                 let limit_m = JOIN_M.max(JOIN_SPACINGS * nearer_m * scan.angle_increment_rad.abs());
-                self.joined[beam] = (b - a).norm_squared() <= limit_m * limit_m;
+                self.joined[beam] = (b - a).norm_squared() <= limit_m * limit_m
+                    || rules.grazing && self.grazes([beam, next], last == beams, rules.noise_m);
             }
         }
+    }
+
+    /// Whether two neighboring beams graze one surface: their end points are far apart, and on a line with that of the
+    /// beam before or after them.
+    fn grazes(&self, [beam, next]: [usize; 2], is_closed: bool, noise_m: f64) -> bool {
+        let (Some(a), Some(b)) = (self.hits[beam], self.hits[next]) else { return false };
+        let along = b - a;
+        let length_m = along.norm();
+        let line = along / length_m;
+        let incidence = self.directions.units[beam].perp(&line).abs();
+        let tolerance_m = GRAZING_STDS * noise_m * incidence + GRAZING_MARGIN_M;
+        if !(length_m <= GRAZING_M && incidence >= LEAST_INCIDENCE && tolerance_m <= GRAZING_MOST_M) {
+            return false;
+        }
+        let last = self.hits.len() - 1;
+        let before = if beam > 0 { Some(beam - 1) } else { is_closed.then_some(last) };
+        let after = if next < last { Some(next + 1) } else { is_closed.then_some(0) };
+        let continues = |third: Option<usize>, way: &dyn Fn(Point2<f64>) -> Vector2<f64>| {
+            third.and_then(|third| self.hits[third]).is_some_and(|third| {
+                let way = way(third);
+                let along_m = way.dot(&line);
+                along_m > 0.0 && along_m < GRAZING_M && way.perp(&line).abs() < tolerance_m
+            })
+        };
+        continues(before, &|third| a - third) || continues(after, &|third| third - b)
     }
 
     /// Running sums, so that a line through any run of points costs the same. Twice around, so that a run may pass the
@@ -198,14 +197,7 @@ impl ScanPoints {
         }
     }
 
-    fn point(
-        &self,
-        beam: usize,
-        scan: &Scan,
-        is_closed: bool,
-        noise_m: f64,
-        by_arc_length: bool,
-    ) -> Option<ScanPoint> {
+    fn point(&self, beam: usize, scan: &Scan, is_closed: bool, rules: &PointRules) -> Option<ScanPoint> {
         let at = self.hits[beam]?;
         let beams = self.hits.len();
         let range_m = f64::from(scan.ranges_m[beam]);
@@ -221,7 +213,7 @@ impl ScanPoints {
         let middle = if beam >= before { beam } else { beam + beams };
         let moments = self.sums[middle + after + 1].minus(&self.sums[middle - before]);
         let (normal, mean_square) = moments.line()?;
-        let tolerance_m = STRAIGHT_STDS * noise_m + STRAIGHT_MARGIN_M;
+        let tolerance_m = STRAIGHT_STDS * rules.noise_m + STRAIGHT_MARGIN_M;
         if mean_square > tolerance_m * tolerance_m {
             return None; // a corner, or a curved or rough surface
         }
@@ -229,8 +221,9 @@ impl ScanPoints {
         let normal = if normal.dot(&toward) < 0.0 { -normal } else { normal };
         let incidence = normal.dot(&toward) / range_m;
         let arc_m = spacing_m / incidence.max(0.2);
-        let weight = if by_arc_length { (arc_m / FULL_WEIGHT_M).min(1.0) } else { 1.0 };
-        Some(ScanPoint { at, normal, weight, beam, passed: 1.0 })
+        let weight = if rules.by_arc_length { (arc_m / FULL_WEIGHT_M).min(1.0) } else { 1.0 };
+        let noise_share = if rules.grazing { incidence.max(LEAST_INCIDENCE) } else { 1.0 };
+        Some(ScanPoint { at, normal, weight, noise_share, beam, passed: 1.0 })
     }
 
     fn origin(&self) -> Vector2<f64> {

@@ -49,6 +49,11 @@ impl Support {
         self.confirmed + self.contradicted + self.new
     }
 
+    /// The distance by which a turn shifts the confirmed surfaces, m per rad: the root of the mean square.
+    pub(crate) fn lever_m(&self) -> f64 {
+        if self.confirmed > 0.0 { (self.geometry[(2, 2)] / self.confirmed).sqrt() } else { f64::INFINITY }
+    }
+
     /// Whether the confirmed points alone fix x, y and heading: seen from the robot, `least` units of weight stand
     /// against a shift in every direction, and against a turn at an arm of one metre.
     pub(crate) fn fixes_pose(&self, least: f64) -> bool {

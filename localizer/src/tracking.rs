@@ -18,6 +18,9 @@ const BETTER: f64 = 0.05;
 /// Where this share of the points lies exactly in place and stands against every motion of the robot, the pose is that
 /// of the odometry, though the rest moved as if the robot had moved.
 const STAYED_SHARE: f64 = 0.012;
+/// With a larger standard deviation of the predicted position (m), the odometry cannot say that the robot stayed: in a
+/// narrow place, some points always lie in place by chance.
+const VAGUE_M: f64 = 0.05;
 /// The same where the rest does not fit any other pose, and the least support.
 const ONLY_SHARE: f64 = 0.1;
 const ONLY_SUPPORT: f64 = 0.5;
@@ -76,7 +79,7 @@ pub(crate) fn track<M: ChangingMap>(
     }
     let in_place = scene.tight().judge(&by_odometry.placement);
     let fixes_pose = |share: f64| in_place.fixes_pose(share * in_place.weight());
-    if is_coherent(&by_odometry, &best) && fixes_pose(STAYED_SHARE) {
+    if predicted.spread_m() <= VAGUE_M && is_coherent(&by_odometry, &best) && fixes_pose(STAYED_SHARE) {
         let (in_place, _) = with_prior(&scene.tight(), predicted);
         return Tracked { stayed: true, ..in_place };
     }
@@ -96,9 +99,8 @@ fn with_prior<M: ChangingMap>(scene: &Scene<M>, predicted: &Predicted) -> (Track
         (Tracked::new(placement, [*covariance; 2], support), false)
     };
     let Some(prior) = predicted.prior() else { return stay() };
-    let spread_m = (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
     // What has moved a little is out of reach from the start.
-    let first_m = if scene.is_tight { scene.gate_m() } else { scene.gate_m() + 2.0 * spread_m };
+    let first_m = if scene.is_tight { scene.gate_m() } else { scene.gate_m() + 2.0 * predicted.spread_m() };
     let by_rates = unchanged_fix_pose(scene, pose);
     let Some(found) = scene.align(pose, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else {
         return stay();

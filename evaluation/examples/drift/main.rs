@@ -2,18 +2,26 @@
 //!
 //! A robot drives to random goals in a world. Two maps learn from the same scans: one with the true poses, one with the
 //! estimated poses. Printed: the error of the pose, the time without a certain pose, the false changes of both maps
-//! (changes of cells that nothing ever touched), and the time per scan.
+//! (changes of cells that nothing ever touched), and the time per scan; after jumps of the odometry (`jump_m`, `jump_deg`)
+//! and a robot that is carried (`carried_m`, `carried_deg`), the time until the pose is found; in runs of hours, where the
+//! estimates put fixed corners.
 //!
 //! ```text
 //! cargo run -p evaluation --example drift -- generate=1000 seed=1000 minutes=20 beams=360 noise=0.01
 //! cargo run -p evaluation --example drift -- world=worlds/house.toml closed=1
+//! cargo run -p evaluation --example drift -- carried_m=3 carried_deg=180
+//! cargo run -p evaluation --example drift -- shelves=1
 //! ```
 
+mod corners;
 mod driver;
 mod options;
+mod recovery;
 mod relocations;
 mod score;
+mod shelves;
 
+use corners::Corners;
 use driver::Driver;
 use interfaces::{LaserReading, World};
 use localizer::{GivenPoses, Localizer, PoseState};
@@ -49,11 +57,13 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
     let mut localizer = Localizer::from_nothing(&settings.localizer, &spec.frame, start)?;
     let mut driver = Driver::new(&settings, seed)?;
     let mut score = Score::new(&spec.frame);
+    let mut corners = Corners::new(&spec.frame);
     let first_odometry = world.sense().pose;
     while world.time_s() < options.minutes * 60.0 {
         let reading = options.distort(world.sense());
         let true_pose = *world.true_pose();
         exact.update(&true_poses.unswept(LaserReading { pose: true_pose, ..reading.clone() }))?;
+        let odometry = reading.pose;
         let begin = Instant::now();
         let localized = if options.odometry_only {
             score::by_odometry(start * first_odometry.inv_mul(&reading.pose), reading)
@@ -67,10 +77,14 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
             estimated.update(&localized.reading)?;
         }
         score.observe(estimate, &true_pose, &exact, enters_map.then_some(&estimated), elapsed);
+        corners.observe(world.time_s(), estimate, &true_pose);
+        score.recovery.observe(world.time_s(), estimate, &true_pose, &odometry);
         if options.trace {
             score::trace(world.time_s(), estimate, &true_pose);
         }
-        let rests = world.time_s() < 2.0 || options.closed && estimate.state == PoseState::Lost;
+        let rests = world.time_s() < 2.0
+            || options.rests_at(world.time_s())
+            || options.closed && estimate.state == PoseState::Lost;
         let command = if options.closed {
             driver.command(&estimated, &estimate.pose, rests)
         } else {

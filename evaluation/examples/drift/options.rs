@@ -1,6 +1,14 @@
+use crate::shelves;
 use evaluation::physics_trial::{PhysicsSettings, UnsupportedDrive};
 use interfaces::LaserReading;
-use sim::physics::{Motion, OdometryError, WorldSpec};
+use sim::physics::{DisplacementSpec, Motion, OdometryError, WorldSpec};
+
+/// Displacements are 20 s apart in the mean.
+const NO_DISPLACEMENT: DisplacementSpec = DisplacementSpec { every_s: 20.0, distance_m: 0.0, turn_rad: 0.0 };
+
+fn is_any(displacement: &DisplacementSpec) -> bool {
+    displacement.distance_m > 0.0 || displacement.turn_rad > 0.0
+}
 
 /// The arguments, each of the form `key=value`.
 #[derive(Clone, Debug)]
@@ -16,6 +24,13 @@ pub(crate) struct Options {
     sweep_s: f64,
     /// Nothing moves in the world.
     still: bool,
+    /// A room with shelves that shift, in place of a house.
+    shelves: bool,
+    /// The robot rests while they shift.
+    rest: bool,
+    /// Jumps of the odometry, and the robot carried away.
+    jump: DisplacementSpec,
+    carried: DisplacementSpec,
     /// The sign of the errors of the odometry, and their size in hard drifts.
     drift: f64,
     pub(crate) minutes: f64,
@@ -48,6 +63,10 @@ impl Options {
             fov_rad: std::f64::consts::TAU,
             sweep_s: 0.0,
             still: false,
+            shelves: false,
+            rest: false,
+            jump: NO_DISPLACEMENT,
+            carried: NO_DISPLACEMENT,
             drift: 1.0,
             minutes: 20.0,
             closed: false,
@@ -75,6 +94,14 @@ impl Options {
                 "fov_deg" => options.fov_rad = number()?.to_radians(),
                 "sweep" => options.sweep_s = number()?,
                 "still" => options.still = is_on,
+                "shelves" => options.shelves = is_on,
+                "rest" => options.rest = is_on,
+                "jump_m" => options.jump.distance_m = number()?,
+                "jump_deg" => options.jump.turn_rad = number()?.to_radians(),
+                "jump_s" => options.jump.every_s = number()?,
+                "carried_m" => options.carried.distance_m = number()?,
+                "carried_deg" => options.carried.turn_rad = number()?.to_radians(),
+                "carried_s" => options.carried.every_s = number()?,
                 "drift" => options.drift = number()?,
                 "minutes" => options.minutes = number()?,
                 "closed" => options.closed = is_on,
@@ -104,6 +131,7 @@ impl Options {
     pub(crate) fn spec(&self, seed: u64) -> Result<WorldSpec, Box<dyn std::error::Error>> {
         let spec = match &self.world {
             Some(path) => worldfile::physics::parse_world(path, &std::fs::read_to_string(path)?)?,
+            None if self.shelves => shelves::room(self.generate + seed - self.seed).ok_or("no room")?,
             None => WorldSpec::generate_house(self.generate + seed - self.seed),
         };
         let mut driven = spec.driven_index();
@@ -120,12 +148,19 @@ impl Options {
             turn_radpm: 3.0_f64.to_radians() * self.drift,
             distance_noise_m: 0.05 * self.drift.abs(),
             turn_noise_rad: 0.05 * self.drift.abs(),
+            jump: Some(self.jump).filter(is_any),
+            carried: Some(self.carried).filter(is_any),
             ..OdometryError::default()
         };
         let laser = &mut robot.laser;
         (laser.beams, laser.noise_std_m, laser.dropout) = (self.beams, self.noise_m, self.dropout);
         (laser.fov_rad, laser.sweep_s) = (self.fov_rad, self.sweep_s);
         WorldSpec::driving(fleet, driven).ok_or_else(|| "no robot".into())
+    }
+
+    /// Whether the robot rests at a time, since shelves are about to shift or have just shifted.
+    pub(crate) fn rests_at(&self, time_s: f64) -> bool {
+        self.shelves && self.rest && shelves::is_near_shift(time_s)
     }
 
     /// The reading with the faults of the sensors.

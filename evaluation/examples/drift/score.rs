@@ -1,3 +1,4 @@
+use crate::recovery::Recovery;
 use interfaces::{GridFrame, GroundTruth, LaserReading, heading_rad};
 use localizer::{Localized, PoseEstimate, PoseState};
 use mapper::Mapper;
@@ -20,6 +21,7 @@ pub(crate) struct Score {
     changes: [Vec<u32>; 2],
     false_changes: [u32; 2],
     all_changes: [u32; 2],
+    pub(crate) recovery: Recovery,
 }
 
 /// The distance and the angle between two poses, m and rad.
@@ -80,6 +82,7 @@ impl Score {
         self.scans += other.scans;
         self.elapsed += other.elapsed;
         self.slowest = self.slowest.max(other.slowest);
+        self.recovery.add(&other.recovery);
         for which in 0..2 {
             self.false_changes[which] += other.false_changes[which];
             self.all_changes[which] += other.all_changes[which];
@@ -108,6 +111,7 @@ impl Score {
             self.elapsed.as_secs_f64() * 1e6 / self.scans.max(1) as f64,
             self.slowest.as_secs_f64() * 1e3,
         );
+        self.recovery.print();
     }
 }
 

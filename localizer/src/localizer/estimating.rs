@@ -6,6 +6,7 @@ use crate::estimate::{PoseEstimate, PoseState};
 use crate::faults::{Fault, mirrored};
 use crate::motion::Motion;
 use crate::scene::Scene;
+use crate::settings::LocalizerSettings;
 use crate::support::Support;
 use crate::tracking::{Tracked, track};
 use interfaces::LaserReading;
@@ -27,6 +28,10 @@ pub(super) const LEAST_GUIDE: f64 = 0.5;
 const MIRRORED_GATE_M: f64 = 0.2;
 /// The largest share of a scan without a return where the map knows something blocked: beyond, the laser is covered.
 const MOST_BLIND: f64 = 0.1;
+/// The lever of the seen surfaces for which the limit of the heading holds, m: that of a scan in the middle of a room. Of
+/// nearer surfaces, it may be exceeded in proportion, down to the least lever (m).
+const LEVER_M: f64 = 1.2;
+const LEAST_LEVER_M: f64 = 0.3;
 /// The range noise for which the limits of the standard deviations hold, m. A map of a laser with more noise tolerates
 /// larger errors of the pose.
 const NOISE_M: f64 = 0.01;
@@ -106,8 +111,12 @@ impl Localizer {
         // Of the beams, since all of them enter the map.
         let estimate = PoseEstimate { covariance: tracked.beam_covariance, ..self.pose_estimate(1.0) };
         let scale = (self.settings.range_noise_std_m / NOISE_M).max(1.0);
-        let of_limits = (estimate.position_std_m() / self.settings.max_position_std_m)
-            .max(estimate.heading_std_rad() / self.settings.max_heading_std_rad)
+        let LocalizerSettings { max_position_std_m, max_heading_std_rad, .. } = self.settings;
+        // An error of the heading shifts near surfaces little.
+        let lever_m = tracked.support.lever_m().max(LEAST_LEVER_M);
+        let max_heading_std_rad = max_heading_std_rad * (LEVER_M / lever_m).max(1.0);
+        let of_limits = (estimate.position_std_m() / max_position_std_m)
+            .max(estimate.heading_std_rad() / max_heading_std_rad)
             / scale;
         let is_blind = tracked.support.blind > MOST_BLIND * tracked.support.weight();
         let is_certain = of_limits <= 1.0 && !is_blind;

@@ -21,6 +21,7 @@ fn random_room(seed: u64) -> (ScoreGrid, Vec<ScanPoint>) {
         at: pose.inverse_transform_point(at),
         normal: Vector2::x(),
         weight: 1.0,
+        noise_share: 1.0,
         beam: 0,
         passed: 1.0,
     };

@@ -16,6 +16,7 @@ impl SurfelMap {
             at: back * surfel.at,
             normal: back.rotation * surfel.normal,
             weight: 1.0,
+            noise_share: 1.0,
             beam,
             passed: 1.0,
         };

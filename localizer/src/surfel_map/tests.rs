@@ -1,7 +1,9 @@
 use super::*;
-use crate::scan_points::{ScanPoint, ScanPoints};
+use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
 use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, Scan, Twist};
 use nalgebra::Isometry2;
+
+const RULES: PointRules = PointRules { noise_m: 0.01, by_arc_length: true, grazing: true };
 
 fn frame() -> GridFrame {
     GridFrame::new(Point2::new(-1.0, -5.0), 0.05, 200, 200).unwrap()
@@ -35,7 +37,7 @@ fn surfels_lie_on_the_line_of_the_wall() {
         let mut map = SurfelMap::new(&frame());
         let mut points = ScanPoints::default();
         for _ in 0..100 {
-            points.update(&wall(angle_rad, distance_m, &mut noise), |_| 1.0, 0.01, true);
+            points.update(&wall(angle_rad, distance_m, &mut noise), |_| 1.0, &RULES);
             map.learn(points.points(), &Isometry2::identity(), 0.01);
         }
         let normal = interfaces::rotation(angle_rad) * Vector2::x();
@@ -56,6 +58,7 @@ fn a_surfel_freezes() {
         at: Point2::new(1.0 + off_m, 0.55),
         normal: -Vector2::x(),
         weight: 1.0,
+        noise_share: 1.0,
         beam: 0,
         passed: 1.0,
     };
@@ -77,7 +80,7 @@ fn what_beams_pass_is_removed() {
         (SurfelMap::new(&frame()), ScanPoints::default(), Checker::default());
     let mut see = |map: &mut SurfelMap, distance_m: f64| {
         let reading = wall(0.0, distance_m, &mut noise);
-        points.update(&reading, |_| 1.0, 0.01, true);
+        points.update(&reading, |_| 1.0, &RULES);
         map.learn(points.points(), &Isometry2::identity(), 0.01);
         checker.check(map, &reading, &Isometry2::identity());
     };

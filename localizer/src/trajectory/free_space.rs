@@ -105,6 +105,7 @@ mod tests {
                 at: (along * distance_m).into(),
                 normal: -along * facing,
                 weight: 1.0,
+                noise_share: 1.0,
                 beam: 0,
                 passed: 1.0,
             };

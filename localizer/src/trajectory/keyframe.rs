@@ -65,6 +65,7 @@ mod tests {
             at: Point2::new(x, y),
             normal: -Vector2::y(),
             weight: 1.0,
+            noise_share: 1.0,
             beam,
             passed: 1.0,
         };

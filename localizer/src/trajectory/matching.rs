@@ -99,6 +99,7 @@ mod tests {
             at: Point2::new(x, y),
             normal: interfaces::rotation(normal_rad) * Vector2::x(),
             weight: 1.0,
+            noise_share: 1.0,
             beam: 0,
             passed: 1.0,
         };

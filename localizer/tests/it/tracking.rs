@@ -89,6 +89,28 @@ fn the_sweep_of_a_scan_is_undone() {
     assert!(undone_m < 0.008 && ignored_m > 1.5 * undone_m, "{undone_m}, {ignored_m}");
 }
 
+#[test]
+fn a_turn_in_a_corner_shifts_little() {
+    let mut robot = Robot::new(furnished(360, 104), interfaces::pose(3.0, 3.0, 0.0), 104);
+    let place = robot.house.turned(nalgebra::Point2::new(0.5, 0.5));
+    let mut uncertain = 0;
+    for step in 0..120_u32 {
+        let to_wall = f64::from(step.saturating_sub(20).min(60)) / 60.0;
+        let at = nalgebra::Point2::new(3.0, 3.0).lerp(&place, to_wall);
+        let turn = 0.1 * f64::from(step.saturating_sub(80));
+        let pose = interfaces::pose(at.x, at.y, -2.3 - 0.2 * turn.sin());
+        // The laser sees ahead only.
+        let localized = robot.step_with(pose, |reading| {
+            let behind = |beam: usize| reading.scan.angle_rad(beam).abs() > 1.3;
+            let behind: Vec<usize> = (0..360).filter(|&beam| behind(beam)).collect();
+            behind.into_iter().for_each(|beam| reading.scan.ranges_m[beam] = f32::NAN);
+        });
+        uncertain += usize::from(step >= 80 && localized.estimate.state != PoseState::Tracking);
+    }
+    // With a limit of the heading that does not know the distance of the walls, no scan is certain.
+    assert!(uncertain <= 15, "{uncertain} of 40 scans");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 8, ..ProptestConfig::default() })]
 

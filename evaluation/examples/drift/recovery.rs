@@ -1,0 +1,78 @@
+//! How long the localizer takes to find the pose after a displacement: a jump of the odometry, or a robot that was carried.
+
+use crate::score::{error, quantile};
+use interfaces::heading_rad;
+use localizer::{PoseEstimate, PoseState};
+use nalgebra::Isometry2;
+
+/// Larger differences between the motion and its odometry within one scan are a displacement, m and rad.
+const DISPLACED_M: f64 = 0.08;
+const DISPLACED_RAD: f64 = 0.15;
+/// A certain pose with smaller errors is recovered, m and rad.
+const RECOVERED_M: f64 = 0.03;
+const RECOVERED_RAD: f64 = 0.02;
+/// A certain pose with a larger error is wrong, m.
+const WRONG_M: f64 = 0.1;
+
+/// The displacements of a run.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Recovery {
+    /// The last true pose and its odometry.
+    last: Option<[Isometry2<f64>; 2]>,
+    displaced_s: Option<f64>,
+    times_s: Vec<f64>,
+    /// The number of displacements after which the next one came first.
+    overtaken: usize,
+    /// The number of scans with a certain pose that is wrong.
+    wrong: usize,
+}
+
+impl Recovery {
+    pub(crate) fn observe(
+        &mut self,
+        time_s: f64,
+        estimate: &PoseEstimate,
+        true_pose: &Isometry2<f64>,
+        odometry: &Isometry2<f64>,
+    ) {
+        let before = self.last.replace([*true_pose, *odometry]);
+        if let Some([last_pose, last_odometry]) = before {
+            let off = last_pose.inv_mul(true_pose).inv_mul(&last_odometry.inv_mul(odometry));
+            if off.translation.vector.norm() > DISPLACED_M || heading_rad(&off).abs() > DISPLACED_RAD {
+                self.overtaken += usize::from(self.displaced_s.replace(time_s).is_some());
+            }
+        }
+        let (error_m, error_rad) = error(&estimate.pose, true_pose);
+        if estimate.state != PoseState::Tracking {
+            return;
+        }
+        self.wrong += usize::from(error_m > WRONG_M);
+        if error_m < RECOVERED_M
+            && error_rad < RECOVERED_RAD
+            && let Some(displaced_s) = self.displaced_s.take()
+        {
+            self.times_s.push(time_s - displaced_s);
+        }
+    }
+
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.times_s.extend(&other.times_s);
+        self.overtaken += other.overtaken;
+        self.wrong += other.wrong;
+    }
+
+    pub(crate) fn print(&self) {
+        if self.wrong > 0 {
+            println!("    certain and more than {WRONG_M} m off in {} scans", self.wrong);
+        }
+        let count = self.times_s.len() + self.overtaken;
+        if count == 0 {
+            return;
+        }
+        let [median_s, most_s, worst_s] = [0.5, 0.95, 1.0].map(|share| quantile(&self.times_s, share));
+        println!(
+            "    {count} displacements: recovered after {median_s:.1} / {most_s:.1} / {worst_s:.1} s, {} not before the next",
+            self.overtaken,
+        );
+    }
+}
