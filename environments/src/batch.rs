@@ -122,8 +122,8 @@ impl<T: Task> Batch<T> {
         }
     }
 
-    /// Whether the tasks are stepped on the threads of the present rayon pool (the default for more than one), or on this
-    /// thread alone. The results are the same.
+    /// Whether the tasks are stepped on the threads of the present rayon pool (the default for more than one), or on
+    /// this thread alone. The results are the same.
     pub fn set_parallel(&mut self, is_parallel: bool) {
         self.is_parallel = is_parallel;
     }
@@ -184,8 +184,8 @@ impl<T: Task> Batch<T> {
         Ok(())
     }
 
-    /// Simulates one step of every task. `next_seeds` has, for every task, the seed of its next episode, which begins if
-    /// the present one ends in this step.
+    /// Simulates one step of every task. `next_seeds` has, for every task, the seed of its next episode, which begins
+    /// if the present one ends in this step.
     ///
     /// # Errors
     ///

@@ -75,10 +75,11 @@ impl DriveSettings {
 
 /// Every driven robot of a world has a goal of its own, and is an agent.
 ///
-/// The observation of an agent: the scan (beams, from 0 to 1: share of the maximum range; 1 without a return, 0 where the
-/// measurement is invalid or too close), then distance to the goal (share of the diagonal of the world), cosine and sine
-/// of its direction, cosine and sine of the direction of the shortest path, linear and angular velocity (shares of the
-/// maximum). Directions are in the frame of the robot. An agent at its goal stands still until all others are there.
+/// The observation of an agent: the scan (beams, from 0 to 1: share of the maximum range; 1 without a return, 0 where
+/// the measurement is invalid or too close), then distance to the goal (share of the diagonal of the world), cosine
+/// and sine of its direction, cosine and sine of the direction of the shortest path, linear and angular velocity
+/// (shares of the maximum). Directions are in the frame of the robot. An agent at its goal stands still until all
+/// others are there.
 ///
 /// The two actions are the wanted linear and angular velocity, as shares of the maximum.
 pub struct Drive {

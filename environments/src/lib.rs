@@ -1,8 +1,8 @@
 //! Tasks for learners: driving to goals among moving things, and exploring a place that changes.
 //!
-//! A [`Task`] is one world with its rewards. A [`Batch`] steps many tasks with one call, on several threads; a task that
-//! is over is reset in the same call. The same seeds and actions give the same bits, alone or in a batch, on any number
-//! of threads. The Python package gives these tasks the interfaces of Gymnasium and PettingZoo.
+//! A [`Task`] is one world with its rewards. A [`Batch`] steps many tasks with one call, on several threads; a task
+//! that is over is reset in the same call. The same seeds and actions give the same bits, alone or in a batch, on any
+//! number of threads. The Python package gives these tasks the interfaces of Gymnasium and PettingZoo.
 //!
 //! ```
 //! use environments::{Batch, Drive, DrivePlace, DriveSettings};
@@ -23,6 +23,7 @@ mod batch;
 mod distance;
 mod drive;
 mod explore;
+mod explore_place;
 mod patches;
 mod picture;
 mod place;
@@ -30,7 +31,8 @@ mod task;
 
 pub use batch::{Batch, Results, ResultsMut};
 pub use drive::{Drive, DriveSettings};
-pub use explore::{Explore, ExplorePlace, ExploreSettings};
+pub use explore::Explore;
+pub use explore_place::{ExplorePlace, ExploreSettings};
 pub use picture::Picture;
 pub use place::DrivePlace;
 pub use task::{Outcome, Part, Task, TaskError};

@@ -36,9 +36,9 @@ impl Patches {
         LAYERS * self.rows * self.columns
     }
 
-    /// Writes four layers, row 0 at the lowest y, each with values from 0 to 1: the share of the patch that was seen, the
-    /// share that is blocked, how long ago it was seen (1 − e^(−time / 60 s); 1 where it was never seen), and the mean
-    /// probability that a cell changed since then. Four cells are read in each patch; beyond the map all is 0.
+    /// Writes four layers, row 0 at the lowest y, each with values from 0 to 1: the share of the patch that was seen,
+    /// the share that is blocked, how long ago it was seen (1 − e^(−time / 60 s); 1 where it was never seen), and the
+    /// mean probability that a cell changed since then. Four cells are read in each patch; beyond the map all is 0.
     pub(crate) fn write(&self, mapper: &Mapper, layers: &mut [f32]) {
         layers.fill(0.0);
         let (frame, size) = (mapper.frame(), self.rows * self.columns);

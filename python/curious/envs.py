@@ -12,9 +12,10 @@
     A robot maps houses in which doors open and people walk. Observation, a dict: ``scan``, shape (180,); ``state``,
     shape (6,): position (shares of the size of the world), cosine and sine of the heading, linear and angular velocity
     (shares of the maximum); ``map``, shape (4, rows, columns), patches of 0.5 m, row 0 at the lowest y: share that was
-    seen, share that is blocked, how long ago it was seen, probability of a change since then (refreshed at every fifth step). Action as above. Reward:
-    the map updates of the reading, per cell of the robot's width, and 10 times the fall of the log error of the rates.
-    The episode is truncated after 3000 steps of 0.1 s.
+    seen, share that is blocked, how long ago it was seen, probability of a change since then. The map is refreshed at
+    every tenth step. Action as above. Reward: the map updates of the reading, per cell of the robot's width, and 10
+    times the fall of the log error of the rates (measured at every fiftieth step), -0.5 per collision. The episode is
+    truncated after 3000 steps of 0.1 s.
 
 Everything random comes from ``np_random``: ``reset`` draws the seed of the world from it, and ``info["world_seed"]`` has
 it, so that Rust can repeat the episode. The vector environments reset an environment in the same step in which its
@@ -227,7 +228,8 @@ class _Vector(gymnasium.vector.VectorEnv):
         """Begin an episode in every environment. With a number ``s``, environment ``i`` has the seed ``s + i``."""
         batch = self.batch
         if seed is not None:
-            seeds = [seed + index for index in range(self.num_envs)] if isinstance(seed, (int, np.integer)) else seed
+            is_number = isinstance(seed, (int, np.integer))
+            seeds = [seed + index for index in range(self.num_envs)] if is_number else seed
             if len(seeds) != self.num_envs:
                 raise ValueError(f"there are {len(seeds)} seeds for {self.num_envs} environments")
             for index, single in enumerate(seeds):
@@ -252,7 +254,8 @@ class _Vector(gymnasium.vector.VectorEnv):
             final_info: dict[str, Any] = {name: info[name].copy() for name in self._names}
             final_info["world_seed"] = self._world_seeds.copy()
             final_info.update({f"_{name}": was_reset.copy() for name in [*self._names, "world_seed"]})
-            info.update(final_obs=final_obs, _final_obs=was_reset, final_info=final_info, _final_info=was_reset.copy())
+            info.update(final_obs=final_obs, _final_obs=was_reset)
+            info.update(final_info=final_info, _final_info=was_reset.copy())
             for index in ended:
                 self._world_seeds[index] = self._next_seeds[index]
                 self._next_seeds[index] = _draw(self._randoms[index])
@@ -280,9 +283,9 @@ class _Vector(gymnasium.vector.VectorEnv):
 
 
 class DriveEnv(_Single):
-    """Driving to goals among moving things; see the module. ``world``: a ``Spec``, a name or a path, with one driven robot.
+    """Driving to goals among moving things; see the module.
 
-    Settings: ``decision_s``, ``max_steps``, ``goal_radius`` (m), ``min_goal`` (m), ``shows_path``, ``goal_reward``,
+    ``world``: a ``Spec``, a name or a path, with one driven robot. Settings: ``decision_s``, ``max_steps``, ``goal_radius`` (m), ``min_goal`` (m), ``shows_path``, ``goal_reward``,
     ``progress_reward``, ``collision_reward``, ``step_reward``.
     """
 
@@ -296,9 +299,10 @@ class DriveVectorEnv(_Vector):
 
 
 class ExploreEnv(_Single):
-    """Exploring houses that change; see the module. ``worlds``: a list of ``Spec``, names or paths; each episode is in one.
+    """Exploring houses that change; see the module.
 
-    Settings: ``max_steps``, ``beams``, ``error_every``, ``map_every``, ``update_reward``, ``error_reward``, ``collision_reward``.
+    ``worlds``: a list of ``Spec``, names or paths; each episode is in one of them. Settings: ``max_steps``, ``beams``,
+    ``error_every``, ``map_every``, ``update_reward``, ``error_reward``, ``collision_reward``.
     """
 
     _make = staticmethod(_explore)

@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use sim::physics::{Body, Contact, FreePoses, Velocity};
 
-/// A world with any number of robots. The same spec, seed and commands give the same bits as in Rust, on any number of
-/// threads.
+/// A world with any number of robots. The same spec, seed and commands give the same bits as in Rust, on any number
+/// of threads.
 #[pyclass(module = "curious")]
 pub(crate) struct Fleet {
     fleet: sim::physics::Fleet,
@@ -109,8 +109,8 @@ impl Fleet {
         self.fleet.spec().robots.len()
     }
 
-    /// Sets the velocity of a robot until its next command: forward (m/s), angular (rad/s), and left (m/s) for an omni
-    /// drive. Returns whether the robot executes commands.
+    /// Sets the velocity of a robot until its next command: forward (m/s), angular (rad/s), and left (m/s) for an
+    /// omni drive. Returns whether the robot executes commands.
     #[pyo3(signature = (robot, linear, angular, left = 0.0))]
     fn command(&mut self, robot: usize, linear: f64, angular: f64, left: f64) -> PyResult<bool> {
         self.check_robot(robot)?;
@@ -120,8 +120,8 @@ impl Fleet {
         Ok(self.fleet.command(robot, Velocity { forward_mps: linear, left_mps: left, turn_radps: angular }))
     }
 
-    /// Simulates some physics steps. `commands`: one row per driven robot, shape (driven, 2), linear (m/s) and angular
-    /// (rad/s) velocity; with 3 columns linear, left, angular.
+    /// Simulates some physics steps. `commands`: one row per driven robot, shape (driven, 2), linear (m/s) and
+    /// angular (rad/s) velocity; with 3 columns linear, left, angular.
     #[pyo3(signature = (commands = None, *, steps = 1))]
     fn step(
         &mut self,
@@ -242,8 +242,8 @@ impl Fleet {
         Ok(self.fleet.check_fit(robot, &pose(&at)?).is_ok())
     }
 
-    /// `count` random poses that a robot can reach from its start, and at which it fits now, shape (count, 3). The same
-    /// seed gives the same poses.
+    /// `count` random poses that a robot can reach from its start, and at which it fits now, shape (count, 3). The
+    /// same seed gives the same poses.
     #[pyo3(signature = (robot, seed, count = 1))]
     fn free_poses<'py>(
         &self,
@@ -277,7 +277,8 @@ impl Fleet {
         PyBytes::new(py, &py.detach(|| fleet.snapshot()))
     }
 
-    /// Returns to a snapshot of a fleet of the same world. `SnapshotError`: the bytes are not one; nothing changes then.
+    /// Returns to a snapshot of a fleet of the same world. `SnapshotError`: the bytes are not one; nothing changes
+    /// then.
     fn restore(&mut self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
         let fleet = &mut self.fleet;
         py.detach(|| fleet.restore(snapshot)).map_err(snapshot_error)

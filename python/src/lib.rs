@@ -9,6 +9,7 @@ mod localizer;
 mod logs;
 mod mapper;
 mod reading;
+mod settings;
 mod spec;
 mod tasks;
 mod trials;

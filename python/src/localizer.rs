@@ -27,8 +27,8 @@ pub(crate) struct Estimate {
 
 #[pymethods]
 impl Localizer {
-    /// A localizer for a map (`Mapper`). With `pose`: the first reading is there, and the place need not be known. Without:
-    /// anywhere in the known map. `range_noise`: the standard deviation of a range, m.
+    /// A localizer for a map (`Mapper`). With `pose`: the first reading is there, and the place need not be known.
+    /// Without: anywhere in the known map. `range_noise`: the standard deviation of a range, m.
     #[new]
     #[pyo3(signature = (mapper, pose = None, *, range_noise = 0.01))]
     fn new(py: Python<'_>, mapper: &Mapper, pose: Option<Numbers<'_>>, range_noise: f64) -> PyResult<Self> {
@@ -43,8 +43,8 @@ impl Localizer {
         Ok(Self { localizer: localizer.map_err(value_error)? })
     }
 
-    /// The pose of a reading, whose own pose is that of the odometry. `mapper` has learned the readings so far whose pose
-    /// was certain. An invalid reading is no error: its estimate is the prediction, and not certain.
+    /// The pose of a reading, whose own pose is that of the odometry. `mapper` has learned the readings so far whose
+    /// pose was certain. An invalid reading is no error: its estimate is the prediction, and not certain.
     fn localize(&mut self, py: Python<'_>, reading: &Reading, mapper: &Mapper) -> Estimate {
         let (localizer, map) = (&mut self.localizer, &mapper.mapper);
         Estimate { localized: py.detach(|| localizer.localize(&reading.reading, map)) }
@@ -60,8 +60,8 @@ impl Localizer {
         PyBytes::new(py, &self.localizer.snapshot())
     }
 
-    /// Returns to the snapshot of a localizer with the same settings. `SnapshotError`: the bytes are not one; the localizer
-    /// must not be used then.
+    /// Returns to the snapshot of a localizer with the same settings. `SnapshotError`: the bytes are not one; the
+    /// localizer must not be used then.
     fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
         self.localizer.restore(snapshot).map_err(snapshot_error)
     }

@@ -27,8 +27,8 @@ pub(crate) struct Readings {
 
 #[pymethods]
 impl Log {
-    /// Opens a log. `scan_topics`, `odom_topic`, `base_frame`: for bags; by default all of them are found. `OSError`: it
-    /// cannot be read; `ValueError`: it is damaged or has no usable scan.
+    /// Opens a log. `scan_topics`, `odom_topic`, `base_frame`: for bags; by default all of them are found. `OSError`:
+    /// it cannot be read; `ValueError`: it is damaged or has no usable scan.
     #[new]
     #[pyo3(signature = (path, *, scan_topics = Vec::new(), odom_topic = None, base_frame = None))]
     fn new(
@@ -107,11 +107,11 @@ pub(crate) struct Survey {
     permanent: interfaces::Grid<interfaces::CellState>,
 }
 
-/// Maps a log, and learns where the place changes: the program `map_log` for one log. The log is read twice: the first
-/// pass finds the trajectory, the second one learns the changes.
+/// Maps a log, and learns where the place changes: the program `map_log` for one log. The log is read twice: the
+/// first pass finds the trajectory, the second one learns the changes.
 ///
-/// `pose`: "localized" (the trajectory is found from scans and odometry), "odometry", "exact"; by default "localized", or
-/// "exact" where the laser stands. `cell`: m. `max_range`: longer ranges are not used, m.
+/// `pose`: "localized" (the trajectory is found from scans and odometry), "odometry", "exact"; by default
+/// "localized", or "exact" where the laser stands. `cell`: m. `max_range`: longer ranges are not used, m.
 #[pyfunction]
 #[pyo3(signature = (log, *, pose = None, cell = 0.05, max_range = 20.0, estimator = None, range_noise = None))]
 pub(crate) fn map_log(

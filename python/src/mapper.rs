@@ -62,8 +62,8 @@ impl Mapper {
 impl Mapper {
     /// An empty map of `width` x `height` m with cells of `cell` m, whose lower left corner is `origin` (m).
     ///
-    /// `estimator`: `Mapper.estimators()`. `occupancy`: "steady" or "naive". `max_gap`: a cell that is hidden for at most
-    /// this time stays in view, s. `range_noise`: the standard deviation of a range, m.
+    /// `estimator`: `Mapper.estimators()`. `occupancy`: "steady" or "naive". `max_gap`: a cell that is hidden for at
+    /// most this time stays in view, s. `range_noise`: the standard deviation of a range, m.
     #[new]
     #[pyo3(signature = (width, height, *, origin = (0.0, 0.0), cell = 0.05, estimator = None, occupancy = None,
         max_gap = Some(8.0), range_noise = None))]
@@ -88,7 +88,8 @@ impl Mapper {
         Ok(Self { mapper: mapper::Mapper::new(&settings, frame).map_err(value_error)? })
     }
 
-    /// An empty map for a world (`World`, `Spec`, name or path), with its cells and the settings that the programs use.
+    /// An empty map for a world (`World`, `Spec`, name or path), with its cells and the settings that the programs
+    /// use.
     #[staticmethod]
     #[pyo3(signature = (world, *, robot = None, estimator = None, occupancy = None, max_gap = None))]
     fn of(
@@ -116,10 +117,11 @@ impl Mapper {
 
     /// Updates the map with a scan from a known pose.
     ///
-    /// `time`: s, never earlier than the last one. `ranges`: m, shape (beams,): inf no return, -inf too close, NaN invalid.
-    /// `pose`: of the robot in the frame of the map, x (m), y (m), heading (rad). `angle_min`, `angle_increment`: rad; by
-    /// default the beams cover a full turn from straight behind. `range_min`, `range_max`: m. `mount`: the pose of the
-    /// laser on the robot. `ValueError`: the scan is invalid; the map then stays as it was.
+    /// `time`: s, never earlier than the last one. `ranges`: m, shape (beams,): inf no return, -inf too close, NaN
+    /// invalid. `pose`: of the robot in the frame of the map, x (m), y (m), heading (rad). `angle_min`,
+    /// `angle_increment`: rad; by default the beams cover a full turn from straight behind. `range_min`, `range_max`:
+    /// m. `mount`: the pose of the laser on the robot. `ValueError`: the scan is invalid; the map then stays as it
+    /// was.
     #[pyo3(signature = (time, ranges, pose, *, angle_min = -std::f64::consts::PI, angle_increment = None,
         range_min = 0.0, range_max = 10.0, mount = None))]
     #[allow(clippy::too_many_arguments)]
@@ -147,7 +149,8 @@ impl Mapper {
         py.detach(|| mapper.update(&reading.reading)).map_err(value_error)
     }
 
-    /// Leaves a reading out of the map, because its pose is not certain: the time since the last one counts as not observed.
+    /// Leaves a reading out of the map, because its pose is not certain: the time since the last one counts as not
+    /// observed.
     fn skip(&mut self, reading: &Reading) {
         self.mapper.skip(&reading.reading);
     }
@@ -285,8 +288,8 @@ impl Mapper {
         PyBytes::new(py, &py.detach(|| mapper.snapshot()))
     }
 
-    /// Returns to the snapshot of a map with the same cells and settings. `SnapshotError`: the bytes are not one; nothing
-    /// changes then.
+    /// Returns to the snapshot of a map with the same cells and settings. `SnapshotError`: the bytes are not one;
+    /// nothing changes then.
     fn restore(&mut self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
         let mut restored = self.mapper.clone();
         py.detach(|| restored.restore(snapshot)).map_err(snapshot_error)?;

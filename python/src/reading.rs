@@ -5,8 +5,8 @@ use pyo3::prelude::*;
 
 /// A laser scan, and the pose of the robot at the same time.
 ///
-/// `ranges` has one value per beam, m: +inf no return, -inf too close, NaN invalid (REP-117). The direction of beam `i`
-/// in the frame of the laser is `angle_min + i * angle_increment` (rad).
+/// `ranges` has one value per beam, m: +inf no return, -inf too close, NaN invalid (REP-117). The direction of beam
+/// `i` in the frame of the laser is `angle_min + i * angle_increment` (rad).
 #[pyclass(frozen, module = "curious")]
 pub(crate) struct Reading {
     pub(crate) reading: LaserReading,

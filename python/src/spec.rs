@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use worldfile::{Disk, Files, Severity};
 
-/// The specification of a world: walls, obstacles, robots. It never changes; fleets, worlds and tasks are made from it.
+/// The specification of a world: walls, obstacles, robots. It never changes; fleets, worlds and tasks are made from
+/// it.
 #[pyclass(frozen, module = "curious")]
 pub(crate) struct Spec {
     pub(crate) fleet: Arc<FleetSpec>,
@@ -107,7 +108,8 @@ impl Spec {
         Ok(Self::new(fleet, Source::Text { name: path.with_extension("toml").display().to_string(), text }))
     }
 
-    /// The generated house of a seed: rooms at a corridor, doors, furniture, people. The same seed gives the same house.
+    /// The generated house of a seed: rooms at a corridor, doors, furniture, people. The same seed gives the same
+    /// house.
     #[staticmethod]
     fn house(seed: u64) -> Self {
         Self::from_seed(seed)

@@ -1,9 +1,7 @@
 use crate::convert::{snapshot_error, value_error};
+use crate::settings::{drive_settings, explore_settings};
 use crate::spec::{driving, spec_of};
-use environments::{
-    Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Picture, ResultsMut, Task,
-    TaskError,
-};
+use environments::{Drive, DrivePlace, Explore, ExplorePlace, Picture, ResultsMut, Task, TaskError};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyUntypedArrayMethods,
@@ -101,56 +99,6 @@ fn on<R: Send>(pool: Option<&rayon::ThreadPool>, run: impl FnOnce() -> R + Send)
         Some(pool) => pool.install(run),
         None => run(),
     }
-}
-
-/// Settings from the keywords of a call: those of a driving task.
-fn drive_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<DriveSettings> {
-    let mut settings = DriveSettings::default();
-    for (key, value) in keywords.into_iter().flatten() {
-        match key.extract::<String>()?.as_str() {
-            "decision_s" => settings.decision_s = value.extract()?,
-            "max_steps" => settings.max_steps = value.extract()?,
-            "goal_radius" => settings.goal_radius_m = value.extract()?,
-            "min_goal" => settings.min_goal_m = value.extract()?,
-            "shows_path" => settings.shows_path = value.extract()?,
-            "goal_reward" => settings.goal_reward = value.extract()?,
-            "progress_reward" => settings.progress_reward = value.extract()?,
-            "collision_reward" => settings.collision_reward = value.extract()?,
-            "step_reward" => settings.step_reward = value.extract()?,
-            key => return Err(unknown("driving", key, DRIVE_KEYS)),
-        }
-    }
-    Ok(settings)
-}
-
-const DRIVE_KEYS: &str = "decision_s, max_steps, goal_radius, min_goal, shows_path, goal_reward, progress_reward, \
-                          collision_reward, step_reward";
-
-/// Settings from the keywords of a call: those of an exploring task.
-fn explore_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<ExploreSettings> {
-    let mut settings = ExploreSettings::default();
-    for (key, value) in keywords.into_iter().flatten() {
-        match key.extract::<String>()?.as_str() {
-            "max_steps" => settings.max_steps = value.extract()?,
-            "beams" => settings.beams = value.extract()?,
-            "error_every" => settings.error_every = value.extract()?,
-            "map_every" => settings.map_every = value.extract()?,
-            "update_reward" => settings.update_reward = value.extract()?,
-            "error_reward" => settings.error_reward = value.extract()?,
-            "collision_reward" => settings.collision_reward = value.extract()?,
-            key => return Err(unknown("exploring", key, EXPLORE_KEYS)),
-        }
-    }
-    Ok(settings)
-}
-
-const EXPLORE_KEYS: &str =
-    "max_steps, beams, error_every, map_every, update_reward, error_reward, collision_reward";
-
-fn unknown(task: &str, key: &str, known: &str) -> PyErr {
-    pyo3::exceptions::PyTypeError::new_err(format!(
-        "the {task} task has no setting `{key}`; there are {known}"
-    ))
 }
 
 #[pymethods]
@@ -271,11 +219,11 @@ impl Batch {
         observations.into_pyarray(py).reshape([self.agents, self.observation_len()])
     }
 
-    /// Simulates one step. `actions`: float32, shape (environments * agents, 2), from -1 to 1. `next_seeds`: uint64, one
-    /// per environment, for the episodes that begin in this step.
+    /// Simulates one step. `actions`: float32, shape (environments * agents, 2), from -1 to 1. `next_seeds`: uint64,
+    /// one per environment, for the episodes that begin in this step.
     ///
-    /// Returns observations, rewards, terminated, truncated, information, whether each environment was reset, and the last
-    /// observations of the episodes that ended (None if none ended; other rows are not meaningful).
+    /// Returns observations, rewards, terminated, truncated, information, whether each environment was reset, and the
+    /// last observations of the episodes that ended (None if none ended; other rows are not meaningful).
     fn step<'py>(
         &mut self,
         py: Python<'py>,
@@ -378,8 +326,8 @@ impl Batch {
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// Returns an environment to a snapshot of one with the same settings, and returns its observations. `SnapshotError`:
-    /// the bytes are not one; the environment must be reset then.
+    /// Returns an environment to a snapshot of one with the same settings, and returns its observations.
+    /// `SnapshotError`: the bytes are not one; the environment must be reset then.
     fn restore<'py>(
         &mut self,
         py: Python<'py>,

@@ -36,8 +36,8 @@ impl Situation {
         pose_array(py, &self.pose)
     }
 
-    /// The travel time to every cell, s, shape (rows, columns); inf where no path is known. None unless the strategy has
-    /// the attribute `needs_travel = True`.
+    /// The travel time to every cell, s, shape (rows, columns); inf where no path is known. None unless the strategy
+    /// has the attribute `needs_travel = True`.
     #[getter]
     fn travel<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         if self.travel.is_empty() {

@@ -17,8 +17,8 @@ pub(crate) struct World {
 
 #[pymethods]
 impl World {
-    /// The world (`Spec`, name or path) at its start. `robot`: the index of the driven robot, where it is not the only
-    /// one. `exact`: readings have the true pose in place of that by odometry.
+    /// The world (`Spec`, name or path) at its start. `robot`: the index of the driven robot, where it is not the
+    /// only one. `exact`: readings have the true pose in place of that by odometry.
     #[new]
     #[pyo3(signature = (world, seed = 0, *, robot = None, exact = false))]
     fn new(
@@ -99,8 +99,8 @@ impl World {
         grid(py, truth.frame(), (0..truth.frame().len()).map(|index| truth.cycle_rate(index)).collect())
     }
 
-    /// The scores of a map of this world, by the names of the reports: log_error, rate_error, false_rate_hz, rate_auc,
-    /// coverage, map_quality. None: not defined yet.
+    /// The scores of a map of this world, by the names of the reports: log_error, rate_error, false_rate_hz,
+    /// rate_auc, coverage, map_quality. None: not defined yet.
     fn score<'py>(&self, py: Python<'py>, mapper: &Mapper) -> PyResult<Bound<'py, PyDict>> {
         let truth = self.world.truth();
         if mapper.mapper.frame() != truth.frame() {

@@ -44,5 +44,6 @@ kind = "{kind}"
 @pytest.fixture
 def fleet_toml() -> str:
     """Two driven robots and one that wanders."""
+    driven = [ROBOT.format(name=name, x=x, y=y, kind="driven") for name, x, y in (("a", 1.0, 1.0), ("b", 5.0, 3.0))]
     wander = ROBOT.format(name="c", x=3.0, y=2.0, kind='wander"\nspeed_mps = 0.3\n#"')
-    return FLEET + ROBOT.format(name="a", x=1.0, y=1.0, kind="driven") + ROBOT.format(name="b", x=5.0, y=3.0, kind="driven") + wander
+    return FLEET + "".join(driven) + wander

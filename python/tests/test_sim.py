@@ -119,7 +119,8 @@ def test_worlds_from_everywhere(tmp_path, fleet_toml):
     path.write_text(fleet_toml)
     assert curious.Fleet(path).names == ["a", "b", "c"]
     stage = tmp_path / "yard.world"
-    stage.write_text('define r position ( size [0.4 0.4 0.3] ranger ( sensor ( range [0 5] fov 180 samples 19 ) ) blobfinder () )\n'
+    stage.write_text('define r position ( size [0.4 0.4 0.3] blobfinder ()\n'
+                     '  ranger ( sensor ( range [0 5] fov 180 samples 19 ) ) )\n'
                      'model ( size [4 0.2 1] pose [0 2 0 0] )\nr ( pose [0 0 0 0] name "one" )\n')
     with pytest.warns(UserWarning) as warned:
         fleet = curious.Fleet(curious.Spec.from_stage(stage))
