@@ -10,8 +10,10 @@ use survey::CHANGE_HORIZON_S;
 /// The border of a published map lies on multiples of this number of cells, so that its frame rarely changes.
 const BLOCK: i32 = 64;
 /// A map of more cells is published less often, in proportion: with the default buffers of an operating system, larger
-/// messages arrive late.
+/// messages arrive late, and one that is replaced before it has arrived never does.
 const MANY_CELLS: f64 = 600.0 * 600.0;
+/// The time between two maps of that size, at least.
+const LARGE: Duration = Duration::from_secs(5);
 /// The time between two maps of changes and predictions, at least.
 const CHANGES: Duration = Duration::from_secs(10);
 
@@ -57,7 +59,8 @@ impl PublishedMaps {
 
     fn is_due(&self, now: Instant) -> bool {
         let cells = self.shown.as_ref().map_or(0, |shown| shown.cells().len());
-        let interval = self.interval.mul_f64((cells as f64 / MANY_CELLS).max(1.0));
+        let share = cells as f64 / MANY_CELLS;
+        let interval = if share > 1.0 { self.interval.max(LARGE).mul_f64(share) } else { self.interval };
         self.whole.is_none_or(|whole| now.duration_since(whole) >= interval)
     }
 

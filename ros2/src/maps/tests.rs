@@ -73,11 +73,11 @@ fn changes_are_published_at_once_and_maps_rarely() {
 fn large_maps_are_published_less_often() {
     let frame = GridFrame::new(Point2::origin(), 0.1, 1200, 600).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-    let (mut maps, start) = (PublishedMaps::new(5.0), Instant::now());
+    let (mut maps, start) = (PublishedMaps::new(1.0), Instant::now());
     see(&mut mapper, 0.0, &[(0, 0, true), (1199, 599, true)]);
     assert_eq!(maps.after(&mapper, &Header::default(), start).len(), 3);
     see(&mut mapper, 1.0, &[(5, 5, true)]);
-    // 720,000 cells: twice the interval.
+    // 720,000 cells: twice the interval of a large map.
     let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(9));
     assert!(matches!(messages[..], [(Topic::MapUpdates, _)]));
     assert_eq!(maps.after(&mapper, &Header::default(), start + Duration::from_secs(10)).len(), 3);
