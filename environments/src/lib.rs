@@ -22,6 +22,7 @@
 mod batch;
 mod distance;
 mod drive;
+mod drive_settings;
 mod explore;
 mod explore_place;
 mod patches;
@@ -30,7 +31,8 @@ mod place;
 mod task;
 
 pub use batch::{Batch, Results, ResultsMut};
-pub use drive::{Drive, DriveSettings};
+pub use drive::Drive;
+pub use drive_settings::DriveSettings;
 pub use explore::Explore;
 pub use explore_place::{ExplorePlace, ExploreSettings};
 pub use picture::Picture;

@@ -1,7 +1,7 @@
 //! The place of driving tasks: what is the same in every episode, built once and shared.
 
 use crate::distance::Distances;
-use crate::drive::DriveSettings;
+use crate::drive_settings::DriveSettings;
 use crate::task::TaskError;
 use interfaces::{GridFrame, RandomStream};
 use nalgebra::Point2;

@@ -1,7 +1,6 @@
 use crate::convert::{Numbers, Ranges, grid, points_array, snapshot_error, value_error, world_error};
 use crate::reading::{Laser, Reading, laser_reading};
 use crate::spec::{driving, spec_of};
-use crate::world::World;
 use evaluation::physics_trial::PhysicsSettings;
 use interfaces::{CellState, GridFrame};
 use mapper::MapperSettings;
@@ -9,6 +8,7 @@ use nalgebra::Point2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use sim::physics::WorldSpec;
 
 /// A map of a place that changes: its cells, and how often each of them changes.
 ///
@@ -52,6 +52,18 @@ pub(crate) fn settings_of(
 }
 
 impl Mapper {
+    /// An empty map for a world, with the settings that the programs use.
+    pub(crate) fn for_world(
+        spec: &WorldSpec,
+        estimator: Option<&str>,
+        occupancy: Option<&str>,
+        max_gap: Option<f64>,
+    ) -> PyResult<Self> {
+        let settings = PhysicsSettings::of(spec).map_err(world_error)?.mapper;
+        let settings = settings_of(settings, estimator, occupancy, max_gap, None)?;
+        Ok(Self { mapper: mapper::Mapper::new(&settings, spec.frame).map_err(value_error)? })
+    }
+
     /// The number of rows and columns.
     pub(crate) fn size(&self) -> (usize, usize) {
         (self.mapper.frame().height(), self.mapper.frame().width())
@@ -88,8 +100,8 @@ impl Mapper {
         Ok(Self { mapper: mapper::Mapper::new(&settings, frame).map_err(value_error)? })
     }
 
-    /// An empty map for a world (`World`, `Spec`, name or path), with its cells and the settings that the programs
-    /// use.
+    /// An empty map for a world (`Spec`, name or path), with its cells and the settings that the programs use. Of a
+    /// `World`: `World.mapper`.
     #[staticmethod]
     #[pyo3(signature = (world, *, robot = None, estimator = None, occupancy = None, max_gap = None))]
     fn of(
@@ -100,13 +112,7 @@ impl Mapper {
         occupancy: Option<&str>,
         max_gap: Option<f64>,
     ) -> PyResult<Self> {
-        let spec = match world.cast::<World>() {
-            Ok(world) => world.borrow().world.spec().clone(),
-            Err(_) => driving(&spec_of(py, world)?, robot)?,
-        };
-        let settings = PhysicsSettings::of(&spec).map_err(world_error)?.mapper;
-        let settings = settings_of(settings, estimator, occupancy, max_gap, None)?;
-        Ok(Self { mapper: mapper::Mapper::new(&settings, spec.frame).map_err(value_error)? })
+        Self::for_world(&driving(&spec_of(py, world)?, robot)?, estimator, occupancy, max_gap)
     }
 
     /// The names of the estimators of rates.

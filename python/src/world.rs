@@ -99,12 +99,23 @@ impl World {
         grid(py, truth.frame(), (0..truth.frame().len()).map(|index| truth.cycle_rate(index)).collect())
     }
 
+    /// An empty map for this world, with its cells and the settings that the programs use.
+    #[pyo3(signature = (*, estimator = None, occupancy = None, max_gap = None))]
+    fn mapper(
+        &self,
+        estimator: Option<&str>,
+        occupancy: Option<&str>,
+        max_gap: Option<f64>,
+    ) -> PyResult<Mapper> {
+        Mapper::for_world(self.world.spec(), estimator, occupancy, max_gap)
+    }
+
     /// The scores of a map of this world, by the names of the reports: log_error, rate_error, false_rate_hz,
     /// rate_auc, coverage, map_quality. None: not defined yet.
     fn score<'py>(&self, py: Python<'py>, mapper: &Mapper) -> PyResult<Bound<'py, PyDict>> {
         let truth = self.world.truth();
         if mapper.mapper.frame() != truth.frame() {
-            return Err(value_error("the map has other cells than the world: make it by `Mapper.of(world)`"));
+            return Err(value_error("the map has other cells than the world: make it by `world.mapper()`"));
         }
         let (rates, map) =
             py.detach(|| (rate_scores(&mapper.mapper, truth), map_scores(&mapper.mapper, truth)));

@@ -106,20 +106,21 @@ def test_invalid_settings():
 
 def test_a_world_is_mapped_and_scored():
     world = curious.World("four_rooms", seed=2, exact=True)
-    mapper = curious.Mapper.of(world)
+    mapper = world.mapper()
     for step in range(600):
         mapper.update_reading(world.sense())
         world.act(0.5, 0.8 if step % 40 < 12 else 0.0)
     scores = world.score(mapper)
     assert 0.1 < scores["coverage"] <= 1.0 and 0.0 < scores["map_quality"] <= 1.0
     assert scores["log_error"] is None or scores["log_error"] <= np.log(10.0)
+    assert curious.Mapper.of("four_rooms", estimator="paper").shape == mapper.shape
     with pytest.raises(ValueError, match="other cells"):
         world.score(curious.Mapper(1.0, 1.0))
 
 
 def test_a_localizer_finds_the_pose():
     world = curious.World("drifting_house", seed=1)
-    mapper = curious.Mapper.of(world)
+    mapper = world.mapper()
     localizer = curious.Localizer(mapper, world.true_pose)
     for step in range(150):
         estimate = localizer.localize(world.sense(), mapper)
