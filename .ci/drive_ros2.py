@@ -1,7 +1,7 @@
 """An independent robot and independent observers, by rclpy, for the live nodes.
 
-Arguments: a folder for files, the program curious_node, the program sim_node. Every check prints a line; the first one that
-fails ends the program with exit code 1.
+Arguments: a folder for files, the program curious_node, the program sim_node. Every check prints a line; the first one
+that fails ends the program with exit code 1.
 """
 
 import os

@@ -140,7 +140,10 @@ impl<L: Link> CuriousNode<L> {
             link,
             parameters: parameters.clone(),
             settings,
-            source: Source::new(FrameNames { map: map_frame, odom: odom_frame, base: base_frame }),
+            source: Source::new(
+                FrameNames { map: map_frame, odom: odom_frame, base: base_frame },
+                parameters.transform_publish_period_s > 0.0,
+            ),
             mapper,
             localization,
             pilot,

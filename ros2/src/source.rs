@@ -66,6 +66,7 @@ struct Waiting {
 /// The robot as a source of readings.
 pub(crate) struct Source {
     names: FrameNames,
+    is_localized: bool,
     frames: Frames,
     motions: Motions,
     waiting: VecDeque<Waiting>,
@@ -79,9 +80,11 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    pub(crate) fn new(names: FrameNames) -> Self {
+    /// A robot without a message. `is_localized`: this node publishes the transform from the map to the odometry.
+    pub(crate) fn new(names: FrameNames, is_localized: bool) -> Self {
         Self {
             names,
+            is_localized,
             frames: Frames::default(),
             motions: Motions::default(),
             waiting: VecDeque::new(),
@@ -233,11 +236,13 @@ impl Source {
         for found in &message.transforms {
             let Header { stamp, frame_id } = &found.header;
             if bare(frame_id) == self.names.map && bare(&found.child_frame_id) == self.names.odom {
-                let (map, odom) = (&self.names.map, &self.names.odom);
-                self.notes.push(format!(
-                    "another node publishes the transform from `{map}` to `{odom}` as well; to leave it to the other one, set \
-                     `transform_publish_period` to 0"
-                ));
+                if self.is_localized {
+                    let (map, odom) = (&self.names.map, &self.names.odom);
+                    self.notes.push(format!(
+                        "another node publishes the transform from `{map}` to `{odom}` as well; to leave it to the other one, \
+                         set `transform_publish_period` to 0"
+                    ));
+                }
                 continue;
             }
             let Some(pose) = found.transform.isometry() else {

@@ -6,7 +6,7 @@ const SECOND_NS: i64 = 1_000_000_000;
 
 fn source() -> Source {
     let [map, odom, base] = ["map", "odom", "base_footprint"].map(str::to_owned);
-    Source::new(FrameNames { map, odom, base })
+    Source::new(FrameNames { map, odom, base }, true)
 }
 
 fn header(time_s: f64, frame: &str) -> Header {
@@ -218,4 +218,7 @@ fn another_localization_is_noticed() {
     let (mut source, now) = (source(), Instant::now());
     source.take(Topic::Transforms, transform(0.0, "map", "odom", at(0.0)), now);
     assert!(source.take_notes()[0].starts_with("another node publishes the transform from `map` to `odom`"));
+    source.is_localized = false;
+    source.take(Topic::Transforms, transform(0.1, "map", "odom", at(0.0)), now);
+    assert_eq!(source.take_notes(), [""; 0]);
 }
