@@ -167,11 +167,12 @@ fn a_robot_finds_itself_in_the_map_that_it_has_saved() {
         saved(&mut first, &moved(&here), &settings);
     let session = Session::next(localization.as_mut(), &mut mapper, 0.0, Some(GAP_S));
     let mut world = Later { world, session };
-    let (mut certain, mut error) = (0, 0.0_f64);
+    let (mut certain, mut first_s, mut error) = (0, f64::INFINITY, 0.0_f64);
     let step =
         |world: &Later, reading: &LaserReading, belief: &Belief, _: &mut _| -> Result<_, ReadingError> {
             if belief.estimate.is_some_and(|estimate| estimate.state == PoseState::Tracking) {
                 certain += 1;
+                first_s = first_s.min(reading.time_s - session.offset_s());
                 let off = world.world.true_pose().inv_mul(belief.pose);
                 error = error.max(off.translation.vector.norm()).max(heading_rad(&off).abs());
             }
@@ -179,6 +180,7 @@ fn a_robot_finds_itself_in_the_map_that_it_has_saved() {
             Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         };
     explore(&mut world, localization.as_mut(), &mut mapper, &mut pilot, step).unwrap();
-    assert!(certain > 190 && error < 0.05, "{certain}, {error}");
+    // It finds itself within a second; fast turns make some of the 200 scans uncertain later.
+    assert!(first_s < 1.0 && certain > 170 && error < 0.05, "{first_s}, {certain}, {error}");
     assert!(mapper.time() >= GAP_S + 170.0);
 }
