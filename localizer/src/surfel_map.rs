@@ -96,6 +96,19 @@ impl SurfelMap {
         }
     }
 
+    /// The map without its surfels, for a frame of the same size: most cells are empty and stay as they are.
+    pub(crate) fn emptied(mut self, frame: &GridFrame) -> Self {
+        let cells = coarse(frame);
+        if cells.len() != self.cells.len() {
+            return Self::new(frame);
+        }
+        for surfel in self.surfels.drain(..).filter(|surfel| !surfel.is_removed()) {
+            self.cells[surfel.cell as usize] = [NONE; PER_CELL];
+        }
+        self.removed.clear();
+        Self { frame: cells, revision: 0, scan: 0, knows_rates: false, ..self }
+    }
+
     /// Everything that scans have changed.
     pub(crate) fn values(&mut self) -> Values<'_> {
         vec![

@@ -2,13 +2,13 @@
 
 use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::{Keyframe, filled};
-use super::matching::{WIDEST_M, covariance, gates, in_frame, motion_spread};
+use super::matching::{WIDEST_M, covariance, gates, in_frame, motion_spread, thinned};
 use super::settings::TrajectorySettings;
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
 use crate::calibration::Calibration;
 use crate::estimate::PoseState;
 use crate::faults::{Fault, FaultFinder};
-use crate::matcher::{Match, Prior, align};
+use crate::matcher::{Gates, Match, Prior, align};
 use crate::motion::Motion;
 use crate::scan_points::ScanPoints;
 use crate::score_grid::ScoreGrid;
@@ -43,6 +43,8 @@ const WIDE_STD_M: f64 = 0.05;
 const WIDE_STD_RAD: f64 = 0.3;
 /// Another pose must confirm more than the prediction by this factor.
 const BETTER: f64 = 1.15;
+/// The number of points that find the way to a pose.
+const ROUGH_POINTS: usize = 80;
 /// The errors of a matched motion that do not average out, m and rad.
 const MODEL_STD_M: f64 = 0.004;
 const MODEL_STD_RAD: f64 = 0.0015;
@@ -68,6 +70,8 @@ pub(super) struct FrontEnd {
     /// The older one is matched with, the younger one is only filled.
     growing: Vec<GrowingSubmap>,
     finished: Vec<FinishedSubmap>,
+    /// The memory of the last submap that was finished.
+    spare: Option<SurfelMap>,
 }
 
 /// The result of a match with a submap.
@@ -99,6 +103,7 @@ impl FrontEnd {
             keyframes: Vec::new(),
             growing: Vec::new(),
             finished: Vec::new(),
+            spare: None,
         }
     }
 
@@ -114,7 +119,7 @@ impl FrontEnd {
     /// The growing submaps as they are: there is no further reading.
     pub(super) fn end(&mut self) {
         let growing = self.growing.drain(..);
-        self.finished.extend(growing.map(|submap| submap.finish(&self.keyframes)));
+        self.finished.extend(growing.map(|submap| submap.finish(&self.keyframes).0));
     }
 
     /// The pose of a reading relative to the last keyframe of the graph, to which new keyframes are added.
@@ -227,7 +232,16 @@ impl FrontEnd {
     ) -> Option<Tracked> {
         let points = self.points.points();
         let gates = gates(self.settings.range_noise_std_m, first_m);
-        let found = align(map, points, start, Some(prior), &gates)?;
+        // Some of the points find the way, all of them the exact pose.
+        let rough = (points.len() > 2 * ROUGH_POINTS)
+            .then(|| align(map, &thinned(points, ROUGH_POINTS), start, Some(prior), &gates));
+        let found = match rough.flatten() {
+            Some(rough) => {
+                let last = Gates { first_m: gates.last_m, ..gates };
+                align(map, points, &rough.placement.pose, Some(prior), &last)?
+            }
+            None => align(map, points, start, Some(prior), &gates)?,
+        };
         let agreement = agreement(map, points, &found.placement.pose, gates.last_m);
         (agreement.confirmed_points >= LEAST_POINTS).then_some(Tracked { found, agreement })
     }
@@ -269,14 +283,16 @@ impl FrontEnd {
         let keyframe = &self.keyframes[number];
         let half = self.settings.submap_keyframes / 2;
         if self.growing.last().is_none_or(|youngest| youngest.len() >= half) {
-            self.growing.extend(GrowingSubmap::new(&keyframe.local));
+            self.growing.extend(GrowingSubmap::new(&keyframe.local, self.spare.take()));
         }
         for submap in &mut self.growing {
             submap.add(number, keyframe, self.settings.range_noise_std_m);
         }
         if self.growing.len() > 1 && self.growing[0].len() >= self.settings.submap_keyframes {
             let full = self.growing.remove(0);
-            self.finished.push(full.finish(&self.keyframes));
+            let (finished, spare) = full.finish(&self.keyframes);
+            self.finished.push(finished);
+            self.spare = Some(spare);
         }
     }
 }
