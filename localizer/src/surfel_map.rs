@@ -179,12 +179,14 @@ impl SurfelMap {
         let reach = Vector2::new(reach_m, reach_m);
         let (low, high) = (self.frame.cell_at(&(at - reach)), self.frame.cell_at(&(at + reach)));
         let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
+        let (left, right) = (low.x.max(0), high.x.min(width - 1));
+        if left > right {
+            return;
+        }
         for y in low.y.max(0)..=high.y.min(height - 1) {
-            for x in low.x.max(0)..=high.x.min(width - 1) {
-                for &index in &self.cells[(y * width + x) as usize] {
-                    if index == NONE {
-                        break;
-                    }
+            let row = (y * width) as usize;
+            for cell in &self.cells[row + left as usize..=row + right as usize] {
+                for &index in cell.iter().take_while(|index| **index != NONE) {
                     visit(index, &self.surfels[index as usize]);
                 }
             }

@@ -2,13 +2,13 @@
 
 use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::{Keyframe, filled};
-use super::matching::{WIDEST_M, covariance, gates, in_frame, motion_spread, thinned};
+use super::matching::{WIDEST_M, covariance, gates, in_frame, motion_spread};
 use super::settings::TrajectorySettings;
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
 use crate::calibration::Calibration;
 use crate::estimate::PoseState;
 use crate::faults::{Fault, FaultFinder};
-use crate::matcher::{Gates, Match, Prior, align};
+use crate::matcher::{Match, Prior, align};
 use crate::motion::Motion;
 use crate::scan_points::ScanPoints;
 use crate::score_grid::ScoreGrid;
@@ -43,8 +43,6 @@ const WIDE_STD_M: f64 = 0.05;
 const WIDE_STD_RAD: f64 = 0.3;
 /// Another pose must confirm more than the prediction by this factor.
 const BETTER: f64 = 1.15;
-/// The number of points that find the way to a pose.
-const ROUGH_POINTS: usize = 80;
 /// The errors of a matched motion that do not average out, m and rad.
 const MODEL_STD_M: f64 = 0.004;
 const MODEL_STD_RAD: f64 = 0.0015;
@@ -232,16 +230,7 @@ impl FrontEnd {
     ) -> Option<Tracked> {
         let points = self.points.points();
         let gates = gates(self.settings.range_noise_std_m, first_m);
-        // Some of the points find the way, all of them the exact pose.
-        let rough = (points.len() > 2 * ROUGH_POINTS)
-            .then(|| align(map, &thinned(points, ROUGH_POINTS), start, Some(prior), &gates));
-        let found = match rough.flatten() {
-            Some(rough) => {
-                let last = Gates { first_m: gates.last_m, ..gates };
-                align(map, points, &rough.placement.pose, Some(prior), &last)?
-            }
-            None => align(map, points, start, Some(prior), &gates)?,
-        };
+        let found = align(map, points, start, Some(prior), &gates)?;
         let agreement = agreement(map, points, &found.placement.pose, gates.last_m);
         (agreement.confirmed_points >= LEAST_POINTS).then_some(Tracked { found, agreement })
     }
