@@ -33,9 +33,8 @@ impl Standing {
     /// Adds the next scan of a laser with this pose on the robot.
     pub(crate) fn add(&mut self, mount: &Isometry2<f64>, scan: &Scan) {
         let ranges_m = &scan.ranges_m;
-        let is_same = |(known, first): &&(Isometry2<f64>, Vec<f32>)| {
-            known == mount && first.len() == ranges_m.len()
-        };
+        let is_same =
+            |(known, first): &&(Isometry2<f64>, Vec<f32>)| known == mount && first.len() == ranges_m.len();
         let Some((_, first)) = self.first.iter().find(is_same) else {
             if self.first.len() < MOST_LASERS {
                 self.first.push((*mount, ranges_m.clone()));

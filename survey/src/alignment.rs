@@ -1,7 +1,7 @@
 //! Where the frame of a later log lies in the map of the first one.
 
-use crate::permanent::permanent;
 use crate::error::SurveyError;
+use crate::permanent::permanent;
 use crate::route::{Route, frame};
 use crate::settings::SurveySettings;
 use interfaces::{GridFrame, LaserReading, heading_rad, wrap_rad};
@@ -79,6 +79,8 @@ impl Aligner {
             mapper: &self.mapper,
             localizer,
             lines: self.lines.matcher(),
+            start,
+            as_expected: Vec::new(),
             pairs: Vec::new(),
             readings: 0,
         })
@@ -92,6 +94,9 @@ pub struct Search<'a> {
     mapper: &'a Mapper,
     localizer: Localizer,
     lines: LineMatcher<'a>,
+    start: Start,
+    /// The same as `pairs`, of the readings that fit where they were expected.
+    as_expected: Vec<[Isometry2<f64>; 2]>,
     /// The pose in the map, and the pose on the route of the log, of every reading that is certain in both.
     pairs: Vec<[Isometry2<f64>; 2]>,
     readings: usize,
@@ -102,6 +107,14 @@ impl Search<'_> {
     pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) {
         self.readings += 1;
         let reading = self.settings.filtered(reading);
+        if let Start::At(start) = &self.start {
+            // Where the scan fits at once there is nothing to search, even if it does not fix the pose, as in a corridor.
+            let near = start * found.pose;
+            if let Some(exact) = self.lines.matched(&reading, &near, CELLS_STD) {
+                self.as_expected.push([exact, found.pose]);
+                return;
+            }
+        }
         let estimate = self.localizer.localize(&reading, self.mapper).estimate;
         if estimate.state == PoseState::Tracking && found.state == PoseState::Tracking {
             let exact = self.lines.matched(&reading, &estimate.pose, CELLS_STD);
@@ -115,8 +128,9 @@ impl Search<'_> {
     ///
     /// When too few readings have a certain pose in the map.
     pub fn finish(self) -> Result<Isometry2<f64>, SurveyError> {
-        let (certain, readings) = (self.pairs.len(), self.readings);
-        let turns = self.pairs.iter().map(|[map, own]| heading_rad(map) - heading_rad(own));
+        let pairs = if self.as_expected.len() > self.pairs.len() { self.as_expected } else { self.pairs };
+        let (certain, readings) = (pairs.len(), self.readings);
+        let turns = pairs.iter().map(|[map, own]| heading_rad(map) - heading_rad(own));
         let turns: Vec<f64> = turns.map(wrap_rad).collect();
         let Some(reference) = turns.first().filter(|_| certain as f64 >= LEAST_CERTAIN * readings as f64)
         else {
@@ -127,7 +141,7 @@ impl Search<'_> {
         let rotation = interfaces::rotation(reference + about);
         let offset =
             |[map, own]: &[Isometry2<f64>; 2]| map.translation.vector - rotation * own.translation.vector;
-        let (x, y): (Vec<f64>, Vec<f64>) = self.pairs.iter().map(offset).map(|at| (at.x, at.y)).unzip();
+        let (x, y): (Vec<f64>, Vec<f64>) = pairs.iter().map(offset).map(|at| (at.x, at.y)).unzip();
         let translation = Vector2::new(median(x.into_iter()), median(y.into_iter()));
         Ok(Isometry2::from_parts(translation.into(), rotation))
     }

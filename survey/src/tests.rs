@@ -248,7 +248,10 @@ fn lasers_that_stand_are_compared() {
         .unwrap();
     let moved = route_of(&log("moved.mcap", &readings[number], 100.0)).unwrap();
     let off = expected.inv_mul(&moved);
-    assert!(off.translation.vector.norm() < 0.05 && heading_rad(&off).abs() < 0.03, "{moved}, not {expected}");
+    assert!(
+        off.translation.vector.norm() < 0.05 && heading_rad(&off).abs() < 0.03,
+        "{moved}, not {expected}"
+    );
     // A place of which the first log shows nothing.
     let other = LaserReading { scan: scan(vec![1.0; 360]), ..readings[0].clone() };
     let refused = route_of(&log("other.mcap", &other, 100.0)).unwrap_err();

@@ -193,7 +193,9 @@ fn a_robot_stands_if_neither_odometry_nor_scans_move() {
         let line = |index: u32| {
             let (time_s, x) = (f64::from(index), step_m * f64::from(index));
             let ranges = format!("{} ", 2.0 + range_step_m * f64::from(index)).repeat(180);
-            format!("ODOM {x} 0 0 0 0 0 {time_s} h {time_s}\nFLASER 180 {ranges}0 0 0 0 0 0 {time_s} h {time_s}\n")
+            format!(
+                "ODOM {x} 0 0 0 0 0 {time_s} h {time_s}\nFLASER 180 {ranges}0 0 0 0 0 0 {time_s} h {time_s}\n"
+            )
         };
         (1..20).map(line).collect::<String>()
     };

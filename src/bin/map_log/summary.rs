@@ -81,7 +81,8 @@ impl Summary {
             settings: job.settings.clone(),
             logs: job.sources.iter().map(|source| source.name.clone()).collect(),
             scans: learned.readings.iter().sum(),
-            duration_s: has_times.then(|| used().filter_map(|poses| poses.last()).map(|last| last.time_s).sum()),
+            duration_s: has_times
+                .then(|| used().filter_map(|poses| poses.last()).map(|last| last.time_s).sum()),
             notes: job.sources.iter().flat_map(Source::notes).cloned().collect(),
             trajectory_m: used().map(length_m).sum(),
             loops: routes.iter().map(|route| route.loops).sum(),
