@@ -159,11 +159,8 @@ fn a_later_log_finds_its_place_in_the_first_one() {
     let mut search = aligner.search(Start::Unknown).unwrap();
     later.iter().zip(&second.poses).for_each(|(reading, found)| search.add(reading.clone(), found));
     let second = second.moved(&search.finish().unwrap());
-    assert!(
-        largest_error_m(&second, &truth[0], later_truth) < 0.15,
-        "{}",
-        largest_error_m(&second, &truth[0], later_truth)
-    );
+    let error_m = largest_error_m(&second, &truth[0], later_truth);
+    assert!(error_m < 0.04, "{error_m}");
 
     // A place that is another one is refused.
     let mut search = aligner.search(Start::Unknown).unwrap();
@@ -202,7 +199,7 @@ fn the_first_pass_finds_the_routes_of_all_logs_in_one_frame() {
     assert_eq!(stages, [of_a_log(0, Stage::Map), of_a_log(1, Stage::Search)].concat());
     for (route, part) in found.unwrap().iter().zip(&parts) {
         let error_m = largest_error_m(route, &truth[0], &truth[part.clone()]);
-        assert!(error_m < 0.15, "{error_m}");
+        assert!(error_m < 0.04, "{error_m}");
     }
 
     let mut calls = 0;
