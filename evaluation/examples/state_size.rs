@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         copies_ms.sort_by(f64::total_cmp);
         let copy = trial.snapshot(&facts);
         let start = Instant::now();
-        let bytes = copy.into_state().to_bytes();
+        let bytes = copy.into_state().to_bytes()?;
         let write_ms = 1e3 * start.elapsed().as_secs_f64();
         let known =
             trial.mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();

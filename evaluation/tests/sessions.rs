@@ -26,7 +26,7 @@ fn trial(spec: &WorldSpec, seed: u64, settings: &PhysicsSettings, policy: &str) 
 
 /// The state after it was written and read.
 fn again(state: &State) -> State {
-    State::from_bytes(&state.to_bytes()).unwrap()
+    State::from_bytes(&state.to_bytes().unwrap()).unwrap()
 }
 
 #[test]

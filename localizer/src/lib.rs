@@ -59,4 +59,6 @@ pub use estimate::{Localized, PoseEstimate, PoseState, Start};
 pub use given_poses::GivenPoses;
 pub use localizer::Localizer;
 pub use settings::{LocalizerSettings, OdometryTrust};
-pub use trajectory::{Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
+pub use trajectory::{
+    LineMap, LineMatcher, Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings,
+};

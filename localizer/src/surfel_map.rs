@@ -96,6 +96,19 @@ impl SurfelMap {
         }
     }
 
+    /// The map without its surfels, for a frame of the same size: most cells are empty and stay as they are.
+    pub(crate) fn emptied(mut self, frame: &GridFrame) -> Self {
+        let cells = coarse(frame);
+        if cells.len() != self.cells.len() {
+            return Self::new(frame);
+        }
+        for surfel in self.surfels.drain(..).filter(|surfel| !surfel.is_removed()) {
+            self.cells[surfel.cell as usize] = [NONE; PER_CELL];
+        }
+        self.removed.clear();
+        Self { frame: cells, revision: 0, scan: 0, knows_rates: false, ..self }
+    }
+
     /// Everything that scans have changed.
     pub(crate) fn values(&mut self) -> Values<'_> {
         vec![
@@ -166,12 +179,14 @@ impl SurfelMap {
         let reach = Vector2::new(reach_m, reach_m);
         let (low, high) = (self.frame.cell_at(&(at - reach)), self.frame.cell_at(&(at + reach)));
         let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
+        let (left, right) = (low.x.max(0), high.x.min(width - 1));
+        if left > right {
+            return;
+        }
         for y in low.y.max(0)..=high.y.min(height - 1) {
-            for x in low.x.max(0)..=high.x.min(width - 1) {
-                for &index in &self.cells[(y * width + x) as usize] {
-                    if index == NONE {
-                        break;
-                    }
+            let row = (y * width) as usize;
+            for cell in &self.cells[row + left as usize..=row + right as usize] {
+                for &index in cell.iter().take_while(|index| **index != NONE) {
                     visit(index, &self.surfels[index as usize]);
                 }
             }

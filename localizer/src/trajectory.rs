@@ -16,6 +16,7 @@ mod free_space;
 mod front_end;
 mod graph;
 mod keyframe;
+mod line_map;
 mod loops;
 mod matching;
 mod odometry_drift;
@@ -26,6 +27,7 @@ mod settings;
 mod sparse;
 mod submap;
 
+pub use line_map::{LineMap, LineMatcher};
 pub use settings::TrajectorySettings;
 
 use crate::estimate::PoseState;

@@ -20,6 +20,7 @@ pub(crate) use files::{BagFile, in_folder};
 
 use crate::choice::TopicChoice;
 use crate::error::LogError;
+use crate::standing::Standing;
 use crate::summary::{LogSummary, since_epoch};
 use crate::times::{self, Times};
 use interfaces::LaserReading;
@@ -27,7 +28,7 @@ use inventory::Inventory;
 use message::{Selection, Topic};
 use messages::Messages;
 use nalgebra::Isometry2;
-use plan::Plan;
+use plan::{Motion, Plan};
 use readings::{Clock, Counts, RawReadings};
 use std::sync::Arc;
 
@@ -52,7 +53,7 @@ impl Bag {
         let unusable = |why| LogError::Unusable { file: file.to_owned(), why };
         let inventory = Inventory::of(&files)?;
         notes.extend(inventory.notes.iter().cloned());
-        let plan = Arc::new(Plan::new(&inventory, choice, &mut notes).map_err(unusable)?);
+        let mut plan = Arc::new(Plan::new(&inventory, choice, &mut notes).map_err(unusable)?);
         let (stamp_ns, log_ns) = inventory.begin_ns.unwrap_or_default();
         let mut clock = Clock::Stamps(stamp_ns);
         let mut survey = Survey::of(&files, &plan, clock)?;
@@ -65,7 +66,7 @@ impl Bag {
                 (clock, survey) = (Clock::Recording(log_ns), by_recording);
             }
         }
-        let Survey { raw_begin_s, times, counts, odom_origin } = survey;
+        let Survey { raw_begin_s, times, counts, odom_origin, stands } = survey;
         if times.times_s.is_empty() {
             let why = counts.first_invalid.unwrap_or_default();
             return Err(unusable(format!("no scan is valid; the first: {why}")));
@@ -83,13 +84,17 @@ impl Bag {
             scans: times.times_s.len(),
             duration_s: times.times_s.last().copied().unwrap_or_default(),
             has_times: times.has_times,
-            begin_s,
+            begin_s: begin_s.filter(|_| times.has_times),
             pose_source: plan.pose_source.clone(),
             odometry_poses: counts.poses,
+            stands,
             odom_origin,
             scan_topics,
             notes,
         };
+        if stands {
+            Arc::make_mut(&mut plan).motion = Motion::Standing;
+        }
         Ok(Self { files: files.into(), plan, clock, times_s: times.times_s.into(), summary })
     }
 
@@ -117,18 +122,22 @@ struct Survey {
     times: Times,
     counts: Counts,
     odom_origin: Isometry2<f64>,
+    /// Whether the laser stands.
+    stands: bool,
 }
 
 impl Survey {
     fn of(files: &[BagFile], plan: &Arc<Plan>, clock: Clock) -> Result<Self, LogError> {
         let mut raw = raw_readings(files, plan, clock);
-        let mut raw_s = Vec::new();
+        let (mut raw_s, mut standing) = (Vec::new(), Standing::default());
         while let Some(reading) = raw.next_reading()? {
             raw_s.push(reading.time_s);
+            standing.add(&reading.mount, &reading.scan);
         }
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let odom_origin = raw.origin();
-        Ok(Self { raw_begin_s, times: times::repaired(&raw_s), counts: raw.counts, odom_origin })
+        let stands = raw.stands() && standing.looks_so();
+        Ok(Self { raw_begin_s, times: times::repaired(&raw_s), counts: raw.counts, odom_origin, stands })
     }
 }
 

@@ -16,6 +16,7 @@ mod log;
 mod mcap_out;
 mod odometry;
 pub mod ros;
+mod standing;
 mod summary;
 mod times;
 

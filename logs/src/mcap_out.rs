@@ -2,6 +2,7 @@
 
 mod channels;
 mod grids;
+mod lasers;
 mod schemas;
 #[cfg(test)]
 mod tests;
@@ -14,6 +15,7 @@ use crate::ros::{
 use channels::Channels;
 use grids::Grids;
 use interfaces::{Event, Grid, LaserReading, Twist, heading_rad};
+use lasers::Laser;
 use nalgebra::{Isometry2, Point2};
 use std::io::{Seek, Write};
 
@@ -46,8 +48,7 @@ const POINT_BYTES: u32 = 16;
 pub struct McapWriter<W: Write + Seek> {
     channels: Channels<W>,
     begin_ns: i64,
-    /// The lasers: where they are mounted.
-    mounts: Vec<Isometry2<f64>>,
+    lasers: Vec<Laser>,
     map_to_odom: Isometry2<f64>,
     grids: Grids,
     /// The time of the last odometry, ns.
@@ -67,7 +68,7 @@ impl<W: Write + Seek> McapWriter<W> {
             begin_ns: (begin_s.floor() as i64)
                 .saturating_mul(1_000_000_000)
                 .saturating_add(((begin_s - begin_s.floor()) * 1e9).round() as i64),
-            mounts: Vec::new(),
+            lasers: Vec::new(),
             map_to_odom: Isometry2::identity(),
             grids: Grids::default(),
             last_odometry_ns: None,
@@ -77,7 +78,7 @@ impl<W: Write + Seek> McapWriter<W> {
     /// Writes a reading: scan, odometry and transforms. A scan that sweeps comes with the odometry while it was measured.
     pub fn reading(&mut self, reading: &LaserReading) -> Result<(), LogError> {
         let end_ns = self.ns(reading.time_s);
-        let laser = self.laser(end_ns, &reading.mount)?;
+        let laser = self.laser(end_ns, reading)?;
         self.odometry(reading, end_ns)?;
         let topic = numbered("/scan", laser);
         let scan = scan_message(reading, numbered("laser", laser), end_ns);
@@ -164,14 +165,21 @@ impl<W: Write + Seek> McapWriter<W> {
         self.begin_ns.saturating_add((time_s * 1e9).round() as i64)
     }
 
-    /// The number of the laser that is mounted like this. A new one is written as a static transform.
-    fn laser(&mut self, ns: i64, mount: &Isometry2<f64>) -> Result<usize, LogError> {
-        if let Some(laser) = self.mounts.iter().position(|known| known == mount) {
+    /// The number of the laser of a reading. A new one is written as a static transform, one that has moved on the robot as
+    /// a transform.
+    fn laser(&mut self, ns: i64, reading: &LaserReading) -> Result<usize, LogError> {
+        let now = Laser::of(reading);
+        let known = self.lasers.iter().position(|laser| laser.mount == now.mount);
+        if let Some(laser) = known.or_else(|| now.moved_from(&self.lasers)) {
+            if self.lasers[laser].mount != now.mount {
+                self.lasers[laser].mount = now.mount;
+                self.transforms("/tf", ns, &[(BASE, &numbered("laser", laser), now.mount)])?;
+            }
             return Ok(laser);
         }
-        self.mounts.push(*mount);
-        let laser = self.mounts.len() - 1;
-        self.transforms("/tf_static", ns, &[(BASE, &numbered("laser", laser), *mount)])?;
+        let (laser, mount) = (self.lasers.len(), now.mount);
+        self.lasers.push(now);
+        self.transforms("/tf_static", ns, &[(BASE, &numbered("laser", laser), mount)])?;
         Ok(laser)
     }
 

@@ -1,5 +1,6 @@
 //! Odometry: the sum of its motions, and its pose at the time of a scan.
 
+use crate::standing::{LEAST_MOTION_M, LEAST_MOTION_RAD};
 use interfaces::{Twist, VelocitySample, heading_rad, wrap_rad};
 use nalgebra::Isometry2;
 
@@ -18,6 +19,9 @@ pub struct Odometry {
     written: Option<Isometry2<f64>>,
     /// The times (s) and the sums of the motions, the newest last.
     samples: Vec<(f64, Isometry2<f64>)>,
+    /// The largest distance from the first pose, m, and the largest turn since then, rad.
+    farthest_m: f64,
+    farthest_rad: f64,
 }
 
 impl Odometry {
@@ -28,6 +32,8 @@ impl Odometry {
         self.written = Some(pose);
         let mut at = self.last() * motion;
         at.rotation.renormalize();
+        self.farthest_m = self.farthest_m.max(at.translation.vector.norm());
+        self.farthest_rad = self.farthest_rad.max(heading_rad(&at).abs());
         if self.samples.len() == KEPT {
             self.samples.remove(0);
         }
@@ -37,6 +43,11 @@ impl Odometry {
     /// The first pose, as written: the origin of all others.
     pub fn origin(&self) -> Isometry2<f64> {
         self.first.unwrap_or_default()
+    }
+
+    /// Whether the robot has not moved so far, except for a drift.
+    pub(crate) fn stands(&self) -> bool {
+        self.farthest_m < LEAST_MOTION_M && self.farthest_rad < LEAST_MOTION_RAD
     }
 
     /// Motions are measured from this pose on.

@@ -17,6 +17,9 @@ pub struct LogSummary {
     pub pose_source: PoseSource,
     /// The number of poses of the odometry, without those that only define a new origin.
     pub odometry_poses: usize,
+    /// Whether the laser stands: there is no odometry, or its poses stay within 2 cm and 0.02 rad, and most ranges of the
+    /// scans stay as they are. All readings of a log that stands have the same pose.
+    pub stands: bool,
     /// The first pose of the odometry in its own frame, m and rad: `odom_origin * pose` is the pose of a reading as the log
     /// has it, up to the point where the log sets a new origin.
     pub odom_origin: Isometry2<f64>,
@@ -40,7 +43,7 @@ pub enum PoseSource {
         /// The frame of the robot.
         base_frame: String,
     },
-    /// Nothing in the log moves: the laser stands, and all poses are the same.
+    /// No odometry and no transform moves: all poses are the same.
     Standing,
 }
 

@@ -1,7 +1,7 @@
 //! The file of a state, and the thread that writes it.
 
 use crate::format::{State, StateError};
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
@@ -118,7 +118,7 @@ impl StateFile {
 
 /// Replaces the file at once and completely, or not at all.
 fn write(path: &Path, state: &State) -> io::Result<()> {
-    let bytes = state.to_bytes();
+    let bytes = state.to_bytes().map_err(io::Error::other)?;
     let unfinished = unfinished_name(path);
     let mut file = open_unfinished(&unfinished)?;
     let written = file.set_len(0).and_then(|()| file.write_all(&bytes)).and_then(|()| file.sync_all());
@@ -134,8 +134,17 @@ fn write(path: &Path, state: &State) -> io::Result<()> {
 fn open_unfinished(unfinished: &Path) -> io::Result<File> {
     // Cut off only when it is locked: it may be the file of a run that goes on.
     let file = File::options().write(true).create(true).truncate(false).open(unfinished)?;
-    file.try_lock().map_err(|_| io::Error::other("another run is writing it"))?;
+    locked(file.try_lock())?;
     Ok(file)
+}
+
+/// Whether the file can be written, after a lock was tried.
+fn locked(tried: Result<(), TryLockError>) -> io::Result<()> {
+    match tried {
+        // Not every file system has locks.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(io::Error::other("another run is writing it")),
+    }
 }
 
 /// Brings the new name to the disk as well. Not every file system can do it; the file is complete under one of its names.

@@ -36,6 +36,14 @@ pub enum StateError {
     /// The state was saved by a program that has no such part.
     #[error("the state was saved by another program: it has no part `{0}`")]
     NoSection(String),
+    /// The state is too large for a file.
+    #[error(
+        "the state has {bytes} bytes, and a state file holds {MAX_BODY} at most; a map of fewer cells is smaller"
+    )]
+    TooLarge {
+        /// The bytes of the body.
+        bytes: usize,
+    },
     /// The state belongs to another run.
     #[error("the state is of another run: `{name}` is {saved} there, and {expected} here")]
     OtherFacts {
@@ -96,12 +104,17 @@ impl State {
     }
 
     /// The state as the bytes of a file.
-    pub fn to_bytes(&self) -> Vec<u8> {
+    ///
+    /// # Errors
+    ///
+    /// When the state is too large.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, StateError> {
         // Strings and lists always can be written. An empty body would be refused.
         let body = postcard::to_stdvec(self).unwrap_or_default();
+        check_length(body.len())?;
         let packed = lz4_flex::compress_prepend_size(&body);
         let checksum = xxh3_64_with_seed(&packed, VERSION.into());
-        [&Self::MAGIC[..], &VERSION.to_le_bytes(), &checksum.to_le_bytes(), &packed].concat()
+        Ok([&Self::MAGIC[..], &VERSION.to_le_bytes(), &checksum.to_le_bytes(), &packed].concat())
     }
 
     /// The state in the bytes of a file.
@@ -121,11 +134,26 @@ impl State {
         if found != VERSION {
             return Err(StateError::OtherVersion { found });
         }
-        let length = packed.first_chunk().map_or(usize::MAX, |length| u32::from_le_bytes(*length) as usize);
-        if length > MAX_BODY {
-            return Err(StateError::Damaged);
-        }
+        let length = packed.first_chunk().ok_or(StateError::Damaged)?;
+        check_length(u32::from_le_bytes(*length) as usize)?;
         let body = lz4_flex::decompress_size_prepended(packed).map_err(|_| StateError::Damaged)?;
         postcard::from_bytes(&body).map_err(|_| StateError::Damaged)
+    }
+}
+
+fn check_length(bytes: usize) -> Result<(), StateError> {
+    if bytes > MAX_BODY { Err(StateError::TooLarge { bytes }) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_that_is_too_large_is_refused() {
+        assert_eq!(check_length(MAX_BODY), Ok(()));
+        let error = check_length(MAX_BODY + 1).unwrap_err().to_string();
+        let expected = "the state has 2147483649 bytes, and a state file holds 2147483648 at most; a map of fewer cells is smaller";
+        assert_eq!(error, expected);
     }
 }

@@ -1,10 +1,13 @@
 //! Where the frame of a later log lies in the map of the first one.
 
+use crate::error::SurveyError;
 use crate::permanent::permanent;
-use crate::route::{Route, SurveyError, frame};
+use crate::route::{Route, frame};
 use crate::settings::SurveySettings;
 use interfaces::{GridFrame, LaserReading, heading_rad, wrap_rad};
-use localizer::{Localizer, LocalizerSettings, PoseState, Start, TrajectoryPose};
+use localizer::{
+    LineMap, LineMatcher, Localizer, LocalizerSettings, PoseState, Start, TrajectoryPose, TrajectorySettings,
+};
 use mapper::{Mapper, ReadingError};
 use nalgebra::{Isometry2, Vector2};
 
@@ -12,12 +15,16 @@ use nalgebra::{Isometry2, Vector2};
 const AROUND_M: f64 = 10.0;
 /// At least this share of the readings must have a certain pose in the map of the first log.
 const LEAST_CERTAIN: f64 = 0.3;
+/// The standard deviations of a pose in the map of cells, m and rad.
+const CELLS_STD: (f64, f64) = (0.05, 0.01);
 
 /// The map of the first log, in which later logs find their place.
 #[derive(Debug)]
 pub struct Aligner {
     settings: SurveySettings,
     mapper: Mapper,
+    /// The surfaces, which are more exact than cells.
+    lines: LineMap,
 }
 
 impl Aligner {
@@ -31,9 +38,11 @@ impl Aligner {
         let around = (AROUND_M / extent.resolution_m()).ceil();
         let origin = extent.origin() - Vector2::repeat(around * extent.resolution_m());
         let sides = [extent.width(), extent.height()].map(|cells| cells + 2 * around as usize);
-        let larger = GridFrame::new(origin, extent.resolution_m(), sides[0], sides[1]);
-        let mapper = Mapper::new(&settings.mapper, larger.ok_or(SurveyError::NoPlace)?)?;
-        Ok(Self { settings: settings.clone(), mapper })
+        // Around a place of the largest size, there is no space left.
+        let frame = GridFrame::new(origin, extent.resolution_m(), sides[0], sides[1]).unwrap_or(extent);
+        let mapper = Mapper::new(&settings.mapper, frame)?;
+        let lines = LineMap::new(&TrajectorySettings::default(), &frame)?;
+        Ok(Self { settings: settings.clone(), mapper, lines })
     }
 
     /// Adds a reading of the first log, with the pose that was found for it.
@@ -43,6 +52,9 @@ impl Aligner {
     /// When the mapper refuses the reading.
     pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) -> Result<(), ReadingError> {
         let mut reading = self.settings.filtered(reading);
+        if found.state == PoseState::Tracking {
+            self.lines.add(&reading, &found.pose);
+        }
         reading.pose = found.pose;
         match found.state {
             PoseState::Tracking => self.mapper.update(&reading)?,
@@ -51,21 +63,24 @@ impl Aligner {
         Ok(())
     }
 
-    /// Begins the search for a later log.
+    /// Begins the search for a later log, from the pose of its first reading in the map if that is known.
     ///
     /// # Errors
     ///
     /// When a setting is out of range.
-    pub fn search(&self) -> Result<Search<'_>, SurveyError> {
+    pub fn search(&self, start: Start) -> Result<Search<'_>, SurveyError> {
         let settings = LocalizerSettings {
             range_noise_std_m: self.settings.mapper.steady.range_noise_std_m,
             ..LocalizerSettings::default()
         };
-        let localizer = Localizer::in_map(&settings, &permanent(&self.mapper), Start::Unknown)?;
+        let localizer = Localizer::in_map(&settings, &permanent(&self.mapper), start)?;
         Ok(Search {
             settings: &self.settings,
             mapper: &self.mapper,
             localizer,
+            lines: self.lines.matcher(),
+            start,
+            as_expected: Vec::new(),
             pairs: Vec::new(),
             readings: 0,
         })
@@ -78,6 +93,10 @@ pub struct Search<'a> {
     settings: &'a SurveySettings,
     mapper: &'a Mapper,
     localizer: Localizer,
+    lines: LineMatcher<'a>,
+    start: Start,
+    /// The same as `pairs`, of the readings that fit where they were expected.
+    as_expected: Vec<[Isometry2<f64>; 2]>,
     /// The pose in the map, and the pose on the route of the log, of every reading that is certain in both.
     pairs: Vec<[Isometry2<f64>; 2]>,
     readings: usize,
@@ -87,9 +106,19 @@ impl Search<'_> {
     /// Adds the next reading of the log, with its pose on the route of this log.
     pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) {
         self.readings += 1;
-        let estimate = self.localizer.localize(&self.settings.filtered(reading), self.mapper).estimate;
+        let reading = self.settings.filtered(reading);
+        if let Start::At(start) = &self.start {
+            // Where the scan fits at once there is nothing to search, even if it does not fix the pose, as in a corridor.
+            let near = start * found.pose;
+            if let Some(exact) = self.lines.matched(&reading, &near, CELLS_STD) {
+                self.as_expected.push([exact, found.pose]);
+                return;
+            }
+        }
+        let estimate = self.localizer.localize(&reading, self.mapper).estimate;
         if estimate.state == PoseState::Tracking && found.state == PoseState::Tracking {
-            self.pairs.push([estimate.pose, found.pose]);
+            let exact = self.lines.matched(&reading, &estimate.pose, CELLS_STD);
+            self.pairs.push([exact.unwrap_or(estimate.pose), found.pose]);
         }
     }
 
@@ -99,8 +128,9 @@ impl Search<'_> {
     ///
     /// When too few readings have a certain pose in the map.
     pub fn finish(self) -> Result<Isometry2<f64>, SurveyError> {
-        let (certain, readings) = (self.pairs.len(), self.readings);
-        let turns = self.pairs.iter().map(|[map, own]| heading_rad(map) - heading_rad(own));
+        let pairs = if self.as_expected.len() > self.pairs.len() { self.as_expected } else { self.pairs };
+        let (certain, readings) = (pairs.len(), self.readings);
+        let turns = pairs.iter().map(|[map, own]| heading_rad(map) - heading_rad(own));
         let turns: Vec<f64> = turns.map(wrap_rad).collect();
         let Some(reference) = turns.first().filter(|_| certain as f64 >= LEAST_CERTAIN * readings as f64)
         else {
@@ -111,7 +141,7 @@ impl Search<'_> {
         let rotation = interfaces::rotation(reference + about);
         let offset =
             |[map, own]: &[Isometry2<f64>; 2]| map.translation.vector - rotation * own.translation.vector;
-        let (x, y): (Vec<f64>, Vec<f64>) = self.pairs.iter().map(offset).map(|at| (at.x, at.y)).unzip();
+        let (x, y): (Vec<f64>, Vec<f64>) = pairs.iter().map(offset).map(|at| (at.x, at.y)).unzip();
         let translation = Vector2::new(median(x.into_iter()), median(y.into_iter()));
         Ok(Isometry2::from_parts(translation.into(), rotation))
     }

@@ -1,3 +1,4 @@
+use crate::error::SurveyError;
 use interfaces::{GridFrame, LaserReading};
 use nalgebra::{Isometry2, Point2, Vector2};
 
@@ -6,8 +7,6 @@ use nalgebra::{Isometry2, Point2, Vector2};
 const DIRECTIONS: usize = 16;
 /// Space around the hits, m: the border of a map is not seen by chance.
 const MARGIN_M: f64 = 0.5;
-/// The largest number of cells along a side.
-const MOST_CELLS: f64 = 1e6;
 
 /// The hits of a reading that are farthest from the robot in some directions, in the frame of the robot, m. Single
 /// precision saves memory: there is one per reading of a log.
@@ -38,19 +37,23 @@ impl Reach {
 }
 
 /// The cells that cover what was hit from these poses. The cells lie on multiples of their side, so that two surveys of
-/// a place have the same cells. `None` without a pose, and where the frame has no valid size.
+/// a place have the same cells.
 pub(crate) fn frame<'a>(
     reaches: impl Iterator<Item = (&'a Isometry2<f64>, &'a Reach)>,
     resolution_m: f64,
-) -> Option<GridFrame> {
+) -> Result<GridFrame, SurveyError> {
     let points = reaches.flat_map(|(pose, reach)| reach.hits().map(move |hit| pose * hit));
     let spans = points.map(|point| (point, point));
-    let (low, high) = spans.reduce(|(low, high), (point, _)| (low.inf(&point), high.sup(&point)))?;
+    let low_and_high = spans.reduce(|(low, high), (point, _)| (low.inf(&point), high.sup(&point)));
+    let (low, high) = low_and_high.ok_or(SurveyError::NoPlace)?;
     let low = low.map(|m| ((m - MARGIN_M) / resolution_m).floor());
     let high = high.map(|m| ((m + MARGIN_M) / resolution_m).ceil());
     let cells = high - low;
-    if !(cells.x < MOST_CELLS && cells.y < MOST_CELLS) {
-        return None;
-    }
-    GridFrame::new(low * resolution_m, resolution_m, cells.x as usize, cells.y as usize)
+    let too_large = || SurveyError::TooLarge {
+        width_m: cells.x * resolution_m,
+        height_m: cells.y * resolution_m,
+        resolution_m,
+    };
+    // Numbers that are too large become the largest ones.
+    GridFrame::new(low * resolution_m, resolution_m, cells.x as usize, cells.y as usize).ok_or_else(too_large)
 }

@@ -16,6 +16,7 @@
 
 mod alignment;
 mod change_log;
+mod error;
 mod extent;
 mod masks;
 mod noise;
@@ -31,11 +32,12 @@ mod tests;
 
 pub use alignment::{Aligner, Search};
 pub use change_log::ChangeLog;
+pub use error::SurveyError;
 pub use masks::{CHANGE_HORIZON_S, keepout_mask, speed_mask};
 pub use passes::{PassError, RouteProgress, Stage, learn, routes};
 pub use permanent::permanent;
 pub use places::{Place, PlaceRates, places};
 pub use replay::{FoundPoses, NoPilot, Replay};
-pub use route::{FirstPass, Route, SurveyError, frame};
+pub use route::{FirstPass, Route, frame, length_m, uncertain};
 pub use settings::{PoseMode, SurveySettings};
 pub use shadows::remove_shadows;

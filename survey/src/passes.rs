@@ -1,12 +1,15 @@
 //! Both passes over the logs of one place.
 
 use crate::alignment::Aligner;
+use crate::error::SurveyError;
 use crate::replay::{NoPilot, Replay};
-use crate::route::{FirstPass, Route, SurveyError};
+use crate::route::{FirstPass, Route};
 use crate::settings::{PoseMode, SurveySettings};
 use interfaces::LaserReading;
+use localizer::Start;
 use logs::{Log, LogError};
 use mapper::{Mapper, ReadingError};
+use nalgebra::Isometry2;
 use robot::{Belief, Localization, explore};
 use std::ops::ControlFlow;
 
@@ -59,8 +62,8 @@ pub struct RouteProgress {
     pub readings: usize,
 }
 
-/// The first pass over the logs of one place: the route of every log, in the frame of the first one. Only trajectories
-/// that are found can be aligned: with other poses every log keeps its own frame.
+/// The first pass over the logs of one place: the route of every log, in the frame of the first one. Trajectories that are
+/// found are aligned, and logs of lasers that stand; with other poses every log keeps its own frame.
 ///
 /// `watch` is called when a stage begins and after each of its readings, and interrupts the pass with a `Break`.
 ///
@@ -73,6 +76,10 @@ pub fn routes(
     mut watch: impl FnMut(RouteProgress) -> ControlFlow<()>,
 ) -> Result<Vec<Route>, PassError> {
     let is_localized = settings.pose == PoseMode::Localized;
+    let all_stand = logs.iter().all(|log| log.summary().stands);
+    let is_aligned = logs.len() > 1 && (is_localized || all_stand);
+    // Most lasers that stand are where they were.
+    let start = if all_stand { Start::At(Isometry2::identity()) } else { Start::Unknown };
     let mut routes = Vec::new();
     let mut aligner: Option<Aligner> = None;
     for (number, log) in logs.iter().enumerate() {
@@ -97,7 +104,7 @@ pub fn routes(
             watch(Stage::Loops, route.poses.len())?;
         }
         if let Some(aligner) = &aligner {
-            let mut search = aligner.search()?;
+            let mut search = aligner.search(start)?;
             each_reading(
                 log,
                 |readings| watch(Stage::Search, readings),
@@ -109,7 +116,7 @@ pub fn routes(
                 },
             )?;
             route = route.moved(&search.finish().map_err(|why| PassError::Alignment { log: number, why })?);
-        } else if is_localized && logs.len() > 1 {
+        } else if is_aligned {
             let mut first = Aligner::new(settings, &route)?;
             each_reading(
                 log,

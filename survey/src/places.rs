@@ -2,6 +2,7 @@
 
 use crate::ChangeLog;
 use crate::permanent::share_blocked;
+use interfaces::{Cell, GridFrame};
 use mapper::Mapper;
 use nalgebra::Point2;
 use serde::Serialize;
@@ -11,6 +12,8 @@ use std::collections::BTreeSet;
 const APART_M: f64 = 0.3;
 /// A place has at least this area, m²: less is noise of the laser at an edge.
 const LEAST_M2: f64 = 0.02;
+/// A larger place is divided, m: in a room full of people all changes are connected.
+const MOST_M: f64 = 3.0;
 /// The probability with which the interval contains the rate.
 const MASS: f64 = 0.9;
 const HOUR_S: f64 = 3600.0;
@@ -56,10 +59,11 @@ pub fn places(mapper: &Mapper, log: &ChangeLog) -> Vec<Place> {
     let mut left: BTreeSet<usize> = mapper.changed().collect();
     let mut found = Vec::new();
     while let Some(first) = left.pop_first() {
-        let cells = connected_cells(mapper, first, &mut left);
-        let area_m2 = cells.len() as f64 * mapper.frame().resolution_m().powi(2);
-        if area_m2 >= LEAST_M2 {
-            found.extend(place(mapper, log, &cells, area_m2));
+        for cells in divided(mapper.frame(), connected_cells(mapper, first, &mut left)) {
+            let area_m2 = cells.len() as f64 * mapper.frame().resolution_m().powi(2);
+            if area_m2 >= LEAST_M2 {
+                found.extend(place(mapper, log, &cells, area_m2));
+            }
         }
     }
     let activity = |place: &Place| {
@@ -79,12 +83,40 @@ fn connected_cells(mapper: &Mapper, first: usize, left: &mut BTreeSet<usize>) ->
         next += 1;
         for y in -reach..=reach {
             for x in -reach..=reach {
-                let beside = interfaces::Cell { x: cell.x + x, y: cell.y + y };
+                let beside = Cell { x: cell.x + x, y: cell.y + y };
                 cells.extend(frame.index(beside).filter(|index| left.remove(index)));
             }
         }
     }
     cells
+}
+
+/// Cells in groups that are at most [`MOST_M`] long: a longer group is cut across its longer side, in the middle half of it,
+/// where the fewest cells are.
+fn divided(frame: &GridFrame, cells: Vec<usize>) -> Vec<Vec<usize>> {
+    let most = (MOST_M / frame.resolution_m()).round().max(1.0) as i32;
+    let at = |index: usize| frame.cell(index);
+    let span = |of: &dyn Fn(Cell) -> i32| {
+        let places = || cells.iter().map(|index| of(at(*index)));
+        (places().min().unwrap_or_default(), places().max().unwrap_or_default())
+    };
+    let [x, y]: [&dyn Fn(Cell) -> i32; 2] = [&|cell| cell.x, &|cell| cell.y];
+    let length = |(low, high): (i32, i32)| high - low + 1;
+    let along = if length(span(x)) >= length(span(y)) { x } else { y };
+    let (low, high) = span(along);
+    if length((low, high)) <= most {
+        return vec![cells];
+    }
+    let mut counts = vec![0_usize; length((low, high)) as usize];
+    cells.iter().for_each(|index| counts[(along(at(*index)) - low) as usize] += 1);
+    let quarter = counts.len() / 4;
+    let middle = quarter.max(1)..(counts.len() - quarter);
+    let half = counts.len() / 2;
+    // Of two equal ones, the one nearer to the middle.
+    let cut = middle.min_by_key(|line| (counts[*line], line.abs_diff(half))).unwrap_or(half) as i32 + low;
+    let (before, after): (Vec<usize>, Vec<usize>) =
+        cells.iter().copied().partition(|index| along(at(*index)) < cut);
+    [before, after].into_iter().flat_map(|part| divided(frame, part)).collect()
 }
 
 fn place(mapper: &Mapper, log: &ChangeLog, cells: &[usize], area_m2: f64) -> Option<Place> {
@@ -116,4 +148,26 @@ fn place(mapper: &Mapper, log: &ChangeLog, cells: &[usize], area_m2: f64) -> Opt
         changes: cells.iter().map(|index| mapper.statistics(*index).events()).max()?,
         rates: Some(rates),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_place_is_cut_where_little_changes() {
+        let frame = GridFrame::new(Point2::origin(), 0.1, 80, 10).unwrap();
+        // Two areas, and a line between them.
+        let is_in = |cell: Cell| !(35..40).contains(&cell.x) || cell.y == 4;
+        let cells: Vec<usize> = (0..frame.len()).filter(|index| is_in(frame.cell(*index))).collect();
+        let groups = divided(&frame, cells.clone());
+        assert_eq!(groups.iter().map(Vec::len).sum::<usize>(), cells.len());
+        for group in &groups {
+            let columns: BTreeSet<i32> = group.iter().map(|index| frame.cell(*index).x).collect();
+            let (first, last) = (*columns.first().unwrap(), *columns.last().unwrap());
+            assert!(last - first < 30 && (last < 40 || first >= 35), "{first} to {last}");
+        }
+        let small: Vec<usize> = cells.into_iter().filter(|index| frame.cell(*index).x < 30).collect();
+        assert_eq!(divided(&frame, small.clone()), [small]);
+    }
 }

@@ -1,32 +1,12 @@
 //! The route of a log, and the cells that cover several of them.
 
+use crate::error::SurveyError;
 use crate::extent::{self, Reach};
 use crate::settings::{PoseMode, SurveySettings};
-use interfaces::{GridFrame, LaserReading, SettingsError};
+use interfaces::{GridFrame, LaserReading};
 use localizer::{PoseState, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
 use nalgebra::Isometry2;
 use std::ops::Add;
-
-/// The error for logs from which no map can be made.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SurveyError {
-    /// A setting is out of range.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    /// No reading has a pose on a map.
-    #[error("no reading has a certain pose from which the place has a size")]
-    NoPlace,
-    /// The place of a log is not that of the first one.
-    #[error(
-        "the place is not recognised in the map of the first log: the pose was certain for {certain} of {readings} scans"
-    )]
-    OtherPlace {
-        /// The number of readings with a certain pose in the map of the first log.
-        certain: usize,
-        /// The number of readings.
-        readings: usize,
-    },
-}
 
 /// A log along its trajectory.
 #[derive(Clone, Debug)]
@@ -41,23 +21,23 @@ pub struct Route {
 }
 
 impl Route {
-    /// The length of the trajectory, m.
-    pub fn length_m(&self) -> f64 {
-        let position = |at: &TrajectoryPose| at.pose.translation.vector;
-        self.poses.windows(2).map(|pair| (position(&pair[1]) - position(&pair[0])).norm()).fold(0.0, Add::add)
-    }
-
-    /// The number of readings whose scan does not support their pose.
-    pub fn uncertain(&self) -> usize {
-        self.poses.iter().filter(|pose| pose.state != PoseState::Tracking).count()
-    }
-
     /// The route in another frame, whose pose of this frame is `by`.
     #[must_use]
     pub fn moved(mut self, by: &Isometry2<f64>) -> Self {
         self.poses.iter_mut().for_each(|at| at.pose = by * at.pose);
         self
     }
+}
+
+/// The length of a part of a route, m.
+pub fn length_m(poses: &[TrajectoryPose]) -> f64 {
+    let position = |at: &TrajectoryPose| at.pose.translation.vector;
+    poses.windows(2).map(|pair| (position(&pair[1]) - position(&pair[0])).norm()).fold(0.0, Add::add)
+}
+
+/// The number of readings in a part of a route whose scan does not support their pose.
+pub fn uncertain(poses: &[TrajectoryPose]) -> usize {
+    poses.iter().filter(|pose| pose.state != PoseState::Tracking).count()
 }
 
 /// The cells that cover what was seen along all routes.
@@ -69,7 +49,7 @@ pub fn frame(routes: &[Route], settings: &SurveySettings) -> Result<GridFrame, S
     let readings = routes.iter().flat_map(|route| route.poses.iter().zip(&route.reaches));
     let used = readings.filter(|(pose, _)| pose.state == PoseState::Tracking);
     let placed = used.map(|(pose, reach)| (&pose.pose, reach));
-    extent::frame(placed, settings.resolution_m).ok_or(SurveyError::NoPlace)
+    extent::frame(placed, settings.resolution_m)
 }
 
 /// The first pass over a log: its trajectory, and how far its readings reach.

@@ -83,7 +83,9 @@ fn two_logs_of_one_place_add_up() {
     let both = run.summary();
     assert_eq!(both.number("/scans"), 2.0 * once.number("/scans"));
     assert!((both.number("/seen_m2") / once.number("/seen_m2") - 1.0).abs() < 0.05);
-    assert!(ended.stderr.contains("is not known and counts as an hour"), "{}", ended.stderr);
+    let note = "the time between a.mcap and b.mcap is not known and counts as an hour";
+    assert!(ended.stderr.contains(note), "{}", ended.stderr);
+    assert!(both.0["notes"].as_array().unwrap().contains(&serde_json::json!(note)), "{}", both.0["notes"]);
     // The hour between them counts as not observed.
     let mut table = csv::Reader::from_path(run.out("cell_statistics.csv")).unwrap();
     let column = |name: &str, table: &mut csv::Reader<_>| {
@@ -94,6 +96,79 @@ fn two_logs_of_one_place_add_up() {
         let seconds: f64 = watched.iter().map(|column| row[*column].parse::<f64>().unwrap()).sum();
         assert!(seconds <= 80.0 + 1e-6, "{seconds} s in view, of 80 s of logs");
     }
+}
+
+/// A CARMEN log of a laser that stands before a wall, in a room 6 m wide: something is before it for every other 10 s.
+fn standing_log(begin_s: f64, seconds: u32) -> String {
+    let line = |step: u32| {
+        let (time_s, near) = (begin_s + f64::from(step), (step / 10).is_multiple_of(2));
+        let range_m = |beam: u32| match f64::from(beam).to_radians().sin_cos() {
+            _ if near && (80..100).contains(&beam) => 1.0,
+            (ahead, aside) => (4.0 / ahead.max(1e-9)).min(3.0 / aside.abs().max(1e-9)),
+        };
+        let ranges: String = (0..180).map(|beam| format!("{:.2} ", range_m(beam))).collect();
+        format!("ODOM 1 2 0 0 0 0 {time_s} h 0\nFLASER 180 {ranges}0 0 0 0 0 0 {time_s} h 0\n")
+    };
+    (0..seconds).map(line).collect()
+}
+
+#[test]
+fn a_parked_robot_is_a_laser_that_stands_and_the_page_has_dates() {
+    let run = Run::new().with_map_log();
+    // 2023-11-14 22:13:20 UTC.
+    fs::write(run.path("a.log"), standing_log(1.7e9, 120)).unwrap();
+    fs::write(run.path("b.log"), standing_log(1.7e9 + 86_400.0, 120)).unwrap();
+    run.goes_well("b.log a.log --no-rrd --quiet --mcap out/run.mcap");
+    let summary = run.summary();
+    assert_eq!(summary.0["settings"]["pose"], "exact");
+    assert_eq!((summary.number("/begin_s"), summary.number("/scans")), (1.7e9, 240.0));
+    assert_eq!(summary.0["logs"], serde_json::json!(["a.log", "b.log"]));
+    assert!(summary.0["files"].as_array().unwrap().contains(&serde_json::json!("run.mcap")));
+    assert!(summary.number("/changes") > 100.0);
+    let page = fs::read_to_string(run.out("report.html")).unwrap();
+    for text in ["from 2023-11-14 22:13 UTC on", "2023-11-15 22:1"] {
+        assert!(page.contains(text), "{text}: {page}");
+    }
+    // The bag of the run is a log of the next one, which does not remove it.
+    run.goes_well("out/run.mcap --no-rrd --quiet");
+    assert_eq!(run.summary().number("/scans"), 240.0);
+    assert!(run.out("run.mcap").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn the_numbers_of_an_interrupted_run_are_those_of_its_part() {
+    use std::io::{BufRead, BufReader};
+    const SCANS: u32 = 30_000;
+    let run = Run::new().with_map_log();
+    fs::write(run.path("a.log"), standing_log(1.7e9, SCANS)).unwrap();
+    let mut child = run.starts("a.log --no-rrd");
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    assert!(lines.any(|line| line.contains("learning what changes")));
+    crate::ending::send(nix::sys::signal::Signal::SIGINT, &child);
+    // The rest is read, so that the program can write it.
+    lines.for_each(drop);
+    let ended = child.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(130), "{ended:?}");
+    let summary = run.summary();
+    let scans = summary.number("/scans");
+    assert!((1.0..f64::from(SCANS)).contains(&scans), "{scans} scans");
+    assert_eq!(summary.number("/duration_s"), scans - 1.0);
+    let page = fs::read_to_string(run.out("report.html")).unwrap();
+    assert!(page.contains("the maps and the numbers are of the part of the logs up to then"));
+    assert!(page.contains(&format!("{scans} scans in")), "{page}");
+}
+
+#[test]
+fn an_invalid_path_of_the_bag_is_found_at_once() {
+    let refused = |arguments: &str| {
+        let run = Run::new().with_map_log();
+        fs::write(run.path("a.log"), standing_log(1.7e9, 30)).unwrap();
+        refuses(&run, &format!("a.log --no-rrd --mcap {arguments}"), &["a.log"])
+    };
+    insta::assert_snapshot!(refused("no/such/folder.mcap"), @"error: cannot write the bag of --mcap: cannot write no/such/folder.mcap: No such file or directory (os error 2)");
+    insta::assert_snapshot!(refused("a.log"), @"error: --mcap a.log would replace a log that is read");
+    insta::assert_snapshot!(refused("out/map.pgm"), @"error: cannot write out/map.pgm: in the folder of the results its name must end in .mcap");
 }
 
 #[test]

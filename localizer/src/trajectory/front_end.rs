@@ -68,6 +68,8 @@ pub(super) struct FrontEnd {
     /// The older one is matched with, the younger one is only filled.
     growing: Vec<GrowingSubmap>,
     finished: Vec<FinishedSubmap>,
+    /// The memory of the last submap that was finished.
+    spare: Option<SurfelMap>,
 }
 
 /// The result of a match with a submap.
@@ -99,6 +101,7 @@ impl FrontEnd {
             keyframes: Vec::new(),
             growing: Vec::new(),
             finished: Vec::new(),
+            spare: None,
         }
     }
 
@@ -114,7 +117,7 @@ impl FrontEnd {
     /// The growing submaps as they are: there is no further reading.
     pub(super) fn end(&mut self) {
         let growing = self.growing.drain(..);
-        self.finished.extend(growing.map(|submap| submap.finish(&self.keyframes)));
+        self.finished.extend(growing.map(|submap| submap.finish(&self.keyframes).0));
     }
 
     /// The pose of a reading relative to the last keyframe of the graph, to which new keyframes are added.
@@ -274,14 +277,16 @@ impl FrontEnd {
         let keyframe = &self.keyframes[number];
         let half = self.settings.submap_keyframes / 2;
         if self.growing.last().is_none_or(|youngest| youngest.len() >= half) {
-            self.growing.extend(GrowingSubmap::new(&keyframe.local));
+            self.growing.extend(GrowingSubmap::new(&keyframe.local, self.spare.take()));
         }
         for submap in &mut self.growing {
             submap.add(number, keyframe, self.settings.range_noise_std_m);
         }
         if self.growing.len() > 1 && self.growing[0].len() >= self.settings.submap_keyframes {
             let full = self.growing.remove(0);
-            self.finished.push(full.finish(&self.keyframes));
+            let (finished, spare) = full.finish(&self.keyframes);
+            self.finished.push(finished);
+            self.spare = Some(spare);
         }
     }
 }

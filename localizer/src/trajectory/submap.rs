@@ -34,11 +34,12 @@ pub(super) struct FinishedSubmap {
 }
 
 impl GrowingSubmap {
-    /// An empty submap around a pose.
-    pub(super) fn new(around: &Isometry2<f64>) -> Option<Self> {
+    /// An empty submap around a pose, in the memory of a map that is no longer needed.
+    pub(super) fn new(around: &Isometry2<f64>, spare: Option<SurfelMap>) -> Option<Self> {
         let low = Point2::from(around.translation.vector - Vector2::repeat(REACH_M));
         let frame = GridFrame::covering(low, 2.0 * REACH_M, 2.0 * REACH_M, CELL_M)?;
-        Some(Self { map: SurfelMap::new(&frame), keyframes: Vec::new() })
+        let map = spare.map_or_else(|| SurfelMap::new(&frame), |spare| spare.emptied(&frame));
+        Some(Self { map, keyframes: Vec::new() })
     }
 
     pub(super) fn map(&self) -> &SurfelMap {
@@ -55,14 +56,16 @@ impl GrowingSubmap {
         self.map.learn_keyframe(&keyframe.points, &keyframe.local, noise_m);
     }
 
-    pub(super) fn finish(self, keyframes: &[Keyframe]) -> FinishedSubmap {
+    /// The submap with all of its keyframes, and the memory of its map.
+    pub(super) fn finish(self, keyframes: &[Keyframe]) -> (FinishedSubmap, SurfelMap) {
         let anchor = self.keyframes[self.keyframes.len() / 2];
-        FinishedSubmap {
+        let finished = FinishedSubmap {
             anchor,
             first: self.keyframes[0],
             last: anchor.max(*self.keyframes.last().unwrap_or(&anchor)),
             points: self.map.points(&keyframes[anchor].local),
-        }
+        };
+        (finished, self.map)
     }
 }
 

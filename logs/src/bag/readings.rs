@@ -155,6 +155,11 @@ impl RawReadings {
         self.odometry.origin()
     }
 
+    /// Whether the robot has not moved, except for a drift of its odometry.
+    pub(super) fn stands(&self) -> bool {
+        self.odometry.stands()
+    }
+
     fn take_scan(&mut self, message: &Message) -> Result<(), String> {
         let found: LaserScan = cdr::decoded(&message.data)?;
         let (frame, topic) = (bare(&found.header.frame_id), &message.topic.name);

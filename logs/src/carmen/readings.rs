@@ -61,6 +61,7 @@ impl Readings {
             match line::next(&mut self.lines, &self.survey.geometry)? {
                 None => self.is_over = true,
                 Some(Line::Scan(scan)) => self.waiting.push_back(scan),
+                Some(Line::Odometry { .. }) if self.survey.summary.stands => {}
                 Some(Line::Odometry { time_s, pose }) if time_s == 0.0 && self.survey.has_origins => {
                     self.odometry.set_origin(pose);
                 }

@@ -3,8 +3,11 @@
 use super::line::{self, Geometry, Line};
 use crate::error::LogError;
 use crate::lines::Lines;
+use crate::odometry::Odometry;
+use crate::standing::Standing;
 use crate::summary::{LogSummary, PoseSource, since_epoch};
 use crate::times::{self, Times};
+use nalgebra::Isometry2;
 use std::sync::Arc;
 
 /// All that the second reading needs.
@@ -26,13 +29,26 @@ impl Survey {
         let (mut times_s, mut notes) = (Vec::new(), Vec::new());
         let (mut with_time, mut without_time) = (0, 0);
         let mut odom_origin = None;
+        // With and without the lines that have no time: whether these are origins is known at the end.
+        let (mut timed, mut untimed) = (Odometry::default(), Odometry::default());
+        let mut standing = Standing::default();
         while let Some(line) = line::next(lines, &geometry)? {
             match line {
                 Line::Odometry { time_s, pose } => {
                     odom_origin.get_or_insert(pose);
-                    *(if time_s == 0.0 { &mut without_time } else { &mut with_time }) += 1;
+                    if time_s == 0.0 {
+                        without_time += 1;
+                        timed.set_origin(pose);
+                        untimed.add(0.0, pose);
+                    } else {
+                        with_time += 1;
+                        timed.add(time_s, pose);
+                    }
                 }
-                Line::Scan(scan) => times_s.push(scan.time_s),
+                Line::Scan(scan) => {
+                    times_s.push(scan.time_s);
+                    standing.add(&Isometry2::identity(), &scan.scan);
+                }
                 Line::LaserOffset(offset_m) => geometry.offset_m = offset_m,
                 Line::MaxRange(range_max_m) => geometry.range_max_m = range_max_m,
                 Line::Other { is_cut_off: true } => {
@@ -50,6 +66,7 @@ impl Survey {
         if odometry_poses == 0 {
             notes.push("no ODOM line: the odometry stands still".to_owned());
         }
+        let odometry = if has_origins { timed } else { untimed };
         let begin_s = times_s.first().copied().and_then(since_epoch);
         let pose_source = if odometry_poses > 0 { PoseSource::OdometryLines } else { PoseSource::Standing };
         let Times { times_s, has_times, note } = times::repaired(&times_s);
@@ -62,6 +79,7 @@ impl Survey {
             begin_s: begin_s.filter(|_| has_times),
             pose_source,
             odometry_poses,
+            stands: odometry.stands() && standing.looks_so(),
             odom_origin: odom_origin.unwrap_or_default(),
             scan_topics: Vec::new(),
             notes,

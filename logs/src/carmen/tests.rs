@@ -186,3 +186,22 @@ proptest! {
         read_all(&packed);
     }
 }
+
+#[test]
+fn a_robot_stands_if_neither_odometry_nor_scans_move() {
+    let log = |step_m: f64, range_step_m: f64| {
+        let line = |index: u32| {
+            let (time_s, x) = (f64::from(index), step_m * f64::from(index));
+            let ranges = format!("{} ", 2.0 + range_step_m * f64::from(index)).repeat(180);
+            format!(
+                "ODOM {x} 0 0 0 0 0 {time_s} h {time_s}\nFLASER 180 {ranges}0 0 0 0 0 0 {time_s} h {time_s}\n"
+            )
+        };
+        (1..20).map(line).collect::<String>()
+    };
+    let stands = |text: &str| open("test.log", text.as_bytes()).unwrap().summary().stands;
+    assert!(stands(&log(0.0, 0.0)) && stands(&log(1e-4, 0.0)));
+    assert!(!stands(&log(0.1, 0.0)) && !stands(&log(0.0, 0.1)));
+    let poses = readings(&log(1e-4, 0.0));
+    assert!(poses.iter().all(|reading| reading.pose == nalgebra::Isometry2::identity()));
+}

@@ -128,6 +128,20 @@ fn lasers_have_topics_of_their_own() {
 }
 
 #[test]
+fn a_laser_that_pans_is_one_laser() {
+    let mut readings = driven(0.0);
+    for (step, reading) in readings.iter_mut().enumerate() {
+        reading.mount = interfaces::pose(0.1, 0.0, 0.7 * (step as f64 * 0.4).sin());
+    }
+    let (summary, found) = read(&written(|writer| {
+        readings.iter().for_each(|reading| writer.reading(reading).unwrap());
+    }));
+    assert_eq!(summary.scan_topics, ["/scan"]);
+    let pairs = found.iter().zip(&readings);
+    pairs.for_each(|(found, expected)| assert_same(found, expected, &summary.odom_origin));
+}
+
+#[test]
 fn headings_are_exact() {
     for step in -314..=314 {
         let heading = f64::from(step) * 0.01;

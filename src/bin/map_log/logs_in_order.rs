@@ -1,7 +1,7 @@
 //! The logs of one place, in the order of their times.
 
 use curious::terminal::say;
-use logs::{Log, PoseSource, TopicChoice};
+use logs::{Log, TopicChoice};
 use std::io::stderr;
 use std::path::{Path, PathBuf};
 
@@ -15,13 +15,19 @@ pub(crate) struct Source {
     pub(crate) log: Log,
     /// The time of its first reading, s after that of the first log.
     pub(crate) offset_s: f64,
+    /// What is not known about the time before it.
+    pub(crate) gap_note: Option<String>,
 }
 
 impl Source {
     /// Whether the laser stands.
     pub(crate) fn stands(&self) -> bool {
-        let summary = self.log.summary();
-        summary.pose_source == PoseSource::Standing || summary.odometry_poses == 0
+        self.log.summary().stands
+    }
+
+    /// What was repaired, left out or assumed, each a sentence.
+    pub(crate) fn notes(&self) -> impl Iterator<Item = &String> {
+        self.log.summary().notes.iter().chain(&self.gap_note)
     }
 }
 
@@ -33,7 +39,7 @@ pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice) -> anyhow::Result<Ve
             .notes
             .iter()
             .for_each(|note| say(stderr(), format_args!("note: {}: {note}", file.display())));
-        Ok(Source { name: short_name(file), log, offset_s: 0.0 })
+        Ok(Source { name: short_name(file), log, offset_s: 0.0, gap_note: None })
     };
     let mut sources = files.iter().map(open).collect::<anyhow::Result<Vec<_>>>()?;
     let begin_s = |source: &Source| source.log.summary().begin_s;
@@ -44,25 +50,23 @@ pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice) -> anyhow::Result<Ve
         let (before, source) = (&sources[later - 1], &sources[later]);
         let end_s = before.offset_s + before.log.summary().duration_s;
         let known = begin_s(source).zip(begin_s(&sources[0])).map(|(begin_s, first_s)| begin_s - first_s);
-        let offset_s = match known {
-            Some(offset_s) if offset_s >= end_s => offset_s,
+        let (offset_s, gap_note) = match known {
+            Some(offset_s) if offset_s >= end_s => (offset_s, None),
             Some(_) => anyhow::bail!(
                 "{} begins before {} has ended: logs of one robot follow each other",
                 source.name,
                 before.name
             ),
             None => {
-                say(
-                    stderr(),
-                    format_args!(
-                        "note: the time between {} and {} is not known and counts as an hour",
-                        before.name, source.name
-                    ),
+                let note = format!(
+                    "the time between {} and {} is not known and counts as an hour",
+                    before.name, source.name
                 );
-                end_s + UNKNOWN_GAP_S
+                say(stderr(), format_args!("note: {note}"));
+                (end_s + UNKNOWN_GAP_S, Some(note))
             }
         };
-        sources[later].offset_s = offset_s;
+        (sources[later].offset_s, sources[later].gap_note) = (offset_s, gap_note);
     }
     Ok(sources)
 }

@@ -7,6 +7,7 @@ use evaluation::output::{RunFolder, write_file};
 use evaluation::thinned::Thinned;
 use evaluation::{cell_statistics, raster};
 use nalgebra::Point2;
+use std::path::{Path, PathBuf};
 use survey::{keepout_mask, permanent, speed_mask};
 use viewer::layers::Layer;
 use viewer::pictures::draw_places;
@@ -16,7 +17,12 @@ use worldfile::ros_map;
 const SUMMARY: &str = "summary.json";
 
 /// Writes everything except the recording and the trajectory.
-pub(crate) fn write(folder: RunFolder, learned: &Learned, summary: &mut Summary) -> anyhow::Result<()> {
+pub(crate) fn write(
+    folder: RunFolder,
+    logs: &[PathBuf],
+    learned: &Learned,
+    summary: &mut Summary,
+) -> anyhow::Result<()> {
     let (to, mapper) = (folder.unfinished(), &learned.mapper);
     let has_rates = summary.rates_withheld.is_none();
     let layers: &[Layer] = if has_rates { &Layer::ALL } else { &[Layer::Occupancy] };
@@ -46,5 +52,7 @@ pub(crate) fn write(folder: RunFolder, learned: &Learned, summary: &mut Summary)
     summary.files = folder.results()?;
     let text = serde_json::to_string_pretty(summary)?;
     write_file(&to.join(SUMMARY), |file| writeln!(file, "{text}"))?;
-    Ok(folder.finish(SUMMARY, &[])?)
+    // A log can be the result of an earlier run.
+    let inputs: Vec<&Path> = logs.iter().map(PathBuf::as_path).collect();
+    Ok(folder.finish(SUMMARY, &inputs)?)
 }

@@ -1,7 +1,7 @@
 //! `report.html`: a page for people who look after a building.
 
 use crate::summary::Summary;
-use crate::words::{how_often, length_of, range};
+use crate::words::{date, how_often, length_of, range};
 use evaluation::percent::percent;
 use maud::{DOCTYPE, Markup, html};
 use survey::Place;
@@ -25,14 +25,14 @@ pub(crate) fn page(summary: &Summary) -> String {
             body {
                 h1 { "Where it changes, and how often" }
                 @if summary.is_interrupted {
-                    p { strong { "Interrupted: " } "the maps show only the part up to then; the numbers of scans, of time and of metres are those of the whole log." }
+                    p { strong { "Interrupted: " } "the maps and the numbers are of the part of the logs up to then." }
                 }
                 (overview(summary))
                 @if let Some(why) = &summary.rates_withheld { p { strong { "No rates: " } (why) "." } }
                 h2 { "Where" }
                 (picture("places.png", "Pink: cells that changed while the robot looked or between two looks, drawn twice as \
                                         large as they are. The numbers are those of the table. Light blue: never seen."))
-                (table(&summary.places, has_rates))
+                (table(&summary.places, summary.begin_s, has_rates))
                 @if summary.place_count > summary.places.len() {
                     p { (summary.place_count - summary.places.len()) " more places with less change are in the pictures." }
                 }
@@ -71,6 +71,7 @@ fn overview(summary: &Summary) -> Markup {
         p {
             (summary.scans) " scans"
             @if let Some(duration_s) = summary.duration_s { " in " (length_of(duration_s)) }
+            @if let Some(begin_s) = summary.begin_s { ", from " (date(begin_s)) " on" }
             ", " (format!("{:.0}", summary.trajectory_m)) " m travelled, "
             (format!("{:.0}", summary.seen_m2)) " m² seen. "
             (percent(summary.changed_share)) " of this area changed at least once, in " (summary.place_count) " places. "
@@ -81,7 +82,7 @@ fn overview(summary: &Summary) -> Markup {
     }
 }
 
-fn table(places: &[Place], has_rates: bool) -> Markup {
+fn table(places: &[Place], begin_s: Option<f64>, has_rates: bool) -> Markup {
     if places.is_empty() {
         return html! { p { "No area of 0.02 m² or more changed where the robot looked." } };
     }
@@ -90,7 +91,7 @@ fn table(places: &[Place], has_rates: bool) -> Markup {
             tr {
                 th { "place" } th { "at (m)" } th { "area" } th { "most changes of a cell" }
                 @if has_rates {
-                    th { "how often" } th { "90 % range" } th { "blocked" } th { "looked at for" } th { "last change, after the begin" }
+                    th { "how often" } th { "90 % range" } th { "blocked" } th { "looked at for" } th { @if begin_s.is_some() { "last change" } @else { "last change, after the begin" } }
                 }
             }
             @for (number, place) in (1..).zip(places) {
@@ -104,7 +105,7 @@ fn table(places: &[Place], has_rates: bool) -> Markup {
                         td { (range(rates)) }
                         td { (percent(rates.share_blocked)) " of the time" }
                         td { (length_of(rates.observed_s)) }
-                        td { (length_of(rates.last_change_s)) }
+                        td { (begin_s.map_or_else(|| length_of(rates.last_change_s), |begin_s| date(begin_s + rates.last_change_s))) }
                     }
                 }
             }

@@ -28,14 +28,22 @@ pub(crate) struct Learned {
     pub(crate) mapper: Mapper,
     pub(crate) changes: ChangeLog,
     pub(crate) show: Show,
+    /// The number of readings of each log that were used; logs that were not begun are missing.
+    pub(crate) readings: Vec<usize>,
     /// Whether the pass was interrupted.
     pub(crate) is_interrupted: bool,
     /// Whether the recording and the trajectory are complete.
     pub(crate) is_shown: bool,
 }
 
-/// Learns from all logs along their trajectories. The recording and the trajectory are written to `folder`.
-pub(crate) fn learn(job: &Job, routes: &[Route], folder: &Path) -> Result<Learned, Failure> {
+/// Learns from all logs along their trajectories, and writes what happens to `bag`. The recording and the trajectory are
+/// written to `folder`.
+pub(crate) fn learn(
+    job: &Job,
+    routes: &[Route],
+    bag: Option<RunBag>,
+    folder: &Path,
+) -> Result<Learned, Failure> {
     let frame = frame(routes, &job.settings).map_err(input)?;
     let mapper = Mapper::new(&job.settings.mapper, frame).map_err(input)?;
     let first = job.sources[0].log.readings().map_err(input)?.next();
@@ -47,11 +55,11 @@ pub(crate) fn learn(job: &Job, routes: &[Route], folder: &Path) -> Result<Learne
         mapper,
         changes: ChangeLog::default(),
         show: Show::new(scene, recorder, None),
+        readings: Vec::new(),
         is_interrupted: false,
         is_shown: true,
     };
     let mut trajectory = TrajectoryFile::create(&folder.join("trajectory.tum"));
-    let bag = job.args.mcap.as_deref().map(|path| RunBag::create(path, job.begin_s())).transpose()?;
     let last = job.sources.len() - 1;
     for (number, (source, route)) in job.sources.iter().zip(routes).enumerate() {
         learned.replay(job, source, route, (&mut trajectory, bag.as_ref()), number == last)?;
@@ -102,9 +110,11 @@ impl Learned {
             None => found,
         };
         let progress = Progress::of_scans(source.log.summary().scans, job.args.quiet);
-        let Self { mapper, changes, show, is_interrupted, is_shown } = self;
+        let Self { mapper, changes, show, readings, is_interrupted, is_shown } = self;
+        readings.push(0);
         let observe = |replay: &Replay<_>, reading: &LaserReading, belief: &Belief| {
             progress.step();
+            readings.last_mut().into_iter().for_each(|count| *count += 1);
             changes.note(belief.mapper);
             bag.into_iter().for_each(|bag| bag.add(belief, &NoPilot));
             trajectory.add(reading.time_s, belief.pose);

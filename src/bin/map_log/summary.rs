@@ -1,13 +1,14 @@
 //! The results of a survey: `summary.json`, and a few lines for the terminal.
 
 use crate::Job;
+use crate::logs_in_order::Source;
 use crate::second_pass::Learned;
 use crate::words::how_often;
 use evaluation::percent::percent;
 use interfaces::CellState;
 use serde::Serialize;
 use std::fmt;
-use survey::{Place, PoseMode, Route, SurveySettings, places};
+use survey::{Place, PoseMode, Route, SurveySettings, length_m, places, uncertain};
 
 /// The number of places in the summary and in the report.
 const MOST_PLACES: usize = 20;
@@ -21,15 +22,19 @@ pub(crate) struct Summary {
     pub(crate) settings: SurveySettings,
     /// The logs, in the order of their times.
     pub(crate) logs: Vec<String>,
+    /// The number of scans that were used.
     pub(crate) scans: usize,
-    /// The duration of all logs, without the time between them, s; `null` if their times are unusable.
+    /// The duration of what was used of the logs, without the time between them, s; `null` if their times are unusable.
     pub(crate) duration_s: Option<f64>,
     /// What was repaired or left out in the log.
     pub(crate) notes: Vec<String>,
-    /// The length of the trajectory, m.
+    /// The length of the trajectory in this time, m.
     pub(crate) trajectory_m: f64,
-    /// The number of places that the robot recognised.
+    /// The number of places that the robot recognised, in the whole logs.
     pub(crate) loops: usize,
+    /// The time of the first scan in seconds since the epoch (1970-01-01 UTC); `null` unless every log says when it was
+    /// recorded. Times of changes are relative to this.
+    pub(crate) begin_s: Option<f64>,
     /// The number of scans that did not enter the map, because their pose is not certain.
     pub(crate) scans_left_out: usize,
     /// The area that was seen, m².
@@ -53,6 +58,11 @@ pub(crate) struct Summary {
 impl Summary {
     pub(crate) fn new(job: &Job, routes: &[Route], learned: &Learned) -> Self {
         let mapper = &learned.mapper;
+        // What was used of the routes, if the run was interrupted.
+        let used = || {
+            let parts = routes.iter().zip(&learned.readings);
+            parts.map(|(route, count)| route.poses.get(..*count).unwrap_or(&route.poses))
+        };
         let summaries = || job.sources.iter().map(|source| source.log.summary());
         let cell_m2 = mapper.frame().resolution_m().powi(2);
         let seen = mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();
@@ -70,12 +80,14 @@ impl Summary {
             arguments: std::env::args().skip(1).collect(),
             settings: job.settings.clone(),
             logs: job.sources.iter().map(|source| source.name.clone()).collect(),
-            scans: summaries().map(|summary| summary.scans).sum(),
-            duration_s: has_times.then(|| summaries().map(|summary| summary.duration_s).sum()),
-            notes: summaries().flat_map(|summary| summary.notes.clone()).collect(),
-            trajectory_m: routes.iter().map(Route::length_m).sum(),
+            scans: learned.readings.iter().sum(),
+            duration_s: has_times
+                .then(|| used().filter_map(|poses| poses.last()).map(|last| last.time_s).sum()),
+            notes: job.sources.iter().flat_map(Source::notes).cloned().collect(),
+            trajectory_m: used().map(length_m).sum(),
             loops: routes.iter().map(|route| route.loops).sum(),
-            scans_left_out: routes.iter().map(Route::uncertain).sum(),
+            begin_s: job.begin_s(),
+            scans_left_out: used().map(uncertain).sum(),
             seen_m2: seen as f64 * cell_m2,
             changed_share: mapper.changed().count() as f64 / seen.max(1) as f64,
             changes: learned.changes.events(),

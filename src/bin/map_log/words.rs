@@ -50,6 +50,23 @@ pub(crate) fn length_of(time_s: f64) -> String {
     }
 }
 
+/// A time in seconds since the epoch (1970-01-01), as date and time of day in UTC.
+pub(crate) fn date(time_s: f64) -> String {
+    const DAY_S: i64 = 86_400;
+    let time_s = time_s.floor() as i64;
+    let (days, second) = (time_s.div_euclid(DAY_S), time_s.rem_euclid(DAY_S));
+    // Years begin in March, so that the leap day is the last one; 400 years have 146,097 days (Richards 2013).
+    let days = days + 719_468;
+    let (era, day) = (days.div_euclid(146_097), days.rem_euclid(146_097));
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day_of_year = day - (365 * year + year / 4 - year / 100);
+    let month_from_march = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
+    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
+    let year = era * 400 + year + i64::from(month <= 2);
+    format!("{year}-{month:02}-{day:02} {:02}:{:02} UTC", second / 3600, second / 60 % 60)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -58,5 +75,18 @@ mod tests {
     fn times_are_in_the_unit_that_a_person_would_choose() {
         let texts = [5.0, 89.0, 90.0, 5399.0, 5400.0, 170_000.0, 172_800.0].map(length_of);
         assert_eq!(texts, ["5 s", "89 s", "2 min", "90 min", "1.5 h", "47 h", "2.0 days"]);
+    }
+
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        let dates = [0.0, 951_782_399.9, 951_868_800.0, 1_709_164_800.0, 4_107_542_399.0].map(date);
+        let expected = [
+            "1970-01-01 00:00 UTC",
+            "2000-02-28 23:59 UTC",
+            "2000-03-01 00:00 UTC",
+            "2024-02-29 00:00 UTC",
+            "2100-02-28 23:59 UTC",
+        ];
+        assert_eq!(dates, expected);
     }
 }

@@ -246,3 +246,36 @@ fn a_folder_is_read_in_the_order_of_its_metadata_or_of_its_names() {
     let error = open().unwrap_err().to_string();
     assert!(error.contains("without this file, the files of the folder are read by name"), "{error}");
 }
+
+#[test]
+fn a_parked_robot_stands_although_its_odometry_drifts() {
+    let parked = |step_m: f64, range_step_m: f32| {
+        let mut bag = Builder::default();
+        bag.mount();
+        for index in 0..20 {
+            let time_s = f64::from(index) * 0.1;
+            bag.odometry("/odom", time_s, 5.0 + step_m * f64::from(index), 0.0);
+            let ranges = vec![2.0 + range_step_m * index as f32; 90];
+            let message = crate::ros::LaserScan { ranges, angle_increment: 0.01, ..scan(time_s, "laser") };
+            bag.scan("/scan", time_s + 0.05, &message);
+        }
+        bag.open(&TopicChoice::default()).unwrap()
+    };
+    let bag = parked(1e-4, 0.0);
+    assert!(bag.summary().stands);
+    let parked_poses = readings(&bag);
+    assert!(parked_poses.iter().all(|reading| at(reading) == [0.0; 3] && reading.mount.translation.x == 0.2));
+    // A robot that moves by its odometry, and one whose scans change although its odometry does not.
+    assert!(!parked(0.1, 0.0).summary().stands);
+    assert!(!parked(0.0, 0.1).summary().stands);
+}
+
+#[test]
+fn unusable_times_are_no_date() {
+    let mut bag = Builder::default();
+    for _ in 0..5 {
+        bag.scan("/scan", 0.0, &scan(0.0, "laser"));
+    }
+    let bag = bag.open(&TopicChoice::default()).unwrap();
+    assert_eq!((bag.summary().has_times, bag.summary().begin_s), (false, None));
+}

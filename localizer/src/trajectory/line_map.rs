@@ -1,0 +1,99 @@
+//! The surfaces along a known route, in which scans of other routes find their exact place.
+
+use super::TrajectorySettings;
+use super::keyframe::filled;
+use super::matching::fit;
+use crate::given_poses::GivenPoses;
+use crate::scan_points::ScanPoints;
+use crate::surfel_map::SurfelMap;
+use interfaces::{GridFrame, LaserReading, SettingsError, heading_rad};
+use nalgebra::Isometry2;
+
+/// The least shares of a fit: of the points that the map can judge, and of those that agree.
+const LEAST_OVERLAP: f64 = 0.4;
+const LEAST_AGREEMENT: f64 = 0.75;
+
+/// The surfaces of a place as short straight lines, from the readings of a log along its trajectory. Unlike a grid, it is
+/// exact to some millimetres.
+#[derive(Clone, Debug)]
+pub struct LineMap {
+    settings: TrajectorySettings,
+    map: SurfelMap,
+    given: GivenPoses,
+    points: ScanPoints,
+    /// The pose of the last reading that was learned.
+    last: Option<Isometry2<f64>>,
+}
+
+impl LineMap {
+    /// An empty map of the rectangle of `frame`.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn new(settings: &TrajectorySettings, frame: &GridFrame) -> Result<Self, SettingsError> {
+        settings.check()?;
+        Ok(Self {
+            settings: settings.clone(),
+            map: SurfelMap::new(frame),
+            given: GivenPoses::default(),
+            points: ScanPoints::default(),
+            last: None,
+        })
+    }
+
+    /// Adds the next reading of the log at its pose on the trajectory, if the robot has moved by a keyframe since the last
+    /// one that was added. The pose of the reading itself is that of the odometry.
+    pub fn add(&mut self, reading: &LaserReading, pose: &Isometry2<f64>) {
+        if reading.scan.check().is_err() {
+            return;
+        }
+        let reading = self.given.unswept(reading.clone());
+        let step = self.last.map(|last| last.inv_mul(pose));
+        let is_near = |step: Isometry2<f64>| {
+            step.translation.vector.norm() < self.settings.keyframe_m
+                && heading_rad(&step).abs() < self.settings.keyframe_rad
+        };
+        if step.is_some_and(is_near) {
+            return;
+        }
+        self.last = Some(*pose);
+        let noise_m = self.settings.range_noise_std_m;
+        self.points.update(&reading, |_| 1.0, noise_m, true);
+        self.map.learn_keyframe(&filled(self.points.points()), pose, noise_m);
+    }
+
+    /// A matcher for the readings of another log.
+    pub fn matcher(&self) -> LineMatcher<'_> {
+        LineMatcher { line_map: self, given: GivenPoses::default(), points: ScanPoints::default() }
+    }
+}
+
+/// Matches the readings of a log with a line map, one after the other.
+#[derive(Clone, Debug)]
+pub struct LineMatcher<'a> {
+    line_map: &'a LineMap,
+    given: GivenPoses,
+    points: ScanPoints,
+}
+
+impl LineMatcher<'_> {
+    /// The pose of the next reading, whose pose in the map is `near` with these standard deviations (m, rad). `None` if its
+    /// scan does not agree with the map.
+    pub fn matched(
+        &mut self,
+        reading: &LaserReading,
+        near: &Isometry2<f64>,
+        std: (f64, f64),
+    ) -> Option<Isometry2<f64>> {
+        if reading.scan.check().is_err() {
+            return None;
+        }
+        let reading = self.given.unswept(reading.clone());
+        let noise_m = self.line_map.settings.range_noise_std_m;
+        self.points.update(&reading, |_| 1.0, noise_m, true);
+        let (found, agreement) = fit(&self.line_map.map, self.points.points(), near, std, noise_m)?;
+        let agrees = agreement.overlap() >= LEAST_OVERLAP && agreement.share() >= LEAST_AGREEMENT;
+        agrees.then_some(found.placement.pose)
+    }
+}

@@ -1,0 +1,35 @@
+use interfaces::SettingsError;
+
+/// The error for logs from which no map can be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SurveyError {
+    /// A setting is out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// No reading has a pose on a map.
+    #[error("no reading has a certain pose from which the place has a size")]
+    NoPlace,
+    /// The place is too large for one map.
+    #[error(
+        "the place is too large for a map: {width_m:.0} × {height_m:.0} m in cells of {resolution_m} m; a map has 67 million \
+         cells at most, larger cells (--resolution) cover more"
+    )]
+    TooLarge {
+        /// The size of the place, m.
+        width_m: f64,
+        /// The size of the place, m.
+        height_m: f64,
+        /// The side of a cell, m.
+        resolution_m: f64,
+    },
+    /// The place of a log is not that of the first one.
+    #[error(
+        "the place is not recognised in the map of the first log: the pose was certain for {certain} of {readings} scans"
+    )]
+    OtherPlace {
+        /// The number of readings with a certain pose in the map of the first log.
+        certain: usize,
+        /// The number of readings.
+        readings: usize,
+    },
+}
