@@ -10,7 +10,7 @@ use crate::estimate::PoseState;
 use crate::faults::{Fault, FaultFinder};
 use crate::matcher::{Match, Prior, align};
 use crate::motion::Motion;
-use crate::scan_points::{PointRules, ScanPoints};
+use crate::scan_points::ScanPoints;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::surfel_map::SurfelMap;
@@ -145,11 +145,7 @@ impl FrontEnd {
         if fault == Some(Fault::Frozen) && !graph.poses.is_empty() {
             return (self.offset(), PoseState::Uncertain);
         }
-        let rules = PointRules {
-            noise_m: self.settings.range_noise_std_m,
-            by_arc_length: true,
-            grazing: false, // the scans of logs are sparse, and their walls less straight
-        };
+        let rules = self.settings.point_rules();
         self.points.update(reading, |_| 1.0, &rules);
         let tracked = self.track();
         if let Some(tracked) = &tracked {

@@ -58,9 +58,9 @@ impl LineMap {
             return;
         }
         self.last = Some(*pose);
-        let noise_m = self.settings.range_noise_std_m;
-        self.points.update(&reading, |_| 1.0, noise_m, true);
-        self.map.learn_keyframe(&filled(self.points.points()), pose, noise_m);
+        let rules = self.settings.point_rules();
+        self.points.update(&reading, |_| 1.0, &rules);
+        self.map.learn_keyframe(&filled(self.points.points()), pose, rules.noise_m);
     }
 
     /// A matcher for the readings of another log.
@@ -90,9 +90,9 @@ impl LineMatcher<'_> {
             return None;
         }
         let reading = self.given.unswept(reading.clone());
-        let noise_m = self.line_map.settings.range_noise_std_m;
-        self.points.update(&reading, |_| 1.0, noise_m, true);
-        let (found, agreement) = fit(&self.line_map.map, self.points.points(), near, std, noise_m)?;
+        let rules = self.line_map.settings.point_rules();
+        self.points.update(&reading, |_| 1.0, &rules);
+        let (found, agreement) = fit(&self.line_map.map, self.points.points(), near, std, rules.noise_m)?;
         let agrees = agreement.overlap() >= LEAST_OVERLAP && agreement.share() >= LEAST_AGREEMENT;
         agrees.then_some(found.placement.pose)
     }

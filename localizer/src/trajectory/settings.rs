@@ -1,3 +1,4 @@
+use crate::scan_points::PointRules;
 use crate::settings::{LocalizerSettings, OdometryTrust};
 use interfaces::{SettingsCheck, SettingsError};
 
@@ -33,6 +34,12 @@ impl Default for TrajectorySettings {
 }
 
 impl TrajectorySettings {
+    /// The points of the scans of logs: the scans are sparse and their walls less straight, so that grazing beams are no
+    /// good evidence.
+    pub(super) fn point_rules(&self) -> PointRules {
+        PointRules { noise_m: self.range_noise_std_m, by_arc_length: true, grazing: false }
+    }
+
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
         // The odometry and the noise have the same limits as those of a localizer.
         let shared = LocalizerSettings {
