@@ -26,6 +26,7 @@ use robot::{Localization, Session, explore};
 use saving::Asker;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use survey::SurveySettings;
@@ -47,7 +48,7 @@ pub struct Signals {
     /// The node ends.
     pub stop: AtomicBool,
     /// The node saves its state.
-    pub save: AtomicBool,
+    pub save: Arc<AtomicBool>,
 }
 
 /// What a run of a node has done.

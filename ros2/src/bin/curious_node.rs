@@ -1,6 +1,6 @@
 //! Maps what a live robot sees, and where the place changes; can explore.
 
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use clap::{Parser, ValueEnum};
 use ros2::program::{Failure, input, output, say, start};
 use ros2::{CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, Signals, Value, curious_wiring};
@@ -132,11 +132,7 @@ fn signals() -> anyhow::Result<Arc<Signals>> {
     let to = signals.clone();
     ctrlc::set_handler(move || to.stop.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
     #[cfg(unix)]
-    {
-        let to = signals.clone();
-        let mut usr1 = signal_hook::iterator::Signals::new([signal_hook::consts::SIGUSR1])
-            .map_err(|why| anyhow!("cannot listen for SIGUSR1: {why}"))?;
-        std::thread::spawn(move || usr1.forever().for_each(|_| to.save.store(true, Ordering::Relaxed)));
-    }
+    signal_hook::flag::register(signal_hook::consts::SIGUSR1, signals.save.clone())
+        .context("cannot listen for SIGUSR1")?;
     Ok(signals)
 }
