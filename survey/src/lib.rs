@@ -8,9 +8,9 @@
 //! second pass:  log ─▶ found poses ─▶ mapper ─▶ changes      [`Replay`], [`FoundPoses`], [`ChangeLog`]
 //! ```
 //!
-//! [`routes()`] is the first pass over all logs, and [`learn()`] the second pass over one log. The second pass is the
-//! loop of every robot, [`robot::explore`], with a source that ignores commands and a pilot that gives none. From its
-//! map follow the [places](places()) where something changes, and the [map](permanent()) of what is permanent.
+//! [`routes()`] is the first pass over all logs, and [`learn()`] the second pass over one. The second pass is the loop of
+//! every robot, [`robot::explore`], with a source that ignores commands and a pilot that gives none. From its map follow
+//! the [places](places()) where something changes, and the [map](permanent()) of what is permanent.
 //!
 //! This crate knows logs, trajectories and maps. It must not know files, pictures or programs.
 
