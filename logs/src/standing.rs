@@ -11,7 +11,7 @@ pub(crate) const LEAST_MOTION_RAD: f64 = 0.02;
 /// errs by, and less than people and robots move.
 const SAME_M: f64 = 0.1;
 const SAME_SHARE: f64 = 0.02;
-/// Every so many beams are compared, and at least this many must have a range in both scans.
+/// One beam in three is compared, and at least this number of them must have a range in both scans.
 const BEAM_STEP: usize = 3;
 const LEAST_BEAMS: usize = 20;
 /// In a scan of a laser that stands, at least this share of the ranges agree with the first scan: people hide the rest.

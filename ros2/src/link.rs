@@ -38,13 +38,13 @@ pub enum Event {
     Message(Topic, Message),
     /// A request to save the state.
     SaveState(Request),
-    /// What has become of the goal.
+    /// The state of the goal that Nav2 has.
     Navigation(Navigation),
     /// Something that cannot be used, in one sentence.
     Problem(String),
 }
 
-/// What has become of a goal that was given to Nav2.
+/// The state of a goal that was given to Nav2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Navigation {
     /// Nav2 drives there.

@@ -73,7 +73,7 @@ impl LivePilot {
         }
     }
 
-    /// Takes what has become of the goal that Nav2 has.
+    /// Takes the new state of the goal that Nav2 has.
     pub(crate) fn navigated(&mut self, navigation: Navigation) {
         if let Self::Navigating(pilot) = self {
             pilot.navigated(navigation);

@@ -212,7 +212,7 @@ fn the_first_pass_finds_the_routes_of_all_logs_in_one_frame() {
     assert_eq!(calls, 4);
 }
 
-/// A log of a laser that stands where a reading was made, and begins so many seconds after the first log.
+/// A log of a laser that stands where a reading was made, and begins `begin_s` seconds after the first log.
 fn standing_log(path: &Path, reading: &LaserReading, begin_s: f64) -> Log {
     let mut writer = McapWriter::new(File::create(path).unwrap(), "bag", 1e9 + begin_s).unwrap();
     for step in 0..60 {

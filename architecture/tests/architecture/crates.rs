@@ -29,7 +29,6 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "localizer",
             "logs",
             "agent",
-            "robot",
             "survey",
             "evaluation",
             "environments",
