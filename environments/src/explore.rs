@@ -6,7 +6,7 @@ use crate::picture::Picture;
 use crate::place::size_m;
 use crate::task::{Outcome, Part, Task, TaskError};
 use evaluation::metrics::{MAX_LOG_ERROR, mean_log_error};
-use interfaces::{CellState, LaserReading, Purpose, RandomStream, Twist, World, heading_rad, value};
+use interfaces::{CellState, LaserReading, Purpose, RandomStream, Twist, Values, World, heading_rad, value};
 use localizer::GivenPoses;
 use mapper::Mapper;
 use sim::physics::{PhysicsWorld, SnapshotError};
@@ -219,42 +219,62 @@ impl Task for Explore {
     }
 
     fn snapshot(&self) -> Vec<u8> {
-        let (mut world, mut mapper) = (self.world.snapshot().into_bytes(), self.mapper.clone().snapshot());
-        let (mut poses, mut reading) = (self.poses.clone().snapshot(), self.reading.clone());
-        let (mut number, mut episode, mut layers) = (self.number, self.episode, self.layers.clone());
-        interfaces::snapshot(vec![
-            value(&mut number),
-            value(&mut world),
-            value(&mut mapper),
-            value(&mut poses),
-            value(&mut reading),
-            value(&mut episode),
-            value(&mut layers),
-        ])
+        let mut parts = Parts {
+            number: self.number,
+            world: self.world.snapshot().into_bytes(),
+            mapper: self.mapper.clone().snapshot(),
+            poses: self.poses.clone().snapshot(),
+            reading: self.reading.clone(),
+            episode: self.episode,
+            layers: self.layers.clone(),
+        };
+        interfaces::snapshot(parts.values())
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
-        let (mut world, mut mapper, mut poses) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut number, mut episode, mut reading) = (0_usize, Episode::default(), self.reading.clone());
-        let mut layers = Vec::new();
-        let values = vec![
-            value(&mut number),
-            value(&mut world),
-            value(&mut mapper),
-            value(&mut poses),
-            value(&mut reading),
-            value(&mut episode),
-            value(&mut layers),
-        ];
-        interfaces::restore(values, snapshot).map_err(|_| SnapshotError::Damaged)?;
-        if number >= self.place.worlds.len() || layers.len() != self.layers.len() {
+        let mut parts = Parts {
+            number: 0,
+            world: Vec::new(),
+            mapper: Vec::new(),
+            poses: Vec::new(),
+            reading: self.reading.clone(),
+            episode: Episode::default(),
+            layers: Vec::new(),
+        };
+        interfaces::restore(parts.values(), snapshot).map_err(|_| SnapshotError::Damaged)?;
+        if parts.number >= self.place.worlds.len() || parts.layers.len() != self.layers.len() {
             return Err(SnapshotError::OtherSpec);
         }
-        self.take(number);
-        self.world.restore(&world)?;
-        self.mapper.restore(&mapper).map_err(|_| SnapshotError::Damaged)?;
-        self.poses.restore(&poses).map_err(|_| SnapshotError::Damaged)?;
-        (self.reading, self.episode, self.layers) = (reading, episode, layers);
+        self.take(parts.number);
+        self.world.restore(&parts.world)?;
+        self.mapper.restore(&parts.mapper).map_err(|_| SnapshotError::Damaged)?;
+        self.poses.restore(&parts.poses).map_err(|_| SnapshotError::Damaged)?;
+        (self.reading, self.episode, self.layers) = (parts.reading, parts.episode, parts.layers);
         Ok(())
+    }
+}
+
+/// What a snapshot contains, in its order.
+struct Parts {
+    number: usize,
+    world: Vec<u8>,
+    mapper: Vec<u8>,
+    poses: Vec<u8>,
+    reading: LaserReading,
+    episode: Episode,
+    layers: Vec<f32>,
+}
+
+impl Parts {
+    fn values(&mut self) -> Values<'_> {
+        vec![
+            value(&mut self.number),
+            value(&mut self.world),
+            value(&mut self.mapper),
+            value(&mut self.poses),
+            value(&mut self.reading),
+            value(&mut self.episode),
+            value(&mut self.layers),
+        ]
     }
 }
