@@ -5,9 +5,14 @@ use super::line::{read, unseal};
 use super::scan::Scan;
 use super::{Header, Shard, ShardError};
 use crate::report::Trial;
+use rayon::prelude::*;
+use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
+
+/// The number of trials that are parsed together, on all threads: 8 MB.
+const BATCH: u64 = 256;
 
 /// The shards of an experiment that have files in a folder.
 #[derive(Debug)]
@@ -27,8 +32,10 @@ impl Shards {
     pub fn read(folder: &Path) -> Result<Self, ShardError> {
         let mut first: Option<(Header, PathBuf)> = None;
         let mut scans = Vec::new();
-        for (shard, path) in shards_in(folder)? {
-            let scan = Scan::read(&path, shard)?;
+        let read = |(shard, path): (Shard, PathBuf)| (Scan::read(&path, shard), shard, path);
+        let files: Vec<_> = shards_in(folder)?.into_par_iter().map(read).collect();
+        for (scan, shard, path) in files {
+            let scan = scan?;
             match (&first, &scan.header) {
                 (Some((header, other)), Some(found)) => {
                     if let Some(difference) = found.difference(header) {
@@ -72,7 +79,7 @@ impl Shards {
         self.shards().filter(is_missing).map(|(shard, _)| shard.number()).collect()
     }
 
-    /// All trials in the order of the experiment. Each is read when it is asked for.
+    /// All trials in the order of the experiment. They are read a few hundred at a time, and parsed on all threads.
     ///
     /// # Errors
     ///
@@ -84,7 +91,7 @@ impl Shards {
             let file = File::open(&path).map_err(|why| ShardError::read(&path, why))?;
             files.push(LineFile { path, file: BufReader::with_capacity(1 << 16, file), place: 0 });
         }
-        Ok(Trials { shards: self, files, next: 1, line: String::new() })
+        Ok(Trials { shards: self, files, next: 1, parsed: VecDeque::new() })
     }
 }
 
@@ -94,9 +101,10 @@ pub struct Trials<'a> {
     shards: &'a Shards,
     /// One per shard.
     files: Vec<LineFile>,
-    /// The number of the next trial.
+    /// The number of the next trial that is read.
     next: u64,
-    line: String,
+    /// Trials that are read and not asked for yet.
+    parsed: VecDeque<Result<Trial, ShardError>>,
 }
 
 #[derive(Debug)]
@@ -108,29 +116,50 @@ struct LineFile {
 }
 
 impl LineFile {
-    /// Reads the line at a place. What is in the buffer is not read again.
-    fn read(&mut self, place: u64, line: &mut String) -> io::Result<()> {
-        line.clear();
+    /// The line at a place, with its end. What is in the buffer is not read again.
+    fn read(&mut self, place: u64) -> io::Result<String> {
+        let mut line = String::new();
         self.file.seek_relative(place.cast_signed() - self.place.cast_signed())?;
-        self.place = place + self.file.read_line(line)? as u64;
-        Ok(())
+        self.place = place + self.file.read_line(&mut line)? as u64;
+        Ok(line)
     }
 }
 
 impl Trials<'_> {
-    fn read(&mut self, number: u64) -> Result<Trial, ShardError> {
-        let count = self.files.len() as u64;
-        let at = ((number - 1) % count) as usize;
+    /// The position of the shard with a trial.
+    fn shard_of(&self, number: u64) -> usize {
+        ((number - 1) % self.files.len() as u64) as usize
+    }
+
+    /// The line of a trial.
+    fn line(&mut self, number: u64) -> Result<String, ShardError> {
+        let at = self.shard_of(number);
         let file = &mut self.files[at];
         let known = self.shards.scans[at].as_ref().and_then(|scan| scan.lines.get(&number));
         let missing = || ShardError::content(&file.path, format!("trial {number} is missing"));
         let place = *known.ok_or_else(missing)?;
-        file.read(place, &mut self.line).map_err(|why| ShardError::read(&file.path, why))?;
-        let text = unseal(self.line.trim_end_matches('\n'), self.shards.header.key());
+        file.read(place).map_err(|why| ShardError::read(&file.path, why))
+    }
+
+    /// The trial of a line.
+    fn parse(&self, number: u64, line: &str) -> Result<Trial, ShardError> {
+        let text = unseal(line.trim_end_matches('\n'), self.shards.header.key());
         match text.and_then(read) {
             Some((found, trial)) if found == number => Ok(trial),
-            _ => Err(ShardError::content(&file.path, "the file was changed while it was read")),
+            _ => {
+                let path = &self.files[self.shard_of(number)].path;
+                Err(ShardError::content(path, "the file was changed while it was read"))
+            }
         }
+    }
+
+    fn parse_batch(&mut self) {
+        let numbers = self.next..(self.next + BATCH).min(self.shards.header.trials + 1);
+        self.next = numbers.end;
+        let lines: Vec<_> = numbers.map(|number| (number, self.line(number))).collect();
+        let trial = |(number, line): (u64, Result<String, ShardError>)| self.parse(number, &line?);
+        let parsed: Vec<_> = lines.into_par_iter().map(trial).collect();
+        self.parsed = parsed.into();
     }
 }
 
@@ -138,11 +167,9 @@ impl Iterator for Trials<'_> {
     type Item = Result<Trial, ShardError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.next > self.shards.header.trials {
-            return None;
+        if self.parsed.is_empty() {
+            self.parse_batch();
         }
-        let number = self.next;
-        self.next += 1;
-        Some(self.read(number))
+        self.parsed.pop_front()
     }
 }

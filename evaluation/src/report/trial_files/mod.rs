@@ -10,6 +10,7 @@ use super::metric::Trial;
 use super::{Report, ReportBuilder, ReportSettings, UnequalTimes};
 use crate::output::OutputError;
 use std::io;
+use std::iter::once;
 use std::path::Path;
 use std::sync::mpsc::sync_channel;
 use std::thread;
@@ -33,7 +34,10 @@ pub fn collect<E: From<OutputError> + From<UnequalTimes>>(
     thread::scope(|scope| {
         let (send, receive) = sync_channel::<Trial>(WAITING);
         let writer = scope.spawn(move || {
-            receive.into_iter().try_for_each(|trial| files.add(&trial))?;
+            while let Ok(first) = receive.recv() {
+                let batch: Vec<Trial> = once(first).chain(receive.try_iter().take(WAITING)).collect();
+                files.add(&batch)?;
+            }
             files.finish()
         });
         for trial in trials {
@@ -65,10 +69,10 @@ impl TrialFiles {
         })
     }
 
-    /// Adds a trial.
-    fn add(&mut self, trial: &Trial) -> Result<(), OutputError> {
-        self.csv.add(trial)?;
-        self.parquet.add(trial)
+    /// Adds trials; the files do not depend on how many are added at a time.
+    fn add(&mut self, trials: &[Trial]) -> Result<(), OutputError> {
+        let (csv, parquet) = rayon::join(|| self.csv.add(trials), || self.parquet.add(trials));
+        csv.and(parquet)
     }
 
     /// Completes the files.

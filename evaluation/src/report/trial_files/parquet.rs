@@ -47,9 +47,14 @@ impl ParquetFile {
         Ok(Self { path: path.to_owned(), file, rows: Rows::default() })
     }
 
-    pub(super) fn add(&mut self, trial: &Trial) -> Result<(), OutputError> {
-        self.rows.add(trial);
-        if self.rows.seeds.len() < GROUP_ROWS { Ok(()) } else { self.write_group() }
+    pub(super) fn add(&mut self, trials: &[Trial]) -> Result<(), OutputError> {
+        for trial in trials {
+            self.rows.add(trial);
+            if self.rows.seeds.len() >= GROUP_ROWS {
+                self.write_group()?;
+            }
+        }
+        Ok(())
     }
 
     fn write_group(&mut self) -> Result<(), OutputError> {

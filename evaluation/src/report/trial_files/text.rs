@@ -3,60 +3,66 @@
 use crate::output::OutputError;
 use crate::report::length::Length;
 use crate::report::metric::{Metric, Trial};
+use rayon::prelude::*;
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 pub(super) struct CsvFile {
     path: PathBuf,
-    rows: csv::Writer<File>,
-    /// The text of a number.
-    text: Vec<u8>,
+    file: BufWriter<File>,
 }
 
 impl CsvFile {
     pub(super) fn create(path: &Path, length: Length) -> Result<Self, OutputError> {
-        let file = File::create(path).map_err(|why| OutputError::new(path, why))?;
-        let mut rows = csv::WriterBuilder::new().buffer_capacity(1 << 16).from_writer(file);
         let names = Metric::ALL.map(Metric::name);
         let head = ["world", "estimator", "strategy", "seed", length.column()];
-        let written = rows.write_record(head.iter().chain(&names).chain(&["map_hash"]));
-        written.map_err(|why| OutputError::new(path, why))?;
-        Ok(Self { path: path.to_owned(), rows, text: Vec::new() })
+        let create = || {
+            let mut file = BufWriter::new(File::create(path)?);
+            csv::Writer::from_writer(&mut file).write_record(head.iter().chain(&names).chain(&["map_hash"]))?;
+            Ok(file)
+        };
+        let file = create().map_err(|why: io::Error| OutputError::new(path, why))?;
+        Ok(Self { path: path.to_owned(), file })
     }
 
-    pub(super) fn add(&mut self, trial: &Trial) -> Result<(), OutputError> {
-        self.write(trial).map_err(|why| OutputError::new(&self.path, why))
-    }
-
-    fn write(&mut self, trial: &Trial) -> io::Result<()> {
-        let Self { rows, text, .. } = self;
-        let names = [&trial.world, &trial.estimator, &trial.strategy].map(|name| no_formula(name));
-        let seed = trial.seed.to_string();
-        for sample in &trial.samples {
-            for name in &names {
-                rows.write_field(name.as_ref())?;
-            }
-            rows.write_field(&seed)?;
-            let mut number = |value: &dyn std::fmt::Display| {
-                text.clear();
-                write!(text, "{value}")?;
-                rows.write_field(&text).map_err(io::Error::from)
-            };
-            number(&sample.time)?;
-            for value in Metric::ALL.map(|metric| metric.of(sample)) {
-                if value.is_nan() { number(&"")? } else { number(&value)? }
-            }
-            rows.write_field(&trial.map_hash)?;
-            rows.write_record(None::<&[u8]>)?;
-        }
-        Ok(())
+    /// Adds the rows of trials; their text is made on all threads.
+    pub(super) fn add(&mut self, trials: &[Trial]) -> Result<(), OutputError> {
+        let texts: Vec<_> = trials.par_iter().map(rows).collect();
+        let written = texts.into_iter().try_for_each(|text| self.file.write_all(&text?));
+        written.map_err(|why| OutputError::new(&self.path, why))
     }
 
     pub(super) fn finish(mut self) -> Result<(), OutputError> {
-        self.rows.flush().map_err(|why| OutputError::new(&self.path, why))
+        self.file.flush().map_err(|why| OutputError::new(&self.path, why))
     }
+}
+
+/// The rows of a trial.
+fn rows(trial: &Trial) -> io::Result<Vec<u8>> {
+    let mut rows = csv::Writer::from_writer(Vec::new());
+    let names = [&trial.world, &trial.estimator, &trial.strategy].map(|name| no_formula(name));
+    let seed = trial.seed.to_string();
+    let mut text = Vec::new();
+    for sample in &trial.samples {
+        for name in &names {
+            rows.write_field(name.as_ref())?;
+        }
+        rows.write_field(&seed)?;
+        let mut number = |value: &dyn std::fmt::Display| {
+            text.clear();
+            write!(text, "{value}")?;
+            rows.write_field(&text).map_err(io::Error::from)
+        };
+        number(&sample.time)?;
+        for value in Metric::ALL.map(|metric| metric.of(sample)) {
+            if value.is_nan() { number(&"")? } else { number(&value)? }
+        }
+        rows.write_field(&trial.map_hash)?;
+        rows.write_record(None::<&[u8]>)?;
+    }
+    rows.into_inner().map_err(|error| io::Error::other(error.to_string()))
 }
 
 /// A name that a spreadsheet shows as it is: with an apostrophe before what would begin a formula.
