@@ -125,6 +125,13 @@ impl<L: Link> SimulatedRobot<L> {
         self.fleet.time_s()
     }
 
+    /// The true pose, and the pose by odometry.
+    #[cfg(test)]
+    pub(crate) fn poses(&self) -> Option<[Isometry2<f64>; 2]> {
+        let robot = self.fleet.robots().nth(self.driven)?;
+        Some([robot.pose, robot.odometry().0])
+    }
+
     /// Takes a command; what else comes is ignored.
     pub fn take(&mut self, event: Event) {
         let twist = match event {

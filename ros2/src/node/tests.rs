@@ -236,3 +236,33 @@ fn a_map_that_was_not_sent_is_sent_again() {
     pair.run(0.3);
     assert!(!pair.others.heard(Topic::Map).is_empty());
 }
+
+/// Hours of exploring, as fast as the machine can: memory, the size of the state, and the error of the pose against the
+/// truth. See docs/robots.md.
+#[test]
+#[ignore = "takes minutes per hour; HOURS=8"]
+fn a_house_for_hours() {
+    let hours = std::env::var("HOURS").map_or(8.0, |hours| hours.parse::<f64>().unwrap());
+    let mut pair = Pair::new(&parameters(Mode::Explore), 0, None);
+    let start = worldfile::shipped::load("house").unwrap().driven().pose;
+    for minutes in 1..=(hours * 60.0) as u64 {
+        let mut worst_m = 0.0_f64;
+        for _ in 0..60 {
+            pair.run(1.0);
+            let [truth, odometry] = pair.sim.poses().unwrap();
+            let truth = start.inverse() * truth;
+            let found = pair.node.map_to_odom.unwrap() * odometry;
+            worst_m = worst_m.max((truth.translation.vector - found.translation.vector).norm());
+            pair.others.others(|others| others.heard.clear());
+        }
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let memory = status.lines().find(|line| line.starts_with("VmRSS")).unwrap_or_default();
+        let said = std::mem::take(&mut *pair.said.lock().unwrap());
+        let lost = said.iter().filter(|text| text.contains("not known")).count();
+        let report = pair.node.report();
+        println!(
+            "{minutes} min: error up to {worst_m:.3} m, lost {lost} times, {} of {} readings mapped, known {}, {memory}",
+            report.mapped, report.readings, known(pair.node.mapper().states())
+        );
+    }
+}
