@@ -262,7 +262,9 @@ fn a_house_for_hours() {
         let report = pair.node.report();
         println!(
             "{minutes} min: error up to {worst_m:.3} m, lost {lost} times, {} of {} readings mapped, known {}, {memory}",
-            report.mapped, report.readings, known(pair.node.mapper().states())
+            report.mapped,
+            report.readings,
+            known(pair.node.mapper().states())
         );
     }
 }

@@ -20,7 +20,8 @@ impl CsvFile {
         let head = ["world", "estimator", "strategy", "seed", length.column()];
         let create = || {
             let mut file = BufWriter::new(File::create(path)?);
-            csv::Writer::from_writer(&mut file).write_record(head.iter().chain(&names).chain(&["map_hash"]))?;
+            csv::Writer::from_writer(&mut file)
+                .write_record(head.iter().chain(&names).chain(&["map_hash"]))?;
             Ok(file)
         };
         let file = create().map_err(|why: io::Error| OutputError::new(path, why))?;
