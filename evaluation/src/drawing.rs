@@ -130,14 +130,17 @@ fn shrink(pixels: &[u8], width: usize) -> Vec<u8> {
     let by = OVERSAMPLING as usize;
     let stride = 3 * width;
     let mut small = Vec::with_capacity(pixels.len() / (by * by));
+    let mut sums = vec![0; stride / by];
     for rows in pixels.chunks_exact(by * stride) {
-        for left in (0..stride).step_by(3 * by) {
-            for channel in 0..3 {
-                let square = (0..by).flat_map(|y| (0..by).map(move |x| y * stride + left + 3 * x + channel));
-                let sum: usize = square.map(|at| usize::from(rows[at])).sum();
-                small.push((sum / (by * by)) as u8);
+        sums.fill(0);
+        for row in rows.chunks_exact(stride) {
+            for (pixels, sum) in row.chunks_exact(3 * by).zip(sums.chunks_exact_mut(3)) {
+                for pixel in pixels.chunks_exact(3) {
+                    sum.iter_mut().zip(pixel).for_each(|(sum, &value)| *sum += usize::from(value));
+                }
             }
         }
+        small.extend(sums.iter().map(|sum| (sum / (by * by)) as u8));
     }
     small
 }
