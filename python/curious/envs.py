@@ -214,6 +214,8 @@ class _Vector(gymnasium.vector.VectorEnv):
         self._world_seeds = np.zeros(num_envs, np.uint64)
         self._next_seeds = np.zeros(num_envs, np.uint64)
         self._all = np.ones(num_envs, bool)
+        # Every environment has every value.
+        self._masks = {f"_{name}": self._all for name in [*self._names, "world_seed"]}
 
     @property
     def batch(self) -> Batch:
@@ -260,7 +262,7 @@ class _Vector(gymnasium.vector.VectorEnv):
                 self._world_seeds[index] = self._next_seeds[index]
                 self._next_seeds[index] = _draw(self._randoms[index])
         info["world_seed"] = self._world_seeds.copy()
-        info.update({f"_{name}": self._all for name in [*self._names, "world_seed"]})
+        info.update(self._masks)
         return _split(self._parts, rows), rewards.astype(np.float64), terminated, truncated, info
 
     def render(self) -> tuple[np.ndarray, ...] | None:

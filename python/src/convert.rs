@@ -6,6 +6,7 @@ use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike1, PyAr
 use pyo3::exceptions::{PyFileNotFoundError, PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use std::fmt::Display;
+use worldfile::shipped::LoadError;
 
 pyo3::create_exception!(
     curious,
@@ -36,9 +37,15 @@ pub(crate) fn world_error(error: impl Display) -> PyErr {
 }
 
 /// The error for a world that cannot be loaded.
-pub(crate) fn load_error(error: worldfile::shipped::LoadError) -> PyErr {
+pub(crate) fn load_error(error: LoadError) -> PyErr {
     match error {
-        worldfile::shipped::LoadError::Unknown { .. } => PyFileNotFoundError::new_err(error.to_string()),
+        LoadError::Unknown { .. } => PyFileNotFoundError::new_err(error.to_string()),
+        LoadError::OtherKind { name, kind, .. } => {
+            let class = if kind == "grid" { "GridSpec" } else { "Spec" };
+            world_error(format!(
+                "`{name}` is a {kind} world: `curious.{class}.load` loads it, `curious.trial` runs it"
+            ))
+        }
         other => world_error(other),
     }
 }

@@ -35,19 +35,49 @@ impl Fleet {
         if robot < robots { Ok(()) } else { Err(no_robot(robot, robots)) }
     }
 
-    /// Simulates until a time, s. Ctrl-C ends it.
-    fn run_until(&mut self, py: Python<'_>, end_s: f64) -> PyResult<()> {
+    /// Simulates until a time, s. Ctrl-C ends it. Then, with memory for `scans`, all main lasers measure.
+    fn run_until(&mut self, py: Python<'_>, end_s: f64, mut scans: Option<&mut [f32]>) -> PyResult<()> {
         let Self { fleet, contacts, .. } = self;
         contacts.clear();
         loop {
             let next_s = end_s.min(fleet.time_s() + SIGNALS_S);
-            py.detach(|| fleet.run_until(next_s, &mut ()));
+            let is_end = next_s >= end_s;
+            py.detach(|| {
+                fleet.run_until(next_s, &mut ());
+                match scans.take_if(|_| is_end) {
+                    Some(ranges_m) => look_all(fleet, ranges_m),
+                    None => Ok(()),
+                }
+            })?;
             contacts.extend_from_slice(fleet.contacts());
-            if next_s >= end_s {
+            if is_end {
                 return Ok(());
             }
             py.check_signals()?;
         }
+    }
+
+    /// The memory of an array for scans of all robots.
+    fn scans_of<'a>(&self, out: &'a mut PyReadwriteArray2<'_, f32>) -> PyResult<&'a mut [f32]> {
+        let (robots, shape) = (self.fleet.spec().robots.len(), out.as_array().dim());
+        if self.beams.is_none_or(|beams| shape != (robots, beams)) {
+            return Err(value_error(format!(
+                "the array for scans has the shape {shape:?}, and must have one row for each of {robots} robots with as \
+                 many values as it has beams"
+            )));
+        }
+        contiguous(out, "scans")
+    }
+
+    /// The memory of an array for poses of all robots.
+    fn poses_of<'a>(&self, out: &'a mut PyReadwriteArray2<'_, f64>) -> PyResult<&'a mut [[f64; 3]]> {
+        let (robots, shape) = (self.fleet.spec().robots.len(), out.as_array().dim());
+        if shape != (robots, 3) {
+            return Err(value_error(format!(
+                "the array for poses has the shape {shape:?}, and must have ({robots}, 3): x (m), y (m), heading (rad)"
+            )));
+        }
+        Ok(contiguous(out, "poses")?.as_chunks_mut().0)
     }
 
     fn set_commands(&mut self, commands: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<()> {
@@ -70,6 +100,23 @@ impl Fleet {
         }
         Ok(())
     }
+}
+
+/// Measures with the main lasers of all robots.
+fn look_all(fleet: &mut sim::physics::Fleet, ranges_m: &mut [f32]) -> PyResult<()> {
+    fleet.look_all();
+    fleet.copy_scans(ranges_m).map_err(value_error)
+}
+
+/// The memory of an array that has the right shape.
+fn contiguous<'a, T: numpy::Element>(
+    out: &'a mut PyReadwriteArray2<'_, T>,
+    what: &str,
+) -> PyResult<&'a mut [T]> {
+    if !out.is_c_contiguous() {
+        return Err(value_error(format!("the array for {what} must be contiguous, in C order")));
+    }
+    out.as_slice_mut().map_err(value_error)
 }
 
 #[pymethods]
@@ -121,16 +168,23 @@ impl Fleet {
     }
 
     /// Simulates some physics steps. `commands`: one row per driven robot, shape (driven, 2), linear (m/s) and
-    /// angular (rad/s) velocity; with 3 columns linear, left, angular.
-    #[pyo3(signature = (commands = None, *, steps = 1))]
+    /// angular (rad/s) velocity; with 3 columns linear, left, angular. At the end, `scans` (float32, as in `scans(out)`)
+    /// and `poses` (float64, as in `poses(out)`) are filled, if they are given: one call has everything of an instant.
+    #[pyo3(signature = (commands = None, *, steps = 1, scans = None, poses = None))]
     fn step(
         &mut self,
         py: Python<'_>,
         commands: Option<PyArrayLike2<'_, f64, AllowTypeChange>>,
         steps: u32,
+        mut scans: Option<PyReadwriteArray2<'_, f32>>,
+        mut poses: Option<PyReadwriteArray2<'_, f64>>,
     ) -> PyResult<()> {
+        let ranges_m = scans.as_mut().map(|out| self.scans_of(out)).transpose()?;
+        let poses = poses.as_mut().map(|out| self.poses_of(out)).transpose()?;
         commands.as_ref().map_or(Ok(()), |commands| self.set_commands(commands))?;
-        self.run_until(py, self.fleet.time_s() + f64::from(steps) * self.fleet.spec().step_s)
+        let end_s = self.fleet.time_s() + f64::from(steps) * self.fleet.spec().step_s;
+        self.run_until(py, end_s, ranges_m)?;
+        poses.map_or(Ok(()), |poses| self.fleet.copy_poses(poses)).map_err(value_error)
     }
 
     /// Simulates for some time, s.
@@ -138,7 +192,7 @@ impl Fleet {
         if !(seconds.is_finite() && seconds >= 0.0) {
             return Err(value_error(format!("a duration is 0 s or more, and not {seconds}")));
         }
-        self.run_until(py, self.fleet.time_s() + seconds)
+        self.run_until(py, self.fleet.time_s() + seconds, None)
     }
 
     /// Measures with the main laser of a robot now: scan and pose are of the same instant.
@@ -158,42 +212,35 @@ impl Fleet {
         py: Python<'py>,
         out: Option<PyReadwriteArray2<'py, f32>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (robots, total) = (self.fleet.spec().robots.len(), self.fleet.beams());
-        let fleet = &mut self.fleet;
         if let Some(mut out) = out {
-            let shape = out.as_array().dim();
-            if self.beams.is_none_or(|beams| shape != (robots, beams)) {
-                return Err(value_error(format!(
-                    "`out` has the shape {shape:?}, and must have one row for each of {robots} robots with as many \
-                     values as it has beams"
-                )));
-            }
-            if !out.is_c_contiguous() {
-                return Err(value_error("`out` must be contiguous, in C order"));
-            }
-            let ranges_m = out.as_slice_mut().map_err(value_error)?;
-            py.detach(|| {
-                fleet.look_all();
-                fleet.copy_scans(ranges_m)
-            })
-            .map_err(value_error)?;
+            let ranges_m = self.scans_of(&mut out)?;
+            let fleet = &mut self.fleet;
+            py.detach(|| look_all(fleet, ranges_m))?;
             let array: Bound<'py, PyArray2<f32>> = (**out).clone();
             return Ok(array.into_any());
         }
-        let ranges_m = py.detach(|| {
-            let mut ranges_m = vec![0.0; total];
-            fleet.look_all();
-            fleet.copy_scans(&mut ranges_m).map(|()| ranges_m)
-        });
-        let array = ranges_m.map_err(value_error)?.into_pyarray(py);
+        let fleet = &mut self.fleet;
+        let mut ranges_m = vec![0.0; fleet.beams()];
+        py.detach(|| look_all(fleet, &mut ranges_m))?;
+        let array = ranges_m.into_pyarray(py);
         match self.beams {
-            Some(beams) => Ok(array.reshape([robots, beams])?.into_any()),
+            Some(beams) => Ok(array.reshape([self.fleet.spec().robots.len(), beams])?.into_any()),
             None => Ok(array.into_any()),
         }
     }
 
-    /// The true poses of all robots, shape (robots, 3): x (m), y (m), heading (rad).
-    fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    /// The true poses of all robots, shape (robots, 3), float64: x (m), y (m), heading (rad). With `out`, an array of this
+    /// shape, nothing is allocated.
+    #[pyo3(signature = (out = None))]
+    fn poses<'py>(
+        &self,
+        py: Python<'py>,
+        out: Option<PyReadwriteArray2<'py, f64>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        if let Some(mut out) = out {
+            self.fleet.copy_poses(self.poses_of(&mut out)?).map_err(value_error)?;
+            return Ok((**out).clone());
+        }
         let mut poses = vec![[0.0; 3]; self.fleet.spec().robots.len()];
         self.fleet.copy_poses(&mut poses).map_err(value_error)?;
         poses.concat().into_pyarray(py).reshape([poses.len(), 3])

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Without any culling: every edge and every disc is compared with all beams that could hit it.
 fn slow(scene: &Scene, beams: &Beams, laser: &Isometry2<f64>, own: usize) -> Vec<f64> {
-    let (Walls { solids, edges, visible }, Sorted { polygons, .. }) = (&*scene.walls, scene.sorted());
+    let (Walls { solids, edges, visible }, Sorted { polygons, .. }) = (&*scene.moving.walls, scene.sorted());
     let mut inverse = Vec::new();
     let mut hits = Hits::new(beams, laser, &mut inverse);
     edges.iter().for_each(|edge| hits.add_edge(edge));
@@ -28,7 +28,7 @@ fn slow(scene: &Scene, beams: &Beams, laser: &Isometry2<f64>, own: usize) -> Vec
         hits.add_disc_to(0..beams.count, &center, power, f64::INFINITY);
     }
     let at = Point2::from(laser.translation.vector);
-    if is_inside(solids, visible, polygons, visible.cell_at(&at), own, &at) {
+    if is_in_wall(solids, visible, visible.cell_at(&at), &at) || polygons.contains(None, own, &at) {
         hits.add_inside();
     }
     inverse
