@@ -2,9 +2,10 @@ use crate::convert::{Numbers, no_robot, pose, pose_array, snapshot_error, value_
 use crate::reading::Reading;
 use crate::spec::spec_of;
 use interfaces::{LaserReading, Purpose, RandomStream};
+use numpy::ndarray::Dimension;
 use numpy::{
-    AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods, PyReadwriteArray2,
-    PyUntypedArrayMethods,
+    AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods,
+    PyReadwriteArray, PyReadwriteArray2, PyReadwriteArrayDyn, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -58,12 +59,20 @@ impl Fleet {
     }
 
     /// The memory of an array for scans of all robots.
-    fn scans_of<'a>(&self, out: &'a mut PyReadwriteArray2<'_, f32>) -> PyResult<&'a mut [f32]> {
-        let (robots, shape) = (self.fleet.spec().robots.len(), out.as_array().dim());
-        if self.beams.is_none_or(|beams| shape != (robots, beams)) {
+    fn scans_of<'a>(&self, out: &'a mut PyReadwriteArrayDyn<'_, f32>) -> PyResult<&'a mut [f32]> {
+        let (robots, total) = (self.fleet.spec().robots.len(), self.fleet.beams());
+        let is_right = match self.beams {
+            Some(beams) => out.shape() == [robots, beams],
+            None => out.shape() == [total],
+        };
+        if !is_right {
+            let expected = self.beams.map_or_else(
+                || format!("({total},): the robots have different numbers of beams, one after the other"),
+                |beams| format!("({robots}, {beams}): one row per robot, one column per beam"),
+            );
             return Err(value_error(format!(
-                "the array for scans has the shape {shape:?}, and must have one row for each of {robots} robots with as \
-                 many values as it has beams"
+                "the array for scans has the shape {:?}, and must have {expected}",
+                out.shape()
             )));
         }
         contiguous(out, "scans")
@@ -71,10 +80,11 @@ impl Fleet {
 
     /// The memory of an array for poses of all robots.
     fn poses_of<'a>(&self, out: &'a mut PyReadwriteArray2<'_, f64>) -> PyResult<&'a mut [[f64; 3]]> {
-        let (robots, shape) = (self.fleet.spec().robots.len(), out.as_array().dim());
-        if shape != (robots, 3) {
+        let robots = self.fleet.spec().robots.len();
+        if out.shape() != [robots, 3] {
             return Err(value_error(format!(
-                "the array for poses has the shape {shape:?}, and must have ({robots}, 3): x (m), y (m), heading (rad)"
+                "the array for poses has the shape {:?}, and must have ({robots}, 3): x (m), y (m), heading (rad)",
+                out.shape()
             )));
         }
         Ok(contiguous(out, "poses")?.as_chunks_mut().0)
@@ -109,8 +119,8 @@ fn look_all(fleet: &mut sim::physics::Fleet, ranges_m: &mut [f32]) -> PyResult<(
 }
 
 /// The memory of an array that has the right shape.
-fn contiguous<'a, T: numpy::Element>(
-    out: &'a mut PyReadwriteArray2<'_, T>,
+fn contiguous<'a, T: Element, D: Dimension>(
+    out: &'a mut PyReadwriteArray<'_, T, D>,
     what: &str,
 ) -> PyResult<&'a mut [T]> {
     if !out.is_c_contiguous() {
@@ -176,7 +186,7 @@ impl Fleet {
         py: Python<'_>,
         commands: Option<PyArrayLike2<'_, f64, AllowTypeChange>>,
         steps: u32,
-        mut scans: Option<PyReadwriteArray2<'_, f32>>,
+        mut scans: Option<PyReadwriteArrayDyn<'_, f32>>,
         mut poses: Option<PyReadwriteArray2<'_, f64>>,
     ) -> PyResult<()> {
         let ranges_m = scans.as_mut().map(|out| self.scans_of(out)).transpose()?;
@@ -205,19 +215,19 @@ impl Fleet {
     }
 
     /// Measures with the main lasers of all robots now: ranges (m) of shape (robots, beams), float32. If robots have
-    /// different numbers of beams, one after the other. With `out`, an array of this shape, nothing is allocated.
+    /// different numbers of beams, one after the other, shape (all beams,). With `out`, an array of this shape, nothing is
+    /// allocated.
     #[pyo3(signature = (out = None))]
     fn scans<'py>(
         &mut self,
         py: Python<'py>,
-        out: Option<PyReadwriteArray2<'py, f32>>,
+        out: Option<PyReadwriteArrayDyn<'py, f32>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         if let Some(mut out) = out {
             let ranges_m = self.scans_of(&mut out)?;
             let fleet = &mut self.fleet;
             py.detach(|| look_all(fleet, ranges_m))?;
-            let array: Bound<'py, PyArray2<f32>> = (**out).clone();
-            return Ok(array.into_any());
+            return Ok((**out).clone().into_any());
         }
         let fleet = &mut self.fleet;
         let mut ranges_m = vec![0.0; fleet.beams()];

@@ -3,7 +3,7 @@
 use crate::convert::{pose_array, value_error, world_error};
 use crate::grid_spec::GridSpec;
 use crate::mapper::Mapper;
-use crate::spec::{driving, spec_of};
+use crate::spec::{Spec, driving, spec_of, world_name};
 use agent::{Policy, Situation as Inputs, Strategy};
 use evaluation::report::{Metric, Trial};
 use evaluation::trials::{Experiment, GridRobot, PhysicsRobot, TrialStrategy, TrialWorld, run_trial};
@@ -13,7 +13,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sim::physics::WorldSpec;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a strategy of Python knows when it weighs the cells.
@@ -145,10 +144,11 @@ impl World {
         if let Ok(spec) = world.cast::<GridSpec>() {
             return Ok(Self::Grid(Arc::clone(&spec.get().spec)));
         }
-        if let Ok(name) = world.extract::<PathBuf>()
-            && GridSpec::is_named(&name)
-        {
-            return Ok(Self::Grid(GridSpec::load(py, name)?.spec));
+        if !world.is_instance_of::<Spec>() {
+            let name = world_name(world)?;
+            if GridSpec::is_named(&name) {
+                return Ok(Self::Grid(GridSpec::load(py, name)?.spec));
+            }
         }
         Ok(Self::Physics(driving(&spec_of(py, world)?, robot)?))
     }
