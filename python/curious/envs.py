@@ -26,6 +26,7 @@ single environment with seed ``s + i``.
 
 from __future__ import annotations
 
+from os import PathLike
 from typing import Any, Sequence
 
 import gymnasium
@@ -74,7 +75,9 @@ def _drive(num_envs: int, threads: int, world: Any = None, **settings: Any) -> B
     return Batch.drive(Spec.driving_hall() if world is None else world, num_envs, threads, **settings)
 
 
-def _explore(num_envs: int, threads: int, worlds: Sequence[Any] | None = None, **settings: Any) -> Batch:
+def _explore(num_envs: int, threads: int, worlds: Any = None, **settings: Any) -> Batch:
+    if isinstance(worlds, (str, PathLike, Spec)):
+        worlds = [worlds]
     specs = [Spec.house(seed) for seed in HOUSES] if worlds is None else list(worlds)
     return Batch.explore(specs, num_envs, threads, **settings)
 

@@ -1,11 +1,11 @@
-use crate::convert::{Numbers, no_robot, pose, pose_array, snapshot_error, value_error};
+use crate::convert::{Numbers, no_robot, pose, pose_array, snapshot_error, value_error, writable};
 use crate::reading::Reading;
 use crate::spec::spec_of;
 use interfaces::{LaserReading, Purpose, RandomStream};
-use numpy::ndarray::Dimension;
+use numpy::ndarray::Ix2;
 use numpy::{
-    AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods,
-    PyReadwriteArray, PyReadwriteArray2, PyReadwriteArrayDyn, PyUntypedArrayMethods,
+    AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayLikeDyn, PyArrayMethods,
+    PyReadwriteArrayDyn, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -79,7 +79,7 @@ impl Fleet {
     }
 
     /// The memory of an array for poses of all robots.
-    fn poses_of<'a>(&self, out: &'a mut PyReadwriteArray2<'_, f64>) -> PyResult<&'a mut [[f64; 3]]> {
+    fn poses_of<'a>(&self, out: &'a mut PyReadwriteArrayDyn<'_, f64>) -> PyResult<&'a mut [[f64; 3]]> {
         let robots = self.fleet.spec().robots.len();
         if out.shape() != [robots, 3] {
             return Err(value_error(format!(
@@ -90,16 +90,17 @@ impl Fleet {
         Ok(contiguous(out, "poses")?.as_chunks_mut().0)
     }
 
-    fn set_commands(&mut self, commands: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<()> {
-        let commands = commands.as_array();
-        let (rows, columns) = commands.dim();
-        if rows != self.driven.len() || !(2..=3).contains(&columns) {
+    fn set_commands(&mut self, commands: &PyArrayLikeDyn<'_, f64, AllowTypeChange>) -> PyResult<()> {
+        let (commands, driven) = (commands.as_array(), self.driven.len());
+        let is_right = matches!(commands.shape(), [rows, 2..=3] if *rows == driven);
+        let Some(commands) = commands.view().into_dimensionality::<Ix2>().ok().filter(|_| is_right) else {
             return Err(value_error(format!(
-                "the commands have the shape ({rows}, {columns}), and must have ({}, 2): linear (m/s) and angular \
-                 (rad/s) velocity of each driven robot; or 3 columns: linear, left, angular",
-                self.driven.len()
+                "the commands have the shape {:?}, and must have ({driven}, 2): one row per driven robot, linear (m/s) \
+                 and angular (rad/s) velocity; or 3 columns: linear, left, angular",
+                commands.shape()
             )));
-        }
+        };
+        let columns = commands.ncols();
         if let Some((robot, value)) = commands.indexed_iter().find(|(_, value)| !value.is_finite()) {
             return Err(value_error(format!("command {value} of driven robot {} is not finite", robot.0)));
         }
@@ -119,10 +120,7 @@ fn look_all(fleet: &mut sim::physics::Fleet, ranges_m: &mut [f32]) -> PyResult<(
 }
 
 /// The memory of an array that has the right shape.
-fn contiguous<'a, T: Element, D: Dimension>(
-    out: &'a mut PyReadwriteArray<'_, T, D>,
-    what: &str,
-) -> PyResult<&'a mut [T]> {
+fn contiguous<'a, T: Element>(out: &'a mut PyReadwriteArrayDyn<'_, T>, what: &str) -> PyResult<&'a mut [T]> {
     if !out.is_c_contiguous() {
         return Err(value_error(format!("the array for {what} must be contiguous, in C order")));
     }
@@ -184,15 +182,20 @@ impl Fleet {
     fn step(
         &mut self,
         py: Python<'_>,
-        commands: Option<PyArrayLike2<'_, f64, AllowTypeChange>>,
-        steps: u32,
-        mut scans: Option<PyReadwriteArrayDyn<'_, f32>>,
-        mut poses: Option<PyReadwriteArray2<'_, f64>>,
+        commands: Option<PyArrayLikeDyn<'_, f64, AllowTypeChange>>,
+        steps: i64,
+        scans: Option<Bound<'_, PyAny>>,
+        poses: Option<Bound<'_, PyAny>>,
     ) -> PyResult<()> {
+        if steps < 0 {
+            return Err(value_error(format!("`steps` is 0 or more, and not {steps}")));
+        }
+        let mut scans = scans.map(|out| writable(&out, "scans")).transpose()?;
+        let mut poses = poses.map(|out| writable(&out, "poses")).transpose()?;
         let ranges_m = scans.as_mut().map(|out| self.scans_of(out)).transpose()?;
         let poses = poses.as_mut().map(|out| self.poses_of(out)).transpose()?;
         commands.as_ref().map_or(Ok(()), |commands| self.set_commands(commands))?;
-        let end_s = self.fleet.time_s() + f64::from(steps) * self.fleet.spec().step_s;
+        let end_s = self.fleet.time_s() + steps as f64 * self.fleet.spec().step_s;
         self.run_until(py, end_s, ranges_m)?;
         poses.map_or(Ok(()), |poses| self.fleet.copy_poses(poses)).map_err(value_error)
     }
@@ -218,16 +221,13 @@ impl Fleet {
     /// different numbers of beams, one after the other, shape (all beams,). With `out`, an array of this shape, nothing is
     /// allocated.
     #[pyo3(signature = (out = None))]
-    fn scans<'py>(
-        &mut self,
-        py: Python<'py>,
-        out: Option<PyReadwriteArrayDyn<'py, f32>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        if let Some(mut out) = out {
+    fn scans<'py>(&mut self, py: Python<'py>, out: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        if let Some(array) = out {
+            let mut out = writable(&array, "out")?;
             let ranges_m = self.scans_of(&mut out)?;
             let fleet = &mut self.fleet;
             py.detach(|| look_all(fleet, ranges_m))?;
-            return Ok((**out).clone().into_any());
+            return Ok(array);
         }
         let fleet = &mut self.fleet;
         let mut ranges_m = vec![0.0; fleet.beams()];
@@ -242,18 +242,14 @@ impl Fleet {
     /// The true poses of all robots, shape (robots, 3), float64: x (m), y (m), heading (rad). With `out`, an array of this
     /// shape, nothing is allocated.
     #[pyo3(signature = (out = None))]
-    fn poses<'py>(
-        &self,
-        py: Python<'py>,
-        out: Option<PyReadwriteArray2<'py, f64>>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        if let Some(mut out) = out {
-            self.fleet.copy_poses(self.poses_of(&mut out)?).map_err(value_error)?;
-            return Ok((**out).clone());
+    fn poses<'py>(&self, py: Python<'py>, out: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        if let Some(array) = out {
+            self.fleet.copy_poses(self.poses_of(&mut writable(&array, "out")?)?).map_err(value_error)?;
+            return Ok(array);
         }
         let mut poses = vec![[0.0; 3]; self.fleet.spec().robots.len()];
         self.fleet.copy_poses(&mut poses).map_err(value_error)?;
-        poses.concat().into_pyarray(py).reshape([poses.len(), 3])
+        Ok(poses.concat().into_pyarray(py).reshape([poses.len(), 3])?.into_any())
     }
 
     /// The true velocities of all robots, shape (robots, 3): forward (m/s), left (m/s), angular (rad/s).

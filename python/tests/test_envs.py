@@ -136,6 +136,12 @@ def test_settings():
         gymnasium.make("curious/Drive-v0", speed=3)
     with pytest.raises(ValueError, match="goal_radius_m"):
         gymnasium.make("curious/Drive-v0", goal_radius=-1.0)
+    with pytest.raises(OverflowError, match="the setting `max_steps` cannot be -5"):
+        gymnasium.make("curious/Drive-v0", max_steps=-5)
+    with pytest.raises(TypeError, match="the setting `goal_radius` cannot be wide"):
+        gymnasium.make("curious/Drive-v0", goal_radius="wide")
+    with pytest.raises(FileNotFoundError, match="there is no world `hut`"):
+        gymnasium.make("curious/Explore-v0", worlds="hut")
     with pytest.raises(ValueError, match="number of environments"):
         curious.Batch.drive(curious.Spec.driving_hall(), 0)
     with pytest.raises(ValueError, match="at least one world"):
