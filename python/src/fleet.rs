@@ -27,6 +27,10 @@ pub(crate) struct Fleet {
 /// The simulated time after which a signal of the user is noticed, s.
 const SIGNALS_S: f64 = 10.0;
 
+/// Up to this number of steps of robots, a call keeps the interpreter: it takes some microseconds, and to release the
+/// interpreter and to get it back would be a part of them.
+const SHORT_STEPS: f64 = 4.0;
+
 /// A contact: time, robot, what it touched, x, y, whether the robot moved.
 type ContactRow = (f64, usize, (&'static str, usize), f64, f64, bool);
 
@@ -39,17 +43,20 @@ impl Fleet {
     /// Simulates until a time, s. Ctrl-C ends it. Then, with memory for `scans`, all main lasers measure.
     fn run_until(&mut self, py: Python<'_>, end_s: f64, mut scans: Option<&mut [f32]>) -> PyResult<()> {
         let Self { fleet, contacts, .. } = self;
+        let spec = fleet.spec();
+        let steps = (end_s - fleet.time_s()) / spec.step_s * spec.robots.len() as f64;
         contacts.clear();
         loop {
             let next_s = end_s.min(fleet.time_s() + SIGNALS_S);
             let is_end = next_s >= end_s;
-            py.detach(|| {
+            let mut run = || {
                 fleet.run_until(next_s, &mut ());
                 match scans.take_if(|_| is_end) {
                     Some(ranges_m) => look_all(fleet, ranges_m),
                     None => Ok(()),
                 }
-            })?;
+            };
+            if steps <= SHORT_STEPS { run() } else { py.detach(run) }?;
             contacts.extend_from_slice(fleet.contacts());
             if is_end {
                 return Ok(());
