@@ -92,7 +92,9 @@ impl SortedPolygons {
     /// Replaces everything by these bodies, sorted into the cells, if there are cells.
     pub(super) fn sort(&mut self, polygons: &Polygons, visible: Option<&PotentiallyVisibleSet>) {
         let Self { edges, bodies, cells, in_cells } = self;
-        (edges.clear(), bodies.clear(), in_cells.clear());
+        edges.clear();
+        bodies.clear();
+        in_cells.clear();
         for Body { corners, robot, .. } in polygons.bodies.iter().filter(|body| !body.corners.is_empty()) {
             let (corners, index) = (&polygons.corners[corners.clone()], bodies.len() as u32);
             let (mut low, mut high) = (corners[0], corners[0]);

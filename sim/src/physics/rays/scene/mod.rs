@@ -59,7 +59,7 @@ struct Moving {
     discs: Vec<Disc>,
     /// The same bodies by position, as soon as a ray is cast.
     sorted: OnceLock<Sorted>,
-    /// Memory for them.
+    /// Memory to sort them into.
     spare: Option<Sorted>,
 }
 
@@ -89,7 +89,7 @@ struct Sorted {
 }
 
 impl Sorted {
-    /// The bodies sorted into cells, in memory that was used before.
+    /// The bodies sorted into cells, in the memory of an earlier result.
     fn new(mut memory: Self, moving: &Moving) -> Self {
         let Moving { walls, polygons, discs, .. } = moving;
         let visible = &walls.visible;
