@@ -17,7 +17,11 @@ const FARTHEST: u16 = UNREACHED - CORNER - 1;
 #[derive(Clone, Debug)]
 pub(crate) struct Distances {
     costs: Box<[u16]>,
+    /// The neighbor that is nearest to the goal, as an index of [`NEIGHBORS`]; [`NO_NEIGHBOR`] for a cell without one.
+    nearer: Box<[u8]>,
 }
+
+const NO_NEIGHBOR: u8 = u8::MAX;
 
 impl Distances {
     /// The distances to the cell `goal` (an index) through cells for which `is_free` is true.
@@ -33,9 +37,8 @@ impl Distances {
                 if costs[index] != cost {
                     continue;
                 }
-                let cell = frame.cell(index);
-                for (dx, dy, step) in NEIGHBORS {
-                    let Some(near) = frame.index(Cell::new(cell.x + dx, cell.y + dy)) else { continue };
+                for (near, (_, _, step)) in neighbors(frame, index).zip(NEIGHBORS) {
+                    let Some(near) = near else { continue };
                     if is_free[near] && costs[near] > cost + step {
                         costs[near] = cost + step;
                         buckets[usize::from(cost + step) % BUCKETS].push(near);
@@ -45,7 +48,12 @@ impl Distances {
             }
             cost += 1;
         }
-        Self { costs }
+        let nearer = (0..costs.len()).map(|index| {
+            let neighbors = (0..).zip(neighbors(frame, index));
+            let near = neighbors.filter_map(|(number, near)| Some((number, near?)));
+            near.min_by_key(|(_, near)| costs[*near]).map_or(NO_NEIGHBOR, |(number, _)| number)
+        });
+        Self { nearer: nearer.collect(), costs }
     }
 
     /// The free cell at `point` (m), or the nearest one to the goal within two cells.
@@ -77,13 +85,17 @@ impl Distances {
         let mut index = self.cell_near(frame, point)?;
         let end = self.costs[index].saturating_sub((ahead_m / frame.resolution_m() * f64::from(SIDE)) as u16);
         while self.costs[index] > end {
-            let cell = frame.cell(index);
-            let near =
-                NEIGHBORS.iter().filter_map(|(dx, dy, _)| frame.index(Cell::new(cell.x + dx, cell.y + dy)));
-            index = near.min_by_key(|near| self.costs[*near])?;
+            let (dx, dy, _) = NEIGHBORS.get(usize::from(self.nearer[index]))?;
+            index = index.checked_add_signed(*dy as isize * frame.width() as isize + *dx as isize)?;
         }
         (frame.center(frame.cell(index)) - point).try_normalize(1e-6)
     }
+}
+
+/// The neighbors of a cell that are on the map, in the order of [`NEIGHBORS`].
+fn neighbors(frame: &GridFrame, index: usize) -> impl Iterator<Item = Option<usize>> {
+    let cell = frame.cell(index);
+    NEIGHBORS.iter().map(move |(dx, dy, _)| frame.index(Cell::new(cell.x + dx, cell.y + dy)))
 }
 
 const NEIGHBORS: [(i32, i32, u16); 8] = [

@@ -68,10 +68,6 @@ impl Drive {
         picture.robots(&self.fleet, &driven);
         picture
     }
-
-    fn at(&self, robot: usize) -> Point2<f64> {
-        self.fleet.robot(robot).map_or(Point2::origin(), |robot| robot.pose.translation.vector.into())
-    }
 }
 
 impl Task for Drive {
@@ -92,28 +88,28 @@ impl Task for Drive {
     }
 
     fn reset(&mut self, seed: u64) {
-        let place = Arc::clone(&self.place);
-        self.fleet.reset(seed);
-        self.steps = 0;
+        let Self { place, fleet, agents, steps } = self;
+        fleet.reset(seed);
+        *steps = 0;
         let mut random = RandomStream::new(seed, Purpose::Task);
-        for (agent, of) in place.robots.iter().enumerate() {
-            if let Some(pose) = of.starts.draw(&self.fleet, of.robot, &mut random) {
+        for ((agent, of), progress) in place.robots.iter().enumerate().zip(agents) {
+            if let Some(pose) = of.starts.draw(fleet, of.robot, &mut random) {
                 // The pose was drawn among those that fit.
-                let _ = self.fleet.teleport(of.robot, &pose);
+                let _ = fleet.teleport(of.robot, &pose);
             }
-            let at = self.at(of.robot);
+            let at = at(fleet, of.robot);
             let goal = place.draw_goal(agent, &at, &mut random);
             let left_m = place.distances(agent, goal).at_m(&place.frame, &at).unwrap_or(place.diagonal_m);
-            self.agents[agent] = Progress { goal, left_m, ..Progress::default() };
+            *progress = Progress { goal, left_m, ..Progress::default() };
         }
-        self.look();
+        look(place, fleet);
     }
 
     fn step(&mut self, actions: &[f32], outcome: Outcome<'_>) {
-        let place = Arc::clone(&self.place);
+        let Self { place, fleet, agents, steps } = self;
         let settings = &place.settings;
-        for ((of, progress), action) in place.robots.iter().zip(&self.agents).zip(actions.chunks(2)) {
-            let drive = &self.fleet.spec().robots[of.robot].drive;
+        for ((of, progress), action) in place.robots.iter().zip(&*agents).zip(actions.chunks(2)) {
+            let drive = &fleet.spec().robots[of.robot].drive;
             let twist = match (progress.is_done, action) {
                 (false, [linear, angular]) => Twist {
                     linear_mps: f64::from(*linear) * drive.max_linear_mps,
@@ -121,18 +117,17 @@ impl Task for Drive {
                 },
                 _ => Twist::STOP,
             };
-            self.fleet.command(of.robot, twist);
+            fleet.command(of.robot, twist);
         }
-        let end_s = self.fleet.time_s() + place.steps as f64 * self.fleet.spec().step_s;
-        self.fleet.run_until(end_s, &mut ());
-        self.steps += 1;
-        let is_truncated = self.steps >= settings.max_steps;
+        let end_s = fleet.time_s() + place.steps as f64 * fleet.spec().step_s;
+        fleet.run_until(end_s, &mut ());
+        *steps += 1;
+        let is_truncated = *steps >= settings.max_steps;
         let Outcome { rewards, terminated, truncated } = outcome;
-        for (agent, of) in place.robots.iter().enumerate() {
-            let at = self.at(of.robot);
-            let contacts = self.fleet.contacts().iter();
+        for ((agent, of), progress) in place.robots.iter().enumerate().zip(agents) {
+            let at = at(fleet, of.robot);
+            let contacts = fleet.contacts().iter();
             let hits = contacts.filter(|contact| contact.robot == of.robot && contact.moving).count() as u32;
-            let progress = &mut self.agents[agent];
             if progress.is_done {
                 (rewards[agent], terminated[agent], truncated[agent]) =
                     (0.0, progress.is_at_goal, !progress.is_at_goal);
@@ -154,7 +149,7 @@ impl Task for Drive {
             terminated[agent] = progress.is_at_goal;
             truncated[agent] = is_truncated && !progress.is_at_goal;
         }
-        self.look();
+        look(place, fleet);
     }
 
     fn observe(&mut self, observations: &mut [f32]) {
@@ -203,7 +198,7 @@ impl Task for Drive {
 
     fn info(&self, info: &mut [f32]) {
         for (agent, (info, progress)) in info.chunks_mut(3).zip(&self.agents).enumerate() {
-            let at = self.at(self.place.robots[agent].robot);
+            let at = at(&self.fleet, self.place.robots[agent].robot);
             let away_m = nalgebra::distance(&at, &self.place.goal(agent, progress.goal));
             let values =
                 [f32::from(u8::from(progress.is_at_goal)), progress.collisions as f32, away_m as f32];
@@ -232,11 +227,14 @@ impl Task for Drive {
     }
 }
 
-impl Drive {
-    /// The agents measure, so that scans and poses are of the same instant.
-    fn look(&mut self) {
-        for agent in 0..self.place.robots.len() {
-            self.fleet.look(self.place.robots[agent].robot);
-        }
+/// The position of a robot, m.
+fn at(fleet: &Fleet, robot: usize) -> Point2<f64> {
+    fleet.robot(robot).map_or(Point2::origin(), |robot| robot.pose.translation.vector.into())
+}
+
+/// The agents measure, so that scans and poses are of the same instant.
+fn look(place: &DrivePlace, fleet: &mut Fleet) {
+    for agent in &place.robots {
+        fleet.look(agent.robot);
     }
 }

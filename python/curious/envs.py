@@ -26,6 +26,7 @@ single environment with seed ``s + i``.
 
 from __future__ import annotations
 
+from os import PathLike
 from typing import Any, Sequence
 
 import gymnasium
@@ -74,7 +75,9 @@ def _drive(num_envs: int, threads: int, world: Any = None, **settings: Any) -> B
     return Batch.drive(Spec.driving_hall() if world is None else world, num_envs, threads, **settings)
 
 
-def _explore(num_envs: int, threads: int, worlds: Sequence[Any] | None = None, **settings: Any) -> Batch:
+def _explore(num_envs: int, threads: int, worlds: Any = None, **settings: Any) -> Batch:
+    if isinstance(worlds, (str, PathLike, Spec)):
+        worlds = [worlds]
     specs = [Spec.house(seed) for seed in HOUSES] if worlds is None else list(worlds)
     return Batch.explore(specs, num_envs, threads, **settings)
 
@@ -214,6 +217,8 @@ class _Vector(gymnasium.vector.VectorEnv):
         self._world_seeds = np.zeros(num_envs, np.uint64)
         self._next_seeds = np.zeros(num_envs, np.uint64)
         self._all = np.ones(num_envs, bool)
+        # Every environment has every value.
+        self._masks = {f"_{name}": self._all for name in [*self._names, "world_seed"]}
 
     @property
     def batch(self) -> Batch:
@@ -260,7 +265,7 @@ class _Vector(gymnasium.vector.VectorEnv):
                 self._world_seeds[index] = self._next_seeds[index]
                 self._next_seeds[index] = _draw(self._randoms[index])
         info["world_seed"] = self._world_seeds.copy()
-        info.update({f"_{name}": self._all for name in [*self._names, "world_seed"]})
+        info.update(self._masks)
         return _split(self._parts, rows), rewards.astype(np.float64), terminated, truncated, info
 
     def render(self) -> tuple[np.ndarray, ...] | None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import Any, Sequence
 
 import numpy as np
+from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv
 
 __all__ = ["SB3VecEnv"]
@@ -85,5 +86,5 @@ class SB3VecEnv(VecEnv):
         return [getattr(self.env, method_name)(index, *args, **kwargs) for index in self._get_indices(indices)]
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
-        """No environment is wrapped."""
-        return [False for _ in self._get_indices(indices)]
+        """No environment is wrapped; but ``infos`` have what ``Monitor`` adds, the return and length of episodes."""
+        return [wrapper_class is Monitor for _ in self._get_indices(indices)]

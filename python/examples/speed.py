@@ -1,10 +1,13 @@
 """How fast the worlds are on this machine, per second of CPU time: `python speed.py`.
 
-One thread for fleets; the environments use all threads. With `--ir-sim`, the simulator ir-sim (`pip install ir-sim`) drives
-one robot with the same laser through the same walls in the same run.
+One thread for fleets; the environments use `--threads` (0: all). With `--ir-sim`, the simulator ir-sim (`pip install ir-sim`)
+drives one robot with the same laser through the same walls in the same run. With `--rust PROGRAM`, the example `speed` of the
+crate `environments` (`cargo build --release -p environments --example speed`) does the same without Python, in turns.
 """
 
 import argparse
+import subprocess
+import tempfile
 import time
 
 import curious
@@ -14,13 +17,24 @@ import numpy as np
 def measure(name: str, per_call: int, call, seconds: float = 2.0) -> float:
     """Calls per CPU second, times `per_call`."""
     call()
-    wall, cpu, calls = time.perf_counter(), time.process_time(), 0
-    while time.process_time() - cpu < seconds:
-        call()
-        calls += 1
+    # The clock is read rarely: that takes as long as the call itself takes without the simulation.
+    block, calls = 1, 0
+    wall, cpu = time.perf_counter(), time.process_time()
+    while (before := time.process_time() - cpu) < seconds:
+        for _ in range(block):
+            call()
+        calls += block
+        if time.process_time() - cpu - before < 0.01:
+            block *= 2
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
     print(f"{name:<52} {calls * per_call / cpu:>12,.0f} per CPU second {calls * per_call / wall:>12,.0f} per second")
     return calls * per_call / cpu
+
+
+def compare(speed: float, command: list[str]) -> None:
+    """Runs the same in Rust, and prints the share that Python reaches."""
+    line = subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+    print(f"{'  Rust alone':<52} {line}: Python reaches {speed / float(line.split()[0]):.0%}")
 
 
 def rooms(robots: int) -> curious.Spec:
@@ -47,20 +61,28 @@ behaviour = {{ kind = "driven" }}
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--ir-sim", action="store_true")
-    parser.add_argument("--seconds", type=float, default=2.0, help="CPU seconds per line")
+    parser.add_argument("--rust", metavar="PROGRAM", help="the example `speed` of the crate `environments`")
+    parser.add_argument("--seconds", type=int, default=2, help="CPU seconds per line")
+    parser.add_argument("--threads", type=int, default=0, help="of the environments; 0: all")
     args = parser.parse_args()
 
     for robots in (1, 10, 100):
-        fleet = curious.Fleet(rooms(robots), seed=1)
+        spec = rooms(robots)
+        fleet = curious.Fleet(spec, seed=1)
         commands = np.tile([0.4, 0.3], (robots, 1))
-        out = np.empty((robots, 360), np.float32)
+        scans, poses = np.empty((robots, 360), np.float32), np.empty((robots, 3))
 
         def step() -> None:
-            # A tenth of a second: two physics steps, then a fresh scan of every robot.
-            fleet.step(commands, steps=2)
-            fleet.scans(out=out)
+            # A tenth of a second: two physics steps, then a fresh scan and the pose of every robot.
+            fleet.step(commands, steps=2, scans=scans, poses=poses)
 
-        measure(f"robot steps of 0.1 s, 360 beams, {robots} robots", robots, step, args.seconds)
+        for _ in range(3 if args.rust else 1):
+            speed = measure(f"robot steps of 0.1 s, 360 beams, {robots} robots", robots, step, args.seconds)
+            if args.rust:
+                with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
+                    file.write(spec.to_toml())
+                    file.flush()
+                    compare(speed, [args.rust, "fleet", file.name, str(args.seconds)])
     fleet = curious.Fleet("house")
     measure("resets of the house", 1, lambda: fleet.reset(1), args.seconds)
 
@@ -69,20 +91,23 @@ def main() -> None:
     except ImportError:
         print("the environments need `pip install gymnasium`")
         return
-    for env, name in ((DriveVectorEnv(64), "driving"), (ExploreVectorEnv(64), "exploring")):
+    tasks = ((DriveVectorEnv, "driving", "drive", 4000), (ExploreVectorEnv, "exploring", "explore", 400))
+    for make, name, kind, steps in tasks:
+        env = make(64, threads=args.threads)
         env.reset(seed=1)
         actions = np.random.default_rng(0).uniform(-1.0, 1.0, (100, 64, 2)).astype(np.float32)
         actions[:, :, 0] = np.abs(actions[:, :, 0])
         count = iter(range(10**9))
-        measure(f"steps of the {name} task, 64 worlds", 64, lambda: env.step(actions[next(count) % 100]), args.seconds)
+        step = lambda: env.step(actions[next(count) % 100])  # noqa: E731
+        speed = measure(f"steps of the {name} task, 64 worlds", 64, step, args.seconds)
+        if args.rust:
+            compare(speed, [args.rust, kind, "64", str(args.threads or 2), str(steps)])
     if args.ir_sim:
         ir_sim(args.seconds)
 
 
 def ir_sim(seconds: float) -> None:
     """One robot of ir-sim with a laser of 360 beams in the four rooms."""
-    import tempfile
-
     import irsim
 
     walls = "".join(

@@ -2,10 +2,14 @@
 
 use interfaces::{GridFrame, heading_rad};
 use nalgebra::{Isometry2, Point2};
-use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike1, PyArrayMethods};
-use pyo3::exceptions::{PyFileNotFoundError, PyIndexError, PyValueError};
+use numpy::{
+    AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayLike1, PyArrayMethods,
+    PyReadwriteArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
+};
+use pyo3::exceptions::{PyFileNotFoundError, PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::fmt::Display;
+use worldfile::shipped::LoadError;
 
 pyo3::create_exception!(
     curious,
@@ -20,10 +24,64 @@ pyo3::create_exception!(
     "The error for bytes that are not a snapshot of the same world, or are damaged."
 );
 
-/// Numbers, as a list, a tuple or an array of any type.
-pub(crate) type Numbers<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
-/// Ranges of a scan, as a list, a tuple or an array of any type.
-pub(crate) type Ranges<'py> = PyArrayLike1<'py, f32, AllowTypeChange>;
+/// Numbers with one dimension, as a list, a tuple or an array of any type.
+pub(crate) struct Row<'py, T: Element>(PyArrayLike1<'py, T, AllowTypeChange>);
+pub(crate) type Numbers<'py> = Row<'py, f64>;
+/// Ranges of a scan.
+pub(crate) type Ranges<'py> = Row<'py, f32>;
+
+impl<T: Element> Row<'_, T> {
+    /// The numbers.
+    pub(crate) fn to_vec(&self) -> Vec<T>
+    where
+        T: Copy,
+    {
+        self.0.as_array().iter().copied().collect()
+    }
+}
+
+impl<'a, 'py, T: Element> FromPyObject<'a, 'py> for Row<'py, T>
+where
+    PyArrayLike1<'py, T, AllowTypeChange>: FromPyObject<'a, 'py, Error = PyErr>,
+{
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let row = object.extract().map_err(|error: PyErr| {
+            // The message about dimensions of the crate `numpy` is not a sentence.
+            if error.is_instance_of::<PyTypeError>(object.py()) {
+                PyTypeError::new_err(format!("one row of numbers is needed, and not {}", described(&object)))
+            } else {
+                error
+            }
+        });
+        row.map(Self)
+    }
+}
+
+/// The type of an object; of an array also its shape and the type of its values.
+pub(crate) fn described(object: &Bound<'_, PyAny>) -> String {
+    let array = object.cast::<PyUntypedArray>();
+    let kind = || object.get_type().name().map_or_else(|_| "that".to_owned(), |name| name.to_string());
+    array.map_or_else(
+        |_| kind(),
+        |array| format!("an array of {} of shape {:?}", array.dtype(), array.shape()),
+    )
+}
+
+/// An array that is written to.
+pub(crate) fn writable<'py, T: Element>(
+    object: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
+    object.extract().map_err(|_| {
+        let found = described(object);
+        let own = T::get_dtype(object.py());
+        PyTypeError::new_err(format!(
+            "`{name}` must be a writable array of {own} that is no other argument, and not {found}"
+        ))
+    })
+}
 
 /// A `ValueError` with the message of an error.
 pub(crate) fn value_error(error: impl Display) -> PyErr {
@@ -36,9 +94,15 @@ pub(crate) fn world_error(error: impl Display) -> PyErr {
 }
 
 /// The error for a world that cannot be loaded.
-pub(crate) fn load_error(error: worldfile::shipped::LoadError) -> PyErr {
+pub(crate) fn load_error(error: LoadError) -> PyErr {
     match error {
-        worldfile::shipped::LoadError::Unknown { .. } => PyFileNotFoundError::new_err(error.to_string()),
+        LoadError::Unknown { .. } => PyFileNotFoundError::new_err(error.to_string()),
+        LoadError::OtherKind { name, kind, .. } => {
+            let class = if kind == "grid" { "GridSpec" } else { "Spec" };
+            world_error(format!(
+                "`{name}` is a {kind} world: `curious.{class}.load` loads it, `curious.trial` runs it"
+            ))
+        }
         other => world_error(other),
     }
 }
@@ -66,7 +130,7 @@ pub(crate) fn no_robot(robot: usize, robots: usize) -> PyErr {
 
 /// Three numbers, finite: x and y (m), heading (rad).
 pub(crate) fn pose(pose: &Numbers<'_>) -> PyResult<Isometry2<f64>> {
-    let values: Vec<f64> = pose.as_array().iter().copied().collect();
+    let values = pose.to_vec();
     match values[..] {
         [x, y, heading] if values.iter().all(|value| value.is_finite()) => {
             Ok(interfaces::pose(x, y, heading))

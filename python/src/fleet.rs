@@ -1,10 +1,11 @@
-use crate::convert::{Numbers, no_robot, pose, pose_array, snapshot_error, value_error};
+use crate::convert::{Numbers, no_robot, pose, pose_array, snapshot_error, value_error, writable};
 use crate::reading::Reading;
 use crate::spec::spec_of;
 use interfaces::{LaserReading, Purpose, RandomStream};
+use numpy::ndarray::Ix2;
 use numpy::{
-    AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods, PyReadwriteArray2,
-    PyUntypedArrayMethods,
+    AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayLikeDyn, PyArrayMethods,
+    PyReadwriteArrayDyn, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -26,6 +27,10 @@ pub(crate) struct Fleet {
 /// The simulated time after which a signal of the user is noticed, s.
 const SIGNALS_S: f64 = 10.0;
 
+/// Up to this number of steps of robots, a call keeps the interpreter: it takes some microseconds, and to release the
+/// interpreter and to get it back would be a part of them.
+const SHORT_STEPS: f64 = 4.0;
+
 /// A contact: time, robot, what it touched, x, y, whether the robot moved.
 type ContactRow = (f64, usize, (&'static str, usize), f64, f64, bool);
 
@@ -35,31 +40,74 @@ impl Fleet {
         if robot < robots { Ok(()) } else { Err(no_robot(robot, robots)) }
     }
 
-    /// Simulates until a time, s. Ctrl-C ends it.
-    fn run_until(&mut self, py: Python<'_>, end_s: f64) -> PyResult<()> {
+    /// Simulates until a time, s. Ctrl-C ends it. Then, with memory for `scans`, all main lasers measure.
+    fn run_until(&mut self, py: Python<'_>, end_s: f64, mut scans: Option<&mut [f32]>) -> PyResult<()> {
         let Self { fleet, contacts, .. } = self;
+        let spec = fleet.spec();
+        let steps = (end_s - fleet.time_s()) / spec.step_s * spec.robots.len() as f64;
         contacts.clear();
         loop {
             let next_s = end_s.min(fleet.time_s() + SIGNALS_S);
-            py.detach(|| fleet.run_until(next_s, &mut ()));
+            let is_end = next_s >= end_s;
+            let mut run = || {
+                fleet.run_until(next_s, &mut ());
+                match scans.take_if(|_| is_end) {
+                    Some(ranges_m) => look_all(fleet, ranges_m),
+                    None => Ok(()),
+                }
+            };
+            if steps <= SHORT_STEPS { run() } else { py.detach(run) }?;
             contacts.extend_from_slice(fleet.contacts());
-            if next_s >= end_s {
+            if is_end {
                 return Ok(());
             }
             py.check_signals()?;
         }
     }
 
-    fn set_commands(&mut self, commands: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<()> {
-        let commands = commands.as_array();
-        let (rows, columns) = commands.dim();
-        if rows != self.driven.len() || !(2..=3).contains(&columns) {
+    /// The memory of an array for scans of all robots.
+    fn scans_of<'a>(&self, out: &'a mut PyReadwriteArrayDyn<'_, f32>) -> PyResult<&'a mut [f32]> {
+        let (robots, total) = (self.fleet.spec().robots.len(), self.fleet.beams());
+        let is_right = match self.beams {
+            Some(beams) => out.shape() == [robots, beams],
+            None => out.shape() == [total],
+        };
+        if !is_right {
+            let expected = self.beams.map_or_else(
+                || format!("({total},): the robots have different numbers of beams, one after the other"),
+                |beams| format!("({robots}, {beams}): one row per robot, one column per beam"),
+            );
             return Err(value_error(format!(
-                "the commands have the shape ({rows}, {columns}), and must have ({}, 2): linear (m/s) and angular \
-                 (rad/s) velocity of each driven robot; or 3 columns: linear, left, angular",
-                self.driven.len()
+                "the array for scans has the shape {:?}, and must have {expected}",
+                out.shape()
             )));
         }
+        contiguous(out, "scans")
+    }
+
+    /// The memory of an array for poses of all robots.
+    fn poses_of<'a>(&self, out: &'a mut PyReadwriteArrayDyn<'_, f64>) -> PyResult<&'a mut [[f64; 3]]> {
+        let robots = self.fleet.spec().robots.len();
+        if out.shape() != [robots, 3] {
+            return Err(value_error(format!(
+                "the array for poses has the shape {:?}, and must have ({robots}, 3): x (m), y (m), heading (rad)",
+                out.shape()
+            )));
+        }
+        Ok(contiguous(out, "poses")?.as_chunks_mut().0)
+    }
+
+    fn set_commands(&mut self, commands: &PyArrayLikeDyn<'_, f64, AllowTypeChange>) -> PyResult<()> {
+        let (commands, driven) = (commands.as_array(), self.driven.len());
+        let is_right = matches!(commands.shape(), [rows, 2..=3] if *rows == driven);
+        let Some(commands) = commands.view().into_dimensionality::<Ix2>().ok().filter(|_| is_right) else {
+            return Err(value_error(format!(
+                "the commands have the shape {:?}, and must have ({driven}, 2): one row per driven robot, linear (m/s) \
+                 and angular (rad/s) velocity; or 3 columns: linear, left, angular",
+                commands.shape()
+            )));
+        };
+        let columns = commands.ncols();
         if let Some((robot, value)) = commands.indexed_iter().find(|(_, value)| !value.is_finite()) {
             return Err(value_error(format!("command {value} of driven robot {} is not finite", robot.0)));
         }
@@ -70,6 +118,20 @@ impl Fleet {
         }
         Ok(())
     }
+}
+
+/// Measures with the main lasers of all robots.
+fn look_all(fleet: &mut sim::physics::Fleet, ranges_m: &mut [f32]) -> PyResult<()> {
+    fleet.look_all();
+    fleet.copy_scans(ranges_m).map_err(value_error)
+}
+
+/// The memory of an array that has the right shape.
+fn contiguous<'a, T: Element>(out: &'a mut PyReadwriteArrayDyn<'_, T>, what: &str) -> PyResult<&'a mut [T]> {
+    if !out.is_c_contiguous() {
+        return Err(value_error(format!("the array for {what} must be contiguous, in C order")));
+    }
+    out.as_slice_mut().map_err(value_error)
 }
 
 #[pymethods]
@@ -121,16 +183,28 @@ impl Fleet {
     }
 
     /// Simulates some physics steps. `commands`: one row per driven robot, shape (driven, 2), linear (m/s) and
-    /// angular (rad/s) velocity; with 3 columns linear, left, angular.
-    #[pyo3(signature = (commands = None, *, steps = 1))]
+    /// angular (rad/s) velocity; with 3 columns linear, left, angular. At the end, `scans` (float32, as in `scans(out)`)
+    /// and `poses` (float64, as in `poses(out)`) are filled, if they are given: one call has everything of an instant.
+    #[pyo3(signature = (commands = None, *, steps = 1, scans = None, poses = None))]
     fn step(
         &mut self,
         py: Python<'_>,
-        commands: Option<PyArrayLike2<'_, f64, AllowTypeChange>>,
-        steps: u32,
+        commands: Option<PyArrayLikeDyn<'_, f64, AllowTypeChange>>,
+        steps: i64,
+        scans: Option<Bound<'_, PyAny>>,
+        poses: Option<Bound<'_, PyAny>>,
     ) -> PyResult<()> {
+        if steps < 0 {
+            return Err(value_error(format!("`steps` is 0 or more, and not {steps}")));
+        }
+        let mut scans = scans.map(|out| writable(&out, "scans")).transpose()?;
+        let mut poses = poses.map(|out| writable(&out, "poses")).transpose()?;
+        let ranges_m = scans.as_mut().map(|out| self.scans_of(out)).transpose()?;
+        let poses = poses.as_mut().map(|out| self.poses_of(out)).transpose()?;
         commands.as_ref().map_or(Ok(()), |commands| self.set_commands(commands))?;
-        self.run_until(py, self.fleet.time_s() + f64::from(steps) * self.fleet.spec().step_s)
+        let end_s = self.fleet.time_s() + steps as f64 * self.fleet.spec().step_s;
+        self.run_until(py, end_s, ranges_m)?;
+        poses.map_or(Ok(()), |poses| self.fleet.copy_poses(poses)).map_err(value_error)
     }
 
     /// Simulates for some time, s.
@@ -138,7 +212,7 @@ impl Fleet {
         if !(seconds.is_finite() && seconds >= 0.0) {
             return Err(value_error(format!("a duration is 0 s or more, and not {seconds}")));
         }
-        self.run_until(py, self.fleet.time_s() + seconds)
+        self.run_until(py, self.fleet.time_s() + seconds, None)
     }
 
     /// Measures with the main laser of a robot now: scan and pose are of the same instant.
@@ -151,52 +225,38 @@ impl Fleet {
     }
 
     /// Measures with the main lasers of all robots now: ranges (m) of shape (robots, beams), float32. If robots have
-    /// different numbers of beams, one after the other. With `out`, an array of this shape, nothing is allocated.
+    /// different numbers of beams, one after the other, shape (all beams,). With `out`, an array of this shape, nothing is
+    /// allocated.
     #[pyo3(signature = (out = None))]
-    fn scans<'py>(
-        &mut self,
-        py: Python<'py>,
-        out: Option<PyReadwriteArray2<'py, f32>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let (robots, total) = (self.fleet.spec().robots.len(), self.fleet.beams());
-        let fleet = &mut self.fleet;
-        if let Some(mut out) = out {
-            let shape = out.as_array().dim();
-            if self.beams.is_none_or(|beams| shape != (robots, beams)) {
-                return Err(value_error(format!(
-                    "`out` has the shape {shape:?}, and must have one row for each of {robots} robots with as many \
-                     values as it has beams"
-                )));
-            }
-            if !out.is_c_contiguous() {
-                return Err(value_error("`out` must be contiguous, in C order"));
-            }
-            let ranges_m = out.as_slice_mut().map_err(value_error)?;
-            py.detach(|| {
-                fleet.look_all();
-                fleet.copy_scans(ranges_m)
-            })
-            .map_err(value_error)?;
-            let array: Bound<'py, PyArray2<f32>> = (**out).clone();
-            return Ok(array.into_any());
+    fn scans<'py>(&mut self, py: Python<'py>, out: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        if let Some(array) = out {
+            let mut out = writable(&array, "out")?;
+            let ranges_m = self.scans_of(&mut out)?;
+            let fleet = &mut self.fleet;
+            py.detach(|| look_all(fleet, ranges_m))?;
+            return Ok(array);
         }
-        let ranges_m = py.detach(|| {
-            let mut ranges_m = vec![0.0; total];
-            fleet.look_all();
-            fleet.copy_scans(&mut ranges_m).map(|()| ranges_m)
-        });
-        let array = ranges_m.map_err(value_error)?.into_pyarray(py);
+        let fleet = &mut self.fleet;
+        let mut ranges_m = vec![0.0; fleet.beams()];
+        py.detach(|| look_all(fleet, &mut ranges_m))?;
+        let array = ranges_m.into_pyarray(py);
         match self.beams {
-            Some(beams) => Ok(array.reshape([robots, beams])?.into_any()),
+            Some(beams) => Ok(array.reshape([self.fleet.spec().robots.len(), beams])?.into_any()),
             None => Ok(array.into_any()),
         }
     }
 
-    /// The true poses of all robots, shape (robots, 3): x (m), y (m), heading (rad).
-    fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    /// The true poses of all robots, shape (robots, 3), float64: x (m), y (m), heading (rad). With `out`, an array of this
+    /// shape, nothing is allocated.
+    #[pyo3(signature = (out = None))]
+    fn poses<'py>(&self, py: Python<'py>, out: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        if let Some(array) = out {
+            self.fleet.copy_poses(self.poses_of(&mut writable(&array, "out")?)?).map_err(value_error)?;
+            return Ok(array);
+        }
         let mut poses = vec![[0.0; 3]; self.fleet.spec().robots.len()];
         self.fleet.copy_poses(&mut poses).map_err(value_error)?;
-        poses.concat().into_pyarray(py).reshape([poses.len(), 3])
+        Ok(poses.concat().into_pyarray(py).reshape([poses.len(), 3])?.into_any())
     }
 
     /// The true velocities of all robots, shape (robots, 3): forward (m/s), left (m/s), angular (rad/s).

@@ -5,6 +5,7 @@
 
 mod convert;
 mod fleet;
+mod grid_spec;
 mod localizer;
 mod logs;
 mod mapper;
@@ -23,6 +24,8 @@ mod _native {
     use crate::convert::{SnapshotError, WorldError};
     #[pymodule_export]
     use crate::fleet::Fleet;
+    #[pymodule_export]
+    use crate::grid_spec::GridSpec;
     #[pymodule_export]
     use crate::localizer::{Estimate, Localizer};
     #[pymodule_export]

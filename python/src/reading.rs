@@ -36,7 +36,7 @@ pub(crate) fn laser_reading(
     laser: &Laser<'_>,
     twist: [f64; 2],
 ) -> PyResult<LaserReading> {
-    let ranges_m: Vec<f32> = ranges.as_array().iter().copied().collect();
+    let ranges_m = ranges.to_vec();
     let angle_increment_rad =
         laser.angle_increment.unwrap_or(std::f64::consts::TAU / ranges_m.len().max(1) as f64);
     Ok(LaserReading {

@@ -9,16 +9,18 @@ use pyo3::types::PyDict;
 pub(crate) fn drive_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<DriveSettings> {
     let mut settings = DriveSettings::default();
     for (key, value) in keywords.into_iter().flatten() {
-        match key.extract::<String>()?.as_str() {
-            "decision_s" => settings.decision_s = value.extract()?,
-            "max_steps" => settings.max_steps = value.extract()?,
-            "goal_radius" => settings.goal_radius_m = value.extract()?,
-            "min_goal" => settings.min_goal_m = value.extract()?,
-            "shows_path" => settings.shows_path = value.extract()?,
-            "goal_reward" => settings.goal_reward = value.extract()?,
-            "progress_reward" => settings.progress_reward = value.extract()?,
-            "collision_reward" => settings.collision_reward = value.extract()?,
-            "step_reward" => settings.step_reward = value.extract()?,
+        let key = key.extract::<String>()?;
+        let key = key.as_str();
+        match key {
+            "decision_s" => settings.decision_s = of(&value, key)?,
+            "max_steps" => settings.max_steps = of(&value, key)?,
+            "goal_radius" => settings.goal_radius_m = of(&value, key)?,
+            "min_goal" => settings.min_goal_m = of(&value, key)?,
+            "shows_path" => settings.shows_path = of(&value, key)?,
+            "goal_reward" => settings.goal_reward = of(&value, key)?,
+            "progress_reward" => settings.progress_reward = of(&value, key)?,
+            "collision_reward" => settings.collision_reward = of(&value, key)?,
+            "step_reward" => settings.step_reward = of(&value, key)?,
             key => return Err(unknown("driving", key, DRIVE_KEYS)),
         }
     }
@@ -32,14 +34,16 @@ const DRIVE_KEYS: &str = "decision_s, max_steps, goal_radius, min_goal, shows_pa
 pub(crate) fn explore_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<ExploreSettings> {
     let mut settings = ExploreSettings::default();
     for (key, value) in keywords.into_iter().flatten() {
-        match key.extract::<String>()?.as_str() {
-            "max_steps" => settings.max_steps = value.extract()?,
-            "beams" => settings.beams = value.extract()?,
-            "error_every" => settings.error_every = value.extract()?,
-            "map_every" => settings.map_every = value.extract()?,
-            "update_reward" => settings.update_reward = value.extract()?,
-            "error_reward" => settings.error_reward = value.extract()?,
-            "collision_reward" => settings.collision_reward = value.extract()?,
+        let key = key.extract::<String>()?;
+        let key = key.as_str();
+        match key {
+            "max_steps" => settings.max_steps = of(&value, key)?,
+            "beams" => settings.beams = of(&value, key)?,
+            "error_every" => settings.error_every = of(&value, key)?,
+            "map_every" => settings.map_every = of(&value, key)?,
+            "update_reward" => settings.update_reward = of(&value, key)?,
+            "error_reward" => settings.error_reward = of(&value, key)?,
+            "collision_reward" => settings.collision_reward = of(&value, key)?,
             key => return Err(unknown("exploring", key, EXPLORE_KEYS)),
         }
     }
@@ -48,6 +52,18 @@ pub(crate) fn explore_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult
 
 const EXPLORE_KEYS: &str =
     "max_steps, beams, error_every, map_every, update_reward, error_reward, collision_reward";
+
+/// The value of a setting.
+fn of<'a, 'py, T>(value: &'a Bound<'py, PyAny>, key: &str) -> PyResult<T>
+where
+    T: FromPyObject<'a, 'py, Error: Into<PyErr>>,
+{
+    T::extract(value.as_borrowed()).map_err(|error| {
+        let error: PyErr = error.into();
+        let (kind, message) = (error.get_type(value.py()), error.value(value.py()).to_string());
+        PyErr::from_type(kind, format!("the setting `{key}` cannot be {value}: {message}"))
+    })
+}
 
 fn unknown(task: &str, key: &str, known: &str) -> PyErr {
     PyTypeError::new_err(format!("the {task} task has no setting `{key}`; there are {known}"))

@@ -1,6 +1,6 @@
 use crate::convert::{load_error, no_robot, world_error};
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods};
-use pyo3::exceptions::{PyFileNotFoundError, PyUserWarning};
+use pyo3::exceptions::{PyFileNotFoundError, PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use sim::physics::{FleetSpec, WorldSpec};
@@ -58,8 +58,17 @@ pub(crate) fn spec_of(py: Python<'_>, world: &Bound<'_, PyAny>) -> PyResult<Arc<
     if let Ok(spec) = world.cast::<Spec>() {
         return Ok(Arc::clone(&spec.get().fleet));
     }
-    let name: PathBuf = world.extract()?;
-    Ok(Spec::load(py, name)?.fleet)
+    Ok(Spec::load(py, world_name(world)?)?.fleet)
+}
+
+/// The name or the path of a world.
+pub(crate) fn world_name(world: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
+    world.extract().map_err(|_| {
+        let kind = world.get_type().name().map_or_else(|_| "that".to_owned(), |name| name.to_string());
+        PyTypeError::new_err(format!(
+            "a world is a spec, the name of a shipped world, or a path, and not {kind}"
+        ))
+    })
 }
 
 #[pymethods]

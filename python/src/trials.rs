@@ -1,11 +1,12 @@
 //! Trials of exploring robots, with strategies of the library or of Python.
 
 use crate::convert::{pose_array, value_error, world_error};
+use crate::grid_spec::GridSpec;
 use crate::mapper::Mapper;
-use crate::spec::{driving, spec_of};
+use crate::spec::{Spec, driving, spec_of, world_name};
 use agent::{Policy, Situation as Inputs, Strategy};
-use evaluation::report::Metric;
-use evaluation::trials::{Experiment, PhysicsRobot, TrialStrategy, run_trial};
+use evaluation::report::{Metric, Trial};
+use evaluation::trials::{Experiment, GridRobot, PhysicsRobot, TrialStrategy, TrialWorld, run_trial};
 use interfaces::Values;
 use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLikeDyn, PyArrayMethods};
 use pyo3::prelude::*;
@@ -36,7 +37,7 @@ impl Situation {
         pose_array(py, &self.pose)
     }
 
-    /// The travel time to every cell, s, shape (rows, columns); inf where no path is known. None unless the strategy
+    /// The travel time to every cell, s (steps in a grid world), shape (rows, columns); inf where no path is known. None unless the strategy
     /// has the attribute `needs_travel = True`.
     #[getter]
     fn travel<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
@@ -131,75 +132,88 @@ fn strategy_of(strategy: &Bound<'_, PyAny>, error: &FirstError) -> PyResult<Tria
     Ok(TrialStrategy::Agent(policy))
 }
 
+/// The world of a trial.
+enum World {
+    Physics(WorldSpec),
+    Grid(Arc<sim::grid::GridSpec>),
+}
+
+impl World {
+    /// A spec, or the name or the path of a world of either kind.
+    fn of(py: Python<'_>, world: &Bound<'_, PyAny>, robot: Option<usize>) -> PyResult<Self> {
+        if let Ok(spec) = world.cast::<GridSpec>() {
+            return Ok(Self::Grid(Arc::clone(&spec.get().spec)));
+        }
+        if !world.is_instance_of::<Spec>() {
+            let name = world_name(world)?;
+            if GridSpec::is_named(&name) {
+                return Ok(Self::Grid(GridSpec::load(py, name)?.spec));
+            }
+        }
+        Ok(Self::Physics(driving(&spec_of(py, world)?, robot)?))
+    }
+}
+
+/// The length of a trial, of which one unit was asked for: `unit`, and not `other`.
+fn length(unit: (&str, Option<u64>), other: (&str, Option<u64>), kind: &str, default: u64) -> PyResult<u64> {
+    if other.1.is_some() {
+        return Err(value_error(format!(
+            "the length of a trial in a {kind} world is `{}`, not `{}`",
+            unit.0, other.0
+        )));
+    }
+    match unit.1.unwrap_or(default) {
+        0 => Err(value_error(format!("a trial has at least 1 of `{}`", unit.0))),
+        length => Ok(length),
+    }
+}
+
 /// Lets a robot explore a world for some time, and scores what it has learned.
 ///
-/// `strategy`: the name of one of the library (`curious.strategies()`), or an object with a method
-/// `weigh(situation) -> array` of one weight per cell, shape (rows, columns): a goal is drawn with a probability in
-/// proportion to the weight of its patch. `estimator`: see `Mapper.estimators()`.
+/// `world`: a physics world (`Spec`, name or path), or a grid world (`GridSpec`, name or path). The length of the trial is
+/// `seconds` (default 600) in a physics world, and `steps` (default 20000) in a grid world. `strategy`: the name of one of
+/// the library (`curious.strategies()`), or an object with a method `weigh(situation) -> array` of one weight per cell,
+/// shape (rows, columns): a goal is drawn with a probability in proportion to the weight of its patch. `estimator`: see
+/// `Mapper.estimators()`.
 ///
 /// Returns a dict: the last value of every metric, `samples` (a dict of lists over the time), `strategy_share`,
-/// `collisions`, `false_change_events`, `map_hash`. The same arguments give the same result, also in `house_trials`.
-/// An exception of the strategy ends the trial.
+/// `collisions` (None in a grid world), `false_change_events`, `map_hash`. Times are in s, or in steps. The same arguments
+/// give the same result, also in `house_trials` and `grid_world`. An exception of the strategy ends the trial.
 #[pyfunction]
-#[pyo3(signature = (world, strategy = None, *, seed = 0, seconds = 600, estimator = None, robot = None))]
+#[pyo3(signature = (world, strategy = None, *, seed = 0, seconds = None, steps = None, estimator = None, robot = None))]
+#[allow(clippy::too_many_arguments)]
 pub(crate) fn trial<'py>(
     py: Python<'py>,
     world: &Bound<'py, PyAny>,
     strategy: Option<&Bound<'py, PyAny>>,
     seed: u64,
-    seconds: u64,
+    seconds: Option<u64>,
+    steps: Option<u64>,
     estimator: Option<&str>,
     robot: Option<usize>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    if seconds == 0 {
-        return Err(value_error("a trial takes at least 1 s"));
-    }
-    let spec: WorldSpec = driving(&spec_of(py, world)?, robot)?;
     let error = FirstError::default();
-    let strategy = match strategy {
+    let strategies = vec![match strategy {
         Some(strategy) => strategy_of(strategy, &error)?,
         None => TrialStrategy::Agent(Policy::default()),
-    };
-    let estimator = match estimator {
+    }];
+    let estimators = vec![match estimator {
         Some(name) => name.parse().map_err(value_error)?,
         None => mapper::MapperSettings::default().estimator,
-    };
-    let experiment = Experiment {
-        worlds: vec![spec],
-        estimators: vec![estimator],
-        strategies: vec![strategy],
-        trials: 1,
-        seed,
-        length: seconds,
-        robot: PhysicsRobot::default(),
-    };
-    let failed = || error.lock().unwrap_or_else(PoisonError::into_inner).is_some();
-    let interrupted = Mutex::new(None);
-    let mut readings = 0_u32;
-    let result = py.detach(|| {
-        let jobs = experiment.jobs();
-        let job = jobs.into_iter().next();
-        job.map(|job| {
-            run_trial(&job, |_| {
-                readings = readings.wrapping_add(1);
-                // Ctrl-C ends the trial.
-                if readings.is_multiple_of(256)
-                    && let Err(signal) = Python::attach(|py| py.check_signals())
-                {
-                    *interrupted.lock().unwrap_or_else(PoisonError::into_inner) = Some(signal);
-                    return false;
-                }
-                !failed()
-            })
-        })
-    });
-    for first in [&interrupted, &*error] {
-        if let Some(error) = first.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            return Err(error);
+    }];
+    let (seconds, steps) = (("seconds", seconds), ("steps", steps));
+    let trial = match World::of(py, world, robot)? {
+        World::Physics(spec) => {
+            let length = length(seconds, steps, "physics", SECONDS)?;
+            let (worlds, robot) = (vec![spec], PhysicsRobot::default());
+            run(py, &Experiment { worlds, estimators, strategies, trials: 1, seed, length, robot }, &error)
         }
-    }
-    let result = result.ok_or_else(|| value_error("there is no trial"))?.map_err(world_error)?;
-    let trial = result.ok_or_else(|| value_error("the trial was canceled"))?;
+        World::Grid(spec) => {
+            let length = length(steps, seconds, "grid", STEPS)?;
+            let (worlds, robot) = (vec![(*spec).clone()], GridRobot::default());
+            run(py, &Experiment { worlds, estimators, strategies, trials: 1, seed, length, robot }, &error)
+        }
+    }?;
     let (dict, samples) = (PyDict::new(py), PyDict::new(py));
     for (name, value) in
         [("world", &trial.world), ("strategy", &trial.strategy), ("estimator", &trial.estimator)]
@@ -219,6 +233,39 @@ pub(crate) fn trial<'py>(
     dict.set_item("false_change_events", trial.false_change_events)?;
     dict.set_item("map_hash", trial.map_hash)?;
     Ok(dict)
+}
+
+/// The lengths of trials by default: in physics worlds, and in grid worlds.
+const SECONDS: u64 = 600;
+const STEPS: u64 = 20_000;
+
+/// Runs the only trial of an experiment. Ctrl-C and an error of the strategy end it.
+fn run<W: TrialWorld>(py: Python<'_>, experiment: &Experiment<W>, error: &FirstError) -> PyResult<Trial> {
+    let failed = || error.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+    let interrupted = Mutex::new(None);
+    let mut readings = 0_u32;
+    let result = py.detach(|| {
+        let job = experiment.jobs().into_iter().next();
+        job.map(|job| {
+            run_trial(&job, |_| {
+                readings = readings.wrapping_add(1);
+                if readings.is_multiple_of(256)
+                    && let Err(signal) = Python::attach(|py| py.check_signals())
+                {
+                    *interrupted.lock().unwrap_or_else(PoisonError::into_inner) = Some(signal);
+                    return false;
+                }
+                !failed()
+            })
+        })
+    });
+    for first in [&interrupted, &**error] {
+        if let Some(error) = first.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            return Err(error);
+        }
+    }
+    let result = result.ok_or_else(|| value_error("there is no trial"))?.map_err(world_error)?;
+    result.ok_or_else(|| value_error("the trial was canceled"))
 }
 
 /// The names of the strategies of the library.

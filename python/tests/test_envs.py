@@ -136,6 +136,12 @@ def test_settings():
         gymnasium.make("curious/Drive-v0", speed=3)
     with pytest.raises(ValueError, match="goal_radius_m"):
         gymnasium.make("curious/Drive-v0", goal_radius=-1.0)
+    with pytest.raises(OverflowError, match="the setting `max_steps` cannot be -5"):
+        gymnasium.make("curious/Drive-v0", max_steps=-5)
+    with pytest.raises(TypeError, match="the setting `goal_radius` cannot be wide"):
+        gymnasium.make("curious/Drive-v0", goal_radius="wide")
+    with pytest.raises(FileNotFoundError, match="there is no world `hut`"):
+        gymnasium.make("curious/Explore-v0", worlds="hut")
     with pytest.raises(ValueError, match="number of environments"):
         curious.Batch.drive(curious.Spec.driving_hall(), 0)
     with pytest.raises(ValueError, match="at least one world"):
@@ -188,21 +194,37 @@ def test_pettingzoo(fleet_toml):
         env.step({"a": [0.0], "b": [0.0, 0.0]})
 
 
-def test_stable_baselines3():
+@pytest.mark.parametrize("name", ["Drive", "Explore"])
+def test_stable_baselines3(name, tmp_path):
     pytest.importorskip("stable_baselines3")
-    from curious.envs import DriveVectorEnv
+    from curious import envs
     from curious.sb3 import SB3VecEnv
     from stable_baselines3 import PPO
+    from stable_baselines3.common.evaluation import evaluate_policy
 
-    env = SB3VecEnv(DriveVectorEnv(num_envs=8, max_steps=20))
+    settings = {"max_steps": 20} if name == "Drive" else {**SMALL["curious/Explore-v0"], "max_steps": 20}
+    make, policy = getattr(envs, f"{name}VectorEnv"), "MlpPolicy" if name == "Drive" else "MultiInputPolicy"
+    env = SB3VecEnv(make(num_envs=4, **settings))
     env.seed(3)
-    observations = env.reset()
-    assert observations.shape == (8, 71)
+    first = env.reset()
     for _ in range(20):
-        observations, rewards, dones, infos = env.step(np.zeros((8, 2), np.float32))
-    assert dones.all() and all(info["TimeLimit.truncated"] for info in infos)
-    assert infos[0]["terminal_observation"].shape == (71,) and infos[0]["episode"]["l"] == 20
-    PPO("MlpPolicy", env, n_steps=16, batch_size=64, n_epochs=1, device="cpu").learn(256)
+        observations, rewards, dones, infos = env.step(np.zeros((4, 2), np.float32))
+    assert rewards.shape == (4,) and dones.all() and all(info["TimeLimit.truncated"] for info in infos)
+    assert infos[0]["episode"]["l"] == 20
+    if name == "Drive":
+        # The last observation of an episode, and the first one of the next.
+        assert not np.array_equal(infos[0]["terminal_observation"], observations[0])
+    # The same seed is the same start.
+    env.seed(3)
+    np.testing.assert_array_equal(flat(env.reset()), flat(first))
+    model = PPO(policy, env, n_steps=16, batch_size=64, n_epochs=1, device="cpu", seed=0)
+    model.learn(128)
+    model.save(tmp_path / "model")
+    again = PPO.load(tmp_path / "model", env=env, device="cpu")
+    action, _ = again.predict(env.reset(), deterministic=True)
+    assert action.shape == (4, 2) and np.abs(action).max() <= 1.0
+    returns, lengths = evaluate_policy(again, env, n_eval_episodes=4, return_episode_rewards=True)
+    assert lengths == [20] * 4 and np.isfinite(returns).all()
 
 
 #: The numbers of `golden_hashes` in `environments/tests/tasks.rs`.

@@ -36,6 +36,28 @@ def test_scans_and_poses(fleet_toml):
     np.testing.assert_array_equal(reading.ranges, fleet.scans()[0])
 
 
+def test_one_call_steps_and_gives_scans_and_poses(fleet_toml):
+    spec = curious.Spec.from_toml(fleet_toml)
+    one, many = curious.Fleet(spec, seed=3), curious.Fleet(spec, seed=3)
+    scans, poses = np.empty((3, 32), np.float32), np.empty((3, 3))
+    for step in range(20):
+        commands = np.tile([0.4, np.sin(step / 3.0)], (2, 1))
+        assert one.step(commands, steps=2, scans=scans, poses=poses) is None
+        many.step(commands, steps=2)
+        np.testing.assert_array_equal(scans, many.scans())
+        np.testing.assert_array_equal(poses, many.poses())
+    assert one.snapshot() == many.snapshot()
+    assert one.poses(out=poses) is poses
+    # Robots with different numbers of beams: one after the other.
+    fleet = curious.Fleet("four_rooms")
+    total = len(fleet.scans())
+    row = np.empty(total, np.float32)
+    fleet.step([[0.1, 0.0]], scans=row)
+    np.testing.assert_array_equal(row, fleet.scans())
+    with pytest.raises(ValueError, match=f"must have \\({total},\\): the robots have different"):
+        fleet.step([[0.1, 0.0]], scans=np.empty((2, 720), np.float32))
+
+
 def test_the_same_seed_is_the_same_run_and_a_reset_a_new_start(fleet_toml):
     spec = curious.Spec.from_toml(fleet_toml)
     fleet = curious.Fleet(spec, seed=3)
@@ -82,16 +104,24 @@ def test_teleport_and_free_poses(fleet_toml):
     [
         (lambda f: f.step(np.zeros((3, 2))), ValueError, "must have \\(2, 2\\)"),
         (lambda f: f.step([[np.nan, 0.0], [0.0, 0.0]]), ValueError, "command NaN of driven robot 0"),
-        (lambda f: f.step(np.zeros(4)), TypeError, None),
+        (lambda f: f.step(np.zeros(4)), ValueError, "shape \\[4\\], and must have \\(2, 2\\)"),
+        (lambda f: f.step(np.zeros((2, 2)), steps=-1), ValueError, "`steps` is 0 or more, and not -1"),
         (lambda f: f.step("fast"), (TypeError, ValueError), None),
         (lambda f: f.command(9, 0.0, 0.0), IndexError, "there is no robot 9: there are 3"),
         (lambda f: f.command(0, np.inf, 0.0), ValueError, "finite"),
         (lambda f: f.look(3), IndexError, "there is no robot 3"),
-        (lambda f: f.scans(out=np.empty((3, 31), np.float32)), ValueError, "`out` has the shape"),
+        (lambda f: f.scans(out=np.empty((3, 31), np.float32)), ValueError, "must have \\(3, 32\\)"),
+        (lambda f: f.step(np.zeros((2, 2)), scans=np.empty(96, np.float32)), ValueError, "must have \\(3, 32\\)"),
+        (lambda f: f.step(np.zeros((2, 2)), scans=np.empty((3, 32))), TypeError, "array of float32 .*not an array of float64"),
+        (lambda f: f.step(np.zeros((2, 2)), scans=[1.0]), TypeError, "`scans` must be a writable array of float32"),
+        (lambda f: f.step(np.zeros((2, 2)), poses=np.empty((3, 2))), ValueError, "must have \\(3, 3\\)"),
+        (lambda f: f.step(np.zeros((2, 2)), poses=np.empty((3, 3)).T), ValueError, "C order"),
         (lambda f: f.scans(out=np.empty((32, 3), np.float32).T), ValueError, "C order"),
         (lambda f: f.scans(out=np.empty((3, 32), np.float64)), TypeError, None),
         (lambda f: f.run(-1.0), ValueError, "0 s or more"),
         (lambda f: f.run(np.nan), ValueError, "0 s or more"),
+        (lambda f: f.teleport(0, [[1.0, 2.0, 0.0]]), TypeError, "one row of numbers is needed, and not list"),
+        (lambda f: f.teleport(0, np.zeros((1, 3))), TypeError, "not an array of float64 of shape \\[1, 3\\]"),
         (lambda f: f.teleport(0, [1.0, 2.0]), ValueError, "a pose is \\[x, y, heading\\]"),
         (lambda f: f.teleport(0, [1.0, 2.0, np.nan]), ValueError, "finite"),
         (lambda f: f.reset(-1), OverflowError, None),
@@ -139,8 +169,12 @@ def test_errors_are_those_of_the_command_line(tmp_path):
     broken.write_text("model ( size [1 1 1 )\n")
     with pytest.raises(curious.WorldError, match="broken.world:1"):
         curious.Spec.load(broken)
-    with pytest.raises(curious.WorldError, match="is a grid world|`two_blocks`"):
+    with pytest.raises(curious.WorldError, match="`two_blocks` is a grid world: `curious.GridSpec.load` loads it"):
         curious.Spec.load("two_blocks")
+    with pytest.raises(curious.WorldError, match="`four_rooms` is a physics world: `curious.Spec.load`"):
+        curious.GridSpec.load("four_rooms")
+    with pytest.raises(TypeError, match="a world is a spec, the name of a shipped world, or a path, and not int"):
+        curious.Fleet(3)
     with pytest.raises(FileNotFoundError):
         curious.Spec.from_stage(tmp_path / "nothing.world")
 

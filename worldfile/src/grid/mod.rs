@@ -43,6 +43,11 @@ pub fn load(path: impl AsRef<Path>) -> Result<GridSpec, WorldError> {
     parse(&name, &text)
 }
 
+/// Whether a text in TOML is the file of a grid world: its `map` is a drawing. That of a physics world is a table.
+pub fn is_grid_world(text: &str) -> bool {
+    text.parse::<toml::Table>().is_ok_and(|file| file.get("map").is_some_and(toml::Value::is_str))
+}
+
 /// Checks the text of a world file; `file_name` is the name of the file in messages.
 ///
 /// # Errors

@@ -28,7 +28,9 @@ impl Fleet {
     /// A second look at the same time returns the same reading. A scan that is due at this time is this reading. A look
     /// at another time is one more measurement: it draws noise, so that later readings of this laser have other noise.
     pub fn look(&mut self, robot: usize) -> Option<RobotView<'_>> {
-        let surroundings = self.surroundings(self.robots.get(robot)?.sweeps());
+        let sweeps = self.robots.get(robot)?.sweeps();
+        self.scene.sort();
+        let surroundings = self.surroundings(sweeps);
         self.robots[robot].look(&surroundings);
         self.robot(robot)
     }
@@ -36,6 +38,7 @@ impl Fleet {
     /// Measures with the main lasers of all robots now, as [`Fleet::look`] does with one. With
     /// [parallel lasers](Fleet::set_parallel_lasers) on all threads.
     pub fn look_all(&mut self) {
+        self.scene.sort();
         let surroundings = &self.surroundings(self.robots.iter().any(Robot::sweeps));
         if self.parallel_lasers {
             self.robots.par_iter_mut().for_each(|robot| robot.look(surroundings));

@@ -46,6 +46,8 @@ pub struct Fleet {
     contacts: Vec<Contact>,
     /// The obstacles that moved in the last step, with the shape before the step.
     moved: Vec<(usize, Rectangle)>,
+    /// Scratch memory: the shapes of all obstacles before a step.
+    before: Vec<Rectangle>,
     parallel_lasers: bool,
 }
 

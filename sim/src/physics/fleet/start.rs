@@ -111,6 +111,7 @@ impl Fleet {
             past: Past::new(&start.spec),
             contacts: Vec::new(),
             moved: Vec::new(),
+            before: Vec::new(),
             parallel_lasers: false,
             start,
         }

@@ -46,18 +46,25 @@ impl Fleet {
 
     /// Robots for which `is_meant` is true measure with the sensors that are due, and decide.
     pub(in crate::physics) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
-        let step = self.step;
-        let is_due = |robot: &&mut Robot| robot.senses(step) && is_meant(robot);
-        if !self.robots.iter_mut().any(|robot| is_due(&robot)) {
+        let (step, time_s) = (self.step, self.time_s());
+        let is_due =
+            |robot: &Robot| robot.senses(step) && is_meant(robot) && !robot.has_thought(step, time_s);
+        let (mut any, mut sweeps, mut looks) = (false, false, false);
+        for robot in self.robots.iter().filter(|robot| is_due(robot)) {
+            (any, sweeps, looks) = (true, sweeps || robot.sweeps(), looks || robot.looks());
+        }
+        if !any {
             return;
         }
-        let sweeps = self.robots.iter_mut().any(|robot| is_due(&robot) && robot.sweeps());
+        if looks {
+            self.scene.sort();
+        }
         let surroundings = &self.surroundings(sweeps);
         if self.parallel_lasers {
-            let due = self.robots.par_iter_mut().filter(is_due);
+            let due = self.robots.par_iter_mut().filter(|robot| is_due(robot));
             due.for_each(|robot| robot.think(surroundings));
         } else {
-            let due = self.robots.iter_mut().filter(is_due);
+            let due = self.robots.iter_mut().filter(|robot| is_due(robot));
             due.for_each(|robot| robot.think(surroundings));
         }
     }
@@ -79,7 +86,9 @@ impl Fleet {
         for robot in &mut self.robots {
             robot.start_step(&mut self.bodies, step_s);
         }
-        let before: Vec<Rectangle> = self.obstacles.iter().map(|obstacle| obstacle.shape).collect();
+        let mut before = std::mem::take(&mut self.before);
+        before.clear();
+        before.extend(self.obstacles.iter().map(|obstacle| obstacle.shape));
         self.step += 1;
         let time_s = self.time_s();
         self.start_obstacles();
@@ -104,6 +113,7 @@ impl Fleet {
                 obstacle.is_standing().then_some([before.pose, obstacle.shape.pose])
             }),
         );
+        self.before = before;
         self.update_contacts();
         self.carry_robots();
     }

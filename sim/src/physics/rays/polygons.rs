@@ -36,6 +36,11 @@ impl Polygons {
         Self { bodies: vec![absent; count], corners: Vec::new() }
     }
 
+    /// The number of bodies, present or not.
+    pub(super) fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
     /// Sets the corners of a body (counter-clockwise, m). No corners: the body is absent.
     pub(super) fn set(
         &mut self,
@@ -57,12 +62,14 @@ impl Polygons {
 }
 
 /// The bodies that are present, prepared for rays.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct SortedPolygons {
     edges: Vec<Edge>,
     bodies: Vec<Polygon>,
-    /// The bodies in each cell; at the end the bodies that reach beyond the borders.
+    /// The bodies in each cell; at the end the bodies that reach beyond the borders. No lists if there are few bodies.
     cells: IndexLists,
+    /// Scratch memory: the cells of all bodies.
+    in_cells: Vec<(usize, u32)>,
 }
 
 /// A body that is present.
@@ -82,29 +89,34 @@ impl Polygon {
 }
 
 impl SortedPolygons {
-    /// The bodies sorted into cells.
-    pub(super) fn new(polygons: &Polygons, visible: &PotentiallyVisibleSet) -> Self {
-        let mut sorted = Self { edges: Vec::new(), bodies: Vec::new(), cells: IndexLists::default() };
-        let mut cells: Vec<(usize, u32)> = Vec::new();
+    /// Replaces everything by these bodies, sorted into the cells, if there are cells.
+    pub(super) fn sort(&mut self, polygons: &Polygons, visible: Option<&PotentiallyVisibleSet>) {
+        let Self { edges, bodies, cells, in_cells } = self;
+        edges.clear();
+        bodies.clear();
+        in_cells.clear();
         for Body { corners, robot, .. } in polygons.bodies.iter().filter(|body| !body.corners.is_empty()) {
-            let (corners, index) = (&polygons.corners[corners.clone()], sorted.bodies.len() as u32);
+            let (corners, index) = (&polygons.corners[corners.clone()], bodies.len() as u32);
             let (mut low, mut high) = (corners[0], corners[0]);
             for corner in corners {
                 (low, high) = (low.inf(corner), high.sup(corner));
             }
             let center = nalgebra::center(&low, &high);
             let radius2 = corners.iter().map(|corner| (corner - center).norm_squared()).fold(0.0, f64::max);
-            let start = sorted.edges.len();
-            let next = corners.iter().cycle().skip(1);
-            sorted.edges.extend(corners.iter().zip(next).map(|(from, to)| Edge::new(*from, *to)));
+            let start = edges.len();
+            let next = corners.iter().skip(1).chain(corners.first());
+            edges.extend(corners.iter().zip(next).map(|(from, to)| Edge::new(*from, *to)));
             // A little larger, because of rounding.
             let around = Disc { center, radius_m: radius2.sqrt() * (1.0 + 1e-9) };
-            sorted.bodies.push(Polygon { around, edges: start..sorted.edges.len(), robot: *robot });
-            let beyond = visible.reaches_out(&low, &high).then_some(visible.len());
-            cells.extend(visible.around(&low, &high).chain(beyond).map(|cell| (cell, index)));
+            bodies.push(Polygon { around, edges: start..edges.len(), robot: *robot });
+            if let Some(visible) = visible {
+                let beyond = visible.reaches_out(&low, &high).then_some(visible.len());
+                in_cells.extend(visible.around(&low, &high).chain(beyond).map(|cell| (cell, index)));
+            }
         }
-        sorted.cells.sort(visible.len() + 1, cells.iter().copied());
-        sorted
+        if let Some(visible) = visible {
+            cells.sort(visible.len() + 1, in_cells.iter().copied());
+        }
     }
 
     /// The number of bodies.
@@ -127,7 +139,7 @@ impl SortedPolygons {
         &self.edges[polygon.edges.clone()]
     }
 
-    /// Whether a point is inside of a body that overlaps the cell of the point (none: beyond the borders).
+    /// Whether a point is inside of a body that overlaps the cell of the point (none: of any body).
     pub(super) fn contains(&self, cell: Option<usize>, own: usize, point: &Point2<f64>) -> bool {
         let is_in = |polygon: &Polygon| {
             polygon.is_seen_by(own) && self.edges(polygon).iter().all(|edge| edge.gap_m(point) <= 0.0)

@@ -145,6 +145,18 @@ impl Robot {
         self.periods.iter().any(|period| step.is_multiple_of(*period))
     }
 
+    /// Whether nothing is left to do at a step, at the time `time_s`: the robot does not decide by itself, and no sensor is
+    /// due that has not measured yet.
+    pub(super) fn has_thought(&self, step: u64, time_s: f64) -> bool {
+        let mut due = self.sensors.iter().filter(|sensor| sensor.is_due(step));
+        self.is_driven() && due.all(|sensor| sensor.has_measured(time_s))
+    }
+
+    /// Whether the robot reads its main laser scanner at once when it decides.
+    pub(super) fn looks(&self) -> bool {
+        self.behavior.as_ref().is_some_and(Behavior::looks)
+    }
+
     /// Whether a laser of the robot sweeps.
     pub(super) fn sweeps(&self) -> bool {
         self.spec.lasers().any(|laser| laser.sweep_s > 0.0)
@@ -187,7 +199,7 @@ impl Robot {
     /// Measures with all sensors that are due. A robot with a behavior then decides its velocity.
     pub(super) fn think(&mut self, surroundings: &Arc<Surroundings>) {
         let decides = self.decides(surroundings.step);
-        let looks = decides && self.behavior.as_ref().is_some_and(Behavior::looks);
+        let looks = decides && self.looks();
         self.sense(surroundings, looks);
         if decides
             && let Some(behavior) = &mut self.behavior

@@ -81,6 +81,15 @@ impl Sensor {
         step.is_multiple_of(self.period_steps())
     }
 
+    /// Whether the sensor has measured at a time, s.
+    pub(super) fn has_measured(&self, time_s: f64) -> bool {
+        match self {
+            Self::Laser(laser) => laser.has_measured(time_s),
+            Self::Sonar(sonar) => sonar.has_measured(time_s),
+            Self::Fiducials(finder) => finder.has_measured(time_s),
+        }
+    }
+
     /// The sensor measures now, but the reading is computed when it is read.
     pub(super) fn request(&mut self, look: &Arc<Look>) {
         match self {

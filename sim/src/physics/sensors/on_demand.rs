@@ -70,7 +70,7 @@ impl<D: Device> OnDemand<D> {
 
     /// The sensor is to measure, unless there is already a reading of this time.
     pub(super) fn request(&mut self, look: &Arc<Look>) {
-        if self.is_new(look) {
+        if !self.has_measured(look.surroundings.time_s) {
             self.settle();
             self.pending = Some(Arc::clone(look));
         }
@@ -78,7 +78,7 @@ impl<D: Device> OnDemand<D> {
 
     /// Measures at once, unless there is already a reading of this time.
     pub(super) fn measure(&mut self, look: &Look) {
-        if self.is_new(look) {
+        if !self.has_measured(look.surroundings.time_s) {
             self.settle();
             self.compute(look);
         } else {
@@ -110,12 +110,13 @@ impl<D: Device> OnDemand<D> {
         (&mut self.streams, &mut self.reading)
     }
 
-    fn is_new(&self, look: &Look) -> bool {
-        let time_s = match &self.pending {
+    /// Whether there is already a reading of a time (s), or a measurement that is pending.
+    pub(super) fn has_measured(&self, time_s: f64) -> bool {
+        let last_s = match &self.pending {
             Some(pending) => Some(pending.surroundings.time_s),
             None => self.reading.as_ref().and_then(D::time_s),
         };
-        time_s != Some(look.surroundings.time_s)
+        last_s == Some(time_s)
     }
 
     /// Nothing is pending any more: its result becomes the reading; if it was not read, it is skipped.

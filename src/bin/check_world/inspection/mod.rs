@@ -94,9 +94,7 @@ fn invalid(error: String) -> Inspection {
 
 /// A TOML world file: a grid world if `map` is a drawing.
 fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
-    let is_grid =
-        text.parse::<toml::Table>().is_ok_and(|file| file.get("map").is_some_and(toml::Value::is_str));
-    let outcome = if is_grid {
+    let outcome = if worldfile::grid::is_grid_world(text) {
         worldfile::grid::parse(name, text).map(|world| {
             (
                 grid::content(&world),

@@ -29,10 +29,13 @@ struct Scratch {
     tested: Tested,
 }
 
+/// Up to this number of moving bodies, all of them are tested, and not only those in the cells that may be seen: to go
+/// through the cells would take longer.
+const FEW_BODIES: usize = 16;
+
 /// Everything that a laser can see. A clone shares everything until a body moves.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Scene {
-    walls: Arc<Walls>,
     moving: Arc<Moving>,
 }
 
@@ -44,29 +47,64 @@ struct Walls {
     visible: PotentiallyVisibleSet,
 }
 
-/// The other bodies.
+/// The walls, and the other bodies.
 #[derive(Debug)]
 struct Moving {
+    /// Here, so that a clone of the scene counts one owner of this world, and not one of the walls that the worlds on all
+    /// threads share: all of them would write to the same memory.
+    walls: Arc<Walls>,
     /// The convex bodies that appear, disappear or move.
     polygons: Polygons,
     /// The robots, by index.
     discs: Vec<Disc>,
     /// The same bodies by position, as soon as a ray is cast.
     sorted: OnceLock<Sorted>,
+    /// Memory to sort them into.
+    spare: Option<Sorted>,
 }
 
 impl Clone for Moving {
     /// A clone is made because a body moves.
     fn clone(&self) -> Self {
-        Self { polygons: self.polygons.clone(), discs: self.discs.clone(), sorted: OnceLock::new() }
+        let Self { walls, polygons, discs, .. } = self;
+        let (walls, polygons, discs) = (Arc::clone(walls), polygons.clone(), discs.clone());
+        Self { walls, polygons, discs, sorted: OnceLock::new(), spare: None }
     }
 }
 
-#[derive(Debug)]
+impl Moving {
+    /// A body moves.
+    fn unsort(&mut self) {
+        self.spare = self.sorted.take().or(self.spare.take());
+    }
+}
+
+#[derive(Debug, Default)]
 struct Sorted {
     /// The robots by the cell of their center; at the end those beyond the borders.
     robots: IndexLists<(u32, Disc)>,
     polygons: SortedPolygons,
+    /// Whether there are so few bodies that they are not sorted into cells.
+    are_few: bool,
+}
+
+impl Sorted {
+    /// The bodies sorted into cells, in the memory of an earlier result.
+    fn new(mut memory: Self, moving: &Moving) -> Self {
+        let Moving { walls, polygons, discs, .. } = moving;
+        let visible = &walls.visible;
+        memory.are_few = discs.len() + polygons.len() <= FEW_BODIES;
+        memory.polygons.sort(polygons, (!memory.are_few).then_some(visible));
+        // A disc of radius 0 stands for a robot with corners, whose polygon hides its center.
+        let round = discs.iter().enumerate().filter(|(_, disc)| disc.radius_m > 0.0);
+        let cells = round.map(|(robot, disc)| {
+            let cell =
+                if memory.are_few { 0 } else { visible.cell_at(&disc.center).unwrap_or(visible.len()) };
+            (cell, (robot as u32, *disc))
+        });
+        memory.robots.sort(if memory.are_few { 1 } else { visible.len() + 1 }, cells);
+        memory
+    }
 }
 
 impl Scene {
@@ -83,8 +121,8 @@ impl Scene {
         let radius_m = discs.iter().fold(0.0, |most: f64, disc| most.max(disc.radius_m));
         let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, range_m, radius_m);
         let solids = walls.iter().map(Edge::of_rectangle).collect();
-        let moving = Moving { polygons: Polygons::new(polygons), discs, sorted: OnceLock::new() };
-        Self { walls: Arc::new(Walls { solids, edges, visible }), moving: Arc::new(moving) }
+        let (walls, polygons) = (Arc::new(Walls { solids, edges, visible }), Polygons::new(polygons));
+        Self { moving: Arc::new(Moving { walls, polygons, discs, sorted: OnceLock::new(), spare: None }) }
     }
 
     /// Sets the corners of the convex body with an index (counter-clockwise, m). No corners: the body is absent.
@@ -97,30 +135,29 @@ impl Scene {
     ) {
         let moving = Arc::make_mut(&mut self.moving);
         moving.polygons.set(index, robot, corners);
-        moving.sorted.take();
+        moving.unsort();
     }
 
     /// Sets the center of a robot, m.
     pub(in crate::physics) fn move_disc(&mut self, robot: usize, center: Point2<f64>) {
         let moving = Arc::make_mut(&mut self.moving);
         moving.discs[robot].center = center;
-        moving.sorted.take();
+        moving.unsort();
+    }
+
+    /// Prepares the bodies for rays, in memory that was used before if no clone shares them.
+    pub(in crate::physics) fn sort(&mut self) {
+        if self.moving.sorted.get().is_none()
+            && let Some(moving) = Arc::get_mut(&mut self.moving)
+        {
+            let memory = moving.spare.take().unwrap_or_default();
+            moving.sorted = Sorted::new(memory, moving).into();
+        }
     }
 
     /// The moving bodies, sorted into cells.
     fn sorted(&self) -> &Sorted {
-        let Moving { polygons, discs, sorted } = &*self.moving;
-        sorted.get_or_init(|| {
-            let visible = &self.walls.visible;
-            // A disc of radius 0 stands for a robot with corners, whose polygon hides its center.
-            let round = discs.iter().enumerate().filter(|(_, disc)| disc.radius_m > 0.0);
-            let cells = round.map(|(robot, disc)| {
-                (visible.cell_at(&disc.center).unwrap_or(visible.len()), (robot as u32, *disc))
-            });
-            let mut robots = IndexLists::default();
-            robots.sort(visible.len() + 1, cells);
-            Sorted { robots, polygons: SortedPolygons::new(polygons, visible) }
-        })
+        self.moving.sorted.get_or_init(|| Sorted::new(Sorted::default(), &self.moving))
     }
 
     /// Computes what `beams` of a laser at the pose `laser` hit. The laser never sees the robot `own`. `read` receives
@@ -139,8 +176,8 @@ impl Scene {
     }
 
     fn cast_into(&self, beams: &Beams, laser: &Isometry2<f64>, own: usize, scratch: &mut Scratch) {
-        let Walls { solids, edges, visible } = &*self.walls;
-        let Sorted { robots, polygons } = self.sorted();
+        let Walls { solids, edges, visible } = &*self.moving.walls;
+        let Sorted { robots, polygons, are_few } = self.sorted();
         let Scratch { inverse, discs, tested } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);
         discs.clear(robots.all().len() + polygons.len());
@@ -149,8 +186,11 @@ impl Scene {
         let has_polygons = polygons.len() > 0;
         tested.begin(polygons.len());
         match own_cell {
+            Some(cell) => add_edges(visible.edges(cell), edges, &mut hits),
+            None => edges.iter().for_each(|edge| hits.add_edge(edge)),
+        }
+        match own_cell.filter(|_| !are_few) {
             Some(cell) => {
-                add_edges(visible.edges(cell), edges, &mut hits);
                 let cells = visible.cells(cell).iter().map(|&cell| cell as usize);
                 for cell in cells.chain([visible.len()]) {
                     add_robots(discs, &mut hits, robots.get(cell), own);
@@ -162,7 +202,6 @@ impl Scene {
                 }
             }
             None => {
-                edges.iter().for_each(|edge| hits.add_edge(edge));
                 add_robots(discs, &mut hits, robots.all(), own);
                 for index in 0..polygons.len() as u32 {
                     discs.push_polygon(index, polygons, own, &mut hits);
@@ -171,22 +210,11 @@ impl Scene {
         }
         // Last, since other bodies hide most of them.
         discs.add_to(polygons, &mut hits);
-        if is_inside(solids, visible, polygons, own_cell, own, &at) {
+        let polygon_cell = own_cell.filter(|_| !are_few);
+        if is_in_wall(solids, visible, own_cell, &at) || polygons.contains(polygon_cell, own, &at) {
             hits.add_inside();
         }
     }
-}
-
-/// Whether a point is inside of a solid that is not the body of the robot `own`.
-fn is_inside(
-    solids: &[[Edge; 4]],
-    visible: &PotentiallyVisibleSet,
-    polygons: &SortedPolygons,
-    cell: Option<usize>,
-    own: usize,
-    at: &Point2<f64>,
-) -> bool {
-    is_in_wall(solids, visible, cell, at) || polygons.len() > 0 && polygons.contains(cell, own, at)
 }
 
 /// Whether a point in a cell (none: beyond the borders) is inside of a wall.

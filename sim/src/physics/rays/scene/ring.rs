@@ -2,6 +2,7 @@
 
 use super::{Scene, Sorted, Walls};
 use crate::physics::rays::beams::Beams;
+use crate::physics::rays::disc::Disc;
 use crate::physics::rays::edges::Edge;
 use crate::physics::rays::nearest::Nearest;
 use crate::physics::rays::vicinity::{Ring, Thing, Vicinity};
@@ -11,23 +12,28 @@ impl Scene {
     /// What the sensors of the robot `own` may detect, whose center is at `center`.
     pub(in crate::physics) fn vicinity(&self, center: Point2<f64>, ring: &Ring, own: usize) -> Vicinity {
         let mut found = Vicinity::new(center, ring);
-        let (Walls { solids, edges, visible }, sorted) = (&*self.walls, self.sorted());
+        let (Walls { solids, edges, visible }, sorted) = (&*self.moving.walls, self.sorted());
         let reach = Vector2::repeat(found.sensors.radius_m);
         let (low, high) = (center - reach, center + reach);
         if visible.reaches_out(&low, &high) {
             (0..edges.len()).for_each(|edge| found.add_edge(edge, &edges[edge]));
-            (0..=visible.len()).for_each(|cell| sorted.add_to(&mut found, cell, own));
+            sorted.add_all_to(&mut found, own);
             found.solids.extend(0..solids.len() as u32);
         } else {
+            if sorted.are_few {
+                sorted.add_all_to(&mut found, own);
+            }
             for cell in visible.around(&low, &high) {
                 for seen in visible.edges(cell) {
                     found.add_edge(seen.edge as usize, &edges[seen.edge as usize]);
                 }
-                let cells = visible.cells(cell).iter().map(|&other| other as usize);
-                cells
-                    .take_while(|&other| visible.apart_m(cell, other) <= ring.range_m)
-                    .chain([visible.len()])
-                    .for_each(|other| sorted.add_to(&mut found, other, own));
+                if !sorted.are_few {
+                    let cells = visible.cells(cell).iter().map(|&other| other as usize);
+                    cells
+                        .take_while(|&other| visible.apart_m(cell, other) <= ring.range_m)
+                        .chain([visible.len()])
+                        .for_each(|other| sorted.add_to(&mut found, other, own));
+                }
                 found.solids.extend(visible.boxes(cell));
             }
         }
@@ -46,7 +52,7 @@ impl Scene {
         sensor: &Isometry2<f64>,
         vicinity: &Vicinity,
     ) -> f64 {
-        let Walls { solids, edges, .. } = &*self.walls;
+        let Walls { solids, edges, .. } = &*self.moving.walls;
         let Sorted { polygons, .. } = self.sorted();
         let at = Point2::from(sensor.translation.vector);
         let mut containing = vicinity.solids.iter().map(|&solid| &solids[solid as usize]);
@@ -82,10 +88,25 @@ impl Scene {
 impl Sorted {
     /// Adds the bodies of a cell to what the sensors of the robot `own` may detect.
     fn add_to(&self, found: &mut Vicinity, cell: usize, own: usize) {
-        for (robot, disc) in self.robots.get(cell).iter().filter(|(robot, _)| *robot as usize != own) {
+        self.add(found, self.robots.get(cell), self.polygons.in_cell(cell).iter().copied(), own);
+    }
+
+    /// Adds all bodies.
+    fn add_all_to(&self, found: &mut Vicinity, own: usize) {
+        self.add(found, self.robots.all(), 0..self.polygons.len() as u32, own);
+    }
+
+    fn add(
+        &self,
+        found: &mut Vicinity,
+        robots: &[(u32, Disc)],
+        polygons: impl Iterator<Item = u32>,
+        own: usize,
+    ) {
+        for (robot, disc) in robots.iter().filter(|(robot, _)| *robot as usize != own) {
             found.add_disc(disc, Thing::Robot(*robot as usize));
         }
-        for &index in self.polygons.in_cell(cell) {
+        for index in polygons {
             let polygon = self.polygons.get(index);
             if polygon.is_seen_by(own) {
                 found.add_disc(&polygon.around, Thing::Polygon(index));

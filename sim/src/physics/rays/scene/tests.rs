@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Without any culling: every edge and every disc is compared with all beams that could hit it.
 fn slow(scene: &Scene, beams: &Beams, laser: &Isometry2<f64>, own: usize) -> Vec<f64> {
-    let (Walls { solids, edges, visible }, Sorted { polygons, .. }) = (&*scene.walls, scene.sorted());
+    let (Walls { solids, edges, visible }, Sorted { polygons, .. }) = (&*scene.moving.walls, scene.sorted());
     let mut inverse = Vec::new();
     let mut hits = Hits::new(beams, laser, &mut inverse);
     edges.iter().for_each(|edge| hits.add_edge(edge));
@@ -28,18 +28,21 @@ fn slow(scene: &Scene, beams: &Beams, laser: &Isometry2<f64>, own: usize) -> Vec
         hits.add_disc_to(0..beams.count, &center, power, f64::INFINITY);
     }
     let at = Point2::from(laser.translation.vector);
-    if is_inside(solids, visible, polygons, visible.cell_at(&at), own, &at) {
+    if is_in_wall(solids, visible, visible.cell_at(&at), &at) || polygons.contains(None, own, &at) {
         hits.add_inside();
     }
     inverse
 }
 
 /// A hall with walls at any angle, round robots, and convex bodies, some of them of robots; some reach beyond the
-/// border.
-fn scene(random: &mut RandomStream, range_m: f64) -> Scene {
+/// border. With few bodies, these are not sorted into cells.
+fn scene(random: &mut RandomStream, range_m: f64, are_few: bool) -> Scene {
+    let (round, cornered, others) = if are_few { (4, 2, 5) } else { (12, 6, 30) };
+    assert_eq!(are_few, round + 2 * cornered + others <= FEW_BODIES);
     let mut point = || Point2::new(random.uniform(-0.2..12.2), random.uniform(-0.2..9.2));
     let places: Vec<_> = (0..60).map(|_| point()).collect();
-    let (walls, discs, bodies) = (&places[..12], &places[12..30], &places[30..]);
+    let (walls, discs_at, bodies) =
+        (&places[..12], &places[12..12 + round + cornered], &places[30..30 + others]);
     let mut walls: Vec<Rectangle> = walls
         .iter()
         .map(|at| {
@@ -47,15 +50,15 @@ fn scene(random: &mut RandomStream, range_m: f64) -> Scene {
         })
         .collect();
     walls.push(Rectangle::between(Point2::new(0.0, 4.0), Point2::new(7.0, 4.1)));
-    let discs = discs.iter().enumerate().map(|(robot, center)| {
-        // The last six robots have corners.
-        Disc { center: *center, radius_m: if robot < 12 { random.uniform(0.05..0.4) } else { 0.0 } }
+    let discs = discs_at.iter().enumerate().map(|(robot, center)| {
+        // The last robots have corners.
+        Disc { center: *center, radius_m: if robot < round { random.uniform(0.05..0.4) } else { 0.0 } }
     });
-    let discs: Vec<Disc> = discs.collect();
-    let mut scene =
-        Scene::new((Point2::origin(), Point2::new(12.0, 9.0)), &walls, discs, bodies.len() + 6, range_m);
-    for (index, at) in bodies.iter().chain(&places[24..30]).enumerate() {
-        let robot = index.checked_sub(bodies.len()).map(|robot| robot + 12);
+    let hulls: Vec<_> = bodies.iter().chain(&discs_at[round..]).collect();
+    let borders = (Point2::origin(), Point2::new(12.0, 9.0));
+    let mut scene = Scene::new(borders, &walls, discs.collect(), hulls.len(), range_m);
+    for (index, at) in hulls.into_iter().enumerate() {
+        let robot = index.checked_sub(bodies.len()).map(|robot| robot + round);
         let (corners, radius_m) = (random.uniform(3.0..21.0) as usize, random.uniform(0.05..0.8));
         let (turn_rad, flat) = (random.uniform(0.0..TAU), random.uniform(0.3..1.0));
         let corner = |i: usize| {
@@ -73,10 +76,19 @@ fn scene(random: &mut RandomStream, range_m: f64) -> Scene {
 fn what_is_left_out_changes_no_bit() {
     let mut random = RandomStream::new(11, Purpose::Agent);
     let (mut inside, mut nothing) = (0, 0);
-    for _ in 0..40 {
+    for case in 0..60 {
         let range_m = random.uniform(0.5..12.0);
-        let scene = scene(&mut random, range_m);
+        let mut scene = scene(&mut random, range_m, case >= 40);
         for place in 0..120 {
+            if place % 40 == 0 {
+                // Sorted anew, now and then in memory that was used before.
+                let robot = place % scene.moving.discs.len();
+                let center = scene.moving.discs[robot].center;
+                scene.move_disc(robot, center + Vector2::new(0.01, 0.0));
+                if case % 2 == 0 {
+                    scene.sort();
+                }
+            }
             let count = random.uniform(1.0..200.0) as usize;
             let is_full = place % 3 == 0 && count > 1;
             let fov_rad = if is_full { TAU } else { random.uniform(0.01..6.2) };
@@ -84,7 +96,7 @@ fn what_is_left_out_changes_no_bit() {
             let first_rad = if is_full { -std::f64::consts::PI } else { -fov_rad / 2.0 };
             let first_rad = if count == 1 { 0.0 } else { first_rad };
             let beams = Beams::new(first_rad, fov_rad / gaps as f64, count, range_m);
-            let own = place % 18;
+            let own = place % scene.moving.discs.len();
             // In a robot, anywhere in the hall, or beyond its border.
             let center = scene.moving.discs[own].center;
             let at = match place % 4 {
