@@ -24,6 +24,7 @@ mod noise;
 mod passes;
 mod permanent;
 mod places;
+mod range_noise;
 mod replay;
 mod route;
 mod settings;

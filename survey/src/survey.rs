@@ -65,8 +65,8 @@ impl Survey {
     pub fn settings_of(&self, log: usize) -> SurveySettings {
         let mut settings = self.settings.clone();
         if self.learns_noise {
-            let residuals_m = self.logs.iter().take(log + 1).filter_map(|log| log.residual_std_m);
-            settings.learn_noise_from(residuals_m);
+            let noises_m = self.logs.iter().take(log + 1).filter_map(|log| log.noise_m);
+            settings.learn_noise_from(noises_m);
         }
         settings
     }

@@ -1,5 +1,6 @@
 //! What a survey keeps of a log.
 
+use crate::noise::noise_m;
 use crate::route::{Route, length_m, uncertain};
 use interfaces::GridFrame;
 use localizer::TrajectoryPose;
@@ -80,7 +81,8 @@ pub struct SurveyedLog {
     pub loops: usize,
     /// The part that was used.
     pub travelled: Travelled,
-    pub(crate) residual_std_m: Option<f64>,
+    /// The noise that the mapper must expect, m.
+    pub(crate) noise_m: Option<f64>,
     /// The cells that cover what was seen.
     pub(crate) frame: GridFrame,
     /// The poses of all readings; forgotten when they are no longer needed.
@@ -107,7 +109,7 @@ impl SurveyedLog {
             used: 0,
             loops: route.loops,
             travelled: Travelled::default(),
-            residual_std_m: route.residual_std_m,
+            noise_m: noise_m(&route),
             frame,
             poses: Arc::new(route.poses),
         }

@@ -10,11 +10,12 @@ use curious::progress::Progress;
 use curious::terminal::say;
 use evaluation::output::TrajectoryFile;
 use interfaces::LaserReading;
+use logs::Readings;
 use robot::{Belief, Localization};
 use std::io::stderr;
 use std::ops::ControlFlow;
 use std::path::Path;
-use survey::{NoPilot, Survey};
+use survey::{NoPilot, Replay, Survey};
 use viewer::recording::Recorder;
 use viewer::scene::Scene;
 use viewer::show::Show;
@@ -121,13 +122,13 @@ impl Learned {
         let Self { show, is_interrupted, is_shown } = self;
         let mut is_over = false;
         while !is_over && !*is_interrupted {
-            let observe = |replay: &_, reading: &LaserReading, belief: &Belief| {
+            let observe = |replay: &Replay<Readings>, reading: &LaserReading, belief: &Belief| {
                 progress.step();
                 bag.into_iter().for_each(|bag| bag.add(belief, &NoPilot));
                 trajectory.add(reading.time_s, belief.pose);
                 *is_interrupted = job.is_interrupted();
                 let view = View::new(replay, reading, belief, &NoPilot, Measured::default());
-                let is_last = *is_interrupted || survey::Replay::is_over(replay) && is_last_log;
+                let is_last = *is_interrupted || replay.is_over() && is_last_log;
                 if let Err(problem) = show.add(&view, is_last) {
                     *is_shown = false;
                     progress.say(format_args!("error: {problem}; the run goes on without it"));
