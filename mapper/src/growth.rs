@@ -61,3 +61,39 @@ impl Growth {
         *grid = moved;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point2;
+
+    fn frame(x: f64, y: f64, width: usize, height: usize) -> GridFrame {
+        GridFrame::new(Point2::new(x, y), 0.1, width, height).unwrap()
+    }
+
+    #[test]
+    fn values_stay_at_their_places() {
+        let (small, large) = (frame(0.3, -0.2, 2, 3), frame(0.1, -0.5, 5, 7));
+        let growth = Growth::new(small, large).unwrap();
+        let mut cells: Vec<usize> = (1..=6).collect();
+        growth.cells(&mut cells, 0);
+        assert_eq!(cells.iter().filter(|value| **value > 0).count(), 6);
+        for index in 0..small.len() {
+            assert_eq!(cells[growth.index(index)], index + 1);
+            let off = large.center(large.cell(growth.index(index))) - small.center(small.cell(index));
+            assert!(off.norm() < 1e-9, "{off}");
+        }
+        assert!((growth.shift_m() - Vector2::new(0.2, 0.3)).norm() < 1e-9);
+    }
+
+    #[test]
+    fn a_frame_that_does_not_cover_the_other_is_no_growth() {
+        let small = frame(0.3, -0.2, 2, 3);
+        assert!(Growth::new(small, small).is_some());
+        for other in [frame(0.4, -0.2, 9, 9), frame(0.3, -0.2, 1, 9), frame(0.25, -0.2, 9, 9)] {
+            assert_eq!(Growth::new(small, other), None, "{other:?}");
+        }
+        let coarse = GridFrame::new(Point2::new(0.0, -1.0), 0.2, 9, 9).unwrap();
+        assert_eq!(Growth::new(small, coarse), None);
+    }
+}
