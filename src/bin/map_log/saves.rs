@@ -55,7 +55,8 @@ impl Saves {
         noise_m: Option<f64>,
     ) -> Result<Survey, Failure> {
         let noise = noise_m.map_or_else(|| "learned".to_owned(), |noise_m| noise_m.to_string());
-        self.facts = Facts::default().with_settings("survey", settings).with("--noise", noise);
+        let facts = Facts::default().with("--pose", settings.pose.name()).with("--noise", noise);
+        self.facts = facts.with_settings("survey", settings);
         let (settings, learns_noise) = (settings.clone(), noise_m.is_none());
         let (Some(Loaded { state, logs }), Some(file)) = (loaded, &self.file) else {
             return Ok(Survey::new(settings, learns_noise));
