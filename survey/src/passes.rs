@@ -122,9 +122,9 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
         if self.settings.pose != PoseMode::Localized {
             return Ok(pass.finish());
         }
-        self.tell(Stage::Loops, 0)?;
+        self.report(Stage::Loops, 0)?;
         let route = pass.finish();
-        self.tell(Stage::Loops, route.poses.len())?;
+        self.report(Stage::Loops, route.poses.len())?;
         Ok(route)
     }
 
@@ -167,15 +167,15 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
         stage: Stage,
         mut add: impl FnMut(usize, LaserReading) -> Result<(), ReadingError>,
     ) -> Result<(), PassError> {
-        self.tell(stage, 0)?;
+        self.report(stage, 0)?;
         for (index, reading) in self.log.readings()?.enumerate() {
             add(index, reading?)?;
-            self.tell(stage, index + 1)?;
+            self.report(stage, index + 1)?;
         }
         Ok(())
     }
 
-    fn tell(&mut self, stage: Stage, readings: usize) -> Result<(), PassError> {
+    fn report(&mut self, stage: Stage, readings: usize) -> Result<(), PassError> {
         match (self.watch)(RouteProgress { log: self.number, stage, readings }) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(PassError::Interrupted),
