@@ -97,7 +97,7 @@ mod tests {
 
     /// A reading of 100 beams at 2 m with noise; something is at 1 m for a ninth of the time.
     fn reading(number: usize, std_m: f64, noise: &mut RandomStream) -> LaserReading {
-        let wall_m = if number % 9 == 0 { 1.0 } else { 2.0 };
+        let wall_m = if number.is_multiple_of(9) { 1.0 } else { 2.0 };
         let ranges_m = (0..100).map(|_| (wall_m + std_m * noise.normal()) as f32).collect();
         LaserReading {
             time_s: number as f64,
