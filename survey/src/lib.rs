@@ -8,9 +8,10 @@
 //! second pass:  log ─▶ found poses ─▶ mapper ─▶ changes      [`Replay`], [`FoundPoses`], [`ChangeLog`]
 //! ```
 //!
-//! [`Survey`] does both, log after log; it can be saved, and go on with another log later. [`routes()`] is the first pass over all logs, and [`learn()`] the second pass over one. The second pass is the loop of
-//! every robot, [`robot::explore`], with a source that ignores commands and a pilot that gives none. From its map follow
-//! the [places](places()) where something changes, and the [map](permanent()) of what is permanent.
+//! [`Survey`] does both, log after log; it can be saved, and go on with another log later. [`routes()`] is the first pass over
+//! all logs alone, and [`learn()`] the second pass over one. The second pass is the loop of every robot, [`robot::explore`],
+//! with a source that ignores commands and a pilot that gives none. From its map follow the [places](places()) where
+//! something changes, and the [map](permanent()) of what is permanent.
 //!
 //! This crate knows logs, trajectories and maps. It must not know files, pictures or programs.
 

@@ -17,7 +17,8 @@ use survey::{LogEntry, PoseMode, SavedLogs, SurveySettings};
 /// later logs can follow in a later run, which gives the same maps and rates as one run with all logs.
 ///
 /// The folder map_log_out contains the results: a page to read (report.html) with a map of the places where something
-/// changes (places.png), pictures of the maps (figure5.png) and of the trajectory (trajectory.png), a recording (map_log.rrd; open it with `rerun FILE`), the map in ROS format (map.yaml) and the map of what is permanent
+/// changes (places.png), pictures of the maps (figure5.png) and of the trajectory (trajectory.png), a recording
+/// (map_log.rrd; open it with `rerun FILE`), the map in ROS format (map.yaml) and the map of what is permanent
 /// (permanent.yaml), masks for the costmap filters of Nav2 (speed_mask.yaml, keepout_mask.yaml), the statistics of every
 /// cell (cell_statistics.csv, and layers.npy for NumPy), the trajectory (trajectory.tum, in the TUM format), and all
 /// results as JSON (summary.json).
