@@ -1,6 +1,6 @@
 //! From a robot to a map of changes, against the truth: a robot with bad odometry drives in a simulated house, by its
 //! own estimate, and its scans and odometry are written to several bags. From these the trajectories are found and
-//! aligned, and the rates are learned, as `map_log` does it.
+//! aligned, and the rates are learned, as `map_log` does it, but in the frame of the world, and with the noise of all bags.
 //!
 //! Printed: the log error of the rates, of a mapper that gets the same scans with their true poses, and of the survey
 //! of the bags; the error of the poses.

@@ -39,11 +39,13 @@ use loops::LoopCloser;
 use nalgebra::Isometry2;
 
 /// The pose of one reading.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct TrajectoryPose {
     /// The time of the reading, s.
+    #[serde(with = "interfaces::serde_time")]
     pub time_s: f64,
     /// The pose of the robot, m and rad. The pose of the first reading is the origin.
+    #[serde(with = "interfaces::serde_pose")]
     pub pose: Isometry2<f64>,
     /// [`PoseState::Tracking`] where the scan supports the pose, [`PoseState::Lost`] for invalid readings.
     pub state: PoseState,

@@ -19,6 +19,7 @@ mod tests;
 pub(crate) use files::{BagFile, in_folder};
 
 use crate::choice::TopicChoice;
+use crate::content;
 use crate::error::LogError;
 use crate::standing::Standing;
 use crate::summary::{LogSummary, since_epoch};
@@ -35,6 +36,7 @@ use std::sync::Arc;
 /// A bag.
 #[derive(Clone, Debug)]
 pub(crate) struct Bag {
+    name: String,
     files: Arc<[BagFile]>,
     plan: Arc<Plan>,
     clock: Clock,
@@ -95,11 +97,17 @@ impl Bag {
         if stands {
             Arc::make_mut(&mut plan).motion = Motion::Standing;
         }
-        Ok(Self { files: files.into(), plan, clock, times_s: times.times_s.into(), summary })
+        let name = file.to_owned();
+        Ok(Self { name, files: files.into(), plan, clock, times_s: times.times_s.into(), summary })
     }
 
     pub(crate) fn summary(&self) -> &LogSummary {
         &self.summary
+    }
+
+    pub(crate) fn content_hash(&self) -> Result<u128, LogError> {
+        let io = |why| LogError::Io { file: self.name.clone(), why };
+        content::hash(self.files.iter().map(BagFile::content)).map_err(io)
     }
 
     pub(crate) fn readings(&self) -> Readings {

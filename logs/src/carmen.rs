@@ -23,8 +23,9 @@ mod tests;
 pub(crate) use readings::Readings;
 
 use crate::bytes::Bytes;
+use crate::content;
 use crate::error::LogError;
-use crate::lines::Lines;
+use crate::lines::{self, Lines};
 use crate::summary::LogSummary;
 use line::Line;
 use nalgebra::Isometry2;
@@ -54,6 +55,12 @@ impl CarmenLog {
     /// What the log contains, and what was repaired.
     pub(crate) fn summary(&self) -> &LogSummary {
         &self.survey.summary
+    }
+
+    /// As [`Log::content_hash`](crate::Log::content_hash).
+    pub(crate) fn content_hash(&self) -> Result<u128, LogError> {
+        let io = |why| LogError::Io { file: self.file.clone(), why };
+        content::hash([lines::text(&self.bytes)]).map_err(io)
     }
 
     /// The readings, in the order of the log, from the first on. The poses are those of the odometry, and begin at the

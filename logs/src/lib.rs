@@ -10,6 +10,7 @@ mod bytes;
 mod carmen;
 mod cdr;
 mod choice;
+mod content;
 mod error;
 mod lines;
 mod log;

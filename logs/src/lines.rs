@@ -3,12 +3,21 @@
 use crate::bytes::Bytes;
 use crate::error::LogError;
 use flate2::bufread::MultiGzDecoder;
-use std::io::{BufRead, BufReader, Error, ErrorKind, Read};
+use std::io::{self, BufRead, BufReader, Error, ErrorKind, Read};
 
 /// The longest line, in bytes: a file that never ends a line must not fill the memory.
 const LONGEST: u64 = 1 << 20;
 /// The first bytes of a file that is compressed with gzip.
 const GZIP: [u8; 2] = [0x1f, 0x8b];
+
+/// The text of a log; its compression is undone.
+pub(crate) fn text(bytes: &Bytes) -> io::Result<Box<dyn BufRead + Send>> {
+    let mut reader: Box<dyn BufRead + Send> = Box::new(BufReader::new(bytes.open()?));
+    if reader.fill_buf()?.starts_with(&GZIP) {
+        reader = Box::new(BufReader::new(MultiGzDecoder::new(reader)));
+    }
+    Ok(reader)
+}
 
 /// The lines of a log, one after the other.
 pub(crate) struct Lines {
@@ -24,11 +33,7 @@ pub(crate) struct Lines {
 impl Lines {
     /// Opens a log. The compression is recognised by the content.
     pub(crate) fn open(bytes: &Bytes, file: &str) -> Result<Self, LogError> {
-        let io = |why| LogError::Io { file: file.to_owned(), why };
-        let mut reader: Box<dyn BufRead + Send> = Box::new(BufReader::new(bytes.open().map_err(io)?));
-        if reader.fill_buf().map_err(io)?.starts_with(&GZIP) {
-            reader = Box::new(BufReader::new(MultiGzDecoder::new(reader)));
-        }
+        let reader = text(bytes).map_err(|why| LogError::Io { file: file.to_owned(), why })?;
         Ok(Self { reader, file: file.to_owned(), number: 0, is_complete: true, line: Vec::new() })
     }
 

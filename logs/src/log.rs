@@ -77,6 +77,19 @@ impl Log {
         Ok(Readings { source })
     }
 
+    /// A number that is another one for another content, and the same for the same content under another name or with another
+    /// compression of the file: XXH3 with 128 bits. The log is read once for it.
+    ///
+    /// # Errors
+    ///
+    /// When the file can no longer be read.
+    pub fn content_hash(&self) -> Result<u128, LogError> {
+        match &self.format {
+            Format::Carmen(log) => log.content_hash(),
+            Format::Bag(bag) => bag.content_hash(),
+        }
+    }
+
     /// The poses of the laser of an earlier estimation, one per reading, for comparison only: those in the FLASER lines
     /// of a CARMEN log (in a log that is not *corrected*, they are those of the odometry). `None` for bags.
     ///

@@ -14,6 +14,7 @@
 
 mod change;
 mod derived;
+mod growth;
 mod occupancy;
 
 pub use change::{
@@ -21,6 +22,7 @@ pub use change::{
     GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, ReadingIndex, Step, TransitionRates,
     TwoState, TwoStateGaps,
 };
+pub use growth::Growth;
 pub use occupancy::{
     BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,
 };
@@ -143,6 +145,33 @@ impl Mapper {
         let occupancy = settings.occupancy.build(settings, &mut cells);
         let expected_changes = ExpectedChanges::default();
         Ok(Self { cells, occupancy, expected_changes, scan: ProjectedScan::default(), points: Vec::new() })
+    }
+
+    /// Goes on in a larger map, with the range noise of `settings`; its other settings are those of this mapper. The new
+    /// cells are unknown. Returns how the cells have moved, if they have. A frame that does not cover this map with the same
+    /// cells leaves the map as large as it is.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range, and when the cells need more than 2 GiB.
+    pub fn grow(
+        &mut self,
+        settings: &MapperSettings,
+        frame: GridFrame,
+    ) -> Result<Option<Growth>, SettingsError> {
+        settings.check()?;
+        Self::check_bytes(&frame)?;
+        let present = *self.frame();
+        let Some(growth) = Growth::new(present, frame).or_else(|| Growth::new(present, present)) else {
+            return Ok(None);
+        };
+        let is_larger = *growth.frame() != present;
+        if is_larger {
+            self.cells.grow(&growth);
+            self.points.clear();
+        }
+        self.occupancy.grow(&growth, settings);
+        Ok(is_larger.then_some(growth))
     }
 
     /// Updates the maps with one reading.

@@ -1,6 +1,7 @@
 //! Where the frame of a later log lies in the map of the first one.
 
 use crate::error::SurveyError;
+use crate::known_place::{KnownCells, KnownPlace};
 use crate::permanent::permanent;
 use crate::route::{Route, frame};
 use crate::settings::SurveySettings;
@@ -18,7 +19,7 @@ const LEAST_CERTAIN: f64 = 0.3;
 /// The standard deviations of a pose in the map of cells, m and rad.
 const CELLS_STD: (f64, f64) = (0.05, 0.01);
 
-/// The map of the first log, in which later logs find their place.
+/// Makes the map of the first log, in which later logs find their place.
 #[derive(Debug)]
 pub struct Aligner {
     settings: SurveySettings,
@@ -63,27 +64,12 @@ impl Aligner {
         Ok(())
     }
 
-    /// Begins the search for a later log, from the pose of its first reading in the map if that is known.
-    ///
-    /// # Errors
-    ///
-    /// When a setting is out of range.
-    pub fn search(&self, start: Start) -> Result<Search<'_>, SurveyError> {
-        let settings = LocalizerSettings {
-            range_noise_std_m: self.settings.mapper.steady.range_noise_std_m,
-            ..LocalizerSettings::default()
-        };
-        let localizer = Localizer::in_map(&settings, &permanent(&self.mapper), start)?;
-        Ok(Search {
-            settings: &self.settings,
-            mapper: &self.mapper,
-            localizer,
-            lines: self.lines.matcher(),
-            start,
-            as_expected: Vec::new(),
-            pairs: Vec::new(),
-            readings: 0,
-        })
+    /// The map when the log is over.
+    pub fn finish(self) -> KnownPlace {
+        let Self { settings, mapper, lines } = self;
+        let rates = mapper.changed().map(|index| (index, mapper.rate(index))).collect();
+        let cells = KnownCells { states: mapper.states().clone(), rates };
+        KnownPlace::new(settings, cells, permanent(&mapper), lines)
     }
 }
 
@@ -91,7 +77,7 @@ impl Aligner {
 #[derive(Debug)]
 pub struct Search<'a> {
     settings: &'a SurveySettings,
-    mapper: &'a Mapper,
+    cells: &'a KnownCells,
     localizer: Localizer,
     lines: LineMatcher<'a>,
     start: Start,
@@ -102,7 +88,30 @@ pub struct Search<'a> {
     readings: usize,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    /// Begins the search for a later log, from the pose of its first reading in the map if that is known.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    pub fn new(place: &'a KnownPlace, start: Start) -> Result<Self, SurveyError> {
+        let settings = &place.settings;
+        let of_localizer = LocalizerSettings {
+            range_noise_std_m: settings.mapper.steady.range_noise_std_m,
+            ..LocalizerSettings::default()
+        };
+        Ok(Self {
+            settings,
+            cells: &place.cells,
+            localizer: Localizer::in_map(&of_localizer, &place.permanent, start)?,
+            lines: place.lines.matcher(),
+            start,
+            as_expected: Vec::new(),
+            pairs: Vec::new(),
+            readings: 0,
+        })
+    }
+
     /// Adds the next reading of the log, with its pose on the route of this log.
     pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) {
         self.readings += 1;
@@ -115,7 +124,7 @@ impl Search<'_> {
                 return;
             }
         }
-        let estimate = self.localizer.localize(&reading, self.mapper).estimate;
+        let estimate = self.localizer.localize(&reading, self.cells).estimate;
         if estimate.state == PoseState::Tracking && found.state == PoseState::Tracking {
             let exact = self.lines.matched(&reading, &estimate.pose, CELLS_STD);
             self.pairs.push([exact.unwrap_or(estimate.pose), found.pose]);

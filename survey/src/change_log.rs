@@ -1,10 +1,15 @@
-use mapper::Mapper;
+use mapper::{Growth, Mapper};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// A time, short in a state file.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+struct Time(#[serde(with = "interfaces::serde_time")] f64);
+
 /// When the cells changed last, by index.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct ChangeLog {
-    last_s: BTreeMap<usize, f64>,
+    last_s: BTreeMap<usize, Time>,
     events: u64,
 }
 
@@ -17,14 +22,20 @@ impl ChangeLog {
             }
             self.events += 1;
             if let Some(index) = mapper.frame().index(transition.cell) {
-                self.last_s.insert(index, mapper.time());
+                self.last_s.insert(index, Time(mapper.time()));
             }
         }
     }
 
+    /// Moves all cells into a larger map.
+    pub(crate) fn grow(&mut self, growth: &Growth) {
+        let moved = std::mem::take(&mut self.last_s).into_iter();
+        self.last_s = moved.map(|(index, time)| (growth.index(index), time)).collect();
+    }
+
     /// The time of the last change of a cell, s; `None` if it never changed.
     pub fn last_s(&self, index: usize) -> Option<f64> {
-        self.last_s.get(&index).copied()
+        self.last_s.get(&index).map(|time| time.0)
     }
 
     /// The number of changes of all cells.

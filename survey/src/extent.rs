@@ -36,6 +36,30 @@ impl Reach {
     }
 }
 
+/// The cells that cover some frames, all of them with cells of the same side that lie on multiples of it.
+pub(crate) fn union<'a>(frames: impl Iterator<Item = &'a GridFrame>) -> Result<GridFrame, SurveyError> {
+    let span = |frame: &GridFrame| {
+        let low = frame.origin().map(|m| (m / frame.resolution_m()).round());
+        (low, low + Vector2::new(frame.width() as f64, frame.height() as f64), frame.resolution_m())
+    };
+    let spans = frames.map(span);
+    let all = spans.reduce(|(low, high, side_m), (a, b, _)| (low.inf(&a), high.sup(&b), side_m));
+    let (low, high, resolution_m) = all.ok_or(SurveyError::NoPlace)?;
+    of_cells(low, high, resolution_m)
+}
+
+/// The frame of the cells with these numbers from the origin on.
+fn of_cells(low: Point2<f64>, high: Point2<f64>, resolution_m: f64) -> Result<GridFrame, SurveyError> {
+    let cells = high - low;
+    let too_large = || SurveyError::TooLarge {
+        width_m: cells.x * resolution_m,
+        height_m: cells.y * resolution_m,
+        resolution_m,
+    };
+    // Numbers that are too large become the largest ones.
+    GridFrame::new(low * resolution_m, resolution_m, cells.x as usize, cells.y as usize).ok_or_else(too_large)
+}
+
 /// The cells that cover what was hit from these poses. The cells lie on multiples of their side, so that two surveys of
 /// a place have the same cells.
 pub(crate) fn frame<'a>(
@@ -48,12 +72,5 @@ pub(crate) fn frame<'a>(
     let (low, high) = low_and_high.ok_or(SurveyError::NoPlace)?;
     let low = low.map(|m| ((m - MARGIN_M) / resolution_m).floor());
     let high = high.map(|m| ((m + MARGIN_M) / resolution_m).ceil());
-    let cells = high - low;
-    let too_large = || SurveyError::TooLarge {
-        width_m: cells.x * resolution_m,
-        height_m: cells.y * resolution_m,
-        resolution_m,
-    };
-    // Numbers that are too large become the largest ones.
-    GridFrame::new(low * resolution_m, resolution_m, cells.x as usize, cells.y as usize).ok_or_else(too_large)
+    of_cells(low, high, resolution_m)
 }

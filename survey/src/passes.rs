@@ -1,11 +1,12 @@
 //! Both passes over the logs of one place.
 
-use crate::alignment::Aligner;
+use crate::alignment::{Aligner, Search};
 use crate::error::SurveyError;
+use crate::known_place::KnownPlace;
 use crate::replay::{NoPilot, Replay};
 use crate::route::{FirstPass, Route};
 use crate::settings::{PoseMode, SurveySettings};
-use interfaces::LaserReading;
+use interfaces::{LaserReading, World};
 use localizer::Start;
 use logs::{Log, LogError};
 use mapper::{Mapper, ReadingError};
@@ -75,73 +76,111 @@ pub fn routes(
     settings: &SurveySettings,
     mut watch: impl FnMut(RouteProgress) -> ControlFlow<()>,
 ) -> Result<Vec<Route>, PassError> {
-    let is_localized = settings.pose == PoseMode::Localized;
     let all_stand = logs.iter().all(|log| log.summary().stands);
-    let is_aligned = logs.len() > 1 && (is_localized || all_stand);
-    // Most lasers that stand are where they were.
-    let start = if all_stand { Start::At(Isometry2::identity()) } else { Start::Unknown };
+    let is_aligned = logs.len() > 1 && (settings.pose == PoseMode::Localized || all_stand);
+    let mut place: Option<KnownPlace> = None;
     let mut routes = Vec::new();
-    let mut aligner: Option<Aligner> = None;
     for (number, log) in logs.iter().enumerate() {
-        let mut watch = |stage, readings| match watch(RouteProgress { log: number, stage, readings }) {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(PassError::Interrupted),
+        let mut pass = RoutePass { log, number, settings, watch: &mut watch };
+        let route = match &place {
+            Some(place) => pass.in_place(place, all_stand)?,
+            None => pass.route()?,
         };
-        let mut pass = FirstPass::new(settings)?;
-        each_reading(
-            log,
-            |readings| watch(Stage::Trajectory, readings),
-            |_, reading| {
-                pass.add(reading);
-                Ok(())
-            },
-        )?;
-        if is_localized {
-            watch(Stage::Loops, 0)?;
-        }
-        let mut route = pass.finish();
-        if is_localized {
-            watch(Stage::Loops, route.poses.len())?;
-        }
-        if let Some(aligner) = &aligner {
-            let mut search = aligner.search(start)?;
-            each_reading(
-                log,
-                |readings| watch(Stage::Search, readings),
-                |index, reading| {
-                    if let Some(found) = route.poses.get(index) {
-                        search.add(reading, found);
-                    }
-                    Ok(())
-                },
-            )?;
-            route = route.moved(&search.finish().map_err(|why| PassError::Alignment { log: number, why })?);
-        } else if is_aligned {
-            let mut first = Aligner::new(settings, &route)?;
-            each_reading(
-                log,
-                |readings| watch(Stage::Map, readings),
-                |index, reading| route.poses.get(index).map_or(Ok(()), |found| first.add(reading, found)),
-            )?;
-            aligner = Some(first);
+        if is_aligned && place.is_none() {
+            place = Some(pass.place(&route)?);
         }
         routes.push(route);
     }
     Ok(routes)
 }
 
-/// Calls `add` with every reading of a log and its index, and `watch` with the number of readings so far.
-fn each_reading(
-    log: &Log,
-    mut watch: impl FnMut(usize) -> Result<(), PassError>,
-    mut add: impl FnMut(usize, LaserReading) -> Result<(), ReadingError>,
-) -> Result<(), PassError> {
-    watch(0)?;
-    for (index, reading) in log.readings()?.enumerate() {
-        add(index, reading?)?;
-        watch(index + 1)?;
+/// The first pass over one log. The `watch` is that of [`routes`], which gets `number` as the number of the log.
+#[derive(Debug)]
+pub struct RoutePass<'a, W> {
+    /// The log.
+    pub log: &'a Log,
+    /// The number of the log, from 0 on.
+    pub number: usize,
+    /// The settings of the survey.
+    pub settings: &'a SurveySettings,
+    /// What is called when a stage begins and after each of its readings.
+    pub watch: W,
+}
+
+impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
+    /// The route of the log, in the frame of its first pose.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range, when the log cannot be read, and when the pass is interrupted.
+    pub fn route(&mut self) -> Result<Route, PassError> {
+        let mut pass = FirstPass::new(self.settings)?;
+        self.each_reading(Stage::Trajectory, |_, reading| {
+            pass.add(reading);
+            Ok(())
+        })?;
+        if self.settings.pose != PoseMode::Localized {
+            return Ok(pass.finish());
+        }
+        self.report(Stage::Loops, 0)?;
+        let route = pass.finish();
+        self.report(Stage::Loops, route.poses.len())?;
+        Ok(route)
     }
-    Ok(())
+
+    /// The route of a later log, in the frame of the first one. `all_stand`: the lasers of this log and of those before stand,
+    /// and most lasers that stand are where they were.
+    ///
+    /// # Errors
+    ///
+    /// As for [`RoutePass::route`], and when the log finds no place in the map of the first one.
+    pub fn in_place(&mut self, place: &KnownPlace, all_stand: bool) -> Result<Route, PassError> {
+        let route = self.route()?;
+        let start = if all_stand { Start::At(Isometry2::identity()) } else { Start::Unknown };
+        let mut search = Search::new(place, start)?;
+        self.each_reading(Stage::Search, |index, reading| {
+            if let Some(found) = route.poses.get(index) {
+                search.add(reading, found);
+            }
+            Ok(())
+        })?;
+        let log = self.number;
+        Ok(route.moved(&search.finish().map_err(|why| PassError::Alignment { log, why })?))
+    }
+
+    /// The place in which later logs find theirs, from the first log along its route.
+    ///
+    /// # Errors
+    ///
+    /// As for [`RoutePass::route`], and when the place is too large for a map.
+    pub fn place(&mut self, route: &Route) -> Result<KnownPlace, PassError> {
+        let mut first = Aligner::new(self.settings, route)?;
+        self.each_reading(Stage::Map, |index, reading| {
+            route.poses.get(index).map_or(Ok(()), |found| first.add(reading, found))
+        })?;
+        Ok(first.finish())
+    }
+
+    /// Calls `add` with every reading of the log and its index.
+    fn each_reading(
+        &mut self,
+        stage: Stage,
+        mut add: impl FnMut(usize, LaserReading) -> Result<(), ReadingError>,
+    ) -> Result<(), PassError> {
+        self.report(stage, 0)?;
+        for (index, reading) in self.log.readings()?.enumerate() {
+            add(index, reading?)?;
+            self.report(stage, index + 1)?;
+        }
+        Ok(())
+    }
+
+    fn report(&mut self, stage: Stage, readings: usize) -> Result<(), PassError> {
+        match (self.watch)(RouteProgress { log: self.number, stage, readings }) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(PassError::Interrupted),
+        }
+    }
 }
 
 /// The second pass over one log: the loop of a robot, from which the mapper learns, until the log or `observe` ends it.
@@ -156,7 +195,7 @@ pub fn learn<I, L>(
     mut replay: Replay<I>,
     poses: &mut L,
     mapper: &mut Mapper,
-    mut observe: impl FnMut(&Replay<I>, &LaserReading, &Belief) -> ControlFlow<()>,
+    observe: impl FnMut(&Replay<I>, &LaserReading, &Belief) -> ControlFlow<()>,
 ) -> Result<(), PassError>
 where
     I: Iterator<Item = Result<LaserReading, LogError>>,
@@ -165,9 +204,25 @@ where
     if mapper.readings() > 0 {
         mapper.pause(replay.time_s());
     }
-    explore(&mut replay, poses, mapper, &mut NoPilot, |replay, reading, belief, _| {
+    learn_on(&mut replay, poses, mapper, observe)
+}
+
+/// The same for a part of a log: the loop goes on with the present reading, and the replay stands at the reading after the
+/// last one that was learned.
+pub(crate) fn learn_on<I, L>(
+    replay: &mut Replay<I>,
+    poses: &mut L,
+    mapper: &mut Mapper,
+    mut observe: impl FnMut(&Replay<I>, &LaserReading, &Belief) -> ControlFlow<()>,
+) -> Result<(), PassError>
+where
+    I: Iterator<Item = Result<LaserReading, LogError>>,
+    L: Localization<LaserReading> + ?Sized,
+{
+    explore(replay, poses, mapper, &mut NoPilot, |replay, reading, belief, _| {
         let observed = observe(replay, reading, belief);
         Ok::<_, ReadingError>(if replay.is_over() { ControlFlow::Break(()) } else { observed })
     })?;
-    replay.into_problem().map_or(Ok(()), |problem| Err(problem.into()))
+    replay.act(&());
+    replay.take_problem().map_or(Ok(()), |problem| Err(problem.into()))
 }

@@ -2,7 +2,7 @@
 
 use crate::settings::SurveySettings;
 use interfaces::{LaserReading, ValueError, World};
-use localizer::{GivenPoses, PoseEstimate, TrajectoryPose};
+use localizer::{GivenPoses, PoseEstimate, PoseState, TrajectoryPose};
 use logs::LogError;
 use mapper::Mapper;
 use nalgebra::Matrix3;
@@ -43,9 +43,9 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
         self.next.is_none()
     }
 
-    /// Why the log ended before its end.
-    pub fn into_problem(self) -> Option<LogError> {
-        self.problem
+    /// Why the log ended before its end; the next call gives `None`.
+    pub fn take_problem(&mut self) -> Option<LogError> {
+        self.problem.take()
     }
 
     fn read(&mut self) {
@@ -91,14 +91,26 @@ impl FoundPoses {
     }
 }
 
-impl Localization<LaserReading> for FoundPoses {
-    /// A reading beyond the last pose keeps its own pose and is not certain. The covariance is not estimated: 0.
-    fn localize(&mut self, mut reading: LaserReading, _: &Mapper) -> Posed<LaserReading> {
+impl FoundPoses {
+    /// Gives a reading its pose, without a map.
+    fn posed(&mut self, mut reading: LaserReading) -> (LaserReading, PoseState) {
         let state = self.poses.next().map_or_else(Default::default, |found| {
             reading.pose = found.pose;
             found.state
         });
-        let reading = self.given.unswept(reading);
+        (self.given.unswept(reading), state)
+    }
+
+    /// Passes a reading from which was learned before.
+    pub(crate) fn pass(&mut self, reading: LaserReading) {
+        self.posed(reading);
+    }
+}
+
+impl Localization<LaserReading> for FoundPoses {
+    /// A reading beyond the last pose keeps its own pose and is not certain. The covariance is not estimated: 0.
+    fn localize(&mut self, reading: LaserReading, _: &Mapper) -> Posed<LaserReading> {
+        let (reading, state) = self.posed(reading);
         let (pose, covariance, support) = (reading.pose, Matrix3::zeros(), 1.0);
         let estimate = Some(PoseEstimate { pose, covariance, support, state });
         Posed { reading, estimate, permission: Permission::Drive }

@@ -2,6 +2,7 @@
 
 use crate::error::SurveyError;
 use crate::extent::{self, Reach};
+use crate::range_noise::RangeNoise;
 use crate::settings::{PoseMode, SurveySettings};
 use interfaces::{GridFrame, LaserReading};
 use localizer::{PoseState, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
@@ -17,6 +18,8 @@ pub struct Route {
     pub loops: usize,
     /// The standard deviation of the distances of scans from the surfaces of other passes, m; `None` where it is not known.
     pub residual_std_m: Option<f64>,
+    /// The standard deviation of the ranges of a laser that stands, m; `None` where it is not known.
+    pub range_std_m: Option<f64>,
     reaches: Vec<Reach>,
 }
 
@@ -59,6 +62,7 @@ pub struct FirstPass {
     /// Finds the trajectory; `None` where the poses of the log are used.
     finder: Option<TrajectoryFinder>,
     given: Vec<TrajectoryPose>,
+    range_noise: RangeNoise,
     reaches: Vec<Reach>,
 }
 
@@ -74,7 +78,13 @@ impl FirstPass {
             PoseMode::Localized => Some(TrajectoryFinder::new(&TrajectorySettings::default())?),
             PoseMode::Exact | PoseMode::Odometry => None,
         };
-        Ok(Self { settings: settings.clone(), finder, given: Vec::new(), reaches: Vec::new() })
+        Ok(Self {
+            settings: settings.clone(),
+            finder,
+            given: Vec::new(),
+            range_noise: RangeNoise::default(),
+            reaches: Vec::new(),
+        })
     }
 
     /// Adds the next reading.
@@ -82,11 +92,11 @@ impl FirstPass {
         self.reaches.push(Reach::of(&self.settings.filtered(reading.clone())));
         match &mut self.finder {
             Some(finder) => finder.add(reading),
-            None => self.given.push(TrajectoryPose {
-                time_s: reading.time_s,
-                pose: reading.pose,
-                state: PoseState::Tracking,
-            }),
+            None => {
+                self.range_noise.add(&reading);
+                let (time_s, pose, state) = (reading.time_s, reading.pose, PoseState::Tracking);
+                self.given.push(TrajectoryPose { time_s, pose, state });
+            }
         }
     }
 
@@ -99,6 +109,7 @@ impl FirstPass {
             }
             None => (self.given, 0, None),
         };
-        Route { poses, loops, residual_std_m, reaches: self.reaches }
+        let range_std_m = self.range_noise.std_m();
+        Route { poses, loops, residual_std_m, range_std_m, reaches: self.reaches }
     }
 }

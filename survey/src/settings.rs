@@ -14,6 +14,17 @@ pub enum PoseMode {
     Localized,
 }
 
+impl PoseMode {
+    /// The name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Odometry => "odometry",
+            Self::Localized => "localized",
+        }
+    }
+}
+
 /// Settings of a survey.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]

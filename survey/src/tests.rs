@@ -1,9 +1,9 @@
 //! Tests of the parts, and of two logs of one simulated place.
 
 use crate::{
-    Aligner, ChangeLog, FirstPass, FoundPoses, PassError, PoseMode, Replay, Route, RouteProgress, Stage,
-    SurveyError, SurveySettings, frame, keepout_mask, learn, permanent, places, remove_shadows, routes,
-    speed_mask,
+    Aligner, ChangeLog, FirstPass, FoundPoses, PassError, PoseMode, Replay, Route, RouteProgress, Search,
+    Stage, SurveyError, SurveySettings, frame, keepout_mask, learn, permanent, places, remove_shadows,
+    routes, speed_mask,
 };
 use interfaces::{CellReading, CellState, Grid, GridFrame, LaserReading, Scan, Twist, World, heading_rad};
 use localizer::Start;
@@ -100,7 +100,7 @@ fn movers_are_not_permanent_and_masks_say_where_they_are() {
 
 /// The readings of a robot that drives through a generated house, by drifting odometry, and its true poses. The house is
 /// still; the drive does not depend on the seed.
-fn drive(seed: u64, seconds: f64) -> (Vec<LaserReading>, Vec<Isometry2<f64>>) {
+pub(crate) fn drive(seed: u64, seconds: f64) -> (Vec<LaserReading>, Vec<Isometry2<f64>>) {
     let mut fleet = WorldSpec::generate_house(1003).fleet().clone();
     let mut robot = fleet.robots.swap_remove(WorldSpec::generate_house(1003).driven_index());
     robot.odometry = OdometryError { distance_gain: 0.02, turn_gain: -0.02, ..OdometryError::default() };
@@ -153,18 +153,19 @@ fn a_later_log_finds_its_place_in_the_first_one() {
     for (reading, found) in readings.iter().zip(&first.poses) {
         aligner.add(reading.clone(), found).unwrap();
     }
+    let place = aligner.finish();
     // The second log begins where the first one has ended, with another odometry.
     let (all, all_truth) = drive(2, 180.0);
     let (later, later_truth) = (&all[1250..], &all_truth[1250..]);
     let second = first_pass(&settings, later);
-    let mut search = aligner.search(Start::Unknown).unwrap();
+    let mut search = Search::new(&place, Start::Unknown).unwrap();
     later.iter().zip(&second.poses).for_each(|(reading, found)| search.add(reading.clone(), found));
     let second = second.moved(&search.finish().unwrap());
     let error_m = largest_error_m(&second, &truth[0], later_truth);
     assert!(error_m < 0.015, "{error_m}");
 
     // A place that is another one is refused.
-    let mut search = aligner.search(Start::Unknown).unwrap();
+    let mut search = Search::new(&place, Start::Unknown).unwrap();
     let blind = LaserReading { scan: scan(vec![1.0; 360]), ..readings[0].clone() };
     (0..100).for_each(|_| search.add(blind.clone(), &first.poses[0]));
     assert_eq!(search.finish(), Err(SurveyError::OtherPlace { certain: 0, readings: 100 }));

@@ -99,7 +99,7 @@ fn two_logs_of_one_place_add_up() {
 }
 
 /// A CARMEN log of a laser that stands before a wall, in a room 6 m wide: something is before it for every other 10 s.
-fn standing_log(begin_s: f64, seconds: u32) -> String {
+pub(crate) fn standing_log(begin_s: f64, seconds: u32) -> String {
     let line = |step: u32| {
         let (time_s, near) = (begin_s + f64::from(step), (step / 10).is_multiple_of(2));
         let range_m = |beam: u32| match f64::from(beam).to_radians().sin_cos() {

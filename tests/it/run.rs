@@ -57,6 +57,11 @@ impl Run {
         Self { program: MAP_LOG, ..self }
     }
 
+    /// The same folder, for `four_rooms`.
+    pub(crate) fn with_four_rooms(self) -> Self {
+        Self { program: FOUR_ROOMS, ..self }
+    }
+
     /// A finished run of `four_rooms` without a recording, which must succeed; arguments are separated by spaces.
     pub(crate) fn quiet(arguments: &str) -> Self {
         let run = Self::new();

@@ -86,6 +86,14 @@ fn a_state_that_cannot_be_written_ends_before_the_run() {
     assert_eq!(ended.code, Some(2), "{ended:?}");
 }
 
+#[test]
+fn a_bag_that_cannot_be_written_ends_before_the_run() {
+    let run = Run::new();
+    let refused = |path: &str| refuses(&run, &format!("--mcap {path}"), &[]);
+    insta::assert_snapshot!(refused("no/such/run.mcap"), @"error: cannot write the bag of --mcap: cannot write no/such/run.mcap: No such file or directory (os error 2)");
+    insta::assert_snapshot!(refused("."), @"error: cannot write the bag of --mcap: cannot write .: is a directory");
+}
+
 /// Killed again and again at any point, even while it saves: the file is complete, and the run comes to its end.
 #[test]
 #[cfg(unix)]

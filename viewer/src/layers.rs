@@ -22,7 +22,7 @@ pub enum Layer {
 }
 
 /// A cell that was never seen. Class 0 stays unused: the viewer draws nothing for it.
-const UNKNOWN: u8 = 1;
+pub(crate) const UNKNOWN: u8 = 1;
 /// A free cell without a value in the layer.
 const FREE: u8 = 2;
 /// A blocked cell without a value in the layer.

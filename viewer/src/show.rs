@@ -7,7 +7,9 @@ use crate::scene::Scene;
 use crate::view::{Trail, View};
 use evaluation::drawing::PictureError;
 use evaluation::observer::Goals;
+use interfaces::GridFrame;
 use mapper::Mapper;
+use nalgebra::Isometry2;
 use std::path::Path;
 
 /// Shows a run, and keeps the trails of its robots.
@@ -36,6 +38,16 @@ impl Show {
     pub fn new(scene: Scene, recorder: Option<Recorder>, film: Option<Film>) -> Self {
         let trails = vec![Trail::default(); scene.robots.len()];
         Self { scene, trails, believed: Trail::default(), recorder, film }
+    }
+
+    /// Adds a pose of the curious robot from before this run to its trail.
+    pub fn pass(&mut self, pose: &Isometry2<f64>) {
+        self.trails.iter_mut().take(1).for_each(|trail| trail.push(pose.translation.vector.into()));
+    }
+
+    /// The pictures show the place as large as this, because the run has ended before it knew more.
+    pub fn end_in(&mut self, frame: GridFrame) {
+        self.scene.frame = frame;
     }
 
     /// Shows the run as it is now. The last view closes the recording.

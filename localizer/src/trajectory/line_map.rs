@@ -6,7 +6,7 @@ use super::matching::fit;
 use crate::given_poses::GivenPoses;
 use crate::scan_points::ScanPoints;
 use crate::surfel_map::SurfelMap;
-use interfaces::{GridFrame, LaserReading, SettingsError, heading_rad};
+use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, heading_rad};
 use nalgebra::Isometry2;
 
 /// The least shares of a fit: of the points that the map can judge, and of those that agree.
@@ -61,6 +61,21 @@ impl LineMap {
         let rules = self.settings.point_rules();
         self.points.update(&reading, |_| 1.0, &rules);
         self.map.learn_keyframe(&filled(self.points.points()), pose, rules.noise_m);
+    }
+
+    /// The surfaces, as bytes: what readings of other logs are matched with.
+    pub fn snapshot(&mut self) -> Vec<u8> {
+        interfaces::snapshot(self.map.values())
+    }
+
+    /// Takes the surfaces of a map with the same settings and the same frame from its snapshot. No more readings of the log
+    /// can be added.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no such snapshot. The map must not be used then.
+    pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        interfaces::restore(self.map.values(), snapshot)
     }
 
     /// A matcher for the readings of another log.

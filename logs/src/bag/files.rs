@@ -59,6 +59,11 @@ impl BagFile {
             .map_err(|why| LogError::Io { file: name.to_string(), why })
     }
 
+    /// Its bytes.
+    pub(super) fn content(&self) -> io::Result<impl Read + use<>> {
+        self.bytes.open()
+    }
+
     pub(crate) fn recognised(name: Arc<str>, bytes: Bytes) -> io::Result<Option<Self>> {
         let start = bytes.start()?;
         if start.starts_with(ROS1) {

@@ -1,3 +1,4 @@
+use crate::Growth;
 use interfaces::{Values, runs};
 use serde::{Serialize, de::DeserializeOwned};
 use std::ops::Index;
@@ -33,6 +34,20 @@ impl<T: Clone + Default> SharedCells<T> {
     #[inline]
     pub(super) fn get_mut(&mut self, index: usize) -> Option<&mut T> {
         self.0.get_mut(index / CHUNK).and_then(|chunk| Arc::make_mut(chunk).get_mut(index % CHUNK))
+    }
+
+    /// Moves all values into a larger map.
+    pub(super) fn grow(&mut self, growth: &Growth) {
+        if self.is_empty() {
+            return;
+        }
+        let mut moved = Self::new(growth.frame().len());
+        for (index, value) in self.0.iter().flat_map(|chunk| chunk.iter()).enumerate() {
+            if let Some(to) = moved.get_mut(growth.index(index)) {
+                *to = value.clone();
+            }
+        }
+        *self = moved;
     }
 
     /// All values, as runs.

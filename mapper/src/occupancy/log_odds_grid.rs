@@ -7,6 +7,7 @@ use super::footprint::cells_along;
 use super::inverse_sensor_model::{HIT_LOG_ODDS, MISS_LOG_ODDS};
 use super::projection::{BeamReturn, ProjectedScan};
 use crate::change::CellMap;
+use crate::{Growth, MapperSettings};
 use interfaces::{CellState, Values, runs};
 
 /// The bounds of the sum of log-odds.
@@ -58,5 +59,9 @@ impl OccupancyModel for LogOddsGrid {
 
     fn values(&mut self) -> Values<'_> {
         vec![runs(&mut self.log_odds)]
+    }
+
+    fn grow(&mut self, growth: &Growth, _: &MapperSettings) {
+        growth.cells(&mut self.log_odds, 0.0);
     }
 }

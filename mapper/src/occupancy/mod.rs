@@ -15,8 +15,8 @@ mod projection;
 mod segmentation;
 mod surface_grid;
 
-use crate::MapperSettings;
 use crate::change::CellMap;
+use crate::{Growth, MapperSettings};
 use interfaces::{Cell, Values};
 use log_odds_grid::LogOddsGrid;
 pub use projection::{BeamReturn, ProjectedScan};
@@ -39,6 +39,9 @@ pub trait OccupancyModel: CloneModel + fmt::Debug + Send + Sync {
     /// The evidence about all cells, and everything else that an update changes and a later update needs: what a state
     /// file holds of the model.
     fn values(&mut self) -> Values<'_>;
+
+    /// Goes on in a larger map, which can be as large as before, with the range noise of `settings`.
+    fn grow(&mut self, growth: &Growth, settings: &MapperSettings);
 }
 
 /// Clones a boxed model; implemented for every model that is `Clone`.

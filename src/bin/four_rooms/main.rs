@@ -74,9 +74,10 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let began_s = trial.mapper.time();
     let is_interrupted = interrupt_flag()?; // before any file is made
     let mut folder = RunFolder::open(&args.out).map_err(anyhow::Error::from)?;
-    let mut show = show(args, Scene::from(spec.fleet()), &mut folder)?;
     args.mcap.iter().try_for_each(|path| folder.adopt(path, "mcap")).map_err(input)?;
-    let bag = args.mcap.as_deref().map(|path| RunBag::create(path, 0.0)).transpose()?;
+    let bag = args.mcap.as_deref().map(|path| RunBag::create(path, 0.0)).transpose();
+    let bag = bag.context("cannot write the bag of --mcap").map_err(input)?;
+    let mut show = show(args, Scene::from(spec.fleet()), &mut folder)?;
     if let Some(bag) = &bag {
         let inner = std::mem::replace(&mut trial.localization, Box::new(ExactPoses));
         trial.localization = Box::new(bag.recorded(inner));

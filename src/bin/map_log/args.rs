@@ -3,19 +3,22 @@
 use crate::logs_in_order::Source;
 use anyhow::ensure;
 use clap::{Parser, ValueEnum};
-use curious::program::one_of;
+use curious::program::{duration_s, one_of};
 use logs::TopicChoice;
 use mapper::EstimatorChoice;
 use std::path::PathBuf;
-use survey::{PoseMode, SurveySettings};
+use survey::{LogEntry, PoseMode, SavedLogs, SurveySettings};
 
 /// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
 /// A log is a CARMEN log, plain or compressed with gzip, or a bag of ROS 2: a folder, an MCAP file or an SQLite file. Its
 /// trajectory is found from the scans and the odometry; a laser that stands needs neither. Several logs are those of one
-/// place: they are read in the order of their times, and later ones find their place in the map of the first. The folder map_log_out contains the results: a page to read (report.html) with a map of the
-/// places where something changes (places.png), pictures of the maps (figure5.png) and of the trajectory (trajectory.png),
-/// a recording (map_log.rrd; open it with `rerun FILE`), the map in ROS format (map.yaml) and the map of what is permanent
+/// place: they are read in the order of their times, and later ones find their place in the map of the first. With --state,
+/// later logs can follow in a later run, which gives the same maps and rates as one run with all logs.
+///
+/// The folder map_log_out contains the results: a page to read (report.html) with a map of the places where something
+/// changes (places.png), pictures of the maps (figure5.png) and of the trajectory (trajectory.png), a recording
+/// (map_log.rrd; open it with `rerun FILE`), the map in ROS format (map.yaml) and the map of what is permanent
 /// (permanent.yaml), masks for the costmap filters of Nav2 (speed_mask.yaml, keepout_mask.yaml), the statistics of every
 /// cell (cell_statistics.csv, and layers.npy for NumPy), the trajectory (trajectory.tum, in the TUM format), and all
 /// results as JSON (summary.json).
@@ -28,7 +31,7 @@ use survey::{PoseMode, SurveySettings};
     version,
     max_term_width = 100,
     after_help = "Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C, SIGTERM or SIGHUP; \
-                  in the second pass the results so far are written)."
+                  in the second pass the results so far are written, with --state the state at any time)."
 )]
 pub(crate) struct Args {
     /// The logs of one place: CARMEN logs, bags of ROS 2 (folders, MCAP, SQLite)
@@ -103,6 +106,19 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mcap: Option<PathBuf>,
 
+    /// Keep what is learned in a file. If it exists, the logs add to it: logs of the same place, later than those before. It is
+    /// saved at the end and every minute; a run that was interrupted or killed goes on with the same command
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) state: Option<PathBuf>,
+
+    /// The wall time between two savings of the state
+    #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration_s, requires = "state", help_heading = "Output")]
+    pub(crate) state_every: f64,
+
+    /// Leave out the rest of a log that the state has learned in part and that is not given any more
+    #[arg(long, requires = "state", help_heading = "Output")]
+    pub(crate) leave_rest: bool,
+
     /// Print only errors
     #[arg(long, short, help_heading = "Output")]
     pub(crate) quiet: bool,
@@ -139,13 +155,25 @@ impl Args {
         }
     }
 
-    /// The settings of the survey of these logs.
-    pub(crate) fn settings(&self, sources: &[Source]) -> anyhow::Result<SurveySettings> {
-        let stands = sources.iter().all(Source::stands);
-        let default = if stands { PoseMode::Exact } else { PoseMode::Localized };
+    /// The settings of the survey of these logs, after the logs of a state.
+    pub(crate) fn settings(
+        &self,
+        sources: &[Source],
+        saved: Option<&SavedLogs>,
+    ) -> anyhow::Result<SurveySettings> {
+        let earlier = saved.map(SavedLogs::logs).unwrap_or_default();
+        let given = sources.iter().map(|source| &source.entry);
+        let mut logs: Vec<&LogEntry> = earlier.iter().map(|log| &log.entry).collect();
+        logs.extend(given.filter(|given| earlier.iter().all(|log| log.entry.content != given.content)));
+        let stands = logs.iter().all(|log| log.stands);
+        let default = match saved {
+            Some(saved) => saved.pose,
+            None if stands => PoseMode::Exact,
+            None => PoseMode::Localized,
+        };
         let mut settings = SurveySettings::of(self.pose.map_or(default, Into::into));
         ensure!(
-            stands || sources.len() == 1 || settings.pose == PoseMode::Localized,
+            stands || logs.len() == 1 || settings.pose == PoseMode::Localized,
             "the poses of each log begin at its own origin: several logs of a robot that moves need --pose localized"
         );
         settings.resolution_m = self.resolution;
@@ -168,8 +196,8 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         let args = Args::parse_from(["map_log", "a.log"]);
-        assert_eq!(args.settings(&[]).unwrap().pose, PoseMode::Exact);
+        assert_eq!(args.settings(&[], None).unwrap().pose, PoseMode::Exact);
         let args = Args::parse_from(["map_log", "a.log", "--pose", "localized"]);
-        assert_eq!(args.settings(&[]).unwrap(), SurveySettings::default());
+        assert_eq!(args.settings(&[], None).unwrap(), SurveySettings::default());
     }
 }

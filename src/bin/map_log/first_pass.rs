@@ -1,38 +1,46 @@
 //! The first pass: the route of every log, in one frame.
 
 use crate::Job;
+use crate::saves::Saves;
 use anyhow::Error;
 use curious::program::{Failure, input};
 use curious::progress::Progress;
-use logs::Log;
 use std::ops::ControlFlow;
-use survey::{PassError, Route, RouteProgress, Stage};
+use survey::{PassError, PoseMode, RouteProgress, Stage, Survey};
 
-/// The routes of all logs, in the frame of the first one. `None` if the user has interrupted the pass.
-pub(crate) fn routes(job: &Job) -> Result<Option<Vec<Route>>, Failure> {
-    let logs: Vec<&Log> = job.sources.iter().map(|source| &source.log).collect();
-    let mut bar = None;
-    let watch = |RouteProgress { log, stage, readings }| {
-        match readings {
-            0 => bar = begin(job, log, stage, bar.take()),
-            _ => bar.iter().for_each(Progress::step),
+/// Finds the routes of all logs of which the survey has none. Returns whether it was not interrupted.
+pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Result<bool, Failure> {
+    for (number, source) in job.sources.iter().enumerate() {
+        let log = job.first_log + number;
+        if log < survey.logs().len() {
+            continue;
         }
-        if job.is_interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    };
-    let found = survey::routes(&logs, &job.settings, watch);
-    bar.iter().for_each(Progress::finish);
-    match found {
-        Ok(routes) => Ok(Some(routes)),
-        Err(PassError::Interrupted) => Ok(None),
-        Err(PassError::Alignment { log, why }) => {
-            Err(input(Error::from(why).context(format!("cannot use {}", job.sources[log].name))))
+        let can_align = source.entry.stands || job.settings.pose == PoseMode::Localized;
+        let is_followed = can_align && (saves.is_kept() || number + 1 < job.sources.len());
+        let mut bar = None;
+        let watch = |RouteProgress { stage, readings, .. }: RouteProgress| {
+            match readings {
+                0 => bar = begin(job, number, stage, bar.take()),
+                _ => bar.iter().for_each(Progress::step),
+            }
+            if job.is_interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let found = survey.first_pass(&source.log, source.entry.clone(), is_followed, watch);
+        bar.iter().for_each(Progress::finish);
+        match found {
+            Ok(()) => saves.save(survey),
+            Err(PassError::Interrupted) => return Ok(false),
+            Err(PassError::Alignment { why, .. }) => {
+                return Err(input(Error::from(why).context(format!("cannot use {}", source.entry.name))));
+            }
+            Err(other) => return Err(input(other)),
         }
-        Err(other) => Err(input(other)),
     }
+    Ok(true)
 }
 
 /// Reports that a stage begins, below the finished bar of the stage before. Gives the bar of this stage.
-fn begin(job: &Job, log: usize, stage: Stage, before: Option<Progress>) -> Option<Progress> {
+fn begin(job: &Job, number: usize, stage: Stage, before: Option<Progress>) -> Option<Progress> {
     before.iter().for_each(Progress::finish);
     let what = match stage {
         Stage::Trajectory => "first pass",
@@ -40,7 +48,7 @@ fn begin(job: &Job, log: usize, stage: Stage, before: Option<Progress>) -> Optio
         Stage::Map => "map for the logs that follow",
         Stage::Search => "search for its place",
     };
-    let source = &job.sources[log];
-    job.say(format_args!("{}: {what}", source.name));
+    let source = &job.sources[number];
+    job.say(format_args!("{}: {what}", source.entry.name));
     (stage != Stage::Loops).then(|| Progress::of_scans(source.log.summary().scans, job.args.quiet))
 }

@@ -1,74 +1,152 @@
 //! The logs of one place, in the order of their times.
 
+use anyhow::{bail, ensure};
 use curious::terminal::say;
 use logs::{Log, TopicChoice};
 use std::io::stderr;
 use std::path::{Path, PathBuf};
+use survey::{LogEntry, Survey};
 
 /// The time between two logs whose times do not say it, s.
 const UNKNOWN_GAP_S: f64 = 3600.0;
 
-/// A log with its place in time.
+/// A log that was given.
+#[derive(Clone)]
 pub(crate) struct Source {
-    /// The name of the file or folder.
-    pub(crate) name: String,
     pub(crate) log: Log,
-    /// The time of its first reading, s after that of the first log.
-    pub(crate) offset_s: f64,
-    /// What is not known about the time before it.
-    pub(crate) gap_note: Option<String>,
+    pub(crate) entry: LogEntry,
 }
 
-impl Source {
-    /// Whether the laser stands.
-    pub(crate) fn stands(&self) -> bool {
-        self.log.summary().stands
-    }
-
-    /// What was repaired, left out or assumed, each a sentence.
-    pub(crate) fn notes(&self) -> impl Iterator<Item = &String> {
-        self.log.summary().notes.iter().chain(&self.gap_note)
-    }
-}
-
-/// Opens all logs. Notes go to the error output.
-pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice) -> anyhow::Result<Vec<Source>> {
+/// Opens all logs, and puts them in the order of their times. Notes go to the error output. `is_hashed`: whether a log must
+/// be recognised in a later run.
+pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice, is_hashed: bool) -> anyhow::Result<Vec<Source>> {
     let open = |file: &PathBuf| {
         let log = Log::open(file, choice)?;
         log.summary()
             .notes
             .iter()
             .for_each(|note| say(stderr(), format_args!("note: {}: {note}", file.display())));
-        Ok(Source { name: short_name(file), log, offset_s: 0.0, gap_note: None })
+        let mut entry = LogEntry::of(short_name(file), &log, choice)?;
+        if is_hashed {
+            entry.content = log.content_hash()?;
+        }
+        Ok(Source { log, entry })
     };
     let mut sources = files.iter().map(open).collect::<anyhow::Result<Vec<_>>>()?;
-    let begin_s = |source: &Source| source.log.summary().begin_s;
-    if sources.iter().all(|source| begin_s(source).is_some()) {
-        sources.sort_by(|a, b| begin_s(a).unwrap_or_default().total_cmp(&begin_s(b).unwrap_or_default()));
-    }
-    for later in 1..sources.len() {
-        let (before, source) = (&sources[later - 1], &sources[later]);
-        let end_s = before.offset_s + before.log.summary().duration_s;
-        let known = begin_s(source).zip(begin_s(&sources[0])).map(|(begin_s, first_s)| begin_s - first_s);
-        let (offset_s, gap_note) = match known {
-            Some(offset_s) if offset_s >= end_s => (offset_s, None),
-            Some(_) => anyhow::bail!(
-                "{} begins before {} has ended: logs of one robot follow each other",
-                source.name,
-                before.name
-            ),
-            None => {
-                let note = format!(
-                    "the time between {} and {} is not known and counts as an hour",
-                    before.name, source.name
-                );
-                say(stderr(), format_args!("note: {note}"));
-                (end_s + UNKNOWN_GAP_S, Some(note))
-            }
-        };
-        (sources[later].offset_s, sources[later].gap_note) = (offset_s, gap_note);
+    if sources.iter().all(|source| source.entry.begin_s.is_some()) {
+        let begin_s = |source: &Source| source.entry.begin_s.unwrap_or_default();
+        sources.sort_by(|a, b| begin_s(a).total_cmp(&begin_s(b)));
     }
     Ok(sources)
+}
+
+/// The time of the first reading, in seconds since the epoch; `None` unless every log says when it was recorded.
+pub(crate) fn begin_s<'a>(entries: impl Iterator<Item = &'a LogEntry>) -> Option<f64> {
+    let begins_s: Option<Vec<f64>> = entries.map(|entry| entry.begin_s).collect();
+    begins_s?.first().copied()
+}
+
+/// Leaves out what `survey` has learned, and gives every other log its place in time after the logs of the survey. What is
+/// left begins with the logs of the survey that were not learned to their end.
+///
+/// A log that was learned in part and is not given stays so, and nothing can follow it: an error, unless `leaves_rest`.
+pub(crate) fn continued(
+    mut sources: Vec<Source>,
+    survey: &mut Survey,
+    leaves_rest: bool,
+) -> anyhow::Result<Vec<Source>> {
+    let known = |survey: &Survey, source: &Source| {
+        survey.logs().iter().position(|log| log.entry.content == source.entry.content)
+    };
+    for (number, source) in sources.iter().enumerate() {
+        let is_same = |other: &&Source| other.entry.content == source.entry.content;
+        let twice = sources[..number].iter().find(is_same).filter(|_| source.entry.content != 0);
+        ensure!(
+            twice.is_none(),
+            "{} is given twice: it has the content of {}",
+            source.entry.name,
+            twice.map_or("", |twice| &twice.entry.name)
+        );
+    }
+    for (number, log) in survey.logs().to_vec().iter().enumerate() {
+        let (name, used, all) = (&log.entry.name, log.used, log.readings);
+        let given = sources.iter().find(|source| source.entry.content == log.entry.content);
+        match given {
+            _ if log.is_finished() || used == 0 => {}
+            Some(source) => ensure!(
+                source.entry.choice == log.entry.choice,
+                "{name}: {used} of its {all} scans are learned with other --scan-topic, --odom-topic or --base-frame"
+            ),
+            None if leaves_rest => survey.leave_rest(number),
+            None => bail!(
+                "{name} is learned in part ({used} of {all} scans): give it as well, then it goes on from there, or leave \
+                 out its rest by --leave-rest"
+            ),
+        }
+    }
+    sources.retain(|source| {
+        let log = known(survey, source).and_then(|number| survey.logs().get(number));
+        let is_learned = log.is_some_and(|log| log.is_finished());
+        if is_learned {
+            say(stderr(), format_args!("note: {} is learned already", source.entry.name));
+        }
+        !is_learned
+    });
+    // Routes that were found hold for the same logs in the same order.
+    let begun = survey.logs().iter().take_while(|log| log.used > 0).count();
+    let learned = survey.logs().iter().take_while(|log| log.is_finished()).count();
+    let mut kept = learned;
+    while let (Some(log), Some(source)) = (survey.logs().get(kept), sources.get_mut(kept - learned)) {
+        if log.entry.content != source.entry.content || log.entry.choice != source.entry.choice {
+            break;
+        }
+        source.entry = log.entry.clone();
+        kept += 1;
+    }
+    if kept < begun {
+        let name = &survey.logs()[kept].entry.name;
+        bail!("{name} is learned in part: no log can begin before it");
+    }
+    survey.forget_from(kept);
+    let mut before: Vec<LogEntry> = survey.logs().iter().map(|log| log.entry.clone()).collect();
+    for source in &mut sources[kept - learned..] {
+        place(&mut source.entry, &before)?;
+        before.push(source.entry.clone());
+    }
+    Ok(sources)
+}
+
+/// Gives a log its place in time after other logs.
+fn place(entry: &mut LogEntry, before: &[LogEntry]) -> anyhow::Result<()> {
+    let (Some(first), Some(last)) = (before.first(), before.last()) else { return Ok(()) };
+    let known = entry.begin_s.zip(first.begin_s).map(|(begin_s, first_s)| begin_s - first_s);
+    entry.offset_s = match known {
+        Some(offset_s) if offset_s >= last.end_s() => offset_s,
+        Some(_) => {
+            bail!("{} begins before {} has ended: logs of one robot follow each other", entry.name, last.name)
+        }
+        None => {
+            let note = format!(
+                "the time between {} and {} is not known and counts as an hour",
+                last.name, entry.name
+            );
+            add_note(&mut entry.notes, note);
+            last.end_s() + UNKNOWN_GAP_S
+        }
+    };
+    if entry.laser != first.laser {
+        let note = format!(
+            "the laser of {} is not that of {}: {}, not {}; where it sees another plane, differences count as changes",
+            entry.name, first.name, entry.laser, first.laser
+        );
+        add_note(&mut entry.notes, note);
+    }
+    Ok(())
+}
+
+fn add_note(notes: &mut Vec<String>, note: String) {
+    say(stderr(), format_args!("note: {note}"));
+    notes.push(note);
 }
 
 fn short_name(file: &Path) -> String {

@@ -5,6 +5,7 @@ mod first_pass;
 mod logs_in_order;
 mod output;
 mod report;
+mod saves;
 mod second_pass;
 mod summary;
 mod words;
@@ -16,6 +17,7 @@ use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, start};
 use curious::terminal::{print, say};
 use evaluation::output::RunFolder;
 use logs_in_order::Source;
+use saves::Saves;
 use std::io::stderr;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -23,7 +25,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use summary::Summary;
-use survey::SurveySettings;
+use survey::{Survey, SurveySettings};
 
 fn main() -> ExitCode {
     start(run)
@@ -32,7 +34,12 @@ fn main() -> ExitCode {
 /// What both passes need.
 struct Job<'a> {
     args: &'a Args,
+    /// The logs to learn from, in the order of their times.
     sources: Vec<Source>,
+    /// The number of the first of them in the survey.
+    first_log: usize,
+    /// The first log that was given: its laser is shown.
+    first: Source,
     settings: SurveySettings,
     is_interrupted: Arc<AtomicBool>,
 }
@@ -42,11 +49,9 @@ impl Job<'_> {
         self.is_interrupted.load(Ordering::Relaxed)
     }
 
-    /// The time of the first reading, in seconds since the epoch; `None` unless every log says when it was recorded.
-    fn begin_s(&self) -> Option<f64> {
-        let mut begins_s = self.sources.iter().map(|source| source.log.summary().begin_s);
-        let first_s = begins_s.next()?;
-        if begins_s.all(|begin_s| begin_s.is_some()) { first_s } else { None }
+    /// The names of all logs of the survey.
+    fn title(&self, survey: &Survey) -> String {
+        words::list(&survey.logs().iter().map(|log| log.entry.name.clone()).collect::<Vec<_>>())
     }
 
     /// Prints a line about the work to the error output.
@@ -59,34 +64,43 @@ impl Job<'_> {
 
 fn run(args: &Args) -> Result<ExitCode, Failure> {
     let begin = Instant::now();
-    let sources = logs_in_order::open(&args.files, &args.topics()).map_err(input)?;
-    let settings = args.settings(&sources).map_err(input)?;
+    let (mut saves, loaded) = Saves::open(args)?;
+    let given = logs_in_order::open(&args.files, &args.topics(), saves.is_kept()).map_err(input)?;
+    let settings = args.settings(&given, loaded.as_ref().map(|loaded| &loaded.logs)).map_err(input)?;
+    let mut survey = saves.survey(loaded, &settings, args.noise)?;
+    let first = given.first().cloned().context("no log is given").map_err(input)?;
+    let sources = logs_in_order::continued(given, &mut survey, args.leave_rest).map_err(input)?;
+    let first_log = survey.logs().iter().take_while(|log| log.is_finished()).count();
     let is_interrupted = interrupt_flag()?; // before any file is made
     let mut folder = RunFolder::open(&args.out).map_err(anyhow::Error::from)?;
-    let mut job = Job { args, sources, settings, is_interrupted };
-    let bag = bag(&job, &mut folder)?;
-    let Some(routes) = first_pass::routes(&job)? else {
+    let job = Job { args, sources, first_log, first, settings, is_interrupted };
+    let bag = bag(&job, &survey, &mut folder)?;
+    if !first_pass::routes(&job, &mut survey, &mut saves)? {
+        saves.finish(&survey);
         return Ok(ExitCode::from(INTERRUPTED));
-    };
-    if args.noise.is_none() {
-        job.settings.learn_noise(&routes);
     }
-    let learned = second_pass::learn(&job, &routes, bag, folder.unfinished())?;
-    let mut summary = Summary::new(&job, &routes, &learned);
+    let learned = second_pass::learn(&job, &mut survey, &mut saves, bag, folder.unfinished())?;
+    saves.finish(&survey);
+    let mut summary = Summary::new(&survey, &learned)?;
     summary.wall_s = begin.elapsed().as_secs_f64();
-    output::write(folder, &args.files, &learned, &mut summary)?;
+    output::write(folder, &args.files, &survey, &learned, &mut summary)?;
+    if !learned.is_interrupted {
+        // The results are complete: no run goes on from within these logs.
+        survey.forget_poses();
+        saves.finish(&survey);
+    }
     if !args.quiet {
         print(format_args!("{summary}\n  files     {}", args.out.display()))?;
     }
     Ok(match () {
-        () if !learned.is_shown => ExitCode::FAILURE,
+        () if !learned.is_shown || !saves.is_written => ExitCode::FAILURE,
         () if learned.is_interrupted => ExitCode::from(INTERRUPTED),
         () => ExitCode::SUCCESS,
     })
 }
 
 /// The bag of `--mcap`, before the first pass: an invalid path is found at once.
-fn bag(job: &Job, folder: &mut RunFolder) -> Result<Option<RunBag>, Failure> {
+fn bag(job: &Job, survey: &Survey, folder: &mut RunFolder) -> Result<Option<RunBag>, Failure> {
     let Some(path) = &job.args.mcap else { return Ok(None) };
     let own = path.canonicalize().ok();
     let is_input = |file: &PathBuf| own.is_some() && file.canonicalize().ok() == own;
@@ -94,6 +108,8 @@ fn bag(job: &Job, folder: &mut RunFolder) -> Result<Option<RunBag>, Failure> {
         return Err(input(anyhow!("--mcap {} would replace a log that is read", path.display())));
     }
     folder.adopt(path, "mcap").map_err(input)?;
-    let bag = RunBag::create(path, job.begin_s().unwrap_or_default());
+    let earlier = survey.logs().iter().take(job.first_log).map(|log| &log.entry);
+    let begin_s = logs_in_order::begin_s(earlier.chain(job.sources.iter().map(|source| &source.entry)));
+    let bag = RunBag::create(path, begin_s.unwrap_or_default());
     bag.context("cannot write the bag of --mcap").map(Some).map_err(input)
 }

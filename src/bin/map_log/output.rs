@@ -3,12 +3,13 @@
 use crate::report;
 use crate::second_pass::Learned;
 use crate::summary::Summary;
+use anyhow::Context;
 use evaluation::output::{RunFolder, write_file};
 use evaluation::thinned::Thinned;
 use evaluation::{cell_statistics, raster};
 use nalgebra::Point2;
 use std::path::{Path, PathBuf};
-use survey::{keepout_mask, permanent, speed_mask};
+use survey::{Survey, keepout_mask, permanent, speed_mask};
 use viewer::layers::Layer;
 use viewer::pictures::draw_places;
 use worldfile::ros_map;
@@ -20,10 +21,12 @@ const SUMMARY: &str = "summary.json";
 pub(crate) fn write(
     folder: RunFolder,
     logs: &[PathBuf],
+    survey: &Survey,
     learned: &Learned,
     summary: &mut Summary,
 ) -> anyhow::Result<()> {
-    let (to, mapper) = (folder.unfinished(), &learned.mapper);
+    let mapper = survey.mapper().context("nothing was learned")?;
+    let to = folder.unfinished();
     let has_rates = summary.rates_withheld.is_none();
     let layers: &[Layer] = if has_rates { &Layer::ALL } else { &[Layer::Occupancy] };
     learned.show.write_pictures(to, mapper, &Thinned::default(), layers)?;

@@ -1,7 +1,7 @@
 //! `report.html`: a page for people who look after a building.
 
 use crate::summary::Summary;
-use crate::words::{date, how_often, length_of, range};
+use crate::words::{date, how_often, length_of, list, range};
 use evaluation::percent::percent;
 use maud::{DOCTYPE, Markup, html};
 use survey::Place;
@@ -19,7 +19,7 @@ pub(crate) fn page(summary: &Summary) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width";
-                title { "Where it changes: " (summary.logs.join(", ")) }
+                title { "Where it changes: " (list(&summary.logs)) }
                 style { (STYLE) }
             }
             body {

@@ -2,6 +2,7 @@
 
 use crate::Job;
 use crate::logs_in_order::Source;
+use crate::saves::Saves;
 use anyhow::{Context, anyhow};
 use curious::bag::RunBag;
 use curious::program::{Failure, input};
@@ -9,12 +10,12 @@ use curious::progress::Progress;
 use curious::terminal::say;
 use evaluation::output::TrajectoryFile;
 use interfaces::LaserReading;
-use mapper::Mapper;
+use logs::Readings;
 use robot::{Belief, Localization};
 use std::io::stderr;
 use std::ops::ControlFlow;
 use std::path::Path;
-use survey::{ChangeLog, FoundPoses, NoPilot, Replay, Route, frame};
+use survey::{NoPilot, Replay, Survey};
 use viewer::recording::Recorder;
 use viewer::scene::Scene;
 use viewer::show::Show;
@@ -23,13 +24,9 @@ use viewer::view::{Measured, View};
 /// The name of the recording.
 const RECORDING: &str = "map_log.rrd";
 
-/// What the second pass has learned.
+/// How the second pass has ended.
 pub(crate) struct Learned {
-    pub(crate) mapper: Mapper,
-    pub(crate) changes: ChangeLog,
     pub(crate) show: Show,
-    /// The number of readings of each log that were used; logs that were not begun are missing.
-    pub(crate) readings: Vec<usize>,
     /// Whether the pass was interrupted.
     pub(crate) is_interrupted: bool,
     /// Whether the recording and the trajectory are complete.
@@ -40,33 +37,40 @@ pub(crate) struct Learned {
 /// written to `folder`.
 pub(crate) fn learn(
     job: &Job,
-    routes: &[Route],
+    survey: &mut Survey,
+    saves: &mut Saves,
     bag: Option<RunBag>,
     folder: &Path,
 ) -> Result<Learned, Failure> {
-    let frame = frame(routes, &job.settings).map_err(input)?;
-    let mapper = Mapper::new(&job.settings.mapper, frame).map_err(input)?;
-    let first = job.sources[0].log.readings().map_err(input)?.next();
+    let frame = survey.frame_of(survey.logs().len() - 1).map_err(input)?;
+    let first = job.first.log.readings().map_err(input)?.next();
     let first = first.context("the log has no reading").map_err(input)?.map_err(input)?;
-    let title = job.sources.iter().map(|source| source.name.as_str()).collect::<Vec<_>>().join(", ");
-    let scene = Scene::of_log(&title, frame, &job.settings.filtered(first));
-    let recorder = if job.args.no_rrd { None } else { recorder(&folder.join(RECORDING), &scene)? };
-    let mut learned = Learned {
-        mapper,
-        changes: ChangeLog::default(),
-        show: Show::new(scene, recorder, None),
-        readings: Vec::new(),
-        is_interrupted: false,
-        is_shown: true,
-    };
+    let scene = Scene::of_log(&job.title(survey), frame, &job.settings.filtered(first));
+    let is_recorded = !job.args.no_rrd && !job.sources.is_empty();
+    let recorder = if is_recorded { recorder(&folder.join(RECORDING), &scene)? } else { None };
+    let mut learned =
+        Learned { show: Show::new(scene, recorder, None), is_interrupted: false, is_shown: true };
     let mut trajectory = TrajectoryFile::create(&folder.join("trajectory.tum"));
-    let last = job.sources.len() - 1;
-    for (number, (source, route)) in job.sources.iter().zip(routes).enumerate() {
-        learned.replay(job, source, route, (&mut trajectory, bag.as_ref()), number == last)?;
+    // Where an interrupted run has been before.
+    for at in survey.logs().iter().flat_map(|log| log.poses()) {
+        trajectory.add(at.time_s, &at.pose);
+        learned.show.pass(&at.pose);
+    }
+    let last = job.sources.len().saturating_sub(1);
+    for (number, source) in job.sources.iter().enumerate() {
+        learned.replay(
+            job,
+            number,
+            source,
+            survey,
+            (saves, &mut trajectory, bag.as_ref()),
+            number == last,
+        )?;
         if learned.is_interrupted {
             break;
         }
     }
+    survey.mapper().into_iter().for_each(|mapper| learned.show.end_in(*mapper.frame()));
     if let Some(Err(problem)) = bag.map(RunBag::finish) {
         learned.is_shown = false;
         say(stderr(), format_args!("error: cannot write the bag: {problem:#}"));
@@ -94,40 +98,52 @@ impl Learned {
     fn replay(
         &mut self,
         job: &Job,
+        number: usize,
         source: &Source,
-        route: &Route,
-        (trajectory, bag): (&mut TrajectoryFile, Option<&RunBag>),
+        survey: &mut Survey,
+        (saves, trajectory, bag): (&mut Saves, &mut TrajectoryFile, Option<&RunBag>),
         is_last_log: bool,
     ) -> Result<(), Failure> {
-        job.say(format_args!("{}: learning what changes", source.name));
-        let readings = source.log.readings().map_err(input)?;
-        let replay = Replay::new(readings, &job.settings, source.offset_s).map_err(input)?;
-        let changed = || anyhow!("{}: the log has changed since the first pass", source.name);
-        let replay = replay.ok_or_else(|| input(changed()))?;
-        let found = Box::new(FoundPoses::new(route.poses.clone()));
+        let name = &source.entry.name;
+        let log = job.first_log + number;
+        let used = survey.logs().get(log).map_or(0, |log| log.used);
+        match used {
+            0 => job.say(format_args!("{name}: learning what changes")),
+            _ => job.say(format_args!("{name}: learning what changes, from scan {} on", used + 1)),
+        }
+        let replay = survey.replay(log, &source.log).map_err(input)?;
+        let changed = || anyhow!("{name}: the log has changed since the first pass");
+        let (mut replay, found) = replay.ok_or_else(|| input(changed()))?;
         let mut poses: Box<dyn Localization<LaserReading>> = match bag {
-            Some(bag) => Box::new(bag.recorded(found)),
-            None => found,
+            Some(bag) => Box::new(bag.recorded(Box::new(found))),
+            None => Box::new(found),
         };
-        let progress = Progress::of_scans(source.log.summary().scans, job.args.quiet);
-        let Self { mapper, changes, show, readings, is_interrupted, is_shown } = self;
-        readings.push(0);
-        let observe = |replay: &Replay<_>, reading: &LaserReading, belief: &Belief| {
-            progress.step();
-            readings.last_mut().into_iter().for_each(|count| *count += 1);
-            changes.note(belief.mapper);
-            bag.into_iter().for_each(|bag| bag.add(belief, &NoPilot));
-            trajectory.add(reading.time_s, belief.pose);
-            *is_interrupted = job.is_interrupted();
-            let view = View::new(replay, reading, belief, &NoPilot, Measured::default());
-            let is_last = *is_interrupted || replay.is_over() && is_last_log;
-            if let Err(problem) = show.add(&view, is_last) {
-                *is_shown = false;
-                progress.say(format_args!("error: {problem}; the run goes on without it"));
+        let progress = Progress::of_scans(source.log.summary().scans.saturating_sub(used), job.args.quiet);
+        let Self { show, is_interrupted, is_shown } = self;
+        let mut is_over = false;
+        while !is_over && !*is_interrupted {
+            let observe = |replay: &Replay<Readings>, reading: &LaserReading, belief: &Belief| {
+                progress.step();
+                bag.into_iter().for_each(|bag| bag.add(belief, &NoPilot));
+                trajectory.add(reading.time_s, belief.pose);
+                *is_interrupted = job.is_interrupted();
+                let view = View::new(replay, reading, belief, &NoPilot, Measured::default());
+                let is_last = *is_interrupted || replay.is_over() && is_last_log;
+                if let Err(problem) = show.add(&view, is_last) {
+                    *is_shown = false;
+                    progress.say(format_args!("error: {problem}; the run goes on without it"));
+                }
+                if *is_interrupted || saves.is_due() {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            };
+            is_over = survey.learn(log, &mut replay, poses.as_mut(), observe).map_err(input)?;
+            if is_over || saves.is_due() {
+                saves.save(survey);
             }
-            if *is_interrupted { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        };
-        survey::learn(replay, poses.as_mut(), mapper, observe).map_err(input)?;
+        }
         progress.finish();
         Ok(())
     }

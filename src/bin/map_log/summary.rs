@@ -1,14 +1,14 @@
 //! The results of a survey: `summary.json`, and a few lines for the terminal.
 
-use crate::Job;
-use crate::logs_in_order::Source;
+use crate::logs_in_order::begin_s;
 use crate::second_pass::Learned;
-use crate::words::how_often;
+use crate::words::{how_often, list};
+use anyhow::Context;
 use evaluation::percent::percent;
 use interfaces::CellState;
 use serde::Serialize;
 use std::fmt;
-use survey::{Place, PoseMode, Route, SurveySettings, length_m, places, uncertain};
+use survey::{Place, PoseMode, Survey, SurveySettings, places};
 
 /// The number of places in the summary and in the report.
 const MOST_PLACES: usize = 20;
@@ -56,48 +56,43 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    pub(crate) fn new(job: &Job, routes: &[Route], learned: &Learned) -> Self {
-        let mapper = &learned.mapper;
-        // What was used of the routes, if the run was interrupted.
-        let used = || {
-            let parts = routes.iter().zip(&learned.readings);
-            parts.map(|(route, count)| route.poses.get(..*count).unwrap_or(&route.poses))
-        };
-        let summaries = || job.sources.iter().map(|source| source.log.summary());
+    pub(crate) fn new(survey: &Survey, learned: &Learned) -> anyhow::Result<Self> {
+        let mapper = survey.mapper().context("nothing was learned")?;
+        let logs = survey.logs();
+        let entries = || logs.iter().map(|log| &log.entry);
         let cell_m2 = mapper.frame().resolution_m().powi(2);
         let seen = mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();
-        let mut places = places(mapper, &learned.changes);
+        let mut places = places(mapper, survey.changes());
         let place_count = places.len();
         places.truncate(MOST_PLACES);
-        let has_times = summaries().all(|summary| summary.has_times);
+        let has_times = entries().all(|entry| entry.has_times);
         if !has_times {
             places.iter_mut().for_each(|place| place.rates = None);
         }
         let why = "the times of the log are unusable, so that no rate, duration or date can be given: the map shows where \
                    something changed, not how often";
-        Self {
+        Ok(Self {
             version: env!("CARGO_PKG_VERSION"),
             arguments: std::env::args().skip(1).collect(),
-            settings: job.settings.clone(),
-            logs: job.sources.iter().map(|source| source.name.clone()).collect(),
-            scans: learned.readings.iter().sum(),
-            duration_s: has_times
-                .then(|| used().filter_map(|poses| poses.last()).map(|last| last.time_s).sum()),
-            notes: job.sources.iter().flat_map(Source::notes).cloned().collect(),
-            trajectory_m: used().map(length_m).sum(),
-            loops: routes.iter().map(|route| route.loops).sum(),
-            begin_s: job.begin_s(),
-            scans_left_out: used().map(uncertain).sum(),
+            settings: survey.settings_of(logs.len()),
+            logs: entries().map(|entry| entry.name.clone()).collect(),
+            scans: logs.iter().map(|log| log.used).sum(),
+            duration_s: has_times.then(|| logs.iter().map(|log| log.travelled.duration_s).sum()),
+            notes: entries().flat_map(|entry| &entry.notes).cloned().collect(),
+            trajectory_m: logs.iter().map(|log| log.travelled.length_m).sum(),
+            loops: logs.iter().map(|log| log.loops).sum(),
+            begin_s: begin_s(entries()),
+            scans_left_out: logs.iter().map(|log| log.travelled.uncertain).sum(),
             seen_m2: seen as f64 * cell_m2,
             changed_share: mapper.changed().count() as f64 / seen.max(1) as f64,
-            changes: learned.changes.events(),
+            changes: survey.changes().events(),
             rates_withheld: (!has_times).then(|| why.to_owned()),
             place_count,
             places,
             is_interrupted: learned.is_interrupted,
             wall_s: 0.0,
             files: Vec::new(),
-        }
+        })
     }
 }
 
@@ -106,7 +101,7 @@ impl fmt::Display for Summary {
         let per_scan_ms = self.wall_s * 1e3 / self.scans.max(1) as f64;
         let seconds = |duration_s| format!("{duration_s:.0} s");
         let duration = self.duration_s.map_or("an unknown time".to_owned(), seconds);
-        writeln!(f, "{}: {} scans in {duration}", self.logs.join(", "), self.scans)?;
+        writeln!(f, "{}: {} scans in {duration}", list(&self.logs), self.scans)?;
         let pose = match self.settings.pose {
             PoseMode::Exact => "poses of the log",
             PoseMode::Odometry => "odometry, with its drift",

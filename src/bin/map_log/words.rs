@@ -31,6 +31,14 @@ pub(crate) fn range(rates: &PlaceRates) -> String {
     }
 }
 
+/// Names in a row; of many, the first and the last.
+pub(crate) fn list(names: &[String]) -> String {
+    match names {
+        [first, .., last] if names.len() > 4 => format!("{first}, …, {last} ({} logs)", names.len()),
+        few => few.join(", "),
+    }
+}
+
 /// A number with two digits that matter.
 fn short(value: f64) -> String {
     match value {

@@ -104,7 +104,7 @@ impl Layout<'_> {
     /// bounds are in the frame of the viewer, whose y axis points down.
     fn spatial(&mut self, name: &str, contents: &[&str], margins: [f64; 2]) -> RecordingStreamResult<Part> {
         let view = self.view("2D", name, contents)?;
-        let (from, size) = extent(self.view.mapper.frame());
+        let (from, size) = extent(&self.scene.frame);
         let (margin, below) = (margins[0] * size.x, margins[1] * size.y);
         let bounds = datatypes::Range2D {
             x_range: [from.x - margin, from.x + size.x + margin].into(),

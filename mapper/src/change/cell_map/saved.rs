@@ -1,6 +1,8 @@
-//! The cells in a state file.
+//! The cells in a state file, and in a larger map.
 
-use super::CellMap;
+use super::record::Record;
+use super::{CellMap, NEVER, observing};
+use crate::Growth;
 use interfaces::{CellState, Values, runs, value};
 
 impl CellMap {
@@ -26,6 +28,23 @@ impl CellMap {
     pub(crate) fn derive(&mut self) {
         for index in 0..self.candidates.len() {
             self.candidates[index] = self.is_free_or_beside(index);
+        }
+    }
+
+    /// Moves all cells into a larger map.
+    pub(crate) fn grow(&mut self, growth: &Growth) {
+        growth.grid(&mut self.states, CellState::Unknown);
+        growth.cells(&mut self.observed, NEVER | observing::UNSETTLED);
+        growth.cells(&mut self.records, Record::default());
+        growth.cells(&mut self.candidates, false);
+        self.gaps.grow(growth);
+        self.changed.iter_mut().for_each(|index| *index = growth.index(*index as usize) as u32);
+        self.transitions.clear();
+        // A new cell can be beside a free one.
+        for index in 0..self.candidates.len() {
+            if self.last_reading(index) == NEVER {
+                self.update_candidate(index);
+            }
         }
     }
 

@@ -32,6 +32,7 @@ use super::footprint::Footprint;
 use super::projection::ProjectedScan;
 use super::segmentation::Segmentation;
 use crate::change::{CellMap, ReadingIndex};
+use crate::{Growth, MapperSettings};
 use bodies::{Body, NewHit};
 use interfaces::{CellState, Values, runs};
 use nalgebra::Point2;
@@ -125,5 +126,16 @@ impl OccupancyModel for SurfaceGrid {
 
     fn values(&mut self) -> Values<'_> {
         vec![runs(&mut self.surfaces)]
+    }
+
+    fn grow(&mut self, growth: &Growth, settings: &MapperSettings) {
+        self.settings = settings.steady.clone();
+        let shift_m = growth.shift_m();
+        for surface in self.surfaces.iter_mut().filter(|surface| surface.point_m != [0.0; 2]) {
+            for (at, shift_m) in surface.point_m.iter_mut().zip(shift_m.iter()) {
+                *at = (f64::from(*at) + shift_m) as f32;
+            }
+        }
+        growth.cells(&mut self.surfaces, Surface::default());
     }
 }

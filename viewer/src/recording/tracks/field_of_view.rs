@@ -18,7 +18,7 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
     let Some(sight) = tracks.view.sight() else { return Ok(()) };
     let path = format!("{WORLD}/field_of_view");
     let (cells, outline) = (format!("{path}/cells"), format!("{path}/outline"));
-    let frame = frame(sight, tracks.view.mapper.frame());
+    let frame = frame(sight, &tracks.scene.frame);
     let when = tracks.images(&frame, 0.2, 1.0);
     let classes = [("out of view", 0), ("in view", 255)];
     let classes =

@@ -20,7 +20,7 @@ pub(super) fn add(tracks: &Tracks) -> RecordingStreamResult<()> {
         (true, Mark::Line(palette::WALL), "walls"),
         (scene.has_obstacle(true), Mark::Line(palette::FURNITURE), "furniture"),
     ]));
-    let (origin, size) = extent(tracks.view.mapper.frame());
+    let (origin, size) = extent(&scene.frame);
     let at = |index: usize, right: f64, down: f64| {
         let column = (index % COLUMNS) as f64 + 0.5 + right;
         let row = 0.2 + (index / COLUMNS) as f64 * 0.45 + down;

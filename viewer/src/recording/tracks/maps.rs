@@ -1,10 +1,11 @@
 //! The layers of the map, each with its color bar.
 
 use super::{Tracks, WORLD, class, color, labels, order};
-use crate::layers::Layer;
-use crate::scene::extent;
+use crate::layers::{Layer, UNKNOWN};
+use crate::scene::{TimeUnit, extent};
 use crate::view::View;
 use interfaces::GridFrame;
+use mapper::Growth;
 use nalgebra::{Point2, Vector2};
 use rerun::components::ImageBuffer;
 use rerun::{
@@ -20,7 +21,8 @@ pub(in crate::recording) fn map(layer: Layer) -> String {
 }
 
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
-    let (unit, frame) = (tracks.scene.unit, tracks.view.mapper.frame());
+    let (unit, frame) = (tracks.scene.unit, tracks.scene.frame);
+    let frame = &frame;
     for layer in Layer::ALL {
         let cells = format!("{}/cells", map(layer));
         let classes = layer.legend(unit).into_iter();
@@ -30,9 +32,20 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
         color_bar(tracks, layer, frame)?;
         let [seconds, steps] = if layer == Layer::Occupancy { [1.0, 1.0] } else { [10.0, 20.0] };
         let when = tracks.images(frame, seconds, steps);
-        tracks.add(cells, when, move |view: &View| vec![layer.classes(view.mapper, unit)], images);
+        tracks.add(cells, when, classes_of(layer, unit, *frame), images);
     }
     Ok(())
+}
+
+/// The classes of all cells of `frame`; the map can still be smaller.
+fn classes_of(layer: Layer, unit: TimeUnit, frame: GridFrame) -> impl FnMut(&View) -> Vec<Vec<u8>> {
+    move |view| {
+        let mut classes = layer.classes(view.mapper, unit);
+        if let Some(growth) = Growth::new(*view.mapper.frame(), frame) {
+            growth.cells(&mut classes, UNKNOWN);
+        }
+        vec![classes]
+    }
 }
 
 /// Logs the color bar below a map, if the layer has one.

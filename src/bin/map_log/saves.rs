@@ -1,0 +1,104 @@
+//! `--state`: what was learned from earlier logs, and what this run leaves for the next one.
+
+use crate::args::Args;
+use anyhow::anyhow;
+use curious::program::{Failure, input};
+use curious::terminal::say;
+use state::{Facts, State, StateError, StateFile};
+use std::fmt::Display;
+use std::io::stderr;
+use std::time::Duration;
+use survey::{SavedLogs, Survey, SurveySettings};
+
+/// The parts of a state: the logs, and what was learned from them.
+const LOGS: &str = "logs";
+const SURVEY: &str = "survey";
+
+/// The state file of a run, or none.
+pub(crate) struct Saves {
+    file: Option<StateFile>,
+    facts: Facts,
+    /// Whether everything could be written.
+    pub(crate) is_written: bool,
+}
+
+/// A state that was loaded, and the logs in it.
+pub(crate) struct Loaded {
+    state: State,
+    pub(crate) logs: SavedLogs,
+}
+
+impl Saves {
+    /// The file of `--state`, and the state in it. Nothing is written yet.
+    pub(crate) fn open(args: &Args) -> Result<(Self, Option<Loaded>), Failure> {
+        let mut saves = Self { file: None, facts: Facts::default(), is_written: true };
+        let Some(path) = &args.state else { return Ok((saves, None)) };
+        let file = StateFile::new(path).every(Duration::from_secs_f64(args.state_every));
+        let failed = |why: &dyn Display| input(anyhow!("{}: {why}", path.display()));
+        let loaded = file.load().map_err(|why| failed(&why))?.map(Loaded::of).transpose();
+        let loaded = loaded.map_err(|why| failed(&why))?;
+        file.check_writable().map_err(|why| failed(&format_args!("cannot write it: {why}")))?;
+        saves.file = Some(file);
+        Ok((saves, loaded))
+    }
+
+    /// Whether there is a state file.
+    pub(crate) fn is_kept(&self) -> bool {
+        self.file.is_some()
+    }
+
+    /// The survey in a state, or a new one.
+    pub(crate) fn survey(
+        &mut self,
+        loaded: Option<Loaded>,
+        settings: &SurveySettings,
+        noise_m: Option<f64>,
+    ) -> Result<Survey, Failure> {
+        let noise = noise_m.map_or_else(|| "learned".to_owned(), |noise_m| noise_m.to_string());
+        let facts = Facts::default().with("--pose", settings.pose.name()).with("--noise", noise);
+        self.facts = facts.with_settings("survey", settings);
+        let (settings, learns_noise) = (settings.clone(), noise_m.is_none());
+        let (Some(Loaded { state, logs }), Some(file)) = (loaded, &self.file) else {
+            return Ok(Survey::new(settings, learns_noise));
+        };
+        let learned = state.section(SURVEY, &self.facts).and_then(|learned| {
+            let survey = Survey::restored(settings, learns_noise, logs, learned);
+            survey.map_err(|_| StateError::OtherContent(SURVEY.to_owned()))
+        });
+        learned.map_err(|why| input(anyhow!("{}: {why}", file.path().display())))
+    }
+
+    /// Whether it is time to save.
+    pub(crate) fn is_due(&self) -> bool {
+        self.file.as_ref().is_some_and(StateFile::is_due)
+    }
+
+    /// Begins to write the survey. What cannot be written is reported, and the run goes on.
+    pub(crate) fn save(&mut self, survey: &Survey) {
+        let Some(file) = &mut self.file else { return };
+        let (survey, facts) = (survey.clone(), self.facts.clone());
+        let saved = file.save(move || {
+            let (logs, learned) = survey.into_snapshot();
+            State::default().with(LOGS, Facts::default(), logs).with(SURVEY, facts, learned)
+        });
+        if let Err(problem) = saved {
+            self.is_written = false;
+            say(stderr(), format_args!("error: cannot save the state: {problem}; the run goes on"));
+        }
+    }
+
+    /// Writes the survey, and waits until it is on the disk.
+    pub(crate) fn finish(&mut self, survey: &Survey) {
+        self.save(survey);
+        let Some(Err(problem)) = self.file.as_mut().map(StateFile::wait) else { return };
+        self.is_written = false;
+        say(stderr(), format_args!("error: cannot save the state: {problem}"));
+    }
+}
+
+impl Loaded {
+    fn of(state: State) -> Result<Self, StateError> {
+        let logs = SavedLogs::read(state.section(LOGS, &Facts::default())?);
+        Ok(Self { logs: logs.map_err(|_| StateError::OtherContent(LOGS.to_owned()))?, state })
+    }
+}

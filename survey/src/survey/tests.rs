@@ -1,0 +1,168 @@
+//! Surveys that are saved and go on, against those that were never interrupted.
+
+use super::{SavedLogs, Survey};
+use crate::settings::{PoseMode, SurveySettings};
+use crate::surveyed_log::LogEntry;
+use crate::tests::drive;
+use interfaces::{LaserReading, ValueError};
+use logs::{Log, McapWriter, TopicChoice};
+use std::fs::File;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+const DAY_S: f64 = 86_400.0;
+
+/// A bag with these readings, recorded some days after the first log.
+fn bag(folder: &Path, name: &str, readings: &[LaserReading], days: f64) -> Log {
+    let path = folder.join(name);
+    let begin_s = 1e9 + days * DAY_S - readings[0].time_s;
+    let mut writer = McapWriter::new(File::create(&path).unwrap(), "bag", begin_s).unwrap();
+    readings.iter().for_each(|reading| writer.reading(reading).unwrap());
+    writer.finish().unwrap();
+    Log::open(&path, &TopicChoice::default()).unwrap()
+}
+
+fn settings() -> SurveySettings {
+    SurveySettings { resolution_m: 0.1, ..SurveySettings::of(PoseMode::Localized) }
+}
+
+fn entry(log: &Log, name: &str, days: f64) -> LogEntry {
+    let entry = LogEntry::of(name.to_owned(), log, &TopicChoice::default()).unwrap();
+    LogEntry { offset_s: days * DAY_S, content: log.content_hash().unwrap(), ..entry }
+}
+
+fn add(survey: &mut Survey, log: &Log, name: &str, days: f64) {
+    survey.first_pass(log, entry(log, name, days), true, |_| ControlFlow::Continue(())).unwrap();
+}
+
+/// Learns a log, or some readings of it.
+fn learn(survey: &mut Survey, number: usize, log: &Log, most: usize) -> bool {
+    let (mut replay, mut poses) = survey.replay(number, log).unwrap().unwrap();
+    let mut count = 0;
+    let learned = survey.learn(number, &mut replay, &mut poses, |_, _, _| {
+        count += 1;
+        if count == most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    learned.unwrap()
+}
+
+fn restored(survey: Survey) -> Survey {
+    let (logs, learned) = survey.into_snapshot();
+    Survey::restored(settings(), true, SavedLogs::read(&logs).unwrap(), &learned).unwrap()
+}
+
+#[test]
+fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
+    let (readings, _) = drive(2, 120.0);
+    let folder = tempfile::tempdir().unwrap();
+    // On Tuesday, the robot sees more of the house.
+    let monday = bag(folder.path(), "monday", &readings[..100], 0.0);
+    let tuesday = bag(folder.path(), "tuesday", &readings[50..], 1.0);
+
+    let mut whole = Survey::new(settings(), true);
+    add(&mut whole, &monday, "monday", 0.0);
+    let place = whole.place.clone().unwrap();
+    add(&mut whole, &tuesday, "tuesday", 1.0);
+    assert!(learn(&mut whole, 0, &monday, usize::MAX));
+    let small = *whole.mapper().unwrap().frame();
+    assert!(learn(&mut whole, 1, &tuesday, usize::MAX));
+    assert!(whole.mapper().unwrap().frame().len() > small.len());
+    assert_eq!(*whole.mapper().unwrap().frame(), whole.frame_of(1).unwrap());
+    let whole_bytes = whole.clone().into_snapshot();
+
+    // A day later, and in parts.
+    for parts in [usize::MAX, 170] {
+        let mut survey = Survey::new(settings(), true);
+        for (number, (log, name)) in [(&monday, "monday"), (&tuesday, "tuesday")].into_iter().enumerate() {
+            add(&mut survey, log, name, number as f64);
+            survey = restored(survey);
+            while !learn(&mut survey, number, log, parts) {
+                survey = restored(survey);
+            }
+            survey = restored(survey);
+        }
+        assert!(survey.clone().into_snapshot() == whole_bytes, "{parts} readings at once");
+    }
+    // The place in which later logs find theirs is the same, too.
+    let saved = place.as_ref().clone().snapshot();
+    let again = crate::KnownPlace::restored(&settings(), &saved).unwrap();
+    assert!(again.snapshot() == saved);
+
+    // Without the poses, the sums stay.
+    let travelled = whole.logs()[1].travelled;
+    whole.forget_poses();
+    assert_eq!((whole.logs()[1].travelled, whole.logs()[1].poses().count()), (travelled, 0));
+    assert!(travelled.length_m > 5.0 && travelled.duration_s > 100.0, "{travelled:?}");
+    let [before, after] = [&whole_bytes, &whole.into_snapshot()].map(|(logs, _)| logs.len());
+    assert!(after < 2000 && before > 10 * after, "{before} and {after} bytes");
+}
+
+#[test]
+fn a_map_that_grows_is_the_map_of_the_large_frame() {
+    let (readings, truth) = drive(3, 60.0);
+    let folder = tempfile::tempdir().unwrap();
+    let exact: Vec<LaserReading> = readings
+        .iter()
+        .zip(&truth)
+        .map(|(reading, pose)| LaserReading { pose: truth[0].inv_mul(pose), ..reading.clone() })
+        .collect();
+    let logs = [bag(folder.path(), "a", &exact[..100], 0.0), bag(folder.path(), "b", &exact[100..], 1.0)];
+    let settings = SurveySettings { resolution_m: 0.1, ..SurveySettings::of(PoseMode::Exact) };
+    let mut survey = Survey::new(settings.clone(), true);
+    for (number, log) in logs.iter().enumerate() {
+        survey
+            .first_pass(log, entry(log, "log", number as f64), false, |_| ControlFlow::Continue(()))
+            .unwrap();
+    }
+    // The same in the large frame from the start.
+    let mut large = survey.clone();
+    large.logs[0].frame = survey.frame_of(1).unwrap();
+    for survey in [&mut survey, &mut large] {
+        logs.iter().enumerate().for_each(|(number, log)| assert!(learn(survey, number, log, usize::MAX)));
+    }
+    assert!(survey.logs[0].frame.len() < large.logs[0].frame.len());
+    let [grown, large] = [survey.mapper().unwrap(), large.mapper().unwrap()];
+    assert!(grown.states() == large.states());
+    for index in 0..grown.frame().len() {
+        assert_eq!(grown.statistics(index), large.statistics(index));
+        assert_eq!(grown.is_candidate(index), large.is_candidate(index));
+    }
+}
+
+#[test]
+fn what_cannot_go_on_is_forgotten_or_left_out() {
+    let (readings, _) = drive(2, 30.0);
+    let folder = tempfile::tempdir().unwrap();
+    let log = bag(folder.path(), "a", &readings, 0.0);
+    let mut survey = Survey::new(settings(), true);
+    add(&mut survey, &log, "a", 0.0);
+    assert!(survey.place.is_some() && survey.mapper().is_none());
+    let mut forgotten = survey.clone();
+    forgotten.forget_from(0);
+    assert!(forgotten.place.is_none() && forgotten.logs().is_empty());
+
+    assert!(!learn(&mut survey, 0, &log, 100));
+    assert!(!survey.logs()[0].is_finished());
+    survey.leave_rest(0);
+    assert!(survey.logs()[0].is_finished());
+    assert_eq!((survey.logs()[0].used, survey.logs()[0].poses().count()), (100, 100));
+}
+
+#[test]
+fn other_bytes_are_no_survey() {
+    let (readings, _) = drive(2, 20.0);
+    let folder = tempfile::tempdir().unwrap();
+    let log = bag(folder.path(), "a", &readings, 0.0);
+    let mut survey = Survey::new(settings(), true);
+    add(&mut survey, &log, "a", 0.0);
+    learn(&mut survey, 0, &log, usize::MAX);
+    let (logs, learned) = survey.into_snapshot();
+    for length in [0, 1, logs.len() / 2, logs.len() - 1] {
+        assert!(SavedLogs::read(&logs[..length]).is_err());
+    }
+    let read = |bytes: &[u8]| Survey::restored(settings(), true, SavedLogs::read(&logs).unwrap(), bytes);
+    for length in [0, 1, learned.len() / 2, learned.len() - 1] {
+        assert_eq!(read(&learned[..length]).err(), Some(ValueError));
+    }
+    assert!(read(&learned).is_ok());
+}

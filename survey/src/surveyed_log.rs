@@ -1,0 +1,158 @@
+//! What a survey keeps of a log.
+
+use crate::noise::noise_m;
+use crate::route::{Route, length_m, uncertain};
+use interfaces::GridFrame;
+use localizer::TrajectoryPose;
+use logs::{Log, LogError, TopicChoice};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A log, and its place in time among the logs of one place.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct LogEntry {
+    /// Its name for people.
+    pub name: String,
+    /// The [hash](Log::content_hash) of its content; 0 where it is not needed.
+    pub content: u128,
+    /// What was used of it: the topics of scans and of odometry, and the frame of the robot.
+    pub choice: (Vec<String>, Option<String>, Option<String>),
+    /// The time of its first reading, s after that of the first log.
+    pub offset_s: f64,
+    /// This time in seconds since the epoch; `None` if the log does not say it.
+    pub begin_s: Option<f64>,
+    /// The time from its first reading to its last one, s.
+    pub duration_s: f64,
+    /// Whether its times are usable.
+    pub has_times: bool,
+    /// Whether its laser stands.
+    pub stands: bool,
+    /// The laser of its first reading, in words.
+    pub laser: String,
+    /// What was repaired, left out or assumed, each a sentence.
+    pub notes: Vec<String>,
+}
+
+impl LogEntry {
+    /// The entry of a log that was opened with this choice. Its place in time and its hash are not known yet.
+    ///
+    /// # Errors
+    ///
+    /// When the first reading cannot be read.
+    pub fn of(name: String, log: &Log, choice: &TopicChoice) -> Result<Self, LogError> {
+        let summary = log.summary();
+        let first = log.readings()?.next().transpose()?;
+        let laser = first.map_or_else(String::new, |first| {
+            let (beams, step_rad) = (first.scan.ranges_m.len(), first.scan.angle_increment_rad.abs());
+            let view_deg = (step_rad * beams.saturating_sub(1) as f64).to_degrees();
+            format!("{beams} beams over {view_deg:.0}°")
+        });
+        let TopicChoice { scan_topics, odom_topic, base_frame } = choice.clone();
+        Ok(Self {
+            name,
+            content: 0,
+            choice: (scan_topics, odom_topic, base_frame),
+            offset_s: 0.0,
+            begin_s: summary.begin_s,
+            duration_s: summary.duration_s,
+            has_times: summary.has_times,
+            stands: summary.stands,
+            laser,
+            notes: summary.notes.clone(),
+        })
+    }
+
+    /// The time of its last reading, s after the first reading of the first log.
+    pub fn end_s(&self) -> f64 {
+        self.offset_s + self.duration_s
+    }
+}
+
+/// A log that is part of a survey.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct SurveyedLog {
+    /// The log.
+    pub entry: LogEntry,
+    /// The number of readings.
+    pub readings: usize,
+    /// The number of readings from which the survey has learned.
+    pub used: usize,
+    /// The number of places that the robot recognised.
+    pub loops: usize,
+    /// The part that was used.
+    pub travelled: Travelled,
+    /// The noise that the mapper must expect, m.
+    pub(crate) noise_m: Option<f64>,
+    /// The cells that cover what was seen.
+    pub(crate) frame: GridFrame,
+    /// The poses of all readings; forgotten when they are no longer needed.
+    #[serde(with = "shared")]
+    pub(crate) poses: Arc<Vec<TrajectoryPose>>,
+}
+
+/// A part of a route.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Travelled {
+    /// The time from its begin to its end, s.
+    pub duration_s: f64,
+    /// Its length, m.
+    pub length_m: f64,
+    /// The number of readings without a certain pose.
+    pub uncertain: usize,
+}
+
+impl SurveyedLog {
+    pub(crate) fn new(entry: LogEntry, route: Route, frame: GridFrame) -> Self {
+        Self {
+            entry,
+            readings: route.poses.len(),
+            used: 0,
+            loops: route.loops,
+            travelled: Travelled::default(),
+            noise_m: noise_m(&route),
+            frame,
+            poses: Arc::new(route.poses),
+        }
+    }
+
+    /// Whether the survey has learned from all readings.
+    pub fn is_finished(&self) -> bool {
+        self.used >= self.readings
+    }
+
+    /// The poses of the readings that were used, in the frame of the map, with times since the first log has begun; none
+    /// if they were forgotten.
+    pub fn poses(&self) -> impl Iterator<Item = TrajectoryPose> {
+        let poses = self.poses.iter().take(self.used);
+        poses.map(|at| TrajectoryPose { time_s: at.time_s + self.entry.offset_s, ..*at })
+    }
+
+    /// Sums up the part that was used.
+    pub(crate) fn measure(&mut self) {
+        let used = self.poses.get(..self.used).unwrap_or(&self.poses);
+        if let Some(last) = used.last() {
+            let (length_m, uncertain) = (length_m(used), uncertain(used));
+            self.travelled = Travelled { duration_s: last.time_s, length_m, uncertain };
+        }
+    }
+}
+
+/// A list that copies share.
+mod shared {
+    use serde::de::DeserializeOwned;
+    use serde::{Deserializer, Serialize, Serializer};
+    use std::sync::Arc;
+
+    pub(super) fn serialize<T: Serialize, S: Serializer>(
+        list: &Arc<Vec<T>>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        list.as_ref().serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, T: DeserializeOwned, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Arc<Vec<T>>, D::Error> {
+        serde::Deserialize::deserialize(deserializer).map(Arc::new)
+    }
+}

@@ -1,0 +1,234 @@
+//! `map_log --state`: what was learned from logs stays, and later logs add to it.
+
+use crate::bad_input::refuses;
+use crate::map_log::standing_log;
+use crate::run::{Run, Summary, names};
+use std::collections::BTreeMap;
+use std::fs;
+
+const QUIET: &str = "--quiet --no-rrd";
+const SAVED: &str = "--quiet --no-rrd --state a.state";
+/// 2023-11-14 22:13:20 UTC.
+const MONDAY_S: f64 = 1.7e9;
+const TUESDAY_S: f64 = MONDAY_S + 86_400.0;
+
+/// All results but the recording, by name; of the summary, what does not depend on how the run was started.
+fn results(run: &Run) -> BTreeMap<String, Vec<u8>> {
+    let Summary(mut summary) = run.summary();
+    for key in ["arguments", "wall_s", "files"] {
+        summary.as_object_mut().unwrap().remove(key);
+    }
+    let names = names(&run.path("out")).into_iter().filter(|name| name != "summary.json");
+    let file = |name: String| (name.clone(), fs::read(run.out(&name)).unwrap());
+    let mut files: BTreeMap<_, _> = names.map(file).collect();
+    files.insert("summary.json".to_owned(), summary.to_string().into_bytes());
+    files
+}
+
+/// The names of the results that differ.
+fn differing(one: &BTreeMap<String, Vec<u8>>, other: &BTreeMap<String, Vec<u8>>) -> Vec<String> {
+    let names: std::collections::BTreeSet<&String> = one.keys().chain(other.keys()).collect();
+    names.into_iter().filter(|name| one.get(*name) != other.get(*name)).cloned().collect()
+}
+
+/// A folder with the logs `a.log` and `b.log` of a laser that stands, a day apart.
+fn with_logs() -> Run {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(MONDAY_S, 120));
+    run.write("b.log", &standing_log(TUESDAY_S, 90));
+    run
+}
+
+#[test]
+fn a_log_of_the_next_day_adds_to_the_state() {
+    let run = with_logs();
+    run.goes_well(&format!("a.log b.log {QUIET}"));
+    let whole = results(&run);
+    run.goes_well(&format!("a.log {SAVED}"));
+    assert_eq!(run.summary().number("/scans"), 120.0);
+    run.goes_well(&format!("b.log {SAVED}"));
+    // The trajectory is that of the run.
+    assert_eq!(differing(&results(&run), &whole), ["trajectory.tum"]);
+    assert_eq!(fs::read_to_string(run.out("trajectory.tum")).unwrap().lines().count(), 90);
+
+    // What is learned already only writes the results again, whatever its name is, and with whatever logs it comes.
+    fs::rename(run.path("a.log"), run.path("other.log")).unwrap();
+    let ended = run.goes_well(&format!("b.log other.log {SAVED}"));
+    assert_eq!(ended.stderr, "note: other.log is learned already\nnote: b.log is learned already\n");
+    assert_eq!(differing(&results(&run), &whole), ["trajectory.png", "trajectory.tum"]);
+    assert_eq!(run.names(), ["a.state", "b.log", "other.log", "out"]);
+}
+
+#[test]
+fn a_robot_with_drifting_odometry_finds_its_place_in_the_state() {
+    let run = Run::new();
+    for (name, seed) in [("a", 100), ("b", 101)] {
+        let world = format!("--world drifting_house --seed {seed} --duration 40 --mcap {name}.mcap");
+        run.goes_well(&format!("{QUIET} {world}"));
+    }
+    fs::remove_dir_all(run.path("out")).unwrap();
+    let run = run.with_map_log();
+    run.goes_well(&format!("a.mcap b.mcap {QUIET}"));
+    let whole = results(&run);
+    run.goes_well(&format!("a.mcap {SAVED}"));
+    run.goes_well(&format!("b.mcap {SAVED}"));
+    let differing = differing(&results(&run), &whole);
+    assert_eq!(differing, ["trajectory.png", "trajectory.tum"]);
+    let note = "the time between a.mcap and b.mcap is not known and counts as an hour";
+    assert!(run.summary().at("/notes").as_array().unwrap().contains(&serde_json::json!(note)));
+}
+
+/// Killed again and again at any point, even while it saves: the same command goes on, and its results are those of a run
+/// that was never interrupted, bit for bit.
+#[test]
+#[cfg(unix)]
+fn a_killed_run_goes_on_and_ends_as_if_it_had_not_been_killed() {
+    use crate::ending::send;
+    use nix::sys::signal::Signal;
+    use std::time::Duration;
+
+    const SCANS: u32 = 12_000;
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(MONDAY_S, 1000));
+    run.write("b.log", &standing_log(TUESDAY_S, SCANS));
+    run.goes_well(&format!("a.log b.log {QUIET}"));
+    let whole = results(&run);
+    let command = "a.log b.log --no-rrd --state a.state --state-every 0.02";
+    let modified = || fs::metadata(run.path("a.state")).and_then(|file| file.modified()).ok();
+    let (mut killed, mut froms) = (0, Vec::new());
+    for round in 0..8_u64 {
+        let before = modified();
+        let mut child = run.starts(command);
+        // Until it has saved, and a little longer.
+        let is_over = (0..6000).any(|_| {
+            std::thread::sleep(Duration::from_millis(10));
+            modified() != before || child.try_wait().unwrap().is_some()
+        });
+        assert!(is_over, "no state");
+        std::thread::sleep(Duration::from_millis(17 * round));
+        // Now and then in good order.
+        let signal = if round % 4 == 3 { Signal::SIGINT } else { Signal::SIGKILL };
+        if child.try_wait().unwrap().is_none() {
+            send(signal, &child);
+        }
+        let ended = crate::run::Ended::from(child.wait_with_output().unwrap());
+        assert!(matches!(ended.code, None | Some(0 | 130)), "{ended:?}");
+        killed += usize::from(ended.code != Some(0));
+        froms.extend(ended.stderr.lines().filter_map(|line| {
+            let from = line.strip_prefix("b.log: learning what changes, from scan ")?;
+            from.strip_suffix(" on")?.parse::<u32>().ok()
+        }));
+    }
+    assert!(killed >= 2, "{killed} runs were killed");
+    assert!(froms.is_sorted() && froms.iter().all(|from| *from <= SCANS), "{froms:?}");
+    run.goes_well(&format!("{command} --quiet"));
+    let allowed = ["trajectory.png", "trajectory.tum"];
+    let differing = differing(&results(&run), &whole);
+    assert!(differing.iter().all(|name| allowed.contains(&name.as_str())), "{differing:?}");
+    assert_eq!(run.names(), ["a.log", "a.state", "b.log", "out"]);
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupted_run_keeps_its_part_and_goes_on_with_the_same_trajectory() {
+    use std::io::{BufRead, BufReader};
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(MONDAY_S, 100));
+    run.write("b.log", &standing_log(TUESDAY_S, 12_000));
+    run.goes_well(&format!("a.log b.log {QUIET}"));
+    let whole = results(&run);
+    let mut child = run.starts("a.log b.log --no-rrd --state a.state");
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    assert!(lines.any(|line| line == "b.log: learning what changes"));
+    crate::ending::send(nix::sys::signal::Signal::SIGINT, &child);
+    lines.for_each(drop);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let scans = run.summary().number("/scans");
+    assert!((101.0..12_100.0).contains(&scans), "{scans}");
+
+    // Nothing can follow a log that is learned in part, unless its rest is left out.
+    run.write("c.log", &standing_log(TUESDAY_S + 86_400.0, 60));
+    let kept = fs::read(run.path("a.state")).unwrap();
+    let ended = run.ends(&format!("c.log {SAVED}"));
+    let part = scans - 100.0;
+    let expected = format!(
+        "error: b.log is learned in part ({part} of 12000 scans): give it as well, then it goes on from there, or leave out \
+         its rest by --leave-rest\n"
+    );
+    assert_eq!((ended.code, ended.stderr), (Some(2), expected));
+    assert!(fs::read(run.path("a.state")).unwrap() == kept);
+    fs::copy(run.path("a.state"), run.path("b.state")).unwrap();
+    run.goes_well(&format!("c.log {QUIET} --state b.state --leave-rest"));
+    assert_eq!(run.summary().number("/scans"), scans + 60.0);
+
+    run.goes_well(&format!("a.log b.log {SAVED}"));
+    assert_eq!(differing(&results(&run), &whole), [""; 0]);
+}
+
+#[test]
+fn a_state_that_does_not_fit_is_refused_and_stays() {
+    let run = with_logs();
+    run.write("early.log", &standing_log(MONDAY_S - 86_400.0, 30));
+    run.goes_well(&format!("a.log {SAVED}"));
+    fs::remove_dir_all(run.path("out")).unwrap();
+    let saved = fs::read(run.path("a.state")).unwrap();
+    let refused = |arguments: &str| {
+        let message =
+            refuses(&run, &format!("{arguments} {SAVED}"), &["a.log", "a.state", "b.log", "early.log"]);
+        assert!(fs::read(run.path("a.state")).unwrap() == saved);
+        message
+    };
+    insta::assert_snapshot!(refused("b.log --resolution 0.1"), @"error: a.state: the state is of another run: `survey.resolution_m` is `0.05` there, and `0.1` here");
+    insta::assert_snapshot!(refused("b.log --pose localized"), @"error: a.state: the state is of another run: `--pose` is `exact` there, and `localized` here");
+    insta::assert_snapshot!(refused("b.log --estimator paper"), @"error: a.state: the state is of another run: `survey.mapper.estimator` is `two-state-gaps` there, and `paper` here");
+    insta::assert_snapshot!(refused("b.log --noise 0.05"), @"error: a.state: the state is of another run: `--noise` is `learned` there, and `0.05` here");
+    insta::assert_snapshot!(refused("early.log"), @"error: early.log begins before a.log has ended: logs of one robot follow each other");
+    insta::assert_snapshot!(refused("b.log b.log"), @"error: b.log is given twice: it has the content of b.log");
+    // Any bit.
+    let mut flipped = saved.clone();
+    let middle = flipped.len() / 2;
+    flipped[middle] ^= 4;
+    fs::write(run.path("a.state"), &flipped).unwrap();
+    let message = refuses(&run, &format!("b.log {SAVED}"), &["a.log", "a.state", "b.log", "early.log"]);
+    insta::assert_snapshot!(message, @"error: a.state: the state file is damaged: its checksum does not fit");
+    assert!(fs::read(run.path("a.state")).unwrap() == flipped);
+}
+
+#[test]
+fn a_state_of_another_program_is_refused() {
+    let run = Run::new();
+    run.goes_well(&format!("--duration 2 {SAVED}"));
+    fs::remove_dir_all(run.path("out")).unwrap();
+    let run = run.with_map_log();
+    run.write("a.log", &standing_log(MONDAY_S, 60));
+    let files = ["a.log", "a.state"];
+    insta::assert_snapshot!(refuses(&run, &format!("a.log {SAVED}"), &files), @"error: a.state: the state was saved by another program: it has no part `logs`");
+    insta::assert_snapshot!(refuses(&run, &format!("a.log {QUIET} --state missing/b.state"), &files), @"error: missing/b.state: cannot write it: No such file or directory (os error 2)");
+    run.goes_well(&format!("a.log {QUIET} --state b.state"));
+    fs::remove_dir_all(run.path("out")).unwrap();
+    let run = run.with_four_rooms();
+    insta::assert_snapshot!(refuses(&run, &format!("--duration 2 {QUIET} --state b.state"), &["a.log", "a.state", "b.state"]), @"error: b.state: the state was saved by another program: it has no part `world`");
+}
+
+#[test]
+fn another_laser_is_noted() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(MONDAY_S, 60));
+    run.goes_well(&format!("a.log {SAVED}"));
+    // Every other beam.
+    let line = |line: &str| -> String {
+        let fields: Vec<&str> = line.split(' ').collect();
+        if fields[0] != "FLASER" {
+            return format!("{line}\n");
+        }
+        let beams: Vec<&str> = fields[2..182].iter().copied().chain(["3.00"]).collect();
+        format!("FLASER 181 {} {}\n", beams.join(" "), fields[182..].join(" "))
+    };
+    let text: String = standing_log(TUESDAY_S, 60).lines().map(line).collect();
+    run.write("b.log", &text);
+    let ended = run.goes_well(&format!("b.log {SAVED}"));
+    let note = "the laser of b.log is not that of a.log: 181 beams over 180°, not 180 beams over 179°; where it sees another \
+                plane, differences count as changes";
+    assert_eq!(ended.stderr, format!("note: {note}\n"));
+    assert!(run.summary().at("/notes").as_array().unwrap().contains(&serde_json::json!(note)));
+}
