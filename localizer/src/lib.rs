@@ -33,6 +33,7 @@
 mod beams;
 mod calibration;
 mod changing_map;
+mod coherent;
 mod estimate;
 mod faults;
 mod given_poses;
@@ -43,6 +44,7 @@ mod moments;
 mod motion;
 mod path;
 mod placement;
+mod probation;
 mod scan_points;
 mod scene;
 mod score_grid;
@@ -51,6 +53,7 @@ mod settings;
 mod support;
 mod surfel_map;
 mod sweep;
+mod tracked;
 mod tracking;
 mod trajectory;
 

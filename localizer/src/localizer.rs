@@ -10,6 +10,7 @@ use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::path::Path;
 use crate::placement::shifted;
+use crate::probation::Probation;
 use crate::scan_points::{PointRules, ScanPoints};
 use crate::score_grid::ScoreGrid;
 use crate::settings::LocalizerSettings;
@@ -56,6 +57,10 @@ pub struct Localizer {
     from_nothing: bool,
     /// The number of scans for which only what lies exactly in place counts.
     tight: u32,
+    /// The number of consecutive scans in which most of the view is out of place.
+    shifted: u32,
+    /// While the pose has to earn its certainty: what speaks for it.
+    probation: Option<Probation>,
     /// Whether the present scan may enter the line map.
     learns: bool,
     /// The number of scans for which the odometry is not trusted.
@@ -135,6 +140,8 @@ impl Localizer {
             start_s: None,
             from_nothing,
             tight: 0,
+            shifted: 0,
+            probation: None,
             learns: false,
             distrust: 0,
             readings: 0,

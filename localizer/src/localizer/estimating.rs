@@ -5,10 +5,12 @@ use crate::changing_map::ChangingMap;
 use crate::estimate::{PoseEstimate, PoseState};
 use crate::faults::{Fault, mirrored};
 use crate::motion::Motion;
+use crate::probation::{Probation, Verdict};
 use crate::scene::Scene;
 use crate::settings::LocalizerSettings;
 use crate::support::Support;
-use crate::tracking::{Tracked, track};
+use crate::tracked::Tracked;
+use crate::tracking::track;
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
 
@@ -22,6 +24,8 @@ pub(super) const LEAST_CONFIRMED: f64 = 8.0;
 const DISTRUST_SCANS: u32 = 20;
 /// The number of scans for which only what lies exactly in place counts, after much of the view has moved.
 const TIGHT_SCANS: u32 = 10;
+/// The number of consecutive scans that show most of the view out of place before the line map forgets it.
+const SHIFTED_SCANS: u32 = 2;
 /// The least support with which a pose that is not certain is followed.
 pub(super) const LEAST_GUIDE: f64 = 0.5;
 /// The match of a mirrored scan starts up to this far from the pose, m.
@@ -64,9 +68,14 @@ impl Localizer {
         if self.is_supported(&tracked) && !is_mirrored {
             let support = tracked.support;
             self.tight = if tracked.stayed { TIGHT_SCANS } else { self.tight.saturating_sub(1) };
+            self.forget_shifted(&tracked);
             self.distrust = if tracked.is_other { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
             self.accept(&tracked);
+            self.prove(&support, motion);
             return support;
+        }
+        if self.from_nothing && !is_mirrored && tracked.support.seen_share() < LEAST_GUIDE {
+            self.probation = Some(Probation::default());
         }
         // A scan of which most fits is a better guide than the odometry alone.
         let is_guide = tracked.support.share() >= LEAST_GUIDE && !is_mirrored;
@@ -77,7 +86,7 @@ impl Localizer {
         };
         self.doubt();
         if !is_mirrored {
-            self.search(reading, map, &tracked);
+            self.search(reading, motion, map, &tracked);
         }
         tracked.support
     }
@@ -123,6 +132,32 @@ impl Localizer {
         self.state = if is_certain { PoseState::Tracking } else { PoseState::Uncertain };
         self.learns = of_limits <= LEARNING_LIMITS && !is_blind;
         self.supported_s = Some(self.time_s);
+    }
+
+    /// A pose that was found by a search, or after a contradiction, has to earn its certainty.
+    pub(super) fn prove(&mut self, support: &Support, motion: &Motion) {
+        let Some(probation) = &mut self.probation else { return };
+        let moved_m = motion.delta.translation.vector.norm();
+        match probation.count(support, moved_m, self.settings.scans_to_confirm) {
+            Verdict::Certain => {
+                self.probation = None;
+                return;
+            }
+            Verdict::Open => self.state = PoseState::Uncertain,
+            Verdict::Wrong => {
+                (self.probation, self.supported_s) = (None, None);
+                self.state = PoseState::Lost;
+            }
+        }
+        self.learns = false;
+    }
+
+    /// After some scans in which most of the view is out of place, the line map forgets what shifted.
+    fn forget_shifted(&mut self, tracked: &Tracked) {
+        self.shifted = if tracked.shifted.is_some() { self.shifted + 1 } else { 0 };
+        let Some(shifted) = tracked.shifted.filter(|_| self.shifted >= SHIFTED_SCANS) else { return };
+        (self.shifted, self.tight) = (0, 0);
+        self.surfels.forget_shifted(self.points.points(), &shifted, &tracked.placement);
     }
 
     /// The pose is not certain; after some time, it is lost.

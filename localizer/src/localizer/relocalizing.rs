@@ -7,10 +7,11 @@ use crate::estimate::PoseState;
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::placement::Placement;
+use crate::probation::Probation;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::support::Support;
-use crate::tracking::Tracked;
+use crate::tracked::Tracked;
 use interfaces::LaserReading;
 
 /// The window of the first search: a glitch of the odometry, or a robot that was carried a little.
@@ -35,7 +36,13 @@ impl Localizer {
     }
 
     /// Searches for the pose: around the predicted pose, and in the whole map.
-    pub(super) fn search(&mut self, reading: &LaserReading, map: &impl ChangingMap, tracked: &Tracked) {
+    pub(super) fn search(
+        &mut self,
+        reading: &LaserReading,
+        motion: &Motion,
+        map: &impl ChangingMap,
+        tracked: &Tracked,
+    ) {
         self.since_search = self.since_search.saturating_add(1);
         let revision = self.surfels.revision();
         let grid = match self.scores.take() {
@@ -67,6 +74,7 @@ impl Localizer {
             // Much has changed here, but no other pose fits better.
             self.accepted_support = tracked.support.share() - 0.1;
             self.accept(tracked);
+            self.prove(&tracked.support, motion);
         } else {
             self.hypotheses = found;
             self.take_best();
@@ -92,7 +100,11 @@ impl Localizer {
                 let tracked = Tracked::new(placement, [decided.covariance; 2], decided.support);
                 self.accepted_support = self.settings.min_support.min(support.share() - 0.1);
                 self.hypotheses = Hypotheses::default();
+                if self.from_nothing {
+                    self.probation = Some(Probation::after(self.settings.scans_to_confirm));
+                }
                 self.accept(&tracked);
+                self.prove(&support, motion);
             }
             None if self.hypotheses.is_empty() => {
                 self.pose = motion.apply(&self.pose);
