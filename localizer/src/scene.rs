@@ -28,14 +28,9 @@ pub(crate) struct Scene<'a, M> {
 impl<M: ChangingMap> Scene<'_, M> {
     /// The distance up to which a point confirms a surfel, m.
     pub(crate) fn gate_m(&self) -> f64 {
-        let stds = if self.is_tight { GATE_STDS / 2.0 } else { GATE_STDS };
-        stds * self.noise_m()
-    }
-
-    /// The standard deviation of the distance of a point from its surfel, m.
-    pub(crate) fn noise_m(&self) -> f64 {
         let noise_m = self.settings.range_noise_std_m;
-        (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt()
+        let stds = if self.is_tight { GATE_STDS / 2.0 } else { GATE_STDS };
+        stds * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt()
     }
 
     /// Matches the scan from `start`; points belong to surfels up to `first_m` away in the first steps.

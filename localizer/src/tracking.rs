@@ -1,12 +1,12 @@
 //! From the predicted pose to the pose of the scan, and the question whether the robot or the things moved.
 
 use crate::changing_map::ChangingMap;
-use crate::coherent::{are_apart, in_place};
 use crate::matcher::{Match, difference};
 use crate::motion::Predicted;
 use crate::placement::Placement;
 use crate::scene::Scene;
-use crate::tracked::Tracked;
+use crate::support::Support;
+use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
 /// The innovation (squared, over its covariance) above which odometry did not tell the truth: 1 in 10⁵ by chance.
@@ -24,11 +24,40 @@ const VAGUE_M: f64 = 0.05;
 /// The same where the rest does not fit any other pose, and the least support.
 const ONLY_SHARE: f64 = 0.1;
 const ONLY_SUPPORT: f64 = 0.5;
+/// Shifts below this are no coherent motion of things, m, nor larger shifts, and turns (rad).
+const COHERENT_M: f64 = 0.03;
+const LARGEST_M: f64 = 0.15;
+const LARGEST_RAD: f64 = 0.1;
 /// Errors of the map, which change where other surfaces come into view.
 const MAP_STD_M: f64 = 0.002;
 const MAP_STD_RAD: f64 = 7e-4;
+/// Errors of the model that do not average out: surfaces that are not straight, surfels that are off. Per scan.
+const MODEL_STD_M: f64 = 5e-4;
+const MODEL_STD_RAD: f64 = 1.5e-4;
 /// The least weight of unchanged surfaces against every motion with which changing surfaces may be weighed down.
 const UNCHANGED_WEIGHT: f64 = 15.0;
+
+/// The pose of a scan by tracking.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tracked {
+    pub(crate) placement: Placement,
+    pub(crate) covariance: Matrix3<f64>,
+    /// The covariance of the pose of a beam, in the mean over the scan.
+    pub(crate) beam_covariance: Matrix3<f64>,
+    pub(crate) support: Support,
+    /// Much of the view may have moved, but the robot moved as its odometry says: what stayed in place fixes the pose.
+    pub(crate) stayed: bool,
+    /// The robot did not move as its odometry says.
+    pub(crate) is_other: bool,
+}
+
+impl Tracked {
+    /// The pose by the odometry or a match. `covariances`: of the pose, and of the pose of a beam.
+    pub(crate) fn new(placement: Placement, covariances: [Matrix3<f64>; 2], support: Support) -> Self {
+        let [covariance, beam_covariance] = covariances;
+        Self { placement, covariance, beam_covariance, support, stayed: false, is_other: false }
+    }
+}
 
 /// Finds the pose of a scan near the predicted pose. `others` are other guesses: the pose at rest, the pose at constant
 /// velocity. If no guess gives a supported pose, the result is the match from the predicted pose.
@@ -39,26 +68,26 @@ pub(crate) fn track<M: ChangingMap>(
 ) -> Tracked {
     let (by_odometry, is_surprise) = with_prior(scene, predicted);
     let is_good = |tracked: &Tracked| tracked.support.share() >= scene.settings.min_support;
-    if is_good(&by_odometry) && !is_surprise {
-        return in_place(scene, predicted, &by_odometry).unwrap_or(by_odometry);
+    let is_expected = is_good(&by_odometry) && !is_surprise;
+    if is_expected && !predicted.is_jump {
+        return by_odometry;
     }
-    let mut best = by_odometry;
+    let (mut best, mut is_other) = (by_odometry, false);
     for start in std::iter::once(&predicted.pose).chain(others) {
         let Some(found) = scene.align(start, None, WIDE_GATE_M, false) else { continue };
-        let candidate = Tracked::matched(scene, &found);
+        let candidate = tracked(scene, &found);
         if candidate.support.confirmed > best.support.confirmed + BETTER * by_odometry.support.weight() {
-            best = candidate;
+            (best, is_other) = (candidate, true);
         }
     }
-    if let Some(stayed) = in_place(scene, predicted, &best) {
-        return stayed;
+    if is_expected && !is_other {
+        return by_odometry;
     }
-    let unmoved = scene.tight().judge(&by_odometry.placement);
-    let fixes_pose = |share: f64| unmoved.fixes_pose(share * unmoved.weight());
-    let is_coherent = are_apart(&by_odometry.placement.pose, &best.placement.pose);
-    if predicted.spread_m() <= VAGUE_M && is_coherent && fixes_pose(STAYED_SHARE) {
-        let (unmoved, _) = with_prior(&scene.tight(), predicted);
-        return Tracked { stayed: true, ..unmoved };
+    let in_place = scene.tight().judge(&by_odometry.placement);
+    let fixes_pose = |share: f64| in_place.fixes_pose(share * in_place.weight());
+    if predicted.spread_m() <= VAGUE_M && is_coherent(&by_odometry, &best) && fixes_pose(STAYED_SHARE) {
+        let (in_place, _) = with_prior(&scene.tight(), predicted);
+        return Tracked { stayed: true, ..in_place };
     }
     if is_good(&best) {
         return Tracked { is_other: true, ..best };
@@ -82,7 +111,7 @@ fn with_prior<M: ChangingMap>(scene: &Scene<M>, predicted: &Predicted) -> (Track
     let Some(found) = scene.align(pose, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else {
         return stay();
     };
-    (Tracked::matched(scene, &found), surprise(&found, pose, covariance) > SURPRISE)
+    (tracked(scene, &found), surprise(&found, pose, covariance) > SURPRISE)
 }
 
 /// How far the pose of the scan alone lies from the predicted pose: squared, over the covariance of both.
@@ -95,9 +124,28 @@ fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>
     spread.try_inverse().map_or(0.0, |inverse| (whole_way.transpose() * inverse * whole_way)[0])
 }
 
+/// The result of a match, with an honest covariance: inflated where the residuals are larger than the noise, and by the
+/// errors that all points share.
+fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
+    let inverse = found.information.try_inverse().unwrap_or_else(|| Matrix3::identity() * 1e3);
+    let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD);
+    let honest = |covariance: Matrix3<f64>| {
+        covariance * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model))
+    };
+    let covariances = [inverse, found.beam_covariance].map(honest);
+    Tracked::new(found.placement, covariances, scene.judge(&found.placement))
+}
+
 /// Whether changing surfaces may be weighed down: the others alone fix the pose. Otherwise a wrong pose could declare
 /// all that contradicts it as changing.
 fn unchanged_fix_pose<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>) -> bool {
     scene.surfels.knows_rates()
         && scene.judge(&Placement::rigid(pose)).steady.symmetric_eigenvalues().min() >= UNCHANGED_WEIGHT
+}
+
+/// Whether two poses are as far apart as things that move together: then either the things moved, or the robot.
+fn is_coherent(stayed: &Tracked, moved: &Tracked) -> bool {
+    let shift = stayed.placement.pose.inv_mul(&moved.placement.pose);
+    let (shift_m, turn_rad) = (shift.translation.vector.norm(), heading_rad(&shift).abs());
+    shift_m + turn_rad >= COHERENT_M && shift_m <= LARGEST_M && turn_rad <= LARGEST_RAD
 }

@@ -1,9 +1,9 @@
 use controller::{Controller, DiffDrive, Situation, Status};
 use evaluation::physics_trial::PhysicsSettings;
 use interfaces::{Purpose, RandomStream, SettingsError, Twist};
-use robot::Permission;
 use mapper::Mapper;
 use nalgebra::Isometry2;
+use robot::Permission;
 
 /// Drives to random cells of the map.
 pub(crate) struct Driver {

@@ -9,9 +9,8 @@ use crate::probation::{Probation, Verdict};
 use crate::scene::Scene;
 use crate::settings::LocalizerSettings;
 use crate::support::Support;
-use crate::tracked::Tracked;
-use crate::tracking::track;
-use interfaces::LaserReading;
+use crate::tracking::{Tracked, track};
+use interfaces::{LaserReading, heading_rad};
 use nalgebra::Isometry2;
 
 /// The line map also learns from scans whose pose is less certain than a map of changes tolerates, by this factor:
@@ -24,8 +23,11 @@ pub(super) const LEAST_CONFIRMED: f64 = 8.0;
 const DISTRUST_SCANS: u32 = 20;
 /// The number of scans for which only what lies exactly in place counts, after much of the view has moved.
 const TIGHT_SCANS: u32 = 10;
-/// The number of consecutive scans that show most of the view out of place before the line map forgets it.
-const SHIFTED_SCANS: u32 = 2;
+/// Up to this long after the last certain pose, the odometry says where the robot is: up to these differences, m and rad,
+/// since a robot may be pushed or carried.
+const NEAR_S: f64 = 10.0;
+const NEAR_M: f64 = 1.5;
+const NEAR_RAD: f64 = 1.3;
 /// The least support with which a pose that is not certain is followed.
 pub(super) const LEAST_GUIDE: f64 = 0.5;
 /// The match of a mirrored scan starts up to this far from the pose, m.
@@ -68,7 +70,6 @@ impl Localizer {
         if self.is_supported(&tracked) && !is_mirrored {
             let support = tracked.support;
             self.tight = if tracked.stayed { TIGHT_SCANS } else { self.tight.saturating_sub(1) };
-            self.forget_shifted(&tracked);
             self.distrust = if tracked.is_other { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
             self.accept(&tracked);
             self.prove(&support, motion);
@@ -136,9 +137,10 @@ impl Localizer {
 
     /// A pose that was found by a search, or after a contradiction, has to earn its certainty.
     pub(super) fn prove(&mut self, support: &Support, motion: &Motion) {
+        let is_near = self.is_near_odometry();
         let Some(probation) = &mut self.probation else { return };
         let moved_m = motion.delta.translation.vector.norm();
-        match probation.count(support, moved_m, self.settings.scans_to_confirm) {
+        match probation.count(support, moved_m, is_near, self.settings.scans_to_confirm) {
             Verdict::Certain => {
                 self.probation = None;
                 return;
@@ -152,12 +154,12 @@ impl Localizer {
         self.learns = false;
     }
 
-    /// After some scans in which most of the view is out of place, the line map forgets what shifted.
-    fn forget_shifted(&mut self, tracked: &Tracked) {
-        self.shifted = if tracked.shifted.is_some() { self.shifted + 1 } else { 0 };
-        let Some(shifted) = tracked.shifted.filter(|_| self.shifted >= SHIFTED_SCANS) else { return };
-        (self.shifted, self.tight) = (0, 0);
-        self.surfels.forget_shifted(self.points.points(), &shifted, &tracked.placement);
+    /// Whether the pose is near that which the odometry says since the last certain pose.
+    fn is_near_odometry(&self) -> bool {
+        let off = self.by_odometry.inv_mul(&self.pose);
+        self.time_s - self.certain_s <= NEAR_S
+            && off.translation.vector.norm() <= NEAR_M
+            && heading_rad(&off).abs() <= NEAR_RAD
     }
 
     /// The pose is not certain; after some time, it is lost.

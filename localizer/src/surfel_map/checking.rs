@@ -2,8 +2,6 @@
 
 use super::{CELL_M, SurfelMap};
 use crate::beams::ranges_around;
-use crate::placement::Placement;
-use crate::scan_points::ScanPoint;
 use interfaces::LaserReading;
 use nalgebra::{Isometry2, Point2};
 
@@ -15,11 +13,6 @@ const PASSED_M: f64 = 0.15;
 const DISPLACED_M: f64 = 0.25;
 /// Beams that graze a surfel say nothing: the least cosine of the angle of incidence.
 const LEAST_INCIDENCE: f64 = 0.3;
-
-/// Points of a surface that shifted lie up to this far from it, m, and nearer than at the other placement by at least this,
-/// m.
-const SHIFTED_GATE_M: f64 = 0.036;
-const SHIFTED_M: f64 = 0.01;
 
 /// Checks the surfels against scans, a few per scan.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
@@ -64,25 +57,6 @@ impl Checker {
 }
 
 impl SurfelMap {
-    /// Removes the surfaces that shifted: those to which points lie nearer at the placement `shifted` than at `placement`.
-    pub(crate) fn forget_shifted(
-        &mut self,
-        points: &[ScanPoint],
-        shifted: &Placement,
-        placement: &Placement,
-    ) {
-        let on = |map: &Self, point: &ScanPoint, at: &Placement| {
-            map.nearest(&at.place(point), &(at.pose.rotation * point.normal), SHIFTED_GATE_M)
-        };
-        for point in points {
-            let Some((index, shifted_m)) = on(self, point, shifted) else { continue };
-            let here_m = on(self, point, placement).map_or(f64::INFINITY, |(_, here_m)| here_m.abs());
-            if here_m > shifted_m.abs() + SHIFTED_M {
-                self.remove(index);
-            }
-        }
-    }
-
     /// Counts a contradiction: a displaced surface can also be something in front, and counts a quarter.
     fn contradict(&mut self, index: u32, is_passed: bool, is_displaced: bool) {
         let surfel = &mut self.surfels[index as usize];
