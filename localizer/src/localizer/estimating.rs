@@ -75,7 +75,7 @@ impl Localizer {
             self.prove(&support, motion);
             return support;
         }
-        if self.from_nothing && !is_mirrored && tracked.support.seen_share() < LEAST_GUIDE {
+        if self.is_unfinished() && !is_mirrored && tracked.support.seen_share() < LEAST_GUIDE {
             self.probation = Some(Probation::default());
         }
         // A scan of which most fits is a better guide than the odometry alone.
@@ -152,6 +152,12 @@ impl Localizer {
             }
         }
         self.learns = false;
+    }
+
+    /// Whether the true place may be missing in the map: in one that the robot has made itself, since it knows where it is. At
+    /// the begin of another session, the robot is somewhere in the map.
+    pub(super) fn is_unfinished(&self) -> bool {
+        self.from_nothing && self.certain_s > f64::NEG_INFINITY
     }
 
     /// Whether the pose is near that which the odometry says since the last certain pose.

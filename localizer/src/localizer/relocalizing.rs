@@ -92,7 +92,7 @@ impl Localizer {
                 let tracked = Tracked::new(placement, [decided.covariance; 2], decided.support);
                 self.accepted_support = self.settings.min_support.min(support.share() - 0.1);
                 self.hypotheses = Hypotheses::default();
-                if self.from_nothing {
+                if self.is_unfinished() {
                     self.probation = Some(Probation::after(self.settings.scans_to_confirm));
                 }
                 self.accept(&tracked);
