@@ -16,10 +16,6 @@ const PRIOR_FACTOR: f64 = 1.5;
 const DISTRUSTED_STD_M: f64 = 0.05;
 const DISTRUSTED_STD_RAD: f64 = 0.1;
 
-/// A larger motion from one scan to the next can be one of the odometry alone: a jump, or wheels that spin. m and rad.
-const JUMP_M: f64 = 0.3;
-const JUMP_RAD: f64 = 0.5;
-
 /// A motion in the frame of the robot before the motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
@@ -73,9 +69,7 @@ impl Motion {
         let (by_heading, own) = self.spread(pose);
         let begin = if sweeps { begin(covariance, &by_heading, &own) } else { None };
         let covariance = by_heading * covariance * by_heading.transpose() + own;
-        let is_jump =
-            self.delta.translation.vector.norm() > JUMP_M || heading_rad(&self.delta).abs() > JUMP_RAD;
-        Predicted { pose: self.apply(pose), covariance, begin, is_jump }
+        Predicted { pose: self.apply(pose), covariance, begin }
     }
 
     /// The covariance after the motion from a pose with the given covariance; both in the frame of the map.
@@ -103,8 +97,6 @@ pub(crate) struct Predicted {
     pub(crate) covariance: Matrix3<f64>,
     /// For a scan that sweeps: what is known about the pose before the motion.
     begin: Option<Begin>,
-    /// The motion is so large that the robot may not have made it.
-    pub(crate) is_jump: bool,
 }
 
 impl Predicted {

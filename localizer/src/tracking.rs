@@ -24,10 +24,8 @@ const VAGUE_M: f64 = 0.05;
 /// The same where the rest does not fit any other pose, and the least support.
 const ONLY_SHARE: f64 = 0.1;
 const ONLY_SUPPORT: f64 = 0.5;
-/// Shifts below this are no coherent motion of things, m, nor larger shifts, and turns (rad).
+/// Shifts below this are no coherent motion of things, m.
 const COHERENT_M: f64 = 0.03;
-const LARGEST_M: f64 = 0.15;
-const LARGEST_RAD: f64 = 0.1;
 /// Errors of the map, which change where other surfaces come into view.
 const MAP_STD_M: f64 = 0.002;
 const MAP_STD_RAD: f64 = 7e-4;
@@ -68,20 +66,16 @@ pub(crate) fn track<M: ChangingMap>(
 ) -> Tracked {
     let (by_odometry, is_surprise) = with_prior(scene, predicted);
     let is_good = |tracked: &Tracked| tracked.support.share() >= scene.settings.min_support;
-    let is_expected = is_good(&by_odometry) && !is_surprise;
-    if is_expected && !predicted.is_jump {
+    if is_good(&by_odometry) && !is_surprise {
         return by_odometry;
     }
-    let (mut best, mut is_other) = (by_odometry, false);
+    let mut best = by_odometry;
     for start in std::iter::once(&predicted.pose).chain(others) {
         let Some(found) = scene.align(start, None, WIDE_GATE_M, false) else { continue };
         let candidate = tracked(scene, &found);
         if candidate.support.confirmed > best.support.confirmed + BETTER * by_odometry.support.weight() {
-            (best, is_other) = (candidate, true);
+            best = candidate;
         }
-    }
-    if is_expected && !is_other {
-        return by_odometry;
     }
     let in_place = scene.tight().judge(&by_odometry.placement);
     let fixes_pose = |share: f64| in_place.fixes_pose(share * in_place.weight());
@@ -146,6 +140,5 @@ fn unchanged_fix_pose<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>) -
 /// Whether two poses are as far apart as things that move together: then either the things moved, or the robot.
 fn is_coherent(stayed: &Tracked, moved: &Tracked) -> bool {
     let shift = stayed.placement.pose.inv_mul(&moved.placement.pose);
-    let (shift_m, turn_rad) = (shift.translation.vector.norm(), heading_rad(&shift).abs());
-    shift_m + turn_rad >= COHERENT_M && shift_m <= LARGEST_M && turn_rad <= LARGEST_RAD
+    shift.translation.vector.norm() + heading_rad(&shift).abs() >= COHERENT_M
 }
