@@ -19,6 +19,8 @@
 //! - Where the scan does not support the pose, it is searched for: correlative matching in a window (Olson 2009) and
 //!   in the whole map are one branch and bound over a pyramid of maxima (Hess, Kohler, Rapp & Andor 2016). Several
 //!   poses that fit about as well are kept as hypotheses, and driving on decides.
+//! - In a map that the robot makes itself, the true place may be missing, and something in the map always looks a little
+//!   like it: a found pose is certain once enough scans from enough viewpoints agree with it.
 //! - If most of the view shifts at once, either the robot moved and its odometry missed it, or the things moved: what
 //!   still lies exactly where it was decides.
 //! - Learned rates of change ([`ChangingMap`]) lower the weight of surfaces in a search; in tracking only where the
@@ -43,6 +45,7 @@ mod moments;
 mod motion;
 mod path;
 mod placement;
+mod probation;
 mod scan_points;
 mod scene;
 mod score_grid;

@@ -10,6 +10,7 @@ use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::path::Path;
 use crate::placement::shifted;
+use crate::probation::Probation;
 use crate::scan_points::{PointRules, ScanPoints};
 use crate::score_grid::ScoreGrid;
 use crate::settings::LocalizerSettings;
@@ -56,6 +57,11 @@ pub struct Localizer {
     from_nothing: bool,
     /// The number of scans for which only what lies exactly in place counts.
     tight: u32,
+    /// Where the odometry says that the robot is, since the last certain pose, and the time of that pose, s.
+    by_odometry: Isometry2<f64>,
+    certain_s: f64,
+    /// While the pose has to earn its certainty: what speaks for it.
+    probation: Option<Probation>,
     /// Whether the present scan may enter the line map.
     learns: bool,
     /// The number of scans for which the odometry is not trusted.
@@ -135,6 +141,9 @@ impl Localizer {
             start_s: None,
             from_nothing,
             tight: 0,
+            by_odometry: pose,
+            certain_s: f64::NEG_INFINITY,
+            probation: None,
             learns: false,
             distrust: 0,
             readings: 0,
@@ -177,7 +186,11 @@ impl Localizer {
         self.begin = Vector3::zeros();
         let was_tracking = self.state == PoseState::Tracking;
         self.learns = false;
+        self.by_odometry = motion.apply(&self.by_odometry);
         let support = self.estimate(&posed, &motion, map, fault);
+        if self.state == PoseState::Tracking {
+            (self.by_odometry, self.certain_s) = (self.pose, self.time_s);
+        }
         self.last_motion = shifted(&before, &self.begin).inv_mul(&self.pose);
         if was_tracking && self.state == PoseState::Tracking {
             let found = self.last_motion;

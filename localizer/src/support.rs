@@ -37,6 +37,11 @@ impl Support {
         if judged > 0.0 { self.confirmed / judged } else { 1.0 }
     }
 
+    /// [`Support::share`], of the beams that returned: a covered laser contradicts nothing.
+    pub(crate) fn seen_share(&self) -> f64 {
+        Self { contradicted: self.contradicted - self.blind, ..*self }.share()
+    }
+
     /// The share of what the map confirms, of all. For the choice between poses in a known map: where the map does not
     /// know anything, nothing speaks for the pose.
     pub(crate) fn score(&self) -> f64 {

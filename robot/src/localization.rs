@@ -40,7 +40,7 @@ pub enum Permission {
     Drive,
     /// Stand: the first scans at a start without a map should all be made from one pose.
     Rest,
-    /// Turn in place: the robot is lost.
+    /// Look around, first in place, then from elsewhere: the robot is lost.
     LookAround,
 }
 

@@ -59,7 +59,7 @@ pub trait Drive {
     /// The command to stay at the present position.
     fn rest(&mut self, scene: &Scene) -> Self::Command;
 
-    /// The command to look around at the present position.
+    /// The command to look around: at the present position first, then from elsewhere.
     fn look_around(&mut self, scene: &Scene) -> Self::Command {
         self.rest(scene)
     }

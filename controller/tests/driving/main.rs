@@ -252,6 +252,28 @@ fn it_lives_with_another_robot() {
 }
 
 #[test]
+fn a_robot_that_looks_around_turns_once_then_looks_from_elsewhere() {
+    let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+    let start = house.position();
+    let looks_for = |house: &mut House, controller: &mut controller::Controller<_>, seconds: f64| {
+        let mut farthest_m: f64 = 0.0;
+        let end_s = house.situation().time + seconds;
+        while house.situation().time < end_s {
+            house.sense();
+            let command = controller.pause(&house.situation(), true);
+            house.act(command);
+            farthest_m = farthest_m.max((house.position() - start).norm());
+        }
+        farthest_m
+    };
+    let turning_m = looks_for(&mut house, &mut controller, 12.0);
+    assert!(turning_m < 0.02, "it left its place while it turned, by {turning_m} m");
+    let driving_m = looks_for(&mut house, &mut controller, 120.0);
+    assert!(driving_m > 1.0, "it stayed within {driving_m} m");
+    assert_untouched(&house);
+}
+
+#[test]
 fn the_same_again_is_the_same() {
     let drive = || {
         let (mut house, mut controller) = (House::new(&ROOMS), controller(Settings::default()));

@@ -3,6 +3,7 @@ use evaluation::physics_trial::PhysicsSettings;
 use interfaces::{Purpose, RandomStream, SettingsError, Twist};
 use mapper::Mapper;
 use nalgebra::Isometry2;
+use robot::Permission;
 
 /// Drives to random cells of the map.
 pub(crate) struct Driver {
@@ -17,7 +18,7 @@ impl Driver {
         Ok(Self { controller, random: RandomStream::new(seed, Purpose::Agent) })
     }
 
-    pub(crate) fn command(&mut self, map: &Mapper, pose: &Isometry2<f64>, rests: bool) -> Twist {
+    pub(crate) fn command(&mut self, map: &Mapper, pose: &Isometry2<f64>, permission: Permission) -> Twist {
         let situation = Situation {
             time: map.time(),
             pose,
@@ -25,6 +26,9 @@ impl Driver {
             transitions: map.transitions(),
             points: map.points(),
         };
+        if permission == Permission::LookAround {
+            return self.controller.pause(&situation, true);
+        }
         let command = self.controller.drive(&situation);
         if matches!(self.controller.status(), Status::Idle | Status::Finished(_)) {
             let cells = map.states().cells().len() as f64;
@@ -33,6 +37,6 @@ impl Driver {
                 self.controller.go_to(map.frame().center(map.frame().cell(index)));
             }
         }
-        if rests { Twist::STOP } else { command }
+        if permission == Permission::Rest { Twist::STOP } else { command }
     }
 }

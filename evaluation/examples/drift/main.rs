@@ -27,6 +27,7 @@ use interfaces::{LaserReading, World};
 use localizer::{GivenPoses, Localizer, PoseState};
 use mapper::Mapper;
 use options::Options;
+use robot::Permission;
 use score::Score;
 use sim::physics::PhysicsWorld;
 use std::time::Instant;
@@ -73,8 +74,9 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
         let elapsed = begin.elapsed();
         let estimate = &localized.estimate;
         let enters_map = estimate.state == PoseState::Tracking || options.no_gate;
-        if enters_map {
-            estimated.update(&localized.reading)?;
+        match enters_map {
+            true => estimated.update(&localized.reading)?,
+            false => estimated.skip(&localized.reading),
         }
         score.observe(estimate, &true_pose, &exact, enters_map.then_some(&estimated), elapsed);
         corners.observe(world.time_s(), estimate, &true_pose);
@@ -82,13 +84,15 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
         if options.trace {
             score::trace(world.time_s(), estimate, &true_pose);
         }
-        let rests = world.time_s() < 2.0
-            || options.rests_at(world.time_s())
-            || options.closed && estimate.state == PoseState::Lost;
+        let permission = match estimate.state {
+            _ if world.time_s() < 2.0 || options.rests_at(world.time_s()) => Permission::Rest,
+            PoseState::Lost if options.closed => Permission::LookAround,
+            _ => Permission::Drive,
+        };
         let command = if options.closed {
-            driver.command(&estimated, &estimate.pose, rests)
+            driver.command(&estimated, &estimate.pose, permission)
         } else {
-            driver.command(&exact, &true_pose, rests)
+            driver.command(&exact, &true_pose, permission)
         };
         world.act(&command);
     }

@@ -11,8 +11,9 @@ const DISPLACED_RAD: f64 = 0.15;
 /// A certain pose with smaller errors is recovered, m and rad.
 const RECOVERED_M: f64 = 0.03;
 const RECOVERED_RAD: f64 = 0.02;
-/// A certain pose with a larger error is wrong, m.
+/// A certain pose with a larger error is wrong, m and rad.
 const WRONG_M: f64 = 0.1;
+const WRONG_RAD: f64 = 0.2;
 
 /// The displacements of a run.
 #[derive(Clone, Debug, Default)]
@@ -46,7 +47,7 @@ impl Recovery {
         if estimate.state != PoseState::Tracking {
             return;
         }
-        self.wrong += usize::from(error_m > WRONG_M);
+        self.wrong += usize::from(error_m > WRONG_M || error_rad > WRONG_RAD);
         if error_m < RECOVERED_M
             && error_rad < RECOVERED_RAD
             && let Some(displaced_s) = self.displaced_s.take()
@@ -63,7 +64,7 @@ impl Recovery {
 
     pub(crate) fn print(&self) {
         if self.wrong > 0 {
-            println!("    certain and more than {WRONG_M} m off in {} scans", self.wrong);
+            println!("    certain and more than {WRONG_M} m or {WRONG_RAD} rad off in {} scans", self.wrong);
         }
         let count = self.times_s.len() + self.overtaken;
         if count == 0 {

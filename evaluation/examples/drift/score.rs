@@ -133,7 +133,7 @@ pub(crate) fn by_odometry(pose: Isometry2<f64>, reading: LaserReading) -> Locali
 pub(crate) fn trace(time_s: f64, estimate: &PoseEstimate, true_pose: &Isometry2<f64>) {
     let (error_m, error_rad) = error(&estimate.pose, true_pose);
     println!(
-        "{time_s:.1} {:?} error {:.1} mm {:.3}° sigma {:.1} mm {:.3}° support {:.3} at {:.2} {:.2}",
+        "{time_s:.1} {:?} error {:.1} mm {:.3}° sigma {:.1} mm {:.3}° support {:.3} at {:.2} {:.2} {:.1}°",
         estimate.state,
         error_m * 1e3,
         error_rad.to_degrees(),
@@ -142,5 +142,6 @@ pub(crate) fn trace(time_s: f64, estimate: &PoseEstimate, true_pose: &Isometry2<
         estimate.support,
         true_pose.translation.x,
         true_pose.translation.y,
+        heading_rad(true_pose).to_degrees(),
     );
 }

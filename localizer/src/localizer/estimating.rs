@@ -5,11 +5,12 @@ use crate::changing_map::ChangingMap;
 use crate::estimate::{PoseEstimate, PoseState};
 use crate::faults::{Fault, mirrored};
 use crate::motion::Motion;
+use crate::probation::{Probation, Verdict};
 use crate::scene::Scene;
 use crate::settings::LocalizerSettings;
 use crate::support::Support;
 use crate::tracking::{Tracked, track};
-use interfaces::LaserReading;
+use interfaces::{LaserReading, heading_rad};
 use nalgebra::Isometry2;
 
 /// The line map also learns from scans whose pose is less certain than a map of changes tolerates, by this factor:
@@ -22,6 +23,11 @@ pub(super) const LEAST_CONFIRMED: f64 = 8.0;
 const DISTRUST_SCANS: u32 = 20;
 /// The number of scans for which only what lies exactly in place counts, after much of the view has moved.
 const TIGHT_SCANS: u32 = 10;
+/// Up to this long after the last certain pose, the odometry says where the robot is: up to these differences, m and rad,
+/// since a robot may be pushed or carried.
+const NEAR_S: f64 = 10.0;
+const NEAR_M: f64 = 1.5;
+const NEAR_RAD: f64 = 1.3;
 /// The least support with which a pose that is not certain is followed.
 pub(super) const LEAST_GUIDE: f64 = 0.5;
 /// The match of a mirrored scan starts up to this far from the pose, m.
@@ -66,7 +72,11 @@ impl Localizer {
             self.tight = if tracked.stayed { TIGHT_SCANS } else { self.tight.saturating_sub(1) };
             self.distrust = if tracked.is_other { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
             self.accept(&tracked);
+            self.prove(&support, motion);
             return support;
+        }
+        if self.is_unfinished() && !is_mirrored && tracked.support.seen_share() < LEAST_GUIDE {
+            self.probation = Some(Probation::default());
         }
         // A scan of which most fits is a better guide than the odometry alone.
         let is_guide = tracked.support.share() >= LEAST_GUIDE && !is_mirrored;
@@ -77,7 +87,7 @@ impl Localizer {
         };
         self.doubt();
         if !is_mirrored {
-            self.search(reading, map, &tracked);
+            self.search(reading, motion, map, &tracked);
         }
         tracked.support
     }
@@ -123,6 +133,39 @@ impl Localizer {
         self.state = if is_certain { PoseState::Tracking } else { PoseState::Uncertain };
         self.learns = of_limits <= LEARNING_LIMITS && !is_blind;
         self.supported_s = Some(self.time_s);
+    }
+
+    /// A pose that was found by a search, or after a contradiction, has to earn its certainty.
+    pub(super) fn prove(&mut self, support: &Support, motion: &Motion) {
+        let is_near = self.is_near_odometry();
+        let Some(probation) = &mut self.probation else { return };
+        let moved_m = motion.delta.translation.vector.norm();
+        match probation.count(support, moved_m, is_near, self.settings.scans_to_confirm) {
+            Verdict::Certain => {
+                self.probation = None;
+                return;
+            }
+            Verdict::Open => self.state = PoseState::Uncertain,
+            Verdict::Wrong => {
+                (self.probation, self.supported_s) = (None, None);
+                self.state = PoseState::Lost;
+            }
+        }
+        self.learns = false;
+    }
+
+    /// Whether the true place may be missing in the map: in one that the robot has made itself, since it knows where it is. At
+    /// the begin of another session, the robot is somewhere in the map.
+    pub(super) fn is_unfinished(&self) -> bool {
+        self.from_nothing && self.certain_s > f64::NEG_INFINITY
+    }
+
+    /// Whether the pose is near that which the odometry says since the last certain pose.
+    fn is_near_odometry(&self) -> bool {
+        let off = self.by_odometry.inv_mul(&self.pose);
+        self.time_s - self.certain_s <= NEAR_S
+            && off.translation.vector.norm() <= NEAR_M
+            && heading_rad(&off).abs() <= NEAR_RAD
     }
 
     /// The pose is not certain; after some time, it is lost.

@@ -7,6 +7,7 @@ use crate::estimate::PoseState;
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::placement::Placement;
+use crate::probation::Probation;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::support::Support;
@@ -21,21 +22,20 @@ const LEAST_FOUND: f64 = 0.55;
 /// The least score of a refined pose: around the predicted pose, and anywhere.
 const LEAST_SCORE_NEAR: f64 = 0.5;
 const LEAST_SCORE: f64 = 0.65;
-/// The same in a map that the robot has made: the true place may not be in it yet.
-const LEAST_SCORE_UNFINISHED: f64 = 0.7;
 /// A pose near the predicted pose with this score makes a search in the whole map needless.
 const CLEAR_SCORE: f64 = 0.85;
 /// The number of scans between two searches in the whole map.
 const SEARCH_EVERY: u32 = 5;
 
 impl Localizer {
-    /// The least score of a pose anywhere in the map.
-    fn least_score(&self) -> f64 {
-        if self.from_nothing { LEAST_SCORE_UNFINISHED } else { LEAST_SCORE }
-    }
-
     /// Searches for the pose: around the predicted pose, and in the whole map.
-    pub(super) fn search(&mut self, reading: &LaserReading, map: &impl ChangingMap, tracked: &Tracked) {
+    pub(super) fn search(
+        &mut self,
+        reading: &LaserReading,
+        motion: &Motion,
+        map: &impl ChangingMap,
+        tracked: &Tracked,
+    ) {
         self.since_search = self.since_search.saturating_add(1);
         let revision = self.surfels.revision();
         let grid = match self.scores.take() {
@@ -57,8 +57,7 @@ impl Localizer {
         if !is_clear && is_elsewhere && self.since_search >= SEARCH_EVERY {
             self.since_search = 0;
             let candidates = search(&grid, self.points.points(), None, LEAST_FOUND, ratio);
-            let anywhere =
-                Hypotheses::start(&self.scene(reading, map), &candidates, self.least_score(), ratio);
+            let anywhere = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
             found = found.or(anywhere, ratio);
         }
         self.scores = Some((revision, grid));
@@ -67,6 +66,7 @@ impl Localizer {
             // Much has changed here, but no other pose fits better.
             self.accepted_support = tracked.support.share() - 0.1;
             self.accept(tracked);
+            self.prove(&tracked.support, motion);
         } else {
             self.hypotheses = found;
             self.take_best();
@@ -82,7 +82,7 @@ impl Localizer {
     ) -> Support {
         let mut hypotheses = std::mem::take(&mut self.hypotheses);
         let ratio = self.settings.ambiguity_ratio;
-        hypotheses.advance(&self.scene(reading, map), motion, self.least_score(), ratio);
+        hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
         self.hypotheses = hypotheses;
         self.since_search = self.since_search.saturating_add(1);
         let support = self.hypotheses.best().map_or(Support::default(), |best| best.support);
@@ -92,7 +92,11 @@ impl Localizer {
                 let tracked = Tracked::new(placement, [decided.covariance; 2], decided.support);
                 self.accepted_support = self.settings.min_support.min(support.share() - 0.1);
                 self.hypotheses = Hypotheses::default();
+                if self.is_unfinished() {
+                    self.probation = Some(Probation::after(self.settings.scans_to_confirm));
+                }
                 self.accept(&tracked);
+                self.prove(&support, motion);
             }
             None if self.hypotheses.is_empty() => {
                 self.pose = motion.apply(&self.pose);

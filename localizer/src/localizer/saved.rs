@@ -33,6 +33,7 @@ impl Localizer {
         (self.odometry, self.supported_s) = (None, None);
         (self.last_motion, self.measured) = (Isometry2::identity(), Isometry2::identity());
         (self.tight, self.distrust, self.readings) = (0, 0, 0);
+        (self.probation, self.certain_s) = (None, f64::NEG_INFINITY);
         (self.since_search, self.accepted_support) = (u32::MAX, self.settings.min_support);
         (self.start_s, self.scores) = (None, None);
         if self.surfels.is_empty() {
@@ -65,6 +66,9 @@ impl Localizer {
             value(&mut self.start_s),
             value(&mut self.from_nothing),
             value(&mut self.tight),
+            value(&mut self.by_odometry),
+            value(&mut self.certain_s),
+            value(&mut self.probation),
             value(&mut self.learns),
             value(&mut self.distrust),
             value(&mut self.readings),

@@ -63,3 +63,29 @@ fn a_robot_that_was_carried_to_another_room_finds_itself_within_five_seconds() {
     assert!(scans <= 50, "{scans} scans");
     assert!(robot.error_m(1.0) < 0.02, "a wrong pose was certain: {} m", robot.error_m(1.0));
 }
+
+#[test]
+fn a_robot_that_was_carried_into_unknown_ground_is_never_certain_of_a_wrong_place() {
+    let house = furnished(360, 111);
+    let mut robot = Robot::new(house.clone(), house.tour(0.0), 111);
+    // It has seen the first room, which is as large as the others.
+    robot.tour_until(6.0);
+    let home = robot.on_tour();
+    for (x, y) in [(9.0, 9.5), (2.5, 9.0), (9.5, 9.0)] {
+        for step in 0..100 {
+            let angle = 0.06 * f64::from(step);
+            let at = robot.house.turned(nalgebra::Point2::new(x + angle.sin(), y - angle.cos()));
+            let pose = pose(at.x, at.y, angle);
+            if step == 0 {
+                robot.odometry.carried_to(&pose);
+            }
+            robot.step(pose);
+        }
+        robot.odometry.carried_to(&home);
+        let scans = recovers(&mut robot, home);
+        assert!(scans <= 20, "{scans} scans until it knows that it is at home");
+    }
+    assert!(robot.error_m(1.0) < 0.02, "a wrong pose was certain: {} m", robot.error_m(1.0));
+    let [exact, estimated] = robot.changes;
+    assert!(estimated <= exact + 15, "{estimated} changes, {exact} with exact poses");
+}

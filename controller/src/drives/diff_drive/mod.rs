@@ -10,7 +10,7 @@ use crate::planner::{Costmap, Moves, Path};
 use collision_monitor::CollisionMonitor;
 use interfaces::{SettingsError, Twist, Values, value};
 use nalgebra::Point2;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// A turn in place ends at this share of `turn_in_place_rad`, so that it does not begin again at once.
 const TURNED: f64 = 0.3;
@@ -22,6 +22,8 @@ const RECOVERY_S: f64 = 2.0;
 const LONGEST_TICK_S: f64 = 0.2;
 /// The angular speed of a robot that looks around, rad/s.
 const LOOK_AROUND_RADPS: f64 = 0.5;
+/// The speed of a robot that has looked around and goes on to look from elsewhere, m/s.
+const LOOK_ELSEWHERE_MPS: f64 = 0.2;
 
 /// Follows paths by pure pursuit (Coulter 1992) of the farthest visible point ahead, turns in place if the path is
 /// behind the robot, and brakes for sensed obstacles.
@@ -30,6 +32,8 @@ pub struct DiffDrive {
     settings: DiffDriveSettings,
     monitor: CollisionMonitor,
     is_turning: bool,
+    /// How far the robot has turned since it began to look around, rad.
+    looked_rad: f64,
     last: Twist,
     last_time_s: f64,
 }
@@ -43,7 +47,14 @@ impl DiffDrive {
     pub fn new(settings: DiffDriveSettings) -> Result<Self, SettingsError> {
         settings.check()?;
         let monitor = CollisionMonitor::default();
-        Ok(Self { settings, monitor, is_turning: false, last: Twist::STOP, last_time_s: f64::NEG_INFINITY })
+        Ok(Self {
+            settings,
+            monitor,
+            is_turning: false,
+            looked_rad: 0.0,
+            last: Twist::STOP,
+            last_time_s: f64::NEG_INFINITY,
+        })
     }
 
     /// The rate of a turn in place by `angle_rad` from which the robot can still stop at that angle.
@@ -72,7 +83,12 @@ impl Drive for DiffDrive {
     type Command = Twist;
 
     fn values(&mut self) -> Values<'_> {
-        vec![value(&mut self.is_turning), value(&mut self.last), value(&mut self.last_time_s)]
+        vec![
+            value(&mut self.is_turning),
+            value(&mut self.looked_rad),
+            value(&mut self.last),
+            value(&mut self.last_time_s),
+        ]
     }
 
     fn body(&self) -> Body {
@@ -94,6 +110,7 @@ impl Drive for DiffDrive {
 
     fn follow(&mut self, scene: &Scene, path: &Path) -> Twist {
         let settings = self.settings;
+        self.looked_rad = 0.0;
         let position = scene.situation.position();
         let Some(target) = visible_lookahead_point(scene.costmap, path, &position, settings.lookahead_m)
         else {
@@ -124,14 +141,28 @@ impl Drive for DiffDrive {
     }
 
     fn rest(&mut self, scene: &Scene) -> Twist {
-        self.is_turning = false;
+        (self.is_turning, self.looked_rad) = (false, 0.0);
         self.command(scene, Twist::STOP)
     }
 
+    /// Turns once around. What is seen from here does not tell the pose then: the robot drives ahead where that is safe,
+    /// and turns where it is not.
     fn look_around(&mut self, scene: &Scene) -> Twist {
         self.is_turning = false;
-        let turn_radps = LOOK_AROUND_RADPS.min(self.settings.max_angular_radps);
-        self.command(scene, Twist { linear_mps: 0.0, angular_radps: turn_radps })
+        let settings = self.settings;
+        let turn_radps = LOOK_AROUND_RADPS.min(settings.max_angular_radps);
+        let turn = Twist { linear_mps: 0.0, angular_radps: turn_radps };
+        if self.looked_rad < TAU {
+            let tick_s = (scene.situation.time - self.last_time_s).clamp(0.0, LONGEST_TICK_S);
+            self.looked_rad += turn_radps * tick_s;
+            return self.command(scene, turn);
+        }
+        let wish_mps = LOOK_ELSEWHERE_MPS.min(settings.max_linear_mps);
+        self.monitor.update(&settings, scene, wish_mps);
+        match self.monitor.safe_speed_mps(&settings, wish_mps, 0.0) {
+            0.0 => self.command(scene, turn),
+            linear_mps => self.command(scene, Twist { linear_mps, angular_radps: 0.0 }),
+        }
     }
 
     /// Drives straight backward while that is safe, otherwise turns in place.
