@@ -226,10 +226,17 @@ impl RunResults {
     fn pose(&self) -> Option<String> {
         let PoseScores { mode, median_m, p95_m, max_m, uncertain_s, lost_s, lock_ins, .. } = self.pose;
         let (median, p95) = (median_m? * 1e3, p95_m? * 1e3);
+        let loops = match self.pose.loops_closed {
+            0 => String::new(),
+            loops => {
+                let moved_m = self.pose.largest_correction_m;
+                format!("; {loops} loops closed, which moved poses of the past by up to {moved_m:.2} m")
+            }
+        };
         (mode != "exact").then(|| {
             format!(
                 "{mode}: error {median:.1} mm in the median, {p95:.1} mm for 95 %, {:.0} mm at most; {:.1}° for 95 %; \
-                 uncertain for {uncertain_s:.1} s, lost for {lost_s:.1} s, certain but wrong {lock_ins} times",
+                 uncertain for {uncertain_s:.1} s, lost for {lost_s:.1} s, certain but wrong {lock_ins} times{loops}",
                 max_m * 1e3,
                 self.pose.heading_p95_deg.unwrap_or_default(),
             )

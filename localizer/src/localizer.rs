@@ -1,4 +1,5 @@
 mod estimating;
+mod guided;
 mod relocalizing;
 mod saved;
 
@@ -66,6 +67,8 @@ pub struct Localizer {
     since_search: u32,
     /// The support below which the pose is searched for: lower where a search has confirmed a low support.
     accepted_support: f64,
+    /// About where the robot is, if that is known.
+    guide: Option<Isometry2<f64>>,
 }
 
 impl Localizer {
@@ -140,6 +143,7 @@ impl Localizer {
             readings: 0,
             since_search: u32::MAX,
             accepted_support: settings.min_support,
+            guide: None,
         })
     }
 

@@ -93,7 +93,7 @@ impl FoundPoses {
 
 impl Localization<LaserReading> for FoundPoses {
     /// A reading beyond the last pose keeps its own pose and is not certain. The covariance is not estimated: 0.
-    fn localize(&mut self, mut reading: LaserReading, _: &Mapper) -> Posed<LaserReading> {
+    fn localize(&mut self, mut reading: LaserReading, _: &mut Mapper) -> Posed<LaserReading> {
         let state = self.poses.next().map_or_else(Default::default, |found| {
             reading.pose = found.pose;
             found.state
@@ -101,7 +101,7 @@ impl Localization<LaserReading> for FoundPoses {
         let reading = self.given.unswept(reading);
         let (pose, covariance, support) = (reading.pose, Matrix3::zeros(), 1.0);
         let estimate = Some(PoseEstimate { pose, covariance, support, state });
-        Posed { reading, estimate, permission: Permission::Drive }
+        Posed { reading, estimate, permission: Permission::Drive, correction: None }
     }
 
     fn snapshot(&mut self) -> Vec<u8> {

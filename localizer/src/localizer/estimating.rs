@@ -46,6 +46,7 @@ impl Localizer {
         fault: Option<Fault>,
     ) -> Support {
         let predicted = motion.predict(&self.pose, &self.covariance, reading.scan.sweep_s > 0.0);
+        let predicted = self.guided(predicted);
         let is_first = self.from_nothing && self.surfels.is_empty();
         if fault == Some(Fault::Frozen) || is_first {
             (self.pose, self.covariance) = (predicted.pose, predicted.covariance);

@@ -1,0 +1,224 @@
+//! The readings of a robot that maps a place for the first time, and whether they must be read again.
+
+use crate::estimate::{Localized, PoseState};
+use crate::settings::LocalizerSettings;
+use crate::trajectory::{TrajectoryFinder, TrajectorySettings};
+use interfaces::{LaserReading, SettingsError, heading_rad};
+use nalgebra::{Isometry2, Vector2};
+
+/// The map is torn where two motions between the same keyframes differ by more than this, m and rad: the motion in the map,
+/// and that by matching with the surfaces around or by a loop.
+const TORN_M: f64 = 0.1;
+const TORN_RAD: f64 = 0.035;
+/// What is added after a way, per metre: the errors of matching scan by scan.
+const TORN_PER_M: f64 = 0.02;
+const TORN_RADPM: f64 = 0.005;
+/// The first map stands when the robot has gone as far without new ground as on new ground before, and at least this far, m;
+/// a turn counts as 0.3 m/rad.
+const STANDS_M: f64 = 60.0;
+/// The first map also stands after this number of readings, which bounds the memory: half an hour at 10 Hz.
+const MOST_READINGS: usize = 18_000;
+/// The first map also stands after the readings were read again in vain this often: a robot that was carried, or an odometry
+/// that jumps.
+const MOST_REFUSED: u32 = 3;
+/// The number of scans at rest before the readings are read again.
+const REST_SCANS: u32 = 5;
+/// The frame of the map is that of the readings up to this keyframe.
+const FIRST_KEYFRAMES: usize = 20;
+
+/// A reading, and what the localizer has made of it.
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+pub(crate) struct Kept {
+    /// The reading as its source gave it.
+    pub(crate) reading: LaserReading,
+    /// Whether the mapper paused before it.
+    pub(crate) is_after_pause: bool,
+    /// The pose in the map.
+    pub(crate) pose: Isometry2<f64>,
+    pub(crate) state: PoseState,
+}
+
+/// What is in a state file: the rest follows from the readings.
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+pub(crate) struct Log {
+    kept: Vec<Kept>,
+    /// The time of the latest reading, s.
+    time_s: f64,
+    /// The last keyframe with a certain pose.
+    last_certain: Option<usize>,
+    /// The number of loops that were compared with the map.
+    loops: usize,
+    /// Whether the map is torn, as far as is known.
+    is_torn: bool,
+    /// The number of scans until the readings are read again.
+    rest: Option<u32>,
+    /// Whether the robot has gone far enough without new ground.
+    has_no_new_ground: bool,
+    /// How often the readings were read again in vain.
+    refused: u32,
+}
+
+/// The readings so far, and their trajectory with all loops.
+#[derive(Debug)]
+pub(crate) struct FirstMap {
+    finder: TrajectoryFinder,
+    /// The numbers of the readings that are keyframes.
+    keyframes: Vec<usize>,
+    log: Log,
+}
+
+impl FirstMap {
+    pub(crate) fn new(settings: &LocalizerSettings) -> Result<Self, SettingsError> {
+        let settings = TrajectorySettings {
+            range_noise_std_m: settings.range_noise_std_m,
+            odometry: settings.odometry,
+            ..TrajectorySettings::default()
+        };
+        let finder = TrajectoryFinder::new(&settings)?;
+        Ok(Self { finder, keyframes: Vec::new(), log: Log::default() })
+    }
+
+    /// The first map with this log: the trajectory is found again. `None` if the log cannot be that of a first map.
+    pub(crate) fn with_log(settings: &LocalizerSettings, log: Log) -> Option<Self> {
+        let mut first = Self::new(settings).ok()?;
+        for (number, kept) in log.kept.iter().enumerate() {
+            first.find(&kept.reading, number);
+        }
+        let is_known = log.last_certain.is_none_or(|last| last < first.keyframes.len());
+        (is_known && log.loops == first.finder.loops()).then_some(Self { log, ..first })
+    }
+
+    /// What is saved.
+    pub(crate) fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// Finds the trajectory to reading `number`. Returns whether the reading is a keyframe.
+    fn find(&mut self, reading: &LaserReading, number: usize) -> bool {
+        self.finder.add(reading.clone());
+        let is_keyframe = self.finder.keyframes() > self.keyframes.len();
+        if is_keyframe {
+            self.keyframes.push(number);
+        }
+        is_keyframe
+    }
+
+    /// The readings so far.
+    pub(crate) fn kept(&self) -> &[Kept] {
+        &self.log.kept
+    }
+
+    /// The number of loops that are closed.
+    pub(crate) fn loops(&self) -> usize {
+        self.log.loops
+    }
+
+    /// Whether the map stands: its frame does not move any more.
+    pub(crate) fn stands(&self) -> bool {
+        let is_over = self.log.kept.len() >= MOST_READINGS || self.log.refused >= MOST_REFUSED;
+        self.log.rest.is_none() && (self.log.has_no_new_ground || is_over)
+    }
+
+    /// Adds the next reading, before which the map had the time `map_s`. If a loop shows that the map is torn, the result is
+    /// the poses of all readings.
+    pub(crate) fn add(
+        &mut self,
+        reading: &LaserReading,
+        map_s: f64,
+        localized: &Localized,
+    ) -> Option<Vec<Isometry2<f64>>> {
+        let (pose, state) = (localized.estimate.pose, localized.estimate.state);
+        let is_after_pause = map_s > self.log.time_s && !self.log.kept.is_empty();
+        self.log.time_s = self.log.time_s.max(reading.time_s).max(map_s);
+        self.log.kept.push(Kept { reading: reading.clone(), is_after_pause, pose, state });
+        if self.find(reading, self.log.kept.len() - 1) {
+            self.look_at_keyframe();
+            let (new_m, known_m) = self.finder.ways_on_ground_m();
+            self.log.has_no_new_ground = known_m >= new_m.max(STANDS_M);
+        }
+        if self.finder.loops() != self.log.loops {
+            self.look_at_loops();
+            if self.log.is_torn || state == PoseState::Lost {
+                self.log.rest.get_or_insert(REST_SCANS);
+            }
+        }
+        let rest = self.log.rest.as_mut()?;
+        *rest = rest.saturating_sub(1);
+        if *rest > 0 {
+            return None;
+        }
+        self.log.rest = None;
+        Some(self.corrected())
+    }
+
+    /// Whether the robot should rest: the readings will be read again, for which a real robot needs some time.
+    pub(crate) fn wants_rest(&self) -> bool {
+        self.log.rest.is_some()
+    }
+
+    /// The readings have been read again, and have other poses.
+    pub(crate) fn accept(&mut self, poses: Vec<(Isometry2<f64>, PoseState)>) {
+        self.log.is_torn = false;
+        for (kept, (pose, state)) in self.log.kept.iter_mut().zip(poses) {
+            (kept.pose, kept.state) = (pose, state);
+        }
+    }
+
+    /// The readings have been read again, and the map was no better.
+    pub(crate) fn refuse(&mut self) {
+        self.log.is_torn = false;
+        self.log.refused += 1;
+    }
+
+    /// The pose of a keyframe in the map, if it is certain.
+    fn certain(&self, keyframe: usize) -> Option<Isometry2<f64>> {
+        let kept = &self.log.kept[self.keyframes[keyframe]];
+        (kept.state == PoseState::Tracking).then_some(kept.pose)
+    }
+
+    /// Whether the motion between two keyframes in the map contradicts another one.
+    fn contradicts(&self, from: usize, to: usize, motion: &Isometry2<f64>, way_m: f64) -> bool {
+        let Some((from, to)) = self.certain(from).zip(self.certain(to)) else { return false };
+        let off = from.inv_mul(&to).inv_mul(motion);
+        off.translation.vector.norm() > TORN_M + TORN_PER_M * way_m
+            || heading_rad(&off).abs() > TORN_RAD + TORN_RADPM * way_m
+    }
+
+    /// Compares the motion in the map since the last keyframe with that by matching with the surfaces around.
+    fn look_at_keyframe(&mut self) {
+        let now = self.keyframes.len() - 1;
+        if self.certain(now).is_none() {
+            return;
+        }
+        if let Some(last) = self.log.last_certain.replace(now) {
+            let motion = self.finder.matched_motion(last, now);
+            self.log.is_torn |= self.contradicts(last, now, &motion, self.finder.way_m(last, now));
+        }
+    }
+
+    /// Compares the motions in the map with those of new loops.
+    fn look_at_loops(&mut self) {
+        let mut loops = self.finder.loops_since(self.log.loops);
+        let is_torn = loops.any(|(from, to, motion)| self.contradicts(from, to, &motion, 0.0));
+        self.log.is_torn |= is_torn;
+        self.log.loops = self.finder.loops();
+    }
+
+    /// The poses of all readings in the map, by the trajectory with all loops. Where the trajectory begins, it is where the
+    /// map is.
+    fn corrected(&self) -> Vec<Isometry2<f64>> {
+        let found = self.finder.corrected();
+        let last = self.keyframes[FIRST_KEYFRAMES.min(self.keyframes.len() - 1)];
+        let first = || self.log.kept[..=last].iter().zip(&found).filter(|(kept, _)| kept.state == PoseState::Tracking);
+        let count = first().count().max(1) as f64;
+        let turn_rad = |(kept, found): (&Kept, &Isometry2<f64>)| heading_rad(&found.inv_mul(&kept.pose));
+        // Relative to the first: the mean of headings around π.
+        let turn = first().next().map_or(0.0, turn_rad);
+        let rest = first().map(|pair| interfaces::wrap_rad(turn_rad(pair) - turn)).sum::<f64>() / count;
+        let rotation = interfaces::rotation(turn + rest);
+        let shift = first().map(|(kept, found)| kept.pose.translation.vector - rotation * found.translation.vector);
+        let shift = shift.sum::<Vector2<f64>>() / count;
+        let to_map = Isometry2::from_parts(shift.into(), rotation);
+        found.iter().map(|found| to_map * found).collect()
+    }
+}
