@@ -1,15 +1,20 @@
 //! The readings of a robot that maps a place for the first time, and whether they must be read again.
 
-use crate::estimate::{Localized, PoseState};
+use crate::estimate::{Localized, PoseEstimate, PoseState};
+use crate::localizer::Guide;
 use crate::settings::LocalizerSettings;
-use crate::trajectory::{TrajectoryFinder, TrajectorySettings};
+use crate::trajectory::{TrajectoryFinder, TrajectorySettings, covariance, in_frame};
 use interfaces::{LaserReading, SettingsError, heading_rad};
 use nalgebra::{Isometry2, Vector2};
 
 /// The map is torn where two motions between the same keyframes differ by more than this, m and rad: the motion in the map,
 /// and that by matching with the surfaces around or by a loop.
-const TORN_M: f64 = 0.1;
-const TORN_RAD: f64 = 0.035;
+const TORN_M: f64 = 0.06;
+const TORN_RAD: f64 = 0.02;
+/// Poses with a larger standard deviation are not compared with loops, m.
+const KNOWN_STD_M: f64 = 0.05;
+/// The map is not torn where it explains a recognised place as well as the loop does, up to this share.
+const EXPLAINED: f64 = 0.9;
 /// What is added after a way, per metre: the errors of matching scan by scan.
 const TORN_PER_M: f64 = 0.02;
 const TORN_RADPM: f64 = 0.005;
@@ -26,6 +31,14 @@ const REST_SCANS: u32 = 5;
 /// The frame of the map is that of the readings up to this keyframe.
 const FIRST_KEYFRAMES: usize = 20;
 
+/// The errors of a certain pose, m and rad.
+const CERTAIN_STD_M: f64 = 0.01;
+const CERTAIN_STD_RAD: f64 = 0.003;
+/// The errors of the corrected trajectory, m and rad. They stay the same for many scans: a single scan follows the line map,
+/// and many follow the trajectory.
+const CORRECTED_STD_M: f64 = 0.01;
+const CORRECTED_STD_RAD: f64 = 0.003;
+
 /// A reading, and what the localizer has made of it.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Kept {
@@ -36,6 +49,8 @@ pub(crate) struct Kept {
     /// The pose in the map.
     pub(crate) pose: Isometry2<f64>,
     pub(crate) state: PoseState,
+    /// Whether the pose is known well enough to be compared with a loop.
+    is_known: bool,
 }
 
 /// What is in a state file: the rest follows from the readings.
@@ -44,8 +59,10 @@ pub(crate) struct Log {
     kept: Vec<Kept>,
     /// The time of the latest reading, s.
     time_s: f64,
-    /// The last keyframe with a certain pose.
+    /// The last reading with a certain pose.
     last_certain: Option<usize>,
+    /// The last keyframe with a known pose.
+    last_known: Option<usize>,
     /// The number of loops that were compared with the map.
     loops: usize,
     /// Whether the map is torn, as far as is known.
@@ -69,12 +86,13 @@ pub(crate) struct FirstMap {
 
 impl FirstMap {
     pub(crate) fn new(settings: &LocalizerSettings) -> Result<Self, SettingsError> {
+        let logs = TrajectorySettings::default();
         let settings = TrajectorySettings {
-            range_noise_std_m: settings.range_noise_std_m,
+            range_noise_std_m: settings.range_noise_std_m.max(logs.range_noise_std_m),
             odometry: settings.odometry,
-            ..TrajectorySettings::default()
+            ..logs
         };
-        let finder = TrajectoryFinder::new(&settings)?;
+        let finder = TrajectoryFinder::new(&settings)?.with_odometry();
         Ok(Self { finder, keyframes: Vec::new(), log: Log::default() })
     }
 
@@ -84,7 +102,8 @@ impl FirstMap {
         for (number, kept) in log.kept.iter().enumerate() {
             first.find(&kept.reading, number);
         }
-        let is_known = log.last_certain.is_none_or(|last| last < first.keyframes.len());
+        let is_known = log.last_known.is_none_or(|last| last < first.keyframes.len())
+            && log.last_certain.is_none_or(|last| last < log.kept.len());
         (is_known && log.loops == first.finder.loops()).then_some(Self { log, ..first })
     }
 
@@ -93,14 +112,12 @@ impl FirstMap {
         &self.log
     }
 
-    /// Finds the trajectory to reading `number`. Returns whether the reading is a keyframe.
-    fn find(&mut self, reading: &LaserReading, number: usize) -> bool {
+    /// Finds the trajectory to reading `number`.
+    fn find(&mut self, reading: &LaserReading, number: usize) {
         self.finder.add(reading.clone());
-        let is_keyframe = self.finder.keyframes() > self.keyframes.len();
-        if is_keyframe {
+        if self.finder.keyframes() > self.keyframes.len() {
             self.keyframes.push(number);
         }
-        is_keyframe
     }
 
     /// The readings so far.
@@ -119,19 +136,36 @@ impl FirstMap {
         self.log.rest.is_none() && (self.log.has_no_new_ground || is_over)
     }
 
-    /// Adds the next reading, before which the map had the time `map_s`. If a loop shows that the map is torn, the result is
-    /// the poses of all readings.
+    /// Takes the next reading. The result is where the robot is, from its last certain pose on; `None` if the last reading
+    /// was certain, or if a scan since then did not agree with those before.
+    pub(crate) fn guide(&mut self, reading: &LaserReading) -> Option<Guide> {
+        let number = self.log.kept.len();
+        self.find(reading, number);
+        let last = self.log.last_certain.filter(|last| last + 1 < number)?;
+        let (motion, spread) = self.finder.motion_since(last)?;
+        let at = self.log.kept[last].pose;
+        let covariance = in_frame(&spread, &at.inverse()) + covariance(CERTAIN_STD_M, CERTAIN_STD_RAD);
+        Some(Guide { pose: at * motion, covariance })
+    }
+
+    /// Adds the pose of the reading, before which the map had the time `map_s`. If a loop shows that the map is torn, the
+    /// result is the poses of all readings.
     pub(crate) fn add(
         &mut self,
         reading: &LaserReading,
         map_s: f64,
         localized: &Localized,
-    ) -> Option<Vec<Isometry2<f64>>> {
+    ) -> Option<Vec<Guide>> {
         let (pose, state) = (localized.estimate.pose, localized.estimate.state);
         let is_after_pause = map_s > self.log.time_s && !self.log.kept.is_empty();
         self.log.time_s = self.log.time_s.max(reading.time_s).max(map_s);
-        self.log.kept.push(Kept { reading: reading.clone(), is_after_pause, pose, state });
-        if self.find(reading, self.log.kept.len() - 1) {
+        let number = self.log.kept.len();
+        let is_known = is_known(&localized.estimate);
+        self.log.kept.push(Kept { reading: reading.clone(), is_after_pause, pose, state, is_known });
+        if state == PoseState::Tracking {
+            self.log.last_certain = Some(number);
+        }
+        if self.keyframes.last() == Some(&number) {
             self.look_at_keyframe();
             let (new_m, known_m) = self.finder.ways_on_ground_m();
             self.log.has_no_new_ground = known_m >= new_m.max(STANDS_M);
@@ -157,10 +191,10 @@ impl FirstMap {
     }
 
     /// The readings have been read again, and have other poses.
-    pub(crate) fn accept(&mut self, poses: Vec<(Isometry2<f64>, PoseState)>) {
+    pub(crate) fn accept(&mut self, estimates: &[PoseEstimate]) {
         self.log.is_torn = false;
-        for (kept, (pose, state)) in self.log.kept.iter_mut().zip(poses) {
-            (kept.pose, kept.state) = (pose, state);
+        for (kept, estimate) in self.log.kept.iter_mut().zip(estimates) {
+            (kept.pose, kept.state, kept.is_known) = (estimate.pose, estimate.state, is_known(estimate));
         }
     }
 
@@ -170,43 +204,44 @@ impl FirstMap {
         self.log.refused += 1;
     }
 
-    /// The pose of a keyframe in the map, if it is certain.
-    fn certain(&self, keyframe: usize) -> Option<Isometry2<f64>> {
-        let kept = &self.log.kept[self.keyframes[keyframe]];
-        (kept.state == PoseState::Tracking).then_some(kept.pose)
-    }
-
-    /// Whether the motion between two keyframes in the map contradicts another one.
-    fn contradicts(&self, from: usize, to: usize, motion: &Isometry2<f64>, way_m: f64) -> bool {
-        let Some((from, to)) = self.certain(from).zip(self.certain(to)) else { return false };
-        let off = from.inv_mul(&to).inv_mul(motion);
-        off.translation.vector.norm() > TORN_M + TORN_PER_M * way_m
-            || heading_rad(&off).abs() > TORN_RAD + TORN_RADPM * way_m
+    /// The motion between two keyframes in the map, if both have a known pose.
+    fn mapped_motion(&self, from: usize, to: usize) -> Option<Isometry2<f64>> {
+        let known = |keyframe: usize| {
+            Some(&self.log.kept[self.keyframes[keyframe]]).filter(|kept| kept.is_known)
+        };
+        Some(known(from)?.pose.inv_mul(&known(to)?.pose))
     }
 
     /// Compares the motion in the map since the last keyframe with that by matching with the surfaces around.
     fn look_at_keyframe(&mut self) {
         let now = self.keyframes.len() - 1;
-        if self.certain(now).is_none() {
+        if !self.log.kept[self.keyframes[now]].is_known {
             return;
         }
-        if let Some(last) = self.log.last_certain.replace(now) {
-            let motion = self.finder.matched_motion(last, now);
-            self.log.is_torn |= self.contradicts(last, now, &motion, self.finder.way_m(last, now));
+        if let Some(last) = self.log.last_known.replace(now) {
+            let (motion, way_m) = (self.finder.matched_motion(last, now), self.finder.way_m(last, now));
+            self.log.is_torn |=
+                self.mapped_motion(last, now).is_some_and(|mapped| is_torn(&mapped, &motion, way_m));
         }
     }
 
-    /// Compares the motions in the map with those of new loops.
+    /// Compares the motions in the map with those of new loops. What the map says may explain the place as well as the loop.
     fn look_at_loops(&mut self) {
-        let mut loops = self.finder.loops_since(self.log.loops);
-        let is_torn = loops.any(|(from, to, motion)| self.contradicts(from, to, &motion, 0.0));
+        let is_torn = self.finder.loops_since(self.log.loops).any(|found| {
+            let mapped = self.mapped_motion(found.from, found.to);
+            mapped.is_some_and(|mapped| {
+                let near = || self.finder.agreement_near(&found, &mapped);
+                let is_explained = |(near, share)| share >= EXPLAINED && !is_torn(&mapped, &near, 0.0);
+                is_torn(&mapped, &found.motion, 0.0) && !near().is_some_and(is_explained)
+            })
+        });
         self.log.is_torn |= is_torn;
         self.log.loops = self.finder.loops();
     }
 
     /// The poses of all readings in the map, by the trajectory with all loops. Where the trajectory begins, it is where the
     /// map is.
-    fn corrected(&self) -> Vec<Isometry2<f64>> {
+    fn corrected(&self) -> Vec<Guide> {
         let found = self.finder.corrected();
         let last = self.keyframes[FIRST_KEYFRAMES.min(self.keyframes.len() - 1)];
         let first = || self.log.kept[..=last].iter().zip(&found).filter(|(kept, _)| kept.state == PoseState::Tracking);
@@ -219,6 +254,19 @@ impl FirstMap {
         let shift = first().map(|(kept, found)| kept.pose.translation.vector - rotation * found.translation.vector);
         let shift = shift.sum::<Vector2<f64>>() / count;
         let to_map = Isometry2::from_parts(shift.into(), rotation);
-        found.iter().map(|found| to_map * found).collect()
+        let covariance = covariance(CORRECTED_STD_M, CORRECTED_STD_RAD);
+        found.iter().map(|found| Guide { pose: to_map * found, covariance }).collect()
     }
+}
+
+/// Whether a pose is known well enough to be compared with a loop.
+fn is_known(estimate: &PoseEstimate) -> bool {
+    estimate.state != PoseState::Lost && estimate.position_std_m() <= KNOWN_STD_M
+}
+
+/// Whether a motion in the map contradicts another one, which was found after a way of `way_m`.
+fn is_torn(mapped: &Isometry2<f64>, motion: &Isometry2<f64>, way_m: f64) -> bool {
+    let off = mapped.inv_mul(motion);
+    off.translation.vector.norm() > TORN_M + TORN_PER_M * way_m
+        || heading_rad(&off).abs() > TORN_RAD + TORN_RADPM * way_m
 }

@@ -3,6 +3,8 @@ mod guided;
 mod relocalizing;
 mod saved;
 
+pub(crate) use guided::Guide;
+
 use crate::calibration::Calibration;
 use crate::changing_map::ChangingMap;
 use crate::estimate::{Localized, PoseEstimate, PoseState, Start};
@@ -68,7 +70,7 @@ pub struct Localizer {
     /// The support below which the pose is searched for: lower where a search has confirmed a low support.
     accepted_support: f64,
     /// About where the robot is, if that is known.
-    guide: Option<Isometry2<f64>>,
+    guide: Option<Guide>,
 }
 
 impl Localizer {

@@ -15,7 +15,7 @@
 
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept, Log};
-use crate::localizer::Localizer;
+use crate::localizer::{Guide, Localizer};
 use crate::settings::LocalizerSettings;
 use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value};
 use mapper::Mapper;
@@ -104,8 +104,13 @@ impl LoopClosingLocalizer {
     /// Estimates the pose of a reading, as [`Localizer::localize`]. `map` has learned from the readings so far whose pose was
     /// certain, has skipped the others, and has learned from nothing else.
     pub fn localize(&mut self, reading: &LaserReading, map: &mut Mapper) -> LoopClosed {
-        let localized = self.localizer.localize(reading, map);
-        let Some(first) = &mut self.first else { return LoopClosed { localized, correction: None } };
+        let Some(first) = &mut self.first else {
+            return LoopClosed { localized: self.localizer.localize(reading, map), correction: None };
+        };
+        let localized = match first.guide(reading) {
+            Some(guide) => self.localizer.localize_near(reading, map, guide),
+            None => self.localizer.localize(reading, map),
+        };
         let closed = match first.add(reading, map.time(), &localized) {
             Some(poses) => self.read_again(&poses, map),
             None => None,
@@ -117,11 +122,11 @@ impl LoopClosingLocalizer {
     }
 
     /// Reads all readings so far again, near other poses. `None` if that is no use; then nothing has changed.
-    fn read_again(&mut self, near: &[Isometry2<f64>], map: &mut Mapper) -> Option<LoopClosed> {
+    fn read_again(&mut self, near: &[Guide], map: &mut Mapper) -> Option<LoopClosed> {
         let first = self.first.as_mut()?;
         let mut localizer = Localizer::from_nothing(&self.settings, &self.frame, self.start).ok()?;
         let mut again = map.emptied();
-        let mut poses = Vec::with_capacity(near.len());
+        let mut estimates = Vec::with_capacity(near.len());
         let mut last = None;
         for (Kept { reading, is_after_pause, .. }, near) in first.kept().iter().zip(near) {
             if let Some(Localized { reading, estimate }) = last.take() {
@@ -130,25 +135,26 @@ impl LoopClosingLocalizer {
             if *is_after_pause {
                 again.pause(reading.time_s);
             }
-            let localized = localizer.localize_near(reading, &again, near);
-            poses.push((localized.estimate.pose, localized.estimate.state));
+            let localized = localizer.localize_again(reading, &again, *near);
+            estimates.push(localized.estimate.clone());
             last = Some(localized);
         }
         let certain = |states: &mut dyn Iterator<Item = PoseState>| {
             states.filter(|state| *state == PoseState::Tracking).count() as f64
         };
         let before = certain(&mut first.kept().iter().map(|kept| kept.state));
-        let after = certain(&mut poses.iter().map(|(_, state)| *state));
+        let after = certain(&mut estimates.iter().map(|estimate| estimate.state));
         if after < before * (1.0 - FEWER_CERTAIN) {
             first.refuse();
             return None;
         }
-        let moved_m = first.kept().iter().zip(&poses).filter(|(kept, _)| kept.state == PoseState::Tracking).map(
-            |(kept, (pose, _))| (pose.translation.vector - kept.pose.translation.vector).norm(),
-        );
-        let correction =
-            Correction { places: first.loops(), readings: poses.len(), largest_m: moved_m.fold(0.0, f64::max) };
-        first.accept(poses);
+        let was_certain = |(kept, _): &(&Kept, &PoseEstimate)| kept.state == PoseState::Tracking;
+        let moved_m = first.kept().iter().zip(&estimates).filter(was_certain).map(|(kept, estimate)| {
+            (estimate.pose.translation.vector - kept.pose.translation.vector).norm()
+        });
+        let (places, readings) = (first.loops(), estimates.len());
+        let correction = Correction { places, readings, largest_m: moved_m.fold(0.0, f64::max) };
+        first.accept(&estimates);
         (self.localizer, *map) = (localizer, again);
         Some(LoopClosed { localized: last?, correction: Some(correction) })
     }

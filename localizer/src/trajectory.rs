@@ -29,6 +29,7 @@ mod sparse;
 mod submap;
 
 pub use line_map::{LineMap, LineMatcher};
+pub(crate) use matching::{covariance, in_frame};
 pub use settings::TrajectorySettings;
 
 use crate::estimate::PoseState;

@@ -1,19 +1,65 @@
 //! What is known about the trajectory while the robot still drives.
 
 use super::TrajectoryFinder;
-use super::graph::Edge;
+use super::graph::EdgeKind;
+use super::matching::{fit, in_frame};
+use crate::estimate::PoseState;
+use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Matrix3};
 
 /// A submap is on new ground if no earlier one has its middle within this distance, m.
 const KNOWN_M: f64 = 4.0;
 /// A turn counts as this way, m/rad.
 const TURN_M: f64 = 0.3;
 
+/// The uncertainty of a motion that may explain a loop, m and rad.
+const NEAR_STD: (f64, f64) = (0.1, 0.03);
+
+/// A place that was recognised.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FoundLoop {
+    /// Two keyframes, and the motion between them.
+    pub(crate) from: usize,
+    pub(crate) to: usize,
+    pub(crate) motion: Isometry2<f64>,
+    /// The submaps in whose middle the keyframes are.
+    submaps: [usize; 2],
+}
+
 impl TrajectoryFinder {
+    /// The same finder, for an odometry that is there: a robot that rests at the start does not go on as before.
+    pub(crate) fn with_odometry(mut self) -> Self {
+        self.front_end.expect_odometry();
+        self
+    }
+
     /// The poses of all readings so far, with all loops that are closed. The pose of the first reading is the origin.
     pub(crate) fn corrected(&self) -> Vec<Isometry2<f64>> {
         self.poses(&self.optimized()).iter().map(|found| found.pose).collect()
+    }
+
+    /// The motion since reading number `from` by matching with local submaps alone, and its covariance, in the frame of the
+    /// robot at that reading. `None` if a scan since then did not agree with its submap.
+    pub(crate) fn motion_since(&self, from: usize) -> Option<(Isometry2<f64>, Matrix3<f64>)> {
+        let since = &self.readings[from + 1..];
+        if since.iter().any(|reading| reading.state != PoseState::Tracking) {
+            return None;
+        }
+        let (first, last) = (&self.readings[from], since.last()?);
+        let edges = self.graph.edges.iter().filter(|edge| {
+            edge.kind == EdgeKind::Match && edge.from >= first.keyframe && edge.to <= last.keyframe
+        });
+        let (mut pose, mut spread) = (first.offset.inverse(), Matrix3::zeros());
+        for edge in edges {
+            let own = edge.information.try_inverse()?;
+            let shift = pose.rotation * edge.motion.translation.vector;
+            // An error of the heading turns the motion.
+            let turned = Matrix3::new(1.0, 0.0, -shift.y, 0.0, 1.0, shift.x, 0.0, 0.0, 1.0);
+            spread = turned * spread * turned.transpose() + in_frame(&own, &pose.inverse());
+            pose *= edge.motion;
+        }
+        Some((pose * last.offset, spread))
     }
 
     /// The number of keyframes so far.
@@ -41,10 +87,24 @@ impl TrajectoryFinder {
         self.closer.loops()
     }
 
-    /// The loops from number `first` on: two keyframes, and the motion between them.
-    pub(crate) fn loops_since(&self, first: usize) -> impl Iterator<Item = (usize, usize, Isometry2<f64>)> {
-        let ends = |Edge { from, to, motion, .. }: &Edge| (*from, *to, *motion);
-        self.closer.accepted()[first..].iter().map(move |place| ends(&place.edge))
+    /// The loops from number `first` on.
+    pub(crate) fn loops_since(&self, first: usize) -> impl Iterator<Item = FoundLoop> {
+        self.closer.accepted()[first..].iter().map(|place| FoundLoop {
+            from: place.edge.from,
+            to: place.edge.to,
+            motion: place.edge.motion,
+            submaps: [place.from, place.to],
+        })
+    }
+
+    /// The motion near `motion` at which the two submaps of a loop agree best, and how much agrees there, compared with the
+    /// motion of the loop: 1 for as much.
+    pub(crate) fn agreement_near(&self, found: &FoundLoop, motion: &Isometry2<f64>) -> Option<(Isometry2<f64>, f64)> {
+        let [from, to] = found.submaps.map(|number| &self.closer.places.submaps[number]);
+        let map = SurfelMap::of_points(&from.points)?;
+        let fit = |motion| fit(&map, &to.points, motion, NEAR_STD, self.settings.range_noise_std_m);
+        let ((near, agrees), (_, most)) = (fit(motion)?, fit(&found.motion)?);
+        Some((near.placement.pose, agrees.confirmed / most.confirmed.max(f64::MIN_POSITIVE)))
     }
 
     /// The way on new ground, and the way since new ground was last seen, m.

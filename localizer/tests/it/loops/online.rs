@@ -114,6 +114,10 @@ fn trip(corridor: Corridor, rounds: f64, seed: u64, plain: bool) -> Trip {
         trip.corrections.extend(closed.correction.map(|correction| (way_m, correction, elapsed_ms)));
         let after = usize::from(!trip.corrections.is_empty());
         let estimate = &closed.localized.estimate;
+        if std::env::var("TRACE").is_ok() && run.step % 5 == 0 {
+            let error = (estimate.pose.translation.vector - truth.translation.vector).norm();
+            println!("TR {way_m:.1} {:?} err {:.3} std {:.4} {:.4} support {:.2}", estimate.state, error, estimate.position_std_m(), estimate.heading_std_rad(), estimate.support);
+        }
         match estimate.state {
             PoseState::Tracking => {
                 let error = estimate.pose.translation.vector - truth.translation.vector;
@@ -259,4 +263,13 @@ fn long_loops_are_closed() {
         }
     }
     assert!(worst_m < 0.2, "{worst_m} m");
+}
+
+#[test]
+#[ignore = "debug"]
+fn debug_one() {
+    let get = |name: &str| std::env::var(name).unwrap().parse::<f64>().unwrap();
+    let corridor = Corridor::new([get("L"), get("D")], Plan::Varied, get("SEED") as u64);
+    let corridor = if get("AHEAD") > 0.0 { ahead(corridor) } else { corridor };
+    trip(corridor, get("ROUNDS"), get("SEED") as u64, get("PLAIN") > 0.0).report("debug");
 }
