@@ -23,9 +23,11 @@ const TORN_RADPM: f64 = 0.005;
 const STANDS_M: f64 = 60.0;
 /// The first map also stands after this number of readings, which bounds the memory: half an hour at 10 Hz.
 const MOST_READINGS: usize = 18_000;
-/// The first map also stands after the readings were read again in vain this often: a robot that was carried, or an odometry
-/// that jumps.
+/// The first map also stands after the readings were read again in vain this often.
 const MOST_REFUSED: u32 = 3;
+/// The first map also stands after this number of consecutive readings that did not agree with those before: the robot was
+/// carried, and how far is not known.
+const BROKEN_READINGS: u32 = 10;
 /// The number of scans at rest before the readings are read again.
 const REST_SCANS: u32 = 5;
 /// The frame of the map is that of the readings up to this keyframe.
@@ -36,8 +38,8 @@ const CERTAIN_STD_M: f64 = 0.01;
 const CERTAIN_STD_RAD: f64 = 0.003;
 /// The errors of the corrected trajectory, m and rad. They stay the same for many scans: a single scan follows the line map,
 /// and many follow the trajectory.
-const CORRECTED_STD_M: f64 = 0.01;
-const CORRECTED_STD_RAD: f64 = 0.003;
+const CORRECTED_STD_M: f64 = 0.003;
+const CORRECTED_STD_RAD: f64 = 0.001;
 
 /// A reading, and what the localizer has made of it.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -73,6 +75,9 @@ pub(crate) struct Log {
     has_no_new_ground: bool,
     /// How often the readings were read again in vain.
     refused: u32,
+    /// The number of readings since one agreed with those before, and whether there were too many.
+    unsupported: u32,
+    is_broken: bool,
 }
 
 /// The readings so far, and their trajectory with all loops.
@@ -132,7 +137,7 @@ impl FirstMap {
 
     /// Whether the map stands: its frame does not move any more.
     pub(crate) fn stands(&self) -> bool {
-        let is_over = self.log.kept.len() >= MOST_READINGS || self.log.refused >= MOST_REFUSED;
+        let is_over = self.log.kept.len() >= MOST_READINGS || self.log.refused >= MOST_REFUSED || self.log.is_broken;
         self.log.rest.is_none() && (self.log.has_no_new_ground || is_over)
     }
 
@@ -141,6 +146,8 @@ impl FirstMap {
     pub(crate) fn guide(&mut self, reading: &LaserReading) -> Option<Guide> {
         let number = self.log.kept.len();
         self.find(reading, number);
+        self.log.unsupported = if self.finder.is_supported() { 0 } else { self.log.unsupported + 1 };
+        self.log.is_broken |= self.log.unsupported >= BROKEN_READINGS;
         let last = self.log.last_certain.filter(|last| last + 1 < number)?;
         let (motion, spread) = self.finder.motion_since(last)?;
         let at = self.log.kept[last].pose;

@@ -26,6 +26,9 @@ use std::fmt;
 /// is not believed.
 const FEWER_CERTAIN: f64 = 0.02;
 
+/// The same if no certain pose would move by more than this, m: a map with smaller errors is whole.
+const LEAST_M: f64 = 0.05;
+
 /// A localizer that starts from nothing, and that learns the map again when a loop is closed. The same readings give the same
 /// bits.
 #[derive(Debug)]
@@ -135,25 +138,24 @@ impl LoopClosingLocalizer {
             if *is_after_pause {
                 again.pause(reading.time_s);
             }
-            let localized = localizer.localize_again(reading, &again, *near);
+            let localized = localizer.localize_near(reading, &again, *near);
             estimates.push(localized.estimate.clone());
             last = Some(localized);
         }
-        let certain = |states: &mut dyn Iterator<Item = PoseState>| {
-            states.filter(|state| *state == PoseState::Tracking).count() as f64
-        };
-        let before = certain(&mut first.kept().iter().map(|kept| kept.state));
-        let after = certain(&mut estimates.iter().map(|estimate| estimate.state));
-        if after < before * (1.0 - FEWER_CERTAIN) {
+        let is_certain = |state: PoseState| usize::from(state == PoseState::Tracking);
+        let (mut before, mut after, mut largest_m) = (0, 0, 0.0_f64);
+        for (kept, estimate) in first.kept().iter().zip(&estimates) {
+            (before, after) = (before + is_certain(kept.state), after + is_certain(estimate.state));
+            if kept.state == PoseState::Tracking {
+                let moved = estimate.pose.translation.vector - kept.pose.translation.vector;
+                largest_m = largest_m.max(moved.norm());
+            }
+        }
+        if (after as f64) < before as f64 * (1.0 - FEWER_CERTAIN) || largest_m < LEAST_M {
             first.refuse();
             return None;
         }
-        let was_certain = |(kept, _): &(&Kept, &PoseEstimate)| kept.state == PoseState::Tracking;
-        let moved_m = first.kept().iter().zip(&estimates).filter(was_certain).map(|(kept, estimate)| {
-            (estimate.pose.translation.vector - kept.pose.translation.vector).norm()
-        });
-        let (places, readings) = (first.loops(), estimates.len());
-        let correction = Correction { places, readings, largest_m: moved_m.fold(0.0, f64::max) };
+        let correction = Correction { places: first.loops(), readings: estimates.len(), largest_m };
         first.accept(&estimates);
         (self.localizer, *map) = (localizer, again);
         Some(LoopClosed { localized: last?, correction: Some(correction) })

@@ -59,7 +59,9 @@ impl Localizer {
         }
         let others = [self.pose, self.pose * self.last_motion];
         let scene = self.scene(reading, map);
-        let tracked = track(&scene, &predicted, &others);
+        // A guide knows whether the odometry told the truth.
+        let others = if self.guide.is_some() { &[] } else { &others[..] };
+        let tracked = track(&scene, &predicted, others);
         let is_low = tracked.support.share() < self.settings.min_support;
         let is_mirrored = is_low && is_mirrored(&scene, &predicted.pose, reading);
         if self.is_supported(&tracked) && !is_mirrored {
@@ -77,7 +79,7 @@ impl Localizer {
             (predicted.pose, predicted.covariance)
         };
         self.doubt();
-        if !is_mirrored {
+        if !is_mirrored && self.guide.is_none() {
             self.search(reading, map, &tracked);
         }
         tracked.support

@@ -9,8 +9,9 @@ use crate::motion::Predicted;
 use interfaces::LaserReading;
 use nalgebra::{Isometry2, Matrix3};
 
-/// A pose is elsewhere if it is farther from the guide than this, m, and than this many standard deviations.
-const ELSEWHERE_M: f64 = 0.5;
+/// A pose is elsewhere if it is farther from the guide than this, m and rad, and than this many standard deviations.
+const ELSEWHERE_M: f64 = 0.3;
+const ELSEWHERE_RAD: f64 = 0.3;
 const ELSEWHERE_STDS: f64 = 4.0;
 
 /// Where the robot is by another source, in the frame of the map: a pose with its covariance.
@@ -24,32 +25,16 @@ impl Guide {
     /// Whether the robot may be at a pose.
     fn allows(&self, pose: &Isometry2<f64>) -> bool {
         let std_m = (self.covariance[(0, 0)] + self.covariance[(1, 1)]).sqrt();
-        (pose.translation.vector - self.pose.translation.vector).norm() <= ELSEWHERE_M + ELSEWHERE_STDS * std_m
+        let off = difference(pose, &self.pose);
+        off.xy().norm() <= ELSEWHERE_M + ELSEWHERE_STDS * std_m && off.z.abs() <= ELSEWHERE_RAD
     }
 }
 
 impl Localizer {
-    /// Estimates the pose of a reading after a pose that was not certain. The guide helps where the scans fit, but do not fix
-    /// the pose well enough. A pose that a search has found elsewhere is not believed: in a map that is not finished,
-    /// something always looks like the place.
+    /// Estimates the pose of a reading with a guide. The guide helps where the scans fit, but do not fix the pose well enough;
+    /// and a robot with a guide is not lost: in a map that is not finished, a search would always find something that looks
+    /// like the place.
     pub(crate) fn localize_near(
-        &mut self,
-        reading: &LaserReading,
-        map: &impl ChangingMap,
-        guide: Guide,
-    ) -> Localized {
-        if !self.hypotheses.is_empty() && !guide.allows(&self.pose) {
-            self.hypotheses = Hypotheses::default();
-            (self.pose, self.covariance, self.state) = (guide.pose, guide.covariance, PoseState::Uncertain);
-        }
-        self.guide = Some(guide).filter(|_| self.hypotheses.is_empty());
-        let localized = self.localize(reading, map);
-        self.guide = None;
-        localized
-    }
-
-    /// Estimates the pose of a reading with a guide that knows all that comes later: the robot is not lost.
-    pub(crate) fn localize_again(
         &mut self,
         reading: &LaserReading,
         map: &impl ChangingMap,
@@ -68,6 +53,10 @@ impl Localizer {
     /// The predicted pose, and what the guide says.
     pub(super) fn guided(&self, mut predicted: Predicted) -> Predicted {
         let Some(guide) = &self.guide else { return predicted };
+        if !guide.allows(&predicted.pose) {
+            (predicted.pose, predicted.covariance) = (guide.pose, guide.covariance);
+            return predicted;
+        }
         // The gain of a Kalman filter.
         let Some(both) = (predicted.covariance + guide.covariance).try_inverse() else { return predicted };
         let gain = predicted.covariance * both;

@@ -62,6 +62,11 @@ impl TrajectoryFinder {
         Some((pose * last.offset, spread))
     }
 
+    /// Whether the last reading agreed with those before.
+    pub(crate) fn is_supported(&self) -> bool {
+        self.readings.last().is_some_and(|reading| reading.state == PoseState::Tracking)
+    }
+
     /// The number of keyframes so far.
     pub(crate) fn keyframes(&self) -> usize {
         self.graph.poses.len()
