@@ -5,7 +5,7 @@ use crate::localizer::Guide;
 use crate::settings::LocalizerSettings;
 use crate::trajectory::{TrajectoryFinder, TrajectorySettings, covariance, in_frame};
 use interfaces::{LaserReading, SettingsError, heading_rad};
-use nalgebra::{Isometry2, Vector2};
+use nalgebra::{Isometry2, Matrix3, Vector2};
 
 /// The map is torn where two motions between the same keyframes differ by more than this, m and rad: the motion in the map,
 /// and that by matching with the surfaces around or by a loop.
@@ -15,9 +15,10 @@ const TORN_RAD: f64 = 0.02;
 const KNOWN_STD_M: f64 = 0.05;
 /// The map is not torn where it explains a recognised place as well as the loop does, up to this share.
 const EXPLAINED: f64 = 0.9;
-/// What is added after a way, per metre: the errors of matching scan by scan.
-const TORN_PER_M: f64 = 0.02;
-const TORN_RADPM: f64 = 0.005;
+/// The same in standard deviations of the motion by matching.
+const TORN_STDS: f64 = 3.0;
+/// The number of keyframes of the longer way over which motions are compared: about 5 m.
+const WINDOW: usize = 16;
 /// The first map stands when the robot has gone as far without new ground as on new ground before, and at least this far, m;
 /// a turn counts as 0.3 m/rad.
 const STANDS_M: f64 = 60.0;
@@ -219,17 +220,20 @@ impl FirstMap {
         Some(known(from)?.pose.inv_mul(&known(to)?.pose))
     }
 
-    /// Compares the motion in the map since the last keyframe with that by matching with the surfaces around.
+    /// Compares the motion in the map to the last keyframe with that by matching with the surfaces around: since the last
+    /// known keyframe, and over a longer way.
     fn look_at_keyframe(&mut self) {
         let now = self.keyframes.len() - 1;
         if !self.log.kept[self.keyframes[now]].is_known {
             return;
         }
-        if let Some(last) = self.log.last_known.replace(now) {
-            let (motion, way_m) = (self.finder.matched_motion(last, now), self.finder.way_m(last, now));
-            self.log.is_torn |=
-                self.mapped_motion(last, now).is_some_and(|mapped| is_torn(&mapped, &motion, way_m));
-        }
+        let last = self.log.last_known.replace(now);
+        self.log.is_torn |= last.into_iter().chain(now.checked_sub(WINDOW)).any(|from| {
+            let mapped = self.mapped_motion(from, now);
+            let matched = self.finder.matched_motion(from, now);
+            let is_torn = |(mapped, (matched, spread))| is_torn(&mapped, &matched, &spread);
+            mapped.zip(matched).is_some_and(is_torn)
+        });
     }
 
     /// Compares the motions in the map with those of new loops. What the map says may explain the place as well as the loop.
@@ -238,8 +242,9 @@ impl FirstMap {
             let mapped = self.mapped_motion(found.from, found.to);
             mapped.is_some_and(|mapped| {
                 let near = || self.finder.agreement_near(&found, &mapped);
-                let is_explained = |(near, share)| share >= EXPLAINED && !is_torn(&mapped, &near, 0.0);
-                is_torn(&mapped, &found.motion, 0.0) && !near().is_some_and(is_explained)
+                let is_torn = |motion: &Isometry2<f64>| is_torn(&mapped, motion, &Matrix3::zeros());
+                let is_explained = |(near, share)| share >= EXPLAINED && !is_torn(&near);
+                is_torn(&found.motion) && !near().is_some_and(is_explained)
             })
         });
         self.log.is_torn |= is_torn;
@@ -271,9 +276,10 @@ fn is_known(estimate: &PoseEstimate) -> bool {
     estimate.state != PoseState::Lost && estimate.position_std_m() <= KNOWN_STD_M
 }
 
-/// Whether a motion in the map contradicts another one, which was found after a way of `way_m`.
-fn is_torn(mapped: &Isometry2<f64>, motion: &Isometry2<f64>, way_m: f64) -> bool {
+/// Whether a motion in the map contradicts another one with this covariance.
+fn is_torn(mapped: &Isometry2<f64>, motion: &Isometry2<f64>, spread: &Matrix3<f64>) -> bool {
     let off = mapped.inv_mul(motion);
-    off.translation.vector.norm() > TORN_M + TORN_PER_M * way_m
-        || heading_rad(&off).abs() > TORN_RAD + TORN_RADPM * way_m
+    let std_m = (spread[(0, 0)] + spread[(1, 1)]).sqrt();
+    off.translation.vector.norm() > TORN_M.max(TORN_STDS * std_m)
+        || heading_rad(&off).abs() > TORN_RAD.max(TORN_STDS * spread[(2, 2)].sqrt())
 }

@@ -1,7 +1,7 @@
 //! What is known about the trajectory while the robot still drives.
 
 use super::TrajectoryFinder;
-use super::graph::EdgeKind;
+use super::graph::{Edge, EdgeKind};
 use super::matching::{fit, in_frame};
 use crate::estimate::PoseState;
 use crate::surfel_map::SurfelMap;
@@ -47,19 +47,26 @@ impl TrajectoryFinder {
             return None;
         }
         let (first, last) = (&self.readings[from], since.last()?);
-        let edges = self.graph.edges.iter().filter(|edge| {
-            edge.kind == EdgeKind::Match && edge.from >= first.keyframe && edge.to <= last.keyframe
-        });
-        let (mut pose, mut spread) = (first.offset.inverse(), Matrix3::zeros());
-        for edge in edges {
-            let own = edge.information.try_inverse()?;
-            let shift = pose.rotation * edge.motion.translation.vector;
+        let (motion, spread) = self.matched_motion(first.keyframe, last.keyframe)?;
+        let back = first.offset.inverse();
+        Some((back * motion * last.offset, in_frame(&spread, &first.offset)))
+    }
+
+    /// The motion between two keyframes by matching with local submaps alone, without any loop, and its covariance, in the
+    /// frame of the first one.
+    pub(crate) fn matched_motion(&self, from: usize, to: usize) -> Option<(Isometry2<f64>, Matrix3<f64>)> {
+        let is_between =
+            |edge: &&Edge| edge.kind == EdgeKind::Match && edge.from >= from && edge.to <= to;
+        let (mut motion, mut spread) = (Isometry2::identity(), Matrix3::zeros());
+        for edge in self.graph.edges.iter().filter(is_between) {
+            let shift = motion.rotation * edge.motion.translation.vector;
             // An error of the heading turns the motion.
             let turned = Matrix3::new(1.0, 0.0, -shift.y, 0.0, 1.0, shift.x, 0.0, 0.0, 1.0);
-            spread = turned * spread * turned.transpose() + in_frame(&own, &pose.inverse());
-            pose *= edge.motion;
+            let own = in_frame(&edge.information.try_inverse()?, &motion.inverse());
+            spread = turned * spread * turned.transpose() + own;
+            motion *= edge.motion;
         }
-        Some((pose * last.offset, spread))
+        Some((motion, spread))
     }
 
     /// Whether the last reading agreed with those before.
@@ -72,16 +79,11 @@ impl TrajectoryFinder {
         self.graph.poses.len()
     }
 
-    /// The motion between two keyframes by matching with local submaps alone, without any loop.
-    pub(crate) fn matched_motion(&self, from: usize, to: usize) -> Isometry2<f64> {
-        let keyframes = self.front_end.keyframes();
-        keyframes[from].local.inv_mul(&keyframes[to].local)
-    }
-
     /// The way from a keyframe to a later one, m; turns count as a way.
-    pub(crate) fn way_m(&self, from: usize, to: usize) -> f64 {
+    fn way_m(&self, from: usize, to: usize) -> f64 {
         let step_m = |keyframe: usize| {
-            let motion = self.matched_motion(keyframe, keyframe + 1);
+            let keyframes = self.front_end.keyframes();
+            let motion = keyframes[keyframe].local.inv_mul(&keyframes[keyframe + 1].local);
             motion.translation.vector.norm() + TURN_M * heading_rad(&motion).abs()
         };
         (from..to).map(step_m).sum()
