@@ -138,7 +138,8 @@ impl FirstMap {
 
     /// Whether the map stands: its frame does not move any more.
     pub(crate) fn stands(&self) -> bool {
-        let is_over = self.log.kept.len() >= MOST_READINGS || self.log.refused >= MOST_REFUSED || self.log.is_broken;
+        let is_over =
+            self.log.kept.len() >= MOST_READINGS || self.log.refused >= MOST_REFUSED || self.log.is_broken;
         self.log.rest.is_none() && (self.log.has_no_new_ground || is_over)
     }
 
@@ -214,9 +215,8 @@ impl FirstMap {
 
     /// The motion between two keyframes in the map, if both have a known pose.
     fn mapped_motion(&self, from: usize, to: usize) -> Option<Isometry2<f64>> {
-        let known = |keyframe: usize| {
-            Some(&self.log.kept[self.keyframes[keyframe]]).filter(|kept| kept.is_known)
-        };
+        let known =
+            |keyframe: usize| Some(&self.log.kept[self.keyframes[keyframe]]).filter(|kept| kept.is_known);
         Some(known(from)?.pose.inv_mul(&known(to)?.pose))
     }
 
@@ -256,14 +256,17 @@ impl FirstMap {
     fn corrected(&self) -> Vec<Guide> {
         let found = self.finder.corrected();
         let last = self.keyframes[FIRST_KEYFRAMES.min(self.keyframes.len() - 1)];
-        let first = || self.log.kept[..=last].iter().zip(&found).filter(|(kept, _)| kept.state == PoseState::Tracking);
+        let first = || {
+            self.log.kept[..=last].iter().zip(&found).filter(|(kept, _)| kept.state == PoseState::Tracking)
+        };
         let count = first().count().max(1) as f64;
         let turn_rad = |(kept, found): (&Kept, &Isometry2<f64>)| heading_rad(&found.inv_mul(&kept.pose));
         // Relative to the first: the mean of headings around π.
         let turn = first().next().map_or(0.0, turn_rad);
         let rest = first().map(|pair| interfaces::wrap_rad(turn_rad(pair) - turn)).sum::<f64>() / count;
         let rotation = interfaces::rotation(turn + rest);
-        let shift = first().map(|(kept, found)| kept.pose.translation.vector - rotation * found.translation.vector);
+        let shift =
+            first().map(|(kept, found)| kept.pose.translation.vector - rotation * found.translation.vector);
         let shift = shift.sum::<Vector2<f64>>() / count;
         let to_map = Isometry2::from_parts(shift.into(), rotation);
         let covariance = covariance(CORRECTED_STD_M, CORRECTED_STD_RAD);

@@ -1,5 +1,7 @@
 use interfaces::{LaserReading, ValueError};
-use localizer::{Correction, GivenPoses, Localized, LoopClosed, LoopClosingLocalizer, Localizer, PoseEstimate, PoseState};
+use localizer::{
+    Correction, GivenPoses, Localized, Localizer, LoopClosed, LoopClosingLocalizer, PoseEstimate, PoseState,
+};
 use mapper::Mapper;
 
 /// Gives every reading its pose: the part between the source and the mapper.

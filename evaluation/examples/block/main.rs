@@ -5,7 +5,7 @@
 //! the map of a robot with exact poses.
 //!
 //! ```text
-//! cargo run -p evaluation --example block -- LENGTH DEPTH [SEED [TRIALS [MINUTES [BEAMS]]]]
+//! cargo run -p evaluation --example block -- LENGTH DEPTH [SEED [TRIALS [MINUTES [BEAMS [VIEW_DEG]]]]]
 //! ```
 
 mod world;
@@ -31,7 +31,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sides_m = [number(0, 30.0), number(1, 22.0)];
     let seed = number(2, 100.0) as u64;
     for seed in seed..seed + number(3, 1.0) as u64 {
-        let spec = world::block(sides_m, number(5, 360.0) as usize, seed).ok_or("no such world")?;
+        let spec = world::block(sides_m, (number(5, 360.0) as usize, number(6, 360.0)), seed)
+            .ok_or("no such world")?;
         for (name, pose, is_closing) in [
             ("exact poses", PoseChoice::Exact, false),
             ("localized, no loops", PoseChoice::Localized, false),
@@ -100,8 +101,8 @@ fn wrong_walls<P>(trial: &PhysicsTrial<P>) -> f64 {
     let frame = *states.frame();
     let is_wrong = |index: &&usize| {
         let cell = frame.cell(**index);
-        let mut around =
-            (-REACH..=REACH).flat_map(|x| (-REACH..=REACH).map(move |y| interfaces::Cell::new(cell.x + x, cell.y + y)));
+        let mut around = (-REACH..=REACH)
+            .flat_map(|x| (-REACH..=REACH).map(move |y| interfaces::Cell::new(cell.x + x, cell.y + y)));
         around.all(|cell| frame.index(cell).is_none_or(|index| truth.state(index) == TrueState::Free))
     };
     let blocked: Vec<usize> =
@@ -113,7 +114,9 @@ fn wrong_walls<P>(trial: &PhysicsTrial<P>) -> f64 {
 fn quantiles(mut errors_m: Vec<f64>) -> String {
     errors_m.sort_by(f64::total_cmp);
     let at = |share: f64| {
-        errors_m.get((share * errors_m.len().saturating_sub(1) as f64) as usize).map_or(f64::NAN, |m| m * 100.0)
+        errors_m
+            .get((share * errors_m.len().saturating_sub(1) as f64) as usize)
+            .map_or(f64::NAN, |m| m * 100.0)
     };
     format!("{:.1} / {:.1} / {:.1} cm", at(0.5), at(0.95), at(1.0))
 }

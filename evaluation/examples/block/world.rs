@@ -68,7 +68,7 @@ fn wall(side: &Side, length_m: f64, walls: &mut Vec<Rectangle>, random: &mut Ran
 }
 
 /// Corridors around a block of `sides_m`, measured in the middle of the corridor, with a robot whose odometry drifts hard.
-pub(crate) fn block(sides_m: [f64; 2], beams: usize, seed: u64) -> Option<WorldSpec> {
+pub(crate) fn block(sides_m: [f64; 2], (beams, view_deg): (usize, f64), seed: u64) -> Option<WorldSpec> {
     let mut random = RandomStream::new(seed, Purpose::HouseGenerator);
     let house = WorldSpec::generate_house(seed);
     let mut robot = house.fleet().robots[house.driven_index()].clone();
@@ -90,7 +90,7 @@ pub(crate) fn block(sides_m: [f64; 2], beams: usize, seed: u64) -> Option<WorldS
         }
     }
     robot.pose = interfaces::pose(low_m + 2.0, low_m, 0.0);
-    robot.laser.beams = beams;
+    (robot.laser.beams, robot.laser.fov_rad) = (beams, view_deg.to_radians());
     robot.laser.noise_std_m = 0.01;
     robot.odometry = OdometryError {
         distance_gain: 0.05,

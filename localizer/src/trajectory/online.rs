@@ -55,8 +55,7 @@ impl TrajectoryFinder {
     /// The motion between two keyframes by matching with local submaps alone, without any loop, and its covariance, in the
     /// frame of the first one.
     pub(crate) fn matched_motion(&self, from: usize, to: usize) -> Option<(Isometry2<f64>, Matrix3<f64>)> {
-        let is_between =
-            |edge: &&Edge| edge.kind == EdgeKind::Match && edge.from >= from && edge.to <= to;
+        let is_between = |edge: &&Edge| edge.kind == EdgeKind::Match && edge.from >= from && edge.to <= to;
         let (mut motion, mut spread) = (Isometry2::identity(), Matrix3::zeros());
         for edge in self.graph.edges.iter().filter(is_between) {
             let shift = motion.rotation * edge.motion.translation.vector;
@@ -106,7 +105,11 @@ impl TrajectoryFinder {
 
     /// The motion near `motion` at which the two submaps of a loop agree best, and how much agrees there, compared with the
     /// motion of the loop: 1 for as much.
-    pub(crate) fn agreement_near(&self, found: &FoundLoop, motion: &Isometry2<f64>) -> Option<(Isometry2<f64>, f64)> {
+    pub(crate) fn agreement_near(
+        &self,
+        found: &FoundLoop,
+        motion: &Isometry2<f64>,
+    ) -> Option<(Isometry2<f64>, f64)> {
         let [from, to] = found.submaps.map(|number| &self.closer.places.submaps[number]);
         let map = SurfelMap::of_points(&from.points)?;
         let fit = |motion| fit(&map, &to.points, motion, NEAR_STD, self.settings.range_noise_std_m);
