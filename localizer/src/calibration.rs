@@ -84,7 +84,11 @@ impl Calibration {
             let spread = *covariance * x;
             let k = spread / (noise + x.dot(&spread));
             *gains += k * (heading_rad(estimated) - gains.dot(&x));
-            *covariance -= k * spread.transpose();
+            // Joseph's form stays symmetric and positive. `covariance - k * spread^T` does not: forgetting lets the rounding
+            // errors that are not symmetric grow, and after half an hour the gains with them.
+            let left = Matrix2::identity() - k * x.transpose();
+            let next = left * *covariance * left.transpose() + k * k.transpose() * noise;
+            *covariance = (next + next.transpose()) / 2.0;
         }
     }
 }
@@ -109,6 +113,25 @@ mod tests {
             let error = truth(step).inv_mul(&calibration.correct(&measured(step)));
             assert!(error.translation.vector.norm() < 1e-3, "{error}");
             assert!(heading_rad(&error).abs() < 2e-4, "{error}");
+        }
+    }
+
+    #[test]
+    fn hours_of_driving_change_nothing() {
+        let mut calibration = Calibration::new(&OdometryTrust::default());
+        let mut random = 1_u32;
+        let mut signed = || {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(random >> 8) / f64::from(1 << 23) - 1.0
+        };
+        for _ in 0..200_000 {
+            let truth = pose(0.03 * signed().max(0.0), 0.0, 0.1 * signed());
+            let seen =
+                pose(truth.translation.x + 1e-3 * signed(), 0.0, heading_rad(&truth) + 1e-3 * signed());
+            calibration.learn(&truth, &seen);
+            let error = truth.inv_mul(&calibration.correct(&truth));
+            assert!(error.translation.vector.norm() < 1e-3, "{error}");
+            assert!(heading_rad(&error).abs() < 1e-3, "{error}");
         }
     }
 

@@ -11,12 +11,12 @@ use nalgebra::{Isometry2, Matrix3, Vector2};
 /// and that by matching with the surfaces around or by a loop.
 const TORN_M: f64 = 0.06;
 const TORN_RAD: f64 = 0.02;
-/// Poses with a larger standard deviation are not compared with loops, m.
+/// The same in standard deviations of the motion by matching.
+const TORN_STDS: f64 = 3.0;
+/// Poses with a larger standard deviation are not compared, m.
 const KNOWN_STD_M: f64 = 0.05;
 /// The map is not torn where it explains a recognised place as well as the loop does, up to this share.
 const EXPLAINED: f64 = 0.9;
-/// The same in standard deviations of the motion by matching.
-const TORN_STDS: f64 = 3.0;
 /// The number of keyframes of the longer way over which motions are compared: about 5 m.
 const WINDOW: usize = 16;
 /// The first map stands when the robot has gone as far without new ground as on new ground before, and at least this far, m;
@@ -76,7 +76,7 @@ pub(crate) struct Log {
     has_no_new_ground: bool,
     /// How often the readings were read again in vain.
     refused: u32,
-    /// The number of readings since one agreed with those before, and whether there were too many.
+    /// The number of readings since one agreed with its submap, and whether there were too many.
     unsupported: u32,
     is_broken: bool,
 }

@@ -1,17 +1,20 @@
-//! A robot that maps a place for the first time, and closes its loops while it drives.
+//! A robot that maps a place for the first time: its loops are closed while it drives.
 //!
 //! ```text
-//! reading ─▶ localizer ─▶ pose ─▶ mapper
-//!    └─▶ trajectory finder ─▶ a loop that contradicts the map? ─▶ read all readings again, near the corrected poses
+//! reading ─▶ trajectory finder ─guide─▶ localizer ─▶ pose ─▶ mapper
+//!                  └─▶ a loop that contradicts the map: all readings again, near the corrected trajectory
 //! ```
 //!
-//! After a long way around, the robot comes back some decimetres beside its own map: every wall would be there twice. The
-//! [`TrajectoryFinder`](crate::TrajectoryFinder) runs along, recognises the place, and distributes the error. Then the robot
-//! reads its own log again: a new localizer and a new mapper get all readings so far, and the corrected trajectory guides
-//! the localizer. So there is one kind of map, and what it knows of changes and rates follows from the better poses as well.
+//! - Where the scans fit the map but do not fix the pose, as in a corridor, the [`TrajectoryFinder`](crate::TrajectoryFinder)
+//!   guides the localizer: its submaps hold what the map does not hold yet. While it does, nothing is searched for in the whole
+//!   map: in a map that is not finished, something always looks like the place.
+//! - After a long way around, the robot comes back beside its own map, and the map is torn where the two meet. When the
+//!   finder recognises the place, the robot reads its own log again: a new localizer and a new mapper get all readings so far,
+//!   guided by the corrected trajectory. So there is one kind of map, and what it knows of changes and rates follows from the
+//!   better poses as well.
 //!
-//! The map can move until it *stands*: when the robot has gone for some way without new ground. From then on, its frame
-//! stays for ever.
+//! The map can move until it *stands*: the robot has gone as far on known ground as on new ground before. From then on, its
+//! frame stays for ever.
 
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept, Log};
@@ -25,7 +28,6 @@ use std::fmt;
 /// The readings are not read again if this share of those with a certain pose would no longer be certain: then the loop
 /// is not believed.
 const FEWER_CERTAIN: f64 = 0.02;
-
 /// The same if no certain pose would move by more than this, m: a map with smaller errors is whole.
 const LEAST_M: f64 = 0.05;
 

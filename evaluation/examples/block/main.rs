@@ -79,7 +79,7 @@ fn run(
     })?;
     let elapsed_s = begin.elapsed().as_secs_f64();
     let scores = map_scores(&trial.mapper, trial.world.truth());
-    let [before, after] = errors_m.map(|errors_m| quantiles(errors_m));
+    let [before, after] = errors_m.map(quantiles);
     println!(
         "before {before}; after {after}; {uncertain} scans not certain; seen {:.1} %, right {:.1} %, walls that are not \
          there {:.2} %; {:.0} x real time, a scan at most {:.0} ms",

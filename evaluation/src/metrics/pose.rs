@@ -152,4 +152,14 @@ mod tests {
         assert_eq!(observed(0.06, &[Uncertain]).lock_ins, 0);
         assert_eq!(observed(0.04, &[Tracking]).lock_ins, 0);
     }
+
+    #[test]
+    fn closed_loops_are_counted() {
+        let mut errors = PoseErrors::default();
+        for largest_m in [0.3, 0.2] {
+            errors.correct(&Correction { places: 2, readings: 100, largest_m });
+        }
+        let scores = errors.scores("localized");
+        assert_eq!((scores.loops_closed, scores.largest_correction_m), (2, 0.3));
+    }
 }

@@ -68,9 +68,9 @@ impl TrajectoryFinder {
         Some((motion, spread))
     }
 
-    /// Whether the last reading agreed with those before.
+    /// Whether the last reading agreed with its submap; invalid readings do not disagree.
     pub(crate) fn is_supported(&self) -> bool {
-        self.readings.last().is_some_and(|reading| reading.state == PoseState::Tracking)
+        self.readings.last().is_some_and(|reading| reading.state != PoseState::Uncertain)
     }
 
     /// The number of keyframes so far.
