@@ -127,6 +127,18 @@ impl<D: Drive> Controller<D> {
         self.path.clear();
     }
 
+    /// Forgets the map: the next one is not the last one with some changes. A path to the goal is planned anew; a local
+    /// exploration ends.
+    pub fn forget_map(&mut self) {
+        (self.surroundings, self.last_change) = (None, None);
+        self.path.clear();
+        self.state = match std::mem::replace(&mut self.state, State::Idle) {
+            State::Travelling { task, at_goal } => State::New { goal: *task.goal(), at_goal },
+            State::Exploring { done, .. } => State::Finished(done),
+            other => other,
+        };
+    }
+
     /// Writes the travel time from the robot to each cell at full speed, in row-major order, s (steps in a grid
     /// world); ∞ where no path is known. Call it after [`drive`](Self::drive), which applies the changes of the
     /// map. The computing time is that of one wave over the whole map.

@@ -85,6 +85,10 @@ impl Observer {
         self.poses.observe(reading.time_s, &reading.pose, world.true_pose(), belief.estimate);
         self.measure(world, reading, belief.mapper);
         self.collect_messages(world, pilot);
+        if let Some(correction) = &belief.correction {
+            self.poses.correct(correction);
+            self.messages.push(Message { level: Level::Event, text: correction.to_string() });
+        }
     }
 
     /// The latest coverage and map quality.

@@ -8,7 +8,7 @@ use crate::summary::{Contacts, Liveliest, RunResults};
 use agent::{Agent, AgentSettings, Features, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
 use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, SettingsError, Twist, World};
-use localizer::{GivenPoses, Localizer, LocalizerSettings, Start};
+use localizer::{GivenPoses, Localizer, LocalizerSettings, LoopClosingLocalizer, Start};
 use mapper::{Mapper, MapperSettings, ReadingError};
 use robot::{Autonomous, Belief, GoalSelector, Localization, Pilot, explore};
 use serde::Serialize;
@@ -150,7 +150,7 @@ impl PhysicsSettings {
             (PoseChoice::Odometry, _) => Box::new(GivenPoses::default()),
             (PoseChoice::Localized, None) => {
                 let (start, frame) = (*world.true_pose(), world.spec().frame);
-                Box::new(Localizer::from_nothing(&self.localizer, &frame, start)?)
+                Box::new(LoopClosingLocalizer::from_nothing(&self.localizer, &frame, start)?)
             }
             (PoseChoice::Localized, Some(map)) => {
                 Box::new(Localizer::in_map(&self.localizer, map, Start::Unknown)?)

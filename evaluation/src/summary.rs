@@ -226,10 +226,18 @@ impl RunResults {
     fn pose(&self) -> Option<String> {
         let PoseScores { mode, median_m, p95_m, max_m, uncertain_s, lost_s, lock_ins, .. } = self.pose;
         let (median, p95) = (median_m? * 1e3, p95_m? * 1e3);
+        let loops = match self.pose.loops_closed {
+            0 => String::new(),
+            count => {
+                let (noun, moved_m) =
+                    (if count == 1 { "loop" } else { "loops" }, self.pose.largest_correction_m);
+                format!("; {count} {noun} closed, which moved poses of the past by up to {moved_m:.2} m")
+            }
+        };
         (mode != "exact").then(|| {
             format!(
                 "{mode}: error {median:.1} mm in the median, {p95:.1} mm for 95 %, {:.0} mm at most; {:.1}° for 95 %; \
-                 uncertain for {uncertain_s:.1} s, lost for {lost_s:.1} s, certain but wrong {lock_ins} times",
+                 uncertain for {uncertain_s:.1} s, lost for {lost_s:.1} s, certain but wrong {lock_ins} times{loops}",
                 max_m * 1e3,
                 self.pose.heading_p95_deg.unwrap_or_default(),
             )
@@ -390,5 +398,24 @@ mod tests {
           stood     longest time without moving 0.1 m: cat 312 s
           contacts  1 by its own motion, 2 in which something ran into it
         ");
+    }
+
+    #[test]
+    fn closed_loops_are_in_the_line_of_the_pose() {
+        let line = |loops_closed| {
+            let pose = PoseScores {
+                mode: "localized",
+                median_m: Some(0.001),
+                p95_m: Some(0.004),
+                ..PoseScores::default()
+            };
+            let pose = PoseScores { loops_closed, largest_correction_m: 0.253, ..pose };
+            let age = Age { mean_s: 60.0, max_s: 431.0, never_seen: 0 };
+            RunResults { pose, ..results(1.0, age, RateScores::default()) }.pose().unwrap()
+        };
+        assert!(line(0).ends_with("certain but wrong 0 times"));
+        assert!(
+            line(2).ends_with("wrong 0 times; 2 loops closed, which moved poses of the past by up to 0.25 m")
+        );
     }
 }

@@ -137,7 +137,7 @@ fn two_sessions_add_up_with_the_time_between_as_a_gap() {
     let Trial { mut localization, mapper: mut both, .. } = saved(&mut first, &there, &settings);
     let session = Session::next(localization.as_mut(), &mut both, readings[0].time_s, Some(GAP_S));
     for reading in readings {
-        let posed = localization.localize(session.shifted(reading), &both);
+        let posed = localization.localize(session.shifted(reading), &mut both);
         both.update(&posed.reading).unwrap();
     }
     let sum = exposure(&first.mapper).into_iter().zip(exposure(&alone.mapper)).map(|(a, b)| a + b);

@@ -27,7 +27,7 @@
 //!   unchanged surfaces alone fix the pose.
 //!
 //! [`TrajectoryFinder`] finds the trajectory of a whole log: with submaps that move along with the robot, loops, and a pose
-//! graph.
+//! graph. [`LoopClosingLocalizer`] closes loops while the robot maps a place for the first time.
 //!
 //! This crate knows readings, and of the map its states and rates. It must not know worlds, simulators, goals, drives,
 //! recordings or files.
@@ -37,9 +37,11 @@ mod calibration;
 mod changing_map;
 mod estimate;
 mod faults;
+mod first_map;
 mod given_poses;
 mod hypotheses;
 mod localizer;
+mod loop_closing;
 mod matcher;
 mod moments;
 mod motion;
@@ -61,6 +63,7 @@ pub use changing_map::ChangingMap;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};
 pub use given_poses::GivenPoses;
 pub use localizer::Localizer;
+pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer};
 pub use settings::{LocalizerSettings, OdometryTrust};
 pub use trajectory::{
     LineMap, LineMatcher, Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings,

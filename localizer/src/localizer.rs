@@ -1,6 +1,9 @@
 mod estimating;
+mod guided;
 mod relocalizing;
 mod saved;
+
+pub(crate) use guided::Guide;
 
 use crate::calibration::Calibration;
 use crate::changing_map::ChangingMap;
@@ -72,6 +75,8 @@ pub struct Localizer {
     since_search: u32,
     /// The support below which the pose is searched for: lower where a search has confirmed a low support.
     accepted_support: f64,
+    /// About where the robot is, if that is known.
+    guide: Option<Guide>,
 }
 
 impl Localizer {
@@ -149,6 +154,7 @@ impl Localizer {
             readings: 0,
             since_search: u32::MAX,
             accepted_support: settings.min_support,
+            guide: None,
         })
     }
 

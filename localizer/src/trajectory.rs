@@ -20,6 +20,7 @@ mod line_map;
 mod loops;
 mod matching;
 mod odometry_drift;
+mod online;
 mod places;
 mod refine;
 mod residual;
@@ -28,6 +29,7 @@ mod sparse;
 mod submap;
 
 pub use line_map::{LineMap, LineMatcher};
+pub(crate) use matching::{covariance, in_frame};
 pub use settings::TrajectorySettings;
 
 use crate::estimate::PoseState;
@@ -126,17 +128,31 @@ impl TrajectoryFinder {
         if self.settings.close_loops {
             self.front_end.end();
             self.search_loops();
-            self.closer.finish(&mut self.graph);
-            let (places, keyframes) = (&self.closer.places, self.front_end.keyframes());
-            refine::refine(places, keyframes, &mut self.graph);
-            residual_std_m = residual::std_m(places, keyframes, &self.graph);
+            self.closer.accept_strong(&mut self.graph);
+            self.graph = self.optimized();
+            residual_std_m = residual::std_m(&self.closer.places, self.front_end.keyframes(), &self.graph);
         }
         let loops = self.closer.loops();
+        Trajectory { poses: self.poses(&self.graph), loops, residual_std_m }
+    }
+
+    /// The graph with all loops, where every wall is there once.
+    fn optimized(&self) -> PoseGraph {
+        let mut graph = self.graph.clone();
+        graph.optimize();
+        graph.remove_outliers();
+        graph.optimize();
+        refine::refine(&self.closer.places, self.front_end.keyframes(), &mut graph);
+        graph
+    }
+
+    /// The poses of all readings, where the keyframes have the poses of `graph`.
+    fn poses(&self, graph: &PoseGraph) -> Vec<TrajectoryPose> {
         let pose = |reading: &Attached| TrajectoryPose {
             time_s: reading.time_s,
-            pose: self.graph.poses[reading.keyframe] * reading.offset,
+            pose: graph.poses[reading.keyframe] * reading.offset,
             state: reading.state,
         };
-        Trajectory { poses: self.readings.iter().map(pose).collect(), loops, residual_std_m }
+        self.readings.iter().map(pose).collect()
     }
 }

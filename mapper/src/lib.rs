@@ -93,6 +93,7 @@ fn check_pose(pose: &Isometry2<f64>, time: f64) -> Result<(), ReadingError> {
 /// row-major order.
 #[derive(Clone, Debug)]
 pub struct Mapper {
+    settings: MapperSettings,
     cells: CellMap,
     occupancy: Box<dyn OccupancyModel>,
     expected_changes: ExpectedChanges,
@@ -141,10 +142,19 @@ impl Mapper {
     pub fn with_prior(settings: &MapperSettings, prior: Grid<CellState>) -> Result<Self, SettingsError> {
         settings.check()?;
         Self::check_bytes(prior.frame())?;
+        Ok(Self::build(settings.clone(), prior))
+    }
+
+    fn build(settings: MapperSettings, prior: Grid<CellState>) -> Self {
         let mut cells = CellMap::new(prior, settings.estimator.clone(), settings.max_gap);
-        let occupancy = settings.occupancy.build(settings, &mut cells);
-        let expected_changes = ExpectedChanges::default();
-        Ok(Self { cells, occupancy, expected_changes, scan: ProjectedScan::default(), points: Vec::new() })
+        let occupancy = settings.occupancy.build(&settings, &mut cells);
+        let (expected_changes, scan) = (ExpectedChanges::default(), ProjectedScan::default());
+        Self { settings, cells, occupancy, expected_changes, scan, points: Vec::new() }
+    }
+
+    /// A mapper with the same settings and the same frame, whose cells are all unknown.
+    pub fn emptied(&self) -> Self {
+        Self::build(self.settings.clone(), Grid::filled(*self.frame(), CellState::Unknown))
     }
 
     /// Goes on in a larger map, with the range noise of `settings`; its other settings are those of this mapper. The new

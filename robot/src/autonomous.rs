@@ -63,6 +63,11 @@ impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
         &mut self.selector
     }
 
+    /// Plans anew: the controller has not seen all changes of the map.
+    pub fn forget_map(&mut self) {
+        self.controller.forget_map();
+    }
+
     fn log(&mut self, level: Level, text: String) {
         self.messages.push(Message { level, text });
     }
@@ -98,6 +103,9 @@ impl<G: GoalSelector, D: Drive> Pilot for Autonomous<G, D> {
 
     fn command(&mut self, belief: &Belief) -> D::Command {
         self.selector.observe(belief);
+        if belief.correction.is_some() {
+            self.forget_map();
+        }
         let situation = situation(belief.mapper, belief.pose);
         if belief.permission != Permission::Drive {
             return self.controller.pause(&situation, belief.permission == Permission::LookAround);

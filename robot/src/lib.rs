@@ -53,13 +53,14 @@ where
     E: From<ReadingError>,
 {
     loop {
-        let Posed { reading, estimate, permission } = localization.localize(world.sense(), mapper);
+        let Posed { reading, estimate, permission, correction } =
+            localization.localize(world.sense(), mapper);
         match estimate.as_ref().is_none_or(|estimate| estimate.state == PoseState::Tracking) {
             true => mapper.update(&reading)?,
             false => mapper.skip(&reading),
         }
         let (pose, estimate, features) = (reading.pose(), estimate.as_ref(), Features::of(mapper));
-        let belief = Belief { pose, estimate, permission, features, mapper };
+        let belief = Belief { pose, estimate, permission, correction, features, mapper };
         let command = pilot.command(&belief);
         if observe(world, &reading, &belief, pilot)?.is_break() {
             return Ok(command);

@@ -1,11 +1,14 @@
 use interfaces::{LaserReading, ValueError};
-use localizer::{GivenPoses, Localizer, PoseEstimate, PoseState};
+use localizer::{
+    Correction, GivenPoses, Localized, Localizer, LoopClosed, LoopClosingLocalizer, PoseEstimate, PoseState,
+};
 use mapper::Mapper;
 
 /// Gives every reading its pose: the part between the source and the mapper.
 pub trait Localization<R> {
-    /// The pose of a reading. The map contains all earlier readings whose pose was certain.
-    fn localize(&mut self, reading: R, mapper: &Mapper) -> Posed<R>;
+    /// The pose of a reading. The map contains all earlier readings whose pose was certain. If their poses have become
+    /// better, the map is learned again.
+    fn localize(&mut self, reading: R, mapper: &mut Mapper) -> Posed<R>;
 
     /// Everything that readings have changed, as bytes; settings are not in it.
     fn snapshot(&mut self) -> Vec<u8>;
@@ -30,6 +33,15 @@ pub struct Posed<R> {
     pub estimate: Option<PoseEstimate>,
     /// What the robot may do with this pose.
     pub permission: Permission,
+    /// If a loop was closed: the map was learned again with better poses.
+    pub correction: Option<Correction>,
+}
+
+impl<R> Posed<R> {
+    /// A reading of a source whose poses are exact.
+    fn exact(reading: R) -> Self {
+        Self { reading, estimate: None, permission: Permission::Drive, correction: None }
+    }
 }
 
 /// What a robot may do, as far as its pose is known.
@@ -49,8 +61,8 @@ pub enum Permission {
 pub struct ExactPoses;
 
 impl<R> Localization<R> for ExactPoses {
-    fn localize(&mut self, reading: R, _: &Mapper) -> Posed<R> {
-        Posed { reading, estimate: None, permission: Permission::Drive }
+    fn localize(&mut self, reading: R, _: &mut Mapper) -> Posed<R> {
+        Posed::exact(reading)
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
@@ -65,8 +77,8 @@ impl<R> Localization<R> for ExactPoses {
 }
 
 impl Localization<LaserReading> for GivenPoses {
-    fn localize(&mut self, reading: LaserReading, _: &Mapper) -> Posed<LaserReading> {
-        Posed { reading: self.unswept(reading), estimate: None, permission: Permission::Drive }
+    fn localize(&mut self, reading: LaserReading, _: &mut Mapper) -> Posed<LaserReading> {
+        Posed::exact(self.unswept(reading))
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
@@ -83,14 +95,9 @@ impl Localization<LaserReading> for GivenPoses {
 }
 
 impl Localization<LaserReading> for Localizer {
-    fn localize(&mut self, reading: LaserReading, mapper: &Mapper) -> Posed<LaserReading> {
+    fn localize(&mut self, reading: LaserReading, mapper: &mut Mapper) -> Posed<LaserReading> {
         let localized = Localizer::localize(self, &reading, mapper);
-        let permission = match localized.estimate.state {
-            _ if self.wants_rest() => Permission::Rest,
-            PoseState::Lost => Permission::LookAround,
-            PoseState::Tracking | PoseState::Uncertain => Permission::Drive,
-        };
-        Posed { reading: localized.reading, estimate: Some(localized.estimate), permission }
+        posed(localized, self.wants_rest(), None)
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
@@ -104,4 +111,32 @@ impl Localization<LaserReading> for Localizer {
     fn begin_session(&mut self) {
         Localizer::begin_session(self);
     }
+}
+
+impl Localization<LaserReading> for LoopClosingLocalizer {
+    fn localize(&mut self, reading: LaserReading, mapper: &mut Mapper) -> Posed<LaserReading> {
+        let LoopClosed { localized, correction } = LoopClosingLocalizer::localize(self, &reading, mapper);
+        posed(localized, self.wants_rest(), correction)
+    }
+
+    fn snapshot(&mut self) -> Vec<u8> {
+        LoopClosingLocalizer::snapshot(self)
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        LoopClosingLocalizer::restore(self, snapshot)
+    }
+
+    fn begin_session(&mut self) {
+        LoopClosingLocalizer::begin_session(self);
+    }
+}
+
+fn posed(localized: Localized, rests: bool, correction: Option<Correction>) -> Posed<LaserReading> {
+    let permission = match localized.estimate.state {
+        _ if rests => Permission::Rest,
+        PoseState::Lost => Permission::LookAround,
+        PoseState::Tracking | PoseState::Uncertain => Permission::Drive,
+    };
+    Posed { reading: localized.reading, estimate: Some(localized.estimate), permission, correction }
 }

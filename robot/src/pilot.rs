@@ -2,7 +2,7 @@ use crate::Message;
 use crate::Permission;
 use agent::Features;
 use interfaces::Values;
-use localizer::PoseEstimate;
+use localizer::{Correction, PoseEstimate};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
@@ -16,6 +16,9 @@ pub struct Belief<'a> {
     pub estimate: Option<&'a PoseEstimate>,
     /// What the robot may do with this pose.
     pub permission: Permission,
+    /// If a loop was closed with this reading: the map was learned again with better poses, and has other cells than its
+    /// [transitions](Mapper::transitions) say.
+    pub correction: Option<Correction>,
     /// The features by which the agent chooses a strategy.
     pub features: Features,
     /// The map and the change statistics, with the latest reading included.
@@ -25,7 +28,7 @@ pub struct Belief<'a> {
 impl<'a> Belief<'a> {
     /// The belief of a robot with an exact pose.
     pub fn exact(pose: &'a Isometry2<f64>, features: Features, mapper: &'a Mapper) -> Self {
-        Self { pose, estimate: None, permission: Permission::Drive, features, mapper }
+        Self { pose, estimate: None, permission: Permission::Drive, correction: None, features, mapper }
     }
 }
 

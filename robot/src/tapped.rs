@@ -16,7 +16,7 @@ impl<L: ?Sized, F> Tapped<L, F> {
 }
 
 impl<R, L: Localization<R> + ?Sized, F: FnMut(&R)> Localization<R> for Tapped<L, F> {
-    fn localize(&mut self, reading: R, mapper: &Mapper) -> Posed<R> {
+    fn localize(&mut self, reading: R, mapper: &mut Mapper) -> Posed<R> {
         (self.show)(&reading);
         self.inner.localize(reading, mapper)
     }

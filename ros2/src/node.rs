@@ -18,7 +18,7 @@ use crate::saves::Saves;
 use crate::source::{FrameNames, LiveReading, ScanCount, Source};
 use anyhow::anyhow;
 use interfaces::{LaserReading, World};
-use localizer::{GivenPoses, Localizer, LocalizerSettings, PoseState};
+use localizer::{GivenPoses, LocalizerSettings, LoopClosingLocalizer, PoseState};
 use mapper::{Mapper, ReadingError};
 use nalgebra::Isometry2;
 use outputs::Markers;
@@ -116,7 +116,7 @@ impl<L: Link> CuriousNode<L> {
         let localizer = LocalizerSettings { range_noise_std_m: noise, ..LocalizerSettings::default() };
         let is_localized = parameters.pose == PoseSource::Localized;
         let mut localization: Box<dyn Localization<LaserReading> + Send> = match is_localized {
-            true => Box::new(Localizer::from_nothing(&localizer, &frame, Isometry2::identity())?),
+            true => Box::new(LoopClosingLocalizer::from_nothing(&localizer, &frame, Isometry2::identity())?),
             false => Box::new(GivenPoses::default()),
         };
         let mut pilot = LivePilot::new(parameters)?;
@@ -244,10 +244,12 @@ impl<L: Link> CuriousNode<L> {
         let Self { mapper, localization, pilot, .. } = self;
         let mut moment = Moment(reading);
         let (mut pose, mut state) = (Isometry2::identity(), PoseState::Tracking);
+        let mut correction = None;
         let localization: &mut dyn Localization<LaserReading> = localization.as_mut();
         let order = explore(&mut moment, localization, mapper, pilot, |_, _, belief, _| {
             pose = *belief.pose;
             state = belief.estimate.map_or(PoseState::Tracking, |estimate| estimate.state);
+            correction = belief.correction;
             Ok::<_, ReadingError>(ControlFlow::Break(()))
         });
         self.last = Some((stamp, now));
@@ -259,6 +261,10 @@ impl<L: Link> CuriousNode<L> {
                 return;
             }
         };
+        if let Some(correction) = correction {
+            self.notes.say(&correction.to_string());
+            self.maps.repeat();
+        }
         self.report.readings += 1;
         self.report.mapped += u64::from(state == PoseState::Tracking);
         if state != self.state && (state == PoseState::Lost || self.state == PoseState::Lost) {

@@ -68,7 +68,10 @@ impl LivePilot {
     pub(crate) fn resume(&mut self, resume: bool) {
         match self {
             Self::Watching => {}
-            Self::Driving { is_paused, .. } => *is_paused = !resume,
+            Self::Driving { pilot, is_paused } => {
+                *is_paused = !resume;
+                pilot.forget_map();
+            }
             Self::Navigating(pilot) => pilot.resume(resume),
         }
     }

@@ -109,11 +109,11 @@ impl FoundPoses {
 
 impl Localization<LaserReading> for FoundPoses {
     /// A reading beyond the last pose keeps its own pose and is not certain. The covariance is not estimated: 0.
-    fn localize(&mut self, reading: LaserReading, _: &Mapper) -> Posed<LaserReading> {
+    fn localize(&mut self, reading: LaserReading, _: &mut Mapper) -> Posed<LaserReading> {
         let (reading, state) = self.posed(reading);
         let (pose, covariance, support) = (reading.pose, Matrix3::zeros(), 1.0);
         let estimate = Some(PoseEstimate { pose, covariance, support, state });
-        Posed { reading, estimate, permission: Permission::Drive }
+        Posed { reading, estimate, permission: Permission::Drive, correction: None }
     }
 
     fn snapshot(&mut self) -> Vec<u8> {

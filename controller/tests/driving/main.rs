@@ -3,9 +3,9 @@
 mod grid;
 mod house;
 
-use controller::{Outcome, Settings, Status};
+use controller::{Controller, DiffDrive, Outcome, Settings, Situation, Status};
 use house::{House, Mover, controller};
-use interfaces::{Purpose, RandomStream};
+use interfaces::{CellState, Purpose, RandomStream};
 use nalgebra::Point2;
 use rand::RngExt;
 
@@ -304,4 +304,28 @@ fn a_goal_can_be_taken_back() {
     let rested_at = house.position();
     (0..5).for_each(|_| house.tick(&mut controller));
     assert_eq!((controller.status(), house.position()), (Status::Idle, rested_at));
+}
+
+#[test]
+fn a_map_that_was_replaced_is_read_again() {
+    let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+    let goal = House::at(22, 7);
+    controller.go_to(goal);
+    (0..20).for_each(|_| house.tick(&mut controller));
+    // In the new map, the door is closed. No transition says so.
+    let mut map = house.situation().map.clone();
+    let frame = *map.frame();
+    let is_in_door = |cell| (House::at(13, 0).x - frame.center(cell).x).abs() < house::CHARACTER_M / 2.0;
+    for index in (0..frame.len()).filter(|&index| is_in_door(frame.cell(index))) {
+        map.cells_mut()[index] = CellState::Blocked;
+    }
+    let situation = Situation { map: &map, transitions: &[], ..house.situation() };
+    let end = |controller: &mut Controller<DiffDrive>| {
+        controller.drive(&situation);
+        controller.path().last().copied().unwrap()
+    };
+    assert!((end(&mut controller) - goal).norm() < 0.1);
+    controller.forget_map();
+    assert!(end(&mut controller).x < House::at(13, 0).x);
+    assert_eq!((controller.status(), controller.goal()), (Status::Travelling, Some(&goal)));
 }

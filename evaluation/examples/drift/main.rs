@@ -24,7 +24,7 @@ mod shelves;
 use corners::Corners;
 use driver::Driver;
 use interfaces::{LaserReading, World};
-use localizer::{GivenPoses, Localizer, PoseState};
+use localizer::{GivenPoses, Localizer, LoopClosed, LoopClosingLocalizer, PoseState};
 use mapper::Mapper;
 use options::Options;
 use robot::Permission;
@@ -55,7 +55,8 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
     let mut exact = Mapper::new(&settings.mapper, spec.frame)?;
     let mut estimated = Mapper::new(&settings.mapper, spec.frame)?;
     let start = *world.true_pose();
-    let mut localizer = Localizer::from_nothing(&settings.localizer, &spec.frame, start)?;
+    let mut localizer = LoopClosingLocalizer::from_nothing(&settings.localizer, &spec.frame, start)?;
+    let mut alone = Localizer::from_nothing(&settings.localizer, &spec.frame, start)?;
     let mut driver = Driver::new(&settings, seed)?;
     let mut score = Score::new(&spec.frame);
     let mut corners = Corners::new(&spec.frame);
@@ -66,12 +67,19 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
         exact.update(&true_poses.unswept(LaserReading { pose: true_pose, ..reading.clone() }))?;
         let odometry = reading.pose;
         let begin = Instant::now();
-        let localized = if options.odometry_only {
-            score::by_odometry(start * first_odometry.inv_mul(&reading.pose), reading)
+        let without_loops = |localized| LoopClosed { localized, correction: None };
+        let LoopClosed { localized, correction } = if options.odometry_only {
+            without_loops(score::by_odometry(start * first_odometry.inv_mul(&reading.pose), reading))
+        } else if options.no_loops {
+            without_loops(alone.localize(&reading, &estimated))
         } else {
-            localizer.localize(&reading, &estimated)
+            localizer.localize(&reading, &mut estimated)
         };
         let elapsed = begin.elapsed();
+        if let Some(correction) = correction {
+            println!("    at {:.1} s: {correction}; {:.0} ms", world.time_s(), elapsed.as_secs_f64() * 1e3);
+            score.learned_again(&estimated);
+        }
         let estimate = &localized.estimate;
         let enters_map = estimate.state == PoseState::Tracking || options.no_gate;
         match enters_map {

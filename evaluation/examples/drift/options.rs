@@ -40,6 +40,8 @@ pub(crate) struct Options {
     pub(crate) trace: bool,
     pub(crate) odometry_only: bool,
     pub(crate) no_gate: bool,
+    /// Loops are not closed.
+    pub(crate) no_loops: bool,
     /// Unknown starts in the map of the run.
     pub(crate) relocate: bool,
     /// A third of the furniture was moved since the map of the unknown starts was made.
@@ -73,6 +75,7 @@ impl Options {
             trace: false,
             odometry_only: false,
             no_gate: false,
+            no_loops: false,
             relocate: false,
             moved: false,
             no_rates: false,
@@ -108,6 +111,7 @@ impl Options {
                 "trace" => options.trace = is_on,
                 "odometry-only" => options.odometry_only = is_on,
                 "no-gate" => options.no_gate = is_on,
+                "no-loops" => options.no_loops = is_on,
                 "relocate" => options.relocate = is_on,
                 "moved" => options.moved = is_on,
                 "no-rates" => options.no_rates = is_on,

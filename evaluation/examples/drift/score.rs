@@ -64,6 +64,13 @@ impl Score {
         }
     }
 
+    /// The changes in a map that was learned again.
+    pub(crate) fn learned_again(&mut self, estimated: &Mapper) {
+        for (index, changes) in self.changes[1].iter_mut().enumerate() {
+            *changes = estimated.statistics(index).events();
+        }
+    }
+
     /// Counts the false changes: those of cells that nothing ever touched.
     pub(crate) fn finish(&mut self, truth: &impl GroundTruth) {
         for (which, changes) in self.changes.iter().enumerate() {

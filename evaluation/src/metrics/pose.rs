@@ -1,5 +1,5 @@
 use super::counts::Counts;
-use localizer::{PoseEstimate, PoseState};
+use localizer::{Correction, PoseEstimate, PoseState};
 use nalgebra::{Isometry2, Point2, distance};
 use serde::Serialize;
 
@@ -23,6 +23,8 @@ pub struct PoseErrors {
     /// The beginning of the present large error with a certain pose, s; counted once it lasts.
     wrong_since_s: Option<f64>,
     last_s: f64,
+    loops_closed: usize,
+    largest_correction_m: f64,
 }
 
 /// The quality of the poses of a run.
@@ -44,6 +46,10 @@ pub struct PoseScores {
     pub lost_s: f64,
     /// How often a pose was taken for certain for more than a second although it was wrong by more than 5 cm or 1.1°.
     pub lock_ins: usize,
+    /// How often a closed loop has shown that the map was torn, so that the map was learned again.
+    pub loops_closed: usize,
+    /// The largest distance by which a pose of the past has moved then, m.
+    pub largest_correction_m: f64,
 }
 
 impl PoseErrors {
@@ -85,6 +91,12 @@ impl PoseErrors {
         }
     }
 
+    /// Counts a closed loop.
+    pub fn correct(&mut self, correction: &Correction) {
+        self.loops_closed += 1;
+        self.largest_correction_m = self.largest_correction_m.max(correction.largest_m);
+    }
+
     /// The scores so far.
     pub fn scores(&self, mode: &'static str) -> PoseScores {
         PoseScores {
@@ -96,6 +108,8 @@ impl PoseErrors {
             uncertain_s: self.uncertain_s,
             lost_s: self.lost_s,
             lock_ins: self.lock_ins,
+            loops_closed: self.loops_closed,
+            largest_correction_m: self.largest_correction_m,
         }
     }
 }
@@ -137,5 +151,15 @@ mod tests {
         assert_eq!(observed(0.06, &[Tracking, Uncertain, Tracking]).lock_ins, 2);
         assert_eq!(observed(0.06, &[Uncertain]).lock_ins, 0);
         assert_eq!(observed(0.04, &[Tracking]).lock_ins, 0);
+    }
+
+    #[test]
+    fn closed_loops_are_counted() {
+        let mut errors = PoseErrors::default();
+        for largest_m in [0.3, 0.2] {
+            errors.correct(&Correction { places: 2, readings: 100, largest_m });
+        }
+        let scores = errors.scores("localized");
+        assert_eq!((scores.loops_closed, scores.largest_correction_m), (2, 0.3));
     }
 }

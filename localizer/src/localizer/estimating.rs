@@ -52,6 +52,7 @@ impl Localizer {
         fault: Option<Fault>,
     ) -> Support {
         let predicted = motion.predict(&self.pose, &self.covariance, reading.scan.sweep_s > 0.0);
+        let predicted = self.guided(predicted);
         let is_first = self.from_nothing && self.surfels.is_empty();
         if fault == Some(Fault::Frozen) || is_first {
             (self.pose, self.covariance) = (predicted.pose, predicted.covariance);
@@ -64,7 +65,9 @@ impl Localizer {
         }
         let others = [self.pose, self.pose * self.last_motion];
         let scene = self.scene(reading, map);
-        let tracked = track(&scene, &predicted, &others);
+        // A guide knows whether the odometry told the truth.
+        let others = if self.guide.is_some() { &[] } else { &others[..] };
+        let tracked = track(&scene, &predicted, others);
         let is_low = tracked.support.share() < self.settings.min_support;
         let is_mirrored = is_low && is_mirrored(&scene, &predicted.pose, reading);
         if self.is_supported(&tracked) && !is_mirrored {
@@ -86,7 +89,7 @@ impl Localizer {
             (predicted.pose, predicted.covariance)
         };
         self.doubt();
-        if !is_mirrored {
+        if !is_mirrored && self.guide.is_none() {
             self.search(reading, motion, map, &tracked);
         }
         tracked.support

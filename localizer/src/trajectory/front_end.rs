@@ -105,6 +105,11 @@ impl FrontEnd {
         }
     }
 
+    /// The odometry is there, though it may not have moved yet.
+    pub(super) fn expect_odometry(&mut self) {
+        self.has_odometry = true;
+    }
+
     pub(super) fn keyframes(&self) -> &[Keyframe] {
         &self.keyframes
     }

@@ -55,9 +55,13 @@ impl LoopCloser {
         }
     }
 
-    /// Optimises the graph with all loops. Of the places that wait for others, strong ones are accepted if two earlier
-    /// submaps say the same.
-    pub(super) fn finish(&mut self, graph: &mut PoseGraph) {
+    /// The loops that were accepted, in the order in which they were accepted.
+    pub(super) fn accepted(&self) -> &[Place] {
+        &self.accepted
+    }
+
+    /// At the end: of the places that wait for others, strong ones are accepted if two earlier submaps say the same.
+    pub(super) fn accept_strong(&mut self, graph: &mut PoseGraph) {
         let pending = std::mem::take(&mut self.pending);
         for found in pending.iter().filter(|found| found.is_strong) {
             let mut others = pending.iter().filter(|other| other.from != found.from && other.to == found.to);
@@ -65,9 +69,6 @@ impl LoopCloser {
                 self.accept(found.clone(), graph);
             }
         }
-        graph.optimize();
-        graph.remove_outliers();
-        graph.optimize();
     }
 
     /// Whether other places between the same parts of the trajectory agree: at least one more than contradict. Places

@@ -28,12 +28,12 @@ pub(super) fn gates(noise_m: f64, first_m: f64) -> Gates {
 }
 
 /// The covariance of standard deviations of x and y, and of the heading.
-pub(super) fn covariance(std_m: f64, std_rad: f64) -> Matrix3<f64> {
+pub(crate) fn covariance(std_m: f64, std_rad: f64) -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(std_m * std_m, std_m * std_m, std_rad * std_rad))
 }
 
 /// An information matrix of shifts along the axes of a map, as one along the axes of a frame with this pose.
-pub(super) fn in_frame(information: &Matrix3<f64>, frame: &Isometry2<f64>) -> Matrix3<f64> {
+pub(crate) fn in_frame(information: &Matrix3<f64>, frame: &Isometry2<f64>) -> Matrix3<f64> {
     let (cos, sin) = (frame.rotation.re, frame.rotation.im);
     let turn = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
     turn.transpose() * information * turn

@@ -1,5 +1,6 @@
 //! Trajectories around loops, with a known truth and hard drift.
 
+mod online;
 mod world;
 
 use crate::robot::{Odometry, PERIOD_S};

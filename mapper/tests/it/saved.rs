@@ -74,3 +74,12 @@ fn a_pause_is_a_gap_and_no_time_between_readings() {
     mapper.pause(-5.0);
     assert!(mapper.time() >= 1009.9);
 }
+
+#[test]
+fn an_emptied_mapper_is_a_new_one() {
+    let settings = MapperSettings { max_gap: 0.3, ..MapperSettings::default() };
+    let mut emptied = mapper(&settings, 100).emptied();
+    assert!(emptied.snapshot() == mapper(&settings, 0).snapshot());
+    (0..100).for_each(|step| emptied.update(&reading(step)).unwrap());
+    assert!(emptied.snapshot() == mapper(&settings, 100).snapshot());
+}

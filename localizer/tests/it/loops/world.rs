@@ -1,6 +1,6 @@
 //! Corridors around a block, with niches and rooms behind doors; rays are cast against every near wall.
 
-use interfaces::{LaserReading, Purpose, RandomStream, Scan, Twist};
+use interfaces::{GridFrame, LaserReading, Purpose, RandomStream, Scan, Twist};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -102,6 +102,19 @@ impl Corridor {
         self.walls.push((last, to));
     }
 
+    /// A frame that covers the place, and the errors of a map of it.
+    pub(crate) fn frame(&self, resolution_m: f64) -> GridFrame {
+        let margin_m = WIDTH_M / 2.0 + 7.0;
+        let [length_m, depth_m] = self.sides_m.map(|side_m| side_m + 2.0 * margin_m);
+        GridFrame::covering(Point2::new(-margin_m, -margin_m), length_m, depth_m, resolution_m).unwrap()
+    }
+
+    /// The distance of a point from the nearest wall, m.
+    pub(crate) fn distance_m(&self, point: &Point2<f64>) -> f64 {
+        let distances_m = self.walls.iter().map(|wall| distance_m(wall, point));
+        distances_m.fold(f64::INFINITY, f64::min)
+    }
+
     /// The length of the way around, m.
     pub(crate) fn round_m(&self) -> f64 {
         2.0 * (self.sides_m[0] + self.sides_m[1]) - 8.0 * BEND_M + TAU * BEND_M
@@ -134,11 +147,7 @@ impl Corridor {
     /// The reading at a pose, with this pose as odometry.
     pub(crate) fn reading(&mut self, time_s: f64, pose: Isometry2<f64>) -> LaserReading {
         let origin = Point2::from(pose.translation.vector);
-        let is_near = |(a, b): &&(Point2<f64>, Point2<f64>)| {
-            let (edge, to) = (b - a, origin - a);
-            let share = (to.dot(&edge) / edge.norm_squared()).clamp(0.0, 1.0);
-            (to - edge * share).norm() < RANGE_M
-        };
+        let is_near = |wall: &&(Point2<f64>, Point2<f64>)| distance_m(wall, &origin) < RANGE_M;
         let near: Vec<_> = self.walls.iter().filter(is_near).copied().collect();
         let increment = self.fov_rad / self.beams as f64;
         let angle_min_rad = -self.fov_rad / 2.0;
@@ -172,4 +181,11 @@ impl Corridor {
             },
         }
     }
+}
+
+/// The distance of a point from a wall, m.
+fn distance_m((a, b): &(Point2<f64>, Point2<f64>), point: &Point2<f64>) -> f64 {
+    let (edge, to) = (b - a, point - a);
+    let share = (to.dot(&edge) / edge.norm_squared()).clamp(0.0, 1.0);
+    (to - edge * share).norm()
 }

@@ -1,0 +1,288 @@
+//! The readings of a robot that maps a place for the first time, and whether they must be read again.
+
+use crate::estimate::{Localized, PoseEstimate, PoseState};
+use crate::localizer::Guide;
+use crate::settings::LocalizerSettings;
+use crate::trajectory::{TrajectoryFinder, TrajectorySettings, covariance, in_frame};
+use interfaces::{LaserReading, SettingsError, heading_rad};
+use nalgebra::{Isometry2, Matrix3, Vector2};
+
+/// The map is torn where two motions between the same keyframes differ by more than this, m and rad: the motion in the map,
+/// and that by matching with the surfaces around or by a loop.
+const TORN_M: f64 = 0.06;
+const TORN_RAD: f64 = 0.02;
+/// The same in standard deviations of the motion by matching.
+const TORN_STDS: f64 = 3.0;
+/// Poses with a larger standard deviation are not compared, m.
+const KNOWN_STD_M: f64 = 0.05;
+/// The map is not torn where it explains a recognised place as well as the loop does, up to this share.
+const EXPLAINED: f64 = 0.9;
+/// The number of keyframes of the longer way over which motions are compared: about 5 m.
+const WINDOW: usize = 16;
+/// The first map stands when the robot has gone as far without new ground as on new ground before, and at least this far, m;
+/// a turn counts as 0.3 m/rad.
+const STANDS_M: f64 = 60.0;
+/// The first map also stands after this number of readings, which bounds the memory: half an hour at 10 Hz.
+const MOST_READINGS: usize = 18_000;
+/// The first map also stands after the readings were read again in vain this often.
+const MOST_REFUSED: u32 = 3;
+/// The first map also stands after this number of consecutive readings that did not agree with those before: the robot was
+/// carried, and how far is not known.
+const BROKEN_READINGS: u32 = 10;
+/// The number of scans at rest before the readings are read again.
+const REST_SCANS: u32 = 5;
+/// The frame of the map is that of the readings up to this keyframe.
+const FIRST_KEYFRAMES: usize = 20;
+
+/// The errors of a certain pose, m and rad.
+const CERTAIN_STD_M: f64 = 0.01;
+const CERTAIN_STD_RAD: f64 = 0.003;
+/// The errors of the corrected trajectory, m and rad. They stay the same for many scans: a single scan follows the line map,
+/// and many follow the trajectory.
+const CORRECTED_STD_M: f64 = 0.003;
+const CORRECTED_STD_RAD: f64 = 0.001;
+
+/// A reading, and what the localizer has made of it.
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+pub(crate) struct Kept {
+    /// The reading as its source gave it.
+    pub(crate) reading: LaserReading,
+    /// Whether the mapper paused before it.
+    pub(crate) is_after_pause: bool,
+    /// The pose in the map.
+    pub(crate) pose: Isometry2<f64>,
+    pub(crate) state: PoseState,
+    /// Whether the pose is known well enough to be compared with a loop.
+    is_known: bool,
+}
+
+/// What is in a state file: the rest follows from the readings.
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+pub(crate) struct Log {
+    kept: Vec<Kept>,
+    /// The time of the latest reading, s.
+    time_s: f64,
+    /// The last reading with a certain pose.
+    last_certain: Option<usize>,
+    /// The last keyframe with a known pose.
+    last_known: Option<usize>,
+    /// The number of loops that were compared with the map.
+    loops: usize,
+    /// Whether the map is torn, as far as is known.
+    is_torn: bool,
+    /// The number of scans until the readings are read again.
+    rest: Option<u32>,
+    /// Whether the robot has gone far enough without new ground.
+    has_no_new_ground: bool,
+    /// How often the readings were read again in vain.
+    refused: u32,
+    /// The number of readings since one agreed with its submap, and whether there were too many.
+    unsupported: u32,
+    is_broken: bool,
+}
+
+/// The readings so far, and their trajectory with all loops.
+#[derive(Debug)]
+pub(crate) struct FirstMap {
+    finder: TrajectoryFinder,
+    /// The numbers of the readings that are keyframes.
+    keyframes: Vec<usize>,
+    log: Log,
+}
+
+impl FirstMap {
+    pub(crate) fn new(settings: &LocalizerSettings) -> Result<Self, SettingsError> {
+        let logs = TrajectorySettings::default();
+        let settings = TrajectorySettings {
+            range_noise_std_m: settings.range_noise_std_m.max(logs.range_noise_std_m),
+            odometry: settings.odometry,
+            ..logs
+        };
+        let finder = TrajectoryFinder::new(&settings)?.with_odometry();
+        Ok(Self { finder, keyframes: Vec::new(), log: Log::default() })
+    }
+
+    /// The first map with this log: the trajectory is found again. `None` if the log cannot be that of a first map.
+    pub(crate) fn with_log(settings: &LocalizerSettings, log: Log) -> Option<Self> {
+        let mut first = Self::new(settings).ok()?;
+        for (number, kept) in log.kept.iter().enumerate() {
+            first.find(&kept.reading, number);
+        }
+        let is_known = log.last_known.is_none_or(|last| last < first.keyframes.len())
+            && log.last_certain.is_none_or(|last| last < log.kept.len());
+        (is_known && log.loops == first.finder.loops()).then_some(Self { log, ..first })
+    }
+
+    /// What is saved.
+    pub(crate) fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// Finds the trajectory to reading `number`.
+    fn find(&mut self, reading: &LaserReading, number: usize) {
+        self.finder.add(reading.clone());
+        if self.finder.keyframes() > self.keyframes.len() {
+            self.keyframes.push(number);
+        }
+    }
+
+    /// The readings so far.
+    pub(crate) fn kept(&self) -> &[Kept] {
+        &self.log.kept
+    }
+
+    /// The number of loops that are closed.
+    pub(crate) fn loops(&self) -> usize {
+        self.log.loops
+    }
+
+    /// Whether the map stands: its frame does not move any more.
+    pub(crate) fn stands(&self) -> bool {
+        let is_over =
+            self.log.kept.len() >= MOST_READINGS || self.log.refused >= MOST_REFUSED || self.log.is_broken;
+        self.log.rest.is_none() && (self.log.has_no_new_ground || is_over)
+    }
+
+    /// Takes the next reading. The result is where the robot is, from its last certain pose on; `None` if the last reading
+    /// was certain, or if a scan since then did not agree with those before.
+    pub(crate) fn guide(&mut self, reading: &LaserReading) -> Option<Guide> {
+        let number = self.log.kept.len();
+        self.find(reading, number);
+        self.log.unsupported = if self.finder.is_supported() { 0 } else { self.log.unsupported + 1 };
+        self.log.is_broken |= self.log.unsupported >= BROKEN_READINGS;
+        let last = self.log.last_certain.filter(|last| last + 1 < number)?;
+        let (motion, spread) = self.finder.motion_since(last)?;
+        let at = self.log.kept[last].pose;
+        let covariance = in_frame(&spread, &at.inverse()) + covariance(CERTAIN_STD_M, CERTAIN_STD_RAD);
+        Some(Guide { pose: at * motion, covariance })
+    }
+
+    /// Adds the pose of the reading, before which the map had the time `map_s`. If a loop shows that the map is torn, the
+    /// result is the poses of all readings.
+    pub(crate) fn add(
+        &mut self,
+        reading: &LaserReading,
+        map_s: f64,
+        localized: &Localized,
+    ) -> Option<Vec<Guide>> {
+        let (pose, state) = (localized.estimate.pose, localized.estimate.state);
+        let is_after_pause = map_s > self.log.time_s && !self.log.kept.is_empty();
+        self.log.time_s = self.log.time_s.max(reading.time_s).max(map_s);
+        let number = self.log.kept.len();
+        let is_known = is_known(&localized.estimate);
+        self.log.kept.push(Kept { reading: reading.clone(), is_after_pause, pose, state, is_known });
+        if state == PoseState::Tracking {
+            self.log.last_certain = Some(number);
+        }
+        if self.keyframes.last() == Some(&number) {
+            self.look_at_keyframe();
+            let (new_m, known_m) = self.finder.ways_on_ground_m();
+            self.log.has_no_new_ground = known_m >= new_m.max(STANDS_M);
+        }
+        if self.finder.loops() != self.log.loops {
+            self.look_at_loops();
+            if self.log.is_torn || state == PoseState::Lost {
+                self.log.rest.get_or_insert(REST_SCANS);
+            }
+        }
+        let rest = self.log.rest.as_mut()?;
+        *rest = rest.saturating_sub(1);
+        if *rest > 0 {
+            return None;
+        }
+        self.log.rest = None;
+        Some(self.corrected())
+    }
+
+    /// Whether the robot should rest: the readings will be read again, for which a real robot needs some time.
+    pub(crate) fn wants_rest(&self) -> bool {
+        self.log.rest.is_some()
+    }
+
+    /// The readings have been read again, and have other poses.
+    pub(crate) fn accept(&mut self, estimates: &[PoseEstimate]) {
+        self.log.is_torn = false;
+        for (kept, estimate) in self.log.kept.iter_mut().zip(estimates) {
+            (kept.pose, kept.state, kept.is_known) = (estimate.pose, estimate.state, is_known(estimate));
+        }
+    }
+
+    /// The readings have been read again, and the map was no better.
+    pub(crate) fn refuse(&mut self) {
+        self.log.is_torn = false;
+        self.log.refused += 1;
+    }
+
+    /// The motion between two keyframes in the map, if both have a known pose.
+    fn mapped_motion(&self, from: usize, to: usize) -> Option<Isometry2<f64>> {
+        let known =
+            |keyframe: usize| Some(&self.log.kept[self.keyframes[keyframe]]).filter(|kept| kept.is_known);
+        Some(known(from)?.pose.inv_mul(&known(to)?.pose))
+    }
+
+    /// Compares the motion in the map to the last keyframe with that by matching with the surfaces around: since the last
+    /// known keyframe, and over a longer way.
+    fn look_at_keyframe(&mut self) {
+        let now = self.keyframes.len() - 1;
+        if !self.log.kept[self.keyframes[now]].is_known {
+            return;
+        }
+        let last = self.log.last_known.replace(now);
+        self.log.is_torn |= last.into_iter().chain(now.checked_sub(WINDOW)).any(|from| {
+            let mapped = self.mapped_motion(from, now);
+            let matched = self.finder.matched_motion(from, now);
+            let is_torn = |(mapped, (matched, spread))| is_torn(&mapped, &matched, &spread);
+            mapped.zip(matched).is_some_and(is_torn)
+        });
+    }
+
+    /// Compares the motions in the map with those of new loops. What the map says may explain the place as well as the loop.
+    fn look_at_loops(&mut self) {
+        let is_torn = self.finder.loops_since(self.log.loops).any(|found| {
+            let mapped = self.mapped_motion(found.from, found.to);
+            mapped.is_some_and(|mapped| {
+                let near = || self.finder.agreement_near(&found, &mapped);
+                let is_torn = |motion: &Isometry2<f64>| is_torn(&mapped, motion, &Matrix3::zeros());
+                let is_explained = |(near, share)| share >= EXPLAINED && !is_torn(&near);
+                is_torn(&found.motion) && !near().is_some_and(is_explained)
+            })
+        });
+        self.log.is_torn |= is_torn;
+        self.log.loops = self.finder.loops();
+    }
+
+    /// The poses of all readings in the map, by the trajectory with all loops. Where the trajectory begins, it is where the
+    /// map is.
+    fn corrected(&self) -> Vec<Guide> {
+        let found = self.finder.corrected();
+        let last = self.keyframes[FIRST_KEYFRAMES.min(self.keyframes.len() - 1)];
+        let first = || {
+            self.log.kept[..=last].iter().zip(&found).filter(|(kept, _)| kept.state == PoseState::Tracking)
+        };
+        let count = first().count().max(1) as f64;
+        let turn_rad = |(kept, found): (&Kept, &Isometry2<f64>)| heading_rad(&found.inv_mul(&kept.pose));
+        // Relative to the first: the mean of headings around π.
+        let turn = first().next().map_or(0.0, turn_rad);
+        let rest = first().map(|pair| interfaces::wrap_rad(turn_rad(pair) - turn)).sum::<f64>() / count;
+        let rotation = interfaces::rotation(turn + rest);
+        let shift =
+            first().map(|(kept, found)| kept.pose.translation.vector - rotation * found.translation.vector);
+        let shift = shift.sum::<Vector2<f64>>() / count;
+        let to_map = Isometry2::from_parts(shift.into(), rotation);
+        let covariance = covariance(CORRECTED_STD_M, CORRECTED_STD_RAD);
+        found.iter().map(|found| Guide { pose: to_map * found, covariance }).collect()
+    }
+}
+
+/// Whether a pose is known well enough to be compared with a loop.
+fn is_known(estimate: &PoseEstimate) -> bool {
+    estimate.state != PoseState::Lost && estimate.position_std_m() <= KNOWN_STD_M
+}
+
+/// Whether a motion in the map contradicts another one with this covariance.
+fn is_torn(mapped: &Isometry2<f64>, motion: &Isometry2<f64>, spread: &Matrix3<f64>) -> bool {
+    let off = mapped.inv_mul(motion);
+    let std_m = (spread[(0, 0)] + spread[(1, 1)]).sqrt();
+    off.translation.vector.norm() > TORN_M.max(TORN_STDS * std_m)
+        || heading_rad(&off).abs() > TORN_RAD.max(TORN_STDS * spread[(2, 2)].sqrt())
+}

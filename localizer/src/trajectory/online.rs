@@ -1,0 +1,135 @@
+//! What is known about the trajectory while the robot still drives.
+
+use super::TrajectoryFinder;
+use super::graph::{Edge, EdgeKind};
+use super::matching::{fit, in_frame};
+use crate::estimate::PoseState;
+use crate::surfel_map::SurfelMap;
+use interfaces::heading_rad;
+use nalgebra::{Isometry2, Matrix3};
+
+/// A submap is on new ground if no earlier one has its middle within this distance, m.
+const KNOWN_M: f64 = 4.0;
+/// A turn counts as this way, m/rad.
+const TURN_M: f64 = 0.3;
+
+/// The uncertainty of a motion that may explain a loop, m and rad.
+const NEAR_STD: (f64, f64) = (0.1, 0.03);
+
+/// A place that was recognised.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FoundLoop {
+    /// Two keyframes, and the motion between them.
+    pub(crate) from: usize,
+    pub(crate) to: usize,
+    pub(crate) motion: Isometry2<f64>,
+    /// The submaps in whose middle the keyframes are.
+    submaps: [usize; 2],
+}
+
+impl TrajectoryFinder {
+    /// The same finder, for an odometry that is there: a robot that rests at the start does not go on as before.
+    pub(crate) fn with_odometry(mut self) -> Self {
+        self.front_end.expect_odometry();
+        self
+    }
+
+    /// The poses of all readings so far, with all loops that are closed. The pose of the first reading is the origin.
+    pub(crate) fn corrected(&self) -> Vec<Isometry2<f64>> {
+        self.poses(&self.optimized()).iter().map(|found| found.pose).collect()
+    }
+
+    /// The motion since reading number `from` by matching with local submaps alone, and its covariance, in the frame of the
+    /// robot at that reading. `None` if a scan since then did not agree with its submap.
+    pub(crate) fn motion_since(&self, from: usize) -> Option<(Isometry2<f64>, Matrix3<f64>)> {
+        let since = &self.readings[from + 1..];
+        if since.iter().any(|reading| reading.state != PoseState::Tracking) {
+            return None;
+        }
+        let (first, last) = (&self.readings[from], since.last()?);
+        let (motion, spread) = self.matched_motion(first.keyframe, last.keyframe)?;
+        let back = first.offset.inverse();
+        Some((back * motion * last.offset, in_frame(&spread, &first.offset)))
+    }
+
+    /// The motion between two keyframes by matching with local submaps alone, without any loop, and its covariance, in the
+    /// frame of the first one.
+    pub(crate) fn matched_motion(&self, from: usize, to: usize) -> Option<(Isometry2<f64>, Matrix3<f64>)> {
+        let is_between = |edge: &&Edge| edge.kind == EdgeKind::Match && edge.from >= from && edge.to <= to;
+        let (mut motion, mut spread) = (Isometry2::identity(), Matrix3::zeros());
+        for edge in self.graph.edges.iter().filter(is_between) {
+            let shift = motion.rotation * edge.motion.translation.vector;
+            // An error of the heading turns the motion.
+            let turned = Matrix3::new(1.0, 0.0, -shift.y, 0.0, 1.0, shift.x, 0.0, 0.0, 1.0);
+            let own = in_frame(&edge.information.try_inverse()?, &motion.inverse());
+            spread = turned * spread * turned.transpose() + own;
+            motion *= edge.motion;
+        }
+        Some((motion, spread))
+    }
+
+    /// Whether the last reading agreed with its submap; invalid readings do not disagree.
+    pub(crate) fn is_supported(&self) -> bool {
+        self.readings.last().is_some_and(|reading| reading.state != PoseState::Uncertain)
+    }
+
+    /// The number of keyframes so far.
+    pub(crate) fn keyframes(&self) -> usize {
+        self.graph.poses.len()
+    }
+
+    /// The way from a keyframe to a later one, m; turns count as a way.
+    fn way_m(&self, from: usize, to: usize) -> f64 {
+        let step_m = |keyframe: usize| {
+            let keyframes = self.front_end.keyframes();
+            let motion = keyframes[keyframe].local.inv_mul(&keyframes[keyframe + 1].local);
+            motion.translation.vector.norm() + TURN_M * heading_rad(&motion).abs()
+        };
+        (from..to).map(step_m).sum()
+    }
+
+    /// The number of loops that are closed.
+    pub(crate) fn loops(&self) -> usize {
+        self.closer.loops()
+    }
+
+    /// The loops from number `first` on.
+    pub(crate) fn loops_since(&self, first: usize) -> impl Iterator<Item = FoundLoop> {
+        self.closer.accepted()[first..].iter().map(|place| FoundLoop {
+            from: place.edge.from,
+            to: place.edge.to,
+            motion: place.edge.motion,
+            submaps: [place.from, place.to],
+        })
+    }
+
+    /// The motion near `motion` at which the two submaps of a loop agree best, and how much agrees there, compared with the
+    /// motion of the loop: 1 for as much.
+    pub(crate) fn agreement_near(
+        &self,
+        found: &FoundLoop,
+        motion: &Isometry2<f64>,
+    ) -> Option<(Isometry2<f64>, f64)> {
+        let [from, to] = found.submaps.map(|number| &self.closer.places.submaps[number]);
+        let map = SurfelMap::of_points(&from.points)?;
+        let fit = |motion| fit(&map, &to.points, motion, NEAR_STD, self.settings.range_noise_std_m);
+        let ((near, agrees), (_, most)) = (fit(motion)?, fit(&found.motion)?);
+        Some((near.placement.pose, agrees.confirmed / most.confirmed.max(f64::MIN_POSITIVE)))
+    }
+
+    /// The way on new ground, and the way since new ground was last seen, m.
+    pub(crate) fn ways_on_ground_m(&self) -> (f64, f64) {
+        let submaps = &self.closer.places.submaps;
+        let at = |anchor: usize| self.graph.poses[anchor].translation.vector;
+        let (mut new_m, mut last) = (0.0, 0);
+        for (number, submap) in submaps.iter().enumerate() {
+            let mut earlier = submaps[..number].iter().filter(|other| other.last < submap.first);
+            if earlier.all(|other| (at(other.anchor) - at(submap.anchor)).norm() > KNOWN_M) {
+                // The next submap begins in the middle of this one.
+                new_m += self.way_m(submap.first, submap.anchor);
+                last = submap.last;
+            }
+        }
+        (new_m, self.way_m(last, self.keyframes().saturating_sub(1)))
+    }
+}
