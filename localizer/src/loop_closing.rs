@@ -109,6 +109,10 @@ impl LoopClosingLocalizer {
     /// Estimates the pose of a reading, as [`Localizer::localize`]. `map` has learned from the readings so far whose pose was
     /// certain, has skipped the others, and has learned from nothing else.
     pub fn localize(&mut self, reading: &LaserReading, map: &mut Mapper) -> LoopClosed {
+        if reading.scan.sweep_s > 0.0 {
+            // The finder undoes a sweep by odometry alone. Where that is bad, its trajectory is worse than the map.
+            self.first = None;
+        }
         let Some(first) = &mut self.first else {
             return LoopClosed { localized: self.localizer.localize(reading, map), correction: None };
         };
