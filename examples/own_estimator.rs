@@ -8,6 +8,7 @@ use agent::Policy;
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
 use mapper::{CellStatistics, Estimator, EstimatorChoice};
+use reports::Report;
 
 /// Half of all events, divided by the time in view: a cycle has one block event and one free event.
 #[derive(Debug)]
@@ -41,6 +42,6 @@ fn main() -> anyhow::Result<()> {
         length: 5_000,
         robot: GridRobot::default(),
     };
-    println!("{}", experiment.report()?.table());
+    println!("{}", Report::of(&experiment)?.table());
     Ok(())
 }

@@ -8,6 +8,7 @@ use agent::{Policy, Situation, Strategy};
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
 use mapper::MapperSettings;
+use reports::Report;
 
 /// Goes to old cells, and prefers cells that changed before.
 #[derive(Debug)]
@@ -45,6 +46,6 @@ fn main() -> anyhow::Result<()> {
         length: 5_000,
         robot: GridRobot::default(),
     };
-    println!("{}", experiment.report()?.table());
+    println!("{}", Report::of(&experiment)?.table());
     Ok(())
 }

@@ -1,10 +1,10 @@
 //! `--mcap`: a run as a bag of ROS 2.
 
-use evaluation::output::UnfinishedFile;
 use interfaces::{CellState, Grid, LaserReading};
 use logs::{LogError, McapWriter};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
+use results::output::UnfinishedFile;
 use robot::{Belief, Localization, Pilot, Tapped};
 use std::cell::RefCell;
 use std::fs::File;

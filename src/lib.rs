@@ -5,10 +5,12 @@ pub mod bag;
 pub mod keyboard;
 pub mod program;
 pub mod progress;
+#[cfg(feature = "simulation")]
 pub mod reachability;
 #[cfg(feature = "recording")]
 pub mod shards;
 pub mod terminal;
 #[cfg(feature = "recording")]
 pub mod trials;
+#[cfg(feature = "simulation")]
 pub mod worlds;

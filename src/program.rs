@@ -1,12 +1,9 @@
 //! Code that the command-line programs share: exit codes, Ctrl-C, the list of worlds, parsers of arguments.
 
 use crate::terminal::{check_printed, print, say};
-use crate::worlds;
 use anyhow::Context;
+use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::parser::ValueSource;
-use clap::{Parser, ValueEnum};
-use evaluation::physics_trial::PoseChoice;
 use interfaces::printable_lines;
 use std::error::Error;
 use std::fmt::Display;
@@ -90,42 +87,12 @@ pub fn list<E: Display>(
     Ok(())
 }
 
-/// Prints the shipped physics worlds.
-///
-/// # Errors
-///
-/// When the standard output cannot be written.
-pub fn list_physics_worlds() -> anyhow::Result<()> {
-    list(&worlds::SHIPPED, 18, |name| worlds::load(name).map(|world| world.spec.description.clone()))
-}
-
 /// A parser of the name of one of `all`.
 pub fn one_of<T>(all: Vec<T>, name: fn(&T) -> &'static str) -> impl TypedValueParser<Value = T>
 where
     T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
 {
     PossibleValuesParser::new(all.iter().map(name)).try_map(|name| name.parse::<T>())
-}
-
-/// How the robot knows its pose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum PoseArg {
-    /// The true pose
-    Exact,
-    /// The pose by odometry, with its drift: the map becomes wrong
-    Odometry,
-    /// The pose that fits the scan to the map
-    Localized,
-}
-
-impl From<PoseArg> for PoseChoice {
-    fn from(pose: PoseArg) -> Self {
-        match pose {
-            PoseArg::Exact => Self::Exact,
-            PoseArg::Odometry => Self::Odometry,
-            PoseArg::Localized => Self::Localized,
-        }
-    }
 }
 
 /// The strategy with the lowest error of the rates over grid worlds and houses, see `docs/strategies.md`.
@@ -155,26 +122,6 @@ where
             .cloned()
             .ok_or("not one of the possible values")
     })
-}
-
-/// The arguments on the command line, in the order of the help, without those under the headings `left_out`.
-pub(crate) fn given_arguments<P: Parser>(left_out: &[&str]) -> Vec<String> {
-    let command = P::command();
-    let Ok(matches) = command.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };
-    let mut arguments = Vec::new();
-    for option in command.get_arguments() {
-        let id = option.get_id().as_str();
-        let is_left_out = option.get_help_heading().is_some_and(|heading| left_out.contains(&heading));
-        let Some(name) = option.get_long().filter(|_| !is_left_out) else { continue };
-        if matches.value_source(id) != Some(ValueSource::CommandLine) {
-            continue;
-        }
-        for values in matches.get_raw_occurrences(id).into_iter().flatten() {
-            arguments.push(format!("--{name}"));
-            arguments.extend(values.map(|value| value.to_string_lossy().into_owned()));
-        }
-    }
-    arguments
 }
 
 /// The longest run, s: 1000 hours.

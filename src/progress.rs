@@ -2,8 +2,8 @@
 
 use crate::terminal::say;
 use crossterm::terminal;
-use evaluation::percent::percent;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use results::numbers::percent;
 use std::fmt::{self, Display, Formatter};
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;

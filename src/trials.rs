@@ -1,17 +1,18 @@
 //! Code that the programs of trials share: options, and the way from trials to results.
 
-use crate::program::{INTERRUPTED, given_arguments, strategy_of};
+use crate::program::{INTERRUPTED, strategy_of};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
 use agent::Reward;
 use anyhow::{Context, bail};
 use clap::builder::TypedValueParser;
+use clap::parser::ValueSource;
 use clap::{Args, Parser, ValueEnum};
-use evaluation::output::{RunFolder, write_file};
-use evaluation::report::{Plan, REPORT, ReportSettings, Trial, collect};
-use evaluation::shards::Shard;
-use evaluation::trials::{Experiment, TrialError, TrialStrategy, TrialWorld};
+use evaluation::trials::{Experiment, Trial, TrialError, TrialStrategy, TrialWorld};
 use rayon::ThreadPool;
+use reports::shards::Shard;
+use reports::{Plan, REPORT, ReportSettings, collect};
+use results::output::{RunFolder, write_file};
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::io::stderr;
@@ -157,13 +158,33 @@ pub(crate) fn experiment_arguments<P: Parser>() -> Vec<String> {
     given_arguments::<P>(&[OUTPUT, EXECUTION])
 }
 
+/// The arguments on the command line, in the order of the help, without those under the headings `left_out`.
+fn given_arguments<P: Parser>(left_out: &[&str]) -> Vec<String> {
+    let command = P::command();
+    let Ok(matches) = command.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };
+    let mut arguments = Vec::new();
+    for option in command.get_arguments() {
+        let id = option.get_id().as_str();
+        let is_left_out = option.get_help_heading().is_some_and(|heading| left_out.contains(&heading));
+        let Some(name) = option.get_long().filter(|_| !is_left_out) else { continue };
+        if matches.value_source(id) != Some(ValueSource::CommandLine) {
+            continue;
+        }
+        for values in matches.get_raw_occurrences(id).into_iter().flatten() {
+            arguments.push(format!("--{name}"));
+            arguments.extend(values.map(|value| value.to_string_lossy().into_owned()));
+        }
+    }
+    arguments
+}
+
 /// The settings of the report of an experiment.
 pub(crate) fn report_settings<W: TrialWorld>(
     experiment: &Experiment<W>,
     arguments: Vec<String>,
 ) -> ReportSettings {
     let version = env!("CARGO_PKG_VERSION").to_owned();
-    ReportSettings { version, arguments, ..experiment.report_settings() }
+    ReportSettings { version, arguments, ..ReportSettings::of(experiment) }
 }
 
 /// The threads that run trials.

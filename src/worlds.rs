@@ -1,7 +1,10 @@
-//! The world to run: a shipped world, a world file, or a Stage file.
+//! The world to run: a shipped world, a world file, or a Stage file; and how the robot knows its pose there.
 
-use evaluation::file_name::{self, FileNameError};
+use crate::program::list;
+use clap::ValueEnum;
+use evaluation::physics_trial::PoseChoice;
 use interfaces::printable;
+use results::file_name::{self, FileNameError};
 use sim::grid::GridSpec;
 use sim::physics::WorldSpec;
 use std::path::Path;
@@ -81,6 +84,36 @@ pub fn load_grid(name: &str) -> Result<GridSpec, WorldError> {
     let invalid = |why| WorldError::FileName { name, world, why, valid: file_name::of(&spec.name) };
     file_name::check(&spec.name).map_err(invalid)?;
     Ok(spec)
+}
+
+/// Prints the shipped physics worlds.
+///
+/// # Errors
+///
+/// When the standard output cannot be written.
+pub fn list_physics_worlds() -> anyhow::Result<()> {
+    list(&SHIPPED, 18, |name| load(name).map(|world| world.spec.description.clone()))
+}
+
+/// How the robot knows its pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PoseArg {
+    /// The true pose
+    Exact,
+    /// The pose by odometry, with its drift: the map becomes wrong
+    Odometry,
+    /// The pose that fits the scan to the map
+    Localized,
+}
+
+impl From<PoseArg> for PoseChoice {
+    fn from(pose: PoseArg) -> Self {
+        match pose {
+            PoseArg::Exact => Self::Exact,
+            PoseArg::Odometry => Self::Odometry,
+            PoseArg::Localized => Self::Localized,
+        }
+    }
 }
 
 fn load_stage(name: &str) -> Result<Loaded, WorldError> {

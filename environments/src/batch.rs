@@ -1,7 +1,9 @@
 //! Many tasks, stepped by one call.
 
 use crate::task::{Outcome, Task, TaskError};
-use rayon::prelude::*;
+use crate::threads::share;
+use rayon::ThreadPool;
+use std::sync::Arc;
 
 /// What rounding may add to an action.
 const ROUNDING: f32 = 1e-6;
@@ -14,6 +16,7 @@ pub struct Batch<T> {
     observation_len: usize,
     info_len: usize,
     is_parallel: bool,
+    pool: Option<Arc<ThreadPool>>,
     is_autoreset: bool,
 }
 
@@ -117,15 +120,21 @@ impl<T: Task> Batch<T> {
             observation_len: of(|task| task.parts().iter().map(|part| part.values()).sum()),
             info_len: of(|task| task.info_names().len()),
             is_parallel: tasks.len() > 1,
+            pool: None,
             is_autoreset: true,
             tasks,
         }
     }
 
-    /// Whether the tasks are stepped on the threads of the present rayon pool (the default for more than one), or on
-    /// this thread alone. The results are the same.
+    /// Whether the tasks are stepped on as many threads as the pool has (the default for more than one task), one of which
+    /// is this thread, or on this thread alone. The results are the same.
     pub fn set_parallel(&mut self, is_parallel: bool) {
         self.is_parallel = is_parallel;
+    }
+
+    /// The pool of threads; `None` (the default): the present rayon pool.
+    pub fn set_pool(&mut self, pool: Option<Arc<ThreadPool>>) {
+        self.pool = pool;
     }
 
     /// Whether a task that is over is reset in the same step (the default), or stands still until it is reset.
@@ -177,9 +186,9 @@ impl<T: Task> Batch<T> {
             task.observe(observations);
         };
         if self.is_parallel {
-            jobs.par_bridge().for_each(run)
+            share(self.pool.as_deref(), jobs, run);
         } else {
-            jobs.for_each(run)
+            jobs.for_each(run);
         }
         Ok(())
     }
@@ -242,12 +251,7 @@ impl<T: Task> Batch<T> {
             }
         });
         if self.is_parallel {
-            // A few pieces per thread: episodes end at different times, and a reset takes longer than a step.
-            let mut jobs: Vec<Option<Job<'_, T>>> = jobs.map(Some).collect();
-            let pieces = 4 * rayon::current_num_threads();
-            let piece = jobs.len().div_ceil(pieces).max(1);
-            jobs.par_chunks_mut(piece)
-                .for_each(|jobs| jobs.iter_mut().filter_map(Option::take).for_each(Job::run));
+            share(self.pool.as_deref(), jobs, Job::run);
         } else {
             jobs.for_each(Job::run);
         }

@@ -5,7 +5,7 @@ use crate::task::TaskError;
 use evaluation::physics_trial::PhysicsSettings;
 use interfaces::{SettingsCheck, SettingsError};
 use mapper::{Mapper, MapperSettings};
-use sim::physics::{PhysicsWorld, WorldSpec};
+use sim::physics::{ContactModel, FleetSpec, PhysicsWorld, WorldSpec};
 
 /// Settings of [`Explore`](crate::Explore).
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -80,7 +80,8 @@ pub(crate) struct One {
 }
 
 impl ExplorePlace {
-    /// The place for some worlds.
+    /// The place for some worlds. Their contacts are those of [`ContactModel::Sliding`], whatever their specs say: a trial in
+    /// the same world has other last bits.
     ///
     /// # Errors
     ///
@@ -101,7 +102,7 @@ impl ExplorePlace {
 
 impl One {
     fn new(spec: &WorldSpec, settings: &ExploreSettings) -> Result<Self, TaskError> {
-        let mut fleet = spec.fleet().clone();
+        let mut fleet = FleetSpec { contacts: ContactModel::Sliding, ..spec.fleet().clone() };
         let driven = spec.driven_index();
         let laser = &mut fleet.robots[driven].laser;
         laser.beams = settings.beams.unwrap_or(laser.beams);

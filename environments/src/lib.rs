@@ -29,6 +29,7 @@ mod patches;
 mod picture;
 mod place;
 mod task;
+mod threads;
 
 pub use batch::{Batch, Results, ResultsMut};
 pub use drive::Drive;

@@ -4,10 +4,9 @@ use crate::metrics::{
     ChangingAccuracy, Latency, MapScores, PoseErrors, Prediction, Standstills, Things, TrueChains, map_scores,
 };
 use crate::summary::CurvePoint;
-use crate::thinned::Thinned;
 use interfaces::{GroundTruth, LaserReading, Twist};
 use mapper::Mapper;
-use nalgebra::Point2;
+use results::thinned::{Goals, Thinned};
 use robot::{Belief, Level, Message, Pilot};
 use sim::physics::{Body, PhysicsWorld};
 
@@ -22,8 +21,6 @@ const OWN_MPS: f64 = 0.005;
 
 /// Coverage and map quality over time: all points of a run of nearly three hours at 10 Hz.
 pub type Curve = Thinned<CurvePoint, 1024>;
-/// The positions of goals, m: all goals of about ten hours.
-pub type Goals = Thinned<Point2<f64>, 2048>;
 
 /// The measurements of a run so far.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]

@@ -3,9 +3,9 @@
 use agent::{AgentSettings, Reward};
 use controller::CellDrive;
 use curious::worlds::{SHIPPED_GRID, load_grid};
-use evaluation::report::{Report, ReportSettings};
 use evaluation::trials::{Experiment, GridRobot, TrialSettings, TrialStrategy};
 use mapper::{EstimatorChoice, MapperSettings, Paper, PaperAll};
+use reports::{Report, ReportSettings};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::sync::atomic::AtomicBool;
 
@@ -109,6 +109,6 @@ impl Condition {
 fn report(experiment: &Experiment<GridSpec>, jobs: Vec<TrialSettings<GridSpec>>) -> anyhow::Result<Report> {
     let trials = experiment.run(jobs, &AtomicBool::new(false), |_| ())?;
     let version = env!("CARGO_PKG_VERSION").to_owned();
-    let settings = ReportSettings { version, ..experiment.report_settings() };
+    let settings = ReportSettings { version, ..ReportSettings::of(experiment) };
     Ok(Report::new(settings, trials))
 }

@@ -1,9 +1,9 @@
 //! The picture of all verdicts: a forest plot.
 
 use crate::Finding;
-use evaluation::report::{Claim, Comparison, Verdict};
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
+use reports::{Claim, Comparison, Verdict};
 use std::path::Path;
 
 const ROW: i32 = 22;

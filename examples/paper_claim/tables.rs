@@ -1,7 +1,8 @@
 //! The tables of docs/figure3/results.md.
 
 use crate::Finding;
-use evaluation::report::{Claim, Measure, Metric};
+use evaluation::trials::Metric;
+use reports::{Claim, Measure};
 use std::fmt::Write;
 
 pub(crate) fn markdown(findings: &[Finding], seeds: u64) -> String {

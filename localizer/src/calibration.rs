@@ -96,7 +96,7 @@ impl Calibration {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::pose;
+    use interfaces::{Purpose, RandomStream, pose};
 
     #[test]
     fn systematic_errors_are_learned_and_undone() {
@@ -119,11 +119,8 @@ mod tests {
     #[test]
     fn hours_of_driving_change_nothing() {
         let mut calibration = Calibration::new(&OdometryTrust::default());
-        let mut random = 1_u32;
-        let mut signed = || {
-            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(random >> 8) / f64::from(1 << 23) - 1.0
-        };
+        let mut random = RandomStream::new(1, Purpose::OdometryNoise(0));
+        let mut signed = || random.uniform(-1.0..1.0);
         for _ in 0..200_000 {
             let truth = pose(0.03 * signed().max(0.0), 0.0, 0.1 * signed());
             let seen =

@@ -2,29 +2,33 @@
 
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::localizer::Guide;
+use crate::openings::has_opening;
 use crate::settings::LocalizerSettings;
 use crate::trajectory::{TrajectoryFinder, TrajectorySettings, covariance, in_frame};
 use interfaces::{LaserReading, SettingsError, heading_rad};
+use mapper::Mapper;
 use nalgebra::{Isometry2, Matrix3, Vector2};
 
-/// The map is torn where two motions between the same keyframes differ by more than this, m and rad: the motion in the map,
+/// The map is inconsistent where two motions between the same keyframes differ by more than this, m and rad: the motion in the map,
 /// and that by matching with the surfaces around or by a loop.
-const TORN_M: f64 = 0.06;
-const TORN_RAD: f64 = 0.02;
+const INCONSISTENT_M: f64 = 0.06;
+const INCONSISTENT_RAD: f64 = 0.02;
 /// The same in standard deviations of the motion by matching.
-const TORN_STDS: f64 = 3.0;
+const INCONSISTENT_STDS: f64 = 3.0;
 /// Poses with a larger standard deviation are not compared, m.
 const KNOWN_STD_M: f64 = 0.05;
-/// The map is not torn where it explains a recognised place as well as the loop does, up to this share.
+/// The map is consistent where it explains a recognised place as well as the loop does, up to this share.
 const EXPLAINED: f64 = 0.9;
 /// The number of keyframes of the longer way over which motions are compared: about 5 m.
 const WINDOW: usize = 16;
-/// The first map stands when the robot has gone as far without new ground as on new ground before, and at least this far, m;
-/// a turn counts as 0.3 m/rad.
+/// The first map stands when it has no openings, and the robot has gone as far without new ground as on new ground
+/// before, and at least this far, m; a turn counts as 0.3 m/rad.
 const STANDS_M: f64 = 60.0;
+/// An opening is left alone if the robot has gone this far without new ground, m: it may be too narrow, or behind glass.
+const LEFT_ALONE_M: f64 = 300.0;
 /// The first map also stands after this number of readings, which bounds the memory: half an hour at 10 Hz.
 const MOST_READINGS: usize = 18_000;
-/// The first map also stands after the readings were read again in vain this often.
+/// After the readings were read again in vain this often, they are not read again.
 const MOST_REFUSED: u32 = 3;
 /// The first map also stands after this number of consecutive readings that did not agree with those before: the robot was
 /// carried, and how far is not known.
@@ -68,12 +72,12 @@ pub(crate) struct Log {
     last_known: Option<usize>,
     /// The number of loops that were compared with the map.
     loops: usize,
-    /// Whether the map is torn, as far as is known.
-    is_torn: bool,
+    /// Whether the map is inconsistent, as far as is known.
+    is_inconsistent: bool,
     /// The number of scans until the readings are read again.
     rest: Option<u32>,
-    /// Whether the robot has gone far enough without new ground.
-    has_no_new_ground: bool,
+    /// Whether the robot has gone far enough without new ground, and the map has no openings.
+    is_whole: bool,
     /// How often the readings were read again in vain.
     refused: u32,
     /// The number of readings since one agreed with its submap, and whether there were too many.
@@ -138,9 +142,8 @@ impl FirstMap {
 
     /// Whether the map stands: its frame does not move any more.
     pub(crate) fn stands(&self) -> bool {
-        let is_over =
-            self.log.kept.len() >= MOST_READINGS || self.log.refused >= MOST_REFUSED || self.log.is_broken;
-        self.log.rest.is_none() && (self.log.has_no_new_ground || is_over)
+        let is_over = self.log.kept.len() >= MOST_READINGS || self.log.is_broken;
+        self.log.rest.is_none() && (self.log.is_whole || is_over)
     }
 
     /// Takes the next reading. The result is where the robot is, from its last certain pose on; `None` if the last reading
@@ -157,15 +160,16 @@ impl FirstMap {
         Some(Guide { pose: at * motion, covariance })
     }
 
-    /// Adds the pose of the reading, before which the map had the time `map_s`. If a loop shows that the map is torn, the
+    /// Adds the pose of the reading, from which `map` has not learned yet. If a loop shows that the map is inconsistent, the
     /// result is the poses of all readings.
     pub(crate) fn add(
         &mut self,
         reading: &LaserReading,
-        map_s: f64,
+        map: &Mapper,
         localized: &Localized,
     ) -> Option<Vec<Guide>> {
         let (pose, state) = (localized.estimate.pose, localized.estimate.state);
+        let map_s = map.time();
         let is_after_pause = map_s > self.log.time_s && !self.log.kept.is_empty();
         self.log.time_s = self.log.time_s.max(reading.time_s).max(map_s);
         let number = self.log.kept.len();
@@ -177,11 +181,13 @@ impl FirstMap {
         if self.keyframes.last() == Some(&number) {
             self.look_at_keyframe();
             let (new_m, known_m) = self.finder.ways_on_ground_m();
-            self.log.has_no_new_ground = known_m >= new_m.max(STANDS_M);
+            let has_returned = known_m >= new_m.max(STANDS_M);
+            self.log.is_whole = has_returned && (known_m >= LEFT_ALONE_M || !has_opening(map.states()));
         }
         if self.finder.loops() != self.log.loops {
             self.look_at_loops();
-            if self.log.is_torn || state == PoseState::Lost {
+            let is_wanted = self.log.is_inconsistent || state == PoseState::Lost;
+            if is_wanted && self.log.refused < MOST_REFUSED {
                 self.log.rest.get_or_insert(REST_SCANS);
             }
         }
@@ -201,7 +207,7 @@ impl FirstMap {
 
     /// The readings have been read again, and have other poses.
     pub(crate) fn accept(&mut self, estimates: &[PoseEstimate]) {
-        self.log.is_torn = false;
+        self.log.is_inconsistent = false;
         for (kept, estimate) in self.log.kept.iter_mut().zip(estimates) {
             (kept.pose, kept.state, kept.is_known) = (estimate.pose, estimate.state, is_known(estimate));
         }
@@ -209,7 +215,7 @@ impl FirstMap {
 
     /// The readings have been read again, and the map was no better.
     pub(crate) fn refuse(&mut self) {
-        self.log.is_torn = false;
+        self.log.is_inconsistent = false;
         self.log.refused += 1;
     }
 
@@ -228,26 +234,27 @@ impl FirstMap {
             return;
         }
         let last = self.log.last_known.replace(now);
-        self.log.is_torn |= last.into_iter().chain(now.checked_sub(WINDOW)).any(|from| {
+        self.log.is_inconsistent |= last.into_iter().chain(now.checked_sub(WINDOW)).any(|from| {
             let mapped = self.mapped_motion(from, now);
             let matched = self.finder.matched_motion(from, now);
-            let is_torn = |(mapped, (matched, spread))| is_torn(&mapped, &matched, &spread);
-            mapped.zip(matched).is_some_and(is_torn)
+            let is_inconsistent = |(mapped, (matched, spread))| is_inconsistent(&mapped, &matched, &spread);
+            mapped.zip(matched).is_some_and(is_inconsistent)
         });
     }
 
     /// Compares the motions in the map with those of new loops. What the map says may explain the place as well as the loop.
     fn look_at_loops(&mut self) {
-        let is_torn = self.finder.loops_since(self.log.loops).any(|found| {
+        let is_inconsistent = self.finder.loops_since(self.log.loops).any(|found| {
             let mapped = self.mapped_motion(found.from, found.to);
             mapped.is_some_and(|mapped| {
                 let near = || self.finder.agreement_near(&found, &mapped);
-                let is_torn = |motion: &Isometry2<f64>| is_torn(&mapped, motion, &Matrix3::zeros());
-                let is_explained = |(near, share)| share >= EXPLAINED && !is_torn(&near);
-                is_torn(&found.motion) && !near().is_some_and(is_explained)
+                let is_inconsistent =
+                    |motion: &Isometry2<f64>| is_inconsistent(&mapped, motion, &Matrix3::zeros());
+                let is_explained = |(near, share)| share >= EXPLAINED && !is_inconsistent(&near);
+                is_inconsistent(&found.motion) && !near().is_some_and(is_explained)
             })
         });
-        self.log.is_torn |= is_torn;
+        self.log.is_inconsistent |= is_inconsistent;
         self.log.loops = self.finder.loops();
     }
 
@@ -280,9 +287,9 @@ fn is_known(estimate: &PoseEstimate) -> bool {
 }
 
 /// Whether a motion in the map contradicts another one with this covariance.
-fn is_torn(mapped: &Isometry2<f64>, motion: &Isometry2<f64>, spread: &Matrix3<f64>) -> bool {
+fn is_inconsistent(mapped: &Isometry2<f64>, motion: &Isometry2<f64>, spread: &Matrix3<f64>) -> bool {
     let off = mapped.inv_mul(motion);
     let std_m = (spread[(0, 0)] + spread[(1, 1)]).sqrt();
-    off.translation.vector.norm() > TORN_M.max(TORN_STDS * std_m)
-        || heading_rad(&off).abs() > TORN_RAD.max(TORN_STDS * spread[(2, 2)].sqrt())
+    off.translation.vector.norm() > INCONSISTENT_M.max(INCONSISTENT_STDS * std_m)
+        || heading_rad(&off).abs() > INCONSISTENT_RAD.max(INCONSISTENT_STDS * spread[(2, 2)].sqrt())
 }

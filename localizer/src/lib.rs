@@ -21,8 +21,8 @@
 //!   poses that fit about as well are kept as hypotheses, and driving on decides.
 //! - In a map that the robot makes itself, the true place may be missing, and something in the map always looks a little
 //!   like it: a found pose is certain once enough scans from enough viewpoints agree with it.
-//! - If most of the view shifts at once, either the robot moved and its odometry missed it, or the things moved: what
-//!   still lies exactly where it was decides.
+//! - If much of the view shifts at once, either the robot moved and its odometry missed it, or the things moved: two rigid
+//!   motions are separated, and the odometry decides which one is that of the robot. What has moved counts little from then on.
 //! - Learned rates of change ([`ChangingMap`]) lower the weight of surfaces in a search; in tracking only where the
 //!   unchanged surfaces alone fix the pose.
 //!
@@ -35,6 +35,7 @@
 mod beams;
 mod calibration;
 mod changing_map;
+mod coherent_motion;
 mod estimate;
 mod faults;
 mod first_map;
@@ -45,9 +46,9 @@ mod loop_closing;
 mod matcher;
 mod moments;
 mod motion;
+mod openings;
 mod path;
 mod placement;
-mod probation;
 mod scan_points;
 mod scene;
 mod score_grid;
@@ -58,6 +59,7 @@ mod surfel_map;
 mod sweep;
 mod tracking;
 mod trajectory;
+mod verification;
 
 pub use changing_map::ChangingMap;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};
@@ -66,5 +68,5 @@ pub use localizer::Localizer;
 pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer};
 pub use settings::{LocalizerSettings, OdometryTrust};
 pub use trajectory::{
-    LineMap, LineMatcher, Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings,
+    LineFit, LineMap, LineMatcher, Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings,
 };

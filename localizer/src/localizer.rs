@@ -11,15 +11,14 @@ use crate::estimate::{Localized, PoseEstimate, PoseState, Start};
 use crate::faults::{Fault, FaultFinder};
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
-use crate::path::Path;
 use crate::placement::shifted;
-use crate::probation::Probation;
 use crate::scan_points::{PointRules, ScanPoints};
 use crate::score_grid::ScoreGrid;
 use crate::settings::LocalizerSettings;
 use crate::support::ClearBeams;
 use crate::surfel_map::{Checker, SurfelMap};
 use crate::sweep::SweepUndo;
+use crate::verification::Verification;
 use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError};
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
@@ -58,13 +57,13 @@ pub struct Localizer {
     start_s: Option<f64>,
     /// Whether the robot started without a map.
     from_nothing: bool,
-    /// The number of scans for which only what lies exactly in place counts.
-    tight: u32,
+    /// If much of the view has moved at the present scan: the pose of a robot that follows it.
+    follower: Option<Isometry2<f64>>,
     /// Where the odometry says that the robot is, since the last certain pose, and the time of that pose, s.
     by_odometry: Isometry2<f64>,
     certain_s: f64,
-    /// While the pose has to earn its certainty: what speaks for it.
-    probation: Option<Probation>,
+    /// While a found pose is verified: what speaks for it and against it.
+    verification: Option<Verification>,
     /// Whether the present scan may enter the line map.
     learns: bool,
     /// The number of scans for which the odometry is not trusted.
@@ -145,10 +144,10 @@ impl Localizer {
             supported_s: None,
             start_s: None,
             from_nothing,
-            tight: 0,
+            follower: None,
             by_odometry: pose,
             certain_s: f64::NEG_INFINITY,
-            probation: None,
+            verification: None,
             learns: false,
             distrust: 0,
             readings: 0,
@@ -191,7 +190,7 @@ impl Localizer {
         let before = self.pose;
         self.begin = Vector3::zeros();
         let was_tracking = self.state == PoseState::Tracking;
-        self.learns = false;
+        (self.learns, self.follower) = (false, None);
         self.by_odometry = motion.apply(&self.by_odometry);
         let support = self.estimate(&posed, &motion, map, fault);
         if self.state == PoseState::Tracking {
@@ -211,7 +210,7 @@ impl Localizer {
             self.learns = false;
         }
         if self.learns || !self.settings.gate {
-            self.learn(&posed);
+            self.learn(&posed, map);
         }
         self.localized(posed, support.share())
     }
@@ -239,23 +238,26 @@ impl Localizer {
         let LocalizerSettings { range_noise_std_m: noise_m, weigh_by_arc_length: by_arc_length, .. } =
             self.settings;
         let rules = PointRules { noise_m, by_arc_length, grazing: true };
-        match Path::of_sweep(reading, motion, elapsed_s) {
-            Some(path) => {
-                posed.scan = self.sweeps.scan(reading, &path);
-                let passed = |beam| path.passed(reading.scan.age_s(beam));
-                self.points.update(posed, passed, &rules);
-            }
-            None => self.points.update(posed, |_| 1.0, &rules),
-        }
+        self.sweeps.update(posed, &mut self.points, &rules, reading, (motion, elapsed_s));
         self.clear.update(&posed.scan);
     }
 
+    /// Whether much of the view has moved at once at the last reading.
+    pub(crate) fn much_has_moved(&self) -> bool {
+        self.follower.is_some()
+    }
+
     /// Learns the line map from a scan with a certain pose.
-    fn learn(&mut self, reading: &LaserReading) {
-        // While much is out of place, nothing is learned from what may have moved; what is gone is removed.
-        if self.tight == 0 {
-            let noise_m = self.settings.range_noise_std_m;
-            self.surfels.learn(self.points.points(), &self.pose, noise_m);
+    fn learn(&mut self, reading: &LaserReading, map: &impl ChangingMap) {
+        let noise_m = self.settings.range_noise_std_m;
+        if let Some(follower) = &self.follower {
+            let least_m = self.scene(reading, map).exact_m();
+            self.surfels.displace_all(self.points.points(), &self.pose, follower, least_m);
+        }
+        let points = self.points.points();
+        match self.state {
+            PoseState::Tracking => self.surfels.learn(points, &self.pose, noise_m),
+            _ => self.surfels.learn_uncertain(points, &self.pose, noise_m),
         }
         self.checker.check(&mut self.surfels, reading, &self.pose);
     }

@@ -8,13 +8,13 @@
 //! - Where the scans fit the map but do not fix the pose, as in a corridor, the [`TrajectoryFinder`](crate::TrajectoryFinder)
 //!   guides the localizer: its submaps hold what the map does not hold yet. While it does, nothing is searched for in the whole
 //!   map: in a map that is not finished, something always looks like the place.
-//! - After a long way around, the robot comes back beside its own map, and the map is torn where the two meet. When the
+//! - After a long way around, the robot comes back beside its own map, and the map is inconsistent where the two meet. When the
 //!   finder recognises the place, the robot reads its own log again: a new localizer and a new mapper get all readings so far,
 //!   guided by the corrected trajectory. So there is one kind of map, and what it knows of changes and rates follows from the
 //!   better poses as well.
 //!
-//! The map can move until it *stands*: the robot has gone as far on known ground as on new ground before. From then on, its
-//! frame stays for ever.
+//! The map can move until it *stands*: nothing is left to explore, and the robot has gone as far on known ground as on new
+//! ground before. From then on, its frame stays for ever.
 
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept, Log};
@@ -109,10 +109,6 @@ impl LoopClosingLocalizer {
     /// Estimates the pose of a reading, as [`Localizer::localize`]. `map` has learned from the readings so far whose pose was
     /// certain, has skipped the others, and has learned from nothing else.
     pub fn localize(&mut self, reading: &LaserReading, map: &mut Mapper) -> LoopClosed {
-        if reading.scan.sweep_s > 0.0 {
-            // The finder undoes a sweep by odometry alone. Where that is bad, its trajectory is worse than the map.
-            self.first = None;
-        }
         let Some(first) = &mut self.first else {
             return LoopClosed { localized: self.localizer.localize(reading, map), correction: None };
         };
@@ -120,7 +116,12 @@ impl LoopClosingLocalizer {
             Some(guide) => self.localizer.localize_near(reading, map, guide),
             None => self.localizer.localize(reading, map),
         };
-        let closed = match first.add(reading, map.time(), &localized) {
+        if self.localizer.much_has_moved() {
+            // Keyframes from before and after do not fit together: most of what they show has moved.
+            self.first = None;
+            return LoopClosed { localized, correction: None };
+        }
+        let closed = match first.add(reading, map, &localized) {
             Some(poses) => self.read_again(&poses, map),
             None => None,
         };

@@ -39,6 +39,12 @@ pub(crate) struct Begin {
     pub(crate) information: Matrix3<f64>,
     /// The inverse of the covariance of both poses: of the begin, then of the end.
     pub(crate) joint: Matrix6<f64>,
+    /// How an error of the begin becomes one of the end.
+    pub(crate) by_heading: Matrix3<f64>,
+    /// How far the place of the begin has moved with the expected end, since another source knows the end: x, y (m) and
+    /// heading (rad); and how far from this place the begin is expected.
+    pub(crate) moved: Vector3<f64>,
+    pub(crate) expected: Vector3<f64>,
 }
 
 /// The way to match.
@@ -107,7 +113,7 @@ impl NormalEquations {
             gradient += prior.information * off;
             return Some([-(hessian.try_inverse()? * gradient), Vector3::zeros()]);
         };
-        let off = stack(&placement.begin(), &off);
+        let off = stack(&(placement.begin() - begin.expected), &off);
         let hessian = begin.joint + self.joint_hessian();
         let gradient = begin.joint * off + stack(&self.begin_gradient, &gradient);
         let step = -hessian.cholesky()?.solve(&gradient);
@@ -169,7 +175,7 @@ fn accumulate(
     map: &SurfelMap,
     points: &[ScanPoint],
     placement: &Placement,
-    gate_m: f64,
+    [gate_m, suspect_m]: [f64; 2],
     gates: &Gates,
 ) -> NormalEquations {
     let mut sums = NormalEquations::default();
@@ -182,6 +188,9 @@ fn accumulate(
         let normal = placement.pose.rotation * point.normal;
         let Some((index, off_m)) = map.nearest(&at, &normal, gate_m) else { continue };
         let surfel = map.surfel(index);
+        if surfel.is_suspect() && off_m.abs() > suspect_m {
+            continue;
+        }
         let mut weight = point.weight * surfel.weight();
         if gates.by_rates {
             weight *= surfel.steadiness;
@@ -235,7 +244,9 @@ pub(crate) fn align(
     let mut placement = if is_elastic { Placement::elastic(start) } else { Placement::rigid(start) };
     let (mut gate_m, mut steps) = (gates.first_m, 0);
     let sums = loop {
-        let sums = accumulate(map, points, &placement, gate_m, gates);
+        // What has moved before must not pull from afar, where the odometry knows better.
+        let suspect_m = if prior.is_some() { gates.last_m } else { gate_m };
+        let sums = accumulate(map, points, &placement, [gate_m, suspect_m], gates);
         let [step, begin] = sums.step(&placement, prior)?;
         if !step.iter().chain(&begin).all(|value| value.is_finite()) {
             return None;

@@ -1,9 +1,10 @@
 //! The motion between two readings by odometry, and how far it can be trusted.
 
-use crate::matcher::{Begin, Prior};
+use crate::matcher::{Begin, Prior, difference};
+use crate::placement::shifted;
 use crate::settings::OdometryTrust;
 use interfaces::heading_rad;
-use nalgebra::{Isometry2, Matrix3, Matrix6, Vector3};
+use nalgebra::{Isometry2, Matrix3, Matrix6, Vector3, Vector6};
 
 /// The uncertainty of a motion of zero length: vibration, and rounding in the odometry.
 const REST_STD_M: f64 = 2e-4;
@@ -100,14 +101,55 @@ pub(crate) struct Predicted {
 }
 
 impl Predicted {
+    /// A pose about which nothing is known before the motion.
+    pub(crate) fn rigid(pose: Isometry2<f64>, covariance: Matrix3<f64>) -> Self {
+        Self { pose, covariance, begin: None }
+    }
+
+    /// How far the place of the begin has moved with the expected end: x, y (m) and heading (rad).
+    pub(crate) fn begin_moved(&self) -> Vector3<f64> {
+        self.begin.map_or(Vector3::zeros(), |begin| begin.moved)
+    }
+
     /// The standard deviation of the position, m.
     pub(crate) fn spread_m(&self) -> f64 {
         (self.covariance[(0, 0)] + self.covariance[(1, 1)]).sqrt()
     }
 
+    /// What is known about the pose, together with what another source says about it: the step of a Kalman filter.
+    pub(crate) fn and(self, pose: &Isometry2<f64>, covariance: &Matrix3<f64>) -> Self {
+        let Some(both) = (self.covariance + covariance).try_inverse() else { return self };
+        let gain = self.covariance * both;
+        let step = gain * difference(pose, &self.pose);
+        let other = covariance.try_inverse().map(|information| (information, difference(pose, &self.pose)));
+        let begin = self.begin.zip(other).and_then(|(begin, other)| begin.and_end(&other, &step));
+        let mut both = Self { pose: shifted(&self.pose, &step), covariance: gain * covariance, begin };
+        both.pose.rotation.renormalize();
+        both
+    }
+
     /// The prior of a match; `None` if the covariance cannot be inverted.
     pub(crate) fn prior(&self) -> Option<Prior> {
         Some(Prior { pose: self.pose, information: self.covariance.try_inverse()?, begin: self.begin })
+    }
+}
+
+impl Begin {
+    /// What is known about the begin, together with what another source says about the end: its information, and how far it
+    /// is from the expected end, which moves by `step`, and with it the place of the begin.
+    fn and_end(
+        &self,
+        (information, off): &(Matrix3<f64>, Vector3<f64>),
+        step: &Vector3<f64>,
+    ) -> Option<Self> {
+        let mut joint = self.joint;
+        let mut of_end = joint.fixed_view_mut::<3, 3>(3, 3);
+        of_end += information;
+        let mut right = Vector6::zeros();
+        right.fixed_rows_mut::<3>(3).copy_from(&(information * off));
+        let begin = joint.cholesky()?.solve(&right).fixed_rows::<3>(0).into_owned();
+        let moved = self.by_heading.try_inverse()? * step;
+        Some(Self { joint, expected: begin - moved, moved, ..*self })
     }
 }
 
@@ -123,7 +165,8 @@ fn begin(covariance: &Matrix3<f64>, by_heading: &Matrix3<f64>, own: &Matrix3<f64
     joint.fixed_view_mut::<3, 3>(0, 3).copy_from(&-cross);
     joint.fixed_view_mut::<3, 3>(3, 0).copy_from(&-cross.transpose());
     joint.fixed_view_mut::<3, 3>(3, 3).copy_from(&motion);
-    Some(Begin { information, joint })
+    let (expected, moved) = (Vector3::zeros(), Vector3::zeros());
+    Some(Begin { information, joint, by_heading: *by_heading, expected, moved })
 }
 
 #[cfg(test)]
@@ -153,5 +196,31 @@ mod tests {
         let expected = jacobian * covariance * jacobian.transpose();
         let error = motion.propagate(&at, &covariance) - expected;
         assert!(error.abs().max() < 1e-4, "{error}"); // the noise at rest is below 1e-7
+    }
+
+    #[test]
+    fn another_source_of_the_end_says_something_about_the_begin() {
+        let (at, motion) =
+            (pose(1.0, -2.0, 0.7), Motion::new(pose(0.05, 0.0, 0.06), &OdometryTrust::default()));
+        let covariance = Matrix3::new(2.0, 0.3, 0.1, 0.3, 1.0, -0.2, 0.1, -0.2, 0.5) * 1e-4;
+        let predicted = motion.predict(&at, &covariance, true);
+        let off = Vector3::new(0.03, -0.02, 0.01);
+        let (end, spread) = (shifted(&predicted.pose, &off), Matrix3::identity() * 2e-4);
+        let both = predicted.and(&end, &spread);
+        // The Kalman filter for begin and end together.
+        let (by_heading, own) = motion.spread(&at);
+        let of_end = by_heading * covariance * by_heading.transpose() + own;
+        let inverse = (of_end + spread).try_inverse().unwrap();
+        let begin = covariance * by_heading.transpose() * inverse * off;
+        let step = of_end * inverse * off;
+        assert!((difference(&both.pose, &predicted.pose) - step).norm() < 1e-9);
+        let left = of_end - of_end * inverse * of_end;
+        assert!((both.covariance - left).abs().max() < 1e-9);
+        let found = both.prior().unwrap().begin.unwrap();
+        // The rest at rest is added to the covariance of the begin.
+        assert!((found.moved + found.expected - begin).norm() < 3e-4, "{found:?} {begin}");
+        let joint = found.joint.try_inverse().unwrap();
+        assert!((joint.fixed_view::<3, 3>(3, 3) - left).abs().max() < 1e-6, "{joint} {left}");
+        assert!((by_heading * found.moved - step).norm() < 1e-9);
     }
 }

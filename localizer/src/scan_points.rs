@@ -252,3 +252,27 @@ impl ScanPoints {
         reach
     }
 }
+
+/// The neighbors of a point on the same surface: up to this many to either side, up to this far (m), with this cosine of the
+/// angle between the normals.
+const NEIGHBORS: usize = 4;
+const NEIGHBORS_M: f64 = 0.4;
+const SAME_SURFACE: f64 = 0.95;
+
+/// The values of points, in the mean over the neighbors of each on the same surface.
+pub(crate) fn means(points: &[ScanPoint], values: &[Option<f64>]) -> Vec<Option<f64>> {
+    let mean = |at: usize| {
+        values[at]?;
+        let (mut sum, mut count) = (0.0, 0.0);
+        for other in at.saturating_sub(NEIGHBORS)..(at + NEIGHBORS + 1).min(points.len()) {
+            let is_same = points[at].normal.dot(&points[other].normal) > SAME_SURFACE
+                && (points[at].at - points[other].at).norm() < NEIGHBORS_M;
+            if let (true, Some(value)) = (is_same, values[other]) {
+                sum += value;
+                count += 1.0;
+            }
+        }
+        Some(sum / count)
+    };
+    (0..points.len()).map(mean).collect()
+}

@@ -11,6 +11,8 @@ use nalgebra::{Isometry2, Point2};
 
 /// Points match a surfel within this many standard deviations of the range noise and of the surfel.
 const GATE_STDS: f64 = 3.5;
+/// The mean over neighboring points on a surface that has stayed is within this share of half of that.
+const EXACT_SHARE: f64 = 0.5;
 
 /// One scan, and the maps.
 pub(crate) struct Scene<'a, M> {
@@ -21,7 +23,7 @@ pub(crate) struct Scene<'a, M> {
     /// The pose of the laser in the frame of the robot.
     pub(crate) mount: Isometry2<f64>,
     pub(crate) settings: &'a LocalizerSettings,
-    /// Whether only what lies exactly in place counts: much of the view has moved.
+    /// Whether only what lies in place counts: much of the view may have moved.
     pub(crate) is_tight: bool,
 }
 
@@ -31,6 +33,11 @@ impl<M: ChangingMap> Scene<'_, M> {
         let noise_m = self.settings.range_noise_std_m;
         let stds = if self.is_tight { GATE_STDS / 2.0 } else { GATE_STDS };
         stds * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt()
+    }
+
+    /// The distance up to which the mean over some points is exactly in place, m.
+    pub(crate) fn exact_m(&self) -> f64 {
+        EXACT_SHARE * self.tight().gate_m()
     }
 
     /// Matches the scan from `start`; points belong to surfels up to `first_m` away in the first steps.
@@ -51,17 +58,17 @@ impl<M: ChangingMap> Scene<'_, M> {
         align(self.surfels, self.points, start, prior, &gates)
     }
 
-    /// The same scene, in which only what lies exactly in place counts.
+    /// The same scene, in which only what lies in place counts.
     pub(crate) fn tight(&self) -> Self {
         Scene { is_tight: true, ..*self }
     }
 
     /// The agreement of the scan with the maps at a pose.
     pub(crate) fn judge(&self, placement: &Placement) -> Support {
-        let gate_m = self.gate_m();
+        let gates_m = [self.tight().gate_m(), self.gate_m()];
         let laser = placement.pose * self.mount;
         let origin = Point2::from(laser.translation.vector);
-        let mut support = judge(self.surfels, self.map, self.points, placement, &origin, gate_m);
+        let mut support = judge(self.surfels, self.map, self.points, placement, &origin, gates_m);
         support.blind = self.clear.contradicted(self.map, &laser);
         support.contradicted += support.blind;
         support

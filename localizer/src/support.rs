@@ -4,7 +4,7 @@ use crate::changing_map::ChangingMap;
 use crate::matcher::derivative;
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
-use crate::surfel_map::SurfelMap;
+use crate::surfel_map::{MOVED_M, Surfel, SurfelMap};
 use interfaces::{CellState, Grid, Scan};
 use nalgebra::{Isometry2, Matrix3, Point2, Vector2};
 
@@ -24,6 +24,9 @@ pub(crate) struct Support {
     pub(crate) blind: f64,
     /// In regions that were never seen, or where no surfel was learned.
     pub(crate) new: f64,
+    /// On or near surfels that have never moved: in place, or a little off.
+    pub(crate) in_place: f64,
+    pub(crate) displaced: f64,
     /// The information about x, y and heading of the confirmed points (1/m² and 1 per rad², per unit of weight).
     pub(crate) geometry: Matrix3<f64>,
     /// The same, of surfaces that never changed.
@@ -49,14 +52,15 @@ impl Support {
         if all > 0.0 { self.confirmed / all } else { 0.0 }
     }
 
+    /// The share of the surfaces that are seen a little off their place, of those that have never moved before.
+    pub(crate) fn displaced_share(&self) -> f64 {
+        let all = self.in_place + self.displaced;
+        if all > 0.0 { self.displaced / all } else { 0.0 }
+    }
+
     /// The weight of all points.
     pub(crate) fn weight(&self) -> f64 {
         self.confirmed + self.contradicted + self.new
-    }
-
-    /// The distance by which a turn shifts the confirmed surfaces, m per rad: the root of the mean square.
-    pub(crate) fn lever_m(&self) -> f64 {
-        if self.confirmed > 0.0 { (self.geometry[(2, 2)] / self.confirmed).sqrt() } else { f64::INFINITY }
     }
 
     /// Whether the confirmed points alone fix x, y and heading: seen from the robot, `least` units of weight stand
@@ -64,16 +68,22 @@ impl Support {
     pub(crate) fn fixes_pose(&self, least: f64) -> bool {
         self.geometry.symmetric_eigenvalues().min() >= least
     }
+
+    /// The distance by which a turn shifts the confirmed surfaces, m per rad: the root of the mean square.
+    pub(crate) fn lever_m(&self) -> f64 {
+        if self.confirmed > 0.0 { (self.geometry[(2, 2)] / self.confirmed).sqrt() } else { f64::INFINITY }
+    }
 }
 
-/// Judges the points of a scan at a pose. A point within `gate_m` of a surfel is confirmed.
+/// Judges the points of a scan at a pose. A point within `gate_m` of a surfel is confirmed, within
+/// `place_m` it is in place.
 pub(crate) fn judge(
     surfels: &SurfelMap,
     map: &impl ChangingMap,
     points: &[ScanPoint],
     placement: &Placement,
     laser: &Point2<f64>,
-    gate_m: f64,
+    [place_m, gate_m]: [f64; 2],
 ) -> Support {
     let mut support = Support::default();
     for point in points {
@@ -81,17 +91,31 @@ pub(crate) fn judge(
         let arm = at.coords - placement.pose.translation.vector;
         let normal = placement.pose.rotation * point.normal;
         match surfels.nearest(&at, &normal, gate_m) {
-            Some((index, _)) if surfels.surfel(index).weight() > 0.0 => {
+            Some((index, off_m)) if surfels.surfel(index).weight() > 0.0 => {
                 support.confirmed += point.weight;
                 let surfel = surfels.surfel(index);
+                match off_m.abs() <= place_m {
+                    _ if !surfel.is_permanent() => {}
+                    true => support.in_place += point.weight,
+                    false => support.displaced += point.weight,
+                }
                 let j = derivative(&arm, &surfel.normal);
                 let information = j * j.transpose() * point.weight;
                 support.geometry += information;
                 support.steady += information * surfel.steadiness;
             }
             Some(_) => support.new += point.weight,
-            None if is_contradicted(map, laser, &at) => support.contradicted += point.weight,
-            None => support.new += point.weight,
+            None => {
+                let beside = surfels.nearest(&at, &normal, MOVED_M).map(|(index, _)| surfels.surfel(index));
+                if beside.is_some_and(Surfel::is_permanent) {
+                    support.displaced += point.weight;
+                }
+                // What has moved before says nothing against a pose.
+                match !beside.is_some_and(Surfel::is_suspect) && is_contradicted(map, laser, &at) {
+                    true => support.contradicted += point.weight,
+                    false => support.new += point.weight,
+                }
+            }
         }
     }
     support

@@ -5,12 +5,14 @@
 
 mod checking;
 mod learning;
+mod moving;
 mod points;
 mod prior;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use checking::Checker;
+pub(crate) use moving::MOVED_M;
 
 use interfaces::{GridFrame, Values, runs, value};
 use nalgebra::{Point2, Vector2};
@@ -47,6 +49,13 @@ pub(crate) struct Surfel {
     last_scan: u32,
     /// The number of consecutive checks that contradicted the surfel.
     misses: u32,
+    /// The number of consecutive scans that saw the surface off its place, and the number of the last one.
+    displaced: u32,
+    last_displaced: u32,
+    /// Whether the surface has moved.
+    has_moved: bool,
+    /// Whether the surface may have moved, since others have.
+    is_doubted: bool,
     /// The weight by the learned rate of change, from 0 (changes often) to 1 (never changed).
     pub(crate) steadiness: f64,
     /// The cell in which the surfel is listed, or `NONE` for a removed surfel.
@@ -54,11 +63,6 @@ pub(crate) struct Surfel {
 }
 
 impl Surfel {
-    /// The weight of the surfel in matching, from 0 to 1. What was seen only a few times may be a passer-by.
-    pub(crate) fn weight(&self) -> f64 {
-        if self.scans < USABLE_SCANS { 0.0 } else { (f64::from(self.scans) / TRUSTED_SCANS).min(1.0) }
-    }
-
     fn is_removed(&self) -> bool {
         self.cell == NONE
     }
@@ -194,9 +198,9 @@ impl SurfelMap {
     }
 
     /// Adds a surfel, unless it is outside of the map or its cell is full.
-    fn add(&mut self, at: Point2<f64>, normal: Vector2<f64>, scans: u32) {
-        let Some(cell) = self.frame.index(self.frame.cell_at(&at)) else { return };
-        let Some(place) = self.cells[cell].iter().position(|&index| index == NONE) else { return };
+    fn add(&mut self, at: Point2<f64>, normal: Vector2<f64>, scans: u32) -> Option<u32> {
+        let cell = self.frame.index(self.frame.cell_at(&at))?;
+        let place = self.cells[cell].iter().position(|&index| index == NONE)?;
         let surfel = Surfel {
             at,
             normal,
@@ -204,6 +208,10 @@ impl SurfelMap {
             scans,
             last_scan: self.scan,
             misses: 0,
+            displaced: 0,
+            last_displaced: self.scan,
+            has_moved: false,
+            is_doubted: false,
             steadiness: 1.0,
             cell: cell as u32,
         };
@@ -219,6 +227,7 @@ impl SurfelMap {
         };
         self.cells[cell][place] = index;
         self.revision += u64::from(surfel.weight() > 0.0);
+        Some(index)
     }
 
     fn remove(&mut self, index: u32) {

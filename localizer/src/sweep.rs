@@ -2,7 +2,7 @@
 //! beams all start at the pose of its end.
 
 use crate::path::Path;
-use crate::scan_points::Directions;
+use crate::scan_points::{Directions, PointRules, ScanPoints};
 use interfaces::{LaserReading, Scan, approximate_atan2, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 
@@ -23,6 +23,25 @@ impl SweepUndo {
         let (scan, mount, to_laser) = (&reading.scan, reading.mount, reading.mount.inverse());
         self.directions.update(scan, &Isometry2::identity());
         undo(scan, self.directions.units(), |left| to_laser * path.at(left * scan.sweep_s) * mount)
+    }
+
+    /// Replaces the scan of `posed` by that of `reading` with all beams from the pose at its end, after a robot that moved
+    /// by `motion` in the time `elapsed_s`; and the points by those of this scan.
+    pub(crate) fn update(
+        &mut self,
+        posed: &mut LaserReading,
+        points: &mut ScanPoints,
+        rules: &PointRules,
+        reading: &LaserReading,
+        (motion, elapsed_s): (&Isometry2<f64>, f64),
+    ) {
+        match Path::of_sweep(reading, motion, elapsed_s) {
+            Some(path) => {
+                posed.scan = self.scan(reading, &path);
+                points.update(posed, |beam| path.passed(reading.scan.age_s(beam)), rules);
+            }
+            None => points.update(posed, |_| 1.0, rules),
+        }
     }
 }
 

@@ -1,12 +1,12 @@
 //! From the predicted pose to the pose of the scan, and the question whether the robot or the things moved.
 
 use crate::changing_map::ChangingMap;
+use crate::coherent_motion::{Stayed, stayed};
 use crate::matcher::{Match, difference};
 use crate::motion::Predicted;
 use crate::placement::Placement;
 use crate::scene::Scene;
 use crate::support::Support;
-use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
 /// The innovation (squared, over its covariance) above which odometry did not tell the truth: 1 in 10⁵ by chance.
@@ -15,17 +15,12 @@ const SURPRISE: f64 = 26.0;
 const WIDE_GATE_M: f64 = 0.3;
 /// The least gain of support with which another pose replaces the predicted one.
 const BETTER: f64 = 0.05;
-/// Where this share of the points lies exactly in place and stands against every motion of the robot, the pose is that
-/// of the odometry, though the rest moved as if the robot had moved.
-const STAYED_SHARE: f64 = 0.012;
-/// With a larger standard deviation of the predicted position (m), the odometry cannot say that the robot stayed: in a
-/// narrow place, some points always lie in place by chance.
-const VAGUE_M: f64 = 0.05;
-/// The same where the rest does not fit any other pose, and the least support.
+/// Where the scan fits no other pose, the share of it that lies in place and stands against every motion of the robot, and the
+/// least support, with which the pose is that of the odometry.
 const ONLY_SHARE: f64 = 0.1;
 const ONLY_SUPPORT: f64 = 0.5;
-/// Shifts below this are no coherent motion of things, m.
-const COHERENT_M: f64 = 0.03;
+/// With a larger share of the known surfaces a little off their place, much of the view may have moved.
+const MOVED_SHARE: f64 = 0.12;
 /// Errors of the map, which change where other surfaces come into view.
 const MAP_STD_M: f64 = 0.002;
 const MAP_STD_RAD: f64 = 7e-4;
@@ -43,8 +38,10 @@ pub(crate) struct Tracked {
     /// The covariance of the pose of a beam, in the mean over the scan.
     pub(crate) beam_covariance: Matrix3<f64>,
     pub(crate) support: Support,
-    /// Much of the view may have moved, but the robot moved as its odometry says: what stayed in place fixes the pose.
+    /// What lies in place fixes the pose, though much of the view does not.
     pub(crate) stayed: bool,
+    /// If much of the view has moved, and the robot as its odometry says: the pose of a robot that follows the view.
+    pub(crate) follower: Option<Isometry2<f64>>,
     /// The robot did not move as its odometry says.
     pub(crate) is_other: bool,
 }
@@ -53,7 +50,15 @@ impl Tracked {
     /// The pose by the odometry or a match. `covariances`: of the pose, and of the pose of a beam.
     pub(crate) fn new(placement: Placement, covariances: [Matrix3<f64>; 2], support: Support) -> Self {
         let [covariance, beam_covariance] = covariances;
-        Self { placement, covariance, beam_covariance, support, stayed: false, is_other: false }
+        Self {
+            placement,
+            covariance,
+            beam_covariance,
+            support,
+            stayed: false,
+            follower: None,
+            is_other: false,
+        }
     }
 }
 
@@ -66,7 +71,8 @@ pub(crate) fn track<M: ChangingMap>(
 ) -> Tracked {
     let (by_odometry, is_surprise) = with_prior(scene, predicted);
     let is_good = |tracked: &Tracked| tracked.support.share() >= scene.settings.min_support;
-    if is_good(&by_odometry) && !is_surprise {
+    let is_plain = is_good(&by_odometry) && !is_surprise;
+    if is_plain && by_odometry.support.displaced_share() < MOVED_SHARE {
         return by_odometry;
     }
     let mut best = by_odometry;
@@ -77,17 +83,21 @@ pub(crate) fn track<M: ChangingMap>(
             best = candidate;
         }
     }
-    let in_place = scene.tight().judge(&by_odometry.placement);
-    let fixes_pose = |share: f64| in_place.fixes_pose(share * in_place.weight());
-    if predicted.spread_m() <= VAGUE_M && is_coherent(&by_odometry, &best) && fixes_pose(STAYED_SHARE) {
-        let (in_place, _) = with_prior(&scene.tight(), predicted);
-        return Tracked { stayed: true, ..in_place };
+    if let Some(Stayed { found, follower }) = stayed(scene, predicted, &best.placement)
+        && (follower.is_some() || !is_plain)
+    {
+        return Tracked { stayed: true, follower, ..tracked(scene, &found) };
+    }
+    if is_plain {
+        return by_odometry;
     }
     if is_good(&best) {
         return Tracked { is_other: true, ..best };
     }
-    let is_enough = by_odometry.support.share() >= ONLY_SUPPORT && fixes_pose(ONLY_SHARE);
-    Tracked { stayed: is_enough && !is_surprise, ..by_odometry }
+    let in_place = scene.tight().judge(&by_odometry.placement);
+    let stayed =
+        by_odometry.support.share() >= ONLY_SUPPORT && in_place.fixes_pose(ONLY_SHARE * in_place.weight());
+    Tracked { stayed: stayed && !is_surprise, ..by_odometry }
 }
 
 /// The match with the prior of odometry, and whether the motion by odometry was not true.
@@ -135,10 +145,4 @@ fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
 fn unchanged_fix_pose<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>) -> bool {
     scene.surfels.knows_rates()
         && scene.judge(&Placement::rigid(pose)).steady.symmetric_eigenvalues().min() >= UNCHANGED_WEIGHT
-}
-
-/// Whether two poses are as far apart as things that move together: then either the things moved, or the robot.
-fn is_coherent(stayed: &Tracked, moved: &Tracked) -> bool {
-    let shift = stayed.placement.pose.inv_mul(&moved.placement.pose);
-    shift.translation.vector.norm() + heading_rad(&shift).abs() >= COHERENT_M
 }

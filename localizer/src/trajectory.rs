@@ -4,7 +4,8 @@
 //! reading ─▶ match with the local submap ─▶ keyframe ─▶ submap is finished ─▶ loops? ─▶ pose graph ─▶ refine
 //! ```
 //!
-//! - A scan is matched with the submap of the last keyframes only: an error of the past bends nothing that follows.
+//! - A scan is matched with the submap of the last keyframes only: an error of the past bends nothing that follows. The
+//!   sweep of a scan is undone along the motion that its match finds.
 //! - A finished submap is searched for in earlier submaps by branch and bound, as far as the trajectory since then is
 //!   uncertain (Hess, Kohler, Rapp & Andor 2016).
 //! - A loop counts where most of what both submaps cover agrees, where few beams of one pass the walls of the other
@@ -28,15 +29,14 @@ mod settings;
 mod sparse;
 mod submap;
 
-pub use line_map::{LineMap, LineMatcher};
+pub use line_map::{LineFit, LineMap, LineMatcher};
 pub(crate) use matching::{covariance, in_frame};
 pub use settings::TrajectorySettings;
 
 use crate::estimate::PoseState;
-use crate::given_poses::GivenPoses;
 use front_end::FrontEnd;
 use graph::PoseGraph;
-use interfaces::{LaserReading, SettingsError, is_valid_pose};
+use interfaces::{LaserReading, SettingsError};
 use loops::LoopCloser;
 use nalgebra::Isometry2;
 
@@ -78,7 +78,6 @@ struct Attached {
 #[derive(Debug)]
 pub struct TrajectoryFinder {
     settings: TrajectorySettings,
-    given: GivenPoses,
     front_end: FrontEnd,
     closer: LoopCloser,
     graph: PoseGraph,
@@ -95,7 +94,6 @@ impl TrajectoryFinder {
         settings.check()?;
         Ok(Self {
             settings: settings.clone(),
-            given: GivenPoses::default(),
             front_end: FrontEnd::new(settings),
             closer: LoopCloser::new(settings.range_noise_std_m),
             graph: PoseGraph::default(),
@@ -105,8 +103,6 @@ impl TrajectoryFinder {
 
     /// Adds the next reading. An invalid reading gets the pose of the odometry.
     pub fn add(&mut self, reading: LaserReading) {
-        let is_valid = reading.scan.check().is_ok() && is_valid_pose(&reading.pose);
-        let reading = if is_valid { self.given.unswept(reading) } else { reading };
         let (offset, state) = self.front_end.localize(&reading, &mut self.graph);
         let keyframe = self.graph.poses.len() - 1;
         self.readings.push(Attached { time_s: reading.time_s, keyframe, offset, state });

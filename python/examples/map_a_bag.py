@@ -1,11 +1,13 @@
 """Where does a place change? `python map_a_bag.py LOG` reads a bag of ROS 2 (MCAP, SQLite) or a CARMEN log."""
 
-import sys
+import argparse
 
 import curious
 import numpy as np
 
-log = curious.Log(sys.argv[1])
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("log", metavar="LOG", help="a folder of rosbag2, or a file: .mcap, .db3, a CARMEN log")
+log = curious.Log(parser.parse_args().log)
 print(f"{len(log)} scans in {log.duration:.0f} s", *log.notes, sep="\n")
 survey = curious.map_log(log)
 rates = survey.mapper.rates()

@@ -9,12 +9,13 @@ import argparse
 import subprocess
 import tempfile
 import time
+from typing import Callable
 
 import curious
 import numpy as np
 
 
-def measure(name: str, per_call: int, call, seconds: float = 2.0) -> float:
+def measure(name: str, per_call: int, call: Callable[[], object], seconds: float = 2.0) -> float:
     """Calls per CPU second, times `per_call`."""
     call()
     # The clock is read rarely: that takes as long as the call itself takes without the simulation.
@@ -98,8 +99,8 @@ def main() -> None:
         actions = np.random.default_rng(0).uniform(-1.0, 1.0, (100, 64, 2)).astype(np.float32)
         actions[:, :, 0] = np.abs(actions[:, :, 0])
         count = iter(range(10**9))
-        step = lambda: env.step(actions[next(count) % 100])  # noqa: E731
-        speed = measure(f"steps of the {name} task, 64 worlds", 64, step, args.seconds)
+        act = lambda: env.step(actions[next(count) % 100])  # noqa: E731
+        speed = measure(f"steps of the {name} task, 64 worlds", 64, act, args.seconds)
         if args.rust:
             compare(speed, [args.rust, kind, "64", str(args.threads or 2), str(steps)])
     if args.ir_sim:

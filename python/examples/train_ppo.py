@@ -74,21 +74,23 @@ class Policy:
 
     def best(self, observations: np.ndarray) -> np.ndarray:
         """The actions without noise."""
-        return np.clip(self.actor.forward(observations)[-1], -1.0, 1.0)
+        actions: np.ndarray = np.clip(self.actor.forward(observations)[-1], -1.0, 1.0)
+        return actions
 
     def log_probability(self, actions: np.ndarray, mean: np.ndarray) -> np.ndarray:
         z = (actions - mean) / np.exp(self.log_std)
-        return -0.5 * (z**2).sum(axis=1) - self.log_std.sum() - np.log(2.0 * np.pi)
+        log_probability: np.ndarray = -0.5 * (z**2).sum(axis=1) - self.log_std.sum() - np.log(2.0 * np.pi)
+        return log_probability
 
 
 def train(minutes: float, seed: int) -> Policy:
     """Learns for some minutes."""
     env = DriveVectorEnv(num_envs=ENVS)
     random = np.random.default_rng(seed)
-    policy = Policy(env.single_observation_space.shape[0], random)
+    observation, _ = env.reset(seed=seed)
+    policy = Policy(observation.shape[1], random)
     parameters = [*policy.actor.parameters(), *policy.critic.parameters(), policy.log_std]
     adam = Adam(parameters)
-    observation, _ = env.reset(seed=seed)
     begin, steps, shown = time.perf_counter(), 0, 0.0
     recent: list[float] = []
     while (spent := (time.perf_counter() - begin) / 60.0) < minutes:
@@ -117,11 +119,11 @@ def train(minutes: float, seed: int) -> Policy:
             advantages[step] = advantage = error + GAMMA * LAMBDA * goes_on[step] * advantage
             following = values[step]
         flat = [part.reshape(STEPS * ENVS, *part.shape[2:]) for part in (observations, actions, log_probabilities)]
-        returns, advantages = (advantages + values).ravel(), advantages.ravel()
+        returns, gains = (advantages + values).ravel(), advantages.ravel()
         rate = RATE * max(0.05, 1.0 - spent / minutes)
         for _ in range(EPOCHS):
             for batch in random.permutation(STEPS * ENVS).reshape(-1, BATCH):
-                update(policy, adam, rate, *(part[batch] for part in (*flat, returns, advantages)))
+                update(policy, adam, rate, *(part[batch] for part in (*flat, returns, gains)))
         steps += STEPS * ENVS
         if time.perf_counter() - shown > 10.0 and recent:
             shown, recent = time.perf_counter(), recent[-500:]
@@ -130,7 +132,16 @@ def train(minutes: float, seed: int) -> Policy:
     return policy
 
 
-def update(policy, adam, rate, observations, actions, old, returns, advantages) -> None:
+def update(
+    policy: Policy,
+    adam: Adam,
+    rate: float,
+    observations: np.ndarray,
+    actions: np.ndarray,
+    old: np.ndarray,
+    returns: np.ndarray,
+    advantages: np.ndarray,
+) -> None:
     """One step of gradient descent on the clipped objective."""
     count = len(observations)
     advantages = (advantages - advantages.mean()) / (advantages.std() + 1e-8)

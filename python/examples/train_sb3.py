@@ -4,6 +4,7 @@ The policy is saved to `driver.zip`, loaded again, and evaluated with seeds that
 """
 
 import argparse
+from typing import Any
 
 import numpy as np
 from curious.envs import DriveVectorEnv
@@ -28,7 +29,7 @@ env.seed(1_000_000)
 successes: list[bool] = []
 
 
-def note(values: dict, _: dict) -> None:
+def note(values: dict[str, Any], _: dict[str, Any]) -> None:
     """Called at every step of every world."""
     if values["done"]:
         successes.append(bool(values["info"]["is_success"]))

@@ -2,6 +2,7 @@
 
 import argparse
 import statistics
+from typing import Any
 
 import curious
 import ray
@@ -10,7 +11,7 @@ STRATEGIES = ["curious", "recency", "information-gain"]
 
 
 @ray.remote
-def trial(world: curious.Spec, strategy: str, seed: int, seconds: int) -> dict:
+def trial(world: curious.Spec, strategy: str, seed: int, seconds: int) -> dict[str, Any]:
     """A trial in another process: Ray takes functions of Python only."""
     return curious.trial(world, strategy, seed=seed, seconds=seconds)
 

@@ -3,8 +3,8 @@
 use interfaces::{GridFrame, heading_rad};
 use nalgebra::{Isometry2, Point2};
 use numpy::{
-    AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayLike1, PyArrayMethods,
-    PyReadwriteArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
+    AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayLike1,
+    PyArrayLikeDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyFileNotFoundError, PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -47,6 +47,7 @@ where
     type Error = PyErr;
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        check_real(&object)?;
         let row = object.extract().map_err(|error: PyErr| {
             // The message about dimensions of the crate `numpy` is not a sentence.
             if error.is_instance_of::<PyTypeError>(object.py()) {
@@ -56,6 +57,28 @@ where
             }
         });
         row.map(Self)
+    }
+}
+
+/// Numbers with any number of dimensions, as lists, tuples or an array of any type.
+pub(crate) struct Table<'py>(pub(crate) PyArrayLikeDyn<'py, f64, AllowTypeChange>);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Table<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        check_real(&object)?;
+        object.extract().map(Self)
+    }
+}
+
+/// NumPy would drop the imaginary parts of an array, with a warning.
+fn check_real(object: &Bound<'_, PyAny>) -> PyResult<()> {
+    match object.cast::<PyUntypedArray>() {
+        Ok(array) if array.dtype().kind() == b'c' => {
+            Err(PyTypeError::new_err(format!("real numbers are needed, and not {}", described(object))))
+        }
+        _ => Ok(()),
     }
 }
 

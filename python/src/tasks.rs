@@ -18,7 +18,6 @@ use std::sync::Arc;
 #[pyclass(module = "curious")]
 pub(crate) struct Batch {
     tasks: Tasks,
-    pool: Option<rayon::ThreadPool>,
     /// The last observations of episodes that ended in a step.
     last: Vec<f32>,
     environments: usize,
@@ -59,14 +58,17 @@ impl Batch {
             0 | 1 => None,
             threads => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                Some(pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?)
+                Some(Arc::new(pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?))
             }
         };
         let agents = each!(&tasks, batch => batch.tasks().first().map_or(1, Task::agents));
-        let mut batch = Self { tasks, pool, last: Vec::new(), environments, agents, is_ready: false };
-        if threads == 1 {
-            each!(&mut batch.tasks, batch => batch.set_parallel(false));
-        }
+        let mut batch = Self { tasks, last: Vec::new(), environments, agents, is_ready: false };
+        each!(&mut batch.tasks, batch => {
+            batch.set_pool(pool);
+            if threads == 1 {
+                batch.set_parallel(false);
+            }
+        });
         batch.last = vec![0.0; environments * agents * batch.observation_len()];
         Ok(batch)
     }
@@ -90,14 +92,6 @@ impl Batch {
             return Ok(());
         }
         Err(value_error(format!("the number of environments must be from 1 to 1048576, not {environments}")))
-    }
-}
-
-/// Runs a closure on the threads of a pool.
-fn on<R: Send>(pool: Option<&rayon::ThreadPool>, run: impl FnOnce() -> R + Send) -> R {
-    match pool {
-        Some(pool) => pool.install(run),
-        None => run(),
     }
 }
 
@@ -190,10 +184,9 @@ impl Batch {
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let (rows, values) = (self.rows(), self.observation_len());
         let seeds = seeds.as_array().to_vec();
-        let (tasks, pool) = (&mut self.tasks, self.pool.as_ref());
+        let tasks = &mut self.tasks;
         let mut observations = vec![0.0; rows * values];
-        py.detach(|| on(pool, || each!(tasks, batch => batch.reset(&seeds, &mut observations))))
-            .map_err(value_error)?;
+        py.detach(|| each!(tasks, batch => batch.reset(&seeds, &mut observations))).map_err(value_error)?;
         self.is_ready = true;
         observations.into_pyarray(py).reshape([rows, values])
     }
@@ -253,7 +246,7 @@ impl Batch {
         let (mut observations, mut rewards) = (vec![0.0; rows * values], vec![0.0; rows]);
         let (mut terminated, mut truncated) = (vec![false; rows], vec![false; rows]);
         let (mut info, mut was_reset) = (vec![0.0; rows * infos], vec![false; environments]);
-        let (tasks, pool, last) = (&mut self.tasks, self.pool.as_ref(), &mut self.last);
+        let (tasks, last) = (&mut self.tasks, &mut self.last);
         let results = ResultsMut {
             observations: &mut observations,
             rewards: &mut rewards,
@@ -263,7 +256,7 @@ impl Batch {
             info: &mut info,
             was_reset: &mut was_reset,
         };
-        py.detach(|| on(pool, || each!(tasks, batch => batch.step(actions, &next_seeds, results))))
+        py.detach(|| each!(tasks, batch => batch.step(actions, &next_seeds, results)))
             .map_err(value_error)?;
         let last = if was_reset.contains(&true) {
             Some(PyArray1::from_slice(py, &self.last).reshape([rows, values])?)

@@ -1,14 +1,15 @@
 //! Trials of exploring robots, with strategies of the library or of Python.
 
-use crate::convert::{pose_array, value_error, world_error};
+use crate::convert::{Table, pose_array, value_error, world_error};
 use crate::grid_spec::GridSpec;
 use crate::mapper::Mapper;
 use crate::spec::{Spec, driving, spec_of, world_name};
 use agent::{Policy, Situation as Inputs, Strategy};
-use evaluation::report::{Metric, Trial};
-use evaluation::trials::{Experiment, GridRobot, PhysicsRobot, TrialStrategy, TrialWorld, run_trial};
+use evaluation::trials::{
+    Experiment, GridRobot, Metric, PhysicsRobot, Trial, TrialStrategy, TrialWorld, run_trial,
+};
 use interfaces::Values;
-use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLikeDyn, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sim::physics::WorldSpec;
@@ -37,15 +38,17 @@ impl Situation {
         pose_array(py, &self.pose)
     }
 
-    /// The travel time to every cell, s (steps in a grid world), shape (rows, columns); inf where no path is known. None unless the strategy
-    /// has the attribute `needs_travel = True`.
+    /// The travel time to every cell, s (steps in a grid world), shape (rows, columns); inf where no path is known.
+    /// `AttributeError`: the strategy does not have the attribute `needs_travel = True`.
     #[getter]
-    fn travel<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+    fn travel<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         if self.travel.is_empty() {
-            return Ok(None);
+            return Err(pyo3::exceptions::PyAttributeError::new_err(
+                "travel times are computed only for a strategy with `needs_travel = True`",
+            ));
         }
         let (rows, columns) = self.mapper.borrow(py).size();
-        Ok(Some(self.travel.clone().into_pyarray(py).reshape([rows, columns])?))
+        self.travel.clone().into_pyarray(py).reshape([rows, columns])
     }
 }
 
@@ -71,7 +74,7 @@ impl OfPython {
             let mapper = Py::new(py, Mapper { mapper: inputs.mapper.clone() })?;
             let situation = Situation { mapper, pose: *inputs.pose, travel: inputs.travel.to_vec() };
             let found = self.strategy.bind(py).call_method1("weigh", (situation,))?;
-            let found: PyArrayLikeDyn<'_, f64, AllowTypeChange> = found.extract()?;
+            let Table(found) = found.extract()?;
             let (array, frame) = (found.as_array(), inputs.mapper.frame());
             if array.shape() != [frame.height(), frame.width()] {
                 return Err(value_error(format!(

@@ -107,6 +107,8 @@ def test_teleport_and_free_poses(fleet_toml):
         (lambda f: f.step(np.zeros(4)), ValueError, "shape \\[4\\], and must have \\(2, 2\\)"),
         (lambda f: f.step(np.zeros((2, 2)), steps=-1), ValueError, "`steps` is 0 or more, and not -1"),
         (lambda f: f.step("fast"), (TypeError, ValueError), None),
+        (lambda f: f.step(np.zeros((2, 2), complex)), TypeError, "real numbers .*not an array of complex128"),
+        (lambda f: f.teleport(0, np.zeros(3, np.complex64)), TypeError, "real numbers .*not an array of complex64"),
         (lambda f: f.command(9, 0.0, 0.0), IndexError, "there is no robot 9: there are 3"),
         (lambda f: f.command(0, np.inf, 0.0), ValueError, "finite"),
         (lambda f: f.look(3), IndexError, "there is no robot 3"),

@@ -53,6 +53,11 @@ impl Names {
         &self.namespace
     }
 
+    /// The name with the namespace: `/robot1/curious_node`.
+    pub fn full_name(&self) -> String {
+        self.full(&self.node)
+    }
+
     /// The full name of a topic or service: `scan` in the namespace, `/scan` as it is, `~/save_state` below the name of the
     /// node; after remapping.
     ///

@@ -1,6 +1,7 @@
 //! The parameters of the mapping node, named as those of `slam_toolbox` and Nav2 where these have them.
 
 mod choices;
+mod given;
 
 pub use choices::{Mode, Navigator, PoseSource};
 
@@ -29,9 +30,29 @@ pub enum ParameterError {
         /// The value as given.
         found: Value,
     },
+    /// There is a list, or nothing, where a value must be.
+    #[error("the parameter `{name}` must be one value, not a list or nothing")]
+    NoValue {
+        /// The name.
+        name: String,
+    },
+    /// A parameter in a file.
+    #[error("{place}: {error}")]
+    InFile {
+        /// The file and the line.
+        place: String,
+        /// What is wrong.
+        error: Box<ParameterError>,
+    },
     /// The value is out of range.
     #[error(transparent)]
     Range(#[from] SettingsError),
+}
+
+impl ParameterError {
+    fn unknown(name: &str) -> Self {
+        Self::Unknown { name: name.to_owned(), known: NAMES.join(", ") }
+    }
 }
 
 /// All parameters.
@@ -170,7 +191,7 @@ impl Parameters {
     /// When there is no such parameter, or when it has no such value. Ranges are checked by [`check`](Self::check).
     pub fn set(&mut self, name: &str, value: &Value) -> Result<(), ParameterError> {
         let Some(slot) = self.slot(name) else {
-            return Err(ParameterError::Unknown { name: name.to_owned(), known: NAMES.join(", ") });
+            return Err(ParameterError::unknown(name));
         };
         let set = match slot {
             Slot::Mode(mode) => choose(mode, value),

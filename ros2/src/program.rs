@@ -1,5 +1,6 @@
 //! What both programs share: exit codes, messages, signals.
 
+use crate::names::Names;
 use crate::notes::Output;
 use crate::ros_args::RosArgs;
 use clap::Parser;
@@ -50,6 +51,14 @@ pub fn start<A: Parser>(program: impl FnOnce(A, RosArgs) -> Result<(), Failure>)
 pub fn say(text: &str) {
     // Nobody reads it: the node goes on.
     writeln!(std::io::stderr(), "{text}").ok();
+}
+
+/// Says which files of parameters have none for a node: the name of the node in them is probably wrong.
+pub fn note_unused_files(names: &Names, ros: &RosArgs) {
+    let name = names.full_name();
+    for file in ros.files_without(&name) {
+        say(&format!("[{}] {file} has no parameters for the node {name}", names.node()));
+    }
 }
 
 /// Where the sentences of a node go: to the error output, each with the name of the node.

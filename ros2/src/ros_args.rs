@@ -1,6 +1,8 @@
-//! The arguments that every node of ROS has: `--ros-args -p name:=value -r from:=to`.
+//! The arguments that every node of ROS has: `--ros-args -p name:=value -r from:=to --params-file FILE`.
 
+use crate::params_file::{self, ParamsFileError};
 use crate::value::Value;
+use std::path::Path;
 
 /// The error for arguments after `--ros-args`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -19,15 +21,61 @@ pub enum RosArgsError {
         expected: &'static str,
     },
     /// The argument is not known.
-    #[error("`{0}` after --ros-args is not known: there are -p name:=value, -r from:=to, and -- at the end")]
+    #[error(
+        "`{0}` after --ros-args is not known: there are -p name:=value, -r from:=to, --params-file FILE, and -- at the \
+         end"
+    )]
     Unknown(String),
+    /// A file of parameters is not valid.
+    #[error(transparent)]
+    File(#[from] ParamsFileError),
+}
+
+/// For which nodes a parameter is.
+#[derive(Clone, Debug, PartialEq)]
+enum Nodes {
+    /// `-p name:=value`.
+    All,
+    /// `-p node:name:=value`: the name of a node without its namespace.
+    Named(String),
+    /// In a file: see [`params_file::matches`].
+    Pattern(String),
+}
+
+/// The value of a parameter, and where it is given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Given {
+    nodes: Nodes,
+    /// The name.
+    pub name: String,
+    /// The value; `None`: a list, or nothing.
+    pub value: Option<Value>,
+    /// The file and the line; `None`: the command line.
+    pub place: Option<String>,
+}
+
+impl Given {
+    fn is_for(&self, full_name: &str) -> bool {
+        match &self.nodes {
+            Nodes::All => true,
+            Nodes::Named(node) => full_name.rsplit('/').next() == Some(node.trim_start_matches('/')),
+            Nodes::Pattern(pattern) => params_file::matches(pattern, full_name),
+        }
+    }
+
+    /// Whether other nodes may be meant, so that a node need not know the parameter.
+    pub fn is_for_others_too(&self) -> bool {
+        matches!(&self.nodes, Nodes::Pattern(pattern) if pattern.contains('*'))
+    }
 }
 
 /// What `--ros-args` says.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RosArgs {
-    /// The parameters in the order of the command line: for which node (`None`: for all), name and value.
-    pub parameters: Vec<(Option<String>, String, Value)>,
+    /// The parameters in the order of the command line, and of the lines in a file.
+    parameters: Vec<Given>,
+    /// The files of parameters.
+    files: Vec<String>,
     /// The names that are replaced: for which node, from and to.
     pub remaps: Vec<(Option<String>, String, String)>,
 }
@@ -60,7 +108,17 @@ impl RosArgs {
         match flag {
             "-p" | "--param" => {
                 let (node, name, value) = rule(flag, next(), "name:=value")?;
-                self.parameters.push((node, name, Value::parse(&value)));
+                let (nodes, value) = (node.map_or(Nodes::All, Nodes::Named), Some(Value::parse(&value)));
+                self.parameters.push(Given { nodes, name, value, place: None });
+            }
+            "--params-file" => {
+                let file = next().ok_or_else(|| RosArgsError::Missing(flag.to_owned(), "a file"))?;
+                for entry in params_file::read(Path::new(&file))? {
+                    let place = Some(format!("{file}, line {}", entry.line));
+                    let (nodes, name, value) = (Nodes::Pattern(entry.nodes), entry.name, entry.value);
+                    self.parameters.push(Given { nodes, name, value, place });
+                }
+                self.files.push(file);
             }
             "-r" | "--remap" => {
                 let (node, from, to) = rule(flag, next(), "from:=to")?;
@@ -76,10 +134,19 @@ impl RosArgs {
         Ok(())
     }
 
-    /// The values for a node, in their order: later ones replace earlier ones.
-    pub fn parameters_of<'a>(&'a self, node: &'a str) -> impl Iterator<Item = (&'a str, &'a Value)> {
-        let mine = move |(of, ..): &&(Option<String>, String, Value)| is_for(of, node);
-        self.parameters.iter().filter(mine).map(|(_, name, value)| (name.as_str(), value))
+    /// The values for a node with this name and namespace, in their order: later ones replace earlier ones.
+    pub fn parameters_of<'a>(&'a self, full_name: &'a str) -> impl Iterator<Item = &'a Given> {
+        self.parameters.iter().filter(|given| given.is_for(full_name))
+    }
+
+    /// The files that have no parameter for a node: the name of the node in them is probably wrong.
+    pub fn files_without(&self, full_name: &str) -> Vec<&str> {
+        let has = |file: &str| {
+            let place = format!("{file}, line ");
+            self.parameters_of(full_name)
+                .any(|given| given.place.as_ref().is_some_and(|at| at.starts_with(&place)))
+        };
+        self.files.iter().map(String::as_str).filter(|file| !has(file)).collect()
     }
 
     /// What a name of a node is replaced by.
@@ -126,9 +193,13 @@ mod tests {
                     --ros-args -r __ns:=/robot -p other:mode:=explore --param mode:=map";
         let (others, ros) = split(line).unwrap();
         assert_eq!(others, ["node", "--state", "s", "--mode", "map"]);
-        let parameters: Vec<_> = ros.parameters_of("node").collect();
-        assert_eq!(parameters, [("resolution", &Value::Float(0.1)), ("mode", &Value::Text("map".into()))]);
-        assert_eq!(ros.parameters_of("other").count(), 3);
+        let parameters = |node| {
+            ros.parameters_of(node).map(|given| (given.name.clone(), given.value.clone())).collect::<Vec<_>>()
+        };
+        let [resolution, mode] = [("resolution", Value::Float(0.1)), ("mode", Value::Text("map".into()))]
+            .map(|(name, value)| (name.to_owned(), Some(value)));
+        assert_eq!(parameters("/robot/node"), [resolution, mode]);
+        assert_eq!(parameters("/robot/other").len(), 3);
         assert_eq!(ros.remapped("node", |from| from == "scan"), Some("/front"));
         assert_eq!(ros.remapped("node", |from| from == "__ns"), Some("/robot"));
         assert_eq!(ros.remapped("node", |from| from == "map"), None);
@@ -138,11 +209,15 @@ mod tests {
     fn invalid_arguments_are_named() {
         let error = |line| split(line).unwrap_err().to_string();
         assert_eq!(error("--ros-args -p"), "-p needs name:=value");
+        assert_eq!(error("--ros-args --params-file"), "--params-file needs a file");
+        let missing = "--ros-args --params-file none/missing.yaml";
+        assert!(error(missing).starts_with("cannot read the parameters in none/missing.yaml: "));
         assert_eq!(error("--ros-args -r scan"), "`scan` after -r must be from:=to");
         assert_eq!(error("--ros-args -p :=5"), "`:=5` after -p must be name:=value");
         assert_eq!(
             error("--ros-args --mode map"),
-            "`--mode` after --ros-args is not known: there are -p name:=value, -r from:=to, and -- at the end"
+            "`--mode` after --ros-args is not known: there are -p name:=value, -r from:=to, --params-file FILE, and -- at \
+             the end"
         );
     }
 }

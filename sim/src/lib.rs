@@ -20,6 +20,7 @@
 //!     description: String::new(),
 //!     frame: GridFrame::covering(Point2::origin(), 6.0, 4.0, 0.05).unwrap(),
 //!     step_s: 0.05,
+//!     contacts: ContactModel::default(),
 //!     walls: vec![Rectangle::around(Point2::new(5.0, 2.0), Vector2::new(0.1, 4.0), 0.0)],
 //!     obstacles: Vec::new(),
 //!     robots: vec![robot],

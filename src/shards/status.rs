@@ -1,8 +1,8 @@
 //! The state of the shards in a folder, as text.
 
 use crate::progress::duration;
-use evaluation::percent::percent;
-use evaluation::shards::{Scan, Shard, Shards};
+use reports::shards::{Scan, Shard, Shards};
+use results::numbers::percent;
 use std::fmt::Write;
 
 /// A shard counts as running while its newest trial is not older than this number of trials take, and at least

@@ -24,12 +24,25 @@ pub enum SurveyError {
     },
     /// The place of a log is not that of the first one.
     #[error(
-        "the place is not recognised in the map of the first log: the pose was certain for {certain} of {readings} scans"
+        "the place is not recognised in the map of the first log: {certain} of {compared} scans fit there"
     )]
     OtherPlace {
-        /// The number of readings with a certain pose in the map of the first log.
+        /// The number of scans that fit in the map of the first log, at the pose with the most.
         certain: usize,
-        /// The number of readings.
-        readings: usize,
+        /// The number of scans that were compared.
+        compared: usize,
+    },
+    /// A log fits at several poses in the map of the first one.
+    #[error(
+        "the place in the map of the first log is ambiguous: of {compared} scans, {fitting} fit at one pose, and {other} at \
+         another"
+    )]
+    AmbiguousPlace {
+        /// The number of scans that fit at the best pose.
+        fitting: usize,
+        /// The number of scans that fit at another pose.
+        other: usize,
+        /// The number of scans that were compared.
+        compared: usize,
     },
 }

@@ -1,10 +1,11 @@
 //! Both passes over the logs of one place.
 
-use crate::alignment::{Aligner, Search};
+use crate::alignment::Aligner;
 use crate::error::SurveyError;
 use crate::known_place::KnownPlace;
 use crate::replay::{NoPilot, Replay};
 use crate::route::{FirstPass, Route};
+use crate::search::Search;
 use crate::settings::{PoseMode, SurveySettings};
 use interfaces::{LaserReading, World};
 use localizer::Start;
@@ -137,7 +138,7 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
     pub fn in_place(&mut self, place: &KnownPlace, all_stand: bool) -> Result<Route, PassError> {
         let route = self.route()?;
         let start = if all_stand { Start::At(Isometry2::identity()) } else { Start::Unknown };
-        let mut search = Search::new(place, start)?;
+        let mut search = Search::new(place, start, route.poses.len());
         self.each_reading(Stage::Search, |index, reading| {
             if let Some(found) = route.poses.get(index) {
                 search.add(reading, found);

@@ -1,5 +1,6 @@
 //! The noise of the ranges of a laser that stands, from the ranges themselves.
 
+use crate::median::median;
 use interfaces::{LaserReading, Scan};
 use nalgebra::Isometry2;
 
@@ -73,8 +74,8 @@ impl RangeNoise {
         if 2 * ranges.len() < self.scans.len() {
             return None;
         }
-        let middle = median(ranges.clone());
-        Some(STD_PER_MAD * median(ranges.into_iter().map(|range_m| (range_m - middle).abs()).collect()))
+        let middle = median(ranges.iter().copied());
+        Some(STD_PER_MAD * median(ranges.into_iter().map(|range_m| (range_m - middle).abs())))
     }
 }
 
@@ -83,11 +84,6 @@ fn valid(scan: &Scan) -> Vec<f32> {
     let is_hit =
         |range_m: f32| f64::from(range_m) >= scan.range_min_m && f64::from(range_m) < scan.range_max_m;
     scan.ranges_m.iter().map(|range_m| if is_hit(*range_m) { *range_m } else { f32::INFINITY }).collect()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or_default()
 }
 
 #[cfg(test)]

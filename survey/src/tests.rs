@@ -158,17 +158,17 @@ fn a_later_log_finds_its_place_in_the_first_one() {
     let (all, all_truth) = drive(2, 180.0);
     let (later, later_truth) = (&all[1250..], &all_truth[1250..]);
     let second = first_pass(&settings, later);
-    let mut search = Search::new(&place, Start::Unknown).unwrap();
+    let mut search = Search::new(&place, Start::Unknown, later.len());
     later.iter().zip(&second.poses).for_each(|(reading, found)| search.add(reading.clone(), found));
     let second = second.moved(&search.finish().unwrap());
     let error_m = largest_error_m(&second, &truth[0], later_truth);
     assert!(error_m < 0.015, "{error_m}");
 
     // A place that is another one is refused.
-    let mut search = Search::new(&place, Start::Unknown).unwrap();
+    let mut search = Search::new(&place, Start::Unknown, 100);
     let blind = LaserReading { scan: scan(vec![1.0; 360]), ..readings[0].clone() };
     (0..100).for_each(|_| search.add(blind.clone(), &first.poses[0]));
-    assert_eq!(search.finish(), Err(SurveyError::OtherPlace { certain: 0, readings: 100 }));
+    assert_eq!(search.finish(), Err(SurveyError::OtherPlace { certain: 0, compared: 100 }));
 }
 
 /// A bag with these readings.

@@ -2,7 +2,7 @@
 //! recording and the pictures use the same layers, so that a color has the same meaning in both.
 
 use crate::scene::TimeUnit;
-use evaluation::palette::{self, Rgb};
+use drawing::palette::{self, Rgb};
 use interfaces::CellState;
 use mapper::Mapper;
 

@@ -2,7 +2,7 @@
 
 use crate::scene::Scene;
 use crate::view::View;
-use evaluation::palette::{self, Rgb};
+use drawing::palette::{self, Rgb};
 
 /// How an entry of a legend is drawn.
 #[derive(Clone, Copy)]

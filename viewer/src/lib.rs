@@ -20,5 +20,8 @@ mod tests;
 pub mod trial;
 pub mod view;
 
+/// There is no recording in a build without the feature `recording`.
 #[cfg(not(feature = "recording"))]
-pub use no_recording as recording;
+pub mod recording {
+    pub use crate::no_recording::{Recorder, RecordingError};
+}

@@ -5,11 +5,11 @@ use crate::pictures::{self, Film, Trails};
 use crate::recording::{Recorder, RecordingError};
 use crate::scene::Scene;
 use crate::view::{Trail, View};
-use evaluation::drawing::PictureError;
-use evaluation::observer::Goals;
+use drawing::PictureError;
 use interfaces::GridFrame;
 use mapper::Mapper;
 use nalgebra::Isometry2;
+use results::thinned::Goals;
 use std::path::Path;
 
 /// Shows a run, and keeps the trails of its robots.

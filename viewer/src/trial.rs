@@ -4,8 +4,7 @@ use crate::recording::{Recorder, RecordingError};
 use crate::scene::Visible;
 use crate::view::{Measured, View};
 use evaluation::metrics::{RateErrors, map_scores, rate_scores};
-use evaluation::report::Trial;
-use evaluation::trials::{TrialError, TrialSettings, TrialStep, TrialWorld, run_trial};
+use evaluation::trials::{Trial, TrialError, TrialSettings, TrialStep, TrialWorld, run_trial};
 use robot::{Level, Message};
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -2,12 +2,13 @@
 
 use crate::scene::{Outline, RobotState, Sight, Visible};
 use agent::Features;
+#[cfg(feature = "simulation")]
 use evaluation::metrics::{MapScores, RateErrors};
-use evaluation::thinned::Thinned;
 use interfaces::Reading;
 use localizer::PoseEstimate;
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
+use results::thinned::Thinned;
 use robot::{Belief, Message, Pilot, StrategyState};
 use std::collections::VecDeque;
 
@@ -59,8 +60,10 @@ impl Believed<'_> {
 #[derive(Clone, Copy, Default)]
 pub struct Measured<'a> {
     /// Coverage and quality of the map; `None` if they were not measured.
+    #[cfg(feature = "simulation")]
     pub scores: Option<MapScores>,
     /// The errors of the rates of change; `None` if they were not measured.
+    #[cfg(feature = "simulation")]
     pub rate_errors: Option<RateErrors>,
     /// The messages since the last view.
     pub messages: &'a [Message],

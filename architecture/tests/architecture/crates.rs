@@ -1,6 +1,6 @@
 //! Which crate may depend on which.
 
-use crate::workspace::{needs, packages};
+use crate::workspace::{needs, needs_without_features, packages};
 
 /// Every crate, and the crates of the workspace that it may depend on.
 const ALLOWED: &[(&str, &[&str])] = &[
@@ -16,7 +16,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
     ("survey", &["interfaces", "mapper", "localizer", "logs", "agent", "robot"]),
     ("state", &["interfaces", "mapper", "localizer", "robot"]),
-    ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "state"]),
+    ("results", &["interfaces", "mapper"]),
+    ("drawing", &["results"]),
+    (
+        "evaluation",
+        &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "state", "results"],
+    ),
+    ("reports", &["interfaces", "sim", "results", "drawing", "evaluation"]),
     ("environments", &["interfaces", "sim", "worldfile", "mapper", "localizer", "evaluation"]),
     (
         "curious-robot",
@@ -46,6 +52,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "robot",
             "logs",
             "survey",
+            "results",
+            "drawing",
             "evaluation",
         ],
     ),
@@ -64,7 +72,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "robot",
             "survey",
             "state",
+            "results",
+            "drawing",
             "evaluation",
+            "reports",
             "viewer",
         ],
     ),
@@ -106,7 +117,10 @@ const WITHOUT_RERUN: &[&str] = &[
     "robot",
     "survey",
     "state",
+    "results",
+    "drawing",
     "evaluation",
+    "reports",
     "ros2",
     "environments",
 ];
@@ -150,4 +164,14 @@ fn only_the_viewer_and_the_programs_need_rerun() {
         assert!(rerun.is_empty(), "{name} needs {rerun:?}");
     }
     assert!(needs("curious").iter().any(|name| name == "rerun"), "the test sees no rerun anywhere");
+}
+
+#[test]
+fn a_robot_owner_builds_no_simulator() {
+    let simulation = ["rerun", "sim", "rapier2d", "evaluation", "reports", "parquet"];
+    let all = needs("curious");
+    assert!(simulation.iter().all(|name| all.iter().any(|needed| needed == name)), "{all:?}");
+    let alone = needs_without_features("curious");
+    let found: Vec<_> = simulation.iter().filter(|name| alone.iter().any(|needed| needed == *name)).collect();
+    assert!(found.is_empty(), "map_log alone needs {found:?}");
 }

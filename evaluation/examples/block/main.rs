@@ -5,7 +5,7 @@
 //! the map of a robot with exact poses.
 //!
 //! ```text
-//! cargo run -p evaluation --example block -- LENGTH DEPTH [SEED [TRIALS [MINUTES [BEAMS [VIEW_DEG]]]]]
+//! cargo run -p evaluation --example block -- LENGTH DEPTH [SEED [TRIALS [MINUTES [BEAMS [VIEW_DEG [SWEEP_S]]]]]]
 //! ```
 
 mod world;
@@ -31,8 +31,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sides_m = [number(0, 30.0), number(1, 22.0)];
     let seed = number(2, 100.0) as u64;
     for seed in seed..seed + number(3, 1.0) as u64 {
-        let spec = world::block(sides_m, (number(5, 360.0) as usize, number(6, 360.0)), seed)
-            .ok_or("no such world")?;
+        let laser = world::Laser {
+            beams: number(5, 360.0) as usize,
+            view_rad: number(6, 360.0).to_radians(),
+            sweep_s: number(7, 0.0),
+        };
+        let spec = world::block(sides_m, laser, seed).ok_or("no such world")?;
         for (name, pose, is_closing) in [
             ("exact poses", PoseChoice::Exact, false),
             ("localized, no loops", PoseChoice::Localized, false),

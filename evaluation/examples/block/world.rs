@@ -16,6 +16,15 @@ const MARGIN_M: f64 = 3.0;
 /// The side of the cells, m.
 const CELL_M: f64 = 0.05;
 
+/// The laser of the robot.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Laser {
+    pub(crate) beams: usize,
+    pub(crate) view_rad: f64,
+    /// The time that a scan takes, s.
+    pub(crate) sweep_s: f64,
+}
+
 /// The wall of one side of a corridor, from its outer corner on, and where a rectangle beside it lies in the world.
 struct Side {
     corner: Point2<f64>,
@@ -68,7 +77,7 @@ fn wall(side: &Side, length_m: f64, walls: &mut Vec<Rectangle>, random: &mut Ran
 }
 
 /// Corridors around a block of `sides_m`, measured in the middle of the corridor, with a robot whose odometry drifts hard.
-pub(crate) fn block(sides_m: [f64; 2], (beams, view_deg): (usize, f64), seed: u64) -> Option<WorldSpec> {
+pub(crate) fn block(sides_m: [f64; 2], laser: Laser, seed: u64) -> Option<WorldSpec> {
     let mut random = RandomStream::new(seed, Purpose::HouseGenerator);
     let house = WorldSpec::generate_house(seed);
     let mut robot = house.fleet().robots[house.driven_index()].clone();
@@ -90,7 +99,8 @@ pub(crate) fn block(sides_m: [f64; 2], (beams, view_deg): (usize, f64), seed: u6
         }
     }
     robot.pose = interfaces::pose(low_m + 2.0, low_m, 0.0);
-    (robot.laser.beams, robot.laser.fov_rad) = (beams, view_deg.to_radians());
+    (robot.laser.beams, robot.laser.fov_rad, robot.laser.sweep_s) =
+        (laser.beams, laser.view_rad, laser.sweep_s);
     robot.laser.noise_std_m = 0.01;
     robot.odometry = OdometryError {
         distance_gain: 0.05,
@@ -106,6 +116,7 @@ pub(crate) fn block(sides_m: [f64; 2], (beams, view_deg): (usize, f64), seed: u6
         description: "Corridors around a block.".to_owned(),
         frame: GridFrame::covering(Point2::origin(), width_m, height_m, CELL_M)?,
         step_s: house.fleet().step_s,
+        contacts: house.fleet().contacts,
         walls,
         obstacles: Vec::new(),
         robots: vec![robot],

@@ -44,6 +44,7 @@ pub(crate) fn room(seed: u64) -> Option<WorldSpec> {
         description: "A room with shelves that shift.".to_owned(),
         frame: GridFrame::covering(Point2::origin(), size.x, size.y, 0.05)?,
         step_s: house.fleet().step_s,
+        contacts: house.fleet().contacts,
         walls,
         obstacles,
         robots: vec![robot],

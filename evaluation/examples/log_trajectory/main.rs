@@ -12,9 +12,9 @@
 mod comparison;
 mod picture;
 
-use evaluation::output::TrajectoryFile;
 use localizer::{PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
 use logs::{Log, TopicChoice};
+use results::output::TrajectoryFile;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -46,7 +46,7 @@ pub struct PoseScores {
     pub lost_s: f64,
     /// How often a pose was taken for certain for more than a second although it was wrong by more than 5 cm or 1.1°.
     pub lock_ins: usize,
-    /// How often a closed loop has shown that the map was torn, so that the map was learned again.
+    /// How often a closed loop has shown that the map was inconsistent, so that the map was learned again.
     pub loops_closed: usize,
     /// The largest distance by which a pose of the past has moved then, m.
     pub largest_correction_m: f64,

@@ -1,6 +1,6 @@
+use super::Length;
 use super::{Poses, TrialError, TrialWorld};
 use crate::oracle::Oracle;
-use crate::report::Length;
 use agent::{Agent, AgentSettings, Policy};
 use controller::{CellDrive, Controller};
 use interfaces::{Purpose, RandomStream};

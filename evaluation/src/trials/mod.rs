@@ -6,6 +6,8 @@
 
 mod full_observation;
 mod grid;
+mod length;
+mod metric;
 mod physics;
 mod run;
 mod sampler;
@@ -15,13 +17,14 @@ mod tests;
 mod world;
 
 pub use grid::GridRobot;
+pub use length::Length;
+pub use metric::{Metric, Sample, Trial};
 pub use physics::PhysicsRobot;
 pub use run::{TrialSettings, TrialStep, run_trial};
 pub use strategy::TrialStrategy;
 pub use world::{Poses, TrialWorld};
 
 use crate::physics_trial::UnsupportedDrive;
-use crate::report::{Report, ReportSettings, Trial};
 use interfaces::SettingsError;
 use mapper::{EstimatorChoice, ReadingError};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -112,28 +115,5 @@ impl<W: TrialWorld> Experiment<W> {
         };
         let trials: Result<Vec<Option<Trial>>, TrialError> = jobs.into_par_iter().map(run).collect();
         Ok(trials?.into_iter().flatten().collect())
-    }
-
-    /// The report of all trials, with the default rayon pool.
-    ///
-    /// # Errors
-    ///
-    /// When a trial cannot run.
-    pub fn report(&self) -> Result<Report, TrialError> {
-        let trials = self.run(self.jobs(), &AtomicBool::new(false), |_| ())?;
-        Ok(Report::new(self.report_settings(), trials))
-    }
-
-    /// The settings of the report, without version and arguments.
-    pub fn report_settings(&self) -> ReportSettings {
-        ReportSettings {
-            length: W::length(self.length),
-            trials: self.trials,
-            sensor_radius: self.worlds.first().and_then(W::sensor_radius),
-            worlds: self.worlds.iter().map(|world| world.name().to_owned()).collect(),
-            estimators: self.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
-            strategies: self.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
-            ..ReportSettings::default()
-        }
     }
 }

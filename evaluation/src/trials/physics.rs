@@ -1,7 +1,7 @@
+use super::Length;
 use super::{Poses, TrialError, TrialWorld};
 use crate::oracle::Oracle;
 use crate::physics_trial::{LOCAL_STEPS, PhysicsSettings, PoseChoice, UnsupportedDrive};
-use crate::report::Length;
 use agent::{Agent, Policy, Reward};
 use controller::DiffDrive;
 use mapper::MapperSettings;

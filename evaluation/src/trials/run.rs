@@ -1,10 +1,10 @@
 use super::full_observation::FullyObserved;
 use super::sampler::Sampler;
-use super::{Experiment, TrialError, TrialStrategy, TrialWorld};
+use super::{Experiment, Sample, Trial, TrialError, TrialStrategy, TrialWorld};
 use crate::map_hash::map_hash;
 use crate::metrics::rate_scores;
 use crate::oracle::Oracle;
-use crate::report::{Sample, Trial};
+
 use agent::Features;
 use interfaces::World;
 use mapper::{EstimatorChoice, Mapper, MapperSettings};

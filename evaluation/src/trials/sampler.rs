@@ -1,6 +1,6 @@
+use super::Sample;
 use super::TrialWorld;
 use crate::metrics::{ChangingAccuracy, Prediction, RateScores, map_scores, rate_scores};
-use crate::report::Sample;
 use interfaces::GroundTruth;
 use mapper::Mapper;
 

@@ -1,6 +1,6 @@
+use super::Length;
 use super::TrialError;
 use crate::oracle::Oracle;
-use crate::report::Length;
 use agent::{Agent, Policy};
 use controller::Drive;
 use interfaces::{GroundTruth, Reading, World};

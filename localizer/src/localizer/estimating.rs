@@ -5,11 +5,11 @@ use crate::changing_map::ChangingMap;
 use crate::estimate::{PoseEstimate, PoseState};
 use crate::faults::{Fault, mirrored};
 use crate::motion::Motion;
-use crate::probation::{Probation, Verdict};
 use crate::scene::Scene;
 use crate::settings::LocalizerSettings;
 use crate::support::Support;
 use crate::tracking::{Tracked, track};
+use crate::verification::{Verdict, Verification};
 use interfaces::{LaserReading, heading_rad};
 use nalgebra::Isometry2;
 
@@ -21,8 +21,6 @@ const LEARNING_LIMITS: f64 = 10.0;
 pub(super) const LEAST_CONFIRMED: f64 = 8.0;
 /// The number of scans for which the odometry is not trusted after it did not tell the truth.
 const DISTRUST_SCANS: u32 = 20;
-/// The number of scans for which only what lies exactly in place counts, after much of the view has moved.
-const TIGHT_SCANS: u32 = 10;
 /// Up to this long after the last certain pose, the odometry says where the robot is: up to these differences, m and rad,
 /// since a robot may be pushed or carried.
 const NEAR_S: f64 = 10.0;
@@ -53,6 +51,7 @@ impl Localizer {
     ) -> Support {
         let predicted = motion.predict(&self.pose, &self.covariance, reading.scan.sweep_s > 0.0);
         let predicted = self.guided(predicted);
+        self.begin = predicted.begin_moved();
         let is_first = self.from_nothing && self.surfels.is_empty();
         if fault == Some(Fault::Frozen) || is_first {
             (self.pose, self.covariance) = (predicted.pose, predicted.covariance);
@@ -72,14 +71,14 @@ impl Localizer {
         let is_mirrored = is_low && is_mirrored(&scene, &predicted.pose, reading);
         if self.is_supported(&tracked) && !is_mirrored {
             let support = tracked.support;
-            self.tight = if tracked.stayed { TIGHT_SCANS } else { self.tight.saturating_sub(1) };
+            self.follower = tracked.follower;
             self.distrust = if tracked.is_other { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
             self.accept(&tracked);
-            self.prove(&support, motion);
+            self.verify(&support, motion);
             return support;
         }
         if self.is_unfinished() && !is_mirrored && tracked.support.seen_share() < LEAST_GUIDE {
-            self.probation = Some(Probation::default());
+            self.verification = Some(Verification::default());
         }
         // A scan of which most fits is a better guide than the odometry alone.
         let is_guide = tracked.support.share() >= LEAST_GUIDE && !is_mirrored;
@@ -103,7 +102,7 @@ impl Localizer {
             clear: &self.clear,
             mount: reading.mount,
             settings: &self.settings,
-            is_tight: self.tight > 0,
+            is_tight: false,
         }
     }
 
@@ -117,7 +116,7 @@ impl Localizer {
     /// Takes over a supported pose.
     pub(super) fn accept(&mut self, tracked: &Tracked) {
         (self.pose, self.covariance) = (tracked.placement.pose, tracked.covariance);
-        self.begin = tracked.placement.begin();
+        self.begin += tracked.placement.begin();
         if tracked.support.share() >= self.settings.min_support {
             self.accepted_support = self.settings.min_support;
         }
@@ -138,19 +137,19 @@ impl Localizer {
         self.supported_s = Some(self.time_s);
     }
 
-    /// A pose that was found by a search, or after a contradiction, has to earn its certainty.
-    pub(super) fn prove(&mut self, support: &Support, motion: &Motion) {
+    /// Verifies a pose that was found by a search, or after a contradiction: it is not certain before.
+    pub(super) fn verify(&mut self, support: &Support, motion: &Motion) {
         let is_near = self.is_near_odometry();
-        let Some(probation) = &mut self.probation else { return };
+        let Some(verification) = &mut self.verification else { return };
         let moved_m = motion.delta.translation.vector.norm();
-        match probation.count(support, moved_m, is_near, self.settings.scans_to_confirm) {
+        match verification.count(support, moved_m, is_near, self.settings.scans_to_confirm) {
             Verdict::Certain => {
-                self.probation = None;
+                self.verification = None;
                 return;
             }
             Verdict::Open => self.state = PoseState::Uncertain,
             Verdict::Wrong => {
-                (self.probation, self.supported_s) = (None, None);
+                (self.verification, self.supported_s) = (None, None);
                 self.state = PoseState::Lost;
             }
         }

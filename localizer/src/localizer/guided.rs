@@ -51,20 +51,11 @@ impl Localizer {
     }
 
     /// The predicted pose, and what the guide says.
-    pub(super) fn guided(&self, mut predicted: Predicted) -> Predicted {
+    pub(super) fn guided(&self, predicted: Predicted) -> Predicted {
         let Some(guide) = &self.guide else { return predicted };
-        if !guide.allows(&predicted.pose) {
-            (predicted.pose, predicted.covariance) = (guide.pose, guide.covariance);
-            return predicted;
+        match guide.allows(&predicted.pose) {
+            true => predicted.and(&guide.pose, &guide.covariance),
+            false => Predicted::rigid(guide.pose, guide.covariance),
         }
-        // The gain of a Kalman filter.
-        let Some(both) = (predicted.covariance + guide.covariance).try_inverse() else { return predicted };
-        let gain = predicted.covariance * both;
-        let step = gain * difference(&guide.pose, &predicted.pose);
-        predicted.pose.translation.vector += step.xy();
-        predicted.pose.rotation = interfaces::rotation(step.z) * predicted.pose.rotation;
-        predicted.pose.rotation.renormalize();
-        predicted.covariance = gain * guide.covariance;
-        predicted
     }
 }

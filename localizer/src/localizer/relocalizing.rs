@@ -7,11 +7,11 @@ use crate::estimate::PoseState;
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::placement::Placement;
-use crate::probation::Probation;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::support::Support;
 use crate::tracking::Tracked;
+use crate::verification::Verification;
 use interfaces::LaserReading;
 
 /// The window of the first search: a glitch of the odometry, or a robot that was carried a little.
@@ -66,7 +66,7 @@ impl Localizer {
             // Much has changed here, but no other pose fits better.
             self.accepted_support = tracked.support.share() - 0.1;
             self.accept(tracked);
-            self.prove(&tracked.support, motion);
+            self.verify(&tracked.support, motion);
         } else {
             self.hypotheses = found;
             self.take_best();
@@ -93,10 +93,10 @@ impl Localizer {
                 self.accepted_support = self.settings.min_support.min(support.share() - 0.1);
                 self.hypotheses = Hypotheses::default();
                 if self.is_unfinished() {
-                    self.probation = Some(Probation::after(self.settings.scans_to_confirm));
+                    self.verification = Some(Verification::after(self.settings.scans_to_confirm));
                 }
                 self.accept(&tracked);
-                self.prove(&support, motion);
+                self.verify(&support, motion);
             }
             None if self.hypotheses.is_empty() => {
                 self.pose = motion.apply(&self.pose);

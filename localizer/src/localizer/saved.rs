@@ -32,8 +32,8 @@ impl Localizer {
         self.hypotheses = Hypotheses::default();
         (self.odometry, self.supported_s) = (None, None);
         (self.last_motion, self.measured) = (Isometry2::identity(), Isometry2::identity());
-        (self.tight, self.distrust, self.readings) = (0, 0, 0);
-        (self.probation, self.certain_s) = (None, f64::NEG_INFINITY);
+        (self.follower, self.distrust, self.readings) = (None, 0, 0);
+        (self.verification, self.certain_s) = (None, f64::NEG_INFINITY);
         (self.since_search, self.accepted_support) = (u32::MAX, self.settings.min_support);
         (self.start_s, self.scores) = (None, None);
         if self.surfels.is_empty() {
@@ -65,10 +65,9 @@ impl Localizer {
             value(&mut self.supported_s),
             value(&mut self.start_s),
             value(&mut self.from_nothing),
-            value(&mut self.tight),
             value(&mut self.by_odometry),
             value(&mut self.certain_s),
-            value(&mut self.probation),
+            value(&mut self.verification),
             value(&mut self.learns),
             value(&mut self.distrust),
             value(&mut self.readings),

@@ -1,5 +1,6 @@
 //! How surfels are learned from scans with a certain pose.
 
+use super::moving::SETTLED_SCANS;
 use super::{CELL_M, FROZEN_SCANS, SurfelMap, USABLE_SCANS};
 use crate::changing_map::ChangingMap;
 use crate::scan_points::ScanPoint;
@@ -13,12 +14,28 @@ const LEAST_NOISE_M: f64 = 0.005;
 /// how a wrong pose becomes a wrong map.
 const CLEARANCE_M: f64 = 0.25;
 
+/// A surfel that has moved is the mean of about this many last hits, and does not freeze.
+const MOVING_HITS: u32 = 50;
+
 impl SurfelMap {
-    /// Updates the map with a scan at a certain pose.
+    /// Updates the map with a scan at a certain pose: surfels follow surfaces that have moved.
     pub(crate) fn learn(&mut self, points: &[ScanPoint], pose: &Isometry2<f64>, range_noise_std_m: f64) {
-        // All that follows is matched with the first scan.
-        let scans = if self.surfels.is_empty() { USABLE_SCANS } else { 1 };
-        self.learn_as(points, pose, range_noise_std_m, scans);
+        self.learn_as(points, pose, range_noise_std_m, self.first_scans(), true);
+    }
+
+    /// Updates the map with a scan whose pose is less certain: what seems to have moved stays where it is.
+    pub(crate) fn learn_uncertain(
+        &mut self,
+        points: &[ScanPoint],
+        pose: &Isometry2<f64>,
+        range_noise_std_m: f64,
+    ) {
+        self.learn_as(points, pose, range_noise_std_m, self.first_scans(), false);
+    }
+
+    /// As how many scans one scan counts for a new surfel: all that follows is matched with the first scan.
+    fn first_scans(&self) -> u32 {
+        if self.surfels.is_empty() { USABLE_SCANS } else { 1 }
     }
 
     /// Updates the map with a keyframe: one scan stands for all around it, and takes part in matching at once.
@@ -28,34 +45,51 @@ impl SurfelMap {
         pose: &Isometry2<f64>,
         range_noise_std_m: f64,
     ) {
-        self.learn_as(points, pose, range_noise_std_m, USABLE_SCANS);
+        self.learn_as(points, pose, range_noise_std_m, USABLE_SCANS, false);
     }
 
-    /// Updates the map with a scan whose new surfels count as seen in a number of scans.
-    fn learn_as(&mut self, points: &[ScanPoint], pose: &Isometry2<f64>, range_noise_std_m: f64, scans: u32) {
+    /// Updates the map with a scan whose new surfels count as seen in a number of scans. `follows`: surfels follow surfaces
+    /// that have moved.
+    fn learn_as(
+        &mut self,
+        points: &[ScanPoint],
+        pose: &Isometry2<f64>,
+        range_noise_std_m: f64,
+        scans: u32,
+        follows: bool,
+    ) {
         let gate_m = HIT_STDS * range_noise_std_m.max(LEAST_NOISE_M);
         self.scan = self.scan.wrapping_add(1);
         for point in points {
             let (at, normal) = (pose * point.at, pose.rotation * point.normal);
             match self.nearest(&at, &normal, gate_m) {
                 Some((index, _)) => self.hit(index, &at, &normal),
-                None if self.nearest(&at, &normal, CLEARANCE_M).is_none() => self.add(at, normal, scans),
-                None => {}
+                None => match self.nearest(&at, &normal, CLEARANCE_M) {
+                    None => {
+                        self.add(at, normal, scans);
+                    }
+                    Some((index, off_m)) if follows => self.displace(index, off_m),
+                    Some(_) => {}
+                },
             }
         }
     }
 
     fn hit(&mut self, index: u32, at: &nalgebra::Point2<f64>, normal: &nalgebra::Vector2<f64>) {
         let surfel = &mut self.surfels[index as usize];
-        surfel.misses = 0;
-        if surfel.scans >= FROZEN_SCANS {
+        (surfel.misses, surfel.displaced, surfel.is_doubted) = (0, 0, false);
+        if surfel.has_moved && surfel.scans >= SETTLED_SCANS {
+            surfel.has_moved = false;
+        }
+        if surfel.scans >= FROZEN_SCANS && !surfel.has_moved {
             return;
         }
         let was_usable = surfel.weight() > 0.0;
         surfel.scans += u32::from(surfel.last_scan != self.scan);
         surfel.last_scan = self.scan;
         surfel.hits += 1;
-        let share = 1.0 / f64::from(surfel.hits);
+        let share =
+            1.0 / f64::from(if surfel.has_moved { surfel.hits.min(MOVING_HITS) } else { surfel.hits });
         surfel.at += (at - surfel.at) * share;
         let mean = surfel.normal + (normal - surfel.normal) * share;
         let length = mean.norm();

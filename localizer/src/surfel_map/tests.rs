@@ -73,6 +73,84 @@ fn a_surfel_freezes() {
     assert_eq!(map.usable().count(), 1, "a second wall beside the first is an error of the pose");
 }
 
+/// A point of a wall across the x axis, from the free side.
+fn on_wall(x_m: f64, y_m: f64) -> ScanPoint {
+    ScanPoint {
+        at: Point2::new(x_m, y_m),
+        normal: -Vector2::x(),
+        weight: 1.0,
+        noise_share: 1.0,
+        beam: 0,
+        passed: 1.0,
+    }
+}
+
+/// A wall, 1 m long.
+fn wall_at(x_m: f64) -> Vec<ScanPoint> {
+    (0..20).map(|at| on_wall(x_m, 0.05 * f64::from(at))).collect()
+}
+
+fn learned(x_m: f64, scans: u32) -> SurfelMap {
+    let mut map = SurfelMap::new(&frame());
+    for _ in 0..scans {
+        map.learn(&wall_at(x_m), &Isometry2::identity(), 0.01);
+    }
+    map
+}
+
+#[test]
+fn a_surfel_follows_its_surface() {
+    let mut map = learned(1.0, 100);
+    assert!(map.usable().all(|surfel| surfel.is_permanent() && surfel.weight() == 1.0));
+    for _ in 0..2 {
+        map.learn(&wall_at(1.06), &Isometry2::identity(), 0.01);
+    }
+    assert!(map.usable().all(Surfel::is_permanent), "two scans are no proof");
+    for _ in 0..20 {
+        map.learn(&wall_at(1.06), &Isometry2::identity(), 0.01);
+    }
+    assert!(map.usable().count() > 5);
+    for surfel in map.usable() {
+        assert!((surfel.at.x - 1.06).abs() < 1e-6, "{}", surfel.at.x);
+        assert!(surfel.is_suspect() && surfel.weight() < 0.05);
+    }
+    // It follows at once from now on, and counts fully again after ten minutes in one place.
+    for _ in 0..6100 {
+        map.learn(&wall_at(1.0), &Isometry2::identity(), 0.01);
+    }
+    assert!(map.usable().all(|surfel| (surfel.at.x - 1.0).abs() < 1e-6 && surfel.is_permanent()));
+}
+
+#[test]
+fn a_surfel_does_not_follow_a_surface_seen_from_an_uncertain_pose_or_far_away() {
+    let (mut uncertain, mut far) = (learned(1.0, 100), learned(1.0, 100));
+    for _ in 0..50 {
+        uncertain.learn_uncertain(&wall_at(1.06), &Isometry2::identity(), 0.01);
+        far.learn(&wall_at(1.2), &Isometry2::identity(), 0.01);
+    }
+    for map in [uncertain, far] {
+        assert!(map.usable().all(|surfel| (surfel.at.x - 1.0).abs() < 1e-9 && surfel.is_permanent()));
+    }
+}
+
+#[test]
+fn what_is_out_of_view_of_a_coherent_motion_is_doubted_until_it_is_seen() {
+    // Two walls: one is seen to move by 6 cm, the other is seen only later.
+    let other: Vec<ScanPoint> = (0..20).map(|at| on_wall(3.0, 2.0 + 0.05 * f64::from(at))).collect();
+    let mut map = SurfelMap::new(&frame());
+    for _ in 0..100 {
+        map.learn(&[wall_at(1.0), other.clone()].concat(), &Isometry2::identity(), 0.01);
+    }
+    let follower = Isometry2::translation(-0.06, 0.0);
+    map.displace_all(&wall_at(1.06), &Isometry2::identity(), &follower, 0.01);
+    assert!(map.usable().all(Surfel::is_suspect));
+    let moved = |surfel: &&Surfel| surfel.at.x < 2.0;
+    assert!(map.usable().filter(moved).all(|surfel| (surfel.at.x - 1.06).abs() < 1e-9));
+    map.learn(&other, &Isometry2::identity(), 0.01);
+    assert!(map.usable().filter(|surfel| !moved(surfel)).all(Surfel::is_permanent));
+    assert!(map.usable().filter(moved).all(Surfel::is_suspect));
+}
+
 #[test]
 fn what_beams_pass_is_removed() {
     let mut noise = RandomStream::new(201, Purpose::LaserNoise(0));

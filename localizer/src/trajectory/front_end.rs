@@ -9,11 +9,13 @@ use crate::calibration::Calibration;
 use crate::estimate::PoseState;
 use crate::faults::{Fault, FaultFinder};
 use crate::matcher::{Match, Prior, align};
-use crate::motion::Motion;
+use crate::motion::{Motion, Predicted};
+use crate::placement::shifted;
 use crate::scan_points::ScanPoints;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::surfel_map::SurfelMap;
+use crate::sweep::SweepUndo;
 use interfaces::{LaserReading, heading_rad};
 use nalgebra::{Isometry2, Matrix3};
 
@@ -53,7 +55,10 @@ pub(super) struct FrontEnd {
     settings: TrajectorySettings,
     faults: FaultFinder,
     calibration: Calibration,
+    sweeps: SweepUndo,
     points: ScanPoints,
+    /// The time of the last reading, s.
+    time_s: Option<f64>,
     odometry: Option<Isometry2<f64>>,
     /// Whether the odometry has ever moved.
     has_odometry: bool,
@@ -91,7 +96,9 @@ impl FrontEnd {
             settings: settings.clone(),
             faults: FaultFinder::default(),
             calibration: Calibration::new(&settings.odometry),
+            sweeps: SweepUndo::default(),
             points: ScanPoints::default(),
+            time_s: None,
             odometry: None,
             has_odometry: false,
             last_motion: Isometry2::identity(),
@@ -144,17 +151,23 @@ impl FrontEnd {
         let motion = self.predict(&measured);
         self.since_keyframe *= motion.delta;
         self.since_keyframe.rotation.renormalize();
+        let elapsed_s = reading.time_s - self.time_s.unwrap_or(reading.time_s);
+        if fault.is_none() {
+            self.time_s = Some(reading.time_s);
+        }
         let last = self.pose;
-        self.pose = motion.apply(&last);
-        self.covariance = motion.propagate(&last, &self.covariance);
+        let predicted = motion.predict(&last, &self.covariance, reading.scan.sweep_s > 0.0);
+        (self.pose, self.covariance) = (predicted.pose, predicted.covariance);
         if fault == Some(Fault::Frozen) && !graph.poses.is_empty() {
             return (self.offset(), PoseState::Uncertain);
         }
         let rules = self.settings.point_rules();
-        self.points.update(reading, |_| 1.0, &rules);
-        let tracked = self.track();
+        let mut posed = reading.clone();
+        self.sweeps.update(&mut posed, &mut self.points, &rules, reading, (&motion.delta, elapsed_s));
+        let tracked = self.track(&predicted);
         if let Some(tracked) = &tracked {
-            self.last_motion = last.inv_mul(&tracked.found.placement.pose);
+            let begin = shifted(&last, &tracked.found.placement.begin());
+            self.last_motion = begin.inv_mul(&tracked.found.placement.pose);
             self.pose = tracked.found.placement.pose;
             self.covariance =
                 tracked.found.information.try_inverse().unwrap_or_else(|| covariance(0.1, 0.05))
@@ -164,13 +177,18 @@ impl FrontEnd {
         let is_supported = graph.poses.is_empty()
             || tracked.as_ref().is_some_and(|tracked| tracked.agreement.share() >= LEAST_AGREEMENT);
         if tracked.as_ref().is_some_and(|tracked| !tracked.is_below(DOUBTED_AGREEMENT, DOUBTED_SHARE)) {
-            self.calibration.learn(&measured, &last.inv_mul(&self.pose));
+            self.calibration.learn(&measured, &self.last_motion);
+            if reading.scan.sweep_s > 0.0 {
+                // The noise of the odometry within a scan bends its walls. The motion that the match has found does not.
+                let found = (&self.last_motion, elapsed_s);
+                self.sweeps.update(&mut posed, &mut self.points, &rules, reading, found);
+            }
         }
         let offset = self.offset();
         let is_far = offset.translation.vector.norm() >= self.settings.keyframe_m
             || heading_rad(&offset).abs() >= self.settings.keyframe_rad;
         if graph.poses.is_empty() || is_far {
-            self.add_keyframe(graph, reading, tracked.as_ref().map(|tracked| &tracked.found));
+            self.add_keyframe(graph, &posed, tracked.as_ref().map(|tracked| &tracked.found));
         }
         (self.offset(), if is_supported { PoseState::Tracking } else { PoseState::Uncertain })
     }
@@ -193,9 +211,9 @@ impl FrontEnd {
     }
 
     /// The match of the scan with the submap; `None` if there is nothing to match with.
-    fn track(&self) -> Option<Tracked> {
+    fn track(&self, predicted: &Predicted) -> Option<Tracked> {
         let map = self.growing.first()?.map();
-        let prior = Prior { pose: self.pose, information: self.covariance.try_inverse()?, begin: None };
+        let prior = predicted.prior()?;
         let spread_m = (self.covariance[(0, 0)] + self.covariance[(1, 1)]).sqrt();
         let at_range_m = 5.0 * self.covariance[(2, 2)].sqrt();
         let tracked = self.matched(map, &self.pose, &prior, 0.1 + 2.0 * (spread_m + at_range_m))?;
@@ -237,7 +255,7 @@ impl FrontEnd {
         let points = self.points.points();
         let gates = gates(self.settings.range_noise_std_m, first_m);
         let found = align(map, points, start, Some(prior), &gates)?;
-        let agreement = agreement(map, points, &found.placement.pose, gates.last_m);
+        let agreement = agreement(map, points, &found.placement, gates.last_m);
         (agreement.confirmed_points >= LEAST_POINTS).then_some(Tracked { found, agreement })
     }
 

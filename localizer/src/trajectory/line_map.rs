@@ -5,6 +5,8 @@ use super::keyframe::filled;
 use super::matching::fit;
 use crate::given_poses::GivenPoses;
 use crate::scan_points::ScanPoints;
+use crate::score_grid::ScoreGrid;
+use crate::search::search;
 use crate::surfel_map::SurfelMap;
 use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, heading_rad};
 use nalgebra::Isometry2;
@@ -12,6 +14,12 @@ use nalgebra::Isometry2;
 /// The least shares of a fit: of the points that the map can judge, and of those that agree.
 const LEAST_OVERLAP: f64 = 0.4;
 const LEAST_AGREEMENT: f64 = 0.75;
+
+/// In a search anywhere: the least score of a pose, the share of the best score that other poses are examined with, and the
+/// uncertainty of a pose that is found, m and rad.
+const LEAST_SCORE: f64 = 0.4;
+const EXAMINED: f64 = 0.75;
+const FOUND_STD: (f64, f64) = (0.3, 0.05);
 
 /// The surfaces of a place as short straight lines, from the readings of a log along its trajectory. Unlike a grid, it is
 /// exact to some millimetres.
@@ -42,14 +50,15 @@ impl LineMap {
         })
     }
 
-    /// Adds the next reading of the log at its pose on the trajectory, if the robot has moved by a keyframe since the last
-    /// one that was added. The pose of the reading itself is that of the odometry.
-    pub fn add(&mut self, reading: &LaserReading, pose: &Isometry2<f64>) {
+    /// Adds the next reading of the log, whose pose is that on the trajectory, if the robot has moved by a keyframe since the
+    /// last one that was added.
+    pub fn add(&mut self, reading: &LaserReading) {
         if reading.scan.check().is_err() {
             return;
         }
         let reading = self.given.unswept(reading.clone());
-        let step = self.last.map(|last| last.inv_mul(pose));
+        let pose = reading.pose;
+        let step = self.last.map(|last| last.inv_mul(&pose));
         let is_near = |step: Isometry2<f64>| {
             step.translation.vector.norm() < self.settings.keyframe_m
                 && heading_rad(&step).abs() < self.settings.keyframe_rad
@@ -57,10 +66,10 @@ impl LineMap {
         if step.is_some_and(is_near) {
             return;
         }
-        self.last = Some(*pose);
+        self.last = Some(pose);
         let rules = self.settings.point_rules();
         self.points.update(&reading, |_| 1.0, &rules);
-        self.map.learn_keyframe(&filled(self.points.points()), pose, rules.noise_m);
+        self.map.learn_keyframe(&filled(self.points.points()), &pose, rules.noise_m);
     }
 
     /// The surfaces, as bytes: what readings of other logs are matched with.
@@ -80,8 +89,22 @@ impl LineMap {
 
     /// A matcher for the readings of another log.
     pub fn matcher(&self) -> LineMatcher<'_> {
-        LineMatcher { line_map: self, given: GivenPoses::default(), points: ScanPoints::default() }
+        LineMatcher {
+            line_map: self,
+            given: GivenPoses::default(),
+            points: ScanPoints::default(),
+            scores: None,
+        }
     }
+}
+
+/// A pose at which a scan agrees with a line map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineFit {
+    /// The pose of the robot in the map, m and rad.
+    pub pose: Isometry2<f64>,
+    /// The share of the scan that lies on surfaces of the map, from 0 to 1.
+    pub confirmed: f64,
 }
 
 /// Matches the readings of a log with a line map, one after the other.
@@ -90,25 +113,47 @@ pub struct LineMatcher<'a> {
     line_map: &'a LineMap,
     given: GivenPoses,
     points: ScanPoints,
+    /// How well points fit at each place, once a search has needed it.
+    scores: Option<ScoreGrid>,
 }
 
 impl LineMatcher<'_> {
-    /// The pose of the next reading, whose pose in the map is `near` with these standard deviations (m, rad). `None` if its
+    /// The fit of the next reading, whose pose in the map is `near` with these standard deviations (m, rad). `None` if its
     /// scan does not agree with the map.
     pub fn matched(
         &mut self,
         reading: &LaserReading,
         near: &Isometry2<f64>,
         std: (f64, f64),
-    ) -> Option<Isometry2<f64>> {
+    ) -> Option<LineFit> {
+        self.take(reading).then(|| self.fit(near, std)).flatten()
+    }
+
+    /// The fits of the next reading anywhere in the map.
+    pub fn anywhere(&mut self, reading: &LaserReading) -> Vec<LineFit> {
+        if !self.take(reading) {
+            return Vec::new();
+        }
+        let scores = self.scores.get_or_insert_with(|| ScoreGrid::anywhere(&self.line_map.map));
+        let candidates = search(scores, self.points.points(), None, LEAST_SCORE, EXAMINED);
+        candidates.iter().filter_map(|candidate| self.fit(&candidate.pose, FOUND_STD)).collect()
+    }
+
+    /// Takes the points of a reading. False if it is not valid.
+    fn take(&mut self, reading: &LaserReading) -> bool {
         if reading.scan.check().is_err() {
-            return None;
+            return false;
         }
         let reading = self.given.unswept(reading.clone());
-        let rules = self.line_map.settings.point_rules();
-        self.points.update(&reading, |_| 1.0, &rules);
-        let (found, agreement) = fit(&self.line_map.map, self.points.points(), near, std, rules.noise_m)?;
+        self.points.update(&reading, |_| 1.0, &self.line_map.settings.point_rules());
+        true
+    }
+
+    fn fit(&self, near: &Isometry2<f64>, std: (f64, f64)) -> Option<LineFit> {
+        let noise_m = self.line_map.settings.point_rules().noise_m;
+        let (found, agreement) = fit(&self.line_map.map, self.points.points(), near, std, noise_m)?;
         let agrees = agreement.overlap() >= LEAST_OVERLAP && agreement.share() >= LEAST_AGREEMENT;
-        agrees.then_some(found.placement.pose)
+        let confirmed = agreement.confirmed / agreement.all;
+        agrees.then_some(LineFit { pose: found.placement.pose, confirmed })
     }
 }

@@ -39,8 +39,7 @@ impl LoopCloser {
 
     /// Searches for a finished submap in the earlier ones.
     pub(super) fn add(&mut self, submap: FinishedSubmap, keyframes: &[Keyframe], graph: &mut PoseGraph) {
-        let to = self.places.submaps.len();
-        self.places.submaps.push(submap);
+        let to = self.places.add(submap, graph);
         let mut is_urgent = false;
         for place in self.places.of(to, keyframes, graph) {
             if place.way_m <= SHORT_WAY_M || self.is_confirmed(&place, graph) {

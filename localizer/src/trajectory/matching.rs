@@ -55,7 +55,7 @@ pub(super) fn fit(
     let prior = Prior { pose: *pose, information: covariance(std_m, std_rad).try_inverse()?, begin: None };
     let gates = gates(noise_m, std_m);
     let found = align(map, points, pose, Some(&prior), &gates)?;
-    let agreement = agreement(map, points, &found.placement.pose, gates.last_m);
+    let agreement = agreement(map, points, &found.placement, gates.last_m);
     Some((found, agreement))
 }
 

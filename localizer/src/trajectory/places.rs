@@ -48,6 +48,9 @@ const SAME_RAD: f64 = 0.1;
 /// The errors of a relative pose of submaps that do not average out, m and rad.
 const MODEL_STD_M: f64 = 0.02;
 const MODEL_STD_RAD: f64 = 0.004;
+/// A submap with this many references around it, nearer than this, becomes no reference, m.
+const MOST_REFERENCES: usize = 12;
+const REFERENCE_M: f64 = 3.0;
 /// The number of score grids that are kept.
 const MOST_GRIDS: usize = 6;
 
@@ -93,12 +96,33 @@ impl Fit {
 pub(super) struct Places {
     pub(super) noise_m: f64,
     pub(super) submaps: Vec<FinishedSubmap>,
+    /// The numbers of the submaps in which later ones are searched for, and with which keyframes are matched. Not every
+    /// submap is one: of a robot that drives for hours in one place, the time would grow with the square of its log.
+    references: Vec<usize>,
     grids: Vec<(usize, SurfelMap, ScoreGrid)>,
 }
 
 impl Places {
     pub(super) fn new(noise_m: f64) -> Self {
-        Self { noise_m, submaps: Vec::new(), grids: Vec::new() }
+        Self { noise_m, submaps: Vec::new(), references: Vec::new(), grids: Vec::new() }
+    }
+
+    /// Adds a finished submap and returns its number.
+    pub(super) fn add(&mut self, submap: FinishedSubmap, graph: &PoseGraph) -> usize {
+        let middle = |submap: &FinishedSubmap| graph.poses[submap.anchor].translation.vector;
+        let is_around =
+            |other: &&usize| (middle(&self.submaps[**other]) - middle(&submap)).norm() < REFERENCE_M;
+        let number = self.submaps.len();
+        if self.references.iter().filter(is_around).count() < MOST_REFERENCES {
+            self.references.push(number);
+        }
+        self.submaps.push(submap);
+        number
+    }
+
+    /// The submaps with which others are compared, with their numbers.
+    pub(super) fn references(&self) -> impl Iterator<Item = (usize, &FinishedSubmap)> {
+        self.references.iter().map(|number| (*number, &self.submaps[*number]))
     }
 
     /// The places of a submap in earlier submaps. None, if its pose is ambiguous.
@@ -146,7 +170,7 @@ impl Places {
         let distance_m = |other: &FinishedSubmap| {
             graph.poses[other.anchor].inv_mul(&graph.poses[submap.anchor]).translation.vector.norm()
         };
-        let earlier = self.submaps[..to].iter().enumerate().filter(|(_, other)| other.last < submap.first);
+        let earlier = self.references().filter(|(from, other)| *from < to && other.last < submap.first);
         let mut candidates: Vec<(usize, f64, f64)> = earlier
             .map(|(from, other)| (from, ways_m[other.anchor], distance_m(other)))
             .filter(|(_, way_m, distance_m)| *way_m >= LEAST_WAY_M && *distance_m <= NEAR_M + reach(*way_m).0)
@@ -195,5 +219,34 @@ impl Places {
             self.grids.remove(0);
         }
         self.grids.push((number, map, grid));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::{Purpose, RandomStream, pose};
+
+    #[test]
+    fn hours_in_one_place_need_no_more_references_than_the_first_passes() {
+        let mut random = RandomStream::new(100, Purpose::Agent);
+        let (mut places, mut graph) = (Places::new(0.01), PoseGraph::default());
+        let mut after = Vec::new();
+        for number in 0..2000 {
+            graph.poses.push(pose(random.uniform(0.0..10.0), random.uniform(0.0..10.0), 0.0));
+            let points = Vec::new();
+            places.add(FinishedSubmap { anchor: number, first: number, last: number, points }, &graph);
+            after.push(places.references.len());
+        }
+        // Any two points of a square of 2.1 m are nearer to each other: 25 such squares cover the place.
+        assert!(after[11] == 12 && after[1999] <= 25 * MOST_REFERENCES, "{after:?}");
+        let is_near = |from: usize, to: usize| {
+            (graph.poses[from].translation.vector - graph.poses[to].translation.vector).norm() < REFERENCE_M
+        };
+        for submap in 0..2000 {
+            let around = places.references().filter(|(reference, _)| is_near(*reference, submap)).count();
+            let is_reference = places.references.contains(&submap);
+            assert!(is_reference || around >= MOST_REFERENCES, "submap {submap}: {around}");
+        }
     }
 }

@@ -44,7 +44,7 @@ fn edges(
     graph: &PoseGraph,
 ) -> Vec<Edge> {
     let mut edges = Vec::new();
-    for (number, submap) in places.submaps.iter().enumerate() {
+    for (number, submap) in places.references() {
         let near: Vec<usize> = near(submap, graph).filter(|near| (near + number) % stride == 0).collect();
         if near.is_empty() {
             continue;

@@ -22,7 +22,7 @@ const LEAST_POINTS: usize = 200;
 /// the trajectory as it is. It is robust: things that moved between do not count. `None` if no place was seen twice.
 pub(super) fn std_m(places: &Places, keyframes: &[Keyframe], graph: &PoseGraph) -> Option<f64> {
     let mut distances_m = Vec::new();
-    for (number, submap) in places.submaps.iter().enumerate() {
+    for (number, submap) in places.references() {
         let Some(map) = SurfelMap::of_points(&submap.points) else { continue };
         for keyframe in near(submap, graph).filter(|near| (near + number) % STRIDE == 0) {
             let pose = graph.poses[submap.anchor].inv_mul(&graph.poses[keyframe]);

@@ -1,6 +1,7 @@
 //! Submaps: line maps of some consecutive keyframes.
 
 use super::keyframe::Keyframe;
+use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::surfel_map::SurfelMap;
 use interfaces::GridFrame;
@@ -94,16 +95,16 @@ impl Agreement {
     }
 }
 
-/// Compares points at a pose with a submap: a point within `gate_m` of a surface is confirmed.
+/// Compares a scan with a submap: a point within `gate_m` of a surface is confirmed.
 pub(super) fn agreement(
     map: &SurfelMap,
     points: &[ScanPoint],
-    pose: &Isometry2<f64>,
+    placement: &Placement,
     gate_m: f64,
 ) -> Agreement {
     let mut agreement = Agreement::default();
     for point in points {
-        let (at, normal) = (pose * point.at, pose.rotation * point.normal);
+        let (at, normal) = (placement.place(point), placement.pose.rotation * point.normal);
         agreement.all += point.weight;
         if map.nearest(&at, &normal, gate_m).is_some() {
             agreement.confirmed += point.weight;

@@ -40,6 +40,38 @@ fn most_of_the_view_may_shift_at_once() {
 }
 
 #[test]
+fn shelves_may_shift_again_and_again_while_the_robot_drives() {
+    // Away and back, by another vector each time; the robot drives to and fro through the room.
+    let shifts = [(0.05, 0.03), (0.0, 0.0), (-0.04, 0.06), (0.0, 0.0), (0.03, -0.06)];
+    let mut house = House::new(0.1, 0.0, 0.01, 360, 122);
+    for (x0, y0, x1, y1) in [(0.7, 0.6, 4.2, 0.9), (0.7, 4.9, 4.2, 5.2), (0.4, 1.4, 0.7, 4.4)] {
+        let mut from_s = f64::NEG_INFINITY;
+        for (number, (x, y)) in std::iter::once((0.0, 0.0)).chain(shifts).enumerate() {
+            let until_s = if number < shifts.len() { 8.0 + 6.0 * number as f64 } else { f64::INFINITY };
+            house.add(Thing { corners: rectangle(x0 + x, y0 + y, x1 + x, y1 + y), from_s, until_s });
+            from_s = until_s;
+        }
+    }
+    let pose_at = |step: i32| {
+        let way_m = 0.05 * f64::from((step - 30).max(0));
+        let turn = way_m / 0.8;
+        pose(2.6 + 0.8 * libm::sin(turn), 2.9 - 0.8 * (libm::cos(turn) - 1.0), turn)
+    };
+    let mut robot = Robot::new(house, pose_at(0), 122);
+    let mut off_m: f64 = 0.0;
+    for step in 0..380 {
+        let localized = robot.step(pose_at(step));
+        if localized.estimate.state == PoseState::Tracking {
+            off_m = off_m.max(error_m(&localized, &pose_at(step)));
+        }
+    }
+    assert!(off_m < 0.03, "off by {off_m} m");
+    assert!(robot.uncertain <= 20, "{} scans uncertain", robot.uncertain);
+    let [exact, estimated] = robot.changes;
+    assert!(estimated <= exact + 50 && exact > 100, "{estimated} changes, {exact} with exact poses");
+}
+
+#[test]
 fn a_robot_that_is_shifted_by_as_much_knows() {
     // The counterpart: nothing stays in place, so the robot was moved.
     for shift_m in [0.04, -0.06, 0.08] {

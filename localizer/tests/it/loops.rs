@@ -121,6 +121,17 @@ fn a_loop_of_50_m_is_closed() {
 }
 
 #[test]
+fn the_sweep_of_scans_is_undone_on_the_way() {
+    let errors_m = [false, true].map(|sweeps| {
+        let corridor = ahead(Corridor::new([15.0, 11.0], Plan::Varied, 107));
+        let mut corridor = if sweeps { corridor.sweeping() } else { corridor };
+        let settings = TrajectorySettings { close_loops: false, ..TrajectorySettings::default() };
+        trip(&mut corridor, 1.0, &settings, 107).report(&format!("50 m, scans sweep: {sweeps}"))
+    });
+    assert!(errors_m[1] < 0.1 && errors_m[1] < 2.0 * errors_m[0], "{errors_m:?}");
+}
+
+#[test]
 fn without_loops_the_end_is_not_at_the_start() {
     // A laser that looks ahead only: the trajectory bends.
     let errors_m = [false, true].map(|close_loops| {

@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use clap::{Parser, ValueEnum};
-use ros2::program::{Failure, input, output, say, start};
+use ros2::program::{Failure, input, note_unused_files, output, say, start};
 use ros2::{CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, Signals, Value, curious_wiring};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -54,7 +54,7 @@ SERVICES AND ACTIONS
   ~/save_state            std_srvs/Trigger: saves the state
   navigate_to_pose        nav2_msgs/NavigateToPose, with navigator:=nav2: a client
 
-PARAMETERS (--ros-args -p name:=value)
+PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
   mode                    map | explore [map]
   navigator               cmd_vel | nav2 | goal_pose: what drives to the goals [cmd_vel]
   pose                    localized | odometry | exact: how the pose is known [localized]
@@ -86,6 +86,7 @@ EXAMPLES
   curious_node --state office.state
   curious_node --mode explore --ros-args -p robot_radius:=0.18 -p max_vel_x:=0.5 -r scan:=/front/scan
   curious_node --mode explore --ros-args -p navigator:=nav2 -r __ns:=/robot1
+  curious_node --ros-args --params-file mapping.yaml
 
 EXIT CODES
   0 ended by Ctrl-C, SIGTERM or SIGHUP; 1 the node failed; 2 an argument or the state file is not valid";
@@ -97,9 +98,8 @@ fn main() -> ExitCode {
 fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
     let names = Names::new("curious_node", &ros).map_err(input)?;
     let mut parameters = Parameters::default();
-    for (name, value) in ros.parameters_of(names.node()) {
-        parameters.set(name, value).map_err(input)?;
-    }
+    parameters.set_all(ros.parameters_of(&names.full_name())).map_err(input)?;
+    note_unused_files(&names, &ros);
     if let Some(mode) = args.mode {
         let name = if matches!(mode, ModeArg::Map) { "map" } else { "explore" };
         parameters.set("mode", &Value::Text(name.to_owned())).map_err(input)?;

@@ -2,8 +2,10 @@
 
 use anyhow::{Context, anyhow};
 use clap::Parser;
-use ros2::program::{Failure, input, say, start};
-use ros2::{DdsLink, Environment, Names, RosArgs, SimulatedRobot, SimulationSettings, simulation_wiring};
+use ros2::program::{Failure, input, note_unused_files, say, start};
+use ros2::{
+    DdsLink, Environment, Given, Names, RosArgs, SimulatedRobot, SimulationSettings, simulation_wiring,
+};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -66,9 +68,11 @@ fn main() -> ExitCode {
 
 fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
     let names = Names::new("sim_node", &ros).map_err(input)?;
-    if let Some((name, _)) = ros.parameters_of(names.node()).find(|(name, _)| *name != "use_sim_time") {
+    let is_unknown = |given: &&Given| given.name != "use_sim_time" && !given.is_for_others_too();
+    if let Some(Given { name, .. }) = ros.parameters_of(&names.full_name()).find(is_unknown) {
         return Err(input(anyhow!("there is no parameter `{name}`: sim_node has options, see --help")));
     }
+    note_unused_files(&names, &ros);
     let world = worldfile::shipped::load(&args.world).map_err(input)?;
     let environment = Environment::read(|name| std::env::var(name).ok()).map_err(input)?;
     let wiring = simulation_wiring(&names, &ros).map_err(input)?;

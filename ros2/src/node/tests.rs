@@ -260,6 +260,7 @@ fn a_house_for_hours() {
         let said = std::mem::take(&mut *pair.said.lock().unwrap());
         let lost = said.iter().filter(|text| text.contains("not known")).count();
         let report = pair.node.report();
+        assert!(worst_m < 0.1 && report.mapped * 100 >= report.readings * 99, "{worst_m} m, {report:?}");
         println!(
             "{minutes} min: error up to {worst_m:.3} m, lost {lost} times, {} of {} readings mapped, known {}, {memory}",
             report.mapped,

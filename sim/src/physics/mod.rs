@@ -24,6 +24,7 @@ mod report;
 mod robot;
 mod sensors;
 pub mod shape;
+mod sliding;
 mod snapshot;
 mod spec;
 #[cfg(test)]
@@ -45,8 +46,8 @@ pub use sensors::{Fiducial, SensorReading, SonarReading};
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
-    BehaviorSpec, BumperSpec, CircleSpec, DisplacementSpec, DoorSpec, DriveKind, DriveLimits, DrivenError,
-    FiducialSpec, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec,
-    PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
+    BehaviorSpec, BumperSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits,
+    DrivenError, FiducialSpec, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening,
+    PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
 };
 pub use world::{PhysicsWorld, WorldSnapshot};

@@ -49,6 +49,12 @@ impl Rectangle {
         [(-x, -y), (x, -y), (x, y), (-x, y)].map(|(x, y)| self.pose * Point2::new(x, y))
     }
 
+    /// The point of the rectangle that is nearest to `point` (m): `point` itself inside.
+    pub fn nearest(&self, point: &Point2<f64>) -> Point2<f64> {
+        let local = self.pose.inverse_transform_point(point);
+        self.pose * Point2::from(local.coords.sup(&-self.half_m).inf(&self.half_m))
+    }
+
     /// The distance of `point` (m) from the rectangle, m; 0 inside.
     pub fn distance_m(&self, point: &Point2<f64>) -> f64 {
         let local = self.pose.inverse_transform_point(point);

@@ -3,7 +3,8 @@
 use agent::Policy;
 use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
-use curious::program::{PoseArg, duration_s, one_of, strategy_of};
+use curious::program::{duration_s, one_of, strategy_of};
+use curious::worlds::PoseArg;
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
 use viewer::recording::Live;

@@ -10,18 +10,17 @@ use agent::Policy;
 use anyhow::{Context, anyhow};
 use args::{Args, DriveChoice};
 use curious::bag::RunBag;
-use curious::program::{
-    BEST_STRATEGY_GAIN, Failure, INTERRUPTED, input, interrupt_flag, list_physics_worlds, start,
-};
+use curious::program::{BEST_STRATEGY_GAIN, Failure, INTERRUPTED, input, interrupt_flag, start};
 use curious::progress::Progress;
 use curious::terminal::{print, say};
-use evaluation::file_name;
+use curious::worlds::list_physics_worlds;
 use evaluation::metrics::map_scores;
-use evaluation::output::{RunFolder, TrajectoryFile, UnfinishedFile, is_another_kind};
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::{Reading, Twist};
 use mapper::ReadingError;
 use parts::Parts;
+use results::file_name;
+use results::output::{RunFolder, TrajectoryFile, UnfinishedFile, is_another_kind};
 use robot::{ExactPoses, Pilot};
 use saves::Saves;
 use std::io::stderr;

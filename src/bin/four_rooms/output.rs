@@ -2,17 +2,17 @@
 
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
-use evaluation::cell_statistics;
-use evaluation::observer::Goals;
-use evaluation::output::{RunFolder, write_file};
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::summary::Summary;
 use interfaces::Twist;
 use mapper::Mapper;
+use results::cell_statistics;
+use results::output::{RunFolder, write_file};
+use results::ros_map;
+use results::thinned::Goals;
 use robot::Pilot;
 use viewer::layers::Layer;
 use viewer::show::Show;
-use worldfile::ros_map;
 
 /// The file that ends a run.
 const SUMMARY: &str = "summary.json";

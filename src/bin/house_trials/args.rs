@@ -1,9 +1,10 @@
 //! The command line.
 
 use clap::Parser;
-use curious::program::{PoseArg, duration_s, one_of};
+use curious::program::{duration_s, one_of};
 use curious::shards::ShardCommand;
 use curious::trials::{TrialArgs, strategies};
+use curious::worlds::PoseArg;
 use evaluation::trials::TrialStrategy;
 use mapper::EstimatorChoice;
 use std::path::PathBuf;

@@ -4,7 +4,7 @@ mod args;
 
 use anyhow::Context;
 use args::Args;
-use curious::program::{list_physics_worlds, start};
+use curious::program::start;
 use curious::shards;
 use curious::terminal::say;
 use curious::trials::{self, TrialArgs, TrialProgram, distinct};
@@ -22,7 +22,7 @@ const HOUSES: u64 = 8;
 fn main() -> ExitCode {
     start(|args: &Args| {
         if args.list_worlds {
-            list_physics_worlds()?;
+            worlds::list_physics_worlds()?;
             return Ok(ExitCode::SUCCESS);
         }
         shards::main(args, args.command.as_ref())

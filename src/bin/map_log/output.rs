@@ -4,15 +4,14 @@ use crate::report;
 use crate::second_pass::Learned;
 use crate::summary::Summary;
 use anyhow::Context;
-use evaluation::output::{RunFolder, write_file};
-use evaluation::thinned::Thinned;
-use evaluation::{cell_statistics, raster};
 use nalgebra::Point2;
+use results::output::{RunFolder, write_file};
+use results::thinned::Thinned;
+use results::{cell_statistics, raster, ros_map};
 use std::path::{Path, PathBuf};
 use survey::{Survey, keepout_mask, permanent, speed_mask};
 use viewer::layers::Layer;
 use viewer::pictures::draw_places;
-use worldfile::ros_map;
 
 /// The file that ends a run.
 const SUMMARY: &str = "summary.json";

@@ -2,8 +2,8 @@
 
 use crate::summary::Summary;
 use crate::words::{date, how_often, length_of, list, range};
-use evaluation::percent::percent;
 use maud::{DOCTYPE, Markup, html};
+use results::numbers::percent;
 use survey::Place;
 
 const STYLE: &str = "body{font-family:sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}\

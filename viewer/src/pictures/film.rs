@@ -8,11 +8,11 @@ use crate::legend;
 use crate::outline::field_of_view;
 use crate::scene::{Scene, Sight, TimeUnit};
 use crate::view::{Trail, View};
-use evaluation::drawing::{Area, Canvas, PictureError, ink, px, why};
-use evaluation::output::UnfinishedFile;
-use evaluation::palette::{self, Rgb};
+use drawing::palette::{self, Rgb};
+use drawing::{Area, Canvas, PictureError, ink, px, why};
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use plotters::prelude::*;
+use results::output::UnfinishedFile;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 

@@ -3,8 +3,8 @@
 use super::panel::{Chart, pair};
 use crate::legend::{self, Legend, Mark};
 use crate::scene::Scene;
-use evaluation::drawing::{ink, why};
-use evaluation::palette::{self, Rgb};
+use drawing::palette::{self, Rgb};
+use drawing::{ink, why};
 use nalgebra::Point2;
 use plotters::prelude::*;
 

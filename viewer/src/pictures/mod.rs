@@ -14,12 +14,12 @@ pub use film::Film;
 use crate::layers::Layer;
 use crate::scene::{Scene, TimeUnit};
 use crate::view::Trail;
-use evaluation::drawing::{Area, Canvas, PictureError};
-use evaluation::observer::Goals;
-use evaluation::output::make_folder;
+use drawing::{Area, Canvas, PictureError};
 use mapper::Mapper;
 use nalgebra::Point2;
 use panel::Panel;
+use results::output::make_folder;
+use results::thinned::Goals;
 use std::path::Path;
 
 /// The trails of the robots.

@@ -3,8 +3,8 @@
 use crate::layers::Layer;
 use crate::legend::Mark;
 use crate::scene::{TimeUnit, extent};
-use evaluation::drawing::{Area, INK, ink, px, text, why};
-use evaluation::palette::Rgb;
+use drawing::palette::Rgb;
+use drawing::{Area, INK, ink, px, text, why};
 use interfaces::GridFrame;
 use mapper::Mapper;
 use nalgebra::Point2;

@@ -2,11 +2,11 @@ use super::*;
 use crate::legend::Mark;
 use crate::scene::Robot;
 use crate::tests::FakeRun;
-use evaluation::output::UnfinishedFile;
-use evaluation::palette::{self, Rgb};
+use drawing::palette::{self, Rgb};
 use image::RgbImage;
 use interfaces::CellState;
 use nalgebra::Point2;
+use results::output::UnfinishedFile;
 
 struct Drawn {
     folder: tempfile::TempDir,

@@ -1,11 +1,13 @@
 //! The parts of a world that are constant during a run, as plain data, and the trait of a world that can be
 //! displayed.
 
+#[cfg(feature = "simulation")]
 mod grid;
 mod log;
+#[cfg(feature = "simulation")]
 mod physics;
 
-use evaluation::palette::{self, Rgb};
+use drawing::palette::{self, Rgb};
 use interfaces::{CellReading, GridFrame, LaserReading, World};
 use nalgebra::{Isometry2, Point2, Vector2};
 

@@ -11,8 +11,13 @@ use interfaces::GridFrame;
 use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{
-    BoxTree, DrivenError, FleetSpec, Form, Motion, ObstacleSpec, Rectangle, RobotSpec, WorldSpec,
+    BoxTree, ContactModel, DrivenError, FleetSpec, Form, Motion, ObstacleSpec, Rectangle, RobotSpec,
+    WorldSpec,
 };
+
+/// The models of contacts, the default first.
+pub(super) const CONTACTS: [(&str, ContactModel); 2] =
+    [("rigid_bodies", ContactModel::RigidBodies), ("sliding", ContactModel::Sliding)];
 
 /// The keys of a world file.
 pub(super) const KEYS: &str = "name, description, map, physics, wall, floor_plan, obstacle, robot";
@@ -28,7 +33,8 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
     let description = root.description();
     let (size, frame) =
         root.table("map", "size_m, cell_m, turn_deg").map_or((None, None), |table| map(&table));
-    let physics = root.table_or_empty("physics", "step_s");
+    let physics = root.table_or_empty("physics", "step_s, contacts");
+    let contacts = physics.as_ref().and_then(|table| table.choice("contacts", &CONTACTS));
     let step_s = physics.and_then(|table| table.sound(table.number_or("step_s", 0.05, 0.001..=0.1)?));
     let mut space = Space {
         // If these are invalid, nothing else is invalid because of them: no map is larger, no step shorter.
@@ -77,6 +83,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         description: description?,
         frame,
         step_s: space.step_s,
+        contacts: contacts?,
         walls: space.walls.shapes().collect(),
         obstacles: obstacles.into_iter().map(|(_, obstacle)| obstacle).collect(),
         robots: robots.into_iter().map(|(_, robot)| robot).collect(),

@@ -1,11 +1,12 @@
 //! A world as the text of its file.
 
 use super::behavior::REPEATS;
+use super::check::CONTACTS;
 use crate::toml_value::{degrees, heading, number, point};
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{
-    BehaviorSpec, DoorSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle,
-    RobotSpec,
+    BehaviorSpec, ContactModel, DoorSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec,
+    Opening, Rectangle, RobotSpec,
 };
 use toml::Value;
 
@@ -30,7 +31,12 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
     table("", vec![("name", spec.name.as_str().into()), ("description", spec.description.as_str().into())]);
     let size_m = [frame.width(), frame.height()].map(|cells| number(cells as f64 * frame.resolution_m()));
     table("\n[map]\n", vec![("size_m", size_m.to_vec().into()), ("cell_m", number(frame.resolution_m()))]);
-    table("\n[physics]\n", vec![("step_s", number(spec.step_s))]);
+    let mut physics = vec![("step_s", number(spec.step_s))];
+    if spec.contacts != ContactModel::default() {
+        let word = CONTACTS.iter().find(|(_, contacts)| *contacts == spec.contacts);
+        physics.extend(word.map(|(word, _)| ("contacts", Value::from(*word))));
+    }
+    table("\n[physics]\n", physics);
     for wall in &spec.walls {
         table("\n[[wall]]\n", upright(wall)?);
     }

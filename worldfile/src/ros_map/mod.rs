@@ -15,16 +15,12 @@
 //!
 //! ROS ignores other keys. Here they cause a warning, since a misspelled key would change the map.
 
-mod mask;
 mod read;
 mod syntax;
 #[cfg(test)]
 mod tests;
-mod write;
 
-pub use mask::{mask_pgm, mask_yaml};
 pub use read::read;
-pub use write::{pgm, yaml};
 
 use crate::files::Files;
 use crate::findings::{Findings, Severity};

@@ -13,8 +13,8 @@ fn read(path: &Path) -> Result<RosMap, String> {
 }
 
 fn write(folder: &Path, map: &Grid<CellState>) {
-    fs::write(folder.join("map.pgm"), ros_map::pgm(map)).unwrap();
-    fs::write(folder.join("map.yaml"), ros_map::yaml(map.frame(), "map.pgm")).unwrap();
+    fs::write(folder.join("map.pgm"), results::ros_map::pgm(map)).unwrap();
+    fs::write(folder.join("map.yaml"), results::ros_map::yaml(map.frame(), "map.pgm")).unwrap();
 }
 
 /// A map drawn with the highest row first: `.` free, `#` blocked, ` ` unknown.

@@ -1,5 +1,6 @@
 //! Corridors around a block, with niches and rooms behind doors; rays are cast against every near wall.
 
+use crate::robot::PERIOD_S;
 use interfaces::{GridFrame, LaserReading, Purpose, RandomStream, Scan, Twist};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -27,6 +28,9 @@ pub(crate) struct Corridor {
     beams: usize,
     fov_rad: f64,
     noise_m: f64,
+    /// Whether a scan takes as long as the robot needs from reading to reading, and the pose of the last one.
+    sweeps: bool,
+    last: Option<Isometry2<f64>>,
     random: RandomStream,
 }
 
@@ -38,6 +42,8 @@ impl Corridor {
             beams: 360,
             fov_rad: TAU,
             noise_m: 0.01,
+            sweeps: false,
+            last: None,
             random: RandomStream::new(seed, Purpose::HouseGenerator),
         };
         let half = WIDTH_M / 2.0;
@@ -57,6 +63,11 @@ impl Corridor {
     pub(crate) fn with_laser(mut self, beams: usize, fov_rad: f64) -> Self {
         (self.beams, self.fov_rad) = (beams, fov_rad);
         self
+    }
+
+    /// A laser that measures its beams one after the other, on the way from the last reading to this one.
+    pub(crate) fn sweeping(self) -> Self {
+        Self { sweeps: true, ..self }
     }
 
     /// A wall with openings. The corridor is to the left of outer walls, which have their rooms to the right.
@@ -146,13 +157,18 @@ impl Corridor {
 
     /// The reading at a pose, with this pose as odometry.
     pub(crate) fn reading(&mut self, time_s: f64, pose: Isometry2<f64>) -> LaserReading {
-        let origin = Point2::from(pose.translation.vector);
-        let is_near = |wall: &&(Point2<f64>, Point2<f64>)| distance_m(wall, &origin) < RANGE_M;
+        let before = self.last.replace(pose).filter(|_| self.sweeps).unwrap_or(pose);
+        let near_m = RANGE_M + (pose.translation.vector - before.translation.vector).norm();
+        let is_near = |wall: &&(Point2<f64>, Point2<f64>)| {
+            distance_m(wall, &Point2::from(pose.translation.vector)) < near_m
+        };
         let near: Vec<_> = self.walls.iter().filter(is_near).copied().collect();
         let increment = self.fov_rad / self.beams as f64;
         let angle_min_rad = -self.fov_rad / 2.0;
         let mut ranges_m = Vec::with_capacity(self.beams);
         for beam in 0..self.beams {
+            let pose = before.lerp_slerp(&pose, beam as f64 / (self.beams - 1) as f64);
+            let origin = Point2::from(pose.translation.vector);
             let along =
                 pose.rotation * interfaces::rotation(angle_min_rad + beam as f64 * increment) * Vector2::x();
             let hit = |(a, b): &(Point2<f64>, Point2<f64>)| {
@@ -176,7 +192,7 @@ impl Corridor {
                 angle_increment_rad: increment,
                 range_min_m: 0.05,
                 range_max_m: RANGE_M,
-                sweep_s: 0.0,
+                sweep_s: if self.sweeps { PERIOD_S } else { 0.0 },
                 ranges_m,
             },
         }

@@ -4,10 +4,11 @@ mod movers;
 mod penetration;
 #[cfg(test)]
 mod probe;
+mod slide;
 mod touch;
 
 pub(super) use movers::Mover;
-pub(super) use touch::Touch;
+pub(super) use touch::{SEPARATE_M, Touch};
 
 use super::command::Velocity;
 use super::convex;
@@ -37,6 +38,10 @@ pub(super) struct Bodies {
     floor: Option<rapier::RigidBodyHandle>,
     /// The motion in a step that contacts are predicted for, m, for all bodies; `None`: by the velocity of each.
     predicted_m: Option<f64>,
+    /// The bodies that follow given poses.
+    movers: Vec<rapier::RigidBodyHandle>,
+    /// The contacts of the last step, by robot, if it went by without rapier.
+    slid: Option<Vec<(usize, Touch)>>,
 }
 
 /// A body that contacts move.
@@ -84,6 +89,8 @@ impl Clone for Bodies {
             free: self.free.clone(),
             floor: self.floor,
             predicted_m: self.predicted_m,
+            movers: self.movers.clone(),
+            slid: self.slid.clone(),
         }
     }
 }
@@ -101,7 +108,8 @@ impl Bodies {
         }
         // Distances of contacts are read at every step, so they must be up to date.
         world.integration_parameters.contact_recycling = false;
-        Self { world, robots: Vec::new(), free: Vec::new(), floor: None, predicted_m }
+        let (robots, free, movers) = (Vec::new(), Vec::new(), Vec::new());
+        Self { world, robots, free, floor: None, predicted_m, movers, slid: None }
     }
 
     /// The values that a snapshot holds. The same bodies must have been added before.
@@ -178,6 +186,7 @@ impl Bodies {
 
     /// Simulates one step.
     pub(super) fn step(&mut self) {
+        self.slid = None;
         for Free { body, before, .. } in &mut self.free {
             *before = *self.world.bodies[*body].position();
         }

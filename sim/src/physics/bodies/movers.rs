@@ -28,7 +28,9 @@ impl Bodies {
         let body = rapier::RigidBodyBuilder::kinematic_position_based()
             .pose(to_rapier(&shape.pose))
             .can_sleep(false);
-        Mover { body: self.world.insert(body, collider).0, friction: None }
+        let body = self.world.insert(body, collider).0;
+        self.movers.push(body);
+        Mover { body, friction: None }
     }
 
     /// Sets the pose of such a body after the next step.

@@ -5,9 +5,10 @@ use rapier2d::prelude as rapier;
 
 /// Bodies that are farther apart than this do not touch any more, m. The distance of a lasting contact varies by
 /// less.
-const SEPARATE_M: f32 = 0.001;
+pub(in crate::physics) const SEPARATE_M: f32 = 0.001;
 
 /// A contact of a robot.
+#[derive(Clone, Copy)]
 pub(in crate::physics) struct Touch {
     pub(in crate::physics) with: Body,
     /// The point of the deepest penetration, m.
@@ -23,6 +24,12 @@ pub(in crate::physics) struct Touch {
 impl Bodies {
     /// All bodies that a robot presses against, or has not separated from yet.
     pub(in crate::physics) fn touches(&self, robot: usize) -> impl Iterator<Item = Touch> {
+        let slid = self.slid.iter().flatten().filter(move |(of, _)| *of == robot).map(|(_, touch)| *touch);
+        let solved = self.slid.is_none().then(|| self.solved_touches(robot));
+        slid.chain(solved.into_iter().flatten())
+    }
+
+    fn solved_touches(&self, robot: usize) -> impl Iterator<Item = Touch> {
         let own = self.robots[robot].collider;
         self.world.narrow_phase.contact_pairs_with(own).filter_map(move |pair| {
             let (manifold, deepest) = pair.find_deepest_contact()?;

@@ -3,6 +3,7 @@
 mod bulk;
 mod carry;
 mod controller;
+mod slide;
 mod snapshots;
 mod start;
 mod teleport;
@@ -25,6 +26,7 @@ use super::shape::Rectangle;
 use super::spec::FleetSpec;
 use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
+use slide::Sliding;
 use start::Start;
 use std::sync::Arc;
 
@@ -48,6 +50,7 @@ pub struct Fleet {
     moved: Vec<(usize, Rectangle)>,
     /// Scratch memory: the shapes of all obstacles before a step.
     before: Vec<Rectangle>,
+    sliding: Sliding,
     parallel_lasers: bool,
 }
 

@@ -1,6 +1,7 @@
 //! A fleet at its start: what is the same for every seed, built once and shared.
 
 use super::carry::Carrying;
+use super::slide::Sliding;
 use super::{Fleet, corners};
 use crate::physics::bodies::Bodies;
 use crate::physics::obstacles::Obstacle;
@@ -112,6 +113,7 @@ impl Fleet {
             contacts: Vec::new(),
             moved: Vec::new(),
             before: Vec::new(),
+            sliding: Sliding::default(),
             parallel_lasers: false,
             start,
         }

@@ -92,7 +92,9 @@ impl Fleet {
         self.step += 1;
         let time_s = self.time_s();
         self.start_obstacles();
-        self.bodies.step();
+        if !self.slide() {
+            self.bodies.step();
+        }
         for index in 0..self.robots.len() {
             self.robots[index].end_step(&self.bodies, time_s, step_s);
             if self.robots[index].has_moved() {

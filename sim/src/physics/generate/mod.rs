@@ -13,8 +13,8 @@ pub use ranges::{Furniture, HOUSE_RANGES, HouseRanges, Place};
 
 use super::shape::Rectangle;
 use super::spec::{
-    BehaviorSpec, DriveKind, DriveLimits, FleetSpec, Motion, ObstacleSpec, Repeat, RobotSpec, WanderSpec,
-    WaypointsSpec, WorldSpec,
+    BehaviorSpec, ContactModel, DriveKind, DriveLimits, FleetSpec, Motion, ObstacleSpec, Repeat, RobotSpec,
+    WanderSpec, WaypointsSpec, WorldSpec,
 };
 use draw::{CELLS_PER_M, integer, value};
 use furniture::Piece;
@@ -70,7 +70,9 @@ fn draw_house(ranges: &HouseRanges, seed: u64, rng: &mut RandomStream) -> Option
         layout.spaces.len() - 1
     );
     let name = format!("house-{seed}");
-    let fleet = FleetSpec { name, description, frame: frame?, step_s: STEP_S, walls, obstacles, robots };
+    let contacts = ContactModel::RigidBodies;
+    let fleet =
+        FleetSpec { name, description, frame: frame?, step_s: STEP_S, contacts, walls, obstacles, robots };
     WorldSpec::new(fleet).ok()
 }
 

@@ -4,6 +4,7 @@
 mod caster;
 mod energy;
 mod oracle;
+mod sliding;
 mod specs;
 mod visible;
 

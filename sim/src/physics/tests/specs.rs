@@ -41,6 +41,7 @@ fn house(robots: Vec<RobotSpec>, obstacles: Vec<ObstacleSpec>) -> FleetSpec {
         description: String::new(),
         frame,
         step_s: 0.05,
+        contacts: ContactModel::default(),
         walls,
         obstacles,
         robots,

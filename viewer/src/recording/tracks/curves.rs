@@ -3,7 +3,7 @@
 use super::{Kind, ON_CHANGE, Tracks, color, escape};
 use crate::scene::Scene;
 use crate::view::View;
-use evaluation::palette::{self, Rgb};
+use drawing::palette::{self, Rgb};
 use localizer::PoseState;
 use rerun::{RecordingStreamResult, Scalars, SeriesLines, StateChange, StateConfiguration};
 

@@ -4,7 +4,7 @@ use super::robots::add_trail;
 use super::{Kind, ON_CHANGE, Strip, Tracks, WORLD, closed, color, line, order, points, position, strips};
 use crate::scene::Sight;
 use crate::view::{Believed, View};
-use evaluation::palette;
+use drawing::palette;
 use localizer::PoseEstimate;
 use nalgebra::{Point2, SymmetricEigen, Vector2};
 use rerun::{Points2D, Radius, RecordingStreamResult};

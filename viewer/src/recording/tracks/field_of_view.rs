@@ -1,11 +1,12 @@
 //! What the curious robot sees: the field of view of a laser, or cells around the robot.
 
+use super::fill::fill;
 use super::maps::{Picture, images};
 use super::{Tracks, WORLD, class, color, line, order, position, strips};
-use crate::outline;
+use crate::outline::field_of_view;
 use crate::scene::Sight;
 use crate::view::View;
-use evaluation::palette;
+use drawing::palette;
 use interfaces::{Cell, GridFrame};
 use nalgebra::Point2;
 use rerun::{AnnotationContext, RecordingStreamResult, Transform3D};
@@ -30,8 +31,8 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
             tracks.always(&outline, &line(color(palette::SENSOR, 220), 0.75, order::SIGHT_OUTLINE))?;
             let strip = |corners: Vec<Point2<f64>>| corners.iter().map(position).collect();
             tracks.add(outline, when, move |view| corners(view).map(strip).into_iter().collect(), strips);
-            let fill = move |corners: Vec<Point2<f64>>| outline::fill(&corners, &frame, IN_VIEW);
-            tracks.add(cells, when, move |view| corners(view).map(fill).into_iter().collect(), images);
+            let cells_of = move |corners: Vec<Point2<f64>>| fill(&corners, &frame, IN_VIEW);
+            tracks.add(cells, when, move |view| corners(view).map(cells_of).into_iter().collect(), images);
         }
         Sight::Cells { .. } => {
             let center = |view: &View| robot(view).map(|robot| position(&view.mapper.frame().center(robot)));
@@ -72,7 +73,7 @@ fn frame(sight: Sight, map: &GridFrame) -> GridFrame {
 /// The corners of the field of view of a laser, m.
 fn corners(view: &View) -> Option<Vec<Point2<f64>>> {
     match view.sight()? {
-        Sight::Laser(reading) => Some(outline::field_of_view(reading)),
+        Sight::Laser(reading) => Some(field_of_view(reading)),
         Sight::Cells { .. } => None,
     }
 }

@@ -3,7 +3,7 @@
 use super::{Tracks, WORLD, color, labels, position};
 use crate::legend::{self, Mark};
 use crate::scene::extent;
-use evaluation::palette;
+use drawing::palette;
 use nalgebra::Vector2;
 use rerun::{LineStrips2D, Radius, RecordingStreamResult};
 

@@ -6,6 +6,7 @@
 mod curves;
 mod estimate;
 mod field_of_view;
+mod fill;
 mod legend;
 mod maps;
 mod obstacles;
@@ -19,7 +20,7 @@ pub(super) use robots::robot;
 use super::entity::{Entity, Kind, Track};
 use crate::scene::Scene;
 use crate::view::View;
-use evaluation::palette::Rgb;
+use drawing::palette::Rgb;
 use interfaces::GridFrame;
 use nalgebra::Point2;
 use rerun::external::re_sdk_types::datatypes::AnnotationInfo;

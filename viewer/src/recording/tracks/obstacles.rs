@@ -5,7 +5,7 @@ use super::{
 };
 use crate::scene::{Outline, span};
 use crate::view::View;
-use evaluation::palette;
+use drawing::palette;
 use nalgebra::Point2;
 use rerun::RecordingStreamResult;
 

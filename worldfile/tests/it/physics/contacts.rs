@@ -10,10 +10,21 @@ fn depth_m(world: &PhysicsWorld) -> f64 {
     world.spec().driven().radius_m - gap
 }
 
+/// The four rooms with each model of contacts.
+fn both(heading: &str) -> [WorldSpec; 2] {
+    let spec = four_rooms_but(&[("heading_deg = 0.0", &format!("heading_deg = {heading}"))], "");
+    [ContactModel::RigidBodies, ContactModel::Sliding].map(|contacts| {
+        let fleet = FleetSpec { contacts, ..spec.fleet().clone() };
+        WorldSpec::new(fleet).unwrap_or_else(|error| panic!("{error}"))
+    })
+}
+
 #[test]
 fn driving_into_a_wall_is_one_contact_and_no_tunnel() {
-    for heading in ["0.0", "20.0", "45.0", "200.0", "270.0"] {
-        let spec = four_rooms_but(&[("heading_deg = 0.0", &format!("heading_deg = {heading}"))], "");
+    for (heading, spec) in ["0.0", "20.0", "45.0", "200.0", "270.0"]
+        .into_iter()
+        .flat_map(|heading| both(heading).map(|spec| (heading, spec)))
+    {
         let mut world = PhysicsWorld::new(&spec, 0);
         let mut deepest_m = f64::NEG_INFINITY;
         let contacts = drive(&mut world, AHEAD, 12.0, |world| deepest_m = deepest_m.max(depth_m(world)));
@@ -28,14 +39,16 @@ fn driving_into_a_wall_is_one_contact_and_no_tunnel() {
 
 #[test]
 fn a_contact_counts_again_only_after_parting() {
-    let mut world =
-        PhysicsWorld::new(&four_rooms_but(&[("heading_deg = 0.0", "heading_deg = 180.0")], ""), 0);
-    let first = drive(&mut world, AHEAD, 5.0, |_| ());
-    assert_eq!(first.len(), 1);
-    assert_eq!(drive(&mut world, Twist { linear_mps: -0.5, angular_radps: 0.0 }, 1.0, |_| ()), []);
-    let second = drive(&mut world, AHEAD, 3.0, |_| ());
-    assert_eq!(second.len(), 1);
-    assert_eq!(first[0].with, second[0].with);
+    for spec in both("180.0") {
+        let mut world = PhysicsWorld::new(&spec, 0);
+        let first = drive(&mut world, AHEAD, 5.0, |_| ());
+        assert_eq!(first.len(), 1);
+        assert!(first[0].impulse_ns > 0.0 && first[0].own_speed_mps > 0.0);
+        assert_eq!(drive(&mut world, Twist { linear_mps: -0.5, angular_radps: 0.0 }, 1.0, |_| ()), []);
+        let second = drive(&mut world, AHEAD, 3.0, |_| ());
+        assert_eq!(second.len(), 1);
+        assert_eq!(first[0].with, second[0].with);
+    }
 }
 
 #[test]

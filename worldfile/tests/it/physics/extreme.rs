@@ -101,8 +101,10 @@ fn with_extreme_masses_speeds_and_walls_nobody_passes_a_wall() {
     let (mut robots, mut boxes, mut contacts) = (0, 0, 0);
     let mut deepest = Deepest::default();
     let mut passed = Vec::new();
-    for seed in 0..worlds {
-        let spec = world(seed);
+    let models = [(ContactModel::RigidBodies, worlds), (ContactModel::Sliding, worlds / 2)];
+    let runs = models.into_iter().flat_map(|(model, worlds)| (0..worlds).map(move |seed| (model, seed)));
+    for (model, seed) in runs {
+        let spec = FleetSpec { contacts: model, ..world(seed) };
         robots += spec.robots.len();
         boxes += spec.obstacles.len();
         let mut fleet = Fleet::new(&spec, seed);

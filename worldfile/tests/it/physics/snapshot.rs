@@ -37,9 +37,11 @@ fn drivers(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
 #[test]
 fn a_restored_fleet_and_a_fork_live_on_bit_by_bit() {
     let (zoo, crowd, busy) = (zoo(), crowd(), super::things::busy());
+    // Steps of both kinds.
+    let sliding = FleetSpec { contacts: ContactModel::Sliding, ..zoo.clone() };
     // Robots on waypoints that turn round and make detours, and doors that move back.
     let house = super::standstill::worlds::house(7);
-    for spec in [&zoo, &crowd, &busy, &house] {
+    for spec in [&zoo, &sliding, &crowd, &busy, &house] {
         // Before the first step, between two scans, and after contacts.
         for at_s in [0.0, 0.05, 5.0, 10.0, 31.25] {
             let mut fleet = Fleet::new(spec, 4);

@@ -1,0 +1,280 @@
+//! The results as a few lines for the terminal.
+
+use super::{Contacts, Liveliest, RunResults, Summary};
+use crate::metrics::{Age, PoseScores, PredictedScores, RateScores, ThingReport};
+use results::numbers::percent;
+use robot::GoalCount;
+use std::fmt;
+
+fn seconds(time_s: Option<f64>) -> String {
+    time_s.map_or("never".into(), |time_s| format!("at {time_s:.1} s"))
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { drive, world, simulated_s, wall_s, real_time_factor, .. } = self;
+        let ended = match self.ended_by {
+            "interrupted" => ", interrupted",
+            "person" => ", ended by the user",
+            _ => "",
+        };
+        let simulated = match simulated_s {
+            short if *short < 60.0 => format!("{short:.1} simulated seconds"),
+            long => format!("{:.1} simulated minutes", long / 60.0),
+        };
+        writeln!(
+            f,
+            "{drive} in {world}{ended}: {simulated} in {wall_s:.1} s ({real_time_factor:.0} x real time)"
+        )?;
+        self.results.fmt(f)
+    }
+}
+
+impl fmt::Display for RunResults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { map, rates, goals, .. } = self;
+        let correct = percent(map.map_quality);
+        let (events, cells) = (rates.false_change_events, rates.static_cells);
+        let mut lines = vec![
+            ("seen", self.seen()),
+            ("map", format!("{correct} correct now; {events} false changes on {cells} static cells")),
+            ("changes", self.liveliest.as_ref().map_or("none seen".into(), Liveliest::to_string)),
+        ];
+        lines.extend(self.rates());
+        lines.extend(self.prediction().map(|text| ("predicted", text)));
+        lines.extend(self.things.iter().map(|thing| ("thing", line_of(thing))));
+        let GoalCount { reached, approached, given_up } = goals;
+        let all = reached + approached + given_up;
+        if all > 0 {
+            let text =
+                format!("{all} finished: {reached} reached, {approached} approached, {given_up} given up");
+            lines.push(("goals", text));
+        }
+        if !self.strategy_share.is_empty() {
+            let share = |(name, share): (&String, &f64)| format!("{name} {}", percent(*share));
+            let shares: Vec<String> = self.strategy_share.iter().map(share).collect();
+            lines.push(("chosen", shares.join(", ")));
+        }
+        lines.extend(self.pose().map(|text| ("pose", text)));
+        lines.extend(self.standstills().map(|text| ("stood", text)));
+        for (name, text) in lines {
+            writeln!(f, "  {name:<9} {text}")?;
+        }
+        let Contacts { own_motion, run_into } = self.contacts;
+        write!(f, "  contacts  {own_motion} by its own motion, {run_into} in which something ran into it")
+    }
+}
+
+impl RunResults {
+    /// The seen part of the map, and its age.
+    fn seen(&self) -> String {
+        let Age { max_s, never_seen, .. } = self.age;
+        let [reachable, all] = [self.reachable.coverage_reachable, self.map.coverage].map(percent);
+        let seen = format!(
+            "{reachable} of the cells in sight of reachable places, {all} of free cells and their borders"
+        );
+        match never_seen {
+            0 => format!("{seen}; every cell was seen in the last {:.0} s", max_s.ceil()),
+            1 => format!("{seen}; 1 cell was never seen"),
+            cells => format!("{seen}; {cells} cells were never seen"),
+        }
+    }
+
+    /// The errors of the poses; `None` if they are exact.
+    fn pose(&self) -> Option<String> {
+        let PoseScores { mode, median_m, p95_m, max_m, uncertain_s, lost_s, lock_ins, .. } = self.pose;
+        let (median, p95) = (median_m? * 1e3, p95_m? * 1e3);
+        let loops = match self.pose.loops_closed {
+            0 => String::new(),
+            count => {
+                let (noun, moved_m) =
+                    (if count == 1 { "loop" } else { "loops" }, self.pose.largest_correction_m);
+                format!("; {count} {noun} closed, which moved poses of the past by up to {moved_m:.2} m")
+            }
+        };
+        (mode != "exact").then(|| {
+            format!(
+                "{mode}: error {median:.1} mm in the median, {p95:.1} mm for 95 %, {:.0} mm at most; {:.1}° for 95 %; \
+                 uncertain for {uncertain_s:.1} s, lost for {lost_s:.1} s, certain but wrong {lock_ins} times{loops}",
+                max_m * 1e3,
+                self.pose.heading_p95_deg.unwrap_or_default(),
+            )
+        })
+    }
+
+    /// The robots that stood still for a minute or longer; `None` if no robot did.
+    fn standstills(&self) -> Option<String> {
+        let stood = self.longest_standstill_s.iter().filter(|(_, longest_s)| **longest_s >= 60.0);
+        let stood: Vec<String> = stood.map(|(name, longest_s)| format!("{name} {longest_s:.0} s")).collect();
+        (!stood.is_empty()).then(|| format!("longest time without moving 0.1 m: {}", stood.join(", ")))
+    }
+
+    /// The quality of the predicted map beside that of simpler predictions; `None` if nothing changed out of view.
+    fn prediction(&self) -> Option<String> {
+        let PredictedScores { brier, brier_last_seen, brier_mean, brier_true_chains, .. } = self.predicted;
+        let (last_seen, mean, chains) = (brier_last_seen?, brier_mean?, brier_true_chains?);
+        Some(format!(
+            "Brier score {:.4} on changing cells out of view; as last seen {last_seen:.4}, share of time blocked \
+             {mean:.4}, true chains {chains:.4}",
+            brier?
+        ))
+    }
+
+    /// The errors of the estimated rates, in words; empty if nothing changed.
+    fn rates(&self) -> Vec<(&'static str, String)> {
+        let RateScores {
+            rate_error,
+            rate_error_cells,
+            rate_error_all,
+            log_error,
+            log_error_of_range,
+            rate_auc,
+            ..
+        } = &self.rates;
+        let mut lines = Vec::new();
+        if let Some(all) = rate_error_all {
+            let well_seen = rate_error.map_or("none was in view for 3 cycles".into(), |error| {
+                format!("{} over the {rate_error_cells} in view for 3 cycles or more", percent(error))
+            });
+            let all = percent(*all);
+            lines.push(("rates", format!("mean error {all} over all changing cells, {well_seen}")));
+        }
+        if let Some(error) = log_error {
+            let meaning = "0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate";
+            lines.push(("", format!("log error {error:.2}, mean over moving things: {meaning}")));
+            if let Some(of_range) = log_error_of_range.filter(|of_range| of_range < error) {
+                let meaning = "a pass that covers only a part of a cell may count or not";
+                lines.push(("", format!("log error {of_range:.2} where {meaning}")));
+            }
+        }
+        if let Some(auc) = rate_auc {
+            let meaning =
+                "how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance";
+            lines.push(("", format!("AUC {auc:.2}: {meaning}")));
+        }
+        lines
+    }
+}
+
+impl fmt::Display for Liveliest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { low_m, high_m, cells, median_interval_s } = self;
+        write!(
+            f,
+            "{cells} cells changed more than once, between ({:.1}, {:.1}) and ({:.1}, {:.1}) m; median cycle time \
+             {median_interval_s:.0} s",
+            low_m[0], low_m[1], high_m[0], high_m[1]
+        )
+    }
+}
+
+/// The detection of a thing as a line.
+fn line_of(thing: &ThingReport) -> String {
+    let verb = if thing.appeared { "appeared" } else { "disappeared" };
+    if thing.in_view_s.is_none() {
+        return format!("{} {verb} at {:.0} s: not in view since then", thing.name, thing.happened_s);
+    }
+    let [in_view, noticed, correct] = [thing.in_view_s, thing.noticed_s, thing.right_s].map(seconds);
+    format!(
+        "{} {verb} at {:.0} s: in view {in_view}, first cell correct {noticed}, 90 % correct {correct}",
+        thing.name, thing.happened_s
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::{ChangingAccuracy, Delays, MapScores, ReachableScores};
+    use std::collections::BTreeMap;
+
+    fn results(coverage: f64, age: Age, rates: RateScores) -> RunResults {
+        RunResults {
+            map: MapScores { coverage, map_quality: 0.9999 },
+            reachable: ReachableScores { coverage_reachable: coverage, map_quality_reachable: 0.9999 },
+            changing: ChangingAccuracy::default().scores(),
+            predicted: PredictedScores::default(),
+            rates,
+            age,
+            block_latency: Delays::default(),
+            free_latency: Delays::default(),
+            collisions: 0,
+            contacts_while_standing: 0,
+            contacts: Contacts { own_motion: 1, run_into: 2 },
+            pose: PoseScores { mode: "exact", ..PoseScores::default() },
+            longest_standstill_s: [("cat", 312.4), ("dummy", 3.0)]
+                .map(|(name, s)| (name.to_owned(), s))
+                .into(),
+            goals: GoalCount::default(),
+            strategy_share: BTreeMap::new(),
+            things: Vec::new(),
+            curve: Vec::new(),
+            map_hash: String::new(),
+            liveliest: None,
+        }
+    }
+
+    #[test]
+    fn figures_say_what_they_are_and_agree() {
+        let rates = RateScores {
+            rate_error: Some(0.29),
+            rate_error_cells: 43,
+            rate_error_all: Some(2.51),
+            log_error: Some(0.912),
+            log_error_of_range: Some(0.534),
+            rate_auc: Some(0.83),
+            static_cells: 50_000,
+            ..RateScores::default()
+        };
+        let age = Age { mean_s: 60.0, max_s: 600.0, never_seen: 2 };
+        let predicted = PredictedScores {
+            balanced_accuracy_out_of_view: None,
+            brier: Some(0.0159),
+            brier_last_seen: Some(0.02702),
+            brier_mean: Some(0.01612),
+            brier_true_chains: Some(0.014),
+        };
+        insta::assert_snapshot!(RunResults { predicted, ..results(0.99999, age, rates) }, @"
+          seen      >99.9 % of the cells in sight of reachable places, >99.9 % of free cells and their borders; 2 cells were never seen
+          map       >99.9 % correct now; 0 false changes on 50000 static cells
+          changes   none seen
+          rates     mean error 251.0 % over all changing cells, 29.0 % over the 43 in view for 3 cycles or more
+                    log error 0.91, mean over moving things: 0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate
+                    log error 0.53 where a pass that covers only a part of a cell may count or not
+                    AUC 0.83: how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance
+          predicted Brier score 0.0159 on changing cells out of view; as last seen 0.0270, share of time blocked 0.0161, true chains 0.0140
+          stood     longest time without moving 0.1 m: cat 312 s
+          contacts  1 by its own motion, 2 in which something ran into it
+        ");
+    }
+
+    #[test]
+    fn a_complete_map_without_changes_is_short() {
+        let age = Age { mean_s: 60.0, max_s: 431.0, never_seen: 0 };
+        insta::assert_snapshot!(results(1.0, age, RateScores::default()), @"
+          seen      100.0 % of the cells in sight of reachable places, 100.0 % of free cells and their borders; every cell was seen in the last 431 s
+          map       >99.9 % correct now; 0 false changes on 0 static cells
+          changes   none seen
+          stood     longest time without moving 0.1 m: cat 312 s
+          contacts  1 by its own motion, 2 in which something ran into it
+        ");
+    }
+
+    #[test]
+    fn closed_loops_are_in_the_line_of_the_pose() {
+        let line = |loops_closed| {
+            let pose = PoseScores {
+                mode: "localized",
+                median_m: Some(0.001),
+                p95_m: Some(0.004),
+                ..PoseScores::default()
+            };
+            let pose = PoseScores { loops_closed, largest_correction_m: 0.253, ..pose };
+            let age = Age { mean_s: 60.0, max_s: 431.0, never_seen: 0 };
+            RunResults { pose, ..results(1.0, age, RateScores::default()) }.pose().unwrap()
+        };
+        assert!(line(0).ends_with("certain but wrong 0 times"));
+        assert!(
+            line(2).ends_with("wrong 0 times; 2 loops closed, which moved poses of the past by up to 0.25 m")
+        );
+    }
+}

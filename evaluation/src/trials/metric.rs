@@ -1,0 +1,107 @@
+//! The metrics of a trial over time.
+
+use crate::metrics::MAX_LOG_ERROR;
+use std::ops::RangeInclusive;
+
+/// A share, or the mean of shares.
+const SHARE: RangeInclusive<f64> = 0.0..=1.0;
+/// An error or a rate without an upper limit.
+const NOT_NEGATIVE: RangeInclusive<f64> = 0.0..=f64::INFINITY;
+
+/// Defines [`Sample`] and [`Metric`] from one list of metrics.
+macro_rules! metrics {
+    ($count:literal: $($(#[$doc:meta])+ $field:ident => $metric:ident in $range:expr,)+) => {
+        /// The metrics at one time, see [`crate::metrics`]. A metric that is undefined at this time, as the error of
+        /// the rates before anything changed, is NaN.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Sample {
+            /// The time: steps, or s in a physics world.
+            pub time: u64,
+            $($(#[$doc])+ pub $field: f64,)+
+        }
+
+        impl Sample {
+            /// The sample with these values, in the order of [`Metric::ALL`].
+            pub fn new(time: u64, [$($field),+]: [f64; $count]) -> Self {
+                Self { time, $($field),+ }
+            }
+        }
+
+        /// A metric of the samples.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Metric {
+            $($(#[$doc])+ $metric,)+
+        }
+
+        impl Metric {
+            /// All, in the order of the files.
+            pub const ALL: [Self; $count] = [$(Self::$metric),+];
+
+            /// The name in `report.json` and `trials.csv`.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$metric => stringify!($field),)+ }
+            }
+
+            /// The values that the metric can have.
+            pub fn range(self) -> RangeInclusive<f64> {
+                match self { $(Self::$metric => $range,)+ }
+            }
+
+            /// The value in `sample`.
+            pub fn of(self, sample: &Sample) -> f64 {
+                match self { $(Self::$metric => sample.$field,)+ }
+            }
+        }
+    };
+}
+
+metrics! {
+    12:
+    /// Mean relative error of the rates over the cells that truly changed.
+    rate_error => RateError in NOT_NEGATIVE,
+    /// The log error of the rates: per moving thing, then over the things.
+    log_error => LogError in 0.0..=MAX_LOG_ERROR,
+    /// The log error, where a pass that covers only a part of a cell may count or not.
+    log_error_of_range => LogErrorOfRange in 0.0..=MAX_LOG_ERROR,
+    /// The share of the cells that can be seen whose mapped state is the true state.
+    map_quality => MapQuality in SHARE,
+    /// Balanced accuracy of the map on swept cells.
+    map_quality_changing => MapQualityChanging in SHARE,
+    /// Share of the cells that can be seen that were seen.
+    coverage => Coverage in SHARE,
+    /// Mean estimated rate over the observed static cells, 1/step or Hz.
+    false_rate => FalseRate in NOT_NEGATIVE,
+    /// The share of the readings so far with a swept cell in view. A large share is the paper's lock-down.
+    changing_share => ChangingShare in SHARE,
+    /// Brier score of the two-state model for swept cells out of view.
+    brier => Brier in SHARE,
+    /// Brier score of the state that was last seen, for swept cells out of view.
+    brier_last_seen => BrierLastSeen in SHARE,
+    /// Brier score of the share of the time in view during which the cell was blocked, for swept cells out of view.
+    brier_mean => BrierMean in SHARE,
+    /// How well the estimated rates separate changing cells from static cells: the area under the ROC curve.
+    rate_auc => RateAuc in SHARE,
+}
+
+/// The result of one trial: a strategy with an estimator in a world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// The name of the world.
+    pub world: String,
+    /// The name of the estimator.
+    pub estimator: String,
+    /// The name of the strategy.
+    pub strategy: String,
+    /// The seed of all random streams. Trials of different strategies with the same seed are paired.
+    pub seed: u64,
+    /// The samples in order of time: at the same times in all trials of a report, the last at the end.
+    pub samples: Vec<Sample>,
+    /// For each strategy of the agent, in the order of the chooser, the share of the goals that it selected.
+    pub strategy_share: Vec<(String, f64)>,
+    /// The number of change events on static cells.
+    pub false_change_events: u64,
+    /// The number of contacts of the robot that began while it moved; `None` in a grid world.
+    pub collisions: Option<u64>,
+    /// The hash of everything that was learned, see [`crate::map_hash`].
+    pub map_hash: String,
+}

@@ -1,0 +1,129 @@
+//! The verification of a pose that a search has found.
+//!
+//! In a map that is not finished, the true place may be missing, and something in the map always looks a little like it. A
+//! found pose is certain once enough scans from enough viewpoints agree with the map: those of a wrong pose would contradict
+//! it. Until then no scan enters the map: a wrong pose would soon agree with what it has drawn itself.
+
+use crate::support::Support;
+
+/// The agreement of a scan: the share of it that the map confirms, less this many times the share that it contradicts, less
+/// the share that it does not know. What the map does not know says nothing against a pose near that of the odometry.
+const CONTRADICTION: f64 = 4.0;
+/// The agreement that says nothing for and nothing against a pose: near that of the odometry, and elsewhere. Measured in
+/// generated houses: the agreement of wrong poses elsewhere is at most 0.25.
+const FAIR_NEAR: f64 = 0.2;
+const FAIR: f64 = 0.35;
+/// What a viewpoint counts whose agreement is better by 1.
+const GAIN: f64 = 4.0;
+/// The share of what the map can judge (see [`Support::share`]) below which a viewpoint counts against a pose, and what it
+/// counts with a share of 1 less.
+const FAIR_SHARE: f64 = 0.7;
+const LOSS: f64 = 20.0;
+/// The first viewpoint counts as this many.
+const FIRST_VIEWS: f64 = 2.0;
+/// The robot has another viewpoint after this distance, m.
+const VIEW_M: f64 = 0.25;
+/// At rest, a scan counts as this many viewpoints against a pose.
+const LEAST_VIEWS: f64 = 0.1;
+/// A pose is certain with this sum for it, and is dropped with this sum against it.
+const ENOUGH: f64 = 3.0;
+const TOO_MUCH: f64 = 3.0;
+
+/// What speaks for and against a pose since it was found.
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+pub(crate) struct Verification {
+    scans: u32,
+    has_first_view: bool,
+    /// Whether the first view was near the pose that the odometry says.
+    is_near: bool,
+    evidence_for: f64,
+    evidence_against: f64,
+}
+
+/// The result of a verification.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    /// Not certain yet.
+    Open,
+    /// The robot is there.
+    Certain,
+    /// The robot is elsewhere.
+    Wrong,
+}
+
+impl Verification {
+    /// A pose that some scans have already confirmed.
+    pub(crate) fn after(scans: u32) -> Self {
+        Self { scans, ..Self::default() }
+    }
+
+    /// Counts a scan, after the robot has moved by `moved_m`. A pose is certain after `least_scans` at the earliest.
+    /// `is_near`: the pose is near that which the odometry says.
+    pub(crate) fn count(
+        &mut self,
+        support: &Support,
+        moved_m: f64,
+        is_near: bool,
+        least_scans: u32,
+    ) -> Verdict {
+        let is_first = !std::mem::replace(&mut self.has_first_view, true);
+        self.is_near = if is_first { is_near } else { self.is_near };
+        let views = if is_first { FIRST_VIEWS } else { (moved_m / VIEW_M).min(1.0) };
+        self.scans = self.scans.saturating_add(1);
+        let (new, fair) = if self.is_near { (0.0, FAIR_NEAR) } else { (support.new, FAIR) };
+        let against = CONTRADICTION * support.contradicted + new;
+        let agreement = (support.confirmed - against) / support.weight().max(1e-9);
+        self.evidence_for = (self.evidence_for + views * GAIN * (agreement - fair)).max(0.0);
+        let against = views.max(LEAST_VIEWS) * LOSS * (FAIR_SHARE - support.share());
+        self.evidence_against = (self.evidence_against + against).max(0.0);
+        if self.evidence_against >= TOO_MUCH {
+            Verdict::Wrong
+        } else if self.evidence_for >= ENOUGH && self.scans >= least_scans {
+            Verdict::Certain
+        } else {
+            Verdict::Open
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The verdict of scans with this support per 100 units of weight, 5 cm apart, and the number of scans up to it.
+    fn verdict(confirmed: f64, contradicted: f64, is_near: bool) -> (Verdict, u32) {
+        let new = 100.0 - confirmed - contradicted;
+        let support = Support { confirmed, contradicted, new, ..Support::default() };
+        let mut verification = Verification::after(3);
+        let mut verdicts = (1..=200).map(|scan| (verification.count(&support, 0.05, is_near, 3), scan));
+        verdicts.find(|(verdict, _)| *verdict != Verdict::Open).unwrap_or((Verdict::Open, 200))
+    }
+
+    #[test]
+    fn a_pose_with_which_all_agrees_is_certain_at_once() {
+        assert_eq!(verdict(98.0, 1.0, false), (Verdict::Certain, 1));
+    }
+
+    #[test]
+    fn a_pose_with_which_most_agrees_has_to_hold_on_the_way() {
+        let (verdict, scans) = verdict(90.0, 8.0, false);
+        assert_eq!(verdict, Verdict::Certain);
+        assert!(scans > 5 && scans < 50, "{scans} scans");
+    }
+
+    #[test]
+    fn what_is_new_decides_only_far_from_the_odometry() {
+        assert_eq!(verdict(50.0, 1.0, false).0, Verdict::Open);
+        assert_eq!(verdict(50.0, 1.0, true).0, Verdict::Certain);
+        assert_eq!(verdict(20.0, 4.0, true).0, Verdict::Open);
+    }
+
+    #[test]
+    fn a_pose_that_the_map_contradicts_is_dropped() {
+        for is_near in [false, true] {
+            let (verdict, scans) = verdict(60.0, 35.0, is_near);
+            assert_eq!(verdict, Verdict::Wrong);
+            assert!(scans > 1 && scans < 60, "{scans} scans");
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Figure 3 of the paper, in grid worlds and in physics worlds: the plan of the world, and the curves of the errors of the
+//! rates and of the map quality, one per strategy, with bands of 95 % confidence.
+
+mod curves;
+mod pen;
+mod plan;
+
+use super::run::{Run, conditions};
+use super::{ONE_BY_ONE, Report};
+use drawing::palette;
+use drawing::{Canvas, PictureError, ink, why};
+use evaluation::trials::Metric;
+use pen::{Pen, Sheet, svg};
+pub use plan::Plan;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+use results::output::write_file;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+// All lengths in pixels of the finished picture.
+const WIDTH: u32 = 1180;
+const MARGIN: i32 = 16;
+const TITLE: i32 = 46;
+const LEGEND_ROW: i32 = 26;
+const LEGEND_COLUMNS: usize = 5;
+const PANEL_HEIGHT: i32 = 360;
+
+/// Writes the figures as PNG and SVG.
+pub(super) fn write_all(folder: &Path, report: &Report, worlds: &[Plan]) -> Result<(), PictureError> {
+    for (name, run) in chosen(report) {
+        let figure = Figure { report, run, worlds: worlds_of(report, run, worlds) };
+        let failed = |why| PictureError::Draw { name: name.clone(), why };
+        let [png, vector] = ["png", "svg"].map(|ending| folder.join(format!("{name}.{ending}")));
+        Canvas::draw(figure.size(), |sheet| figure.draw(sheet, &Pen::BITMAP)).map_err(failed)?.write(&png)?;
+        let text = svg(figure.size(), |sheet| figure.draw(sheet, &Pen::VECTOR)).map_err(failed)?;
+        write_file(&vector, |file| file.write_all(text.as_bytes()))?;
+    }
+    Ok(())
+}
+
+/// The runs that are drawn, each with the name of its file: the first, and the others, unless
+/// there are many worlds: then only all of them together.
+fn chosen(report: &Report) -> Vec<(String, &Run)> {
+    let runs = &report.runs;
+    let worlds = runs.iter().map(|run| run.worlds).max().unwrap_or(1);
+    let has_one_estimator = runs.iter().all(|run| run.estimator == runs[0].estimator);
+    let mut names = BTreeSet::new();
+    let mut chosen = Vec::new();
+    for (index, run) in runs.iter().enumerate() {
+        if index > 0 && run.worlds == 1 && worlds > ONE_BY_ONE {
+            continue;
+        }
+        let mut name = String::from(report.settings.length.choose("figure3", "curves"));
+        if index > 0 {
+            name += &format!("-{}", in_file_name(if run.worlds > 1 { "all worlds" } else { &run.world }));
+            if !has_one_estimator {
+                name += &format!("-{}", in_file_name(&run.estimator));
+            }
+        }
+        // Different names can become the same in a file name.
+        let mut unique = name.clone();
+        let mut number = 2;
+        while !names.insert(unique.clone()) {
+            unique = format!("{name}-{number}");
+            number += 1;
+        }
+        chosen.push((unique, run));
+    }
+    chosen
+}
+
+/// A name as a part of a file name: lower-case letters, digits and dashes.
+fn in_file_name(name: &str) -> String {
+    let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' };
+    let dashed: String = name.chars().map(plain).collect();
+    let words: Vec<&str> = dashed.split('-').filter(|word| !word.is_empty()).collect();
+    words.join("-")
+}
+
+/// The plans of the worlds of `run`, in the report's order.
+fn worlds_of<'a>(report: &Report, run: &Run, worlds: &[Plan<'a>]) -> Vec<Plan<'a>> {
+    let has_trials = |one: &&Run| one.worlds == 1 && one.estimator == run.estimator;
+    let is_wanted = |one: &&Run| run.worlds > 1 || one.world == run.world;
+    let names = report.runs.iter().filter(has_trials).filter(is_wanted).map(|one| &one.world);
+    names.filter_map(|name| worlds.iter().find(|world| world.name() == *name).copied()).collect()
+}
+
+/// One figure.
+struct Figure<'a> {
+    report: &'a Report,
+    run: &'a Run,
+    worlds: Vec<Plan<'a>>,
+}
+
+impl Figure<'_> {
+    /// Width and height in pixels.
+    fn size(&self) -> [u32; 2] {
+        [WIDTH, (TITLE + self.legend_height() + 2 * PANEL_HEIGHT + MARGIN) as u32]
+    }
+
+    fn legend_height(&self) -> i32 {
+        self.run.strategies.len().div_ceil(LEGEND_COLUMNS) as i32 * LEGEND_ROW
+    }
+
+    fn draw<DB: DrawingBackend>(&self, sheet: &Sheet<DB>, pen: &Pen) -> Result<(), String> {
+        sheet.fill(&WHITE).map_err(why)?;
+        let sheet = sheet.margin(0, pen.px(MARGIN), pen.px(MARGIN), pen.px(MARGIN));
+        let (head, rest) = sheet.split_vertically(pen.px(TITLE));
+        let title = format!("{}: {}", self.run.world, conditions(self.run, &self.report.settings));
+        pen.write(&head, (MARGIN, TITLE / 2), HPos::Left, 20, &title)?;
+        let over = if self.run.worlds > 1 { "worlds" } else { "trials" };
+        let note = format!("lines: means over {over}; bands: their 95 % confidence");
+        pen.write(&head, (WIDTH as i32 - 2 * MARGIN, TITLE / 2), HPos::Right, 15, &note)?;
+        let (legend, panels) = rest.split_vertically(pen.px(self.legend_height()));
+        self.legend(&legend, pen)?;
+        let panels = panels.split_evenly((2, 2));
+        match self.worlds.as_slice() {
+            [world] => plan::one(&panels[0], pen, world)?,
+            worlds => plan::many(&panels[0], pen, worlds)?,
+        }
+        let length = self.report.settings.length;
+        let second = length.choose(Metric::RateError, Metric::RateAuc);
+        let curves = [second, Metric::LogError, Metric::MapQuality];
+        panels[1..]
+            .iter()
+            .zip(curves)
+            .try_for_each(|(panel, metric)| curves::draw(panel, pen, metric, length, &self.run.strategies))
+    }
+
+    fn legend<DB: DrawingBackend>(&self, sheet: &Sheet<DB>, pen: &Pen) -> Result<(), String> {
+        let column_width = (WIDTH as i32 - 2 * MARGIN) / LEGEND_COLUMNS as i32;
+        for (index, strategy) in self.run.strategies.iter().enumerate() {
+            let left = MARGIN + (index % LEGEND_COLUMNS) as i32 * column_width;
+            let middle = (index / LEGEND_COLUMNS) as i32 * LEGEND_ROW + LEGEND_ROW / 2;
+            let color = ink(palette::strategy(&strategy.name));
+            pen.bar(sheet, [left, middle - 7], [26, 14], &color.mix(curves::BAND))?;
+            let line = [left, left + 26].map(|x| (pen.px(x), pen.px(middle)));
+            let is_dashed = curves::is_dashed(&strategy.name);
+            curves::draw_line(sheet, pen, line.into(), pen.line(color, 2), is_dashed)?;
+            pen.write(sheet, (left + 34, middle), HPos::Left, 16, &strategy.name)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,104 @@
+//! `report.json`. An undefined value is `null`; names are in the order of the experiment.
+
+use super::Report;
+use super::claim::Claim;
+use super::measure::Measure;
+use super::run::Run;
+use super::strategy::StrategyResult;
+use evaluation::trials::Metric;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use serde_json::ser::{Formatter, PrettyFormatter};
+use std::io::{self, Write};
+
+/// The content of `report.json`.
+#[derive(Serialize)]
+struct Content<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    /// The names of the other files.
+    files: &'a [String],
+}
+
+/// Writes `report.json`; `files` are the names of the other files.
+pub(super) fn write_report(report: &Report, files: &[String], mut to: impl Write) -> io::Result<()> {
+    let content = Content { report, files };
+    content.serialize(&mut serde_json::Serializer::with_formatter(&mut to, Layout::default()))?;
+    writeln!(to)
+}
+
+impl Serialize for Run {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let mut object = to.serialize_map(None)?;
+        object.serialize_entry("world", &self.world)?;
+        object.serialize_entry("estimator", &self.estimator)?;
+        object.serialize_entry("claim", &Claim::of(self).map(|claim| claim.verdict.name()))?;
+        let strategies = self.strategies.iter().map(|strategy| (&strategy.name, strategy));
+        object.serialize_entry("strategies", &Object(strategies))?;
+        object.serialize_entry("comparisons", &self.comparisons)?;
+        object.end()
+    }
+}
+
+impl Serialize for StrategyResult {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let mut object = to.serialize_map(None)?;
+        object.serialize_entry("trials", &self.trials)?;
+        for measure in Metric::ALL.iter().flat_map(|&metric| [Measure::Final(metric), Measure::Area(metric)])
+        {
+            object.serialize_entry(&measure, &self.value(measure))?;
+        }
+        object.serialize_entry("false_change_events", &self.false_change_events)?;
+        if let Some(collisions) = self.collisions {
+            object.serialize_entry("collisions", &collisions)?;
+        }
+        object.serialize_entry("strategy_share", &Object(self.strategy_share.iter().cloned()))?;
+        for metric in Metric::ALL {
+            let curve = self.times.iter().zip(self.curve(metric));
+            let points: Vec<_> = curve.map(|(time, at)| (time, at.mean, at.low, at.high)).collect();
+            object.serialize_entry(metric.name(), &points)?;
+        }
+        object.end()
+    }
+}
+
+impl Serialize for Measure {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(&self.name())
+    }
+}
+
+/// Pairs as an object, in their order.
+struct Object<I>(I);
+
+impl<K: Serialize, V: Serialize, I: Iterator<Item = (K, V)> + Clone> Serialize for Object<I> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_map(self.0.clone())
+    }
+}
+
+/// Every key on a line of its own; arrays, as the curves, on one line.
+#[derive(Default)]
+struct Layout(PrettyFormatter<'static>);
+
+impl Formatter for Layout {
+    fn begin_object<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.0.begin_object(to)
+    }
+
+    fn begin_object_key<W: ?Sized + Write>(&mut self, to: &mut W, is_first: bool) -> io::Result<()> {
+        self.0.begin_object_key(to, is_first)
+    }
+
+    fn begin_object_value<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.0.begin_object_value(to)
+    }
+
+    fn end_object_value<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.0.end_object_value(to)
+    }
+
+    fn end_object<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.0.end_object(to)
+    }
+}

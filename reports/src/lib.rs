@@ -1,0 +1,198 @@
+//! The report of an experiment: from trials to curves with confidence bands, paired comparisons,
+//! the verdict on the paper's claim, files and a table.
+//!
+//! ```text
+//! trials ──▶ runs: curves, areas, comparisons ──▶ report.json, figures, table, claim
+//!   └──────▶ trials.csv, trials.parquet
+//! ```
+
+mod builder;
+mod claim;
+mod comparison;
+mod figure;
+mod files;
+mod measure;
+mod run;
+pub mod shards;
+mod statistics;
+mod strategy;
+mod table;
+mod trial_files;
+mod wording;
+
+pub use builder::{ReportBuilder, UnequalTimes};
+pub use claim::{Claim, Verdict};
+pub use comparison::Comparison;
+pub use figure::Plan;
+pub use measure::Measure;
+pub use run::Run;
+pub use statistics::Estimate;
+pub use strategy::StrategyResult;
+pub use trial_files::collect;
+
+use drawing::PictureError;
+use evaluation::trials::{Experiment, Length, Trial, TrialError, TrialWorld};
+use results::output::{RunFolder, write_file};
+use serde::Serialize;
+use std::sync::atomic::AtomicBool;
+
+/// Up to this number of worlds, the table and the figures show single worlds.
+const ONE_BY_ONE: usize = 8;
+/// The name of the file with all results.
+pub const REPORT: &str = "report.json";
+/// The strategies that know the ground truth: they are listed with the others, but cannot be the best one.
+const REFERENCES: [&str; 2] = ["oracle", "full-observation"];
+
+fn is_reference(strategy: &str) -> bool {
+    REFERENCES.contains(&strategy)
+}
+
+/// The settings of an experiment.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ReportSettings {
+    /// The version of the program.
+    pub version: String,
+    /// The arguments that describe the experiment: those on output, threads and shards are left out.
+    pub arguments: Vec<String>,
+    /// The length of a trial.
+    #[serde(flatten)]
+    pub length: Length,
+    /// The number of trials of every strategy with every estimator in every world.
+    pub trials: u64,
+    /// The range of the sensor of a grid world, in cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_radius: Option<u32>,
+    /// Whether the experiment was interrupted before all trials were finished.
+    pub interrupted: bool,
+    /// The names of the worlds, in the order of the report; other worlds come last, sorted by name. Estimators and
+    /// strategies are ordered in the same way.
+    #[serde(skip)]
+    pub worlds: Vec<String>,
+    /// The names of the estimators in their order.
+    #[serde(skip)]
+    pub estimators: Vec<String>,
+    /// The names of the strategies in their order.
+    #[serde(skip)]
+    pub strategies: Vec<String>,
+}
+
+impl ReportSettings {
+    /// The settings of the report of an experiment, without version and arguments.
+    pub fn of<W: TrialWorld>(experiment: &Experiment<W>) -> Self {
+        Self {
+            length: W::length(experiment.length),
+            trials: experiment.trials,
+            sensor_radius: experiment.worlds.first().and_then(W::sensor_radius),
+            worlds: experiment.worlds.iter().map(|world| world.name().to_owned()).collect(),
+            estimators: experiment.estimators.iter().map(|estimator| estimator.name().to_owned()).collect(),
+            strategies: experiment.strategies.iter().map(|strategy| strategy.name().to_owned()).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// The number of trials of the whole experiment.
+    pub(crate) fn all_trials(&self) -> u64 {
+        [&self.worlds, &self.estimators, &self.strategies]
+            .iter()
+            .fold(self.trials, |all, names| all * names.len() as u64)
+    }
+
+    /// Sorts trials into the order of the report: by world, estimator, strategy and seed.
+    pub fn sort(&self, trials: &mut [Trial]) {
+        trials.sort_by_cached_key(|trial| {
+            (
+                position(&self.worlds, &trial.world),
+                position(&self.estimators, &trial.estimator),
+                position(&self.strategies, &trial.strategy),
+                trial.seed,
+            )
+        });
+    }
+}
+
+/// The results of an experiment. Serialized, they are the content of `report.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The settings of the experiment.
+    #[serde(flatten)]
+    pub settings: ReportSettings,
+    /// The number of finished trials.
+    #[serde(skip)]
+    pub finished: u64,
+    /// One run per world and estimator, then the runs over all worlds.
+    pub runs: Vec<Run>,
+}
+
+impl Report {
+    /// Runs all trials of an experiment with the default rayon pool, and returns their report.
+    ///
+    /// # Errors
+    ///
+    /// When a trial cannot run.
+    pub fn of<W: TrialWorld>(experiment: &Experiment<W>) -> Result<Self, TrialError> {
+        let trials = experiment.run(experiment.jobs(), &AtomicBool::new(false), |_| ())?;
+        Ok(Self::new(ReportSettings::of(experiment), trials))
+    }
+
+    /// The statistics of `trials`, which can be in any order.
+    ///
+    /// There is one run per world and estimator. With several worlds, there is also one run over all worlds per
+    /// estimator, at the end. In that run a world is the unit: its value is the mean of its trials, bands span
+    /// the worlds, and worlds are paired.
+    ///
+    /// # Panics
+    ///
+    /// When the trials were not sampled at the same times.
+    pub fn new(settings: ReportSettings, mut trials: Vec<Trial>) -> Self {
+        settings.sort(&mut trials);
+        let mut report = ReportBuilder::new(settings);
+        for trial in &trials {
+            assert!(report.add(trial).is_ok(), "trials are sampled at the same times");
+        }
+        report.finish()
+    }
+
+    /// The run with `estimator` in `world`, or over `all worlds (N)`.
+    pub fn run(&self, world: &str, estimator: &str) -> Option<&Run> {
+        self.runs.iter().find(|run| run.world == world && run.estimator == estimator)
+    }
+
+    /// The table for a terminal: 80 columns, if the names of the strategies are not too long.
+    pub fn table(&self) -> String {
+        table::table(self)
+    }
+
+    /// Writes the figures, and `report.json`, which lists all files of the run, into the folder of the unfinished run.
+    /// Returns the names of the files.
+    ///
+    /// `figure3` (in physics worlds: `curves`) shows the first run; the other figures are `figure3-<world>-<estimator>`,
+    /// without the estimator if there is only one. With more than eight worlds, only the first world and all worlds together are drawn.
+    /// The plans of `worlds`, in any order, are drawn beside the curves; the plan of a world that is not given is
+    /// left out.
+    ///
+    /// # Errors
+    ///
+    /// When something cannot be drawn or written.
+    pub fn write<'a, W>(&self, folder: &RunFolder, worlds: &'a [W]) -> Result<Vec<String>, PictureError>
+    where
+        Plan<'a>: From<&'a W>,
+    {
+        let plans: Vec<Plan> = worlds.iter().map(Plan::from).collect();
+        let to = folder.unfinished();
+        figure::write_all(to, self, &plans)?;
+        let mut names = folder.results()?;
+        write_file(&to.join(REPORT), |file| files::write_report(self, &names, file))?;
+        names.insert(0, REPORT.to_owned());
+        Ok(names)
+    }
+}
+
+/// The sort key of a name: its position in the list; other names come last, by name.
+fn position(names: &[String], name: &str) -> (usize, String) {
+    (names.iter().position(|known| known == name).unwrap_or(names.len()), name.to_owned())
+}
+
+#[cfg(test)]
+pub(crate) mod synthetic;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,148 @@
+//! The file of a shard that runs.
+
+use super::line::{self, Cost};
+use super::scan::{MAX_LINE, Scan, not_a_shard};
+use super::{Header, Shard, ShardError};
+use evaluation::trials::Trial;
+use results::output::{OutputError, lock, make_folder};
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// The file of a shard, to which finished trials are appended from any thread. While it is open, no other process can
+/// open it, if the file system has locks.
+#[derive(Debug)]
+pub struct ShardFile {
+    path: PathBuf,
+    key: u64,
+    finished: BTreeSet<u64>,
+    file: Mutex<Appended>,
+}
+
+#[derive(Debug)]
+struct Appended {
+    file: File,
+    /// The length up to the end of the last whole line, bytes.
+    intact: u64,
+    /// Why a line could not be written: nothing must follow it.
+    failure: Option<io::Error>,
+}
+
+impl ShardFile {
+    /// Opens the file of the shard of `header` in a folder; folder and file are made unless they exist. A line that
+    /// was cut off at the end is removed.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be written, another process has opened it, or the folder has shards of another experiment:
+    /// nothing is changed then.
+    pub fn open(folder: &Path, header: &Header, shard: Shard) -> Result<Self, ShardError> {
+        make_folder(folder)?;
+        check_others(folder, header)?;
+        let path = folder.join(shard.file_name());
+        let failed = |why| ShardError::from(OutputError::new(&path, why));
+        let options = File::options().read(true).write(true).create(true).truncate(false).open(&path);
+        let mut file = options.map_err(failed)?;
+        lock(&file, &path, "wait for it, or start another shard")?;
+        let mut scan = Scan::of(&path, shard, BufReader::new(&file))?;
+        let line = header.line().map_err(|error| failed(error.into()))?;
+        if scan.header.is_none() && !line.as_bytes().starts_with(&scan.torn) {
+            return Err(not_a_shard(&path));
+        }
+        file.set_len(scan.intact).and_then(|()| file.seek(SeekFrom::Start(scan.intact))).map_err(failed)?;
+        if scan.header.is_none() {
+            file.write_all(line.as_bytes()).map_err(failed)?;
+            scan.intact = line.len() as u64;
+        }
+        Ok(Self {
+            key: header.key(),
+            finished: scan.lines.into_keys().collect(),
+            file: Mutex::new(Appended { file, intact: scan.intact, failure: None }),
+            path,
+        })
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The numbers of the trials that were finished when the file was opened.
+    pub fn finished(&self) -> &BTreeSet<u64> {
+        &self.finished
+    }
+
+    /// Appends a finished trial, which is then in the hands of the operating system: it survives the end of the
+    /// program.
+    ///
+    /// # Errors
+    ///
+    /// When the line cannot be written, as on a full disk. The lines before it stay; all later calls fail as well.
+    pub fn append(&self, number: u64, cost: Cost, trial: &Trial) -> Result<(), OutputError> {
+        let failed = |why| OutputError::new(&self.path, why);
+        let line = line::write(number, cost, trial, self.key).map_err(|error| failed(error.into()))?;
+        let mut appended = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(earlier) = &appended.failure {
+            return Err(failed(again(earlier)));
+        }
+        if let Err(why) = appended.file.write_all(line.as_bytes()) {
+            appended.file.set_len(appended.intact).ok(); // a torn line is removed at the next start as well
+            appended.failure = Some(again(&why));
+            return Err(failed(why));
+        }
+        appended.intact += line.len() as u64;
+        Ok(())
+    }
+
+    /// Waits until everything is on the disk: some file systems notice only then that they are full.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be written.
+    pub fn sync(&self) -> Result<(), OutputError> {
+        let appended = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        appended.file.sync_data().map_err(|why| OutputError::new(&self.path, why))
+    }
+}
+
+/// The same error once more.
+fn again(error: &io::Error) -> io::Error {
+    error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
+}
+
+/// The shards that have files in a folder, in their order.
+///
+/// # Errors
+///
+/// When the folder cannot be read.
+pub(super) fn shards_in(folder: &Path) -> Result<Vec<(Shard, PathBuf)>, ShardError> {
+    let failed = |why| ShardError::read(folder, why);
+    let mut shards = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        if let Some(shard) = entry.file_name().to_str().and_then(Shard::of_file_name) {
+            shards.push((shard, entry.path()));
+        }
+    }
+    shards.sort();
+    Ok(shards)
+}
+
+/// Checks that all shards in a folder are of the experiment of `header`, by their first lines.
+fn check_others(folder: &Path, header: &Header) -> Result<(), ShardError> {
+    for (_, path) in shards_in(folder)? {
+        let mut line = Vec::new();
+        let file = File::open(&path).map_err(|why| ShardError::read(&path, why))?;
+        let read = BufReader::new(file).take(MAX_LINE).read_until(b'\n', &mut line);
+        read.map_err(|why| ShardError::read(&path, why))?;
+        let text = line.strip_suffix(b"\n").and_then(|line| std::str::from_utf8(line).ok());
+        let other = text.and_then(Header::read);
+        if let Some(difference) = other.and_then(|other| other.difference(header)) {
+            let why = format!("this shard is {difference}; give another folder by --out");
+            return Err(ShardError::content(&path, why));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,66 @@
+//! Experiments in shards: parts that run independently, on any number of machines, and are merged into the report of
+//! a single run.
+//!
+//! Trial k of an experiment belongs to shard k mod n. A shard has one file of lines of JSON: a [`Header`] that names
+//! the experiment, then one line per finished trial, in the order of finishing. Every line ends with a hash of its
+//! text, so that a line that was cut off or edited is noticed.
+//!
+//! ```text
+//! trials ──▶ ShardFile::append ──▶ shard-1-of-3.jsonl ┐
+//!                                  shard-2-of-3.jsonl ├──▶ Shards::read ──▶ trials in the order of the experiment
+//!                                  shard-3-of-3.jsonl ┘
+//! ```
+
+mod file;
+mod header;
+mod line;
+mod merge;
+mod scan;
+mod shard;
+#[cfg(test)]
+mod tests;
+
+pub use file::ShardFile;
+pub use header::Header;
+pub use line::Cost;
+pub use merge::{Shards, Trials};
+pub use scan::Scan;
+pub use shard::{InvalidShard, Shard, array};
+
+use results::output::OutputError;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The error for files of shards that cannot be written, read or merged.
+#[derive(Debug, thiserror::Error)]
+pub enum ShardError {
+    /// A file cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A file or folder cannot be read.
+    #[error("cannot read {}: {why}", path.display())]
+    Read {
+        /// The file or folder.
+        path: PathBuf,
+        /// The reason.
+        why: io::Error,
+    },
+    /// A file is not the file of this shard.
+    #[error("{}: {why}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is invalid, with the number of the line, and what to do.
+        why: String,
+    },
+}
+
+impl ShardError {
+    fn read(path: &Path, why: io::Error) -> Self {
+        Self::Read { path: path.to_owned(), why }
+    }
+
+    fn content(path: &Path, why: impl Into<String>) -> Self {
+        Self::Content { path: path.to_owned(), why: why.into() }
+    }
+}

@@ -1,0 +1,227 @@
+//! The tables for a terminal of 80 columns.
+
+use super::claim::Claim;
+use super::measure::Measure;
+use super::run::{Run, conditions};
+use super::strategy::StrategyResult;
+use super::wording::{difference, p_value, value};
+use super::{ONE_BY_ONE, Report, is_reference};
+use evaluation::trials::Metric;
+use results::numbers::percent;
+use tabled::Table;
+use tabled::settings::object::Columns;
+use tabled::settings::{Alignment, Padding, Span, Style};
+
+const HOW_TO_READ_GRID: &str = "\
+How to read it: errors are 0 and map quality is 1 at best; final is the value at
+the end, area the mean over the run, * the best; time at changes is the share of
+steps with a changing cell in view.
+";
+const HOW_TO_READ_PHYSICS: &str = "\
+How to read it: errors are 0, map quality and AUC are 1 at best; final is the
+value at the end, area the mean over the run, * the best; AUC tells how well the
+rates separate changing cells from static cells, seen is the share of the cells
+that can be seen.
+";
+
+/// Longer names are broken at their hyphens beside the differences.
+const LONG_NAME: usize = 12;
+
+/// The meaning of a column.
+#[derive(Clone, Copy)]
+enum Kind {
+    Error,
+    Quality,
+    Share,
+}
+
+/// The group, the name, the numbers and their meaning; a group continues where its name is empty.
+type Column = (&'static str, &'static str, Measure, Kind);
+
+const GRID_COLUMNS: [Column; 7] = [
+    ("log error", "final", Measure::Final(Metric::LogError), Kind::Error),
+    ("", "area", Measure::Area(Metric::LogError), Kind::Error),
+    ("rate error", "final", Measure::Final(Metric::RateError), Kind::Error),
+    ("", "area", Measure::Area(Metric::RateError), Kind::Error),
+    ("map quality", "all cells", Measure::Final(Metric::MapQuality), Kind::Quality),
+    ("", "changing", Measure::Final(Metric::MapQualityChanging), Kind::Quality),
+    ("time at", "changes", Measure::Final(Metric::ChangingShare), Kind::Share),
+];
+const PHYSICS_COLUMNS: [Column; 6] = [
+    ("log error", "final", Measure::Final(Metric::LogError), Kind::Error),
+    ("", "area", Measure::Area(Metric::LogError), Kind::Error),
+    ("rate", "AUC", Measure::Final(Metric::RateAuc), Kind::Quality),
+    ("map quality", "all cells", Measure::Final(Metric::MapQuality), Kind::Quality),
+    ("", "changing", Measure::Final(Metric::MapQualityChanging), Kind::Quality),
+    ("cells", "seen", Measure::Final(Metric::Coverage), Kind::Share),
+];
+
+/// The columns of the differences, with their decimals.
+const DIFFERENCES: [(&str, Measure, usize); 3] = [
+    ("log error, area", Measure::Area(Metric::LogError), 3),
+    ("log error, final", Measure::Final(Metric::LogError), 3),
+    ("map quality, final", Measure::Final(Metric::MapQuality), 4),
+];
+
+/// The tables of all runs; with many worlds, only the runs over all worlds.
+pub(super) fn table(report: &Report) -> String {
+    if report.runs.is_empty() {
+        return "No trial was finished.\n".into();
+    }
+    let length = report.settings.length;
+    let columns = length.choose(&GRID_COLUMNS[..], &PHYSICS_COLUMNS);
+    let is_short = report.runs.iter().any(|run| run.worlds > ONE_BY_ONE);
+    let mut text = String::new();
+    if report.settings.interrupted {
+        let finished = report.finished;
+        text =
+            format!("Interrupted: {finished} of {} trials were finished.\n\n", report.settings.all_trials());
+    }
+    for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
+        let claim = Claim::of(run).map(|claim| claim.sentence());
+        let conclusions = [false_events(run), collisions(run), winner(run), claim];
+        let paragraphs = [
+            format!("{}\n{}", run.world, conditions(run, &report.settings)),
+            values(&run.strategies, columns).to_string(),
+            differences(run).unwrap_or_default(),
+            conclusions.into_iter().flatten().collect::<Vec<_>>().join("\n"),
+        ];
+        for line in
+            paragraphs.iter().filter(|text| !text.is_empty()).flat_map(|text| text.lines().chain([""]))
+        {
+            text.extend([line.trim_end(), "\n"]);
+        }
+    }
+    text.push_str(length.choose(HOW_TO_READ_GRID, HOW_TO_READ_PHYSICS));
+    if is_short {
+        text.push_str("The worlds one by one are in report.json.\n");
+    }
+    text
+}
+
+/// Columns of numbers beside the names.
+fn aligned(rows: Vec<Vec<String>>) -> Table {
+    let mut table = Table::from_iter(rows);
+    table.with(Style::empty()).with(Alignment::right()).with(Padding::new(2, 0, 0, 0));
+    table.modify(Columns::first(), Alignment::left()).modify(Columns::first(), Padding::zero());
+    table
+}
+
+/// A row per strategy.
+fn values(strategies: &[StrategyResult], columns: &[Column]) -> Table {
+    let head = |name: &str, of: fn(&Column) -> String| {
+        [name.to_owned()].into_iter().chain(columns.iter().map(of)).collect()
+    };
+    let mut rows = vec![
+        head("", |(group, ..)| (*group).to_owned()),
+        head("strategy", |(_, name, ..)| (*name).to_owned()),
+    ];
+    rows.extend(strategies.iter().map(|strategy| vec![strategy.name.clone()]));
+    for &(_, _, measure, kind) in columns {
+        let cells = cells(strategies, measure, kind);
+        rows[2..].iter_mut().zip(cells).for_each(|(row, cell)| row.push(cell));
+    }
+    let mut table = aligned(rows);
+    for (column, _) in
+        columns.iter().enumerate().filter(|(_, (_, name, ..))| ["final", "all cells"].contains(name))
+    {
+        table.modify((0, column + 1), Span::column(2)).modify((0, column + 1), Alignment::center());
+    }
+    table
+}
+
+/// One number per strategy; a star marks the best number, and numbers that are printed the same.
+fn cells(strategies: &[StrategyResult], measure: Measure, kind: Kind) -> impl Iterator<Item = String> {
+    let text = move |number: f64| match kind {
+        Kind::Error => value(number, 3),
+        Kind::Quality => value(number, 4),
+        Kind::Share if number.is_nan() => "-".into(),
+        Kind::Share => percent(number),
+    };
+    let rivals = strategies.iter().filter(|strategy| !is_reference(&strategy.name));
+    let numbers = rivals.map(|strategy| strategy.value(measure));
+    let best = match kind {
+        Kind::Error => numbers.fold(f64::NAN, f64::min),
+        Kind::Quality => numbers.fold(f64::NAN, f64::max),
+        Kind::Share => f64::NAN,
+    };
+    let best = (!best.is_nan()).then(|| text(best));
+    strategies.iter().map(move |strategy| {
+        let text = text(strategy.value(measure));
+        let is_best = best.as_ref() == Some(&text) && !is_reference(&strategy.name);
+        text + if is_best { "*" } else { " " }
+    })
+}
+
+/// The first strategy against every other.
+fn differences(run: &Run) -> Option<String> {
+    let (first, others) = run.strategies.split_first().filter(|(_, others)| !others.is_empty())?;
+    let mut rows = vec![vec![String::new()]];
+    rows[0].extend(DIFFERENCES.map(|(name, ..)| name.to_owned()));
+    for other in others {
+        let is_long = other.name.chars().count() > LONG_NAME;
+        let mut row = vec![if is_long { other.name.replace('-', "-\n") } else { other.name.clone() }];
+        row.extend(DIFFERENCES.map(|(_, measure, decimals)| {
+            let Some(found) = run.comparison(&first.name, &other.name, measure) else { return "-".into() };
+            let mean = difference(found.mean_difference, decimals);
+            if found.p_value.is_nan() {
+                return mean;
+            }
+            let half_width = value((found.high - found.low) / 2.0, decimals);
+            let p_value = p_value(found.p_value).replace(['p', '=', ' '], "");
+            format!("{mean} ±{half_width} {p_value:>6}")
+        }));
+        rows.push(row);
+    }
+    let over = if run.worlds > 1 { "worlds" } else { "seeds" };
+    Some(format!(
+        "Paired differences over {over}, {} minus the other: mean ± half of its\n\
+         95 % interval, p-value of the t test\n{}",
+        first.name,
+        aligned(rows)
+    ))
+}
+
+/// The false changes, if there are any.
+fn false_events(run: &Run) -> Option<String> {
+    let counts = counts(run, |strategy| strategy.false_change_events)?;
+    Some(format!("False change events on cells that never change: {counts}."))
+}
+
+/// The collisions, if there are any.
+fn collisions(run: &Run) -> Option<String> {
+    let counts = counts(run, |strategy| strategy.collisions.unwrap_or(0))?;
+    Some(format!("Collisions while the robot moved: {counts}."))
+}
+
+/// The strategies with a count above zero.
+fn counts(run: &Run, count: impl Fn(&StrategyResult) -> u64) -> Option<String> {
+    let those = run.strategies.iter().filter(|strategy| count(strategy) > 0);
+    let counts: Vec<String> =
+        those.map(|strategy| format!("{} {}", strategy.name, count(strategy))).collect();
+    (!counts.is_empty()).then(|| counts.join(", "))
+}
+
+/// The strategy with the smallest error of the rates, and whether the next one is significantly worse.
+fn winner(run: &Run) -> Option<String> {
+    let area = |strategy: &StrategyResult| strategy.value(Measure::PRIMARY);
+    let is_rival = |strategy: &&StrategyResult| !is_reference(&strategy.name) && !area(strategy).is_nan();
+    let mut ranked: Vec<&StrategyResult> = run.strategies.iter().filter(is_rival).collect();
+    ranked.sort_by(|a, b| area(a).total_cmp(&area(b)));
+    let [winner, next, ..] = ranked.as_slice() else { return None };
+    let comparison = run.comparison(&winner.name, &next.name, Measure::PRIMARY)?;
+    let (winner, next, ratio) = (&winner.name, &next.name, value(comparison.ratio, 2));
+    let smallest = format!("{winner} has the smallest log error over the run, {ratio} times\nthat of {next}");
+    Some(match comparison.p_holm {
+        p if p.is_nan() => format!("{smallest}; a single pair cannot be tested."),
+        p if p < 0.05 => format!(
+            "{winner} learns rates fastest: its log error over the run is {ratio} times\n\
+             that of {next} (significant: {} after Holm's correction).",
+            p_value(p)
+        ),
+        p => format!(
+            "{smallest}; the difference is not significant\n({} after Holm's correction).",
+            p_value(p)
+        ),
+    })
+}

@@ -1,0 +1,20 @@
+//! The format of numbers in the table, the figures and the verdict.
+
+/// A value with `decimals`; a dash where it is not a number.
+pub(super) fn value(value: f64, decimals: usize) -> String {
+    if value.is_finite() { format!("{value:.decimals$}") } else { "-".into() }
+}
+
+/// A difference, with its sign.
+pub(super) fn difference(value: f64, decimals: usize) -> String {
+    if value.is_finite() { format!("{value:+.decimals$}") } else { "-".into() }
+}
+
+/// `p = 0.012`, `p < 0.001`, or `no test` for a single pair.
+pub(super) fn p_value(p_value: f64) -> String {
+    match p_value {
+        p if p.is_nan() => "no test".into(),
+        p if p < 0.001 => "p < 0.001".into(),
+        p => format!("p = {p:.3}"),
+    }
+}

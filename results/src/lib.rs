@@ -1,0 +1,12 @@
+//! What a run leaves behind: files that are either complete or absent, the folder of a run, and what the mapper has
+//! learned as a table, as an array, and as maps for ROS.
+//!
+//! This crate must not know where readings come from: the results of a simulated robot and of a log have the same files.
+
+pub mod cell_statistics;
+pub mod file_name;
+pub mod numbers;
+pub mod output;
+pub mod raster;
+pub mod ros_map;
+pub mod thinned;

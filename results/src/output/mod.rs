@@ -1,0 +1,108 @@
+//! Files that are either complete or absent, and the folder of a run.
+
+mod folder;
+mod trajectory;
+mod unfinished;
+
+pub use folder::RunFolder;
+pub use trajectory::TrajectoryFile;
+pub use unfinished::{UnfinishedFile, is_another_kind};
+
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// The error for a file or folder that cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write {}: {why}", path.display())]
+pub struct OutputError {
+    /// The file or folder.
+    pub path: PathBuf,
+    /// The reason, in most cases an error of the operating system.
+    pub why: io::Error,
+}
+
+impl OutputError {
+    /// The error `why` on `path`.
+    pub fn new(path: &Path, why: impl Into<io::Error>) -> Self {
+        Self { path: path.to_owned(), why: why.into() }
+    }
+}
+
+/// Locks an open file until it is closed. If another run has locked it, `path` cannot be written, and `advice` says
+/// what to do.
+pub fn lock(file: &File, path: &Path, advice: &str) -> Result<(), OutputError> {
+    match file.try_lock() {
+        // Not every file system has locks.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(()),
+        Err(TryLockError::WouldBlock) => {
+            let why = format!("another run is writing there; {advice}");
+            Err(OutputError::new(path, io::Error::new(io::ErrorKind::ResourceBusy, why)))
+        }
+    }
+}
+
+/// Writes a file as an [`UnfinishedFile`]: an older file stays until the new one is complete.
+///
+/// # Errors
+///
+/// When the file cannot be written. Nothing is left of it then.
+pub fn write_file(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    UnfinishedFile::create(path)?.write(write)
+}
+
+/// Makes a folder, and its parent folders, unless it exists.
+///
+/// # Errors
+///
+/// When the folder cannot be made.
+pub fn make_folder(path: &Path) -> Result<(), OutputError> {
+    fs::create_dir_all(path).map_err(|why| OutputError::new(path, why))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn a_file_is_replaced_by_a_whole_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        for text in ["one", "two"] {
+            write_file(&path, |file| file.write_all(text.as_bytes())).unwrap();
+            assert_eq!(fs::read_to_string(&path).unwrap(), text);
+        }
+        assert_eq!(names(folder.path()), ["a.txt"]);
+    }
+
+    #[test]
+    fn a_failure_half_way_leaves_what_was_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        fs::write(&path, "old").unwrap();
+        let error = write_file(&path, |file| {
+            file.write_all(&[b'x'; 100_000])?;
+            Err(io::ErrorKind::StorageFull.into())
+        });
+        assert_eq!(
+            error.unwrap_err().to_string(),
+            format!("cannot write {}: no storage space", path.display())
+        );
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(names(folder.path()), ["a.txt"]);
+    }
+
+    #[test]
+    fn a_missing_folder_is_named() {
+        let path = Path::new("no/such/folder/a.txt");
+        let error = write_file(path, |_| Ok(())).unwrap_err().to_string();
+        assert!(error.starts_with("cannot write no/such/folder/a.txt: "), "{error}");
+    }
+}

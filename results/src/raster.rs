@@ -1,0 +1,113 @@
+//! `layers.npy`: all that was learned about the cells, as one array of numbers for `numpy.load`.
+
+use crate::output::{OutputError, write_file};
+use interfaces::CellState;
+use mapper::Mapper;
+use std::path::Path;
+
+/// The probability with which the credible interval contains the rate.
+const CREDIBLE_MASS: f64 = 0.9;
+
+/// The layers, in the order of the array.
+pub const LAYERS: [Layer; 8] = [
+    layer("blocked", |of, index| {
+        f64::from(u8::from(of.mapper.states().cells()[index] == CellState::Blocked))
+    }),
+    layer("rate_hz", |of, index| of.mapper.rate(index)),
+    layer("rate_low_hz", |of, index| (of.interval)(index).0),
+    layer("rate_high_hz", |of, index| (of.interval)(index).1),
+    layer("blocked_probability", |of, index| of.mapper.blocked_probability(index)),
+    layer("change_probability", |of, index| of.mapper.change_probability(index)),
+    layer("recency_s", |of, index| of.mapper.recency(index)),
+    layer("observed_s", |of, index| of.mapper.statistics(index).observed()),
+];
+
+/// One value per cell.
+#[derive(Clone, Copy, Debug)]
+pub struct Layer {
+    /// The name, with the unit.
+    pub name: &'static str,
+    value: Value,
+}
+
+type Value = fn(&Learned, usize) -> f64;
+
+/// What the values of the cells follow from.
+struct Learned<'a> {
+    mapper: &'a Mapper,
+    /// The credible interval of the rate of a cell.
+    interval: &'a dyn Fn(usize) -> (f64, f64),
+}
+
+const fn layer(name: &'static str, value: Value) -> Layer {
+    Layer { name, value }
+}
+
+/// Writes an array of 32-bit numbers with the shape (layers, rows, columns); row 0 has the lowest y. The layers are
+/// [`LAYERS`]: the map (0 free, 1 blocked), the rate and its 90 % credible interval in cycles per second, the probability
+/// of being blocked now, the probability of a change since last seen, the time since last seen and the time in view, s.
+/// Cells that were never seen are NaN in all layers.
+///
+/// # Errors
+///
+/// When the file cannot be written.
+pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
+    let frame = mapper.frame();
+    let shape = [LAYERS.len(), frame.height(), frame.width()];
+    let learned = Learned { mapper, interval: &mapper.credible_intervals(CREDIBLE_MASS) };
+    write_file(path, |file| {
+        file.write_all(&npy_header(shape))?;
+        for layer in LAYERS {
+            for index in 0..frame.len() {
+                let value =
+                    if mapper.was_ever_seen(index) { (layer.value)(&learned, index) } else { f64::NAN };
+                file.write_all(&(value as f32).to_le_bytes())?;
+            }
+        }
+        Ok(())
+    })
+}
+
+/// What stands before the numbers in a file of NumPy: a magic number, the version 1.0, and a dictionary in the syntax of
+/// Python, filled with spaces to a multiple of 64 bytes (`numpy.lib.format`). The numbers are little-endian and have 32
+/// bits; the last index varies fastest.
+fn npy_header([layers, rows, columns]: [usize; 3]) -> Vec<u8> {
+    const BEFORE: usize = 10;
+    let mut text =
+        format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({layers}, {rows}, {columns}), }}");
+    // The longest text has 128 bytes: three numbers of 20 digits.
+    let length = (BEFORE + text.len() + 1).next_multiple_of(64) - BEFORE;
+    text += &" ".repeat(length - 1 - text.len());
+    text.push('\n');
+    let mut header = b"\x93NUMPY\x01\x00".to_vec();
+    header.extend((length as u16).to_le_bytes());
+    header.extend(text.into_bytes());
+    header
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::GridFrame;
+    use mapper::MapperSettings;
+    use nalgebra::Point2;
+
+    #[test]
+    fn another_reader_finds_shape_and_numbers() {
+        let frame = GridFrame::new(Point2::origin(), 1.0, 3, 2).unwrap();
+        let mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("layers.npy");
+        write(&path, &mapper).unwrap();
+        let array = npyz::NpyFile::new(std::fs::File::open(&path).unwrap()).unwrap();
+        assert_eq!((array.shape(), array.order()), ([8, 2, 3].as_slice(), npyz::Order::C));
+        let numbers: Vec<f32> = array.into_vec().unwrap();
+        assert!(numbers.len() == 48 && numbers.iter().all(|number| number.is_nan()));
+        for shape in [[8, 1, 1], [8, 600, 12_345], [8, 1_000_000, 1]] {
+            let header = npy_header(shape);
+            assert!(header.len().is_multiple_of(64) && header.ends_with(b"\n"), "{shape:?}");
+            let read = npyz::NpyFile::new(&header[..]).unwrap();
+            assert_eq!(read.shape(), shape.map(|length| length as u64));
+        }
+    }
+}

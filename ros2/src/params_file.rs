@@ -1,0 +1,268 @@
+//! Files of parameters, as launch files and `ros2 run … --params-file` pass them to nodes.
+//!
+//! ```yaml
+//! /**:                   # every node
+//!   ros__parameters:
+//!     use_sim_time: true
+//! curious_node:          # this node without a namespace; /robot1/curious_node or /*/curious_node with one
+//!   ros__parameters:
+//!     resolution: 0.05
+//! ```
+
+use crate::value::Value;
+use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_saphyr::{NonFiniteFloatPolicy, Spanned, from_str_with_options, options};
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// The key below which the parameters of a node are.
+const PARAMETERS: &str = "ros__parameters";
+/// The maximum length of a file: far more than any node has.
+const MAX_BYTES: u64 = 1 << 20;
+const EXAMPLE: &str = "as in `curious_node: {ros__parameters: {resolution: 0.05}}`";
+
+/// The error for a file of parameters.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ParamsFileError {
+    /// It cannot be read.
+    #[error("cannot read the parameters in {file}: {why}")]
+    Io {
+        /// The file.
+        file: String,
+        /// Why.
+        why: String,
+    },
+    /// It is not a file of parameters.
+    #[error("{file}, line {line}: {what}")]
+    Invalid {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: u64,
+        /// What is wrong, and what would be valid.
+        what: String,
+    },
+}
+
+/// A parameter in a file.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Entry {
+    /// For which nodes: a full name, in which `*` is any part and `**` any number of parts.
+    pub(crate) nodes: String,
+    /// The name; parameters in a table have the name of the table and a dot before theirs.
+    pub(crate) name: String,
+    /// The value; `None`: a list, or nothing.
+    pub(crate) value: Option<Value>,
+    /// The line, from 1.
+    pub(crate) line: u64,
+}
+
+/// All parameters of a file in the order of their lines.
+pub(crate) fn read(path: &Path) -> Result<Vec<Entry>, ParamsFileError> {
+    let file = path.display().to_string();
+    let text = text(path).map_err(|why| ParamsFileError::Io { file: file.clone(), why: why.to_string() })?;
+    entries(&text).map_err(|(line, what)| ParamsFileError::Invalid { file, line, what })
+}
+
+fn text(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    File::open(path)?.take(MAX_BYTES + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > MAX_BYTES {
+        return Err(io::Error::other("it is longer than 1 MiB"));
+    }
+    Ok(text)
+}
+
+/// # Errors
+///
+/// The line, and what is wrong there.
+fn entries(text: &str) -> Result<Vec<Entry>, (u64, String)> {
+    // What is no number for a parameter is an error of that parameter.
+    let options = options! { non_finite_float_policy: NonFiniteFloatPolicy::PassThrough };
+    let root: Spanned<Yaml> = from_str_with_options(text, options).map_err(|error| {
+        let error = error.without_snippet();
+        let line = error.location().map_or(1, |at| at.line());
+        let text = error.to_string();
+        let what = text.lines().next().unwrap_or_default();
+        let what = what.split(" at line ").next().unwrap_or(what);
+        (line, format!("{what}; parameters are written {EXAMPLE}"))
+    })?;
+    let mut entries = Vec::new();
+    sections(&mut entries, "", &root)?;
+    Ok(entries)
+}
+
+/// The parameters of all nodes below a namespace.
+fn sections(entries: &mut Vec<Entry>, nodes: &str, part: &Spanned<Yaml>) -> Result<(), (u64, String)> {
+    let line = part.referenced.line();
+    let Yaml::Table(table) = &part.value else {
+        let which = if nodes.is_empty() { "this".to_owned() } else { format!("`{nodes}`") };
+        return Err((line, format!("{which} must be a table with `{PARAMETERS}`, {EXAMPLE}")));
+    };
+    for (key, below) in table {
+        if key == PARAMETERS && !nodes.is_empty() {
+            parameters(entries, nodes, "", below);
+        } else if key == PARAMETERS {
+            return Err((below.referenced.line(), format!("`{PARAMETERS}` must be below a node, {EXAMPLE}")));
+        } else {
+            sections(entries, &format!("{nodes}/{}", key.trim_matches('/')), below)?;
+        }
+    }
+    Ok(())
+}
+
+fn parameters(entries: &mut Vec<Entry>, nodes: &str, prefix: &str, part: &Spanned<Yaml>) {
+    let value = match &part.value {
+        Yaml::Table(table) => {
+            for (key, below) in table {
+                let name = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
+                parameters(entries, nodes, &name, below);
+            }
+            return;
+        }
+        Yaml::Value(value) => Some(value.clone()),
+        Yaml::Other => None,
+    };
+    let (nodes, name) = (nodes.to_owned(), prefix.to_owned());
+    if !name.is_empty() {
+        entries.push(Entry { nodes, name, value, line: part.referenced.line() });
+    }
+}
+
+/// Whether the full name of a node matches a pattern.
+pub(crate) fn matches(pattern: &str, node: &str) -> bool {
+    fn parts_match(pattern: &[&str], node: &[&str]) -> bool {
+        match (pattern, node) {
+            ([], []) => true,
+            (["**", rest @ ..], _) => (0..=node.len()).any(|skipped| parts_match(rest, &node[skipped..])),
+            ([first, pattern @ ..], [name, node @ ..]) => {
+                (*first == "*" || first == name) && parts_match(pattern, node)
+            }
+            _ => false,
+        }
+    }
+    let parts = |name: &str| name.split('/').filter(|part| !part.is_empty()).map(str::to_owned).collect();
+    let [pattern, node]: [Vec<String>; 2] = [parts(pattern), parts(node)];
+    let [pattern, node] = [&pattern, &node].map(|parts| parts.iter().map(String::as_str).collect::<Vec<_>>());
+    parts_match(&pattern, &node)
+}
+
+/// What can be in such a file.
+#[derive(Debug)]
+enum Yaml {
+    Value(Value),
+    Table(Vec<(String, Spanned<Yaml>)>),
+    /// A list, or nothing: no parameter of this project's nodes has such a value.
+    Other,
+}
+
+impl<'de> Deserialize<'de> for Yaml {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Any;
+        impl<'de> Visitor<'de> for Any {
+            type Value = Yaml;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("parameters")
+            }
+            fn visit_bool<E>(self, value: bool) -> Result<Yaml, E> {
+                Ok(Yaml::Value(Value::Bool(value)))
+            }
+            fn visit_i64<E>(self, value: i64) -> Result<Yaml, E> {
+                Ok(Yaml::Value(Value::Integer(value)))
+            }
+            fn visit_u64<E>(self, value: u64) -> Result<Yaml, E> {
+                Ok(Yaml::Value(i64::try_from(value).map_or(Value::Float(value as f64), Value::Integer)))
+            }
+            fn visit_f64<E>(self, value: f64) -> Result<Yaml, E> {
+                Ok(Yaml::Value(Value::Float(value)))
+            }
+            fn visit_str<E>(self, value: &str) -> Result<Yaml, E> {
+                Ok(Yaml::Value(Value::Text(value.to_owned())))
+            }
+            fn visit_unit<E>(self) -> Result<Yaml, E> {
+                Ok(Yaml::Other)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Yaml, A::Error> {
+                while list.next_element::<IgnoredAny>()?.is_some() {}
+                Ok(Yaml::Other)
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Yaml, A::Error> {
+                let mut table = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    table.push(entry);
+                }
+                Ok(Yaml::Table(table))
+            }
+        }
+        deserializer.deserialize_any(Any)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_have_nodes_names_values_and_lines() {
+        let text = "/**:\n  ros__parameters:\n    use_sim_time: true\n\nrobot1:\n  curious_node:\n    \
+                    ros__parameters:\n      resolution: 0.1\n      seed: 7\n      mode: explore\n      \
+                    qos_overrides:\n        /scan:\n          subscription: {reliability: reliable}\n      \
+                    others: [1.0, 2.0]\n";
+        let found: Vec<_> = entries(text)
+            .unwrap()
+            .into_iter()
+            .map(|Entry { nodes, name, value, line }| (nodes, name, value, line))
+            .collect();
+        let entry = |nodes: &str, name: &str, value, line| (nodes.to_owned(), name.to_owned(), value, line);
+        let node = "/robot1/curious_node";
+        assert_eq!(
+            found,
+            [
+                entry("/**", "use_sim_time", Some(Value::Bool(true)), 3),
+                entry(node, "resolution", Some(Value::Float(0.1)), 8),
+                entry(node, "seed", Some(Value::Integer(7)), 9),
+                entry(node, "mode", Some(Value::Text("explore".into())), 10),
+                entry(
+                    node,
+                    "qos_overrides./scan.subscription.reliability",
+                    Some(Value::Text("reliable".into())),
+                    13
+                ),
+                entry(node, "others", None, 14),
+            ]
+        );
+    }
+
+    #[test]
+    fn patterns_match_as_in_ros() {
+        assert!(matches("/**", "/curious_node") && matches("/**", "/a/b/curious_node"));
+        assert!(matches("/curious_node", "/curious_node") && !matches("/curious_node", "/a/curious_node"));
+        assert!(
+            matches("/*/curious_node", "/a/curious_node") && !matches("/*/curious_node", "/curious_node")
+        );
+        assert!(
+            matches("/**/curious_node", "/curious_node") && matches("/**/curious_node", "/a/b/curious_node")
+        );
+        assert!(!matches("/other", "/curious_node"));
+    }
+
+    #[test]
+    fn what_is_no_file_of_parameters_is_refused_with_its_line() {
+        let error = |text| entries(text).unwrap_err();
+        let example = "as in `curious_node: {ros__parameters: {resolution: 0.05}}`";
+        assert_eq!(
+            error("curious_node:\n  resolution: 0.1\n"),
+            (2, format!("`/curious_node/resolution` must be a table with `ros__parameters`, {example}"))
+        );
+        assert_eq!(
+            error("ros__parameters: {a: 1}").1,
+            format!("`ros__parameters` must be below a node, {example}")
+        );
+        assert_eq!(error("- 1").1, format!("this must be a table with `ros__parameters`, {example}"));
+        let unclosed = "unclosed bracket '['; parameters are written";
+        assert_eq!(error("a:\n  b: [1,\nc: 2\n"), (2, format!("{unclosed} {example}")));
+        assert_eq!(error("").1, format!("this must be a table with `ros__parameters`, {example}"));
+    }
+}

@@ -1,0 +1,59 @@
+//! Steps without rapier: robots are moved, and rapier finds them there in its next step.
+
+use super::{Bodies, Touch, to_rapier};
+use nalgebra::Vector2;
+use rapier2d::prelude as rapier;
+
+/// A body that is slower than this is at rest, m/s and rad/s.
+const REST: f32 = 1e-5;
+
+impl Bodies {
+    /// The motion of a robot in the next step if nothing is in its way, m.
+    pub(in crate::physics) fn wanted_m(&self, robot: usize) -> Vector2<f64> {
+        let wanted =
+            self.world.bodies[self.robots[robot].body].linvel() * self.world.integration_parameters.dt;
+        Vector2::new(f64::from(wanted.x), f64::from(wanted.y))
+    }
+
+    /// The mass of a robot, kg.
+    pub(in crate::physics) fn mass_kg(&self, robot: usize) -> f64 {
+        f64::from(self.world.bodies[self.robots[robot].body].mass())
+    }
+
+    /// Whether no box moves.
+    pub(in crate::physics) fn boxes_rest(&self) -> bool {
+        // Contacts move robots as well: those are compared by their positions.
+        let is_robot = |body| self.robots.iter().any(|robot| robot.body == body);
+        let mut boxes = self.free.iter().map(|free| free.body).filter(|body| !is_robot(*body));
+        boxes.all(|body| {
+            let body = &self.world.bodies[body];
+            body.linvel().length() < REST && body.angvel().abs() < REST
+        })
+    }
+
+    /// Moves a robot by the motion of a step (m), and turns it by its velocity. `is_stopped`: the motion is not the wanted
+    /// one.
+    pub(in crate::physics) fn slide(&mut self, robot: usize, moved_m: &Vector2<f64>, is_stopped: bool) {
+        let step_s = self.world.integration_parameters.dt;
+        let body = &mut self.world.bodies[self.robots[robot].body];
+        if is_stopped {
+            let velocity = moved_m / f64::from(step_s);
+            body.set_linvel(rapier::Vector::new(velocity.x as f32, velocity.y as f32), true);
+        }
+        let mut pose = super::from_rapier(body.position());
+        pose.translation.vector += moved_m;
+        pose.rotation *= interfaces::rotation(f64::from(body.angvel() * step_s));
+        body.set_position(to_rapier(&pose), true);
+    }
+
+    /// Ends a step without rapier, in which robots (by index) touched bodies.
+    pub(in crate::physics) fn end_slide(&mut self, touches: Vec<(usize, Touch)>) {
+        for mover in &self.movers {
+            let to = *self.world.bodies[*mover].next_position();
+            if *self.world.bodies[*mover].position() != to {
+                self.world.bodies[*mover].set_position(to, true);
+            }
+        }
+        self.slid = Some(touches);
+    }
+}
