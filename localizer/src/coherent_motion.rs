@@ -14,6 +14,7 @@ use crate::motion::Predicted;
 use crate::placement::Placement;
 use crate::scan_points::{ScanPoint, means};
 use crate::scene::Scene;
+use crate::support::Support;
 use crate::surfel_map::MOVED_M;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
@@ -38,6 +39,8 @@ const LEAST_STAYED: f64 = 5.0;
 /// the view.
 const LEAST_MOVED: f64 = 10.0;
 const LEAST_MOVED_SHARE: f64 = 0.15;
+/// The least share of what the map can judge that the two poses explain together. Otherwise the robot is elsewhere.
+const LEAST_EXPLAINED: f64 = 0.5;
 /// What the logarithms of the weights count, beside the squared distance from the odometry over its covariance: of what both
 /// poses together explain, and of what the pose of the things that have stayed explains.
 const EXPLAINED_COUNTS: f64 = 25.0;
@@ -89,7 +92,7 @@ pub(crate) fn stayed<M: ChangingMap>(
     let is_better =
         from_odometry(&pair.stayed) + pair.few_against_many() + MARGIN < from_odometry(&pair.moved);
     let is_much = pair.only_moved >= LEAST_MOVED.max(LEAST_MOVED_SHARE * known);
-    (is_better && pair.is_coherent())
+    (is_better && pair.is_coherent() && pair.explains(&scene.judge(&pair.stayed.placement)))
         .then_some(Stayed { found: pair.stayed, follower: is_much.then_some(pair.moved.placement.pose) })
 }
 
@@ -135,6 +138,11 @@ impl Pair {
     /// What speaks against the first pose: little has stayed, much has moved.
     fn few_against_many(&self) -> f64 {
         RATIO_COUNTS * libm::log(self.only_moved.max(1e-3) / self.only_stayed.max(1e-3))
+    }
+
+    /// Whether the two poses explain most of a scan with this support.
+    fn explains(&self, support: &Support) -> bool {
+        self.in_place + self.only_moved >= LEAST_EXPLAINED * (support.confirmed + support.contradicted)
     }
 
     /// Whether there are two different poses.

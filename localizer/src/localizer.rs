@@ -76,6 +76,8 @@ pub struct Localizer {
     accepted_support: f64,
     /// About where the robot is, if that is known.
     guide: Option<Guide>,
+    /// Whether a pose near the guide was wrong. Until the next certain pose, no guide is followed.
+    is_misled: bool,
 }
 
 impl Localizer {
@@ -154,6 +156,7 @@ impl Localizer {
             since_search: u32::MAX,
             accepted_support: settings.min_support,
             guide: None,
+            is_misled: false,
         })
     }
 
@@ -195,6 +198,7 @@ impl Localizer {
         let support = self.estimate(&posed, &motion, map, fault);
         if self.state == PoseState::Tracking {
             (self.by_odometry, self.certain_s) = (self.pose, self.time_s);
+            self.is_misled = false;
         }
         self.last_motion = shifted(&before, &self.begin).inv_mul(&self.pose);
         if was_tracking && self.state == PoseState::Tracking {

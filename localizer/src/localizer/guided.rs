@@ -40,6 +40,9 @@ impl Localizer {
         map: &impl ChangingMap,
         guide: Guide,
     ) -> Localized {
+        if self.is_misled {
+            return self.localize(reading, map);
+        }
         self.hypotheses = Hypotheses::default();
         if self.state == PoseState::Lost {
             self.state = PoseState::Uncertain;
