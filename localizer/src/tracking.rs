@@ -13,6 +13,11 @@ use nalgebra::{Isometry2, Matrix3, Vector3};
 const SURPRISE: f64 = 26.0;
 /// The farthest that a match may start from the pose, m: robots that slip or stand still against their odometry.
 const WIDE_GATE_M: f64 = 0.3;
+/// A match without the odometry is another pose up to this far from its start, m: points that fix a pose in one direction only
+/// can slide along it; and with this least share of all points that the map confirms: what the map does not know says nothing
+/// against a pose.
+const OTHER_M: f64 = 0.5;
+const OTHER_SCORE: f64 = 0.5;
 /// The least gain of support with which another pose replaces the predicted one.
 const BETTER: f64 = 0.05;
 /// Where the scan fits no other pose, the share of it that lies in place and stands against every motion of the robot, and the
@@ -79,6 +84,10 @@ pub(crate) fn track<M: ChangingMap>(
     for start in std::iter::once(&predicted.pose).chain(others) {
         let Some(found) = scene.align(start, None, WIDE_GATE_M, false) else { continue };
         let candidate = tracked(scene, &found);
+        let way_m = difference(&found.placement.pose, start).xy().norm();
+        if way_m > OTHER_M || candidate.support.score() < OTHER_SCORE {
+            continue;
+        }
         if candidate.support.confirmed > best.support.confirmed + BETTER * by_odometry.support.weight() {
             best = candidate;
         }
