@@ -155,3 +155,63 @@ fn unchanged_fix_pose<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>) -
     scene.surfels.knows_rates()
         && scene.judge(&Placement::rigid(pose)).steady.symmetric_eigenvalues().min() >= UNCHANGED_WEIGHT
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scan_points::ScanPoint;
+    use crate::settings::LocalizerSettings;
+    use crate::support::ClearBeams;
+    use crate::surfel_map::SurfelMap;
+    use interfaces::{CellState, Grid, GridFrame, pose, rotation};
+    use nalgebra::{Point2, Vector2};
+
+    fn line(from: Point2<f64>, angle_rad: f64, normal_y: f64, count: usize) -> Vec<ScanPoint> {
+        let along = rotation(angle_rad) * Vector2::x();
+        let normal = rotation(angle_rad) * Vector2::new(0.0, normal_y);
+        let point = |number: usize| ScanPoint {
+            at: from + along * (0.1 * number as f64),
+            normal,
+            weight: 1.0,
+            noise_share: 1.0,
+            beam: number,
+            passed: 1.0,
+        };
+        (0..count).map(point).collect()
+    }
+
+    #[test]
+    fn walls_along_which_a_match_slides_are_no_other_pose() {
+        let frame = GridFrame::covering(Point2::new(-10.0, -2.0), 20.0, 10.0, 0.05).unwrap();
+        let mut surfels = SurfelMap::new(&frame);
+        // Two walls of a corridor that is a little wider at one end: their distance fixes the place along it.
+        let walls = || line(Point2::new(-9.0, 0.0), 0.0, 1.0, 180).into_iter();
+        let walls = walls().chain(line(Point2::new(-9.0, 2.0), 0.02, -1.0, 180)).collect::<Vec<_>>();
+        surfels.learn_keyframe(&walls, &Isometry2::identity(), 0.01);
+        // The scan of another place, 6 cm wider, and much that the map does not know.
+        let mut points = line(Point2::new(-1.0, -1.0), 0.0, 1.0, 15);
+        points.extend(line(Point2::new(-1.0, 1.2 + 0.06), 0.02, -1.0, 15));
+        points.extend(line(Point2::new(-2.0, 4.0), 0.0, -1.0, 60));
+        // The map knows the corridor as free, and nothing beyond it.
+        let mut map = Grid::filled(frame, CellState::Unknown);
+        let known = map.frame().len() / 2;
+        map.cells_mut()[..known].fill(CellState::Free);
+        let (settings, clear) = (LocalizerSettings::default(), ClearBeams::default());
+        let scene = Scene {
+            surfels: &surfels,
+            map: &map,
+            points: &points,
+            clear: &clear,
+            mount: Isometry2::identity(),
+            settings: &settings,
+            is_tight: false,
+        };
+        let start = pose(0.0, 1.2, 0.0);
+        let slid = scene.align(&start, None, WIDE_GATE_M, false).unwrap();
+        assert!(slid.placement.pose.translation.x > 1.0, "the walls do not slide: {}", slid.placement.pose);
+        let covariance = Matrix3::from_diagonal(&Vector3::new(1e-6, 1e-6, 1e-6));
+        let tracked = track(&scene, &Predicted::rigid(start, covariance), &[]);
+        assert!(!tracked.is_other, "{}", tracked.placement.pose);
+        assert!((tracked.placement.pose.translation.vector - start.translation.vector).norm() < 0.3);
+    }
+}
