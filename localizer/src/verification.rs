@@ -19,7 +19,8 @@ const GAIN: f64 = 4.0;
 /// counts with a share of 1 less.
 const FAIR_SHARE: f64 = 0.7;
 const LOSS: f64 = 20.0;
-/// The first viewpoint counts as this many.
+/// The first viewpoint of a laser that sees all around counts as this many; of one that sees less, as fewer: a corner of a room
+/// looks like many others.
 const FIRST_VIEWS: f64 = 2.0;
 /// The robot has another viewpoint after this distance, m.
 const VIEW_M: f64 = 0.25;
@@ -40,6 +41,24 @@ pub(crate) struct Verification {
     evidence_against: f64,
 }
 
+/// How far the robot has moved since the last scan, and what its laser sees.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moved {
+    pub(crate) way_m: f64,
+    pub(crate) turn_rad: f64,
+    /// The field of view as a share of a full turn, up to 1.
+    pub(crate) field: f64,
+}
+
+impl Moved {
+    /// The number of other viewpoints, up to 1. A robot that turns shows its laser what lay outside of its field of view.
+    fn views(&self) -> f64 {
+        let turned =
+            (1.0 - self.field) * self.turn_rad.abs() / (std::f64::consts::TAU * self.field.max(1e-3));
+        (self.way_m / VIEW_M + turned).min(1.0)
+    }
+}
+
 /// The result of a verification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
@@ -57,18 +76,18 @@ impl Verification {
         Self { scans, ..Self::default() }
     }
 
-    /// Counts a scan, after the robot has moved by `moved_m`. A pose is certain after `least_scans` at the earliest.
+    /// Counts a scan after a motion of the robot. A pose is certain after `least_scans` at the earliest.
     /// `is_near`: the pose is near that which the odometry says.
     pub(crate) fn count(
         &mut self,
         support: &Support,
-        moved_m: f64,
+        moved: &Moved,
         is_near: bool,
         least_scans: u32,
     ) -> Verdict {
         let is_first = !std::mem::replace(&mut self.has_first_view, true);
         self.is_near = if is_first { is_near } else { self.is_near };
-        let views = if is_first { FIRST_VIEWS } else { (moved_m / VIEW_M).min(1.0) };
+        let views = if is_first { FIRST_VIEWS * moved.field } else { moved.views() };
         self.scans = self.scans.saturating_add(1);
         let (new, fair) = if self.is_near { (0.0, FAIR_NEAR) } else { (support.new, FAIR) };
         let against = CONTRADICTION * support.contradicted + new;
@@ -90,18 +109,32 @@ impl Verification {
 mod tests {
     use super::*;
 
+    const MOVED: Moved = Moved { way_m: 0.05, turn_rad: 0.0, field: 1.0 };
+
     /// The verdict of scans with this support per 100 units of weight, 5 cm apart, and the number of scans up to it.
     fn verdict(confirmed: f64, contradicted: f64, is_near: bool) -> (Verdict, u32) {
         let new = 100.0 - confirmed - contradicted;
         let support = Support { confirmed, contradicted, new, ..Support::default() };
         let mut verification = Verification::after(3);
-        let mut verdicts = (1..=200).map(|scan| (verification.count(&support, 0.05, is_near, 3), scan));
+        let mut verdicts = (1..=200).map(|scan| (verification.count(&support, &MOVED, is_near, 3), scan));
         verdicts.find(|(verdict, _)| *verdict != Verdict::Open).unwrap_or((Verdict::Open, 200))
     }
 
     #[test]
     fn a_pose_with_which_all_agrees_is_certain_at_once() {
         assert_eq!(verdict(98.0, 1.0, false), (Verdict::Certain, 1));
+    }
+
+    #[test]
+    fn half_a_view_is_not_enough_at_once() {
+        let support = Support { confirmed: 98.0, contradicted: 1.0, new: 1.0, ..Support::default() };
+        let mut verification = Verification::after(3);
+        let rests = Moved { way_m: 0.0, field: 0.5, ..MOVED };
+        assert!((0..100).all(|_| verification.count(&support, &rests, false, 3) == Verdict::Open));
+        // A turn by about half of the field of view shows enough.
+        let turns = Moved { turn_rad: 0.2, ..rests };
+        let scans = (1..100).find(|_| verification.count(&support, &turns, false, 3) == Verdict::Certain);
+        assert!(scans.is_some_and(|scans| (3..30).contains(&scans)), "{scans:?}");
     }
 
     #[test]

@@ -9,9 +9,10 @@ use crate::scene::Scene;
 use crate::settings::LocalizerSettings;
 use crate::support::Support;
 use crate::tracking::{Tracked, track};
-use crate::verification::{Verdict, Verification};
-use interfaces::{LaserReading, heading_rad};
+use crate::verification::{Moved, Verdict, Verification};
+use interfaces::{LaserReading, Scan, heading_rad};
 use nalgebra::Isometry2;
+use std::f64::consts::TAU;
 
 /// The line map also learns from scans whose pose is less certain than a map of changes tolerates, by this factor:
 /// otherwise a robot that turns into a new room with few beams, or drives along a corridor, would never see the rest of it
@@ -74,7 +75,7 @@ impl Localizer {
             self.follower = tracked.follower;
             self.distrust = if tracked.is_other { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
             self.accept(&tracked);
-            self.verify(&support, motion);
+            self.verify(&support, motion, &reading.scan);
             return support;
         }
         if self.is_unfinished() && !is_mirrored && tracked.support.seen_share() < LEAST_GUIDE {
@@ -138,11 +139,15 @@ impl Localizer {
     }
 
     /// Verifies a pose that was found by a search, or after a contradiction: it is not certain before.
-    pub(super) fn verify(&mut self, support: &Support, motion: &Motion) {
+    pub(super) fn verify(&mut self, support: &Support, motion: &Motion, scan: &Scan) {
         let is_near = self.is_near_odometry();
         let Some(verification) = &mut self.verification else { return };
-        let moved_m = motion.delta.translation.vector.norm();
-        match verification.count(support, moved_m, is_near, self.settings.scans_to_confirm) {
+        let moved = Moved {
+            way_m: motion.delta.translation.vector.norm(),
+            turn_rad: heading_rad(&motion.delta),
+            field: (scan.angle_increment_rad.abs() * scan.ranges_m.len() as f64 / TAU).min(1.0),
+        };
+        match verification.count(support, &moved, is_near, self.settings.scans_to_confirm) {
             Verdict::Certain => {
                 self.verification = None;
                 return;

@@ -129,7 +129,7 @@ mod tests {
         (localizer.guide, localizer.verification) = (Some(wrong), Some(Verification::default()));
         let contradicted = Support { contradicted: 100.0, ..Support::default() };
         let motion = Motion::new(Isometry2::identity(), &settings.odometry);
-        localizer.verify(&contradicted, &motion);
+        localizer.verify(&contradicted, &motion, &reading(4.0, &start, start).scan);
         assert_eq!(localizer.state, PoseState::Lost);
         localizer.guide = None;
         // The robot has been carried, but not to where the guide says.

@@ -66,7 +66,7 @@ impl Localizer {
             // Much has changed here, but no other pose fits better.
             self.accepted_support = tracked.support.share() - 0.1;
             self.accept(tracked);
-            self.verify(&tracked.support, motion);
+            self.verify(&tracked.support, motion, &reading.scan);
         } else {
             self.hypotheses = found;
             self.take_best();
@@ -96,7 +96,7 @@ impl Localizer {
                     self.verification = Some(Verification::after(self.settings.scans_to_confirm));
                 }
                 self.accept(&tracked);
-                self.verify(&support, motion);
+                self.verify(&support, motion, &reading.scan);
             }
             None if self.hypotheses.is_empty() => {
                 self.pose = motion.apply(&self.pose);
