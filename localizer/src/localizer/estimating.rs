@@ -29,6 +29,9 @@ const NEAR_M: f64 = 1.5;
 const NEAR_RAD: f64 = 1.3;
 /// The least support with which a pose that is not certain is followed.
 pub(super) const LEAST_GUIDE: f64 = 0.5;
+/// The least support of a scan after which a pose is certain again without a verification: where less of a scan agrees, the
+/// robot may have been carried, and would soon agree with what it draws itself.
+const LEAST_UNVERIFIED: f64 = 0.7;
 /// The match of a mirrored scan starts up to this far from the pose, m.
 const MIRRORED_GATE_M: f64 = 0.2;
 /// The largest share of a scan without a return where the map knows something blocked: beyond, the laser is covered.
@@ -78,7 +81,7 @@ impl Localizer {
             self.verify(&support, motion, &reading.scan);
             return support;
         }
-        if self.is_unfinished() && !is_mirrored && tracked.support.seen_share() < LEAST_GUIDE {
+        if self.is_unfinished() && !is_mirrored && tracked.support.seen_share() < LEAST_UNVERIFIED {
             self.verification = Some(Verification::default());
         }
         // A scan of which most fits is a better guide than the odometry alone.
