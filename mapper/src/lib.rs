@@ -324,7 +324,7 @@ impl Mapper {
     /// never can be a goal.
     #[inline]
     pub fn is_candidate(&self, index: usize) -> bool {
-        self.cells.candidates[index]
+        self.cells.is_candidate(index)
     }
 
     /// The indices of the cells that ever changed, in the order of their first change.
