@@ -136,7 +136,7 @@ def test_settings():
         gymnasium.make("curious/Drive-v0", speed=3)
     with pytest.raises(ValueError, match="goal_radius_m"):
         gymnasium.make("curious/Drive-v0", goal_radius=-1.0)
-    with pytest.raises(OverflowError, match="the setting `max_steps` cannot be -5"):
+    with pytest.raises(ValueError, match="the setting `max_steps` cannot be -5"):
         gymnasium.make("curious/Drive-v0", max_steps=-5)
     with pytest.raises(TypeError, match="the setting `goal_radius` cannot be wide"):
         gymnasium.make("curious/Drive-v0", goal_radius="wide")
