@@ -105,7 +105,7 @@ impl Fleet {
         &mut self,
         py: Python<'_>,
         commands: Option<Table<'_>>,
-        steps: i64,
+        #[pyo3(from_py_with = whole)] steps: i64,
         scans: Option<Bound<'_, PyAny>>,
         poses: Option<Bound<'_, PyAny>>,
     ) -> PyResult<()> {
