@@ -106,7 +106,7 @@ pub enum TaskError {
         expected: usize,
     },
     /// The time of a decision is not a whole number of physics steps.
-    #[error("a decision every {decision_s} s is not a whole number of physics steps of {step_s} s")]
+    #[error("a decision every {decision_s:?} s is not a whole number of physics steps of {step_s:?} s")]
     Decision {
         /// The time from one decision to the next, s.
         decision_s: f64,

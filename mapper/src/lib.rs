@@ -231,10 +231,10 @@ impl Mapper {
 
     /// Begins another session, whose first reading will have this time or a later one: the time from the last reading on is
     /// a gap in the view of every cell, and is left out of the mean time between readings. A time that is not after the
-    /// last reading counts as that of the last reading.
+    /// last reading, or not finite, counts as that of the last reading.
     pub fn pause(&mut self, time: f64) {
         self.points.clear();
-        self.cells.pause(time);
+        self.cells.pause(if time.is_finite() { time } else { self.cells.time() });
         self.expected_changes.note(&self.cells);
     }
 
@@ -324,7 +324,7 @@ impl Mapper {
     /// never can be a goal.
     #[inline]
     pub fn is_candidate(&self, index: usize) -> bool {
-        self.cells.candidates[index]
+        self.cells.is_candidate(index)
     }
 
     /// The indices of the cells that ever changed, in the order of their first change.

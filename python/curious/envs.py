@@ -26,8 +26,9 @@ single environment with seed ``s + i``.
 
 from __future__ import annotations
 
+import operator
 from os import PathLike
-from typing import Any, Sequence
+from typing import Any, Iterable, Sequence
 
 import gymnasium
 import numpy as np
@@ -47,6 +48,14 @@ HOUSES = range(8)
 def _draw(random: np.random.Generator) -> int:
     """The seed of a world."""
     return int(random.integers(0, 1 << 63))
+
+
+def _world_seed(value: Any) -> int:
+    """A seed of a world that the caller has chosen."""
+    seed = operator.index(value)
+    if not 0 <= seed < 1 << 64:
+        raise ValueError(f"the seed of a world is from 0 to 2^64 - 1, and not {seed}")
+    return seed
 
 
 def _observation_space(parts: list[tuple[str, list[int]]]) -> spaces.Space:
@@ -78,6 +87,8 @@ def _drive(num_envs: int, threads: int, world: Any = None, **settings: Any) -> B
 def _explore(num_envs: int, threads: int, worlds: Any = None, **settings: Any) -> Batch:
     if isinstance(worlds, (str, PathLike, Spec)):
         worlds = [worlds]
+    if worlds is not None and not isinstance(worlds, Iterable):
+        raise TypeError(f"`worlds` is a list of worlds or one world, and not {type(worlds).__name__}")
     specs = [Spec.house(seed) for seed in HOUSES] if worlds is None else list(worlds)
     return Batch.explore(specs, num_envs, threads, **settings)
 
@@ -91,6 +102,8 @@ class _Single(gymnasium.Env):
     def __init__(self, render_mode: str | None = None, render_size: int = 480, **settings: Any) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode must be one of {self.metadata['render_modes']}, not {render_mode!r}")
+        for name in {"num_envs", "threads"} & settings.keys():
+            raise TypeError(f"`{name}` is for many environments: make them with `gymnasium.make_vec`")
         self.render_mode = render_mode
         self.render_size = render_size
         self._batch: Batch | None = type(self)._make(1, 1, **settings)
@@ -116,7 +129,7 @@ class _Single(gymnasium.Env):
         super().reset(seed=seed)
         self._world_seed = _draw(self.np_random)
         if options and "world_seed" in options:
-            self._world_seed = int(options["world_seed"])
+            self._world_seed = _world_seed(options["world_seed"])
         rows = batch.reset_one(0, self._world_seed)
         if self.render_mode == "human":
             self.render()
@@ -182,7 +195,10 @@ class _Single(gymnasium.Env):
 
 def _actions(actions: Any, rows: int) -> np.ndarray:
     """The actions as float32 of shape (rows, 2)."""
-    array = np.asarray(actions, dtype=np.float32)
+    array = np.asarray(actions)
+    if array.dtype.kind not in "biuf":
+        raise TypeError(f"actions are real numbers, and not {array.dtype} ({type(actions).__name__})")
+    array = array.astype(np.float32, copy=False)
     if array.size != rows * 2 or array.shape[-1:] != (2,):
         expected = "(2,)" if rows == 1 else f"({rows}, 2)"
         raise ValueError(f"the actions have the shape {array.shape}, and must have {expected}")
@@ -203,6 +219,8 @@ class _Vector(gymnasium.vector.VectorEnv):
         render_size: int = 240,
         **settings: Any,
     ) -> None:
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            raise ValueError(f"render_mode must be one of {self.metadata['render_modes']}, not {render_mode!r}")
         self.num_envs = num_envs
         self.render_mode = render_mode
         self.render_size = render_size
@@ -230,11 +248,16 @@ class _Vector(gymnasium.vector.VectorEnv):
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begin an episode in every environment. With a number ``s``, environment ``i`` has the seed ``s + i``."""
+        """Begin an episode in every environment. With a number ``s``, environment ``i`` has the seed ``s + i``.
+
+        ``options={"world_seed": seeds}``, one per environment, as in ``info["world_seed"]``, repeats worlds.
+        """
         batch = self.batch
         if seed is not None:
             is_number = isinstance(seed, (int, np.integer))
             seeds = [seed + index for index in range(self.num_envs)] if is_number else seed
+            if isinstance(seeds, (str, bytes)) or not hasattr(seeds, "__len__"):
+                raise TypeError(f"a seed is a whole number or a list of them, and not {type(seed).__name__}")
             if len(seeds) != self.num_envs:
                 raise ValueError(f"there are {len(seeds)} seeds for {self.num_envs} environments")
             for index, single in enumerate(seeds):
@@ -242,6 +265,11 @@ class _Vector(gymnasium.vector.VectorEnv):
                     self._randoms[index] = seeding.np_random(single)[0]
         self._world_seeds = np.array([_draw(random) for random in self._randoms], np.uint64)
         self._next_seeds = np.array([_draw(random) for random in self._randoms], np.uint64)
+        if options and "world_seed" in options:
+            chosen = list(options["world_seed"])
+            if len(chosen) != self.num_envs:
+                raise ValueError(f"there are {len(chosen)} seeds of worlds for {self.num_envs} environments")
+            self._world_seeds = np.array([_world_seed(value) for value in chosen], np.uint64)
         rows = batch.reset(self._world_seeds)
         return _split(self._parts, rows), {"world_seed": self._world_seeds.copy(), "_world_seed": self._all.copy()}
 

@@ -20,7 +20,7 @@ from gymnasium.utils import seeding
 from pettingzoo import ParallelEnv
 
 from ._native import Batch, Spec
-from .envs import _draw
+from .envs import _actions, _draw, _world_seed
 
 __all__ = ["DriveParallelEnv"]
 
@@ -70,7 +70,7 @@ class DriveParallelEnv(ParallelEnv):
             self._random = seeding.np_random(seed)[0]
         self._world_seed = _draw(self._random)
         if options and "world_seed" in options:
-            self._world_seed = int(options["world_seed"])
+            self._world_seed = _world_seed(options["world_seed"])
         rows = self.batch.reset_one(0, self._world_seed)
         self.agents = list(self.possible_agents)
         return dict(zip(self.agents, rows)), {agent: {"world_seed": self._world_seed} for agent in self.agents}
@@ -83,10 +83,10 @@ class DriveParallelEnv(ParallelEnv):
         array = np.zeros((len(self.possible_agents), 2), np.float32)
         for row, agent in enumerate(self.possible_agents):
             if agent in self.agents:
-                action = np.asarray(actions[agent], np.float32)
-                if action.shape != (2,):
-                    raise ValueError(f"the action of {agent} has the shape {action.shape}, and must have (2,)")
-                array[row] = action
+                try:
+                    array[row] = _actions(actions[agent], 1)[0]
+                except (ValueError, TypeError) as error:
+                    raise type(error)(f"{agent}: {error}") from None
         rows, rewards, terminated, truncated, values, _, _ = self.batch.step(array, self._no_seeds)
         results: tuple[dict, dict, dict, dict, dict] = ({}, {}, {}, {}, {})
         for row, agent in enumerate(self.possible_agents):

@@ -13,9 +13,13 @@ survey = curious.map_log(log)
 rates = survey.mapper.rates()
 print(f"{np.count_nonzero(survey.permanent == 1)} cells are permanent walls, {np.count_nonzero(rates)} cells change")
 for place in survey.places[:10]:
-    low, high = place["cycles_per_hour_90"]
+    at = f"({place['x']:6.2f}, {place['y']:6.2f}) m"
+    if place["cycles_per_hour"] is None:  # the times of the log are unusable
+        print(f"{at}: {place['changes']} changes")
+        continue
+    low, high = ("?" if bound is None else f"{bound:.1f}" for bound in place["cycles_per_hour_90"])
     print(
-        f"({place['x']:6.2f}, {place['y']:6.2f}) m: {place['cycles_per_hour']:6.1f} cycles per hour "
-        f"({low:.1f} to {'?' if high is None else f'{high:.1f}'}), blocked {place['share_blocked']:4.0%} of the time"
+        f"{at}: {place['cycles_per_hour']:6.1f} cycles per hour ({low} to {high}), "
+        f"blocked {place['share_blocked']:4.0%} of the time"
     )
 np.savez("map.npz", states=survey.mapper.states(), rates=rates, permanent=survey.permanent, path=survey.trajectory)

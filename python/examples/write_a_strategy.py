@@ -1,5 +1,7 @@
 """A strategy of your own in the trials: go where a change is likely, and near."""
 
+import argparse
+
 import curious
 import numpy as np
 
@@ -14,9 +16,13 @@ class NearChanges:
         return situation.mapper.change_probability() / (5.0 + situation.travel)
 
 
-for seed in range(3):
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("--seeds", type=int, default=3)
+parser.add_argument("--seconds", type=int, default=1200, help="simulated seconds of a trial")
+args = parser.parse_args()
+for seed in range(args.seeds):
     # The same seed is the same world for every strategy: the trials are paired.
     for strategy in (NearChanges(), "poisson", "recency", "random"):
-        result = curious.trial("house", strategy, seed=seed, seconds=1200)
+        result = curious.trial("house", strategy, seed=seed, seconds=args.seconds)
         name = strategy if isinstance(strategy, str) else type(strategy).__name__
         print(f"seed {seed}  {name:<12} log error {result['log_error']:.2f}  coverage {result['coverage']:.0%}")

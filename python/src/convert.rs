@@ -6,7 +6,7 @@ use numpy::{
     AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayLike1,
     PyArrayLikeDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
-use pyo3::exceptions::{PyFileNotFoundError, PyIndexError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyIndexError, PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::fmt::Display;
 use worldfile::shipped::LoadError;
@@ -23,6 +23,38 @@ pyo3::create_exception!(
     PyValueError,
     "The error for bytes that are not a snapshot of the same world, or are damaged."
 );
+
+/// The index of a robot, an environment or an agent, for `from_py_with`.
+pub(crate) fn index(object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    object.extract().map_err(|error: PyErr| {
+        let is_no_index = error.is_instance_of::<PyOverflowError>(object.py());
+        let of_index =
+            || PyIndexError::new_err(format!("an index is counted from 0, and cannot be {object}"));
+        if is_no_index { of_index() } else { error }
+    })
+}
+
+/// An index that need not be given.
+pub(crate) fn optional_index(object: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    if object.is_none() { Ok(None) } else { index(object).map(Some) }
+}
+
+/// A seed or a number of things, for `from_py_with`.
+pub(crate) fn whole<'py, T>(object: &Bound<'py, PyAny>) -> PyResult<T>
+where
+    T: for<'a> FromPyObject<'a, 'py, Error = PyErr>,
+{
+    object.extract().map_err(|error: PyErr| in_range(error, object))
+}
+
+/// A number that an integer of Rust cannot hold is out of range: a `ValueError`, as for any other range.
+pub(crate) fn in_range(error: PyErr, value: &Bound<'_, PyAny>) -> PyErr {
+    if error.is_instance_of::<PyOverflowError>(value.py()) {
+        value_error(format!("a whole number from 0 to 2^64 - 1 is needed, and not {value}"))
+    } else {
+        error
+    }
+}
 
 /// Numbers with one dimension, as a list, a tuple or an array of any type.
 pub(crate) struct Row<'py, T: Element>(PyArrayLike1<'py, T, AllowTypeChange>);

@@ -1,4 +1,4 @@
-use crate::convert::{grid, load_error, world_error};
+use crate::convert::{grid, load_error, whole, world_error};
 use numpy::PyArray2;
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
@@ -52,7 +52,7 @@ impl GridSpec {
 
     /// The generated grid world of a seed, as those of `grid_world --generate`. The same seed gives the same world.
     #[staticmethod]
-    fn generate(py: Python<'_>, seed: u64) -> PyResult<Self> {
+    fn generate(py: Python<'_>, #[pyo3(from_py_with = whole)] seed: u64) -> PyResult<Self> {
         Self::new(py, sim::grid::GridSpec::generate(&GenerateSettings::default(), seed))
     }
 

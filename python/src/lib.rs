@@ -11,6 +11,7 @@ mod logs;
 mod mapper;
 mod reading;
 mod settings;
+mod snapshots;
 mod spec;
 mod tasks;
 mod trials;

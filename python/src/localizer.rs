@@ -1,6 +1,7 @@
-use crate::convert::{Numbers, pose_array, snapshot_error, value_error};
+use crate::convert::{Numbers, SnapshotError, pose_array, value_error};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
+use crate::snapshots::Kind;
 use localizer::{LocalizerSettings, PoseState, Start};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -24,6 +25,8 @@ pub(crate) struct Localizer {
 pub(crate) struct Estimate {
     localized: localizer::Localized,
 }
+
+const SNAPSHOT: Kind = Kind("localizer");
 
 #[pymethods]
 impl Localizer {
@@ -57,13 +60,18 @@ impl Localizer {
 
     /// Everything that readings have changed, as bytes.
     fn snapshot<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &self.localizer.snapshot())
+        SNAPSHOT.seal(py, &self.localizer.snapshot())
     }
 
-    /// Returns to the snapshot of a localizer with the same settings. `SnapshotError`: the bytes are not one; the
-    /// localizer must not be used then.
+    /// Returns to the snapshot of a localizer with the same settings. `SnapshotError`: the bytes are not one; nothing
+    /// changes then.
     fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
-        self.localizer.restore(snapshot).map_err(snapshot_error)
+        let (state, before) = (SNAPSHOT.open(snapshot)?, self.localizer.snapshot());
+        self.localizer.restore(state).map_err(|_| {
+            let was_restored = self.localizer.restore(&before);
+            debug_assert!(was_restored.is_ok(), "a localizer takes its own snapshot");
+            SnapshotError::new_err("the snapshot was taken of a localizer with another map or other settings")
+        })
     }
 }
 

@@ -1,5 +1,8 @@
-use crate::convert::{Numbers, Ranges, grid, points_array, snapshot_error, value_error, world_error};
+use crate::convert::{
+    Numbers, Ranges, SnapshotError, grid, optional_index, points_array, value_error, world_error,
+};
 use crate::reading::{Laser, Reading, laser_reading};
+use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
 use evaluation::physics_trial::PhysicsSettings;
 use interfaces::{CellState, GridFrame};
@@ -70,6 +73,8 @@ impl Mapper {
     }
 }
 
+const SNAPSHOT: Kind = Kind("mapper");
+
 #[pymethods]
 impl Mapper {
     /// An empty map of `width` x `height` m with cells of `cell` m, whose lower left corner is `origin` (m).
@@ -93,7 +98,7 @@ impl Mapper {
         let frame =
             GridFrame::covering(Point2::new(origin.0, origin.1), width, height, cell).ok_or_else(|| {
                 value_error(format!(
-                    "a map of {width} m x {height} m with cells of {cell} m: it must have 1 to 2^26 cells"
+                    "a map of {width:?} m x {height:?} m with cells of {cell:?} m: it must have 1 to 2^26 cells"
                 ))
             })?;
         let settings = settings_of(MapperSettings::default(), estimator, occupancy, max_gap, range_noise)?;
@@ -107,7 +112,7 @@ impl Mapper {
     fn of(
         py: Python<'_>,
         world: &Bound<'_, PyAny>,
-        robot: Option<usize>,
+        #[pyo3(from_py_with = optional_index)] robot: Option<usize>,
         estimator: Option<&str>,
         occupancy: Option<&str>,
         max_gap: Option<f64>,
@@ -161,9 +166,14 @@ impl Mapper {
         self.mapper.skip(&reading.reading);
     }
 
-    /// Begins another session at a time (s): the time since the last reading counts as not observed.
-    fn pause(&mut self, time: f64) {
+    /// Begins another session at a time (s): the time since the last reading counts as not observed. `ValueError`: the time is
+    /// not finite.
+    fn pause(&mut self, time: f64) -> PyResult<()> {
+        if !time.is_finite() {
+            return Err(value_error(format!("the time of a session is finite, and not {time}")));
+        }
         self.mapper.pause(time);
+        Ok(())
     }
 
     /// The time of the last reading, s.
@@ -291,14 +301,17 @@ impl Mapper {
     /// Everything that was learned, as bytes.
     fn snapshot<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyBytes> {
         let mapper = &mut self.mapper;
-        PyBytes::new(py, &py.detach(|| mapper.snapshot()))
+        SNAPSHOT.seal(py, &py.detach(|| mapper.snapshot()))
     }
 
     /// Returns to the snapshot of a map with the same cells and settings. `SnapshotError`: the bytes are not one;
     /// nothing changes then.
     fn restore(&mut self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
         let mut restored = self.mapper.clone();
-        py.detach(|| restored.restore(snapshot)).map_err(snapshot_error)?;
+        let state = SNAPSHOT.open(snapshot)?;
+        py.detach(|| restored.restore(state)).map_err(|_| {
+            SnapshotError::new_err("the snapshot was taken of a map with other cells or another estimator")
+        })?;
         self.mapper = restored;
         Ok(())
     }

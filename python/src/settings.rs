@@ -1,7 +1,7 @@
 //! The settings of tasks, from the keywords of a call.
 
 use environments::{DriveSettings, ExploreSettings};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -60,6 +60,9 @@ where
 {
     T::extract(value.as_borrowed()).map_err(|error| {
         let error: PyErr = error.into();
+        if error.is_instance_of::<PyOverflowError>(value.py()) {
+            return PyValueError::new_err(format!("the setting `{key}` cannot be {value}: out of range"));
+        }
         let (kind, message) = (error.get_type(value.py()), error.value(value.py()).to_string());
         PyErr::from_type(kind, format!("the setting `{key}` cannot be {value}: {message}"))
     })

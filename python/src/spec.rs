@@ -1,4 +1,4 @@
-use crate::convert::{load_error, no_robot, world_error};
+use crate::convert::{load_error, no_robot, whole, world_error};
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyFileNotFoundError, PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
@@ -120,7 +120,7 @@ impl Spec {
     /// The generated house of a seed: rooms at a corridor, doors, furniture, people. The same seed gives the same
     /// house.
     #[staticmethod]
-    fn house(seed: u64) -> Self {
+    fn house(#[pyo3(from_py_with = whole)] seed: u64) -> Self {
         Self::from_seed(seed)
     }
 

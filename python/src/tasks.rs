@@ -1,5 +1,6 @@
-use crate::convert::{snapshot_error, value_error};
+use crate::convert::{index, snapshot_error, value_error, whole};
 use crate::settings::{drive_settings, explore_settings};
+use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
 use environments::{Drive, DrivePlace, Explore, ExplorePlace, Picture, ResultsMut, Task, TaskError};
 use numpy::{
@@ -24,6 +25,7 @@ pub(crate) struct Batch {
     agents: usize,
     /// Whether every environment was reset once.
     is_ready: bool,
+    is_autoreset: bool,
 }
 
 enum Tasks {
@@ -62,7 +64,8 @@ impl Batch {
             }
         };
         let agents = each!(&tasks, batch => batch.tasks().first().map_or(1, Task::agents));
-        let mut batch = Self { tasks, last: Vec::new(), environments, agents, is_ready: false };
+        let mut batch =
+            Self { tasks, last: Vec::new(), environments, agents, is_ready: false, is_autoreset: true };
         each!(&mut batch.tasks, batch => {
             batch.set_pool(pool);
             if threads == 1 {
@@ -87,6 +90,13 @@ impl Batch {
         )))
     }
 
+    fn kind(&self) -> Kind {
+        match &self.tasks {
+            Tasks::Drive(_) => Kind("driving environment"),
+            Tasks::Explore(_) => Kind("exploring environment"),
+        }
+    }
+
     fn check_count(environments: usize) -> PyResult<()> {
         if (1..=1 << 20).contains(&environments) {
             return Ok(());
@@ -103,8 +113,8 @@ impl Batch {
     fn drive(
         py: Python<'_>,
         world: &Bound<'_, PyAny>,
-        environments: usize,
-        threads: usize,
+        #[pyo3(from_py_with = whole)] environments: usize,
+        #[pyo3(from_py_with = whole)] threads: usize,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         Self::check_count(environments)?;
@@ -123,8 +133,8 @@ impl Batch {
     fn explore(
         py: Python<'_>,
         worlds: &Bound<'_, PyList>,
-        environments: usize,
-        threads: usize,
+        #[pyo3(from_py_with = whole)] environments: usize,
+        #[pyo3(from_py_with = whole)] threads: usize,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         Self::check_count(environments)?;
@@ -170,8 +180,14 @@ impl Batch {
     }
 
     /// Whether an environment that is over is reset in the same step: set it to False to reset it by `reset_one`.
+    #[getter]
+    fn autoreset(&self) -> bool {
+        self.is_autoreset
+    }
+
     #[setter]
     fn set_autoreset(&mut self, is_autoreset: bool) {
+        self.is_autoreset = is_autoreset;
         each!(&mut self.tasks, batch => batch.set_autoreset(is_autoreset));
     }
 
@@ -195,8 +211,8 @@ impl Batch {
     fn reset_one<'py>(
         &mut self,
         py: Python<'py>,
-        environment: usize,
-        seed: u64,
+        #[pyo3(from_py_with = index)] environment: usize,
+        #[pyo3(from_py_with = whole)] seed: u64,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         self.check(environment)?;
         self.is_ready |= self.environments == 1;
@@ -279,8 +295,8 @@ impl Batch {
     fn picture<'py>(
         &self,
         py: Python<'py>,
-        environment: usize,
-        size: usize,
+        #[pyo3(from_py_with = index)] environment: usize,
+        #[pyo3(from_py_with = whole)] size: usize,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
         self.check(environment)?;
         let Picture { width, height, pixels, .. } = match &self.tasks {
@@ -292,7 +308,11 @@ impl Batch {
 
     /// The position of the goal of an agent of a driving task, m: (x, y); None for other tasks.
     #[pyo3(signature = (environment = 0, agent = 0))]
-    fn goal(&self, environment: usize, agent: usize) -> PyResult<Option<(f64, f64)>> {
+    fn goal(
+        &self,
+        #[pyo3(from_py_with = index)] environment: usize,
+        #[pyo3(from_py_with = index)] agent: usize,
+    ) -> PyResult<Option<(f64, f64)>> {
         self.check(environment)?;
         let Tasks::Drive(batch) = &self.tasks else { return Ok(None) };
         Ok(batch.tasks()[environment].goal(agent).map(|goal| (goal.x, goal.y)))
@@ -300,7 +320,11 @@ impl Batch {
 
     /// The true poses of all robots of an environment, shape (robots, 3).
     #[pyo3(signature = (environment = 0))]
-    fn poses<'py>(&self, py: Python<'py>, environment: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn poses<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = index)] environment: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.check(environment)?;
         let fleet = match &self.tasks {
             Tasks::Drive(batch) => batch.tasks()[environment].fleet(),
@@ -313,10 +337,14 @@ impl Batch {
 
     /// The state of an environment as bytes.
     #[pyo3(signature = (environment = 0))]
-    fn snapshot<'py>(&self, py: Python<'py>, environment: usize) -> PyResult<Bound<'py, PyBytes>> {
+    fn snapshot<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = index)] environment: usize,
+    ) -> PyResult<Bound<'py, PyBytes>> {
         self.check(environment)?;
         let bytes = each!(&self.tasks, batch => batch.tasks()[environment].snapshot());
-        Ok(PyBytes::new(py, &bytes))
+        Ok(self.kind().seal(py, &bytes))
     }
 
     /// Returns an environment to a snapshot of one with the same settings, and returns its observations.
@@ -324,14 +352,15 @@ impl Batch {
     fn restore<'py>(
         &mut self,
         py: Python<'py>,
-        environment: usize,
+        #[pyo3(from_py_with = index)] environment: usize,
         snapshot: &[u8],
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         self.check(environment)?;
+        let state = self.kind().open(snapshot)?;
         let mut observations = vec![0.0; self.agents * self.observation_len()];
         each!(&mut self.tasks, batch => {
             let task = &mut batch.tasks_mut()[environment];
-            task.restore(snapshot).map_err(snapshot_error)?;
+            task.restore(state).map_err(snapshot_error)?;
             task.observe(&mut observations);
         });
         self.is_ready |= self.environments == 1;

@@ -1,6 +1,6 @@
 //! Trials of exploring robots, with strategies of the library or of Python.
 
-use crate::convert::{Table, pose_array, value_error, world_error};
+use crate::convert::{Table, optional_index, pose_array, value_error, whole, world_error};
 use crate::grid_spec::GridSpec;
 use crate::mapper::Mapper;
 use crate::spec::{Spec, driving, spec_of, world_name};
@@ -189,11 +189,11 @@ pub(crate) fn trial<'py>(
     py: Python<'py>,
     world: &Bound<'py, PyAny>,
     strategy: Option<&Bound<'py, PyAny>>,
-    seed: u64,
-    seconds: Option<u64>,
-    steps: Option<u64>,
+    #[pyo3(from_py_with = whole)] seed: u64,
+    #[pyo3(from_py_with = whole)] seconds: Option<u64>,
+    #[pyo3(from_py_with = whole)] steps: Option<u64>,
     estimator: Option<&str>,
-    robot: Option<usize>,
+    #[pyo3(from_py_with = optional_index)] robot: Option<usize>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let error = FirstError::default();
     let strategies = vec![match strategy {

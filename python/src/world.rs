@@ -1,6 +1,7 @@
-use crate::convert::{grid, pose_array, snapshot_error, value_error};
+use crate::convert::{grid, optional_index, pose_array, snapshot_error, value_error, whole};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
+use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
 use evaluation::metrics::{map_scores, rate_scores};
 use interfaces::{GroundTruth, TrueState, Twist, World as _};
@@ -15,6 +16,8 @@ pub(crate) struct World {
     pub(crate) world: PhysicsWorld,
 }
 
+const SNAPSHOT: Kind = Kind("world");
+
 #[pymethods]
 impl World {
     /// The world (`Spec`, name or path) at its start. `robot`: the index of the driven robot, where it is not the
@@ -24,8 +27,8 @@ impl World {
     fn new(
         py: Python<'_>,
         world: &Bound<'_, PyAny>,
-        seed: u64,
-        robot: Option<usize>,
+        #[pyo3(from_py_with = whole)] seed: u64,
+        #[pyo3(from_py_with = optional_index)] robot: Option<usize>,
         exact: bool,
     ) -> PyResult<Self> {
         let spec = driving(&spec_of(py, world)?, robot)?;
@@ -135,7 +138,7 @@ impl World {
 
     /// Returns to the start, with another seed.
     #[pyo3(signature = (seed = 0))]
-    fn reset(&mut self, py: Python<'_>, seed: u64) {
+    fn reset(&mut self, py: Python<'_>, #[pyo3(from_py_with = whole)] seed: u64) {
         let world = &mut self.world;
         py.detach(|| world.reset(seed));
     }
@@ -143,14 +146,15 @@ impl World {
     /// The state as bytes.
     fn snapshot<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         let world = &self.world;
-        PyBytes::new(py, &py.detach(|| world.snapshot().into_bytes()))
+        SNAPSHOT.seal(py, &py.detach(|| world.snapshot().into_bytes()))
     }
 
     /// Returns to a snapshot of the same world. `SnapshotError`: the bytes are not one; nothing changes then.
     fn restore(&mut self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
         let world = &mut self.world;
         let mut restored = world.clone();
-        py.detach(|| restored.restore(snapshot)).map_err(snapshot_error)?;
+        let state = SNAPSHOT.open(snapshot)?;
+        py.detach(|| restored.restore(state)).map_err(snapshot_error)?;
         *world = restored;
         Ok(())
     }

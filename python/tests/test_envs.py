@@ -110,9 +110,10 @@ def test_invalid_actions_are_refused(name):
         ([0.0, 1.5], "action 1.5 of environment 0 is not from -1 to 1"),
         ([0.0, 0.0, 0.0], "shape"),
         (0.5, "shape"),
-        ("fast", "could not convert|invalid"),
+        ("fast", "actions are real numbers, and not"),
+        (np.zeros(2, complex), "actions are real numbers, and not complex128"),
     ]:
-        with pytest.raises(ValueError, match=message):
+        with pytest.raises((ValueError, TypeError), match=message):
             env.step(invalid)
     assert env.snapshot() == before
     env.close()
@@ -128,15 +129,50 @@ def test_invalid_actions_are_refused(name):
         vector.step(np.zeros((3, 2)))
     with pytest.raises(ValueError, match="3 seeds for 2"):
         vector.reset(seed=[1, 2, 3])
+    for seed in ("ab", 1.5):
+        with pytest.raises(TypeError, match="a seed is a whole number or a list of them"):
+            vector.reset(seed=seed)
+    with pytest.raises(ValueError, match="1 seeds of worlds for 2"):
+        vector.reset(options={"world_seed": [3]})
     vector.close()
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_worlds_are_repeated_by_their_seeds(name):
+    vector = gymnasium.make_vec(name, num_envs=2, vectorization_mode="vector_entry_point", **SMALL[name])
+
+    def run(**keywords) -> tuple[np.ndarray, np.ndarray]:
+        observation, info = vector.reset(**keywords)
+        rows = [flat(observation)]
+        for step in range(15):
+            rows.append(flat(vector.step(np.stack([action(0, step), action(1, step)]))[0]))
+        return info["world_seed"], np.concatenate(rows)
+
+    seeds, first = run(seed=7)
+    others, _ = run()
+    assert (seeds != others).all()
+    repeated, again = run(options={"world_seed": seeds})
+    np.testing.assert_array_equal(seeds, repeated)
+    np.testing.assert_array_equal(first, again)
+    env = gymnasium.make(name, **SMALL[name])
+    assert env.reset(options={"world_seed": seeds[1]})[1]["world_seed"] == seeds[1]
+    for seed, error in ((-1, ValueError), (1 << 64, ValueError), (1.5, TypeError), ("x", TypeError)):
+        with pytest.raises(error):
+            env.reset(options={"world_seed": seed})
+
+
 def test_settings():
+    with pytest.raises(TypeError, match="`threads` is for many environments"):
+        gymnasium.make("curious/Drive-v0", threads=2)
+    with pytest.raises(TypeError, match="`worlds` is a list of worlds or one world, and not int"):
+        gymnasium.make("curious/Explore-v0", worlds=5)
+    with pytest.raises(ValueError, match="render_mode must be one of"):
+        curious.envs.DriveVectorEnv(2, render_mode="human")
     with pytest.raises(TypeError, match="no setting `speed`; there are decision_s"):
         gymnasium.make("curious/Drive-v0", speed=3)
     with pytest.raises(ValueError, match="goal_radius_m"):
         gymnasium.make("curious/Drive-v0", goal_radius=-1.0)
-    with pytest.raises(OverflowError, match="the setting `max_steps` cannot be -5"):
+    with pytest.raises(ValueError, match="the setting `max_steps` cannot be -5"):
         gymnasium.make("curious/Drive-v0", max_steps=-5)
     with pytest.raises(TypeError, match="the setting `goal_radius` cannot be wide"):
         gymnasium.make("curious/Drive-v0", goal_radius="wide")
@@ -190,7 +226,7 @@ def test_pettingzoo(fleet_toml):
     assert set(observations) == {"a", "b"} and env.render().shape[2] == 3
     with pytest.raises(ValueError, match="no action for b"):
         env.step({"a": [0.0, 0.0]})
-    with pytest.raises(ValueError, match="the action of a"):
+    with pytest.raises(ValueError, match="a: the actions have the shape"):
         env.step({"a": [0.0], "b": [0.0, 0.0]})
 
 

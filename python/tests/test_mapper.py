@@ -106,6 +106,17 @@ def test_invalid_settings():
         curious.Mapper(1.0, 1.0).update(0.0, "ranges", [0.0, 0.0, 0.0])
 
 
+def test_a_session_begins_at_a_time():
+    mapper = curious.Mapper(5.0, 4.0)
+    mapper.update(1.0, [1.0, 1.0, 1.0], [2.0, 2.0, 0.0])
+    for time in (np.inf, -np.inf, np.nan):
+        with pytest.raises(ValueError, match="the time of a session is finite, and not"):
+            mapper.pause(time)
+    mapper.pause(100.0)
+    mapper.update(100.0, [1.0, 1.0, 1.0], [2.0, 2.0, 0.0])
+    assert mapper.time == 100.0
+
+
 def test_a_world_is_mapped_and_scored():
     world = curious.World("four_rooms", seed=2, exact=True)
     mapper = world.mapper()

@@ -126,7 +126,10 @@ def test_teleport_and_free_poses(fleet_toml):
         (lambda f: f.teleport(0, np.zeros((1, 3))), TypeError, "not an array of float64 of shape \\[1, 3\\]"),
         (lambda f: f.teleport(0, [1.0, 2.0]), ValueError, "a pose is \\[x, y, heading\\]"),
         (lambda f: f.teleport(0, [1.0, 2.0, np.nan]), ValueError, "finite"),
-        (lambda f: f.reset(-1), OverflowError, None),
+        (lambda f: f.reset(-1), ValueError, "a whole number from 0 to 2\\^64 - 1 is needed, and not -1"),
+        (lambda f: f.reset(1 << 64), ValueError, "and not 18446744073709551616"),
+        (lambda f: f.look(-1), IndexError, "an index is counted from 0, and cannot be -1"),
+        (lambda f: f.free_poses(0, 1, 1 << 50), ValueError, "at most 10000000 poses"),
     ],
 )
 def test_invalid_input_is_refused_and_changes_nothing(fleet_toml, call, error, message):

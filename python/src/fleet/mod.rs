@@ -1,6 +1,8 @@
 mod arrays;
 
-use crate::convert::{Numbers, Table, no_robot, pose, pose_array, snapshot_error, value_error, writable};
+use crate::convert::{
+    Numbers, Table, index, no_robot, pose, pose_array, snapshot_error, value_error, whole, writable,
+};
 use crate::reading::Reading;
 use crate::spec::spec_of;
 use arrays::look_all;
@@ -33,12 +35,20 @@ impl Fleet {
     }
 }
 
+/// The greatest number of poses of one draw.
+const MAX_POSES: usize = 10_000_000;
+
 #[pymethods]
 impl Fleet {
     /// The fleet of a world (`Spec`, name or path) at its start. `threads`: lasers measure on all threads.
     #[new]
     #[pyo3(signature = (world, seed = 0, *, threads = false))]
-    fn new(py: Python<'_>, world: &Bound<'_, PyAny>, seed: u64, threads: bool) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        world: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = whole)] seed: u64,
+        threads: bool,
+    ) -> PyResult<Self> {
         let spec = spec_of(py, world)?;
         let driven = spec.driven_robots().collect();
         let first = spec.robots.first().map_or(0, |robot| robot.laser.beams);
@@ -73,7 +83,13 @@ impl Fleet {
     /// Sets the velocity of a robot until its next command: forward (m/s), angular (rad/s), and left (m/s) for an
     /// omni drive. Returns whether the robot executes commands.
     #[pyo3(signature = (robot, linear, angular, left = 0.0))]
-    fn command(&mut self, robot: usize, linear: f64, angular: f64, left: f64) -> PyResult<bool> {
+    fn command(
+        &mut self,
+        #[pyo3(from_py_with = index)] robot: usize,
+        linear: f64,
+        angular: f64,
+        left: f64,
+    ) -> PyResult<bool> {
         self.check_robot(robot)?;
         if !(linear.is_finite() && angular.is_finite() && left.is_finite()) {
             return Err(value_error(format!("a command is finite, and not [{linear}, {angular}, {left}]")));
@@ -89,7 +105,7 @@ impl Fleet {
         &mut self,
         py: Python<'_>,
         commands: Option<Table<'_>>,
-        steps: i64,
+        #[pyo3(from_py_with = whole)] steps: i64,
         scans: Option<Bound<'_, PyAny>>,
         poses: Option<Bound<'_, PyAny>>,
     ) -> PyResult<()> {
@@ -115,7 +131,7 @@ impl Fleet {
     }
 
     /// Measures with the main laser of a robot now: scan and pose are of the same instant.
-    fn look(&mut self, robot: usize) -> PyResult<Reading> {
+    fn look(&mut self, #[pyo3(from_py_with = index)] robot: usize) -> PyResult<Reading> {
         let robots = self.fleet.spec().robots.len();
         let seen = self.fleet.look(robot).ok_or_else(|| no_robot(robot, robots))?;
         let reading: Option<&LaserReading> = seen.reading();
@@ -184,19 +200,19 @@ impl Fleet {
 
     /// Returns to the start, with another seed. This takes a small part of the time of a new fleet.
     #[pyo3(signature = (seed = 0))]
-    fn reset(&mut self, py: Python<'_>, seed: u64) {
+    fn reset(&mut self, py: Python<'_>, #[pyo3(from_py_with = whole)] seed: u64) {
         let fleet = &mut self.fleet;
         py.detach(|| fleet.reset(seed));
     }
 
     /// Puts a robot at a pose (x, y, heading), at rest. `ValueError`: something else is there.
-    fn teleport(&mut self, robot: usize, pose: Numbers<'_>) -> PyResult<()> {
+    fn teleport(&mut self, #[pyo3(from_py_with = index)] robot: usize, pose: Numbers<'_>) -> PyResult<()> {
         self.check_robot(robot)?;
         self.fleet.teleport(robot, &crate::convert::pose(&pose)?).map_err(value_error)
     }
 
     /// Whether a robot fits at a pose now.
-    fn fits(&self, robot: usize, at: Numbers<'_>) -> PyResult<bool> {
+    fn fits(&self, #[pyo3(from_py_with = index)] robot: usize, at: Numbers<'_>) -> PyResult<bool> {
         self.check_robot(robot)?;
         Ok(self.fleet.check_fit(robot, &pose(&at)?).is_ok())
     }
@@ -207,11 +223,14 @@ impl Fleet {
     fn free_poses<'py>(
         &self,
         py: Python<'py>,
-        robot: usize,
-        seed: u64,
-        count: usize,
+        #[pyo3(from_py_with = index)] robot: usize,
+        #[pyo3(from_py_with = whole)] seed: u64,
+        #[pyo3(from_py_with = whole)] count: usize,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.check_robot(robot)?;
+        if count > MAX_POSES {
+            return Err(value_error(format!("at most {MAX_POSES} poses are drawn at once, and not {count}")));
+        }
         let fleet = &self.fleet;
         let drawn = py.detach(|| {
             let poses = FreePoses::reachable(fleet.spec(), robot)?;
@@ -224,7 +243,11 @@ impl Fleet {
     }
 
     /// The pose of a robot by odometry at its latest scan; None before the first.
-    fn odometry<'py>(&self, py: Python<'py>, robot: usize) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+    fn odometry<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = index)] robot: usize,
+    ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         self.check_robot(robot)?;
         let reading = self.fleet.robot(robot).and_then(|robot| robot.reading());
         Ok(reading.map(|reading| pose_array(py, &reading.pose)))

@@ -13,7 +13,7 @@ use super::reading_times::{NEVER, PRIOR, ReadingIndex, ReadingTimes};
 use crate::change::shared_cells::SharedCells;
 use interfaces::{CellState, Grid, Transition};
 use last_seen::LastSeenCounts;
-use record::Record;
+use record::{Flags, Record};
 
 /// The index of a cell among the cells that ever changed.
 pub(crate) type Slot = u32;
@@ -44,8 +44,7 @@ pub struct CellMap {
     /// The cells of `changed` that came back into view with the open reading.
     pub(crate) returned: Vec<Slot>,
     pub(crate) transitions: Vec<Transition>,
-    /// Cells that can be a goal: free cells, and the surfaces and frontiers beside free cells.
-    pub(crate) candidates: Vec<bool>,
+    flags: Vec<Flags>,
     last_seen_counts: LastSeenCounts,
 }
 
@@ -56,7 +55,7 @@ impl CellMap {
         + size_of::<Record>()
         + size_of::<CellGaps>()
         + GapHistogram::FIRST_BYTES
-        + size_of::<bool>();
+        + size_of::<Flags>();
 
     pub(crate) fn new(prior: Grid<CellState>, estimator: EstimatorChoice, max_gap: f64) -> Self {
         let cells = prior.frame().len();
@@ -74,7 +73,7 @@ impl CellMap {
             changed: Vec::new(),
             returned: Vec::new(),
             transitions: Vec::new(),
-            candidates: vec![false; cells],
+            flags: vec![Flags::default(); cells],
             last_seen_counts: LastSeenCounts::default(),
         };
         for index in 0..cells {
@@ -126,8 +125,8 @@ impl CellMap {
     /// inside of a wall never is a candidate.
     fn update_candidate(&mut self, index: usize) {
         let is = self.is_free_or_beside(index);
-        if is != self.candidates[index] {
-            self.candidates[index] = is;
+        if is != self.flags[index].is_candidate {
+            self.flags[index].is_candidate = is;
             self.last_seen_counts.count(self.last_reading(index), is);
         }
     }

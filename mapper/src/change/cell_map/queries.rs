@@ -84,7 +84,13 @@ impl CellMap {
     /// Whether the cell ever changed. Most cells did not: their rates need no statistics.
     #[inline]
     pub(crate) fn has_changed(&self, index: usize) -> bool {
-        self.records[index].slot().is_some()
+        self.flags[index].has_changed
+    }
+
+    /// Whether the cell can be a goal.
+    #[inline]
+    pub(crate) fn is_candidate(&self, index: usize) -> bool {
+        self.flags[index].is_candidate
     }
 
     /// The cycle rate of a cell, by the estimator in use.

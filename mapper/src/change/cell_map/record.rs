@@ -25,6 +25,15 @@ pub(super) struct Record {
     pub(super) is_whole: bool,
 }
 
+/// What every observation of a cell asks: many cells are in one line of the processor's cache, of whole records only one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Flags {
+    /// Whether the cell can be a goal: free cells can, and the surfaces and frontiers beside free cells.
+    pub(super) is_candidate: bool,
+    /// Whether the cell ever changed: whether its record has a slot.
+    pub(super) has_changed: bool,
+}
+
 /// The index of a state in the arrays of a record.
 pub(super) const fn state_index(state: CellState) -> usize {
     match state {

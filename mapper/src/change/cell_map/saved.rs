@@ -1,6 +1,6 @@
 //! The cells in a state file, and in a larger map.
 
-use super::record::Record;
+use super::record::{Flags, Record};
 use super::{CellMap, NEVER, observing};
 use crate::Growth;
 use interfaces::{CellState, Values, runs, value};
@@ -26,8 +26,9 @@ impl CellMap {
 
     /// Computes what follows from the values.
     pub(crate) fn derive(&mut self) {
-        for index in 0..self.candidates.len() {
-            self.candidates[index] = self.is_free_or_beside(index);
+        for index in 0..self.flags.len() {
+            let has_changed = self.records[index].slot().is_some();
+            self.flags[index] = Flags { is_candidate: self.is_free_or_beside(index), has_changed };
         }
     }
 
@@ -36,12 +37,12 @@ impl CellMap {
         growth.grid(&mut self.states, CellState::Unknown);
         growth.cells(&mut self.observed, NEVER | observing::UNSETTLED);
         growth.cells(&mut self.records, Record::default());
-        growth.cells(&mut self.candidates, false);
+        growth.cells(&mut self.flags, Flags::default());
         self.gaps.grow(growth);
         self.changed.iter_mut().for_each(|index| *index = growth.index(*index as usize) as u32);
         self.transitions.clear();
         // A new cell can be beside a free one.
-        for index in 0..self.candidates.len() {
+        for index in 0..self.flags.len() {
             if self.last_reading(index) == NEVER {
                 self.update_candidate(index);
             }

@@ -47,6 +47,7 @@ impl CellMap {
         if record.slot().is_none() {
             record.set_slot(self.changed.len() as Slot);
             self.changed.push(index as u32);
+            self.flags[index].has_changed = true;
         }
         // The time since the first observation of the new state belongs to the new state.
         let until = since.clamp(record.since, last.max(record.since));

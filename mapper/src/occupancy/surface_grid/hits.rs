@@ -12,6 +12,20 @@ use nalgebra::{Point2, Vector2};
 const OPEN_M: f64 = 0.1;
 
 impl SurfaceGrid {
+    /// Finds for each beam the cell right behind its hit, and loads what [`hit`](Self::hit) reads of the cell, for the reason
+    /// of [`CellMap::load`].
+    pub(super) fn find_ahead(&mut self, scan: &ProjectedScan, cells: &CellMap) {
+        let frame = cells.frame();
+        let depth_m = self.settings.surface_depth_m / 4.0;
+        let ends = self.segmentation.ends.iter().zip(&scan.directions);
+        let ahead = ends.map(|(end, direction)| frame.index(frame.cell_at(&((*end)? + direction * depth_m))));
+        self.ahead.clear();
+        self.ahead.extend(ahead);
+        let found = || self.ahead.iter().flatten().copied();
+        cells.load(found());
+        std::hint::black_box(found().fold(0, |loaded, index| loaded ^ self.surfaces[index].hits));
+    }
+
     /// Counts the hit of one beam (rules 1 and 3).
     pub(super) fn hit(&mut self, beam: usize, scan: &ProjectedScan, cells: &mut CellMap) {
         let Some(end) = self.segmentation.ends[beam] else { return };
@@ -20,7 +34,7 @@ impl SurfaceGrid {
         // Most beams end on known walls: in a cell with a settled surface, or right before it. Then no normal is
         // needed.
         let ahead = end + scan.directions[beam] * (self.settings.surface_depth_m / 4.0);
-        if let Some(index) = index_at(ahead).filter(|&index| self.has_settled(index, cells)) {
+        if let Some(index) = self.ahead[beam].filter(|&index| self.has_settled(index, cells)) {
             self.support(index, None, cells);
             self.note_new(beam, index, cells);
             if self.segmentation.joined[beam] {

@@ -25,6 +25,10 @@ impl SurfaceGrid {
         beyond_fan(scan, &frame, self.settings.max_gap_m, |index| {
             cells.observe_run(index, index + 1, &mut unsettled);
         });
+        // A cell that was hit receives no miss. In a loop of its own for the reason of `CellMap::load`.
+        let now = cells.reading();
+        unsettled.retain(|&index| self.surfaces[index as usize].hit_at != now);
+        cells.load(unsettled.iter().map(|&index| index as usize));
         for &index in &unsettled {
             self.miss(index as usize, scan, cells);
         }
@@ -33,9 +37,6 @@ impl SurfaceGrid {
 
     fn miss(&mut self, index: usize, scan: &ProjectedScan, cells: &mut CellMap) {
         let now = cells.reading();
-        if self.surfaces[index].hit_at == now {
-            return; // A cell that was hit receives no miss.
-        }
         match cells.state(index) {
             CellState::Free => {
                 cells.observe(index);

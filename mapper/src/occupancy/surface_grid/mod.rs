@@ -69,6 +69,8 @@ pub(super) struct SurfaceGrid {
     surfaces: Vec<Surface>,
     footprint: Footprint,
     segmentation: Segmentation,
+    /// Scratch memory: for each beam the cell right behind its hit, see [`Self::find_ahead`].
+    ahead: Vec<Option<usize>>,
     /// Scratch memory: the cells of a scan that are not settled.
     unsettled: Vec<u32>,
     /// Scratch memory: the hits of a scan on new obstacles, and those that can be on new obstacles.
@@ -105,6 +107,7 @@ impl SurfaceGrid {
             settings,
             footprint: Footprint::default(),
             segmentation: Segmentation::default(),
+            ahead: Vec::new(),
             unsettled: Vec::new(),
             new_hits: Vec::new(),
             body_hits: Vec::new(),
@@ -117,6 +120,7 @@ impl OccupancyModel for SurfaceGrid {
     fn update(&mut self, scan: &ProjectedScan, cells: &mut CellMap) {
         self.segmentation.segment(scan, self.settings.join_m);
         self.new_hits.clear();
+        self.find_ahead(scan, cells);
         for beam in 0..scan.len() {
             self.hit(beam, scan, cells);
         }

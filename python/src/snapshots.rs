@@ -1,0 +1,52 @@
+//! Snapshots as bytes of Python: what the state is of, the state, a checksum.
+//!
+//! Users keep snapshots in files and send them over networks. The values of a mapper or a localizer refer to each other: with a
+//! changed byte, a later call could fail.
+
+use crate::convert::SnapshotError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use xxhash_rust::xxh3::xxh3_64;
+
+/// The version of the format.
+const VERSION: u32 = 1;
+const HEADER: usize = 8;
+const CHECKSUM: usize = 8;
+
+/// What a snapshot is of.
+#[derive(Clone, Copy)]
+pub(crate) struct Kind(pub(crate) &'static str);
+
+impl Kind {
+    fn header(self) -> [u8; HEADER] {
+        xxh3_64(format!("{} {VERSION}", self.0).as_bytes()).to_le_bytes()
+    }
+
+    /// The bytes of a snapshot with this state.
+    pub(crate) fn seal<'py>(self, py: Python<'py>, state: &[u8]) -> Bound<'py, PyBytes> {
+        let mut bytes = Vec::with_capacity(HEADER + state.len() + CHECKSUM);
+        bytes.extend(self.header());
+        bytes.extend(state);
+        bytes.extend(xxh3_64(&bytes).to_le_bytes());
+        PyBytes::new(py, &bytes)
+    }
+
+    /// The state in a snapshot. `SnapshotError`: it is of something else, or damaged.
+    pub(crate) fn open(self, snapshot: &[u8]) -> PyResult<&[u8]> {
+        if !snapshot.starts_with(&self.header()) {
+            return Err(SnapshotError::new_err(format!(
+                "these bytes are not a snapshot of this kind ({}), or they come from another version",
+                self.0
+            )));
+        }
+        let sealed = snapshot.split_last_chunk::<CHECKSUM>();
+        match sealed.filter(|(body, checksum)| xxh3_64(body).to_le_bytes() == **checksum) {
+            Some((body, _)) => body.get(HEADER..).ok_or_else(damaged),
+            None => Err(damaged()),
+        }
+    }
+}
+
+fn damaged() -> PyErr {
+    SnapshotError::new_err("the snapshot is damaged")
+}
