@@ -301,6 +301,7 @@ impl FrontEnd {
         for submap in &mut self.growing {
             submap.add(number, keyframe, self.settings.range_noise_std_m);
         }
+        self.keyframes[number].thin();
         if self.growing.len() > 1 && self.growing[0].len() >= self.settings.submap_keyframes {
             let full = self.growing.remove(0);
             let (finished, spare) = full.finish(&self.keyframes);
