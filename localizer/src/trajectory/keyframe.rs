@@ -1,4 +1,3 @@
-use super::matching::thinned;
 use crate::scan_points::ScanPoint;
 use interfaces::Scan;
 use nalgebra::Isometry2;
@@ -36,6 +35,11 @@ impl Keyframe {
     pub(super) fn thin(&mut self) {
         self.points = thinned(&self.points, KEPT_POINTS);
     }
+}
+
+/// At most a number of points, evenly taken.
+pub(super) fn thinned(points: &[ScanPoint], most: usize) -> Vec<ScanPoint> {
+    points.iter().step_by(points.len().div_ceil(most).max(1)).copied().collect()
 }
 
 /// The near points of a scan, and between neighbors on one surface as many more as a line map needs: far surfaces are
