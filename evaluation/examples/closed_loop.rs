@@ -1,21 +1,25 @@
 //! From a robot to a map of changes, against the truth: a robot with bad odometry drives in a simulated house, by its
 //! own estimate, and its scans and odometry are written to several bags. From these the trajectories are found and
-//! aligned, and the rates are learned, as `map_log` does it, but in the frame of the world, and with the noise of all bags.
+//! aligned, and the rates are learned, as `map_log` does it, but in the frame of the world, and with the noise of all bags
+//! (or `NOISE_M`, in m). The frame of a survey is that of its first pose; for the comparison, one rigid motion of all routes
+//! brings them as near to the true poses as possible.
 //!
-//! Printed: the log error of the rates, of a mapper that gets the same scans with their true poses, and of the survey
-//! of the bags; the error of the poses.
+//! Printed: the log error of the rates, of a mapper that gets the same scans with their true poses, of the live run, of the
+//! survey of the bags, and of the same survey with the true poses; the error of the poses, and how far the frame of the first
+//! pose is turned.
 //!
 //! ```text
-//! cargo run -p evaluation --example closed_loop -- [WORLD [SEED [MINUTES [SESSIONS]]]]
+//! cargo run -p evaluation --example closed_loop -- [WORLD [SEED [MINUTES [SESSIONS [NOISE_M]]]]]
 //! ```
 
 use agent::Policy;
 use evaluation::metrics::{RateScores, rate_scores};
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
-use interfaces::LaserReading;
+use interfaces::{GridFrame, LaserReading, heading_rad};
 use localizer::GivenPoses;
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{Mapper, ReadingError};
+use nalgebra::{Isometry2, Vector2};
 use robot::{ExactPoses, Tapped};
 use std::cell::Cell;
 use std::error::Error;
@@ -70,16 +74,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         bags.iter().map(|bag| Log::open(bag, &TopicChoice::default())).collect::<Result<Vec<_>, _>>()?;
     let routes = routes(&logs.iter().collect::<Vec<_>>(), &settings, |_| ControlFlow::Continue(()))?;
     settings.learn_noise(&routes);
-    // From the frame of the first bag to that of the world.
-    let routes: Vec<Route> = routes.into_iter().map(|route| route.moved(&truth[0][0])).collect();
-    let mut mapper = Mapper::new(&settings.mapper, spec.frame)?;
-    let begin_s = logs[0].summary().begin_s.unwrap_or_default();
-    for (log, route) in logs.iter().zip(&routes) {
-        let offset_s = log.summary().begin_s.unwrap_or_default() - begin_s;
-        let replay = Replay::new(log.readings()?, &settings, offset_s)?.ok_or("a bag has no reading")?;
-        let mut poses = FoundPoses::new(route.poses.clone());
-        learn(replay, &mut poses, &mut mapper, |_, _, _| ControlFlow::Continue(()))?;
+    if let Some(noise_m) = arguments.get(4) {
+        settings.mapper.steady.range_noise_std_m = noise_m.parse()?;
     }
+    let to_world = alignment(&routes, &truth);
+    let turn_rad = heading_rad(&(to_world.inverse() * truth[0][0]));
+    let routes: Vec<Route> = routes.into_iter().map(|route| route.moved(&to_world)).collect();
+    let mapper = learned(&logs, &routes, &settings, spec.frame)?;
+    let mut true_routes = routes.clone();
+    for (route, truth) in true_routes.iter_mut().zip(&truth) {
+        route.poses.iter_mut().zip(truth).for_each(|(at, truth)| at.pose = *truth);
+    }
+    let mapper_of_truth = learned(&logs, &true_routes, &settings, spec.frame)?;
 
     println!(
         "{path}, seed {seed}, {sessions} bags of {minutes} min, noise {:.3} m",
@@ -88,6 +94,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     print("same scans, true poses", &rate_scores(&exact, trial.world.truth()));
     print("live, localized       ", &rate_scores(&trial.mapper, trial.world.truth()));
     print("survey of the bags    ", &rate_scores(&mapper, trial.world.truth()));
+    print("survey, true poses    ", &rate_scores(&mapper_of_truth, trial.world.truth()));
+    println!("the first pose is turned by {:.2}° against the rest", turn_rad.to_degrees());
     for (number, (route, truth)) in routes.iter().zip(&truth).enumerate() {
         let mut errors_m: Vec<f64> = route
             .poses
@@ -105,6 +113,40 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     Ok(())
+}
+
+/// The rigid motion of all routes together that brings their positions nearest to the true ones.
+fn alignment(routes: &[Route], truth: &[Vec<Isometry2<f64>>]) -> Isometry2<f64> {
+    let found = routes.iter().flat_map(|route| &route.poses).map(|at| at.pose.translation.vector);
+    let pairs: Vec<[Vector2<f64>; 2]> =
+        found.zip(truth.iter().flatten()).map(|(found, truth)| [found, truth.translation.vector]).collect();
+    let middle =
+        |which: usize| pairs.iter().map(|pair| pair[which]).sum::<Vector2<f64>>() / pairs.len() as f64;
+    let [from, to] = [0, 1].map(middle);
+    let (cos, sin) = pairs.iter().fold((0.0, 0.0), |(cos, sin), [found, truth]| {
+        let (found, truth) = (found - from, truth - to);
+        (cos + found.dot(&truth), sin + found.perp(&truth))
+    });
+    let rotation = interfaces::rotation(f64::atan2(sin, cos));
+    Isometry2::from_parts((to - rotation * from).into(), rotation)
+}
+
+/// What the survey learns from bags along these routes.
+fn learned(
+    logs: &[Log],
+    routes: &[Route],
+    settings: &SurveySettings,
+    frame: GridFrame,
+) -> Result<Mapper, Box<dyn Error>> {
+    let mut mapper = Mapper::new(&settings.mapper, frame)?;
+    let begin_s = |log: &Log| log.summary().begin_s.unwrap_or_default();
+    for (log, route) in logs.iter().zip(routes) {
+        let offset_s = begin_s(log) - begin_s(&logs[0]);
+        let replay = Replay::new(log.readings()?, settings, offset_s)?.ok_or("a bag has no reading")?;
+        let mut poses = FoundPoses::new(route.poses.clone());
+        learn(replay, &mut poses, &mut mapper, |_, _, _| ControlFlow::Continue(()))?;
+    }
+    Ok(mapper)
 }
 
 fn print(what: &str, scores: &RateScores) {

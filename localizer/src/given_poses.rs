@@ -3,7 +3,8 @@ use crate::sweep::SweepUndo;
 use interfaces::{LaserReading, ValueError, value};
 use nalgebra::Isometry2;
 
-/// The poses of the source, taken as they are. The sweep of scans is undone with them.
+/// The poses of the source, taken as they are. The sweep of scans is undone with them, that of the first scan with its
+/// velocities.
 #[derive(Clone, Debug, Default)]
 pub struct GivenPoses {
     /// The time and the pose of the last reading.
@@ -14,10 +15,11 @@ pub struct GivenPoses {
 impl GivenPoses {
     /// The reading with a scan whose beams all belong to its pose.
     pub fn unswept(&mut self, mut reading: LaserReading) -> LaserReading {
-        let (last_s, last) =
-            self.last.replace((reading.time_s, reading.pose)).unwrap_or((reading.time_s, reading.pose));
-        let elapsed_s = reading.time_s - last_s;
-        if let Some(path) = Path::of_sweep(&reading, &last.inv_mul(&reading.pose), elapsed_s) {
+        let (motion, elapsed_s) = match self.last.replace((reading.time_s, reading.pose)) {
+            Some((last_s, last)) => (last.inv_mul(&reading.pose), reading.time_s - last_s),
+            None => Path::by_velocities(&reading),
+        };
+        if let Some(path) = Path::of_sweep(&reading, &motion, elapsed_s) {
             reading.scan = self.sweeps.scan(&reading, &path);
         }
         reading

@@ -68,5 +68,5 @@ pub use localizer::Localizer;
 pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer};
 pub use settings::{LocalizerSettings, OdometryTrust};
 pub use trajectory::{
-    LineFit, LineMap, LineMatcher, Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings,
+    LineFit, LineMap, LineMatcher, Residual, Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings,
 };

@@ -9,6 +9,8 @@ const MAX_MISMATCH_M: f64 = 0.1;
 const MAX_MISMATCH_RAD: f64 = 0.15;
 /// The turn that takes as long as a way of one metre, rad: what a path is made of, in one number.
 const RAD_PER_M: f64 = 3.0;
+/// A robot is not faster than this, m/s.
+const MOST_M_PER_S: f64 = 50.0;
 /// The largest turn of which the chord stands for the arc, rad.
 const MAX_CHORD_RAD: f64 = 0.1;
 
@@ -35,6 +37,13 @@ impl Path {
     /// The path of a robot that moved by `motion` in the time `elapsed_s` up to the end of a scan. The velocities of the
     /// reading give its shape; what they miss of the motion is spread along the path, as the errors of wheels are.
     fn new(reading: &LaserReading, motion: &Isometry2<f64>, elapsed_s: f64) -> Self {
+        let mut path = Self::along(reading, elapsed_s);
+        path.end_at(motion);
+        path
+    }
+
+    /// The path of this time up to the end of a scan by the velocities alone.
+    fn along(reading: &LaserReading, elapsed_s: f64) -> Self {
         let mut nodes =
             vec![Node { age_s: 0.0, at: Vector3::zeros(), rotation: Complex::new(1.0, 0.0), length: 0.0 }];
         let only = [VelocitySample { time_s: reading.time_s, twist: reading.twist }];
@@ -51,9 +60,7 @@ impl Path {
         if last.age_s < elapsed_s {
             nodes.push(last.before(&samples[0].twist, elapsed_s));
         }
-        let mut path = Self { nodes };
-        path.end_at(motion);
-        path
+        Self { nodes }
     }
 
     /// Bends the path so that it has `motion` from its first to its last pose.
@@ -78,6 +85,22 @@ impl Path {
     pub(crate) fn of_sweep(reading: &LaserReading, motion: &Isometry2<f64>, elapsed_s: f64) -> Option<Self> {
         let sweeps = reading.scan.sweep_s > 0.0 && elapsed_s > 0.0;
         sweeps.then(|| Self::new(reading, motion, elapsed_s))
+    }
+
+    /// The motion during a scan that sweeps by the velocities alone, and its time, s: of a first reading, before which no pose
+    /// is known. If they say that the robot stood, or nothing, the time is 0.
+    pub(crate) fn by_velocities(reading: &LaserReading) -> (Isometry2<f64>, f64) {
+        let nothing = (Isometry2::identity(), 0.0);
+        let sweep_s = reading.scan.sweep_s;
+        let is_moving = |twist: &Twist| twist.linear_mps != 0.0 || twist.angular_radps != 0.0;
+        let moves =
+            is_moving(&reading.twist) || reading.velocities.iter().any(|sample| is_moving(&sample.twist));
+        if !moves || !sweep_s.is_finite() || sweep_s <= 0.0 {
+            return nothing;
+        }
+        let begin = Self::along(reading, sweep_s).whole().at;
+        let motion = pose(&begin).inverse();
+        if motion.translation.vector.norm() < MOST_M_PER_S * sweep_s { (motion, sweep_s) } else { nothing }
     }
 
     /// The share of the path that the robot had gone at a time before the end of the scan.
@@ -141,6 +164,28 @@ fn pose(at: &Vector3<f64>) -> Isometry2<f64> {
 mod tests {
     use super::*;
     use interfaces::{Scan, pose};
+
+    #[test]
+    fn the_motion_within_a_first_scan_follows_from_its_velocities() {
+        let reading = |linear_mps: f64, angular_radps: f64| LaserReading {
+            time_s: 1.0,
+            pose: Isometry2::identity(),
+            twist: Twist { linear_mps, angular_radps },
+            velocities: Vec::new(),
+            mount: Isometry2::identity(),
+            scan: Scan { sweep_s: 0.1, ..Scan::default() },
+        };
+        let (motion, elapsed_s) = Path::by_velocities(&reading(0.5, 1.0));
+        assert_eq!(elapsed_s, 0.1);
+        assert!((motion.translation.x - 0.05).abs() < 1e-3, "{motion}");
+        assert!((heading_rad(&motion) - 0.1).abs() < 1e-9, "{motion}");
+        for (linear_mps, angular_radps) in
+            [(0.0, 0.0), (f64::NAN, f64::NAN), (f64::INFINITY, 0.0), (1e9, 0.0)]
+        {
+            let (motion, elapsed_s) = Path::by_velocities(&reading(linear_mps, angular_radps));
+            assert!(motion == Isometry2::identity() || elapsed_s == 0.0, "{linear_mps}: {motion}");
+        }
+    }
 
     #[test]
     fn velocities_that_cannot_be_true_are_no_part_of_the_path() {

@@ -31,6 +31,7 @@ mod submap;
 
 pub use line_map::{LineFit, LineMap, LineMatcher};
 pub(crate) use matching::{covariance, in_frame};
+pub use residual::Residual;
 pub use settings::TrajectorySettings;
 
 use crate::estimate::PoseState;
@@ -60,9 +61,8 @@ pub struct Trajectory {
     pub poses: Vec<TrajectoryPose>,
     /// The number of places that were recognised.
     pub loops: usize,
-    /// The standard deviation of the distances of scans from the surfaces that were seen in other passes, m: the errors of
-    /// ranges and poses together. `None` if no place was seen twice, or if loops are not closed.
-    pub residual_std_m: Option<f64>,
+    /// `None` if no place was seen twice, or if loops are not closed.
+    pub residual: Option<Residual>,
 }
 
 /// A reading, and its pose relative to a keyframe.
@@ -120,16 +120,16 @@ impl TrajectoryFinder {
 
     /// The trajectory of all readings.
     pub fn finish(mut self) -> Trajectory {
-        let mut residual_std_m = None;
+        let mut residual = None;
         if self.settings.close_loops {
             self.front_end.end();
             self.search_loops();
             self.closer.accept_strong(&mut self.graph);
             self.graph = self.optimized();
-            residual_std_m = residual::std_m(&self.closer.places, self.front_end.keyframes(), &self.graph);
+            residual = residual::residual(&self.closer.places, self.front_end.keyframes(), &self.graph);
         }
         let loops = self.closer.loops();
-        Trajectory { poses: self.poses(&self.graph), loops, residual_std_m }
+        Trajectory { poses: self.poses(&self.graph), loops, residual }
     }
 
     /// The graph with all loops, where every wall is there once.

@@ -3,6 +3,7 @@
 mod channels;
 mod grids;
 mod lasers;
+mod odometry;
 mod schemas;
 #[cfg(test)]
 mod tests;
@@ -14,7 +15,7 @@ use crate::ros::{
 };
 use channels::Channels;
 use grids::Grids;
-use interfaces::{Event, Grid, LaserReading, Twist, heading_rad};
+use interfaces::{Event, Grid, LaserReading, Twist};
 use lasers::Laser;
 use nalgebra::{Isometry2, Point2};
 use std::io::{Seek, Write};
@@ -51,8 +52,8 @@ pub struct McapWriter<W: Write + Seek> {
     lasers: Vec<Laser>,
     map_to_odom: Isometry2<f64>,
     grids: Grids,
-    /// The time of the last odometry, ns.
-    last_odometry_ns: Option<i64>,
+    /// The time (ns) and the pose of the last odometry.
+    last_odometry: Option<(i64, Isometry2<f64>)>,
 }
 
 impl<W: Write + Seek> McapWriter<W> {
@@ -71,7 +72,7 @@ impl<W: Write + Seek> McapWriter<W> {
             lasers: Vec::new(),
             map_to_odom: Isometry2::identity(),
             grids: Grids::default(),
-            last_odometry_ns: None,
+            last_odometry: None,
         })
     }
 
@@ -79,7 +80,7 @@ impl<W: Write + Seek> McapWriter<W> {
     pub fn reading(&mut self, reading: &LaserReading) -> Result<(), LogError> {
         let end_ns = self.ns(reading.time_s);
         let laser = self.laser(end_ns, reading)?;
-        self.odometry(reading, end_ns)?;
+        self.odometry(reading)?;
         let topic = numbered("/scan", laser);
         let scan = scan_message(reading, numbered("laser", laser), end_ns);
         self.channels.write(&topic, "sensor_msgs/LaserScan", end_ns, &scan)
@@ -184,27 +185,14 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 
     /// The odometry at the end of a reading, and before it while the scan was measured.
-    fn odometry(&mut self, reading: &LaserReading, end_ns: i64) -> Result<(), LogError> {
-        let mut poses = vec![(end_ns, reading.pose, reading.twist)];
-        let (mut pose, mut time_s) = (reading.pose, reading.time_s);
-        for (index, sample) in reading.velocities.iter().enumerate().rev() {
-            let begin_s = match index.checked_sub(1) {
-                Some(before) => reading.velocities[before].time_s,
-                None => reading.time_s - reading.scan.sweep_s,
-            };
-            // Times out of order are no part of the motion.
-            if begin_s < time_s && begin_s.is_finite() {
-                pose *= moved(&sample.twist, begin_s - time_s);
-                time_s = begin_s;
-                let before =
-                    index.checked_sub(1).map_or(sample.twist, |before| reading.velocities[before].twist);
-                poses.push((self.ns(begin_s), pose, before));
-            }
-        }
-        for (ns, pose, twist) in poses.into_iter().rev() {
-            if self.last_odometry_ns.is_none_or(|last_ns| last_ns < ns) {
-                self.last_odometry_ns = Some(ns);
-                self.pose(ns, &pose, &twist)?;
+    fn odometry(&mut self, reading: &LaserReading) -> Result<(), LogError> {
+        let last =
+            self.last_odometry.map(|(ns, pose)| (ns.saturating_sub(self.begin_ns) as f64 * 1e-9, pose));
+        for step in odometry::steps(reading, last) {
+            let ns = self.ns(step.time_s);
+            if self.last_odometry.is_none_or(|(last_ns, _)| last_ns < ns) {
+                self.last_odometry = Some((ns, step.pose));
+                self.pose(ns, &step.pose, &step.twist)?;
             }
         }
         Ok(())
@@ -248,15 +236,4 @@ fn numbered(name: &str, laser: usize) -> String {
 
 fn header(ns: i64, frame: &str) -> Header {
     Header { stamp: Time::from_ns(ns), frame_id: frame.to_owned() }
-}
-
-/// The motion with a velocity in a time, along an arc.
-fn moved(twist: &Twist, elapsed_s: f64) -> Isometry2<f64> {
-    let turn_rad = twist.angular_radps * elapsed_s;
-    let way_m = twist.linear_mps * elapsed_s;
-    let half = interfaces::rotation(turn_rad / 2.0);
-    // The chord of a short arc.
-    let chord_m = way_m * (1.0 - turn_rad * turn_rad / 24.0);
-    let to = half * nalgebra::Vector2::new(chord_m, 0.0);
-    interfaces::pose(to.x, to.y, heading_rad(&Isometry2::from_parts(to.into(), half * half)))
 }

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64_with_seed;
 
 /// Count up when the body, or a snapshot in it, changes.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// The largest body, bytes: what a mapper with the largest map can take.
 const MAX_BODY: usize = 2 << 30;
 

@@ -1,76 +1,63 @@
-//! The map of the first log when it is complete: the place in which later logs find theirs.
+//! The surfaces that the first log has seen: the place in which later logs find theirs.
 
+use crate::error::SurveyError;
+use crate::route::{Route, frame};
 use crate::settings::SurveySettings;
-use interfaces::{CellState, Grid, GridFrame, ValueError, Values, runs, value};
-use localizer::{ChangingMap, LineMap, TrajectorySettings};
-use std::collections::BTreeMap;
+use interfaces::{GridFrame, LaserReading, ValueError, read_value, write_value};
+use localizer::{LineMap, PoseState, TrajectoryPose, TrajectorySettings};
+use nalgebra::Vector2;
 
-/// The map of the first log, as later logs need it.
+/// How far later logs may leave the extent of the first one and still be aligned there, m.
+const AROUND_M: f64 = 10.0;
+
+/// The surfaces along the route of the first log, as later logs need them.
 #[derive(Clone, Debug)]
 pub struct KnownPlace {
     pub(crate) settings: SurveySettings,
-    pub(crate) cells: KnownCells,
-    /// The map of what is permanent.
-    pub(crate) permanent: Grid<CellState>,
-    /// The surfaces, which are more exact than cells.
+    /// The rectangle of the surfaces.
+    frame: GridFrame,
     pub(crate) lines: LineMap,
 }
 
-/// The cells that the first log has left.
-#[derive(Clone, Debug)]
-pub(crate) struct KnownCells {
-    pub(crate) states: Grid<CellState>,
-    /// The rates of the cells that changed, in cycles per second, by index.
-    pub(crate) rates: BTreeMap<usize, f64>,
-}
-
-impl ChangingMap for KnownCells {
-    fn states(&self) -> &Grid<CellState> {
-        &self.states
-    }
-
-    fn rate(&self, index: usize) -> f64 {
-        self.rates.get(&index).copied().unwrap_or_default()
-    }
-}
-
 impl KnownPlace {
-    pub(crate) fn new(
-        settings: SurveySettings,
-        cells: KnownCells,
-        permanent: Grid<CellState>,
-        lines: LineMap,
-    ) -> Self {
-        Self { settings, cells, permanent, lines }
+    /// A place without surfaces, around the route of the first log.
+    ///
+    /// # Errors
+    ///
+    /// When the route has no extent, or is too large for a map.
+    pub fn new(settings: &SurveySettings, first: &Route) -> Result<Self, SurveyError> {
+        let extent = frame(std::slice::from_ref(first), settings)?;
+        let around = (AROUND_M / extent.resolution_m()).ceil();
+        let origin = extent.origin() - Vector2::repeat(around * extent.resolution_m());
+        let sides = [extent.width(), extent.height()].map(|cells| cells + 2 * around as usize);
+        // Around a place of the largest size, there is no space left.
+        let frame = GridFrame::new(origin, extent.resolution_m(), sides[0], sides[1]).unwrap_or(extent);
+        let lines = LineMap::new(&TrajectorySettings::default(), &frame)?;
+        Ok(Self { settings: settings.clone(), frame, lines })
+    }
+
+    /// Adds a reading of the first log, with the pose that was found for it; if the pose is not certain, it says nothing.
+    pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) {
+        if found.state == PoseState::Tracking {
+            self.lines.add(&LaserReading { pose: found.pose, ..self.settings.filtered(reading) });
+        }
     }
 
     /// Everything that the log has left, as bytes; settings are not in it.
     pub(crate) fn snapshot(mut self) -> Vec<u8> {
-        let mut bytes = interfaces::snapshot(vec![value(&mut self.cells.states.frame().clone())]);
-        let mut lines = self.lines.snapshot();
-        bytes.extend(interfaces::snapshot(self.values(&mut lines)));
+        let mut bytes = Vec::new();
+        // A frame can be written. If it could not, the snapshot would be refused when it is restored.
+        if write_value(&self.frame, &mut bytes).is_ok() {
+            bytes.extend(self.lines.snapshot());
+        }
         bytes
     }
 
-    /// The place from its snapshot, with the settings of the survey that has made it.
+    /// The place from its snapshot, with the settings of the survey that has made it. No more readings can be added.
     pub(crate) fn restored(settings: &SurveySettings, mut snapshot: &[u8]) -> Result<Self, ValueError> {
-        let frame: GridFrame = interfaces::read_value(&mut snapshot)?;
-        let unknown = Grid::filled(frame, CellState::Unknown);
-        let lines = LineMap::new(&TrajectorySettings::default(), &frame).map_err(|_| ValueError)?;
-        let cells = KnownCells { states: unknown.clone(), rates: BTreeMap::new() };
-        let mut place = Self::new(settings.clone(), cells, unknown, lines);
-        let mut lines = Vec::new();
-        interfaces::restore(place.values(&mut lines), snapshot)?;
-        place.lines.restore(&lines)?;
-        Ok(place)
-    }
-
-    fn values<'a>(&'a mut self, lines: &'a mut Vec<u8>) -> Values<'a> {
-        vec![
-            runs(self.cells.states.cells_mut()),
-            value(&mut self.cells.rates),
-            runs(self.permanent.cells_mut()),
-            value(lines),
-        ]
+        let frame = read_value(&mut snapshot)?;
+        let mut lines = LineMap::new(&TrajectorySettings::default(), &frame).map_err(|_| ValueError)?;
+        lines.restore(snapshot)?;
+        Ok(Self { settings: settings.clone(), frame, lines })
     }
 }

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! first pass:   log ─▶ trajectory and reach                  [`FirstPass`] ─▶ [`Route`]
-//!               later log ─▶ its place in the first one      [`Aligner`], [`Search`]
+//!               later log ─▶ its place in the first one      [`KnownPlace`], [`Search`]
 //! second pass:  log ─▶ found poses ─▶ mapper ─▶ changes      [`Replay`], [`FoundPoses`], [`ChangeLog`]
 //! ```
 //!
@@ -15,7 +15,6 @@
 //!
 //! This crate knows logs, trajectories and maps. It must not know files, pictures or programs.
 
-mod alignment;
 mod change_log;
 mod error;
 mod extent;
@@ -37,7 +36,6 @@ mod surveyed_log;
 #[cfg(test)]
 mod tests;
 
-pub use alignment::Aligner;
 pub use change_log::ChangeLog;
 pub use error::SurveyError;
 pub use known_place::KnownPlace;

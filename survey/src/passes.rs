@@ -1,6 +1,5 @@
 //! Both passes over the logs of one place.
 
-use crate::alignment::Aligner;
 use crate::error::SurveyError;
 use crate::known_place::KnownPlace;
 use crate::replay::{NoPilot, Replay};
@@ -116,10 +115,7 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
     /// When a setting is out of range, when the log cannot be read, and when the pass is interrupted.
     pub fn route(&mut self) -> Result<Route, PassError> {
         let mut pass = FirstPass::new(self.settings)?;
-        self.each_reading(Stage::Trajectory, |_, reading| {
-            pass.add(reading);
-            Ok(())
-        })?;
+        self.each_reading(Stage::Trajectory, |_, reading| pass.add(reading))?;
         if self.settings.pose != PoseMode::Localized {
             return Ok(pass.finish());
         }
@@ -143,7 +139,6 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
             if let Some(found) = route.poses.get(index) {
                 search.add(reading, found);
             }
-            Ok(())
         })?;
         let log = self.number;
         Ok(route.moved(&search.finish().map_err(|why| PassError::Alignment { log, why })?))
@@ -155,22 +150,24 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
     ///
     /// As for [`RoutePass::route`], and when the place is too large for a map.
     pub fn place(&mut self, route: &Route) -> Result<KnownPlace, PassError> {
-        let mut first = Aligner::new(self.settings, route)?;
+        let mut place = KnownPlace::new(self.settings, route)?;
         self.each_reading(Stage::Map, |index, reading| {
-            route.poses.get(index).map_or(Ok(()), |found| first.add(reading, found))
+            if let Some(found) = route.poses.get(index) {
+                place.add(reading, found);
+            }
         })?;
-        Ok(first.finish())
+        Ok(place)
     }
 
     /// Calls `add` with every reading of the log and its index.
     fn each_reading(
         &mut self,
         stage: Stage,
-        mut add: impl FnMut(usize, LaserReading) -> Result<(), ReadingError>,
+        mut add: impl FnMut(usize, LaserReading),
     ) -> Result<(), PassError> {
         self.report(stage, 0)?;
         for (index, reading) in self.log.readings()?.enumerate() {
-            add(index, reading?)?;
+            add(index, reading?);
             self.report(stage, index + 1)?;
         }
         Ok(())

@@ -5,7 +5,7 @@ use crate::extent::{self, Reach};
 use crate::range_noise::RangeNoise;
 use crate::settings::{PoseMode, SurveySettings};
 use interfaces::{GridFrame, LaserReading};
-use localizer::{PoseState, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
+use localizer::{PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
 use nalgebra::Isometry2;
 use std::ops::Add;
 
@@ -16,8 +16,8 @@ pub struct Route {
     pub poses: Vec<TrajectoryPose>,
     /// The number of places that were recognised; 0 where no trajectory was searched.
     pub loops: usize,
-    /// The standard deviation of the distances of scans from the surfaces of other passes, m; `None` where it is not known.
-    pub residual_std_m: Option<f64>,
+    /// The distances of scans from the surfaces of other passes; `None` where they are not known.
+    pub residual: Option<Residual>,
     /// The standard deviation of the ranges of a laser that stands, m; `None` where it is not known.
     pub range_std_m: Option<f64>,
     reaches: Vec<Reach>,
@@ -102,14 +102,14 @@ impl FirstPass {
 
     /// The log along its trajectory, in the frame of its first pose.
     pub fn finish(self) -> Route {
-        let (poses, loops, residual_std_m) = match self.finder {
+        let (poses, loops, residual) = match self.finder {
             Some(finder) => {
                 let trajectory = finder.finish();
-                (trajectory.poses, trajectory.loops, trajectory.residual_std_m)
+                (trajectory.poses, trajectory.loops, trajectory.residual)
             }
             None => (self.given, 0, None),
         };
         let range_std_m = self.range_noise.std_m();
-        Route { poses, loops, residual_std_m, range_std_m, reaches: self.reaches }
+        Route { poses, loops, residual, range_std_m, reaches: self.reaches }
     }
 }

@@ -72,10 +72,11 @@ fn print_trajectory(trajectory: &Trajectory, per_scan_ms: f64) {
         "trajectory: {length_m:.0} m, {} places recognised, {uncertain} scans without support, {per_scan_ms:.2} ms per scan",
         trajectory.loops
     );
-    if let Some(std_m) = trajectory.residual_std_m {
+    if let Some(residual) = trajectory.residual {
         println!(
-            "scans lie within {:.1} cm (standard deviation) of the surfaces of other passes",
-            std_m * 100.0
+            "scans lie within {:.1} cm (standard deviation) of the surfaces of other passes, 97 % of the points within {:.1} cm",
+            residual.std_m * 100.0,
+            residual.tail_m * 100.0
         );
     }
 }

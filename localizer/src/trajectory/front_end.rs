@@ -10,6 +10,7 @@ use crate::estimate::PoseState;
 use crate::faults::{Fault, FaultFinder};
 use crate::matcher::{Match, Prior, align};
 use crate::motion::{Motion, Predicted};
+use crate::path::Path;
 use crate::placement::shifted;
 use crate::scan_points::ScanPoints;
 use crate::score_grid::ScoreGrid;
@@ -163,7 +164,10 @@ impl FrontEnd {
         }
         let rules = self.settings.point_rules();
         let mut posed = reading.clone();
-        self.sweeps.update(&mut posed, &mut self.points, &rules, reading, (&motion.delta, elapsed_s));
+        // A log can begin while the robot moves: before its first scan, no pose is known.
+        let in_sweep =
+            if graph.poses.is_empty() { Path::by_velocities(reading) } else { (motion.delta, elapsed_s) };
+        self.sweeps.update(&mut posed, &mut self.points, &rules, reading, (&in_sweep.0, in_sweep.1));
         let tracked = self.track(&predicted);
         if let Some(tracked) = &tracked {
             let begin = shifted(&last, &tracked.found.placement.begin());
@@ -301,6 +305,7 @@ impl FrontEnd {
         for submap in &mut self.growing {
             submap.add(number, keyframe, self.settings.range_noise_std_m);
         }
+        self.keyframes[number].thin();
         if self.growing.len() > 1 && self.growing[0].len() >= self.settings.submap_keyframes {
             let full = self.growing.remove(0);
             let (finished, spare) = full.finish(&self.keyframes);

@@ -13,17 +13,33 @@ const MOST_M: f64 = 0.8;
 const SAME_NORMAL: f64 = 0.95;
 const OFF_LINE: f64 = 0.15;
 
+/// The number of points of a keyframe that are kept once its submaps have learned all of them: at the end, these are
+/// compared with the submaps of other passes.
+const KEPT_POINTS: usize = 120;
+
 /// A scan that stands for all scans around it.
 #[derive(Clone, Debug)]
 pub(super) struct Keyframe {
     /// The pose by matching with local submaps alone, m and rad.
     pub(super) local: Isometry2<f64>,
-    /// The points, in the frame of the robot.
+    /// The points, in the frame of the robot; see [`Keyframe::thin`].
     pub(super) points: Vec<ScanPoint>,
     /// The pose of the laser in the frame of the robot.
     pub(super) mount: Isometry2<f64>,
     /// The scan.
     pub(super) scan: Scan,
+}
+
+impl Keyframe {
+    /// Keeps a part of the points, evenly taken. A log of hours has ten thousand keyframes of a thousand points each.
+    pub(super) fn thin(&mut self) {
+        self.points = thinned(&self.points, KEPT_POINTS);
+    }
+}
+
+/// At most a number of points, evenly taken.
+pub(super) fn thinned(points: &[ScanPoint], most: usize) -> Vec<ScanPoint> {
+    points.iter().step_by(points.len().div_ceil(most).max(1)).copied().collect()
 }
 
 /// The near points of a scan, and between neighbors on one surface as many more as a line map needs: far surfaces are

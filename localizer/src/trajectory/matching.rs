@@ -39,11 +39,6 @@ pub(crate) fn in_frame(information: &Matrix3<f64>, frame: &Isometry2<f64>) -> Ma
     turn.transpose() * information * turn
 }
 
-/// At most a number of points, evenly taken.
-pub(super) fn thinned(points: &[ScanPoint], most: usize) -> Vec<ScanPoint> {
-    points.iter().step_by(points.len().div_ceil(most).max(1)).copied().collect()
-}
-
 /// Matches points with a map, from a pose that is uncertain by this much (m, rad).
 pub(super) fn fit(
     map: &SurfelMap,

@@ -2,8 +2,8 @@
 
 use super::free_space::passing_share;
 use super::graph::{Edge, EdgeKind, PoseGraph};
-use super::keyframe::Keyframe;
-use super::matching::{fit, information_of, thinned};
+use super::keyframe::{Keyframe, thinned};
+use super::matching::{fit, information_of};
 use super::odometry_drift::{reach, ways_m};
 use super::submap::{Agreement, FinishedSubmap};
 use crate::matcher::Match;

@@ -2,7 +2,7 @@
 
 use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
-use super::matching::{fit, information_of, thinned};
+use super::matching::{fit, information_of};
 use super::places::Places;
 use super::submap::{Agreement, FinishedSubmap};
 use crate::matcher::Match;
@@ -12,8 +12,6 @@ use crate::surfel_map::SurfelMap;
 const NEAR_M: f64 = 6.0;
 /// The rounds: one of this many keyframes is matched with a submap, from a pose that is uncertain by this much, m and rad.
 const ROUNDS: [(usize, (f64, f64)); 2] = [(7, (0.3, 0.05)), (3, (0.15, 0.03))];
-/// The number of points of a keyframe that are compared.
-const MOST_POINTS: usize = 120;
 /// The least shares of a match: of the points that the submap can judge, and of those that agree.
 const LEAST_OVERLAP: f64 = 0.4;
 const LEAST_AGREEMENT: f64 = 0.75;
@@ -52,8 +50,7 @@ fn edges(
         let Some(map) = SurfelMap::of_points(&submap.points) else { continue };
         for keyframe in near {
             let pose = graph.poses[submap.anchor].inv_mul(&graph.poses[keyframe]);
-            let points = thinned(&keyframes[keyframe].points, MOST_POINTS);
-            let found = fit(&map, &points, &pose, std, places.noise_m);
+            let found = fit(&map, &keyframes[keyframe].points, &pose, std, places.noise_m);
             edges.extend(found.and_then(|found| edge(submap.anchor, keyframe, &found)));
         }
     }

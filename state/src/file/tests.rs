@@ -52,10 +52,10 @@ fn other_facts_and_files_are_refused_with_a_sentence() {
     insta::assert_snapshot!(read(&state().to_bytes().unwrap()[..20]), @"the state file is damaged: its checksum does not fit");
     // A later version of the format, with a checksum as this version has it.
     let mut later = state().to_bytes().unwrap();
-    later[8] = 4;
-    let checksum = xxhash_rust::xxh3::xxh3_64_with_seed(&later[20..], 4);
+    later[8] = 5;
+    let checksum = xxhash_rust::xxh3::xxh3_64_with_seed(&later[20..], 5);
     later[12..20].copy_from_slice(&checksum.to_le_bytes());
-    insta::assert_snapshot!(read(&later), @"this state file has version 4 of the format, and this program reads version 3");
+    insta::assert_snapshot!(read(&later), @"this state file has version 5 of the format, and this program reads version 4");
 }
 
 proptest! {
