@@ -92,8 +92,10 @@ impl Localizer {
             (predicted.pose, predicted.covariance)
         };
         self.doubt();
-        if !is_mirrored && self.guide.is_none() {
-            self.search(reading, motion, map, &tracked);
+        match self.guide {
+            _ if is_mirrored => {}
+            Some(_) => self.doubt_guide(reading, map, &tracked),
+            None => self.search(reading, motion, map, &tracked),
         }
         tracked.support
     }

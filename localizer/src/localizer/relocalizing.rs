@@ -4,7 +4,7 @@ use super::Localizer;
 use super::estimating::{LEAST_CONFIRMED, LEAST_GUIDE};
 use crate::changing_map::ChangingMap;
 use crate::estimate::PoseState;
-use crate::hypotheses::Hypotheses;
+use crate::hypotheses::{Hypotheses, Hypothesis};
 use crate::motion::Motion;
 use crate::placement::Placement;
 use crate::score_grid::ScoreGrid;
@@ -24,10 +24,51 @@ const LEAST_SCORE_NEAR: f64 = 0.5;
 const LEAST_SCORE: f64 = 0.65;
 /// A pose near the predicted pose with this score makes a search in the whole map needless.
 const CLEAR_SCORE: f64 = 0.85;
-/// The number of scans between two searches in the whole map.
+/// By this much the support of another pose is clearly better than that of a pose which a guide allows.
+const CLEARLY_BETTER: f64 = 0.1;
+/// The number of scans between two searches in the whole map, or beside a guide.
 const SEARCH_EVERY: u32 = 5;
 
 impl Localizer {
+    /// Searches around a pose that the scan contradicts, though a guide allows it: a robot that was carried along a corridor
+    /// still sees most of its walls. If another pose is clearly better, the guide was wrong.
+    pub(super) fn doubt_guide(&mut self, reading: &LaserReading, map: &impl ChangingMap, tracked: &Tracked) {
+        self.since_search = self.since_search.saturating_add(1);
+        if tracked.support.share() >= self.settings.min_support || self.since_search < SEARCH_EVERY {
+            return;
+        }
+        self.since_search = 0;
+        let found = self.search_around(reading, map, CLEAR_SCORE);
+        let is_clear = |best: &Hypothesis| best.support.share() >= tracked.support.share() + CLEARLY_BETTER;
+        if found.best().is_some_and(is_clear) {
+            (self.hypotheses, self.is_misled) = (found, true);
+            self.take_best();
+        }
+    }
+
+    /// The poses in a window around the last one.
+    fn search_around(
+        &mut self,
+        reading: &LaserReading,
+        map: &impl ChangingMap,
+        least_score: f64,
+    ) -> Hypotheses {
+        let (ratio, grid) = (self.settings.ambiguity_ratio, self.score_grid(map));
+        let window = Window { pose: self.pose, reach_m: WINDOW_M, reach_rad: WINDOW_RAD };
+        let candidates = search(&grid, self.points.points(), Some(&window), LEAST_FOUND, ratio);
+        let found = Hypotheses::start(&self.scene(reading, map), &candidates, least_score, ratio);
+        self.scores = Some((self.surfels.revision(), grid));
+        found
+    }
+
+    /// The scores of the cells, for searches. They are made again when the line map has changed.
+    fn score_grid(&mut self, map: &impl ChangingMap) -> ScoreGrid {
+        match self.scores.take() {
+            Some((known, grid)) if known == self.surfels.revision() => grid,
+            _ => ScoreGrid::new(&self.surfels, map.states()),
+        }
+    }
+
     /// Searches for the pose: around the predicted pose, and in the whole map.
     pub(super) fn search(
         &mut self,
@@ -37,18 +78,11 @@ impl Localizer {
         tracked: &Tracked,
     ) {
         self.since_search = self.since_search.saturating_add(1);
-        let revision = self.surfels.revision();
-        let grid = match self.scores.take() {
-            Some((known, grid)) if known == revision => grid,
-            _ => ScoreGrid::new(&self.surfels, map.states()),
-        };
         let ratio = self.settings.ambiguity_ratio;
         let is_near = self.state != PoseState::Lost;
-        let window = Window { pose: self.pose, reach_m: WINDOW_M, reach_rad: WINDOW_RAD };
         let mut found = Hypotheses::default();
         if is_near {
-            let candidates = search(&grid, self.points.points(), Some(&window), LEAST_FOUND, ratio);
-            found = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE_NEAR, ratio);
+            found = self.search_around(reading, map, LEAST_SCORE_NEAR);
         }
         let is_clear = found.best().is_some_and(|best| best.support.score() >= CLEAR_SCORE);
         // Where most of the scan fits, the map is not finished or the view has changed: far away, something in an
@@ -56,11 +90,12 @@ impl Localizer {
         let is_elsewhere = !is_near || tracked.support.share() < LEAST_GUIDE;
         if !is_clear && is_elsewhere && self.since_search >= SEARCH_EVERY {
             self.since_search = 0;
+            let grid = self.score_grid(map);
             let candidates = search(&grid, self.points.points(), None, LEAST_FOUND, ratio);
+            self.scores = Some((self.surfels.revision(), grid));
             let anywhere = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
             found = found.or(anywhere, ratio);
         }
-        self.scores = Some((revision, grid));
         let is_confirmed = is_near && found.contains(&tracked.placement.pose);
         if is_confirmed && tracked.support.confirmed >= LEAST_CONFIRMED {
             // Much has changed here, but no other pose fits better.
