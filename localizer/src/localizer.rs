@@ -76,7 +76,7 @@ pub struct Localizer {
     accepted_support: f64,
     /// About where the robot is, if that is known.
     guide: Option<Guide>,
-    /// Whether the guide was wrong. Until the next certain pose, no guide is followed.
+    /// Whether the guide was wrong, or a search has found another pose. Until that is decided, no guide is followed.
     is_misled: bool,
 }
 

@@ -103,6 +103,8 @@ impl Localizer {
             self.accept(tracked);
             self.verify(&tracked.support, motion, &reading.scan);
         } else {
+            // What a search has found is verified before a guide is followed again.
+            self.is_misled = !found.is_empty();
             self.hypotheses = found;
             self.take_best();
         }
@@ -134,6 +136,7 @@ impl Localizer {
                 self.verify(&support, motion, &reading.scan);
             }
             None if self.hypotheses.is_empty() => {
+                self.is_misled = false;
                 self.pose = motion.apply(&self.pose);
                 self.covariance = motion.propagate(&self.pose, &self.covariance);
                 self.doubt();
