@@ -52,12 +52,20 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
         }
         times_s.push((raw + offset_s).max(last_s + LEAST_STEP_S));
     }
-    let note = (jumps + back > 0).then(|| {
-        format!(
-            "{back} scans are not later than the scan before and count as {LEAST_STEP_S} s later; {jumps} jumps of the clock \
-             count as {period_s:.3} s"
-        )
-    });
+    let of_back = match back {
+        0 => None,
+        1 => Some(format!("1 scan is not later than the scan before and counts as {LEAST_STEP_S} s later")),
+        _ => Some(format!(
+            "{back} scans are not later than the scan before and count as {LEAST_STEP_S} s later"
+        )),
+    };
+    let of_jumps = match jumps {
+        0 => None,
+        1 => Some(format!("a jump of the clock counts as {period_s:.3} s")),
+        _ => Some(format!("{jumps} jumps of the clock count as {period_s:.3} s")),
+    };
+    let notes: Vec<String> = of_back.into_iter().chain(of_jumps).collect();
+    let note = (!notes.is_empty()).then(|| notes.join("; "));
     Times { times_s, has_times: true, note }
 }
 
