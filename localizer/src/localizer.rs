@@ -76,8 +76,9 @@ pub struct Localizer {
     accepted_support: f64,
     /// About where the robot is, if that is known.
     guide: Option<Guide>,
-    /// Whether the guide was wrong, or a search has found another pose. Until that is decided, no guide is followed.
-    is_misled: bool,
+    /// Whether no guide is followed: the last one was wrong, or a search has found another pose. Until the next certain pose, or
+    /// until nothing is left of what was found.
+    ignores_guide: bool,
 }
 
 impl Localizer {
@@ -156,7 +157,7 @@ impl Localizer {
             since_search: u32::MAX,
             accepted_support: settings.min_support,
             guide: None,
-            is_misled: false,
+            ignores_guide: false,
         })
     }
 
@@ -198,7 +199,7 @@ impl Localizer {
         let support = self.estimate(&posed, &motion, map, fault);
         if self.state == PoseState::Tracking {
             (self.by_odometry, self.certain_s) = (self.pose, self.time_s);
-            self.is_misled = false;
+            self.ignores_guide = false;
         }
         self.last_motion = shifted(&before, &self.begin).inv_mul(&self.pose);
         if was_tracking && self.state == PoseState::Tracking {

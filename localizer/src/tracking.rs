@@ -83,12 +83,12 @@ pub(crate) fn track<M: ChangingMap>(
     let mut best = by_odometry;
     for start in std::iter::once(&predicted.pose).chain(others) {
         let Some(found) = scene.align(start, None, WIDE_GATE_M, false) else { continue };
-        let candidate = tracked(scene, &found);
-        let way_m = difference(&found.placement.pose, start).xy().norm();
-        if way_m > OTHER_M || candidate.support.score() < OTHER_SCORE {
+        if difference(&found.placement.pose, start).xy().norm() > OTHER_M {
             continue;
         }
-        if candidate.support.confirmed > best.support.confirmed + BETTER * by_odometry.support.weight() {
+        let candidate = tracked(scene, &found);
+        let least = best.support.confirmed + BETTER * by_odometry.support.weight();
+        if candidate.support.score() >= OTHER_SCORE && candidate.support.confirmed > least {
             best = candidate;
         }
     }
@@ -185,8 +185,8 @@ mod tests {
         let frame = GridFrame::covering(Point2::new(-10.0, -2.0), 20.0, 10.0, 0.05).unwrap();
         let mut surfels = SurfelMap::new(&frame);
         // Two walls of a corridor that is a little wider at one end: their distance fixes the place along it.
-        let walls = || line(Point2::new(-9.0, 0.0), 0.0, 1.0, 180).into_iter();
-        let walls = walls().chain(line(Point2::new(-9.0, 2.0), 0.02, -1.0, 180)).collect::<Vec<_>>();
+        let mut walls = line(Point2::new(-9.0, 0.0), 0.0, 1.0, 180);
+        walls.extend(line(Point2::new(-9.0, 2.0), 0.02, -1.0, 180));
         surfels.learn_keyframe(&walls, &Isometry2::identity(), 0.01);
         // The scan of another place, 6 cm wider, and much that the map does not know.
         let mut points = line(Point2::new(-1.0, -1.0), 0.0, 1.0, 15);

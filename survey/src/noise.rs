@@ -11,7 +11,8 @@ impl SurveySettings {
     /// Sets the noise that the mapper must expect by what the routes say about the errors of ranges and poses together:
     /// the largest of all routes. That of a route is the distance below which 97 % of its points lie from the surfaces of other
     /// passes, from 0.02 to 0.1 m: at edges, plants and glass, real scans have long tails, each of which would count as a
-    /// change. That of a laser that stands is the noise of its ranges, from 0.01 to 0.1 m. The noise stays as it is if no place was seen twice.
+    /// change. That of a laser that stands is the noise of its ranges, from 0.01 to 0.1 m. The noise stays as it is if no place
+    /// was seen twice.
     pub fn learn_noise(&mut self, routes: &[Route]) {
         self.learn_noise_from(routes.iter().filter_map(noise_m));
     }

@@ -160,7 +160,7 @@ impl Localizer {
             Verdict::Open => self.state = PoseState::Uncertain,
             Verdict::Wrong => {
                 (self.verification, self.supported_s) = (None, None);
-                (self.state, self.is_misled) = (PoseState::Lost, self.guide.is_some());
+                (self.state, self.ignores_guide) = (PoseState::Lost, self.guide.is_some());
             }
         }
         self.learns = false;

@@ -40,7 +40,7 @@ impl Localizer {
         map: &impl ChangingMap,
         guide: Guide,
     ) -> Localized {
-        if self.is_misled {
+        if self.ignores_guide {
             return self.localize(reading, map);
         }
         self.hypotheses = Hypotheses::default();
@@ -144,6 +144,6 @@ mod tests {
             "{}",
             localizer.pose
         );
-        assert!(!localizer.is_misled);
+        assert!(!localizer.ignores_guide);
     }
 }

@@ -41,7 +41,7 @@ impl Localizer {
         let found = self.search_around(reading, map, CLEAR_SCORE);
         let is_clear = |best: &Hypothesis| best.support.share() >= tracked.support.share() + CLEARLY_BETTER;
         if found.best().is_some_and(is_clear) {
-            (self.hypotheses, self.is_misled) = (found, true);
+            (self.hypotheses, self.ignores_guide) = (found, true);
             self.take_best();
         }
     }
@@ -104,7 +104,7 @@ impl Localizer {
             self.verify(&tracked.support, motion, &reading.scan);
         } else {
             // What a search has found is verified before a guide is followed again.
-            self.is_misled = !found.is_empty();
+            self.ignores_guide = !found.is_empty();
             self.hypotheses = found;
             self.take_best();
         }
@@ -136,7 +136,7 @@ impl Localizer {
                 self.verify(&support, motion, &reading.scan);
             }
             None if self.hypotheses.is_empty() => {
-                self.is_misled = false;
+                self.ignores_guide = false;
                 self.pose = motion.apply(&self.pose);
                 self.covariance = motion.propagate(&self.pose, &self.covariance);
                 self.doubt();

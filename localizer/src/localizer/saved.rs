@@ -33,7 +33,7 @@ impl Localizer {
         (self.odometry, self.supported_s) = (None, None);
         (self.last_motion, self.measured) = (Isometry2::identity(), Isometry2::identity());
         (self.follower, self.distrust, self.readings) = (None, 0, 0);
-        (self.verification, self.is_misled, self.certain_s) = (None, false, f64::NEG_INFINITY);
+        (self.verification, self.ignores_guide, self.certain_s) = (None, false, f64::NEG_INFINITY);
         (self.since_search, self.accepted_support) = (u32::MAX, self.settings.min_support);
         (self.start_s, self.scores) = (None, None);
         if self.surfels.is_empty() {
@@ -73,7 +73,7 @@ impl Localizer {
             value(&mut self.readings),
             value(&mut self.since_search),
             value(&mut self.accepted_support),
-            value(&mut self.is_misled),
+            value(&mut self.ignores_guide),
         ]);
         values
     }
