@@ -12,5 +12,6 @@ pub mod shards;
 pub mod terminal;
 #[cfg(feature = "recording")]
 pub mod trials;
+pub mod words;
 #[cfg(feature = "simulation")]
 pub mod worlds;

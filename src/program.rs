@@ -5,9 +5,11 @@ use anyhow::Context;
 use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use interfaces::printable_lines;
+use results::output::{OutputError, RunFolder};
 use std::error::Error;
 use std::fmt::Display;
 use std::io::stderr;
+use std::path::Path;
 use std::process::ExitCode;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -29,6 +31,23 @@ impl From<anyhow::Error> for Failure {
     fn from(error: anyhow::Error) -> Self {
         Self::Run(error)
     }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        if error.is_refusal() { Self::Input(error.into()) } else { Self::Run(error.into()) }
+    }
+}
+
+/// Opens the folder of `--out`, and tells the user what it has besides the results of an earlier run.
+///
+/// # Errors
+///
+/// As [`RunFolder::open`].
+pub fn results_folder(out: &Path) -> Result<RunFolder, Failure> {
+    let folder = RunFolder::open(out)?;
+    folder.notes().iter().for_each(|note| say(stderr(), format_args!("note: {}", printable_lines(note))));
+    Ok(folder)
 }
 
 /// An invalid argument or input file.

@@ -1,6 +1,6 @@
 //! Code that the programs of trials share: options, and the way from trials to results.
 
-use crate::program::{INTERRUPTED, strategy_of};
+use crate::program::{Failure, INTERRUPTED, input, results_folder, strategy_of};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
 use agent::Reward;
@@ -11,7 +11,7 @@ use clap::{Args, Parser, ValueEnum};
 use evaluation::trials::{Experiment, Trial, TrialError, TrialStrategy, TrialWorld};
 use rayon::ThreadPool;
 use reports::shards::Shard;
-use reports::{Plan, REPORT, ReportSettings, collect};
+use reports::{Plan, ReportSettings, collect};
 use results::output::{RunFolder, write_file};
 use std::collections::BTreeSet;
 use std::fmt::Debug;
@@ -50,6 +50,10 @@ pub struct TrialArgs {
     /// `merge`. A shard that is started again goes on where it ended
     #[arg(long, value_name = "I/N", conflicts_with_all = ["rrd", "save_worlds"], help_heading = EXECUTION)]
     pub shard: Option<Shard>,
+
+    /// Go on in a folder with shards of another build of this program; the results are those of neither build
+    #[arg(long, requires = "shard", help_heading = EXECUTION)]
+    pub allow_other_build: bool,
 
     /// Record the first trial, at most 20,000 readings; open the recording with `rerun FILE`
     #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
@@ -231,14 +235,14 @@ pub(crate) fn run<P: TrialProgram>(
     program: &P,
     experiment: &Experiment<P::Spec>,
     is_canceled: &AtomicBool,
-) -> anyhow::Result<ExitCode>
+) -> Result<ExitCode, Failure>
 where
     for<'a> Scene: From<&'a P::Spec>,
     for<'a> Plan<'a>: From<&'a P::Spec>,
 {
     let args = program.shared();
-    let mut folder = RunFolder::open(program.out())?;
-    args.rrd.iter().try_for_each(|path| folder.adopt(path, "rrd"))?;
+    let mut folder = results_folder(program.out())?;
+    args.rrd.iter().try_for_each(|path| folder.adopt(path, "rrd")).map_err(input)?;
     let (mut trials, problem) = trials(args, experiment, is_canceled)?;
     let interrupted = is_canceled.load(Ordering::Relaxed);
     if trials.is_empty() {
@@ -259,7 +263,7 @@ where
         Results { folder, out: program.out(), world_names: program.world_names(), quiet: args.quiet };
     results.write(settings, trials.into_iter().map(Ok), &experiment.worlds)?;
     if let Some(problem) = problem {
-        return Err(problem.into());
+        return Err(Failure::Run(problem.into()));
     }
     Ok(if interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
 }
@@ -280,14 +284,14 @@ impl Results<'_> {
         settings: ReportSettings,
         trials: impl Iterator<Item = anyhow::Result<Trial>>,
         worlds: &'w [W],
-    ) -> anyhow::Result<()>
+    ) -> Result<(), Failure>
     where
         Plan<'w>: From<&'w W>,
     {
         let report = collect(settings, self.folder.unfinished(), trials)?;
-        let written = report.write(&self.folder, worlds)?;
+        let written = report.write(&self.folder, worlds).map_err(anyhow::Error::from)?;
         let inputs: Vec<&Path> = self.world_names.iter().map(Path::new).collect();
-        self.folder.finish(REPORT, &inputs)?;
+        self.folder.finish(&inputs)?;
         if !self.quiet {
             print(report.table())?;
             print(format_args!("written to {}: {}", self.out.display(), written.join(", ")))?;

@@ -11,6 +11,9 @@ use robot::GoalCount;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+/// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
+pub const SCHEMA: u32 = 1;
+
 /// Coverage and map quality at one time.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CurvePoint {
@@ -24,6 +27,10 @@ pub struct CurvePoint {
 /// The content of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
+    /// The version of this layout: [`SCHEMA`].
+    pub schema: u32,
+    /// The build of the program: equal builds compute equal bits.
+    pub build: &'static str,
     /// The version of the program.
     pub version: &'static str,
     /// The command line, without the name of the program.

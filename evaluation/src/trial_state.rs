@@ -19,6 +19,7 @@ pub struct TrialFacts {
     learned: LearnedFacts,
     world: Facts,
     pilot: Facts,
+    allows_other_build: bool,
 }
 
 impl TrialFacts {
@@ -35,7 +36,14 @@ impl TrialFacts {
             .with_settings("agent", agent)
             .with_settings("controller", controller)
             .with_settings("drive", drive);
-        Self { learned: LearnedFacts::new(mapper, &spec.frame, pose.name(), localizer), world, pilot }
+        let learned = LearnedFacts::new(mapper, &spec.frame, pose.name(), localizer);
+        Self { learned, world, pilot, allows_other_build: false }
+    }
+
+    /// The same; with `allows`, a run can go on that another build has begun: its bits are those of neither build.
+    #[must_use]
+    pub fn allowing_other_build(self, allows: bool) -> Self {
+        Self { allows_other_build: allows, ..self }
     }
 }
 
@@ -57,7 +65,7 @@ impl TrialSnapshot {
             .with(WORLD, facts.world.clone(), world.into_bytes())
             .with(PILOT, facts.pilot, pilot)
             .with(MEASUREMENTS, facts.world, interfaces::snapshot(vec![value(&mut observer)]));
-        learned.added_to(state)
+        learned.added_to(state).with_build()
     }
 }
 
@@ -77,12 +85,15 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     ///
     /// # Errors
     ///
-    /// When the state is of another run; the error names what differs. The run must not be used then.
+    /// When the state is of another run or of another build; the error names what differs. The run must not be used then.
     pub fn restore(&mut self, state: &State, facts: &TrialFacts) -> Result<(), StateError> {
         let misfit = |part: &str| StateError::OtherContent(part.to_owned());
         let world = state.section(WORLD, &facts.world)?;
         let (pilot, observer) =
             (state.section(PILOT, &facts.pilot)?, state.section(MEASUREMENTS, &facts.world)?);
+        if !facts.allows_other_build {
+            state.check_build()?; // after what differs by a choice
+        }
         facts.learned.restore(state, &mut self.mapper, self.localization.as_mut())?;
         self.world.restore(world).map_err(|_| misfit(WORLD))?;
         interfaces::restore(self.pilot_values(), pilot).map_err(|_| misfit(PILOT))?;

@@ -179,9 +179,10 @@ class _Single(gymnasium.Env):
         """The state of the world and of the task; not that of ``np_random``."""
         return self.batch.snapshot(0)
 
-    def restore(self, snapshot: bytes) -> Any:
+    def restore(self, snapshot: bytes, *, allow_other_build: bool = False) -> Any:
         """Return to a snapshot of an environment with the same settings; returns the observation."""
-        return _split(self._parts, self.batch.restore(0, snapshot)[0])
+        restored = self.batch.restore(0, snapshot, allow_other_build=allow_other_build)
+        return _split(self._parts, restored[0])
 
     def close(self) -> None:
         """Free everything. A closed environment cannot be used."""
@@ -306,9 +307,10 @@ class _Vector(gymnasium.vector.VectorEnv):
         """The state of one environment; not that of its random numbers for seeds."""
         return self.batch.snapshot(index)
 
-    def restore(self, index: int, snapshot: bytes) -> Any:
+    def restore(self, index: int, snapshot: bytes, *, allow_other_build: bool = False) -> Any:
         """Return one environment to a snapshot; returns its observation."""
-        return _split(self._parts, self.batch.restore(index, snapshot)[0])
+        restored = self.batch.restore(index, snapshot, allow_other_build=allow_other_build)
+        return _split(self._parts, restored[0])
 
     def close_extras(self, **kwargs: Any) -> None:
         """Free everything."""

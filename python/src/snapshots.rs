@@ -4,13 +4,16 @@
 //! changed byte, a later call could fail.
 
 use crate::convert::SnapshotError;
+use build_id::BUILD;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// The version of the format.
-const VERSION: u32 = 1;
-const HEADER: usize = 8;
+/// The version of the format; count up when the layout of a state changes.
+const VERSION: u32 = 2;
+const KIND: usize = 8;
+/// The kind, and the build of the program.
+const HEADER: usize = KIND + BUILD.len();
 const CHECKSUM: usize = 8;
 
 /// What a snapshot is of.
@@ -18,7 +21,7 @@ const CHECKSUM: usize = 8;
 pub(crate) struct Kind(pub(crate) &'static str);
 
 impl Kind {
-    fn header(self) -> [u8; HEADER] {
+    fn header(self) -> [u8; KIND] {
         xxh3_64(format!("{} {VERSION}", self.0).as_bytes()).to_le_bytes()
     }
 
@@ -26,6 +29,7 @@ impl Kind {
     pub(crate) fn seal<'py>(self, py: Python<'py>, state: &[u8]) -> Bound<'py, PyBytes> {
         let mut bytes = Vec::with_capacity(HEADER + state.len() + CHECKSUM);
         bytes.extend(self.header());
+        bytes.extend(BUILD.as_bytes());
         bytes.extend(state);
         bytes.extend(xxh3_64(&bytes).to_le_bytes());
         PyBytes::new(py, &bytes)
@@ -45,6 +49,20 @@ impl Kind {
             None => Err(damaged()),
         }
     }
+}
+
+/// Checks that a snapshot was taken by this build, so that what follows from it has the same bits. `SnapshotError`: it was
+/// not, and another one is not allowed.
+pub(crate) fn check_build(snapshot: &[u8], allow_other_build: bool) -> PyResult<()> {
+    let build = snapshot.get(KIND..HEADER).ok_or_else(damaged)?;
+    if allow_other_build || build == BUILD.as_bytes() {
+        return Ok(());
+    }
+    Err(SnapshotError::new_err(format!(
+        "the snapshot was taken by another build ({}, this one is {BUILD}), whose results can differ; \
+         allow_other_build=True takes it",
+        String::from_utf8_lossy(build)
+    )))
 }
 
 fn damaged() -> PyErr {

@@ -1,6 +1,6 @@
 use crate::convert::{index, snapshot_error, value_error, whole};
 use crate::settings::{drive_settings, explore_settings};
-use crate::snapshots::Kind;
+use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
 use environments::{Drive, DrivePlace, Explore, ExplorePlace, Picture, ResultsMut, Task, TaskError};
 use numpy::{
@@ -348,15 +348,19 @@ impl Batch {
     }
 
     /// Returns an environment to a snapshot of one with the same settings, and returns its observations.
-    /// `SnapshotError`: the bytes are not one; the environment must be reset then.
+    /// `SnapshotError`: the bytes are not one, or were written by another build of the package; the environment must be
+    /// reset then.
+    #[pyo3(signature = (environment, snapshot, *, allow_other_build = false))]
     fn restore<'py>(
         &mut self,
         py: Python<'py>,
         #[pyo3(from_py_with = index)] environment: usize,
         snapshot: &[u8],
+        allow_other_build: bool,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         self.check(environment)?;
         let state = self.kind().open(snapshot)?;
+        check_build(snapshot, allow_other_build)?;
         let mut observations = vec![0.0; self.agents * self.observation_len()];
         each!(&mut self.tasks, batch => {
             let task = &mut batch.tasks_mut()[environment];

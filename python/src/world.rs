@@ -1,7 +1,7 @@
 use crate::convert::{grid, optional_index, pose_array, snapshot_error, value_error, whole};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
-use crate::snapshots::Kind;
+use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
 use evaluation::metrics::{map_scores, rate_scores};
 use interfaces::{GroundTruth, TrueState, Twist, World as _};
@@ -149,11 +149,14 @@ impl World {
         SNAPSHOT.seal(py, &py.detach(|| world.snapshot().into_bytes()))
     }
 
-    /// Returns to a snapshot of the same world. `SnapshotError`: the bytes are not one; nothing changes then.
-    fn restore(&mut self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
+    /// Returns to a snapshot of the same world. `SnapshotError`: the bytes are not one, or were written by another build of
+    /// the package; nothing changes then.
+    #[pyo3(signature = (snapshot, *, allow_other_build = false))]
+    fn restore(&mut self, py: Python<'_>, snapshot: &[u8], allow_other_build: bool) -> PyResult<()> {
         let world = &mut self.world;
         let mut restored = world.clone();
         let state = SNAPSHOT.open(snapshot)?;
+        check_build(snapshot, allow_other_build)?;
         py.detach(|| restored.restore(state)).map_err(snapshot_error)?;
         *world = restored;
         Ok(())

@@ -5,15 +5,23 @@ use super::claim::Claim;
 use super::measure::Measure;
 use super::run::Run;
 use super::strategy::StrategyResult;
+use build_id::BUILD;
 use evaluation::trials::Metric;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};
 use std::io::{self, Write};
 
+/// The version of the layout of `report.json`; count up when a key is renamed, removed or changes its meaning.
+const SCHEMA: u32 = 1;
+
 /// The content of `report.json`.
 #[derive(Serialize)]
 struct Content<'a> {
+    /// The version of the layout.
+    schema: u32,
+    /// The build of the program.
+    build: &'static str,
     #[serde(flatten)]
     report: &'a Report,
     /// The names of the other files.
@@ -22,7 +30,7 @@ struct Content<'a> {
 
 /// Writes `report.json`; `files` are the names of the other files.
 pub(super) fn write_report(report: &Report, files: &[String], mut to: impl Write) -> io::Result<()> {
-    let content = Content { report, files };
+    let content = Content { schema: SCHEMA, build: BUILD, report, files };
     content.serialize(&mut serde_json::Serializer::with_formatter(&mut to, Layout::default()))?;
     writeln!(to)
 }

@@ -122,7 +122,9 @@ impl<L: Link> CuriousNode<L> {
         let mut pilot = LivePilot::new(parameters)?;
         let mut notes = Notes::new(output);
         let pose = if is_localized { ("localized", Some(&localizer)) } else { ("given", None) };
-        let saves = state.map(|path| Saves::new(path, &settings.mapper, &frame, pose, &parameters.strategy));
+        let strategy = &parameters.strategy;
+        let saves =
+            state.map(|path| Saves::new(path, &settings.mapper, &frame, pose, strategy)).transpose()?;
         let continued = match &saves {
             Some(saves) => saves.restore(&mut mapper, localization.as_mut(), &mut pilot)?,
             None => None,

@@ -22,22 +22,27 @@ pub(crate) struct Saves {
 
 impl Saves {
     /// The file, and what it belongs to. `pose` is the name of the parameter's value.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be written, or another run uses it.
     pub(crate) fn new(
         path: &Path,
         mapper: &MapperSettings,
         frame: &GridFrame,
         (pose, localizer): (&str, Option<&LocalizerSettings>),
         strategy: &str,
-    ) -> Self {
+    ) -> anyhow::Result<Self> {
         let facts = LearnedFacts::new(mapper, frame, pose, localizer);
-        Self { file: StateFile::new(path), facts, pilot: Facts::default().with("strategy", strategy) }
+        let file = StateFile::open(path).with_context(|| format!("{}: cannot use it", path.display()))?;
+        Ok(Self { file, facts, pilot: Facts::default().with("strategy", strategy) })
     }
 
     /// Goes on from the file: the time of the last reading in it. `None` if there is no such file.
     ///
     /// # Errors
     ///
-    /// When the file is no state, that of another node, or cannot be written.
+    /// When the file is no state, or that of another node.
     pub(crate) fn restore(
         &self,
         mapper: &mut Mapper,
@@ -46,7 +51,6 @@ impl Saves {
     ) -> anyhow::Result<Option<Time>> {
         let name = self.file.path().display().to_string();
         let state = self.file.load().with_context(|| name.clone())?;
-        self.file.check_writable().with_context(|| format!("{name}: cannot write it"))?;
         let Some(state) = state else { return Ok(None) };
         self.facts.restore(&state, mapper, localization).with_context(|| name.clone())?;
         let clock = state.section(CLOCK, &Facts::default()).with_context(|| name.clone())?;
@@ -78,7 +82,7 @@ impl Saves {
         let clock = last.ns().to_le_bytes().to_vec();
         self.file.save(move || {
             let state = learned.added_to(State::default()).with(CLOCK, Facts::default(), clock);
-            state.with(PILOT, facts, driven)
+            state.with(PILOT, facts, driven).with_build()
         })
     }
 

@@ -2,7 +2,7 @@
 
 mod status;
 
-use crate::program::{Failure, INTERRUPTED, input, interrupt_flag};
+use crate::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
 use crate::trials::{self, Results, TrialProgram, experiment_arguments, report_settings, threads};
@@ -11,8 +11,7 @@ use clap::Subcommand;
 use evaluation::trials::{Experiment, TrialSettings, TrialWorld, run_trial};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use reports::Plan;
-use reports::shards::{Cost, Header, Shard, ShardFile, Shards, array};
-use results::output::RunFolder;
+use reports::shards::{Cost, Header, Shard, ShardFile, Shards, array, check_builds};
 use std::io::stderr;
 use std::iter::once;
 use std::path::{Path, PathBuf};
@@ -38,7 +37,7 @@ pub enum ShardCommand {
     },
     /// Write the results of all shards: the same files, byte by byte, as those of a run without shards
     ///
-    /// The shards must be complete, of one experiment, and of this version of the program; otherwise the file with the
+    /// The shards must be complete, of one experiment, and of this build of the program; otherwise the file with the
     /// problem is named, and nothing is written. World files must be where they were when the shards ran. The files of
     /// the shards stay.
     Merge {
@@ -48,6 +47,10 @@ pub enum ShardCommand {
         /// The folder for the results [default: the folder of the shards]
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+
+        /// Merge shards of other builds of this program; the results are those of no build
+        #[arg(long)]
+        allow_other_build: bool,
 
         /// Print only errors
         #[arg(long, short)]
@@ -80,7 +83,7 @@ where
     let is_canceled = interrupt_flag()?; // before any file is made
     match args.shared().shard {
         Some(shard) => run_shard(args, shard, &experiment, &is_canceled),
-        None => Ok(trials::run(args, &experiment, &is_canceled)?),
+        None => trials::run(args, &experiment, &is_canceled),
     }
 }
 
@@ -100,6 +103,9 @@ fn run_shard<P: TrialProgram>(
 ) -> Result<ExitCode, Failure> {
     let args = program.shared();
     let header = header::<P>(experiment_arguments::<P>(), shard, experiment);
+    if !args.allow_other_build {
+        check_builds(program.out()).map_err(input)?;
+    }
     let file = ShardFile::open(program.out(), &header, shard).map_err(input)?;
     let all = shard.trials(header.trials);
     let mut jobs = experiment.jobs();
@@ -173,7 +179,9 @@ where
             print(array(&missing))?;
             Ok(ExitCode::FAILURE)
         }
-        ShardCommand::Merge { dir, out, quiet } => merge::<P>(dir, out.as_deref().unwrap_or(dir), *quiet),
+        ShardCommand::Merge { dir, out, allow_other_build, quiet } => {
+            merge::<P>(dir, out.as_deref().unwrap_or(dir), *allow_other_build, *quiet)
+        }
         ShardCommand::Status { dir } => {
             print(status::status(&Shards::read(dir).map_err(input)?, now()))?;
             Ok(ExitCode::SUCCESS)
@@ -181,7 +189,12 @@ where
     }
 }
 
-fn merge<P: TrialProgram>(dir: &Path, out: &Path, quiet: bool) -> Result<ExitCode, Failure>
+fn merge<P: TrialProgram>(
+    dir: &Path,
+    out: &Path,
+    allows_other_build: bool,
+    quiet: bool,
+) -> Result<ExitCode, Failure>
 where
     for<'a> Plan<'a>: From<&'a P::Spec>,
 {
@@ -197,6 +210,9 @@ where
         let version = &found.version;
         return Err(input(anyhow!("{shown} has shards of version {version}: merge them with that version")));
     }
+    if !allows_other_build {
+        check_builds(dir).map_err(input)?;
+    }
     let missing = shards.missing();
     if let [first, ..] = missing[..] {
         let count = found.shard().map_or(0, Shard::count);
@@ -209,13 +225,12 @@ where
     let args = args.context("the arguments of the shards are not valid").map_err(input)?;
     let experiment = args.experiment().map_err(input)?;
     let shard = found.shard().context("the number of the shard is not valid")?;
-    if header::<P>(found.arguments.clone(), shard, &experiment) != *found {
+    if !header::<P>(found.arguments.clone(), shard, &experiment).is_same_experiment(found) {
         let why = "a world file was changed after the shards ran, or the program is another one";
         return Err(input(anyhow!("the experiment of {shown} cannot be repeated: {why}")));
     }
     let settings = report_settings(&experiment, found.arguments.clone());
-    let results =
-        Results { folder: RunFolder::open(out).map_err(input)?, out, world_names: args.world_names(), quiet };
+    let results = Results { folder: results_folder(out)?, out, world_names: args.world_names(), quiet };
     let trials = shards.trials().map_err(input)?.map(|trial| trial.map_err(Into::into));
     results.write(settings, trials, &experiment.worlds)?;
     Ok(ExitCode::SUCCESS)

@@ -1,12 +1,20 @@
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// What a snapshot belongs to, as names with values, in order: `world` = `house`, `mapper.max_gap` = `8.0`. A snapshot fits
-/// a part only if all facts are equal.
-#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Deserialize, Serialize)]
-pub struct Facts(Vec<(String, String)>);
+/// a part only if all facts are equal, except for [settings that nobody has chosen](Self::with_learned_settings).
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Facts(Vec<Fact>);
 
-/// The first difference between facts.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+struct Fact {
+    name: String,
+    value: String,
+    /// Whether the value is only the default of the program.
+    is_default: bool,
+}
+
+/// A difference between facts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Difference {
     pub(crate) name: String,
@@ -18,38 +26,68 @@ impl Facts {
     /// Adds a fact.
     #[must_use]
     pub fn with(mut self, name: &str, value: impl ToString) -> Self {
-        self.0.push((name.to_owned(), value.to_string()));
+        self.push(name, value.to_string(), false);
         self
     }
 
     /// Adds every field of some settings, as `name.field`.
     #[must_use]
-    pub fn with_settings(mut self, name: &str, settings: &impl Serialize) -> Self {
-        self.add(name, &serde_json::to_value(settings).unwrap_or_default());
+    pub fn with_settings<S: Serialize>(self, name: &str, settings: &S) -> Self {
+        self.with_learned_settings(name, settings, None)
+    }
+
+    /// Adds every field of some settings on which the layout of a snapshot does not depend. Where a field is the default
+    /// of the program that saved and of the program that reads, the two can differ: a later version has other defaults,
+    /// and what was learned remains.
+    #[must_use]
+    pub fn with_learned_settings<S: Serialize>(
+        mut self,
+        name: &str,
+        settings: &S,
+        defaults: Option<&S>,
+    ) -> Self {
+        let value = |settings: &S| serde_json::to_value(settings).unwrap_or_default();
+        self.add(name, &value(settings), defaults.map(value).as_ref());
         self
     }
 
-    fn add(&mut self, name: &str, value: &Value) {
+    fn add(&mut self, name: &str, value: &Value, default: Option<&Value>) {
+        let is_default = default == Some(value);
         match value {
-            Value::Object(fields) => {
-                fields.iter().for_each(|(field, value)| self.add(&format!("{name}.{field}"), value));
-            }
-            Value::String(text) => self.0.push((name.to_owned(), text.clone())),
-            other => self.0.push((name.to_owned(), other.to_string())),
+            Value::Object(fields) => fields.iter().for_each(|(field, value)| {
+                let default = default.and_then(|default| default.get(field));
+                self.add(&format!("{name}.{field}"), value, default);
+            }),
+            Value::String(text) => self.push(name, text.clone(), is_default),
+            other => self.push(name, other.to_string(), is_default),
         }
     }
 
-    /// The first fact in which `self`, as saved, differs from what is expected.
+    fn push(&mut self, name: &str, value: String, is_default: bool) {
+        self.0.push(Fact { name: name.to_owned(), value, is_default });
+    }
+
+    /// All names and values.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.0.iter().map(|fact| (fact.name.as_str(), fact.value.as_str()))
+    }
+
+    /// The facts of version 4, which did not say what is a default.
+    pub(crate) fn chosen(facts: Vec<(String, String)>) -> Self {
+        Self(facts.into_iter().map(|(name, value)| Fact { name, value, is_default: false }).collect())
+    }
+
+    /// The first fact in which `self`, as saved, differs from what is expected, other than by a changed default.
     pub(crate) fn difference(&self, expected: &Self) -> Option<Difference> {
-        let value = |facts: &Self, name: &str| {
-            facts.0.iter().find(|(other, _)| other == name).map(|(_, value)| value.clone())
-        };
-        let names = expected.0.iter().chain(&self.0).map(|(name, _)| name);
-        let mut differences = names.map(|name| Difference {
-            name: name.clone(),
-            saved: value(self, name),
-            expected: value(expected, name),
-        });
-        differences.find(|difference| difference.saved != difference.expected)
+        let find = |facts: &Self, name: &str| facts.0.iter().find(|fact| fact.name == name).cloned();
+        let names = expected.0.iter().chain(&self.0).map(|fact| fact.name.clone());
+        names.map(|name| (find(self, &name), find(expected, &name), name)).find_map(
+            |(saved, expected, name)| {
+                let is_default = |fact: &Option<Fact>| fact.as_ref().is_none_or(|fact| fact.is_default);
+                let is_other_default = is_default(&saved) && is_default(&expected);
+                let [saved, expected] = [saved, expected].map(|fact| fact.map(|fact| fact.value));
+                (saved != expected && !is_other_default).then_some(Difference { name, saved, expected })
+            },
+        )
     }
 }

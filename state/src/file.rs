@@ -23,20 +23,34 @@ pub enum LoadError {
 
 /// A file that is replaced by the present state now and then.
 ///
-/// The file is written in a thread of its own. A run that is killed leaves the last complete file, and at most an
-/// unfinished one with another name, which the next run replaces.
+/// From [`open`](Self::open) on it is locked: what another run saved between the reading and the writing of this one would
+/// be lost. It is written in a thread of its own. A run that is killed leaves the last complete file, and at most an
+/// unfinished one and a lock with other names, which the next run uses again.
 #[derive(Debug)]
 pub struct StateFile {
     path: PathBuf,
     every: Duration,
     last: Instant,
     writing: Option<JoinHandle<io::Result<()>>>,
+    _lock: FileLock,
 }
 
 impl StateFile {
-    /// The file with this name. Nothing is read or written yet.
-    pub fn new(path: &Path) -> Self {
-        Self { path: path.to_owned(), every: EVERY, last: Instant::now(), writing: None }
+    /// Locks the file with this name, before it is read, until the value is dropped. Nothing is written yet.
+    ///
+    /// # Errors
+    ///
+    /// When another run uses it, when it is no file that can be replaced (a folder, a pipe, a device), and when its folder
+    /// cannot be written.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        // The file itself, so that a link stays one, and all its names have one lock.
+        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        match fs::metadata(&path) {
+            Ok(known) if !known.is_file() => return Err(io::Error::other(NO_FILE)),
+            _ => {}
+        }
+        let lock = FileLock::new(&with_ending(&path, "lock"))?;
+        Ok(Self { path, every: EVERY, last: Instant::now(), writing: None, _lock: lock })
     }
 
     /// The same, written once in this time.
@@ -56,30 +70,30 @@ impl StateFile {
     ///
     /// When the file cannot be read, or is not a state.
     pub fn load(&self) -> Result<Option<State>, LoadError> {
-        let mut file = match File::open(&self.path) {
-            Err(missing) if missing.kind() == io::ErrorKind::NotFound => return Ok(None),
-            file => file?,
-        };
-        // Another kind of file can be a device without an end.
-        let mut bytes = vec![0; State::MAGIC.len()];
-        match file.read_exact(&mut bytes) {
-            Ok(()) if bytes == State::MAGIC => {}
-            Err(other) if other.kind() != io::ErrorKind::UnexpectedEof => return Err(other.into()),
-            _ => return Err(StateError::OtherKind.into()),
+        match read_state(&self.path) {
+            Err(LoadError::Read(missing)) if missing.kind() == io::ErrorKind::NotFound => Ok(None),
+            state => state.map(Some),
         }
-        file.read_to_end(&mut bytes)?;
-        Ok(Some(State::from_bytes(&bytes)?))
     }
 
-    /// Checks before a long run that the file can be written. Nothing changes.
+    /// Keeps the file as it is now beside it, with the ending `.earlier`, so that what is saved next can be undone.
     ///
     /// # Errors
     ///
-    /// When it cannot, or when another run is writing it.
-    pub fn check_writable(&self) -> io::Result<()> {
-        let unfinished = unfinished_name(&self.path);
-        open_unfinished(&unfinished)?;
-        fs::remove_file(unfinished)
+    /// When it cannot be kept.
+    pub fn keep_earlier(&self) -> io::Result<()> {
+        let unfinished = with_ending(&self.path, "unfinished");
+        fs::copy(&self.path, &unfinished)?;
+        fs::rename(unfinished, earlier_name(&self.path))
+    }
+
+    /// Goes back to the file that was [kept](Self::keep_earlier); there is none then.
+    ///
+    /// # Errors
+    ///
+    /// When no file was kept.
+    pub fn restore_earlier(&self) -> io::Result<()> {
+        fs::rename(earlier_name(&self.path), &self.path)
     }
 
     /// Whether it is time to [`save`](Self::save).
@@ -116,12 +130,89 @@ impl StateFile {
     }
 }
 
+/// Why something is no state file.
+const NO_FILE: &str = "it is not a file (but a folder, a pipe or a device)";
+
+/// The state in a file, whoever uses it: it is complete at any time.
+///
+/// # Errors
+///
+/// When there is none, or it cannot be read.
+pub fn read_state(path: &Path) -> Result<State, LoadError> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::other(NO_FILE).into()); // a pipe would wait for ever
+    }
+    let mut file = File::open(path)?;
+    // Another kind of file can be very long.
+    let mut bytes = vec![0; State::MAGIC.len()];
+    match file.read_exact(&mut bytes) {
+        Ok(()) if bytes == State::MAGIC => {}
+        Err(other) if other.kind() != io::ErrorKind::UnexpectedEof => return Err(other.into()),
+        _ => return Err(StateError::OtherKind.into()),
+    }
+    file.read_to_end(&mut bytes)?;
+    Ok(State::from_bytes(&bytes)?)
+}
+
+/// The name of the file that [`StateFile::keep_earlier`] keeps: `house.state.earlier` for `house.state`.
+pub fn earlier_name(path: &Path) -> PathBuf {
+    with_ending(path, "earlier")
+}
+
+/// A file that one process has, while it is open.
+#[derive(Debug)]
+struct FileLock {
+    path: PathBuf,
+    file: Option<File>,
+}
+
+impl FileLock {
+    fn new(path: &Path) -> io::Result<Self> {
+        loop {
+            let file = File::options().write(true).create(true).truncate(false).open(path)?;
+            match file.try_lock() {
+                Err(TryLockError::WouldBlock) => {
+                    let why = "another run uses it; wait for its end, or give another file by --state";
+                    return Err(io::Error::new(io::ErrorKind::ResourceBusy, why));
+                }
+                // Not every file system has locks.
+                Ok(()) | Err(TryLockError::Error(_)) => {}
+            }
+            if is_file_at(&file, path) {
+                return Ok(Self { path: path.to_owned(), file: Some(file) });
+            }
+            // Another run has removed the file after it was opened here, and before it was locked.
+        }
+    }
+}
+
+impl Drop for FileLock {
+    fn drop(&mut self) {
+        fs::remove_file(&self.path).ok(); // while it is locked: whoever has opened it looks again
+        self.file.take();
+    }
+}
+
+/// Whether an open file still has this name.
+#[cfg(unix)]
+fn is_file_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let id = |known: fs::Metadata| (known.dev(), known.ino());
+    file.metadata().is_ok_and(|open| fs::metadata(path).is_ok_and(|named| id(open) == id(named)))
+}
+
+/// An open file cannot be removed on this system.
+#[cfg(not(unix))]
+fn is_file_at(_file: &File, _path: &Path) -> bool {
+    true
+}
+
 /// Replaces the file at once and completely, or not at all.
 fn write(path: &Path, state: &State) -> io::Result<()> {
     let bytes = state.to_bytes().map_err(io::Error::other)?;
-    let unfinished = unfinished_name(path);
-    let mut file = open_unfinished(&unfinished)?;
-    let written = file.set_len(0).and_then(|()| file.write_all(&bytes)).and_then(|()| file.sync_all());
+    let unfinished = with_ending(path, "unfinished");
+    let mut file = File::create(&unfinished)?;
+    let written = file.write_all(&bytes).and_then(|()| file.sync_all());
     let renamed = written.and_then(|()| fs::rename(&unfinished, path));
     if renamed.is_err() {
         fs::remove_file(&unfinished).ok(); // the reason for the end is reported
@@ -131,32 +222,17 @@ fn write(path: &Path, state: &State) -> io::Result<()> {
     Ok(())
 }
 
-fn open_unfinished(unfinished: &Path) -> io::Result<File> {
-    // Cut off only when it is locked: it may be the file of a run that goes on.
-    let file = File::options().write(true).create(true).truncate(false).open(unfinished)?;
-    locked(file.try_lock())?;
-    Ok(file)
-}
-
-/// Whether the file can be written, after a lock was tried.
-fn locked(tried: Result<(), TryLockError>) -> io::Result<()> {
-    match tried {
-        // Not every file system has locks.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(()),
-        Err(TryLockError::WouldBlock) => Err(io::Error::other("another run is writing it")),
-    }
-}
-
 /// Brings the new name to the disk as well. Not every file system can do it; the file is complete under one of its names.
 fn sync_folder(path: &Path) {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     File::open(folder).and_then(|folder| folder.sync_all()).ok();
 }
 
-/// The name of the file while it is incomplete: `house.state.unfinished` for `house.state`.
-fn unfinished_name(path: &Path) -> PathBuf {
+/// The name of a file beside the state: `house.state.unfinished` while it is incomplete.
+fn with_ending(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".unfinished");
+    name.push(".");
+    name.push(ending);
     path.with_file_name(name)
 }
 

@@ -10,11 +10,17 @@
 //! Numbers are little-endian.
 
 use crate::facts::{Difference, Facts};
+use build_id::{BUILD, other_build};
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64_with_seed;
 
-/// Count up when the body, or a snapshot in it, changes.
-const VERSION: u32 = 4;
+/// Count up when the body, or a snapshot in it, changes; `tests/states` of the workspace holds examples of every version
+/// that is read.
+const VERSION: u32 = 5;
+/// The earlier version that is read: its facts did not say what is a default, and its builds are not known.
+const EARLIER_VERSION: u32 = 4;
+/// The part with the build.
+const BUILD_PART: &str = "build";
 /// The largest body, bytes: what a mapper with the largest map can take.
 const MAX_BODY: usize = 2 << 30;
 
@@ -44,6 +50,9 @@ pub enum StateError {
         /// The bytes of the body.
         bytes: usize,
     },
+    /// The state was saved by another build, whose results can differ.
+    #[error("the state {0}")]
+    OtherBuild(String),
     /// The state belongs to another run.
     #[error("the state is of another run: `{name}` is {saved} there, and {expected} here")]
     OtherFacts {
@@ -88,6 +97,30 @@ impl State {
         self.sections.iter().any(|section| section.name == name)
     }
 
+    /// The state with the build of this program.
+    #[must_use]
+    pub fn with_build(self) -> Self {
+        self.with(BUILD_PART, Facts::default(), BUILD.into())
+    }
+
+    /// The build of the program that saved the state; empty if it did not say it.
+    pub fn build(&self) -> &str {
+        let part = self.sections.iter().find(|section| section.name == BUILD_PART);
+        part.and_then(|section| std::str::from_utf8(&section.snapshot).ok()).unwrap_or_default()
+    }
+
+    /// Checks that this program computes the same bits as the one that saved the state.
+    ///
+    /// # Errors
+    ///
+    /// When it is another build, or an unknown one.
+    pub fn check_build(&self) -> Result<(), StateError> {
+        match self.build() {
+            BUILD => Ok(()),
+            other => Err(StateError::OtherBuild(other_build(other))),
+        }
+    }
+
     /// The snapshot of a part.
     ///
     /// # Errors
@@ -101,6 +134,22 @@ impl State {
         };
         let text = |value: Option<String>| value.map_or("not set".to_owned(), |value| format!("`{value}`"));
         Err(StateError::OtherFacts { name, saved: text(saved), expected: text(expected) })
+    }
+
+    /// The names of its parts, what each belongs to, and the bytes of each.
+    pub fn sections(&self) -> impl Iterator<Item = (&str, &Facts, &[u8])> {
+        self.sections
+            .iter()
+            .map(|section| (section.name.as_str(), &section.facts, section.snapshot.as_slice()))
+    }
+
+    /// The state in a body of the earlier version.
+    fn earlier(body: &[u8]) -> postcard::Result<Self> {
+        type Facts4 = Vec<(String, String)>;
+        let sections: Vec<(String, Facts4, Vec<u8>)> = postcard::from_bytes(body)?;
+        Ok(sections.into_iter().fold(Self::default(), |state, (name, facts, snapshot)| {
+            state.with(&name, Facts::chosen(facts), snapshot)
+        }))
     }
 
     /// The state as the bytes of a file.
@@ -131,13 +180,14 @@ impl State {
         if u64::from_le_bytes(*checksum) != xxh3_64_with_seed(packed, found.into()) {
             return Err(StateError::Damaged);
         }
-        if found != VERSION {
+        if ![VERSION, EARLIER_VERSION].contains(&found) {
             return Err(StateError::OtherVersion { found });
         }
         let length = packed.first_chunk().ok_or(StateError::Damaged)?;
         check_length(u32::from_le_bytes(*length) as usize)?;
         let body = lz4_flex::decompress_size_prepended(packed).map_err(|_| StateError::Damaged)?;
-        postcard::from_bytes(&body).map_err(|_| StateError::Damaged)
+        let state = if found == VERSION { postcard::from_bytes(&body) } else { Self::earlier(&body) };
+        state.map_err(|_| StateError::Damaged)
     }
 }
 

@@ -33,10 +33,13 @@ impl LearnedFacts {
             .with("map.origin_m", format!("({}, {})", origin.x, origin.y));
         let poses = map.clone().with("pose", pose);
         let localization = match localizer {
-            Some(settings) => poses.with_settings("localizer", settings),
+            Some(settings) => {
+                poses.with_learned_settings("localizer", settings, Some(&LocalizerSettings::default()))
+            }
             None => poses,
         };
-        Self { mapper: map.with_settings("mapper", mapper), localization }
+        let mapper = map.with_learned_settings("mapper", mapper, Some(&MapperSettings::default()));
+        Self { mapper, localization }
     }
 
     /// Copies what was learned. This is short; to turn the copy into bytes takes longer.

@@ -14,6 +14,6 @@ mod format;
 mod learned;
 
 pub use facts::Facts;
-pub use file::{LoadError, StateFile};
+pub use file::{LoadError, StateFile, earlier_name, read_state};
 pub use format::{State, StateError};
 pub use learned::{LearnedFacts, LearnedSnapshot};

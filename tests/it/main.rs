@@ -26,6 +26,7 @@ mod prior;
 mod screen;
 mod shards;
 mod state;
+mod state_examples;
 mod targets;
 mod tour;
 mod worlds;

@@ -56,7 +56,7 @@ fn a_log_of_the_next_day_adds_to_the_state() {
     let ended = run.goes_well(&format!("b.log other.log {SAVED}"));
     assert_eq!(ended.stderr, "note: other.log is learned already\nnote: b.log is learned already\n");
     assert_eq!(differing(&results(&run), &whole), ["trajectory.png", "trajectory.tum"]);
-    assert_eq!(run.names(), ["a.state", "b.log", "other.log", "out"]);
+    assert_eq!(run.names(), ["a.state", "a.state.earlier", "b.log", "other.log", "out"]);
 }
 
 #[test]
@@ -203,7 +203,7 @@ fn a_state_of_another_program_is_refused() {
     run.write("a.log", &standing_log(MONDAY_S, 60));
     let files = ["a.log", "a.state"];
     insta::assert_snapshot!(refuses(&run, &format!("a.log {SAVED}"), &files), @"error: a.state: the state was saved by another program: it has no part `logs`");
-    insta::assert_snapshot!(refuses(&run, &format!("a.log {QUIET} --state missing/b.state"), &files), @"error: missing/b.state: cannot write it: No such file or directory (os error 2)");
+    insta::assert_snapshot!(refuses(&run, &format!("a.log {QUIET} --state missing/b.state"), &files), @"error: missing/b.state: cannot use it: No such file or directory (os error 2)");
     run.goes_well(&format!("a.log {QUIET} --state b.state"));
     fs::remove_dir_all(run.path("out")).unwrap();
     let run = run.with_four_rooms();
@@ -231,4 +231,61 @@ fn another_laser_is_noted() {
                 plane, differences count as changes";
     assert_eq!(ended.stderr, format!("note: {note}\n"));
     assert!(run.summary().at("/notes").as_array().unwrap().contains(&serde_json::json!(note)));
+}
+
+/// Two runs that read the same state, and write it one after the other, would lose what one of them learned.
+#[test]
+#[cfg(unix)]
+fn a_state_has_one_user_at_a_time() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(MONDAY_S, 12_000));
+    run.write("b.log", &standing_log(TUESDAY_S, 90));
+    let mut first = run.starts(&format!("a.log {SAVED} --out first"));
+    while !run.path("a.state.lock").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    let second = run.ends(&format!("b.log {SAVED} --out second"));
+    assert_eq!(second.code, Some(2));
+    insta::assert_snapshot!(second.stderr, @"error: a.state: cannot use it: another run uses it; wait for its end, or give another file by --state");
+    assert!(first.wait().unwrap().success());
+    run.goes_well(&format!("b.log {SAVED} --out second"));
+    assert_eq!(run.names(), ["a.log", "a.state", "a.state.earlier", "b.log", "first", "second"]);
+    let run = run.with_state_file();
+    let shown = run.goes_well("show a.state").stdout;
+    assert!(shown.contains("12000 of 12000 scans") && shown.contains("90 of 90 scans"), "{shown}");
+}
+
+#[test]
+#[cfg(unix)]
+fn a_pipe_is_no_state() {
+    let run = with_logs();
+    nix::unistd::mkfifo(&run.path("pipe"), nix::sys::stat::Mode::S_IRWXU).unwrap();
+    let message = refuses(&run, &format!("a.log {QUIET} --state pipe"), &["a.log", "b.log", "pipe"]);
+    insta::assert_snapshot!(message, @"error: pipe: cannot use it: it is not a file (but a folder, a pipe or a device)");
+    let run = run.with_state_file();
+    insta::assert_snapshot!(refuses(&run, "show pipe", &["a.log", "b.log", "pipe"]), @"error: pipe: cannot read it: it is not a file (but a folder, a pipe or a device)");
+}
+
+#[test]
+fn the_last_log_can_be_removed_and_another_one_cannot() {
+    let run = with_logs();
+    run.goes_well(&format!("a.log {SAVED}"));
+    let before = fs::read(run.path("a.state")).unwrap();
+    run.goes_well(&format!("b.log {SAVED}"));
+    fs::remove_dir_all(run.path("out")).unwrap();
+    let run = run.with_state_file();
+    let shown = run.goes_well("show a.state").stdout;
+    let lines: Vec<&str> =
+        shown.lines().filter(|line| !line.contains(" = ") && !line.contains("bytes")).collect();
+    insta::assert_snapshot!(lines.join("\n"), @"");
+    assert!(shown.contains("    survey.resolution_m = 0.05\n"), "{shown}");
+    let files = ["a.log", "a.state", "a.state.earlier", "b.log"];
+    insta::assert_snapshot!(refuses(&run, "remove a.state a.log", &files), @"");
+    insta::assert_snapshot!(refuses(&run, "remove a.state c.log", &files), @"");
+    insta::assert_snapshot!(run.goes_well("remove a.state b.log").stdout, @"");
+    assert!(fs::read(run.path("a.state")).unwrap() == before);
+    insta::assert_snapshot!(refuses(&run, "remove a.state a.log", &["a.log", "a.state", "b.log"]), @"");
+    let run = run.with_map_log();
+    run.goes_well(&format!("b.log {SAVED}"));
+    assert_eq!(run.summary().number("/scans"), 210.0);
 }

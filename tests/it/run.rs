@@ -13,6 +13,8 @@ const GRID_WORLD: &str = env!("CARGO_BIN_EXE_grid_world");
 const HOUSE_TRIALS: &str = env!("CARGO_BIN_EXE_house_trials");
 /// The program for logs.
 const MAP_LOG: &str = env!("CARGO_BIN_EXE_map_log");
+/// The program for state files.
+const STATE_FILE: &str = env!("CARGO_BIN_EXE_state_file");
 
 /// A folder in which a program runs. All output goes to the subfolder `out`, unless the arguments name another
 /// folder.
@@ -57,6 +59,11 @@ impl Run {
         Self { program: MAP_LOG, ..self }
     }
 
+    /// The same folder, for `state_file`.
+    pub(crate) fn with_state_file(self) -> Self {
+        Self { program: STATE_FILE, ..self }
+    }
+
     /// The same folder, for `four_rooms`.
     pub(crate) fn with_four_rooms(self) -> Self {
         Self { program: FOUR_ROOMS, ..self }
@@ -92,7 +99,7 @@ impl Run {
         let mut command = Command::new(self.program);
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
         let is_on_shards = ["missing ", "merge ", "status "].iter().any(|name| arguments.starts_with(name));
-        if !arguments.contains("--out") && !is_on_shards {
+        if !arguments.contains("--out") && !is_on_shards && self.program != STATE_FILE {
             command.args(["--out", "out"]);
         }
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -129,10 +136,11 @@ impl Run {
     }
 }
 
-/// The names of the files in a folder, sorted.
+/// The names of the files in a folder, sorted, without hidden ones (the list of the results in `.curious_run.json`).
 pub(crate) fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap();
     let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.retain(|name| !name.starts_with('.'));
     names.sort();
     names
 }

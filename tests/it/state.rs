@@ -80,8 +80,8 @@ fn a_damaged_state_is_refused_and_stays() {
 #[test]
 fn a_state_that_cannot_be_written_ends_before_the_run() {
     let run = Run::new();
-    insta::assert_snapshot!(refuses(&run, "--state missing/a.state", &[]), @"error: missing/a.state: cannot write it: No such file or directory (os error 2)");
-    insta::assert_snapshot!(refuses(&run, "--state .", &[]), @"error: .: cannot read it: Is a directory (os error 21)");
+    insta::assert_snapshot!(refuses(&run, "--state missing/a.state", &[]), @"error: missing/a.state: cannot use it: No such file or directory (os error 2)");
+    insta::assert_snapshot!(refuses(&run, "--state .", &[]), @"error: .: cannot use it: it is not a file (but a folder, a pipe or a device)");
     let ended = run.ends("--state-every 5");
     assert_eq!(ended.code, Some(2), "{ended:?}");
 }

@@ -5,6 +5,7 @@ use crate::workspace::{needs, needs_without_features, packages};
 /// Every crate, and the crates of the workspace that it may depend on.
 const ALLOWED: &[(&str, &[&str])] = &[
     ("interfaces", &[]),
+    ("build_id", &[]),
     ("sim", &["interfaces"]),
     ("worldfile", &["interfaces", "sim"]),
     ("stage", &["interfaces", "sim", "worldfile"]),
@@ -15,19 +16,31 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("controller", &["interfaces"]),
     ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
     ("survey", &["interfaces", "mapper", "localizer", "logs", "agent", "robot"]),
-    ("state", &["interfaces", "mapper", "localizer", "robot"]),
+    ("state", &["interfaces", "build_id", "mapper", "localizer", "robot"]),
     ("results", &["interfaces", "mapper"]),
     ("drawing", &["results"]),
     (
         "evaluation",
-        &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "state", "results"],
+        &[
+            "interfaces",
+            "build_id",
+            "sim",
+            "mapper",
+            "localizer",
+            "agent",
+            "controller",
+            "robot",
+            "state",
+            "results",
+        ],
     ),
-    ("reports", &["interfaces", "sim", "results", "drawing", "evaluation"]),
+    ("reports", &["interfaces", "build_id", "sim", "results", "drawing", "evaluation"]),
     ("environments", &["interfaces", "sim", "worldfile", "mapper", "localizer", "evaluation"]),
     (
         "curious-robot",
         &[
             "interfaces",
+            "build_id",
             "sim",
             "worldfile",
             "stage",
@@ -61,6 +74,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "curious",
         &[
             "interfaces",
+            "build_id",
             "sim",
             "worldfile",
             "stage",

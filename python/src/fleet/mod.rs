@@ -4,6 +4,7 @@ use crate::convert::{
     Numbers, Table, index, no_robot, pose, pose_array, snapshot_error, value_error, whole, writable,
 };
 use crate::reading::Reading;
+use crate::snapshots::{Kind, check_build};
 use crate::spec::spec_of;
 use arrays::look_all;
 use interfaces::{LaserReading, Purpose, RandomStream};
@@ -34,6 +35,8 @@ impl Fleet {
         if robot < robots { Ok(()) } else { Err(no_robot(robot, robots)) }
     }
 }
+
+const SNAPSHOT: Kind = Kind("fleet");
 
 /// The greatest number of poses of one draw.
 const MAX_POSES: usize = 10_000_000;
@@ -256,14 +259,17 @@ impl Fleet {
     /// The state as bytes.
     fn snapshot<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         let fleet = &self.fleet;
-        PyBytes::new(py, &py.detach(|| fleet.snapshot()))
+        SNAPSHOT.seal(py, &py.detach(|| fleet.snapshot()))
     }
 
-    /// Returns to a snapshot of a fleet of the same world. `SnapshotError`: the bytes are not one; nothing changes
-    /// then.
-    fn restore(&mut self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
+    /// Returns to a snapshot of a fleet of the same world. `SnapshotError`: the bytes are not one, or were written by
+    /// another build of the package; nothing changes then.
+    #[pyo3(signature = (snapshot, *, allow_other_build = false))]
+    fn restore(&mut self, py: Python<'_>, snapshot: &[u8], allow_other_build: bool) -> PyResult<()> {
         let fleet = &mut self.fleet;
-        py.detach(|| fleet.restore(snapshot)).map_err(snapshot_error)
+        let state = SNAPSHOT.open(snapshot)?;
+        check_build(snapshot, allow_other_build)?;
+        py.detach(|| fleet.restore(state)).map_err(snapshot_error)
     }
 
     /// An independent copy.

@@ -130,19 +130,39 @@ pub(super) fn shards_in(folder: &Path) -> Result<Vec<(Shard, PathBuf)>, ShardErr
     Ok(shards)
 }
 
-/// Checks that all shards in a folder are of the experiment of `header`, by their first lines.
+/// Checks that this program computes trials as those that ran the shards in a folder.
+///
+/// # Errors
+///
+/// When a file cannot be read, or is of another build.
+pub fn check_builds(folder: &Path) -> Result<(), ShardError> {
+    let headers = if folder.exists() { headers_in(folder)? } else { Vec::new() };
+    headers
+        .into_iter()
+        .try_for_each(|(path, header)| header.check_build().map_err(|why| ShardError::content(&path, why)))
+}
+
+/// Checks that all shards in a folder are of the experiment of `header`.
 fn check_others(folder: &Path, header: &Header) -> Result<(), ShardError> {
+    for (path, other) in headers_in(folder)? {
+        if let Some(difference) = other.difference(header) {
+            let why = format!("this shard is {difference}; give another folder by --out");
+            return Err(ShardError::content(&path, why));
+        }
+    }
+    Ok(())
+}
+
+/// The first lines of all shards in a folder that are complete.
+fn headers_in(folder: &Path) -> Result<Vec<(PathBuf, Header)>, ShardError> {
+    let mut headers = Vec::new();
     for (_, path) in shards_in(folder)? {
         let mut line = Vec::new();
         let file = File::open(&path).map_err(|why| ShardError::read(&path, why))?;
         let read = BufReader::new(file).take(MAX_LINE).read_until(b'\n', &mut line);
         read.map_err(|why| ShardError::read(&path, why))?;
         let text = line.strip_suffix(b"\n").and_then(|line| std::str::from_utf8(line).ok());
-        let other = text.and_then(Header::read);
-        if let Some(difference) = other.and_then(|other| other.difference(header)) {
-            let why = format!("this shard is {difference}; give another folder by --out");
-            return Err(ShardError::content(&path, why));
-        }
+        headers.extend(text.and_then(Header::read).map(|header| (path, header)));
     }
-    Ok(())
+    Ok(headers)
 }

@@ -1,11 +1,12 @@
 use super::Shard;
 use super::line::{seal, unseal};
+use build_id::{BUILD, other_build};
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Debug, Write};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 /// The version of the format of the files of shards.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 /// The first line of the file of a shard: what all shards of an experiment have in common, and the shard.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -15,6 +16,9 @@ pub struct Header {
     pub program: String,
     /// The version of the program.
     pub version: String,
+    /// The build of the program; empty in files of the first format.
+    #[serde(default)]
+    build: String,
     /// The arguments that describe the experiment, without those on output, threads and shards.
     pub arguments: Vec<String>,
     /// A hash of all settings, of the worlds as well.
@@ -43,6 +47,7 @@ impl Header {
             schema: SCHEMA,
             program: program.to_owned(),
             version: version.to_owned(),
+            build: BUILD.to_owned(),
             arguments,
             settings: format!("{:032x}", hash.0.digest128()),
             trials,
@@ -61,9 +66,19 @@ impl Header {
         Self { shard: shard.number(), shards: shard.count(), ..self.clone() }
     }
 
+    /// Checks that this program computes trials as the one that began the shard.
+    pub(super) fn check_build(&self) -> Result<(), String> {
+        if self.build == BUILD { Ok(()) } else { Err(format!("this shard {}", other_build(&self.build))) }
+    }
+
     /// The key of the hashes of the lines: a line of another experiment does not match.
     pub(super) fn key(&self) -> u64 {
         xxh3_64(format!("{} {} {}", self.program, self.version, self.settings).as_bytes())
+    }
+
+    /// Whether both are shards of the same experiment, whatever their builds.
+    pub fn is_same_experiment(&self, other: &Self) -> bool {
+        self.difference(other).is_none()
     }
 
     /// What differs from the experiment of `other`; `None` if it is the same.

@@ -20,7 +20,7 @@ mod shard;
 #[cfg(test)]
 mod tests;
 
-pub use file::ShardFile;
+pub use file::{ShardFile, check_builds};
 pub use header::Header;
 pub use line::Cost;
 pub use merge::{Shards, Trials};

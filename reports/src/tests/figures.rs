@@ -141,7 +141,7 @@ fn draw_figures() {
         let plans: Vec<GridSpec> = (0..worlds).map(world).collect();
         let run = RunFolder::open(&folder.join(name)).unwrap();
         let files = report.write(&run, &plans).unwrap();
-        run.finish(REPORT, &[]).unwrap();
+        run.finish(&[]).unwrap();
         println!("{name}: statistics in {made:?}, {} files after {:?}", files.len(), start.elapsed());
     }
     println!("{}", folder.display());

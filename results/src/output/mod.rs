@@ -1,6 +1,9 @@
 //! Files that are either complete or absent, and the folder of a run.
 
+mod disk;
+mod exchange;
 mod folder;
+mod marker;
 mod trajectory;
 mod unfinished;
 
@@ -26,6 +29,16 @@ impl OutputError {
     /// The error `why` on `path`.
     pub fn new(path: &Path, why: impl Into<io::Error>) -> Self {
         Self { path: path.to_owned(), why: why.into() }
+    }
+
+    /// The error for a file or folder that is not written, since it may hold what no run wrote.
+    fn refused(path: &Path, why: String) -> Self {
+        Self::new(path, io::Error::new(io::ErrorKind::AlreadyExists, why))
+    }
+
+    /// Whether the file or folder was refused: the user has to choose another one.
+    pub fn is_refusal(&self) -> bool {
+        self.why.kind() == io::ErrorKind::AlreadyExists
     }
 }
 

@@ -100,6 +100,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration_s, requires = "state", help_heading = "Output")]
     pub(crate) state_every: f64,
 
+    /// Go on from the state of another build of this program; the results are those of neither build
+    #[arg(long, requires = "state", help_heading = "Output")]
+    pub(crate) allow_other_build: bool,
+
     /// Write a moving picture of the run, a GIF file; the run takes some seconds more
     #[arg(long, value_name = "FILE", value_parser = gif, help_heading = "Output")]
     pub(crate) gif: Option<PathBuf>,

@@ -10,7 +10,9 @@ use agent::Policy;
 use anyhow::{Context, anyhow};
 use args::{Args, DriveChoice};
 use curious::bag::RunBag;
-use curious::program::{BEST_STRATEGY_GAIN, Failure, INTERRUPTED, input, interrupt_flag, start};
+use curious::program::{
+    BEST_STRATEGY_GAIN, Failure, INTERRUPTED, input, interrupt_flag, results_folder, start,
+};
 use curious::progress::Progress;
 use curious::terminal::{print, say};
 use curious::worlds::list_physics_worlds;
@@ -72,7 +74,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let mut saves = Saves::open(args, parts, &mut trial)?;
     let began_s = trial.mapper.time();
     let is_interrupted = interrupt_flag()?; // before any file is made
-    let mut folder = RunFolder::open(&args.out).map_err(anyhow::Error::from)?;
+    let mut folder = results_folder(&args.out)?;
     args.mcap.iter().try_for_each(|path| folder.adopt(path, "mcap")).map_err(input)?;
     let bag = args.mcap.as_deref().map(|path| RunBag::create(path, 0.0)).transpose();
     let bag = bag.context("cannot write the bag of --mcap").map_err(input)?;
@@ -169,11 +171,12 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let mut summary = output::summary(args, settings, &trial, ended, began_s, wall_s);
     let PhysicsTrial { mapper, pilot, observer, .. } = trial;
     drop(pilot); // restores the terminal before anything is printed
-    output::write(folder, &mapper, &show, &observer.goals, &mut summary)?;
+    output::write(&folder, &mapper, &show, &observer.goals, &mut summary)?;
     if let Err(problem) = show.write_film() {
         is_shown = false;
         say(stderr(), format_args!("error: {problem}"));
     }
+    folder.finish(&[])?;
     if !args.quiet {
         let is_default = args.drive == DriveChoice::Agent && args.strategy() == Policy::default();
         let hint = if is_default { format!("\n  hint      {BEST_STRATEGY_GAIN}") } else { String::new() };
@@ -197,8 +200,8 @@ fn show(args: &Args, scene: Scene, folder: &mut RunFolder) -> Result<Show, Failu
     }
     let mut live = Vec::from_iter(args.connect.clone());
     live.extend(args.view.then_some(Live::Spawn));
-    let named = || folder.unfinished().join(format!("{}.rrd", file_name::of(&scene.title)));
-    let file = (!args.no_rrd).then(|| args.rrd.clone().unwrap_or_else(named));
+    let named = || folder.reserve(&format!("{}.rrd", file_name::of(&scene.title)));
+    let file = (!args.no_rrd).then(|| args.rrd.clone().map_or_else(named, Ok)).transpose()?;
     let recorder = match &file {
         None if live.is_empty() => None,
         file => Some(Recorder::new(file.as_deref(), &live, scene.clone()).map_err(anyhow::Error::from)?),

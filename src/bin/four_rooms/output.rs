@@ -2,8 +2,9 @@
 
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
+use build_id::BUILD;
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
-use evaluation::summary::Summary;
+use evaluation::summary::{SCHEMA, Summary};
 use interfaces::Twist;
 use mapper::Mapper;
 use results::cell_statistics;
@@ -19,7 +20,7 @@ const SUMMARY: &str = "summary.json";
 
 /// Writes everything except the recording and the moving picture: no result is lost for them.
 pub(crate) fn write(
-    folder: RunFolder,
+    folder: &RunFolder,
     mapper: &Mapper,
     show: &Show,
     goals: &Goals,
@@ -34,7 +35,7 @@ pub(crate) fn write(
     summary.files = folder.results()?;
     let text = serde_json::to_string_pretty(summary)?;
     write_file(&to.join(SUMMARY), |file| writeln!(file, "{text}"))?;
-    Ok(folder.finish(SUMMARY, &[])?)
+    Ok(())
 }
 
 pub(crate) fn summary(
@@ -47,6 +48,8 @@ pub(crate) fn summary(
 ) -> Summary {
     let simulated_s = trial.mapper.time();
     Summary {
+        schema: SCHEMA,
+        build: BUILD,
         version: env!("CARGO_PKG_VERSION"),
         arguments: std::env::args().skip(1).collect(),
         settings: serde_json::to_value(settings).unwrap_or_default(),

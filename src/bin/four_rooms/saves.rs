@@ -27,13 +27,14 @@ impl Saves {
         trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>,
     ) -> Result<Option<Self>, Failure> {
         let Some(path) = &args.state else { return Ok(None) };
-        let file = StateFile::new(path).every(Duration::from_secs_f64(args.state_every));
-        let facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args));
         let failed = |why: &dyn Display| input(anyhow!("{}: {why}", path.display()));
+        let file = StateFile::open(path).map_err(|why| failed(&format_args!("cannot use it: {why}")))?;
+        let file = file.every(Duration::from_secs_f64(args.state_every));
+        let facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args))
+            .allowing_other_build(args.allow_other_build);
         if let Some(state) = file.load().map_err(|why| failed(&why))? {
             trial.restore(&state, &facts).map_err(|why| failed(&why))?;
         }
-        file.check_writable().map_err(|why| failed(&format_args!("cannot write it: {why}")))?;
         Ok(Some(Self { file, facts }))
     }
 

@@ -8,13 +8,13 @@ mod report;
 mod saves;
 mod second_pass;
 mod summary;
-mod words;
 
 use anyhow::{Context, anyhow};
 use args::Args;
 use curious::bag::RunBag;
-use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, start};
+use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
 use curious::terminal::{print, say};
+use curious::words::list;
 use logs_in_order::Source;
 use results::output::RunFolder;
 use saves::Saves;
@@ -51,7 +51,7 @@ impl Job<'_> {
 
     /// The names of all logs of the survey.
     fn title(&self, survey: &Survey) -> String {
-        words::list(&survey.logs().iter().map(|log| log.entry.name.clone()).collect::<Vec<_>>())
+        list(&survey.logs().iter().map(|log| log.entry.name.clone()).collect::<Vec<_>>())
     }
 
     /// Prints a line about the work to the error output.
@@ -72,7 +72,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let sources = logs_in_order::continued(given, &mut survey, args.leave_rest).map_err(input)?;
     let first_log = survey.logs().iter().take_while(|log| log.is_finished()).count();
     let is_interrupted = interrupt_flag()?; // before any file is made
-    let mut folder = RunFolder::open(&args.out).map_err(anyhow::Error::from)?;
+    let mut folder = results_folder(&args.out)?;
     let job = Job { args, sources, first_log, first, settings, is_interrupted };
     let bag = bag(&job, &survey, &mut folder)?;
     if !first_pass::routes(&job, &mut survey, &mut saves)? {
@@ -83,7 +83,9 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     saves.finish(&survey);
     let mut summary = Summary::new(&survey, &learned)?;
     summary.wall_s = begin.elapsed().as_secs_f64();
-    output::write(folder, &args.files, &survey, &learned, &mut summary)?;
+    output::write(&folder, &survey, &learned, &mut summary)?;
+    // A log can be the result of an earlier run.
+    folder.finish(&args.files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     if !learned.is_interrupted {
         // The results are complete: no run goes on from within these logs.
         survey.forget_poses();

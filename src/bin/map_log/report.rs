@@ -1,7 +1,7 @@
 //! `report.html`: a page for people who look after a building.
 
 use crate::summary::Summary;
-use crate::words::{date, how_often, length_of, list, range};
+use curious::words::{date, how_often, length_of, list, range};
 use maud::{DOCTYPE, Markup, html};
 use results::numbers::percent;
 use survey::Place;

@@ -8,15 +8,16 @@ use state::{Facts, State, StateError, StateFile};
 use std::fmt::Display;
 use std::io::stderr;
 use std::time::Duration;
-use survey::{SavedLogs, Survey, SurveySettings};
+use survey::{SavedLogs, Survey, SurveySettings, SurveyedLog};
 
-/// The parts of a state: the logs, and what was learned from them.
-const LOGS: &str = "logs";
+/// The part of a state with what was learned from logs, beside that with the logs.
 const SURVEY: &str = "survey";
 
 /// The state file of a run, or none.
 pub(crate) struct Saves {
     file: Option<StateFile>,
+    /// The number of logs in the file, if all are learned: before another one is added, the file is kept.
+    learned: Option<usize>,
     facts: Facts,
     /// Whether everything could be written.
     pub(crate) is_written: bool,
@@ -31,13 +32,18 @@ pub(crate) struct Loaded {
 impl Saves {
     /// The file of `--state`, and the state in it. Nothing is written yet.
     pub(crate) fn open(args: &Args) -> Result<(Self, Option<Loaded>), Failure> {
-        let mut saves = Self { file: None, facts: Facts::default(), is_written: true };
+        let mut saves = Self { file: None, learned: None, facts: Facts::default(), is_written: true };
         let Some(path) = &args.state else { return Ok((saves, None)) };
-        let file = StateFile::new(path).every(Duration::from_secs_f64(args.state_every));
         let failed = |why: &dyn Display| input(anyhow!("{}: {why}", path.display()));
+        let file = StateFile::open(path).map_err(|why| failed(&format_args!("cannot use it: {why}")))?;
+        let file = file.every(Duration::from_secs_f64(args.state_every));
         let loaded = file.load().map_err(|why| failed(&why))?.map(Loaded::of).transpose();
         let loaded = loaded.map_err(|why| failed(&why))?;
-        file.check_writable().map_err(|why| failed(&format_args!("cannot write it: {why}")))?;
+        if let Some(why) = loaded.as_ref().and_then(|loaded| loaded.state.check_build().err()) {
+            say(stderr(), format_args!("note: {}: {why}", path.display()))
+        }
+        let logs = loaded.as_ref().map(|loaded| loaded.logs.logs());
+        saves.learned = logs.filter(|logs| logs.iter().all(SurveyedLog::is_finished)).map(<[_]>::len);
         saves.file = Some(file);
         Ok((saves, loaded))
     }
@@ -56,7 +62,8 @@ impl Saves {
     ) -> Result<Survey, Failure> {
         let noise = noise_m.map_or_else(|| "learned".to_owned(), |noise_m| noise_m.to_string());
         let facts = Facts::default().with("--pose", settings.pose.name()).with("--noise", noise);
-        self.facts = facts.with_settings("survey", settings);
+        self.facts =
+            facts.with_learned_settings("survey", settings, Some(&SurveySettings::of(settings.pose)));
         let (settings, learns_noise) = (settings.clone(), noise_m.is_none());
         let (Some(Loaded { state, logs }), Some(file)) = (loaded, &self.file) else {
             return Ok(Survey::new(settings, learns_noise));
@@ -76,10 +83,19 @@ impl Saves {
     /// Begins to write the survey. What cannot be written is reported, and the run goes on.
     pub(crate) fn save(&mut self, survey: &Survey) {
         let Some(file) = &mut self.file else { return };
+        if self.learned.is_some_and(|learned| survey.logs().len() > learned)
+            && let Err(problem) = file.keep_earlier()
+        {
+            say(stderr(), format_args!("note: the state before this run cannot be kept: {problem}"));
+        }
+        self.learned = self.learned.filter(|learned| survey.logs().len() == *learned);
         let (survey, facts) = (survey.clone(), self.facts.clone());
         let saved = file.save(move || {
             let (logs, learned) = survey.into_snapshot();
-            State::default().with(LOGS, Facts::default(), logs).with(SURVEY, facts, learned)
+            State::default()
+                .with(SavedLogs::PART, Facts::default(), logs)
+                .with(SURVEY, facts, learned)
+                .with_build()
         });
         if let Err(problem) = saved {
             self.is_written = false;
@@ -98,7 +114,7 @@ impl Saves {
 
 impl Loaded {
     fn of(state: State) -> Result<Self, StateError> {
-        let logs = SavedLogs::read(state.section(LOGS, &Facts::default())?);
-        Ok(Self { logs: logs.map_err(|_| StateError::OtherContent(LOGS.to_owned()))?, state })
+        let logs = SavedLogs::read(state.section(SavedLogs::PART, &Facts::default())?);
+        Ok(Self { logs: logs.map_err(|_| StateError::OtherContent(SavedLogs::PART.to_owned()))?, state })
     }
 }

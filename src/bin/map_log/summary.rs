@@ -2,8 +2,9 @@
 
 use crate::logs_in_order::begin_s;
 use crate::second_pass::Learned;
-use crate::words::{how_often, list};
 use anyhow::Context;
+use build_id::BUILD;
+use curious::words::{how_often, list};
 use interfaces::CellState;
 use results::numbers::percent;
 use serde::Serialize;
@@ -12,10 +13,16 @@ use survey::{Place, PoseMode, Survey, SurveySettings, places};
 
 /// The number of places in the summary and in the report.
 const MOST_PLACES: usize = 20;
+/// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
+const SCHEMA: u32 = 1;
 
 /// The content of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Summary {
+    /// The version of this layout: [`SCHEMA`].
+    pub(crate) schema: u32,
+    /// The build of the program: equal builds compute equal bits.
+    pub(crate) build: &'static str,
     pub(crate) version: &'static str,
     /// The command line, without the name of the program.
     pub(crate) arguments: Vec<String>,
@@ -72,6 +79,8 @@ impl Summary {
         let why = "the times of the log are unusable, so that no rate, duration or date can be given: the map shows where \
                    something changed, not how often";
         Ok(Self {
+            schema: SCHEMA,
+            build: BUILD,
             version: env!("CARGO_PKG_VERSION"),
             arguments: std::env::args().skip(1).collect(),
             settings: survey.settings_of(logs.len()),

@@ -18,6 +18,9 @@ pub struct SavedLogs {
 }
 
 impl SavedLogs {
+    /// The name of the part of a state that has the logs.
+    pub const PART: &'static str = "logs";
+
     /// The logs from their bytes.
     ///
     /// # Errors

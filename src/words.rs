@@ -8,7 +8,7 @@ const WIDE: f64 = 10.0;
 
 /// How often something changes at a place with this number of changes, in words: the estimate, or the range where little
 /// was seen.
-pub(crate) fn how_often(changes: u32, rates: &PlaceRates) -> String {
+pub fn how_often(changes: u32, rates: &PlaceRates) -> String {
     let [low, high] = rates.cycles_per_hour_90.map(Option::unwrap_or_default);
     match rates.cycles_per_hour {
         // Few observations: the estimate is mostly the prior.
@@ -20,7 +20,7 @@ pub(crate) fn how_often(changes: u32, rates: &PlaceRates) -> String {
 }
 
 /// The range of the time of one cycle that contains the true one with 90 % probability, in words.
-pub(crate) fn range(rates: &PlaceRates) -> String {
+pub fn range(rates: &PlaceRates) -> String {
     let time = |rate: Option<f64>| rate.filter(|rate| *rate > 0.0).map(|rate| length_of(3600.0 / rate));
     let [slow, fast] = rates.cycles_per_hour_90.map(time);
     match (fast, slow) {
@@ -32,7 +32,7 @@ pub(crate) fn range(rates: &PlaceRates) -> String {
 }
 
 /// Names in a row; of many, the first and the last.
-pub(crate) fn list(names: &[String]) -> String {
+pub fn list(names: &[String]) -> String {
     match names {
         [first, .., last] if names.len() > 4 => format!("{first}, …, {last} ({} logs)", names.len()),
         few => few.join(", "),
@@ -49,7 +49,7 @@ fn short(value: f64) -> String {
 }
 
 /// A length of time in words.
-pub(crate) fn length_of(time_s: f64) -> String {
+pub fn length_of(time_s: f64) -> String {
     match time_s {
         time if time < 90.0 => format!("{time:.0} s"),
         time if time < 5400.0 => format!("{:.0} min", time / 60.0),
@@ -59,7 +59,7 @@ pub(crate) fn length_of(time_s: f64) -> String {
 }
 
 /// A time in seconds since the epoch (1970-01-01), as date and time of day in UTC.
-pub(crate) fn date(time_s: f64) -> String {
+pub fn date(time_s: f64) -> String {
     const DAY_S: i64 = 86_400;
     let time_s = time_s.floor() as i64;
     let (days, second) = (time_s.div_euclid(DAY_S), time_s.rem_euclid(DAY_S));

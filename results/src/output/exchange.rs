@@ -1,0 +1,137 @@
+//! The exchange of the results of the earlier run for those of this one.
+//!
+//! A journal is written before the first file moves, when all new results are complete. Whatever ends the program then,
+//! the next run finds the journal and finishes the exchange: each step does nothing if it was done before.
+
+use super::OutputError;
+use super::disk;
+use super::marker::{MARKER, Marker};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The journal, and the folder for the results of the earlier run, inside the folder of the unfinished run.
+const JOURNAL: &str = ".exchange.json";
+const EARLIER: &str = ".earlier";
+/// The files that end a run.
+const SUMMARIES: [&str; 2] = ["summary.json", "report.json"];
+
+/// What is exchanged.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Exchange {
+    /// The results of the earlier run that are replaced or removed.
+    pub(super) earlier: Marker,
+    /// The results of this run.
+    pub(super) new: Marker,
+}
+
+impl Exchange {
+    /// The exchange that was begun in this folder of an unfinished run.
+    ///
+    /// # Errors
+    ///
+    /// When the journal cannot be read.
+    pub(super) fn begun(unfinished: &Path) -> io::Result<Option<Self>> {
+        match fs::read(unfinished.join(JOURNAL)) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            journal => Ok(Some(serde_json::from_slice(&journal?)?)),
+        }
+    }
+
+    /// Writes the journal: from now on the exchange is finished, by this run or by the next one.
+    pub(super) fn begin(&self, unfinished: &Path) -> Result<(), OutputError> {
+        // After a loss of power as well, a journal belongs to complete results.
+        let mut written = self.new.names().map(|name| unfinished.join(name)).filter(|path| path.is_file());
+        written.try_for_each(|path| disk::sync(&path))?;
+        disk::write(&unfinished.join(JOURNAL), &json(self))
+    }
+
+    /// Moves the files, those of the earlier run first, and writes the marker. `moves` are the files that were moved.
+    ///
+    /// # Errors
+    ///
+    /// When a file cannot be moved, or when a new result would replace a file that is not proven to be a result.
+    pub(super) fn carry_out(
+        &self,
+        folder: &Path,
+        unfinished: &Path,
+        moves: &mut Moves,
+    ) -> Result<(), OutputError> {
+        let is_waiting = |name: &str| unfinished.join(name).is_file();
+        for name in self.new.names().filter(|name| is_waiting(name)) {
+            check_replaceable(&self.earlier, folder, name)?;
+        }
+        disk::make_folder(&unfinished.join(EARLIER))?;
+        let is_replaced = |name: &&String| is_waiting(name) || !self.new.lists(name);
+        // The summary goes first and comes last: without it the other files are no results.
+        let (summaries, others) = split(self.earlier.names().filter(is_replaced));
+        for name in summaries.into_iter().chain(others).filter(|name| self.earlier.proves(folder, name)) {
+            moves.add(folder.join(name), unfinished.join(EARLIER).join(name))?;
+        }
+        let (summaries, others) = split(self.new.names().filter(|name| is_waiting(name)));
+        for name in others.into_iter().chain(summaries) {
+            moves.add(unfinished.join(name), folder.join(name))?;
+        }
+        disk::sync(folder)?;
+        disk::write(&folder.join(MARKER), &json(&self.new))
+    }
+
+    /// Removes what the exchange has left: the results of the earlier run, then the journal.
+    pub(super) fn clean_up(unfinished: &Path) -> Result<(), OutputError> {
+        disk::remove_folder(&unfinished.join(EARLIER))?;
+        disk::remove(&unfinished.join(JOURNAL))
+    }
+
+    /// Moves everything back, and removes the journal: the exchange was not begun. What cannot be moved back is finished
+    /// by the next run.
+    pub(super) fn undo(unfinished: &Path, moves: &Moves) -> Result<(), OutputError> {
+        moves.undo()?;
+        disk::remove_folder(&unfinished.join(EARLIER))?;
+        disk::remove(&unfinished.join(JOURNAL))
+    }
+}
+
+/// The names of summaries, and the other names.
+fn split<'a>(names: impl Iterator<Item = &'a String>) -> (Vec<&'a String>, Vec<&'a String>) {
+    names.partition(|name| SUMMARIES.contains(&name.as_str()))
+}
+
+fn json(value: &impl Serialize) -> Vec<u8> {
+    serde_json::to_vec_pretty(value).expect("names and numbers")
+}
+
+/// Checks that nothing has this name in the folder, or that it is a result of the earlier run.
+///
+/// # Errors
+///
+/// When it is something else.
+pub(super) fn check_replaceable(earlier: &Marker, folder: &Path, name: &str) -> Result<(), OutputError> {
+    let path = folder.join(name);
+    if path.symlink_metadata().is_err() || earlier.proves(folder, name) {
+        return Ok(());
+    }
+    let why = if earlier.lists(name) {
+        "it was changed since a run wrote it, and the results would replace it"
+    } else {
+        "the results would replace it, and no run of this version wrote it (an earlier version may have)"
+    };
+    Err(OutputError::refused(&path, format!("{why}; move it, or give another folder by --out")))
+}
+
+/// Files that were moved, from and to.
+#[derive(Debug, Default)]
+pub(super) struct Moves(Vec<(PathBuf, PathBuf)>);
+
+impl Moves {
+    fn add(&mut self, from: PathBuf, to: PathBuf) -> Result<(), OutputError> {
+        disk::rename(&from, &to)?;
+        self.0.push((from, to));
+        Ok(())
+    }
+
+    fn undo(&self) -> Result<(), OutputError> {
+        self.0.iter().rev().try_for_each(|(from, to)| disk::rename(to, from))
+    }
+}

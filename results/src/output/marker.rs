@@ -1,0 +1,119 @@
+//! The marker of a folder: which files in it a run wrote, and how they looked then.
+
+use super::OutputError;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+use xxhash_rust::xxh3::Xxh3;
+
+/// The file of the marker, in the folder of the results.
+pub(super) const MARKER: &str = ".curious_run.json";
+/// The schema of the marker; count up when its layout changes.
+const SCHEMA: u32 = 1;
+
+/// What a run says of the results that it wrote. Only files that are still as they were written count as results of a
+/// run, and only these are ever removed or replaced.
+#[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Marker {
+    schema: u32,
+    program: String,
+    version: String,
+    /// The content of every result, by its plain name.
+    files: BTreeMap<String, Content>,
+}
+
+/// The length in bytes, and the hash (XXH3-128, hexadecimal), of a file.
+#[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(deny_unknown_fields)]
+struct Content {
+    bytes: u64,
+    xxh3: String,
+}
+
+impl Marker {
+    /// The marker of a run of this program without results.
+    pub(super) fn new() -> Self {
+        let program = std::env::args_os().next().unwrap_or_default();
+        let program = Path::new(&program).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        Self { schema: SCHEMA, program, version, files: BTreeMap::new() }
+    }
+
+    /// The marker of a folder, or one without files if the folder has none.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be read, or is not a marker of this version.
+    pub(super) fn read(folder: &Path) -> Result<Self, OutputError> {
+        let path = folder.join(MARKER);
+        let invalid = |why: String| {
+            OutputError::refused(&path, format!("{why}; move the folder, or give another one by --out"))
+        };
+        match fs::read(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Self::new()),
+            Err(error) => Err(invalid(error.to_string())),
+            Ok(text) => match serde_json::from_slice::<Self>(&text) {
+                Ok(marker) if marker.schema != SCHEMA => {
+                    Err(invalid(format!("it has schema {}, and this program reads {SCHEMA}", marker.schema)))
+                }
+                Ok(marker) if marker.files.keys().all(|name| is_plain(name)) => Ok(marker),
+                Ok(_) | Err(_) => Err(invalid("it does not list the results of a run".into())),
+            },
+        }
+    }
+
+    /// Adds the file with this name in `folder`.
+    pub(super) fn add(&mut self, folder: &Path, name: &str) -> io::Result<()> {
+        self.files.insert(name.to_owned(), Content::of(&folder.join(name))?);
+        Ok(())
+    }
+
+    /// This marker without the files of which `is_left_out` holds.
+    pub(super) fn without(&self, is_left_out: impl Fn(&str) -> bool) -> Self {
+        let files = self.files.iter().filter(|(name, _)| !is_left_out(name));
+        Self { files: files.map(|(name, content)| (name.clone(), content.clone())).collect(), ..self.clone() }
+    }
+
+    /// The names of the results, sorted.
+    pub(super) fn names(&self) -> impl Iterator<Item = &String> {
+        self.files.keys()
+    }
+
+    pub(super) fn lists(&self, name: &str) -> bool {
+        self.files.contains_key(name)
+    }
+
+    /// Whether the file in `folder` is a result of this run, and was not changed since.
+    pub(super) fn proves(&self, folder: &Path, name: &str) -> bool {
+        let path = folder.join(name);
+        let is_as_long = |content: &&Content| {
+            path.symlink_metadata().is_ok_and(|known| known.is_file() && known.len() == content.bytes)
+        };
+        let content = self.files.get(name).filter(is_as_long);
+        content.is_some_and(|content| Content::of(&path).is_ok_and(|found| found == *content))
+    }
+}
+
+impl Content {
+    fn of(path: &Path) -> io::Result<Self> {
+        let mut file = File::open(path)?;
+        let (mut hash, mut bytes, mut buffer) = (Xxh3::new(), 0, vec![0; 1 << 16]);
+        loop {
+            match file.read(&mut buffer)? {
+                0 => return Ok(Self { bytes, xxh3: format!("{:032x}", hash.digest128()) }),
+                read => {
+                    hash.update(&buffer[..read]);
+                    bytes += read as u64;
+                }
+            }
+        }
+    }
+}
+
+/// Whether this is the name of a file in a folder, not a path.
+fn is_plain(name: &str) -> bool {
+    Path::new(name).file_name().is_some_and(|plain| plain == name)
+}
