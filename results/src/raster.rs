@@ -1,10 +1,14 @@
-//! `layers.npy`: all that was learned about the cells, as one array of numbers for `numpy.load`.
+//! `layers.npy`: all that was learned about the cells, as one array of numbers for `numpy.load`; `layers.json`: what its
+//! layers are.
 
 use crate::output::{OutputError, write_file};
 use interfaces::CellState;
 use mapper::Mapper;
+use serde_json::json;
 use std::path::Path;
 
+/// The version of the layout of both files; count up when a layer is renamed, removed, moved or changes its meaning.
+const SCHEMA: u32 = 1;
 /// The probability with which the credible interval contains the rate.
 const CREDIBLE_MASS: f64 = 0.9;
 
@@ -46,7 +50,8 @@ const fn layer(name: &'static str, value: Value) -> Layer {
 /// Writes an array of 32-bit numbers with the shape (layers, rows, columns); row 0 has the lowest y. The layers are
 /// [`LAYERS`]: the map (0 free, 1 blocked), the rate and its 90 % credible interval in cycles per second, the probability
 /// of being blocked now, the probability of a change since last seen, the time since last seen and the time in view, s.
-/// Cells that were never seen are NaN in all layers.
+/// Cells that were never seen are NaN in all layers. A file beside it with the ending `.json` names the layers, and where the
+/// array lies in the map.
 ///
 /// # Errors
 ///
@@ -55,6 +60,13 @@ pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
     let frame = mapper.frame();
     let shape = [LAYERS.len(), frame.height(), frame.width()];
     let learned = Learned { mapper, interval: &mapper.credible_intervals(CREDIBLE_MASS) };
+    let about = json!({
+        "schema": SCHEMA,
+        "layers": LAYERS.map(|layer| layer.name),
+        "resolution_m": frame.resolution_m(),
+        "origin_m": [frame.origin().x, frame.origin().y],
+    });
+    write_file(&path.with_extension("json"), |file| writeln!(file, "{about:#}"))?;
     write_file(path, |file| {
         file.write_all(&npy_header(shape))?;
         for layer in LAYERS {
@@ -103,6 +115,9 @@ mod tests {
         assert_eq!((array.shape(), array.order()), ([8, 2, 3].as_slice(), npyz::Order::C));
         let numbers: Vec<f32> = array.into_vec().unwrap();
         assert!(numbers.len() == 48 && numbers.iter().all(|number| number.is_nan()));
+        let about = std::fs::read_to_string(folder.path().join("layers.json")).unwrap();
+        // Another order or another name is another schema.
+        insta::assert_snapshot!(about.replace(char::is_whitespace, ""), @r#"{"layers":["blocked","rate_hz","rate_low_hz","rate_high_hz","blocked_probability","change_probability","recency_s","observed_s"],"origin_m":[0.0,0.0],"resolution_m":1.0,"schema":1}"#);
         for shape in [[8, 1, 1], [8, 600, 12_345], [8, 1_000_000, 1]] {
             let header = npy_header(shape);
             assert!(header.len().is_multiple_of(64) && header.ends_with(b"\n"), "{shape:?}");

@@ -28,6 +28,8 @@ pub enum LoadError {
 /// unfinished one and a lock with other names, which the next run uses again.
 #[derive(Debug)]
 pub struct StateFile {
+    /// Its name as given, and the file that it leads to: a link stays one, and all names of a file have one lock.
+    name: PathBuf,
     path: PathBuf,
     every: Duration,
     last: Instant,
@@ -43,14 +45,14 @@ impl StateFile {
     /// When another run uses it, when it is no file that can be replaced (a folder, a pipe, a device), and when its folder
     /// cannot be written.
     pub fn open(path: &Path) -> io::Result<Self> {
-        // The file itself, so that a link stays one, and all its names have one lock.
+        let name = path.to_owned();
         let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         match fs::metadata(&path) {
             Ok(known) if !known.is_file() => return Err(io::Error::other(NO_FILE)),
             _ => {}
         }
         let lock = FileLock::new(&with_ending(&path, "lock"))?;
-        Ok(Self { path, every: EVERY, last: Instant::now(), writing: None, _lock: lock })
+        Ok(Self { name, path, every: EVERY, last: Instant::now(), writing: None, _lock: lock })
     }
 
     /// The same, written once in this time.
@@ -59,9 +61,9 @@ impl StateFile {
         Self { every, ..self }
     }
 
-    /// The name of the file.
+    /// The name of the file, as given.
     pub fn path(&self) -> &Path {
-        &self.path
+        &self.name
     }
 
     /// The state in the file; `None` if there is no such file.

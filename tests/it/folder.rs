@@ -88,7 +88,7 @@ fn foreign_files_are_refused_and_stay() {
 fn a_foreign_file_ends_a_run_before_it_begins() {
     let logs = Run::new().with_map_log();
     logs.write("a.log", &crate::map_log::standing_log(1.7e9, 60));
-    let grid = "--quiet --steps 20 --trials 2 --strategy recency,random --estimator paper";
+    let grid = "--quiet --steps 20 --trials 2 --strategy recency --strategy random --estimator paper";
     for (run, arguments) in
         [(Run::new(), "--quiet --duration 1"), (logs, "--quiet a.log"), (Run::grid(), grid)]
     {

@@ -23,6 +23,7 @@ mod memory;
 mod output;
 mod pose;
 mod prior;
+mod schemas;
 mod screen;
 mod shards;
 mod state;

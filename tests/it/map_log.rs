@@ -27,6 +27,7 @@ fn a_bag_becomes_a_page_maps_masks_and_numbers() {
         "interval.png",
         "keepout_mask.pgm",
         "keepout_mask.yaml",
+        "layers.json",
         "layers.npy",
         "map.pgm",
         "map.yaml",

@@ -136,7 +136,7 @@ pub(super) fn shards_in(folder: &Path) -> Result<Vec<(Shard, PathBuf)>, ShardErr
 ///
 /// When a file cannot be read, or is of another build.
 pub fn check_builds(folder: &Path) -> Result<(), ShardError> {
-    let headers = if folder.exists() { headers_in(folder)? } else { Vec::new() };
+    let headers = if folder.is_dir() { headers_in(folder)? } else { Vec::new() };
     headers
         .into_iter()
         .try_for_each(|(path, header)| header.check_build().map_err(|why| ShardError::content(&path, why)))

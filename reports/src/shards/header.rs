@@ -71,6 +71,12 @@ impl Header {
         if self.build == BUILD { Ok(()) } else { Err(format!("this shard {}", other_build(&self.build))) }
     }
 
+    /// The same header from another build.
+    #[cfg(test)]
+    pub(super) fn of_build(self, build: &str) -> Self {
+        Self { build: build.to_owned(), ..self }
+    }
+
     /// The key of the hashes of the lines: a line of another experiment does not match.
     pub(super) fn key(&self) -> u64 {
         xxh3_64(format!("{} {} {}", self.program, self.version, self.settings).as_bytes())

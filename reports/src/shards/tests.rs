@@ -178,6 +178,25 @@ fn a_shard_of_another_experiment_is_refused_before_anything_is_written() {
 }
 
 #[test]
+fn shards_of_another_build_are_found() {
+    let (_, trials) = small();
+    let folder = ran(3, &trials);
+    check_builds(folder.path()).unwrap();
+    check_builds(&folder.path().join("missing")).unwrap();
+    let path = folder.path().join("shard-2-of-3.jsonl");
+    let own = fs::read_to_string(&path).unwrap();
+    for (build, name) in [("0123456789abcdef", "0123456789abcdef"), ("", "an earlier version")] {
+        let other = header(shard(2, 3), &trials).of_build(build).line().unwrap();
+        fs::write(&path, other + own.split_once('\n').unwrap().1).unwrap();
+        let error = check_builds(folder.path()).unwrap_err().to_string();
+        let expected = format!("shard-2-of-3.jsonl: this shard is of another build ({name}, this program is ");
+        assert!(error.contains(&expected) && error.ends_with("--allow-other-build"), "{error}");
+        // Whoever allows it has all trials.
+        assert!(Shards::read(folder.path()).unwrap().missing().is_empty());
+    }
+}
+
+#[test]
 fn two_processes_on_one_shard_are_one_too_many() {
     let (_, trials) = small();
     let folder = tempfile::tempdir().unwrap();

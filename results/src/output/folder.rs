@@ -17,7 +17,7 @@ const LOCK_CONTENT: &[u8] =
     b"A run of curious writes here. What a killed run leaves is kept by the next one.\n";
 /// Results of the programs whose names do not depend on the world: a folder that has other files with these names is
 /// refused before the run. Other names are checked at the end.
-const RESULTS: [&str; 26] = [
+const RESULTS: [&str; 31] = [
     "map_log.rrd",
     "summary.json",
     "report.json",
@@ -34,10 +34,15 @@ const RESULTS: [&str; 26] = [
     "keepout_mask.yaml",
     "cell_statistics.csv",
     "layers.npy",
+    "layers.json",
     "places.png",
     "trajectory.tum",
     "trajectory_true.tum",
     "trajectory.png",
+    "figure3.png",
+    "figure3.svg",
+    "curves.png",
+    "curves.svg",
     "figure5.png",
     "occupancy.png",
     "interval.png",

@@ -19,8 +19,9 @@ use viewer::recording::Live;
 /// knew it and as it was (trajectory.tum, trajectory_true.tum, in the TUM format), and all results as JSON
 /// (summary.json).
 ///
-/// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones
-/// are in its subfolder unfinished_run.
+/// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones are in its
+/// subfolder unfinished_run. Other files are never removed or replaced: where one has the name of a result, the run is
+/// refused before it begins.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "four_rooms",

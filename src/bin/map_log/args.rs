@@ -20,11 +20,12 @@ use survey::{LogEntry, PoseMode, SavedLogs, SurveySettings};
 /// changes (places.png), pictures of the maps (figure5.png) and of the trajectory (trajectory.png), a recording
 /// (map_log.rrd; open it with `rerun FILE`), the map in ROS format (map.yaml) and the map of what is permanent
 /// (permanent.yaml), masks for the costmap filters of Nav2 (speed_mask.yaml, keepout_mask.yaml), the statistics of every
-/// cell (cell_statistics.csv, and layers.npy for NumPy), the trajectory (trajectory.tum, in the TUM format), and all
+/// cell (cell_statistics.csv, and layers.npy for NumPy with its names in layers.json), the trajectory (trajectory.tum, in the TUM format), and all
 /// results as JSON (summary.json).
 ///
 /// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones are in its
-/// subfolder unfinished_run.
+/// subfolder unfinished_run. Other files are never removed or replaced: where one has the name of a result, the run is
+/// refused before it begins.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "map_log",

@@ -87,7 +87,7 @@ fn remove(file: &Path, log: &str) -> Result<ExitCode, Failure> {
 }
 
 fn read(file: &Path) -> anyhow::Result<State> {
-    read_state(file).with_context(|| file.display().to_string())
+    read_state(file).map_err(|why| anyhow!("{}: {why}", file.display()))
 }
 
 /// The logs in a state, or none if it is not one of logs.
