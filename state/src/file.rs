@@ -132,6 +132,8 @@ impl StateFile {
     }
 }
 
+/// How often a lock is tried, in steps of 10 ms.
+const LOCK_TRIES: u32 = 20;
 /// Why something is no state file.
 const NO_FILE: &str = "it is not a file (but a folder, a pipe or a device)";
 
@@ -170,21 +172,20 @@ struct FileLock {
 
 impl FileLock {
     fn new(path: &Path) -> io::Result<Self> {
-        loop {
+        for _ in 0..LOCK_TRIES {
             let file = File::options().write(true).create(true).truncate(false).open(path)?;
             match file.try_lock() {
-                Err(TryLockError::WouldBlock) => {
-                    let why = "another run uses it; wait for its end, or give another file by --state";
-                    return Err(io::Error::new(io::ErrorKind::ResourceBusy, why));
+                // A program that is being started holds the locks of the one that starts it for a moment.
+                Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
+                // Not every file system has locks. Another run can have removed the file after it was opened here.
+                Ok(()) | Err(TryLockError::Error(_)) if is_file_at(&file, path) => {
+                    return Ok(Self { path: path.to_owned(), file: Some(file) });
                 }
-                // Not every file system has locks.
                 Ok(()) | Err(TryLockError::Error(_)) => {}
             }
-            if is_file_at(&file, path) {
-                return Ok(Self { path: path.to_owned(), file: Some(file) });
-            }
-            // Another run has removed the file after it was opened here, and before it was locked.
         }
+        let why = "another run uses it; wait for its end, or give another file by --state";
+        Err(io::Error::new(io::ErrorKind::ResourceBusy, why))
     }
 }
 

@@ -189,7 +189,8 @@ fn shards_of_another_build_are_found() {
         let other = header(shard(2, 3), &trials).of_build(build).line().unwrap();
         fs::write(&path, other + own.split_once('\n').unwrap().1).unwrap();
         let error = check_builds(folder.path()).unwrap_err().to_string();
-        let expected = format!("shard-2-of-3.jsonl: this shard is of another build ({name}, this program is ");
+        let expected =
+            format!("shard-2-of-3.jsonl: this shard is of another build ({name}, this program is ");
         assert!(error.contains(&expected) && error.ends_with("--allow-other-build"), "{error}");
         // Whoever allows it has all trials.
         assert!(Shards::read(folder.path()).unwrap().missing().is_empty());

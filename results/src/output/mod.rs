@@ -14,6 +14,10 @@ pub use unfinished::{UnfinishedFile, is_another_kind};
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// How often a lock is tried again, in steps of 10 ms.
+const LOCK_TRIES: u32 = 20;
 
 /// The error for a file or folder that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -45,7 +49,16 @@ impl OutputError {
 /// Locks an open file until it is closed. If another run has locked it, `path` cannot be written, and `advice` says
 /// what to do.
 pub fn lock(file: &File, path: &Path, advice: &str) -> Result<(), OutputError> {
-    match file.try_lock() {
+    let mut tried = file.try_lock();
+    // A program that is being started holds the locks of the one that starts it for a moment.
+    for _ in 0..LOCK_TRIES {
+        if !matches!(tried, Err(TryLockError::WouldBlock)) {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+        tried = file.try_lock();
+    }
+    match tried {
         // Not every file system has locks.
         Ok(()) | Err(TryLockError::Error(_)) => Ok(()),
         Err(TryLockError::WouldBlock) => {
