@@ -60,6 +60,7 @@ mod sweep;
 mod tracking;
 mod trajectory;
 mod verification;
+mod work;
 
 pub use changing_map::ChangingMap;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};

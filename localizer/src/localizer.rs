@@ -196,7 +196,12 @@ impl Localizer {
         let was_tracking = self.state == PoseState::Tracking;
         (self.learns, self.follower) = (false, None);
         self.by_odometry = motion.apply(&self.by_odometry);
-        let support = self.estimate(&posed, &motion, map, fault);
+        // Without a surface in it, a scan is as good as missing.
+        let is_missing = self.points.points().is_empty() && !self.surfels.is_empty();
+        let support = match is_missing {
+            true => self.dead_reckon(&motion, if fault.is_none() { elapsed_s } else { 0.0 }),
+            false => self.estimate(&posed, &motion, map, fault),
+        };
         if self.state == PoseState::Tracking {
             (self.by_odometry, self.certain_s) = (self.pose, self.time_s);
             self.ignores_guide = false;

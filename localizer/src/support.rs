@@ -5,7 +5,8 @@ use crate::matcher::derivative;
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::surfel_map::{MOVED_M, Surfel, SurfelMap};
-use interfaces::{CellState, Grid, Scan};
+use crate::work;
+use interfaces::{CellState, FARTHEST_M, Grid, GridFrame, Scan};
 use nalgebra::{Isometry2, Matrix3, Point2, Vector2};
 
 /// A beam may pass blocked cells this close to its two ends, m.
@@ -140,7 +141,29 @@ fn passes_blocked(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>)
     let steps = ((length_m - 2.0 * END_MARGIN_M) / step_m).max(0.0) as usize;
     let along = way / length_m;
     let at = |step: usize| laser + along * (END_MARGIN_M + step as f64 * step_m);
-    (0..steps).any(|step| state_at(states, &at(step)) == CellState::Blocked)
+    let [first, last] = inside(states.frame(), &at(0), &(along * step_m));
+    let steps = first..steps.min(last);
+    work::count(steps.len());
+    steps.into_iter().any(|step| state_at(states, &at(step)) == CellState::Blocked)
+}
+
+/// The numbers of the steps from `from` that can lie in a frame, the last one excluded, with one more on either side: outside of
+/// the map nothing is known, and a beam may be said to reach any distance.
+fn inside(frame: &GridFrame, from: &Point2<f64>, step: &Vector2<f64>) -> [usize; 2] {
+    let (mut first, mut last) = (0.0_f64, f64::INFINITY);
+    for (axis, cells) in [frame.width(), frame.height()].into_iter().enumerate() {
+        let low_m = frame.origin()[axis] - from[axis];
+        let high_m = low_m + cells as f64 * frame.resolution_m();
+        if step[axis] == 0.0 {
+            last = if low_m <= 0.0 && high_m >= 0.0 { last } else { 0.0 };
+            continue;
+        }
+        let (a, b) = (low_m / step[axis], high_m / step[axis]);
+        (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+    }
+    // A direction that is not a number gives no step at all.
+    let is_number = step.x.is_finite() && step.y.is_finite();
+    if is_number { [(first - 1.0) as usize, (last + 2.0) as usize] } else { [0, 0] }
 }
 
 /// Some of the beams without a return. Where such a beam passes something blocked, the map contradicts the scan: the
@@ -158,7 +181,7 @@ impl ClearBeams {
 
     /// Replaces the beams by those of `scan`.
     pub(crate) fn update(&mut self, scan: &Scan) {
-        self.range_m = scan.range_max_m;
+        self.range_m = scan.range_max_m.min(FARTHEST_M);
         self.directions.clear();
         let beams = (0..scan.ranges_m.len()).step_by(Self::STRIDE);
         let clear = beams.filter(|&beam| scan.ranges_m[beam] == f32::INFINITY);

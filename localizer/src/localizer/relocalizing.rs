@@ -120,6 +120,9 @@ impl Localizer {
         let mut hypotheses = std::mem::take(&mut self.hypotheses);
         let ratio = self.settings.ambiguity_ratio;
         hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
+        if self.certain_s > f64::NEG_INFINITY {
+            hypotheses.prefer(self.settings.scans_to_confirm, |pose| self.is_where_odometry_says(pose));
+        }
         self.hypotheses = hypotheses;
         self.since_search = self.since_search.saturating_add(1);
         let support = self.hypotheses.best().map_or(Support::default(), |best| best.support);
@@ -137,8 +140,8 @@ impl Localizer {
             }
             None if self.hypotheses.is_empty() => {
                 self.ignores_guide = false;
-                self.pose = motion.apply(&self.pose);
                 self.covariance = motion.propagate(&self.pose, &self.covariance);
+                self.pose = motion.apply(&self.pose);
                 self.doubt();
             }
             None => {
@@ -147,6 +150,17 @@ impl Localizer {
             }
         }
         support
+    }
+
+    /// Follows the odometry for the time of a scan that shows nothing, s: it says nothing against a pose either.
+    pub(super) fn dead_reckon(&mut self, motion: &Motion, elapsed_s: f64) -> Support {
+        let predicted = self.guided(motion.predict(&self.pose, &self.covariance, false));
+        (self.pose, self.covariance) = (predicted.pose, predicted.covariance);
+        self.hypotheses.follow_odometry(motion);
+        self.take_best();
+        self.supported_s = self.supported_s.map(|supported_s| supported_s + elapsed_s);
+        self.state = if self.state == PoseState::Lost { PoseState::Lost } else { PoseState::Uncertain };
+        Support::default()
     }
 
     /// Reports the best hypothesis, with the spread of all.
