@@ -76,6 +76,14 @@ impl Hypotheses {
         self
     }
 
+    /// The same poses, of which only the agreement of the last scan counts.
+    pub(crate) fn restarted(mut self) -> Self {
+        for hypothesis in &mut self.list {
+            hypothesis.score = hypothesis.support.score();
+        }
+        Self { scans: 0, ..self }
+    }
+
     /// Whether a pose is one of them.
     pub(crate) fn contains(&self, pose: &Isometry2<f64>) -> bool {
         self.list.iter().any(|hypothesis| is_same(&hypothesis.pose, pose))
@@ -108,7 +116,9 @@ impl Hypotheses {
     pub(crate) fn prefer(&mut self, scans: u32, is_expected: impl Fn(&Isometry2<f64>) -> bool) {
         let Some(least) = self.best().map(|best| best.score * ABOUT_EQUAL) else { return };
         let is_one = |hypothesis: &Hypothesis| hypothesis.score >= least && is_expected(&hypothesis.pose);
-        if self.scans >= scans && let Some(expected) = self.list.iter().copied().find(is_one) {
+        if self.scans >= scans
+            && let Some(expected) = self.list.iter().copied().find(is_one)
+        {
             self.list = vec![expected];
         }
     }

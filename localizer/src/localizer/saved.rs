@@ -29,7 +29,7 @@ impl Localizer {
     /// odometry holds on. Without a map, the session begins as the first one.
     pub fn begin_session(&mut self) {
         self.faults = FaultFinder::default();
-        self.hypotheses = Hypotheses::default();
+        (self.hypotheses, self.wide) = (Hypotheses::default(), None);
         (self.odometry, self.supported_s) = (None, None);
         (self.last_motion, self.measured) = (Isometry2::identity(), Isometry2::identity());
         (self.follower, self.distrust, self.readings) = (None, 0, 0);
@@ -54,6 +54,7 @@ impl Localizer {
             value(&mut self.calibration),
             value(&mut self.scores),
             value(&mut self.hypotheses),
+            value(&mut self.wide),
             value(&mut self.pose),
             value(&mut self.covariance),
             value(&mut self.state),

@@ -51,8 +51,7 @@ fn frame() -> GridFrame {
 
 /// The states of a trip whose readings `spoil` changes, and the largest error of a certain pose, m. Odometry is perfect.
 fn trip(mut spoil: impl FnMut(usize, &mut LaserReading)) -> (Vec<PoseState>, f64) {
-    let mut localizer =
-        Localizer::from_nothing(&LocalizerSettings::default(), &frame(), at(0)).unwrap();
+    let mut localizer = Localizer::from_nothing(&LocalizerSettings::default(), &frame(), at(0)).unwrap();
     let (mut map, mut states, mut worst_m) = (mapper(frame()), Vec::new(), 0.0_f64);
     for number in 0..READINGS {
         let mut reading = reading(number);
@@ -77,8 +76,7 @@ fn two_seconds_without_returns_are_as_good_as_no_scans() {
             }
         });
         for (number, state) in states.into_iter().enumerate() {
-            let expected =
-                if MISSING.contains(&number) { PoseState::Uncertain } else { PoseState::Tracking };
+            let expected = if MISSING.contains(&number) { PoseState::Uncertain } else { PoseState::Tracking };
             assert_eq!(state, expected, "{range_m}: reading {number}");
         }
         assert!(worst_m < 0.03, "{range_m}: off by {worst_m} m");
