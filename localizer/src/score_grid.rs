@@ -8,8 +8,8 @@ use nalgebra::{Point2, Vector2};
 
 /// The side of the cells, m; larger where a frame cannot have so many.
 pub(crate) const CELL_M: f64 = 0.05;
-/// The largest sides of a grid that is made for one scan, m: four million cells.
-pub(crate) const MOST_M: f64 = 102.4;
+/// The largest sides of a grid that is made for one scan, m: two million cells, which with their search take about 50 ms.
+pub(crate) const MOST_M: f64 = 76.8;
 /// The largest squares have sides of 2 to this power, in cells.
 pub(crate) const TOP: usize = 6;
 /// A point scores up to this far from a surfel, m.

@@ -8,13 +8,16 @@ use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::{MOST_M, ScoreGrid};
 use crate::search::{Candidate, Window, search};
+use crate::surfel_map::SurfelMap;
 use interfaces::{GridFrame, LaserReading};
 use nalgebra::{Point2, Vector2};
 use std::f64::consts::PI;
 
 /// In a large map, surfaces that are farther away than this are not looked for, m: the part of the map around a place is as
 /// small as they are near.
-const MOST_REACH_M: f64 = 38.4;
+const MOST_REACH_M: f64 = 28.8;
+/// The number of parts without a surface that are left out in one scan.
+const MOST_EMPTY: usize = 32;
 
 /// A search that goes on in the next scan.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -29,6 +32,18 @@ pub(super) struct WideSearch {
 impl WideSearch {
     fn new(points: &[ScanPoint]) -> Self {
         Self { reach_m: reach_m(points), next: 0, found: Hypotheses::default() }
+    }
+
+    /// The next part with a surface; `None` after the last one.
+    fn next_with_surfaces(&mut self, surfels: &SurfelMap) -> Option<Window> {
+        for _ in 0..MOST_EMPTY {
+            let part = self.next(surfels.frame())?;
+            let (middle, reach_m) = (part.pose.translation.vector, part.reach_m + self.reach_m);
+            if surfels.usable().any(|surfel| (surfel.at.coords - middle).amax() <= reach_m) {
+                return Some(part);
+            }
+        }
+        self.next(surfels.frame())
     }
 
     /// The next part of a map; `None` after the last one.
@@ -101,7 +116,7 @@ impl Localizer {
         if !is_first {
             wide.found.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
         }
-        let part = wide.next(self.surfels.frame());
+        let part = wide.next_with_surfaces(&self.surfels);
         let candidates = part.map_or(Vec::new(), |window| self.candidates(map, Some(&window)));
         let new = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
         wide.found = wide.found.restarted().or(new, ratio);
