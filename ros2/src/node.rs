@@ -112,8 +112,11 @@ impl<L: Link> CuriousNode<L> {
         let settings = setup::settings(parameters);
         let frame = setup::frame(parameters)?;
         let mut mapper = Mapper::new(&settings.mapper, frame)?;
-        let noise = parameters.range_noise_m;
-        let localizer = LocalizerSettings { range_noise_std_m: noise, ..LocalizerSettings::default() };
+        let localizer = LocalizerSettings {
+            range_noise_std_m: parameters.range_noise_m,
+            lost_after_s: parameters.lost_after_s,
+            ..LocalizerSettings::default()
+        };
         let is_localized = parameters.pose == PoseSource::Localized;
         let mut localization: Box<dyn Localization<LaserReading> + Send> = match is_localized {
             true => Box::new(LoopClosingLocalizer::from_nothing(&localizer, &frame, Isometry2::identity())?),

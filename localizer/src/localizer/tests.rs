@@ -215,6 +215,14 @@ fn a_robot_finds_itself_in_a_place_of_any_size_with_bounded_work_per_scan() {
         let (mut most, mut scans, mut longest) = (0, 0, std::time::Duration::ZERO);
         while localizer.state != PoseState::Tracking && scans < 120 {
             work::take();
+            // A search that goes on is saved with the rest.
+            if scans % 4 == 3 {
+                let snapshot = localizer.snapshot();
+                let settings = LocalizerSettings::default();
+                localizer = Localizer::from_nothing(&settings, map.frame(), Isometry2::identity()).unwrap();
+                localizer.restore(&snapshot).unwrap();
+                assert_eq!(localizer.snapshot(), snapshot);
+            }
             let begin = std::time::Instant::now();
             localizer.localize(&reading(scans, 0.0), &map);
             longest = longest.max(begin.elapsed());
