@@ -1,6 +1,7 @@
 //! Readings whose numbers cannot be true: no panic, and no more work than a reading that can be true.
 
 use super::*;
+use crate::settings::OdometryTrust;
 use crate::trajectory::{TrajectoryFinder, TrajectorySettings};
 use crate::work;
 use interfaces::{Purpose, RandomStream, Scan, Twist, VelocitySample, heading_rad, pose};
@@ -238,4 +239,16 @@ fn a_robot_finds_itself_in_a_place_of_any_size_with_bounded_work_per_scan() {
         assert!(most < cells + 1_000_000, "{side_m} m: {most} steps");
         println!("{side_m} m: found after {scans} scans, at most {most} steps and {longest:?} in one");
     }
+}
+
+#[test]
+fn the_covariance_of_a_lost_robot_follows_the_motion_from_where_it_was() {
+    let (mut localizer, map) = learned(0.0);
+    (localizer.state, localizer.pose) = (PoseState::Lost, pose(2.0, 1.5, 0.3));
+    localizer.covariance = Matrix3::new(0.02, 0.003, 0.001, 0.003, 0.01, -0.002, 0.001, -0.002, 0.04);
+    let motion = Motion::new(pose(0.3, 0.1, 1.2), &OdometryTrust::default());
+    let expected = motion.propagate(&localizer.pose, &localizer.covariance);
+    // No hypothesis is left.
+    localizer.follow(&reading(30, 0.0), &motion, &map);
+    assert_eq!(localizer.covariance, expected);
 }
