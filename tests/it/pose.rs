@@ -39,7 +39,7 @@ fn exact_odometry_needs_no_localizer() {
 fn the_time_until_a_robot_is_lost_is_for_one_that_is_localized() {
     let run = Run::new();
     assert_eq!(
-        refuses(&run, "--lost-after 5s", &[]),
+        refuses(&run, "--lost-after 5s", &[]).trim_end(),
         "error: --lost-after is for a robot that is localized: give --pose localized"
     );
     assert!(refuses(&run, "--pose localized --lost-after -1", &[]).contains("--lost-after"));
