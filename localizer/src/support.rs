@@ -8,6 +8,7 @@ use crate::surfel_map::{MOVED_M, Surfel, SurfelMap};
 use crate::work;
 use interfaces::{CellState, FARTHEST_M, Grid, GridFrame, Scan};
 use nalgebra::{Isometry2, Matrix3, Point2, Vector2};
+use std::ops::Range;
 
 /// A beam may pass blocked cells this close to its two ends, m.
 const END_MARGIN_M: f64 = 0.2;
@@ -141,29 +142,23 @@ fn passes_blocked(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>)
     let steps = ((length_m - 2.0 * END_MARGIN_M) / step_m).max(0.0) as usize;
     let along = way / length_m;
     let at = |step: usize| laser + along * (END_MARGIN_M + step as f64 * step_m);
-    let [first, last] = inside(states.frame(), &at(0), &(along * step_m));
-    let steps = first..steps.min(last);
+    let inside = inside(states.frame(), &at(0), &(along * step_m));
+    let steps = inside.start..steps.min(inside.end);
     work::count(steps.len());
     steps.into_iter().any(|step| state_at(states, &at(step)) == CellState::Blocked)
 }
 
-/// The numbers of the steps from `from` that can lie in a frame, the last one excluded, with one more on either side: outside of
-/// the map nothing is known, and a beam may be said to reach any distance.
-fn inside(frame: &GridFrame, from: &Point2<f64>, step: &Vector2<f64>) -> [usize; 2] {
-    let (mut first, mut last) = (0.0_f64, f64::INFINITY);
-    for (axis, cells) in [frame.width(), frame.height()].into_iter().enumerate() {
-        let low_m = frame.origin()[axis] - from[axis];
-        let high_m = low_m + cells as f64 * frame.resolution_m();
-        if step[axis] == 0.0 {
-            last = if low_m <= 0.0 && high_m >= 0.0 { last } else { 0.0 };
-            continue;
-        }
-        let (a, b) = (low_m / step[axis], high_m / step[axis]);
-        (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
-    }
-    // A direction that is not a number gives no step at all.
-    let is_number = step.x.is_finite() && step.y.is_finite();
-    if is_number { [(first - 1.0) as usize, (last + 2.0) as usize] } else { [0, 0] }
+/// The steps from a point that can lie in a frame, with one more on either side: outside of the map nothing is known, and a beam
+/// may be said to reach any distance.
+fn inside(frame: &GridFrame, from: &Point2<f64>, step: &Vector2<f64>) -> Range<usize> {
+    let steps = |axis: usize, cells: usize| {
+        let step_m = step[axis].abs().max(1e-300).copysign(step[axis]);
+        let low = (frame.origin()[axis] - from[axis]) / step_m;
+        let high = low + cells as f64 * frame.resolution_m() / step_m;
+        (low.min(high), low.max(high))
+    };
+    let (x, y) = (steps(0, frame.width()), steps(1, frame.height()));
+    (x.0.max(y.0) - 1.0) as usize..(x.1.min(y.1) + 2.0) as usize
 }
 
 /// Some of the beams without a return. Where such a beam passes something blocked, the map contradicts the scan: the

@@ -1,4 +1,4 @@
-use super::prior::Borders;
+use super::prior::borders;
 use super::*;
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
 use crate::work;
@@ -205,12 +205,22 @@ fn noisy(cells: usize, resolution_m: f64) -> Grid<CellState> {
 fn the_surfaces_of_a_known_map_are_those_of_all_its_borders() {
     for resolution_m in [0.02, 0.05, 0.3] {
         let grid = noisy(40, resolution_m);
-        let (borders, mut simple) = (Borders::of(&grid), SurfelMap::new(grid.frame()));
-        for border in &borders.all {
-            let fitted = border.fitted(borders.all.iter(), 0.15_f64.max(1.5 * resolution_m));
-            if let Some((foot, normal)) =
-                fitted.filter(|(foot, normal)| simple.nearest(foot, normal, 0.05).is_none())
-            {
+        let (borders, mut simple) = (borders(&grid), SurfelMap::new(grid.frame()));
+        let reach = 0.15_f64.max(1.5 * resolution_m);
+        for (_, at, outward) in &borders {
+            let near = |other: &Point2<f64>| (other - at).norm_squared() <= reach * reach;
+            let around =
+                borders.iter().filter(|(_, other, normal)| near(other) && normal.dot(outward) >= 0.0);
+            let (mut sum, mut normal, mut count) = (Vector2::zeros(), Vector2::zeros(), 0.0);
+            around.for_each(|other| {
+                (sum, normal, count) = (sum + (other.1 - at), normal + other.2, count + 1.0)
+            });
+            if count < 2.0 || normal.norm() < 1e-9 {
+                continue;
+            }
+            let (middle, normal) = (at + sum / count, normal / normal.norm());
+            let foot = at - normal * normal.dot(&(at - middle));
+            if simple.nearest(&foot, &normal, 0.05).is_none() {
                 simple.add(foot, normal, 20);
             }
         }
