@@ -8,7 +8,7 @@ pub(crate) fn ranges_around(scan: &Scan, toward: &Vector2<f64>) -> Option<[f64; 
     let turn = (approximate_atan2(toward.y, toward.x) - scan.angle_min_rad) / scan.angle_increment_rad;
     let turns = TAU / scan.angle_increment_rad.abs();
     let beam = (turn - turns * (turn / turns).floor()).round() as usize;
-    if beam == 0 || beam + 1 >= scan.ranges_m.len() {
+    if beam == 0 || beam >= scan.ranges_m.len().saturating_sub(1) {
         return None;
     }
     Some([beam - 1, beam, beam + 1].map(|beam| f64::from(scan.ranges_m[beam])))

@@ -5,8 +5,7 @@ use crate::localizer::Guide;
 use crate::openings::has_opening;
 use crate::settings::LocalizerSettings;
 use crate::trajectory::{TrajectoryFinder, TrajectorySettings, covariance, in_frame};
-use interfaces::{LaserReading, SettingsError, heading_rad};
-use mapper::Mapper;
+use interfaces::{CellState, Grid, LaserReading, SettingsError, heading_rad};
 use nalgebra::{Isometry2, Matrix3, Vector2};
 
 /// The map is inconsistent where two motions between the same keyframes differ by more than this, m and rad: the motion in the map,
@@ -160,17 +159,21 @@ impl FirstMap {
         Some(Guide { pose: at * motion, covariance })
     }
 
-    /// Adds the pose of the reading, from which `map` has not learned yet. If a loop shows that the map is inconsistent, the
-    /// result is the poses of all readings.
+    /// Whether the mapper, whose time is `map_s`, has paused since the last reading.
+    pub(crate) fn is_after_pause(&self, map_s: f64) -> bool {
+        map_s > self.log.time_s && !self.log.kept.is_empty()
+    }
+
+    /// Adds the pose of the reading, from which the map with these states, whose time was `map_s`, had not learned yet. Returns
+    /// whether a loop shows that the map is inconsistent, so that all readings must be read again.
     pub(crate) fn add(
         &mut self,
         reading: &LaserReading,
-        map: &Mapper,
+        (map_s, states): (f64, &Grid<CellState>),
         localized: &Localized,
-    ) -> Option<Vec<Guide>> {
+    ) -> bool {
         let (pose, state) = (localized.estimate.pose, localized.estimate.state);
-        let map_s = map.time();
-        let is_after_pause = map_s > self.log.time_s && !self.log.kept.is_empty();
+        let is_after_pause = self.is_after_pause(map_s);
         self.log.time_s = self.log.time_s.max(reading.time_s).max(map_s);
         let number = self.log.kept.len();
         let is_known = is_known(&localized.estimate);
@@ -182,7 +185,7 @@ impl FirstMap {
             self.look_at_keyframe();
             let (new_m, known_m) = self.finder.ways_on_ground_m();
             let has_returned = known_m >= new_m.max(STANDS_M);
-            self.log.is_whole = has_returned && (known_m >= LEFT_ALONE_M || !has_opening(map.states()));
+            self.log.is_whole = has_returned && (known_m >= LEFT_ALONE_M || !has_opening(states));
         }
         if self.finder.loops() != self.log.loops {
             self.look_at_loops();
@@ -191,13 +194,15 @@ impl FirstMap {
                 self.log.rest.get_or_insert(REST_SCANS);
             }
         }
-        let rest = self.log.rest.as_mut()?;
-        *rest = rest.saturating_sub(1);
-        if *rest > 0 {
-            return None;
-        }
-        self.log.rest = None;
-        Some(self.corrected())
+        self.log.rest = self.log.rest.map(|rest| rest.saturating_sub(1));
+        let is_due = self.log.rest == Some(0);
+        self.log.rest = self.log.rest.filter(|_| !is_due);
+        is_due
+    }
+
+    /// The readings must be read again after the next one.
+    pub(crate) fn postpone(&mut self) {
+        self.log.rest = Some(1);
     }
 
     /// Whether the robot should rest: the readings will be read again, for which a real robot needs some time.
@@ -260,7 +265,7 @@ impl FirstMap {
 
     /// The poses of all readings in the map, by the trajectory with all loops. Where the trajectory begins, it is where the
     /// map is.
-    fn corrected(&self) -> Vec<Guide> {
+    pub(crate) fn corrected(&self) -> Vec<Guide> {
         let found = self.finder.corrected();
         let last = self.keyframes[FIRST_KEYFRAMES.min(self.keyframes.len() - 1)];
         let first = || {

@@ -13,6 +13,8 @@ const FOUND_STD_M: f64 = 0.1;
 const FOUND_STD_RAD: f64 = 0.03;
 /// A match starts up to this far from the found pose, m.
 const FIRST_GATE_M: f64 = 0.3;
+/// Poses whose scores differ by less are about equal: a place that looks alike from two sides.
+const ABOUT_EQUAL: f64 = 0.95;
 /// What a score counts at the next scan: about five scans decide.
 const MEMORY: f64 = 0.8;
 /// Poses that come closer than this are the same, m and rad.
@@ -74,6 +76,14 @@ impl Hypotheses {
         self
     }
 
+    /// The same poses, of which only the agreement of the last scan counts.
+    pub(crate) fn restarted(mut self) -> Self {
+        for hypothesis in &mut self.list {
+            hypothesis.score = hypothesis.support.score();
+        }
+        Self { scans: 0, ..self }
+    }
+
     /// Whether a pose is one of them.
     pub(crate) fn contains(&self, pose: &Isometry2<f64>) -> bool {
         self.list.iter().any(|hypothesis| is_same(&hypothesis.pose, pose))
@@ -92,6 +102,25 @@ impl Hypotheses {
     /// The only pose, once it has agreed with this number of scans after the search.
     pub(crate) fn decided(&self, scans: u32) -> Option<&Hypothesis> {
         if self.scans >= scans && self.list.len() == 1 { self.list.first() } else { None }
+    }
+
+    /// Moves all poses, without a scan to compare them with.
+    pub(crate) fn follow_odometry(&mut self, motion: &Motion) {
+        for hypothesis in &mut self.list {
+            hypothesis.covariance = motion.propagate(&hypothesis.pose, &hypothesis.covariance);
+            hypothesis.pose = motion.apply(&hypothesis.pose);
+        }
+    }
+
+    /// After this number of scans: of poses with about the same score, the one that is expected is the only one.
+    pub(crate) fn prefer(&mut self, scans: u32, is_expected: impl Fn(&Isometry2<f64>) -> bool) {
+        let Some(least) = self.best().map(|best| best.score * ABOUT_EQUAL) else { return };
+        let is_one = |hypothesis: &Hypothesis| hypothesis.score >= least && is_expected(&hypothesis.pose);
+        if self.scans >= scans
+            && let Some(expected) = self.list.iter().copied().find(is_one)
+        {
+            self.list = vec![expected];
+        }
     }
 
     /// Moves all poses and compares them with the next scan. Poses below `least_score` are dropped.

@@ -60,12 +60,13 @@ mod sweep;
 mod tracking;
 mod trajectory;
 mod verification;
+mod work;
 
 pub use changing_map::ChangingMap;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};
 pub use given_poses::GivenPoses;
 pub use localizer::Localizer;
-pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer};
+pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer, Switch};
 pub use settings::{LocalizerSettings, OdometryTrust};
 pub use trajectory::{
     LineFit, LineMap, LineMatcher, Residual, Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings,

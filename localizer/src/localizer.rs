@@ -1,7 +1,10 @@
 mod estimating;
+mod everywhere;
 mod guided;
 mod relocalizing;
 mod saved;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use guided::Guide;
 
@@ -19,6 +22,7 @@ use crate::support::ClearBeams;
 use crate::surfel_map::{Checker, SurfelMap};
 use crate::sweep::SweepUndo;
 use crate::verification::Verification;
+use everywhere::WideSearch;
 use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError};
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
@@ -41,6 +45,8 @@ pub struct Localizer {
     calibration: Calibration,
     scores: Option<(u64, ScoreGrid)>,
     hypotheses: Hypotheses,
+    /// In a large map: the search in the whole of it, while it goes on.
+    wide: Option<WideSearch>,
     /// The last estimate: its pose and covariance.
     pose: Isometry2<f64>,
     covariance: Matrix3<f64>,
@@ -136,6 +142,7 @@ impl Localizer {
             calibration: Calibration::new(&settings.odometry),
             scores: None,
             hypotheses: Hypotheses::default(),
+            wide: None,
             pose,
             covariance: Matrix3::from_diagonal(&std.component_mul(&std)),
             state,
@@ -196,10 +203,15 @@ impl Localizer {
         let was_tracking = self.state == PoseState::Tracking;
         (self.learns, self.follower) = (false, None);
         self.by_odometry = motion.apply(&self.by_odometry);
-        let support = self.estimate(&posed, &motion, map, fault);
+        // Without a surface in it, a scan is as good as missing.
+        let is_missing = self.points.points().is_empty() && !self.surfels.is_empty();
+        let support = match is_missing {
+            true => self.dead_reckon(&motion, if fault.is_none() { elapsed_s } else { 0.0 }),
+            false => self.estimate(&posed, &motion, map, fault),
+        };
         if self.state == PoseState::Tracking {
             (self.by_odometry, self.certain_s) = (self.pose, self.time_s);
-            self.ignores_guide = false;
+            (self.ignores_guide, self.wide) = (false, None);
         }
         self.last_motion = shifted(&before, &self.begin).inv_mul(&self.pose);
         if was_tracking && self.state == PoseState::Tracking {

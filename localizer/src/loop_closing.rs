@@ -13,6 +13,9 @@
 //!   guided by the corrected trajectory. So there is one kind of map, and what it knows of changes and rates follows from the
 //!   better poses as well.
 //!
+//! A live robot goes on in the old map while a thread reads its log ([`Switch`]): it catches up with the readings that came
+//! meanwhile, and then changes to the new map.
+//!
 //! The map can move until it *stands*: nothing is left to explore, and the robot has gone as far on known ground as on new
 //! ground before. From then on, its frame stays for ever.
 
@@ -24,6 +27,7 @@ use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, read_value,
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use std::fmt;
+use std::thread::JoinHandle;
 
 /// The readings are not read again if this share of those with a certain pose would no longer be certain: then the loop
 /// is not believed.
@@ -39,9 +43,33 @@ pub struct LoopClosingLocalizer {
     frame: GridFrame,
     start: Isometry2<f64>,
     localizer: Localizer,
-    /// `None`: the first map stands.
+    /// `None`: the first map stands, or a thread has it.
     first: Option<FirstMap>,
+    switch: Switch,
+    background: Option<Background>,
 }
+
+/// When the robot changes to the map that it has learned again.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Switch {
+    /// At the reading that closes the loop, which takes as long as all readings so far.
+    #[default]
+    AtOnce,
+    /// This number of readings later, meanwhile in the old map: the same readings give the same bits.
+    After(usize),
+    /// At the first reading after the new map is complete.
+    WhenReady,
+}
+
+/// A thread that reads the readings again, and the readings since then, with the times of the map before them.
+#[derive(Debug)]
+struct Background {
+    thread: JoinHandle<Replayed>,
+    since: Vec<(LaserReading, f64, Localized)>,
+}
+
+/// The readings, and what reading them again has changed, if anything.
+type Replayed = (FirstMap, Option<(Replay, Correction)>);
 
 /// What a closed loop has changed.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -92,12 +120,32 @@ impl LoopClosingLocalizer {
             start: pose,
             localizer: Localizer::from_nothing(settings, frame, pose)?,
             first: Some(FirstMap::new(settings)?),
+            switch: Switch::AtOnce,
+            background: None,
         })
+    }
+
+    /// The same localizer, which changes to a new map as given.
+    #[must_use]
+    pub fn switching(self, switch: Switch) -> Self {
+        Self { switch, ..self }
     }
 
     /// Whether the first map stands: no loop will move it any more.
     pub fn stands(&self) -> bool {
-        self.first.is_none()
+        self.first.is_none() && self.is_settled()
+    }
+
+    /// Whether no map is being learned again in another thread.
+    pub fn is_settled(&self) -> bool {
+        self.background.is_none()
+    }
+
+    /// Waits for the map that is being learned again, and changes to it: before a snapshot, or another session.
+    pub fn settle(&mut self, map: &mut Mapper) {
+        if let Some(LoopClosed { localized, .. }) = self.change_map(map) {
+            learn(map, &localized.reading, &localized.estimate);
+        }
     }
 
     /// Whether the robot should rest: at the start, see [`Localizer::wants_rest`], and for half a second before the readings
@@ -109,6 +157,9 @@ impl LoopClosingLocalizer {
     /// Estimates the pose of a reading, as [`Localizer::localize`]. `map` has learned from the readings so far whose pose was
     /// certain, has skipped the others, and has learned from nothing else.
     pub fn localize(&mut self, reading: &LaserReading, map: &mut Mapper) -> LoopClosed {
+        if self.background.is_some() {
+            return self.localize_meanwhile(reading, map);
+        }
         let Some(first) = &mut self.first else {
             return LoopClosed { localized: self.localizer.localize(reading, map), correction: None };
         };
@@ -121,34 +172,114 @@ impl LoopClosingLocalizer {
             self.first = None;
             return LoopClosed { localized, correction: None };
         }
-        let closed = match first.add(reading, map, &localized) {
-            Some(poses) => self.read_again(&poses, map),
-            None => None,
-        };
+        let is_due = first.add(reading, (map.time(), map.states()), &localized);
+        let closed = if is_due { self.read_again(map) } else { None };
         if self.first.as_ref().is_some_and(FirstMap::stands) {
             self.first = None;
         }
         closed.unwrap_or(LoopClosed { localized, correction: None })
     }
 
-    /// Reads all readings so far again, near other poses. `None` if that is no use; then nothing has changed.
-    fn read_again(&mut self, near: &[Guide], map: &mut Mapper) -> Option<LoopClosed> {
-        let first = self.first.as_mut()?;
-        let mut localizer = Localizer::from_nothing(&self.settings, &self.frame, self.start).ok()?;
-        let mut again = map.emptied();
-        let mut estimates = Vec::with_capacity(near.len());
-        let mut last = None;
-        for (Kept { reading, is_after_pause, .. }, near) in first.kept().iter().zip(near) {
-            if let Some(Localized { reading, estimate }) = last.take() {
-                learn(&mut again, &reading, &estimate);
-            }
-            if *is_after_pause {
-                again.pause(reading.time_s);
-            }
-            let localized = localizer.localize_near(reading, &again, *near);
-            estimates.push(localized.estimate.clone());
-            last = Some(localized);
+    /// Reads all readings so far again, or lets a thread do it. `None` if the map stays as it is for now.
+    fn read_again(&mut self, map: &mut Mapper) -> Option<LoopClosed> {
+        let localizer = Localizer::from_nothing(&self.settings, &self.frame, self.start).ok()?;
+        let (first, again) = (self.first.take()?, Replay { localizer, map: map.emptied(), last: None });
+        if self.switch == Switch::AtOnce {
+            return self.take_over(again.all(first), &[], map);
         }
+        let thread = std::thread::Builder::new().spawn(move || again.all(first));
+        self.background = thread.ok().map(|thread| Background { thread, since: Vec::new() });
+        None
+    }
+
+    /// Estimates the pose of a reading in the old map, until the robot changes to the new one.
+    fn localize_meanwhile(&mut self, reading: &LaserReading, map: &mut Mapper) -> LoopClosed {
+        let map_s = map.time();
+        let localized = self.localizer.localize(reading, map);
+        if self.localizer.much_has_moved() {
+            self.background = None;
+        } else if let Some(Background { thread, since }) = &mut self.background {
+            since.push((reading.clone(), map_s, localized.clone()));
+            let is_ready = match self.switch {
+                Switch::After(readings) => since.len() >= readings,
+                Switch::AtOnce | Switch::WhenReady => thread.is_finished(),
+            };
+            if is_ready && let Some(closed) = self.change_map(map) {
+                return closed;
+            }
+        }
+        LoopClosed { localized, correction: None }
+    }
+
+    /// Waits for the thread, and takes over what it has learned.
+    fn change_map(&mut self, map: &mut Mapper) -> Option<LoopClosed> {
+        let Background { thread, since } = self.background.take()?;
+        let closed = self.take_over(thread.join().ok()?, &since, map);
+        if self.first.as_ref().is_some_and(FirstMap::stands) {
+            self.first = None;
+        }
+        closed
+    }
+
+    /// Changes to what was learned again, after the readings since then. `None` if that was no use.
+    fn take_over(
+        &mut self,
+        (mut first, again): Replayed,
+        since: &[(LaserReading, f64, Localized)],
+        map: &mut Mapper,
+    ) -> Option<LoopClosed> {
+        let (mut again, correction) = again.unzip();
+        for (reading, map_s, localized) in since {
+            let (near, is_after_pause) = (first.guide(reading), first.is_after_pause(*map_s));
+            if let Some(again) = &mut again {
+                again.read(reading, is_after_pause, near);
+            }
+            let (states, localized) = match &again {
+                Some(Replay { map, last: Some(last), .. }) => (map.states(), last),
+                _ => (map.states(), localized),
+            };
+            if first.add(reading, (*map_s, states), localized) {
+                first.postpone();
+            }
+        }
+        self.first = Some(first);
+        let (Replay { localizer, map: learned, last }, correction) = again.zip(correction)?;
+        (self.localizer, *map) = (localizer, learned);
+        let readings = correction.readings + since.len();
+        Some(LoopClosed { localized: last?, correction: Some(Correction { readings, ..correction }) })
+    }
+}
+
+/// A localizer and a map that learn all readings again.
+#[derive(Debug)]
+struct Replay {
+    localizer: Localizer,
+    map: Mapper,
+    /// The last reading, from which the map has not learned yet.
+    last: Option<Localized>,
+}
+
+impl Replay {
+    /// Reads the next reading, near a pose if one is known.
+    fn read(&mut self, reading: &LaserReading, is_after_pause: bool, near: Option<Guide>) -> PoseEstimate {
+        if let Some(Localized { reading, estimate }) = self.last.take() {
+            learn(&mut self.map, &reading, &estimate);
+        }
+        if is_after_pause {
+            self.map.pause(reading.time_s);
+        }
+        let localized = match near {
+            Some(near) => self.localizer.localize_near(reading, &self.map, near),
+            None => self.localizer.localize(reading, &self.map),
+        };
+        self.last.insert(localized).estimate.clone()
+    }
+
+    /// Reads all readings, near their corrected poses.
+    fn all(mut self, mut first: FirstMap) -> Replayed {
+        let near = first.corrected();
+        let read = |(kept, near): (&Kept, Guide)| self.read(&kept.reading, kept.is_after_pause, Some(near));
+        let estimates: Vec<PoseEstimate> = first.kept().iter().zip(near).map(read).collect();
         let is_certain = |state: PoseState| usize::from(state == PoseState::Tracking);
         let (mut before, mut after, mut largest_m) = (0, 0, 0.0_f64);
         for (kept, estimate) in first.kept().iter().zip(&estimates) {
@@ -160,18 +291,17 @@ impl LoopClosingLocalizer {
         }
         if (after as f64) < before as f64 * (1.0 - FEWER_CERTAIN) || largest_m < LEAST_M {
             first.refuse();
-            return None;
+            return (first, None);
         }
         let correction = Correction { places: first.loops(), readings: estimates.len(), largest_m };
         first.accept(&estimates);
-        (self.localizer, *map) = (localizer, again);
-        Some(LoopClosed { localized: last?, correction: Some(correction) })
+        (first, Some((self, correction)))
     }
 }
 
 impl LoopClosingLocalizer {
     /// Everything that readings have changed, as bytes; settings are not in it. While the first map is young, that is all
-    /// readings.
+    /// readings. A map that is being learned again must be [settled](Self::settle) before.
     pub fn snapshot(&mut self) -> Vec<u8> {
         let (mut bytes, log) = (Vec::new(), self.first.as_ref().map(FirstMap::log));
         let localizer = self.localizer.snapshot();
@@ -191,6 +321,7 @@ impl LoopClosingLocalizer {
     pub fn restore(&mut self, mut snapshot: &[u8]) -> Result<(), ValueError> {
         let localizer: Vec<u8> = read_value(&mut snapshot)?;
         let log: Option<Log> = read_value(&mut snapshot)?;
+        self.background = None;
         self.localizer.restore(&localizer)?;
         self.first = match log {
             Some(log) => Some(FirstMap::with_log(&self.settings, log).ok_or(ValueError)?),
@@ -202,6 +333,7 @@ impl LoopClosingLocalizer {
     /// Begins another session, see [`Localizer::begin_session`]. The map of the first session stands.
     pub fn begin_session(&mut self) {
         self.localizer.begin_session();
+        self.background = None;
         if self.first.as_ref().is_some_and(|first| !first.kept().is_empty()) {
             self.first = None;
         }

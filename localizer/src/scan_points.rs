@@ -7,7 +7,8 @@
 mod tests;
 
 use crate::moments::Moments;
-use interfaces::{LaserReading, Scan};
+use crate::work;
+use interfaces::{FARTHEST_M, LaserReading, Scan};
 use nalgebra::{Isometry2, Point2, Vector2};
 
 /// A normal is fitted to the points up to this far away on either side, m.
@@ -17,6 +18,8 @@ const REACH_SQUARED: f64 = NORMAL_REACH_M * NORMAL_REACH_M;
 /// The surface length with the weight 1, m. Longer stretches between two beams count the same: a beam that grazes a
 /// wall does not confirm all of it.
 pub(crate) const FULL_WEIGHT_M: f64 = 0.04;
+/// A normal is fitted to at most this number of points on either side: the work of a scan grows with its beams only.
+const MOST_NEIGHBORS: usize = 1000;
 /// Neighboring end points that are farther apart than this, and than the spacing of beams explains, are on different
 /// surfaces, m.
 const JOIN_M: f64 = 0.1;
@@ -124,10 +127,11 @@ impl ScanPoints {
         self.directions.update(scan, mount);
         let beams = scan.ranges_m.len();
         let origin = Point2::from(mount.translation.vector);
+        let farthest_m = scan.range_max_m.min(FARTHEST_M);
         self.hits.clear();
         self.hits.extend(scan.ranges_m.iter().zip(&self.directions.units).map(|(&range_m, unit)| {
             let range_m = f64::from(range_m);
-            let is_hit = range_m >= scan.range_min_m && range_m <= scan.range_max_m && range_m > 0.0;
+            let is_hit = range_m >= scan.range_min_m && range_m <= farthest_m && range_m > 0.0;
             is_hit.then(|| origin + unit * range_m)
         }));
         self.join(scan, rules);
@@ -202,10 +206,11 @@ impl ScanPoints {
         let beams = self.hits.len();
         let range_m = f64::from(scan.ranges_m[beam]);
         let spacing_m = (range_m * scan.angle_increment_rad.abs()).max(1e-6);
-        let reach = ((NORMAL_REACH_M / spacing_m) as usize).clamp(1, beams / 4 + 1);
+        let reach = ((NORMAL_REACH_M / spacing_m) as usize).clamp(1, (beams / 4 + 1).min(MOST_NEIGHBORS));
         // How far the surface goes on to both sides. As the beams hit it aslant, the reach in beams is less.
         let before = self.run(beam, reach, is_closed, &at, false);
         let after = self.run(beam, reach, is_closed, &at, true);
+        work::count(before + after);
         if before == 0 || after == 0 {
             return None; // an edge
         }

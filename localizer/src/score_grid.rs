@@ -1,12 +1,15 @@
 //! How well a point fits at each place of the line map, and the maxima over squares of growing size: the bounds of the
 //! branch and bound of Hess, Kohler, Rapp & Andor (2016), section V.
 
-use crate::surfel_map::SurfelMap;
+use crate::surfel_map::{SurfelMap, fitted};
+use crate::work;
 use interfaces::{Cell, CellState, Grid, GridFrame};
 use nalgebra::{Point2, Vector2};
 
-/// The side of the cells, m.
+/// The side of the cells, m; larger where a frame cannot have so many.
 pub(crate) const CELL_M: f64 = 0.05;
+/// The largest sides of a grid that is made for one scan, m: two million cells, which with their search take about 50 ms.
+pub(crate) const MOST_M: f64 = 76.8;
 /// The largest squares have sides of 2 to this power, in cells.
 pub(crate) const TOP: usize = 6;
 /// A point scores up to this far from a surfel, m.
@@ -32,17 +35,37 @@ pub(crate) struct ScoreGrid {
 impl ScoreGrid {
     /// The scores of the line map. The robot can only be where `states` are free.
     pub(crate) fn new(surfels: &SurfelMap, states: &Grid<CellState>) -> Self {
-        let mut grid = Self::anywhere(surfels);
-        grid.free = Some(free_cells(&grid.frame, states));
-        grid
+        Self::anywhere(surfels).only_where_free(states)
+    }
+
+    /// The same, of the part of the line map around a point, up to `reach_m` away in x and in y.
+    pub(crate) fn around(
+        surfels: &SurfelMap,
+        states: &Grid<CellState>,
+        middle: &Point2<f64>,
+        reach_m: f64,
+    ) -> Self {
+        let reach = Vector2::repeat(reach_m.min(MOST_M / 2.0));
+        let whole = surfels.frame();
+        let end = Vector2::new(whole.width() as f64, whole.height() as f64) * whole.resolution_m();
+        let (low, high) = ((middle - reach - whole.origin()), (middle + reach - whole.origin()));
+        let (low, high) = (low.sup(&Vector2::zeros()), high.inf(&end));
+        let size = (high - low).sup(&Vector2::repeat(CELL_M));
+        let frame = GridFrame::covering(whole.origin() + low, size.x, size.y, CELL_M);
+        Self::of_frame(surfels, frame.unwrap_or(*whole)).only_where_free(states)
     }
 
     /// The scores of the line map, where nothing is known about the places where the robot can be.
     pub(crate) fn anywhere(surfels: &SurfelMap) -> Self {
-        let coarse = surfels.frame();
-        let cells = |count: usize| (count as f64 * coarse.resolution_m() / CELL_M).ceil() as usize;
-        let (columns, rows) = (cells(coarse.width()), cells(coarse.height()));
-        let frame = GridFrame::new(coarse.origin(), CELL_M, columns, rows).unwrap_or(*coarse);
+        Self::of_frame(surfels, fitted(surfels.frame(), CELL_M, 0))
+    }
+
+    fn only_where_free(self, states: &Grid<CellState>) -> Self {
+        work::count(self.frame.len());
+        Self { free: Some(free_cells(&self.frame, states)), ..self }
+    }
+
+    fn of_frame(surfels: &SurfelMap, frame: GridFrame) -> Self {
         let margin = 1_usize << TOP;
         let (width, height) = (frame.width() + margin, frame.height() + margin);
         let mut grid =
@@ -50,27 +73,28 @@ impl ScoreGrid {
         grid.splat(surfels);
         for level in 0..TOP {
             let finer = &grid.levels[level];
+            work::count(finer.len());
             grid.levels.push(maxima(finer, width, 1 << level));
         }
         grid
     }
 
     fn splat(&mut self, surfels: &SurfelMap) {
-        let reach = Vector2::new(REACH_M, REACH_M);
+        let cell_m = self.frame.resolution_m();
+        let (reach, along_most_m) = (Vector2::repeat(REACH_M.max(cell_m)), ALONG_M.max(cell_m / 2.0));
+        let last = Cell::new(self.frame.width() as i32 - 1, self.frame.height() as i32 - 1);
         for surfel in surfels.usable() {
             let (low, high) =
                 (self.frame.cell_at(&(surfel.at - reach)), self.frame.cell_at(&(surfel.at + reach)));
-            for (x, y) in (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| (x, y))) {
+            let (columns, rows) = (low.x.max(0)..=high.x.min(last.x), low.y.max(0)..=high.y.min(last.y));
+            for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
                 let cell = Cell::new(x, y);
-                if !self.frame.contains(cell) {
-                    continue;
-                }
                 let to = self.frame.center(cell) - surfel.at;
                 let (off_m, along_m) = (surfel.normal.dot(&to).abs(), surfel.normal.perp(&to).abs());
-                if along_m > ALONG_M {
+                if along_m > along_most_m {
                     continue;
                 }
-                let share = (1.0 - (off_m - CELL_M / 2.0).max(0.0) / REACH_M).max(0.0);
+                let share = (1.0 - (off_m - cell_m / 2.0).max(0.0) / REACH_M).max(0.0);
                 let score = (255.0 * share * surfel.steadiness.max(LEAST_WEIGHT)) as u8;
                 let index = self.padded(x, y);
                 let here = &mut self.levels[0][index];
@@ -114,9 +138,9 @@ impl ScoreGrid {
 fn maxima(finer: &[u8], width: usize, side: usize) -> Vec<u8> {
     let height = finer.len() / width;
     let mut coarser = finer.to_vec();
-    for row in coarser.chunks_exact_mut(width) {
-        for x in 0..width - side {
-            row[x] = row[x].max(row[x + side]);
+    for (row, finer) in coarser.chunks_exact_mut(width).zip(finer.chunks_exact(width)) {
+        for (here, right) in row.iter_mut().zip(&finer[side..]) {
+            *here = (*here).max(*right);
         }
     }
     for y in 0..height - side {
@@ -132,11 +156,13 @@ fn maxima(finer: &[u8], width: usize, side: usize) -> Vec<u8> {
 fn free_cells(frame: &GridFrame, states: &Grid<CellState>) -> Vec<u32> {
     let (width, height) = (frame.width(), frame.height());
     let mut sums = vec![0; (width + 1) * (height + 1)];
+    let known = |x: usize, y: usize| states.frame().cell_at(&frame.center(Cell::new(x as i32, y as i32)));
+    let columns: Vec<i32> = (0..width).map(|x| known(x, 0).x).collect();
     for y in 0..height {
         let mut row = 0;
-        for x in 0..width {
-            let center: Point2<f64> = frame.center(Cell::new(x as i32, y as i32));
-            let state = states.get(states.frame().cell_at(&center));
+        let state_row = known(0, y).y;
+        for (x, column) in columns.iter().enumerate() {
+            let state = states.get(Cell::new(*column, state_row));
             row += u32::from(state == Some(&CellState::Free));
             sums[(y + 1) * (width + 1) + x + 1] = sums[y * (width + 1) + x + 1] + row;
         }

@@ -5,7 +5,8 @@
 mod tests;
 
 use crate::scan_points::ScanPoint;
-use crate::score_grid::{CELL_M, ScoreGrid, TOP};
+use crate::score_grid::{ScoreGrid, TOP};
+use crate::work;
 use interfaces::{Cell, GridFrame, heading_rad, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::cmp::Ordering;
@@ -21,7 +22,7 @@ const SAME_M: f64 = 0.4;
 const SAME_RAD: f64 = 0.35;
 /// The largest number of poses that are returned.
 const MAX_CANDIDATES: usize = 16;
-/// The largest number of squares that are looked at: a bound on the time, about 50 ms.
+/// The largest number of squares whose parts are looked at: a bound on the time, about 50 ms.
 const MAX_NODES: usize = 400_000;
 
 /// The number of points after which a square that can no longer reach the least score is left.
@@ -99,8 +100,9 @@ pub(crate) fn search(
     if chosen.is_empty() {
         return Vec::new();
     }
-    let headings_rad = headings(window);
-    let turn = |heading: &f64| turned(&chosen, *heading);
+    let cell_m = grid.frame().resolution_m();
+    let headings_rad = headings(window, cell_m);
+    let turn = |heading: &f64| turned(&chosen, *heading, cell_m);
     let search = Search {
         grid,
         turned: headings_rad.iter().map(turn).collect(),
@@ -109,7 +111,8 @@ pub(crate) fn search(
         cells: cells(grid.frame(), window),
     };
     // A window is small: large squares would not fit in it.
-    let level = if window.is_some() { TOP - 2 } else { TOP };
+    let is_small = window.is_some_and(|window| window.reach_rad < PI);
+    let level = if is_small { TOP - 2 } else { TOP };
     search.best_first(level, least_score, ratio)
 }
 
@@ -142,8 +145,8 @@ fn spread(points: &[ScanPoint]) -> Vec<(Point2<f64>, u32)> {
     chosen
 }
 
-fn headings(window: Option<&Window>) -> Vec<f64> {
-    let step_rad = 2.0 * CELL_M / FAR_M;
+fn headings(window: Option<&Window>, cell_m: f64) -> Vec<f64> {
+    let step_rad = 2.0 * cell_m / FAR_M;
     let (middle_rad, reach_rad) =
         window.map_or((0.0, PI), |window| (heading_rad(&window.pose), window.reach_rad.min(PI)));
     let steps = libm::ceil(reach_rad / step_rad) as i32;
@@ -151,9 +154,9 @@ fn headings(window: Option<&Window>) -> Vec<f64> {
     (-steps..=last).map(|step| middle_rad + f64::from(step) * reach_rad / f64::from(steps.max(1))).collect()
 }
 
-fn turned(points: &[(Point2<f64>, u32)], heading_rad: f64) -> Turned {
+fn turned(points: &[(Point2<f64>, u32)], heading_rad: f64, cell_m: f64) -> Turned {
     let rotation = interfaces::rotation(heading_rad);
-    let cell = |x: f64| libm::floor(x / CELL_M + 0.5) as i32;
+    let cell = |x: f64| libm::floor(x / cell_m + 0.5) as i32;
     let turn = |(at, weight): &(Point2<f64>, u32)| {
         let arm = rotation * at.coords;
         (cell(arm.x), cell(arm.y), *weight)
@@ -185,6 +188,7 @@ impl Search<'_> {
         if !is_inside || !self.grid.has_free(x, y, side) {
             return None;
         }
+        work::count(1);
         let bound = self.bound(level, heading, x, y, least)?;
         Some(Node { bound, level, heading, x, y })
     }

@@ -5,8 +5,10 @@ use crate::matcher::derivative;
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::surfel_map::{MOVED_M, Surfel, SurfelMap};
-use interfaces::{CellState, Grid, Scan};
+use crate::work;
+use interfaces::{CellState, FARTHEST_M, Grid, GridFrame, Scan};
 use nalgebra::{Isometry2, Matrix3, Point2, Vector2};
+use std::ops::Range;
 
 /// A beam may pass blocked cells this close to its two ends, m.
 const END_MARGIN_M: f64 = 0.2;
@@ -140,7 +142,23 @@ fn passes_blocked(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>)
     let steps = ((length_m - 2.0 * END_MARGIN_M) / step_m).max(0.0) as usize;
     let along = way / length_m;
     let at = |step: usize| laser + along * (END_MARGIN_M + step as f64 * step_m);
-    (0..steps).any(|step| state_at(states, &at(step)) == CellState::Blocked)
+    let inside = inside(states.frame(), &at(0), &(along * step_m));
+    let steps = inside.start..steps.min(inside.end);
+    work::count(steps.len());
+    steps.into_iter().any(|step| state_at(states, &at(step)) == CellState::Blocked)
+}
+
+/// The steps from a point that can lie in a frame, with one more on either side: outside of the map nothing is known, and a beam
+/// may be said to reach any distance.
+fn inside(frame: &GridFrame, from: &Point2<f64>, step: &Vector2<f64>) -> Range<usize> {
+    let steps = |axis: usize, cells: usize| {
+        let step_m = step[axis].abs().max(1e-300).copysign(step[axis]);
+        let low = (frame.origin()[axis] - from[axis]) / step_m;
+        let high = low + cells as f64 * frame.resolution_m() / step_m;
+        (low.min(high), low.max(high))
+    };
+    let (x, y) = (steps(0, frame.width()), steps(1, frame.height()));
+    (x.0.max(y.0) - 1.0) as usize..(x.1.min(y.1) + 2.0) as usize
 }
 
 /// Some of the beams without a return. Where such a beam passes something blocked, the map contradicts the scan: the
@@ -158,7 +176,7 @@ impl ClearBeams {
 
     /// Replaces the beams by those of `scan`.
     pub(crate) fn update(&mut self, scan: &Scan) {
-        self.range_m = scan.range_max_m;
+        self.range_m = scan.range_max_m.min(FARTHEST_M);
         self.directions.clear();
         let beams = (0..scan.ranges_m.len()).step_by(Self::STRIDE);
         let clear = beams.filter(|&beam| scan.ranges_m[beam] == f32::INFINITY);

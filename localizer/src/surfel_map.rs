@@ -87,7 +87,7 @@ pub(crate) struct SurfelMap {
 impl SurfelMap {
     /// A map without a surfel, that covers the rectangle of `frame` and a cell around it.
     pub(crate) fn new(frame: &GridFrame) -> Self {
-        let frame = coarse(frame);
+        let frame = fitted(frame, CELL_M, 1);
         let cells = vec![[NONE; PER_CELL]; frame.len()];
         Self {
             frame,
@@ -102,7 +102,7 @@ impl SurfelMap {
 
     /// The map without its surfels, for a frame of the same size: most cells are empty and stay as they are.
     pub(crate) fn emptied(mut self, frame: &GridFrame) -> Self {
-        let cells = coarse(frame);
+        let cells = fitted(frame, CELL_M, 1);
         if cells.len() != self.cells.len() {
             return Self::new(frame);
         }
@@ -243,12 +243,17 @@ impl SurfelMap {
     }
 }
 
-/// The frame of cells of [`CELL_M`] that covers a frame and a cell around it.
-fn coarse(frame: &GridFrame) -> GridFrame {
-    let cells = |count: usize| (count as f64 * frame.resolution_m() / CELL_M).ceil() as usize + 2;
-    let origin = frame.origin() - Vector2::new(CELL_M, CELL_M);
-    let (width, height) = (cells(frame.width()), cells(frame.height()));
-    // A frame of coarser cells can be too large only where the cells of the map are finer than a tenth of a metre can
-    // cover; then the map is cut.
-    GridFrame::new(origin, CELL_M, width, height).unwrap_or(*frame)
+/// The frame of cells of `cell_m` that covers a frame and a border of some cells around it. Where these are more cells than a
+/// frame can have, they are twice as large, four times, and so on: a place of any size is covered as a whole.
+pub(crate) fn fitted(frame: &GridFrame, cell_m: f64, border: usize) -> GridFrame {
+    let fitted = |doublings: i32| {
+        let cell_m = cell_m * 2_f64.powi(doublings);
+        let cells = |count: usize| {
+            let cells = (count as f64 * frame.resolution_m() / cell_m).ceil() as usize;
+            cells.saturating_add(2 * border)
+        };
+        let beside = Vector2::repeat(cell_m * border as f64);
+        GridFrame::new(frame.origin() - beside, cell_m, cells(frame.width()), cells(frame.height()))
+    };
+    (0..64).find_map(fitted).unwrap_or(*frame)
 }

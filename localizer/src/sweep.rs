@@ -3,6 +3,7 @@
 
 use crate::path::Path;
 use crate::scan_points::{Directions, PointRules, ScanPoints};
+use crate::work;
 use interfaces::{LaserReading, Scan, approximate_atan2, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 
@@ -104,8 +105,11 @@ fn cover(scan: &Scan, units: &[Vector2<f64>], from: &End, to: &End, ranges_m: &m
     let first = first - turns * libm::floor(first / turns);
     // The approximate angle of a beam that did not move may be a little beside its direction.
     let (low, high) = (libm::ceil(first - 0.02), first + span + 0.02);
+    // Beyond two turns of the beams there are none, however small the angle between two of them is said to be.
+    let high = high.min(2.0 * beams as f64);
     let mut direction = low;
     while direction <= high {
+        work::count(1);
         let index = direction as usize;
         let index = if index >= beams && scan.is_full_turn() { index - beams } else { index };
         if let Some(range_m) = ranges_m.get_mut(index) {

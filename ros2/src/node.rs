@@ -42,6 +42,9 @@ const LONGEST_GAP_S: f64 = 2.0;
 /// The time between two sessions whose clocks cannot be compared, s.
 const RESTART_GAP_S: f64 = 1.0;
 
+/// A longer time between two sessions is that between a simulated clock and one that counts from 1970, s: ten years.
+const OTHER_CLOCK_S: f64 = 3.2e8;
+
 /// What signals ask for.
 #[derive(Debug, Default)]
 pub struct Signals {
@@ -112,8 +115,11 @@ impl<L: Link> CuriousNode<L> {
         let settings = setup::settings(parameters);
         let frame = setup::frame(parameters)?;
         let mut mapper = Mapper::new(&settings.mapper, frame)?;
-        let noise = parameters.range_noise_m;
-        let localizer = LocalizerSettings { range_noise_std_m: noise, ..LocalizerSettings::default() };
+        let localizer = LocalizerSettings {
+            range_noise_std_m: parameters.range_noise_m,
+            lost_after_s: parameters.lost_after_s,
+            ..LocalizerSettings::default()
+        };
         let is_localized = parameters.pose == PoseSource::Localized;
         let mut localization: Box<dyn Localization<LaserReading> + Send> = match is_localized {
             true => Box::new(LoopClosingLocalizer::from_nothing(&localizer, &frame, Isometry2::identity())?),
@@ -290,8 +296,7 @@ impl<L: Link> CuriousNode<L> {
         reading.time_s -= first_s;
         reading.velocities.iter_mut().for_each(|sample| sample.time_s -= first_s);
         let gap_s = match self.continued.take() {
-            // A simulation that starts anew is earlier.
-            Some(last) => Some((stamp.ns().saturating_sub(last.ns()) as f64 * 1e-9).max(RESTART_GAP_S)),
+            Some(last) => Some(self.gap_s(last, stamp)),
             None => is_restart.then_some(RESTART_GAP_S),
         };
         if gap_s.is_some() {
@@ -299,6 +304,22 @@ impl<L: Link> CuriousNode<L> {
             self.session = Session::next(localization, &mut self.mapper, reading.time_s, gap_s);
         }
         self.session.shifted(reading)
+    }
+
+    /// The time since the last reading of the state that was loaded, s.
+    fn gap_s(&mut self, last: Time, stamp: Time) -> f64 {
+        let gap_s = stamp.ns().saturating_sub(last.ns()) as f64 * 1e-9;
+        if gap_s > OTHER_CLOCK_S {
+            self.notes.say(&format!(
+                "the state ends at {:.0} s by its clock, and the scans begin at {:.0} s by theirs: one of the two is simulated, \
+                 and the time between them counts as {RESTART_GAP_S} s",
+                last.ns() as f64 * 1e-9,
+                stamp.ns() as f64 * 1e-9
+            ));
+            return RESTART_GAP_S;
+        }
+        // A simulation that starts anew is earlier.
+        gap_s.max(RESTART_GAP_S)
     }
 
     fn tick(&mut self, now: Instant) {

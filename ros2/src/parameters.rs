@@ -88,6 +88,8 @@ pub struct Parameters {
     pub transform_publish_period_s: f64,
     /// `transform_timeout`: how long a transform holds after the last reading, s.
     pub transform_timeout_s: f64,
+    /// `lost_after`: the time without an agreeing scan after which the robot is lost, s.
+    pub lost_after_s: f64,
     /// `enable_stamped_cmd_vel`: whether velocities are `TwistStamped`, as Nav2 has it since Kilted, or `Twist`.
     pub enable_stamped_cmd_vel: bool,
     /// `robot_radius`, m.
@@ -129,6 +131,7 @@ impl Default for Parameters {
             map_update_interval_s: 5.0,
             transform_publish_period_s: 0.02,
             transform_timeout_s: 0.2,
+            lost_after_s: 2.0,
             enable_stamped_cmd_vel: true,
             robot_radius_m: 0.22,
             max_vel_x_mps: 0.26,
@@ -155,7 +158,7 @@ enum Slot<'a> {
 }
 
 /// The names of all parameters.
-const NAMES: [&str; 25] = [
+const NAMES: [&str; 26] = [
     "mode",
     "navigator",
     "pose",
@@ -171,6 +174,7 @@ const NAMES: [&str; 25] = [
     "map_update_interval",
     "transform_publish_period",
     "transform_timeout",
+    "lost_after",
     "enable_stamped_cmd_vel",
     "robot_radius",
     "max_vel_x",
@@ -254,6 +258,7 @@ impl Parameters {
         let is_period = period == 0.0 || (0.005..=10.0).contains(&period);
         check.valid("transform_publish_period", period, "0, or from 0.005 to 10", is_period)?;
         check.within("transform_timeout", self.transform_timeout_s, 0.0..=10.0, "from 0 to 10")?;
+        check.within("lost_after", self.lost_after_s, 0.0..=3600.0, "from 0 to 3600")?;
         for (name, frame) in [
             ("map_frame", &self.map_frame),
             ("odom_frame", &self.odom_frame),
@@ -293,6 +298,7 @@ impl Parameters {
             "map_update_interval" => Slot::Float(&mut self.map_update_interval_s),
             "transform_publish_period" => Slot::Float(&mut self.transform_publish_period_s),
             "transform_timeout" => Slot::Float(&mut self.transform_timeout_s),
+            "lost_after" => Slot::Float(&mut self.lost_after_s),
             "enable_stamped_cmd_vel" => Slot::Bool(&mut self.enable_stamped_cmd_vel),
             "robot_radius" => Slot::Float(&mut self.robot_radius_m),
             "max_vel_x" => Slot::Float(&mut self.max_vel_x_mps),

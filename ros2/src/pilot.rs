@@ -8,7 +8,7 @@ use crate::parameters::{Mode, Navigator, Parameters};
 use agent::{Agent, AgentSettings, Features, Policy};
 use anyhow::{Context, anyhow};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
-use interfaces::{Purpose, RandomStream, SettingsError, Twist, Values};
+use interfaces::{Purpose, RandomStream, SettingsError, Values};
 use mapper::Mapper;
 use nalgebra::Point2;
 use navigation::NavigationPilot;
@@ -115,7 +115,8 @@ impl Pilot for LivePilot {
     fn command(&mut self, belief: &Belief) -> Order {
         match self {
             Self::Watching => Order::None,
-            Self::Driving { is_paused: true, .. } => Order::Velocity(Twist::STOP),
+            // The node stops the robot once. Then it leaves the robot to others.
+            Self::Driving { is_paused: true, .. } => Order::None,
             Self::Driving { pilot, .. } => Order::Velocity(pilot.command(belief)),
             Self::Navigating(pilot) => pilot.command(belief),
         }

@@ -174,10 +174,13 @@ impl Localizer {
 
     /// Whether the pose is near that which the odometry says since the last certain pose.
     fn is_near_odometry(&self) -> bool {
-        let off = self.by_odometry.inv_mul(&self.pose);
-        self.time_s - self.certain_s <= NEAR_S
-            && off.translation.vector.norm() <= NEAR_M
-            && heading_rad(&off).abs() <= NEAR_RAD
+        self.time_s - self.certain_s <= NEAR_S && self.is_where_odometry_says(&self.pose)
+    }
+
+    /// Whether a pose is near that which the odometry says since the last certain pose, at any time.
+    pub(super) fn is_where_odometry_says(&self, pose: &Isometry2<f64>) -> bool {
+        let off = self.by_odometry.inv_mul(pose);
+        off.translation.vector.norm() <= NEAR_M && heading_rad(&off).abs() <= NEAR_RAD
     }
 
     /// The pose is not certain; after some time, it is lost.

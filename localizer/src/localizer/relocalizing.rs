@@ -7,8 +7,7 @@ use crate::estimate::PoseState;
 use crate::hypotheses::{Hypotheses, Hypothesis};
 use crate::motion::Motion;
 use crate::placement::Placement;
-use crate::score_grid::ScoreGrid;
-use crate::search::{Window, search};
+use crate::search::Window;
 use crate::support::Support;
 use crate::tracking::Tracked;
 use crate::verification::Verification;
@@ -18,10 +17,10 @@ use interfaces::LaserReading;
 const WINDOW_M: f64 = 1.3;
 const WINDOW_RAD: f64 = 1.2;
 /// The least score of a pose in a search.
-const LEAST_FOUND: f64 = 0.55;
+pub(super) const LEAST_FOUND: f64 = 0.55;
 /// The least score of a refined pose: around the predicted pose, and anywhere.
 const LEAST_SCORE_NEAR: f64 = 0.5;
-const LEAST_SCORE: f64 = 0.65;
+pub(super) const LEAST_SCORE: f64 = 0.65;
 /// A pose near the predicted pose with this score makes a search in the whole map needless.
 const CLEAR_SCORE: f64 = 0.85;
 /// By this much the support of another pose is clearly better than that of a pose which a guide allows.
@@ -53,20 +52,10 @@ impl Localizer {
         map: &impl ChangingMap,
         least_score: f64,
     ) -> Hypotheses {
-        let (ratio, grid) = (self.settings.ambiguity_ratio, self.score_grid(map));
+        let ratio = self.settings.ambiguity_ratio;
         let window = Window { pose: self.pose, reach_m: WINDOW_M, reach_rad: WINDOW_RAD };
-        let candidates = search(&grid, self.points.points(), Some(&window), LEAST_FOUND, ratio);
-        let found = Hypotheses::start(&self.scene(reading, map), &candidates, least_score, ratio);
-        self.scores = Some((self.surfels.revision(), grid));
-        found
-    }
-
-    /// The scores of the cells, for searches. They are made again when the line map has changed.
-    fn score_grid(&mut self, map: &impl ChangingMap) -> ScoreGrid {
-        match self.scores.take() {
-            Some((known, grid)) if known == self.surfels.revision() => grid,
-            _ => ScoreGrid::new(&self.surfels, map.states()),
-        }
+        let candidates = self.candidates(map, Some(&window));
+        Hypotheses::start(&self.scene(reading, map), &candidates, least_score, ratio)
     }
 
     /// Searches for the pose: around the predicted pose, and in the whole map.
@@ -88,13 +77,15 @@ impl Localizer {
         // Where most of the scan fits, the map is not finished or the view has changed: far away, something in an
         // unfinished map always fits better.
         let is_elsewhere = !is_near || tracked.support.share() < LEAST_GUIDE;
-        if !is_clear && is_elsewhere && self.since_search >= SEARCH_EVERY {
+        let is_due = self.wide.is_some() || self.since_search >= SEARCH_EVERY;
+        if !is_clear && is_elsewhere && is_due {
             self.since_search = 0;
-            let grid = self.score_grid(map);
-            let candidates = search(&grid, self.points.points(), None, LEAST_FOUND, ratio);
-            self.scores = Some((self.surfels.revision(), grid));
-            let anywhere = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
-            found = found.or(anywhere, ratio);
+            if let Some(anywhere) = self.search_everywhere(reading, motion, map) {
+                found = found.or(anywhere, ratio);
+            }
+        }
+        if !found.is_empty() {
+            self.wide = None;
         }
         let is_confirmed = is_near && found.contains(&tracked.placement.pose);
         if is_confirmed && tracked.support.confirmed >= LEAST_CONFIRMED {
@@ -120,6 +111,9 @@ impl Localizer {
         let mut hypotheses = std::mem::take(&mut self.hypotheses);
         let ratio = self.settings.ambiguity_ratio;
         hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
+        if self.certain_s > f64::NEG_INFINITY {
+            hypotheses.prefer(self.settings.scans_to_confirm, |pose| self.is_where_odometry_says(pose));
+        }
         self.hypotheses = hypotheses;
         self.since_search = self.since_search.saturating_add(1);
         let support = self.hypotheses.best().map_or(Support::default(), |best| best.support);
@@ -137,8 +131,8 @@ impl Localizer {
             }
             None if self.hypotheses.is_empty() => {
                 self.ignores_guide = false;
-                self.pose = motion.apply(&self.pose);
                 self.covariance = motion.propagate(&self.pose, &self.covariance);
+                self.pose = motion.apply(&self.pose);
                 self.doubt();
             }
             None => {
@@ -147,6 +141,20 @@ impl Localizer {
             }
         }
         support
+    }
+
+    /// Follows the odometry for the time of a scan that shows nothing, s: it says nothing against a pose either.
+    pub(super) fn dead_reckon(&mut self, motion: &Motion, elapsed_s: f64) -> Support {
+        let predicted = self.guided(motion.predict(&self.pose, &self.covariance, false));
+        (self.pose, self.covariance) = (predicted.pose, predicted.covariance);
+        self.hypotheses.follow_odometry(motion);
+        if let Some(wide) = &mut self.wide {
+            wide.found.follow_odometry(motion);
+        }
+        self.take_best();
+        self.supported_s = self.supported_s.map(|supported_s| supported_s + elapsed_s);
+        self.state = if self.state == PoseState::Lost { PoseState::Lost } else { PoseState::Uncertain };
+        Support::default()
     }
 
     /// Reports the best hypothesis, with the spread of all.

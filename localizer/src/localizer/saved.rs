@@ -4,8 +4,9 @@ use super::{LOST_STD_M, LOST_STD_RAD, Localizer};
 use crate::estimate::PoseState;
 use crate::faults::FaultFinder;
 use crate::hypotheses::Hypotheses;
-use interfaces::{ValueError, Values, value};
+use interfaces::{Value, ValueError, Values, read_value, value, write_value};
 use nalgebra::{Isometry2, Matrix3, Vector3};
+use serde::{Serialize, de::DeserializeOwned};
 
 impl Localizer {
     /// Everything that readings have changed, as bytes; settings are not in it.
@@ -29,7 +30,7 @@ impl Localizer {
     /// odometry holds on. Without a map, the session begins as the first one.
     pub fn begin_session(&mut self) {
         self.faults = FaultFinder::default();
-        self.hypotheses = Hypotheses::default();
+        (self.hypotheses, self.wide) = (Hypotheses::default(), None);
         (self.odometry, self.supported_s) = (None, None);
         (self.last_motion, self.measured) = (Isometry2::identity(), Isometry2::identity());
         (self.follower, self.distrust, self.readings) = (None, 0, 0);
@@ -74,7 +75,22 @@ impl Localizer {
             value(&mut self.since_search),
             value(&mut self.accepted_support),
             value(&mut self.ignores_guide),
+            Box::new(IfAny(&mut self.wide)),
         ]);
         values
+    }
+}
+
+/// The last value of a part, which takes no bytes where there is none: states from before it existed stay readable.
+struct IfAny<'a, T>(&'a mut Option<T>);
+
+impl<T: Serialize + DeserializeOwned> Value for IfAny<'_, T> {
+    fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+        self.0.as_ref().map_or(Ok(()), |any| write_value(any, bytes))
+    }
+
+    fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
+        *self.0 = if bytes.is_empty() { None } else { Some(read_value(bytes)?) };
+        Ok(())
     }
 }

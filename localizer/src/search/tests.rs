@@ -50,8 +50,8 @@ fn exhaustive(grid: &ScoreGrid, points: &[ScanPoint], window: Option<&Window>) -
     let (low, high) = cells(frame, window);
     let is_inside = |cell: Cell| (low.x..=high.x).contains(&cell.x) && (low.y..=high.y).contains(&cell.y);
     let mut best = 0;
-    for heading in headings(window) {
-        let turned = turned(&chosen, heading);
+    for heading in headings(window, frame.resolution_m()) {
+        let turned = turned(&chosen, heading, frame.resolution_m());
         for cell in (0..frame.len()).map(|index| frame.cell(index)).filter(|cell| is_inside(*cell)) {
             if grid.has_free(cell.x, cell.y, 1) {
                 let score = |&(dx, dy, weight): &(i32, i32, u32)| {

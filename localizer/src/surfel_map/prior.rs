@@ -1,7 +1,8 @@
 //! Surfels from a known occupancy grid.
 
 use super::SurfelMap;
-use interfaces::{CellState, Grid};
+use crate::work;
+use interfaces::{Cell, CellState, Grid};
 use nalgebra::{Point2, Vector2};
 
 /// The number of scans that a surfel of a known map counts as. Scans correct it soon.
@@ -9,26 +10,35 @@ const PRIOR_SCANS: u32 = 20;
 /// A surface is fitted to the borders within this distance, m.
 const FIT_M: f64 = 0.15;
 
+/// The middle of a side between a blocked and a free cell: the blocked cell, the position and the direction to the free side.
+type Border = (Cell, Point2<f64>, Vector2<f64>);
+
 impl SurfelMap {
     /// The surfaces of a known map: the borders between blocked and free cells, each with the line through the borders
     /// around it.
     pub(crate) fn from_grid(grid: &Grid<CellState>) -> Self {
         let mut map = Self::new(grid.frame());
         let borders = borders(grid);
+        // Where the borders of each row begin, and where those of the last one end.
+        let height = grid.frame().height() as i32;
+        let rows: Vec<usize> =
+            (0..=height).map(|row| borders.partition_point(|(cell, ..)| cell.y < row)).collect();
         let resolution_m = grid.frame().resolution_m();
         let reach = FIT_M.max(1.5 * resolution_m);
-        for (index, (at, outward)) in borders.iter().enumerate() {
-            // Borders are listed row by row, so that neighbors are not far apart in the list.
+        let cells = (reach / resolution_m) as i32 + 2;
+        for (Cell { x, y }, at, outward) in &borders {
             let (mut sum, mut normal, mut count) = (Vector2::zeros(), Vector2::zeros(), 0.0);
-            let near = |other: &(Point2<f64>, Vector2<f64>)| (other.0 - at).norm_squared() <= reach * reach;
-            let rows = (2.0 * reach / resolution_m) as usize + 2;
-            let span = rows * 2 * grid.frame().width();
-            let (low, high) = (index.saturating_sub(span), (index + span).min(borders.len()));
-            for other in borders[low..high].iter().filter(|other| near(other)) {
-                if other.1.dot(outward) >= 0.0 {
-                    sum += other.0 - at;
-                    normal += other.1;
-                    count += 1.0;
+            for row in (y - cells).max(0)..(y + cells).min(height) {
+                let row = &borders[rows[row as usize]..rows[row as usize + 1]];
+                let first = row.partition_point(|(cell, ..)| cell.x < x - cells);
+                for other in row[first..].iter().take_while(|(cell, ..)| cell.x <= x + cells) {
+                    work::count(1);
+                    let to = other.1 - at;
+                    if to.norm_squared() <= reach * reach && other.2.dot(outward) >= 0.0 {
+                        sum += to;
+                        normal += other.2;
+                        count += 1.0;
+                    }
                 }
             }
             let length = normal.norm();
@@ -46,8 +56,8 @@ impl SurfelMap {
     }
 }
 
-/// The middles of the sides between blocked and free cells, each with the direction to the free side.
-fn borders(grid: &Grid<CellState>) -> Vec<(Point2<f64>, Vector2<f64>)> {
+/// The borders of a map, row by row and from left to right.
+pub(super) fn borders(grid: &Grid<CellState>) -> Vec<Border> {
     let frame = grid.frame();
     let mut borders = Vec::new();
     for index in (0..frame.len()).filter(|&index| grid.cells()[index] == CellState::Blocked) {
@@ -55,7 +65,7 @@ fn borders(grid: &Grid<CellState>) -> Vec<(Point2<f64>, Vector2<f64>)> {
         for other in cell.neighbours4() {
             if grid.get(other) == Some(&CellState::Free) {
                 let outward = Vector2::new(f64::from(other.x - cell.x), f64::from(other.y - cell.y));
-                borders.push((frame.center(cell) + outward * (frame.resolution_m() / 2.0), outward));
+                borders.push((cell, frame.center(cell) + outward * (frame.resolution_m() / 2.0), outward));
             }
         }
     }

@@ -1,5 +1,7 @@
+use super::prior::borders;
 use super::*;
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
+use crate::work;
 use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, Scan, Twist};
 use nalgebra::Isometry2;
 
@@ -189,4 +191,64 @@ fn the_surfels_of_a_known_map_lie_on_its_borders() {
     let half_m = 0.15 * normal.y;
     let close = offsets.iter().filter(|off_m| (*off_m - half_m).abs() < 0.03).count();
     assert!(close * 10 > offsets.len() * 9, "{close} of {}", offsets.len());
+}
+
+/// A map of this side, of which a third of the cells are blocked by chance.
+fn noisy(cells: usize, resolution_m: f64) -> Grid<CellState> {
+    let mut random = RandomStream::new(201, Purpose::WorldGenerator);
+    let frame = GridFrame::new(Point2::new(-1.3, 0.7), resolution_m, cells, cells).unwrap();
+    let state = |_| if random.bernoulli(0.3) { CellState::Blocked } else { CellState::Free };
+    Grid::from_cells(frame, (0..frame.len()).map(state).collect()).unwrap()
+}
+
+#[test]
+fn the_surfaces_of_a_known_map_are_those_of_all_its_borders() {
+    for resolution_m in [0.02, 0.05, 0.3] {
+        let grid = noisy(40, resolution_m);
+        let (borders, mut simple) = (borders(&grid), SurfelMap::new(grid.frame()));
+        let reach = 0.15_f64.max(1.5 * resolution_m);
+        for (_, at, outward) in &borders {
+            let near = |other: &Point2<f64>| (other - at).norm_squared() <= reach * reach;
+            let around =
+                borders.iter().filter(|(_, other, normal)| near(other) && normal.dot(outward) >= 0.0);
+            let (mut sum, mut normal, mut count) = (Vector2::zeros(), Vector2::zeros(), 0.0);
+            around.for_each(|other| {
+                (sum, normal, count) = (sum + (other.1 - at), normal + other.2, count + 1.0)
+            });
+            if count < 2.0 || normal.norm() < 1e-9 {
+                continue;
+            }
+            let (middle, normal) = (at + sum / count, normal / normal.norm());
+            let foot = at - normal * normal.dot(&(at - middle));
+            if simple.nearest(&foot, &normal, 0.05).is_none() {
+                simple.add(foot, normal, 20);
+            }
+        }
+        assert!(simple.surfels.len() > 100);
+        assert_eq!(SurfelMap::from_grid(&grid).surfels, simple.surfels, "{resolution_m} m");
+    }
+}
+
+#[test]
+fn a_noisy_map_takes_as_long_as_it_is_large() {
+    let steps = |cells: usize| {
+        work::take();
+        SurfelMap::from_grid(&noisy(cells, 0.05));
+        work::take()
+    };
+    // Sixteen times as many cells.
+    let (small, large) = (steps(100), steps(400));
+    assert!(large < 18 * small, "{small} steps, {large} of a larger map");
+}
+
+#[test]
+fn cells_are_as_small_as_a_frame_allows() {
+    let origin = Point2::new(3.0, -2.0);
+    for (resolution_m, cells, expected_m) in [(0.05, 200, 0.1), (1.0, 2000, 0.4), (8.0, 8192, 12.8)] {
+        let frame = GridFrame::new(origin, resolution_m, cells, cells).unwrap();
+        let fitted = fitted(&frame, CELL_M, 1);
+        let end = frame.origin() + Vector2::repeat(resolution_m * cells as f64);
+        assert_eq!(fitted.resolution_m(), expected_m);
+        assert!(fitted.contains(fitted.cell_at(&origin)) && fitted.contains(fitted.cell_at(&end)));
+    }
 }

@@ -118,6 +118,11 @@ impl FrontEnd {
         self.has_odometry = true;
     }
 
+    /// Whether the last scan shows no surface.
+    pub(super) fn sees_nothing(&self) -> bool {
+        self.points.points().is_empty()
+    }
+
     pub(super) fn keyframes(&self) -> &[Keyframe] {
         &self.keyframes
     }

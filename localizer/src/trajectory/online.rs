@@ -68,9 +68,10 @@ impl TrajectoryFinder {
         Some((motion, spread))
     }
 
-    /// Whether the last reading agreed with its submap; invalid readings do not disagree.
+    /// Whether the last reading agreed with its submap; invalid readings, and those that show nothing, do not disagree.
     pub(crate) fn is_supported(&self) -> bool {
-        self.readings.last().is_some_and(|reading| reading.state != PoseState::Uncertain)
+        self.front_end.sees_nothing()
+            || self.readings.last().is_some_and(|reading| reading.state != PoseState::Uncertain)
     }
 
     /// The number of keyframes so far.

@@ -7,6 +7,7 @@ mod coherent_motion;
 mod faults;
 mod glitches;
 mod loops;
+mod missing;
 mod robot;
 mod tracking;
 mod unknown_start;

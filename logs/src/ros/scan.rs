@@ -28,7 +28,8 @@ pub fn converted(message: LaserScan, is_upside_down: bool) -> Result<Scan, Strin
         angle_min_rad: side * f64::from(message.angle_min),
         angle_increment_rad: side * increment_rad(&message),
         range_min_m: f64::from(message.range_min),
-        range_max_m: f64::from(message.range_max).min(FARTHEST_M),
+        // NaN stays NaN, and is refused.
+        range_max_m: f64::from(message.range_max).clamp(f64::NEG_INFINITY, FARTHEST_M),
         sweep_s: f64::from(message.time_increment) * (beams - 1) as f64,
         ranges_m: message.ranges,
     };
@@ -155,6 +156,10 @@ mod tests {
         );
         let swapped = LaserScan { range_min: 10.0, range_max: 0.1, ..good.clone() };
         assert!(refused(swapped).starts_with("range limits must hold"));
+        assert_eq!(
+            refused(LaserScan { range_max: f32::NAN, ..good.clone() }),
+            "range limits must hold 0 <= range_min < range_max, finite: 0.10000000149011612 m, NaN m"
+        );
         assert!(refused(LaserScan { angle_min: f32::NAN, ..good.clone() }).starts_with("scan angles"));
         assert!(refused(LaserScan { time_increment: -1.0, ..good.clone() }).starts_with("the duration"));
         assert_eq!(refused(LaserScan { time_increment: 20.0, ..good }), "a scan of 20 s");

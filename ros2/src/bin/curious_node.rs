@@ -69,6 +69,7 @@ PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
   transform_publish_period
                           time between two transforms, s; 0: none [0.02]
   transform_timeout       how long a transform holds after a scan, s [0.2]
+  lost_after              the time without an agreeing scan after which the robot is lost, s [2.0]
   robot_radius            m [0.22]
   max_vel_x, max_vel_theta, acc_lim_x, acc_lim_theta
                           limits, m/s, rad/s, m/s^2, rad/s^2 [0.26, 1.0, 2.5, 3.2]

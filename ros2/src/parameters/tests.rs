@@ -26,6 +26,7 @@ fn invalid_parameters_are_named() {
         error("mode", "localization"),
         "the parameter `mode` must be map or explore, not `localization`"
     );
+    assert_eq!(error("lost_after", "-1"), "node setting `lost_after` must be from 0 to 3600, not -1");
     assert_eq!(error("base_frame", ""), "the parameter `base_frame` must be the name of a frame, not ``");
     assert_eq!(
         error("transform_publish_period", "0.001"),

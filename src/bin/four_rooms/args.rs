@@ -63,6 +63,11 @@ pub(crate) struct Args {
     #[arg(long, value_enum, help_heading = "Robot")]
     pub(crate) pose: Option<PoseArg>,
 
+    /// With a localized pose: the time without an agreeing scan after which the robot is lost, and looks around and searches for
+    /// its pose in the whole map [default: 2s]
+    #[arg(long, value_name = "TIME", value_parser = duration_s, allow_negative_numbers = true, help_heading = "Robot")]
+    pub(crate) lost_after: Option<f64>,
+
     /// The strategy of the agent [default: curious]
     #[arg(long, value_parser = strategies(), help_heading = "Pilot")]
     pub(crate) strategy: Option<Policy>,

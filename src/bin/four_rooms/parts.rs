@@ -10,7 +10,7 @@ use curious::program::{Failure, input};
 use curious::reachability;
 use curious::terminal::say;
 use curious::worlds::{self, Loaded};
-use evaluation::physics_trial::PhysicsSettings;
+use evaluation::physics_trial::{PhysicsSettings, PoseChoice};
 use interfaces::{CellState, Grid, Twist};
 use robot::{Autonomous, Tour};
 use sim::physics::WorldSpec;
@@ -44,6 +44,14 @@ impl Parts {
         settings.mapper.estimator = args.estimator.clone();
         settings.mapper.occupancy = args.occupancy.clone();
         settings.pose = args.pose.map_or(settings.pose, Into::into);
+        if let Some(lost_after_s) = args.lost_after {
+            if settings.pose != PoseChoice::Localized {
+                return Err(input(anyhow!(
+                    "--lost-after is for a robot that is localized: give --pose localized"
+                )));
+            }
+            settings.localizer.lost_after_s = lost_after_s;
+        }
         combination::odometry(&spec, settings.pose).iter().for_each(warn);
         let prior = args.map.as_deref().map(|path| known_map(path, &spec)).transpose()?;
         Ok(Self { spec, settings, prior })

@@ -4,7 +4,9 @@ use super::world::{Corridor, Plan};
 use super::{SPEED_MPS, ahead};
 use crate::robot::{Odometry, PERIOD_S, furnished, mapper};
 use interfaces::{CellState, LaserReading};
-use localizer::{Correction, Localizer, LocalizerSettings, LoopClosed, LoopClosingLocalizer, PoseState};
+use localizer::{
+    Correction, Localizer, LocalizerSettings, LoopClosed, LoopClosingLocalizer, PoseState, Switch,
+};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use std::time::Instant;
@@ -227,6 +229,74 @@ fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
     }
     assert!(corrections > 0);
     assert!(parts.map.snapshot() == whole.map.snapshot());
+}
+
+/// A trip of 1.5 rounds of a robot that changes to a new map as given: the states and poses of all readings; the numbers of
+/// readings after which the robot changed, and those that were read again; the largest error on the second round, m, and the
+/// longest time for a reading, ms.
+fn switched(switch: Switch) -> (Vec<(PoseState, Isometry2<f64>)>, Vec<(usize, usize)>, f64, f64) {
+    let mut run = Run::new(narrow(101), 101);
+    run.localizer = run.localizer.switching(switch);
+    let (mut poses, mut changes, mut worst_m, mut longest_ms) = (Vec::new(), Vec::new(), 0.0_f64, 0.0_f64);
+    for _ in 0..run.scans(1.5) {
+        let is_second = run.way_m() > run.corridor.round_m() + CLOSING_M + 3.0;
+        let (reading, truth) = run.reading();
+        let begin = Instant::now();
+        let closed = run.localizer.localize(&reading, &mut run.map);
+        longest_ms = longest_ms.max(begin.elapsed().as_secs_f64() * 1e3);
+        run.learn(&closed);
+        let estimate = &closed.localized.estimate;
+        poses.push((estimate.state, estimate.pose));
+        changes.extend(closed.correction.map(|correction| (run.step, correction.readings)));
+        if is_second && estimate.state == PoseState::Tracking {
+            worst_m = worst_m.max((estimate.pose.translation.vector - truth.translation.vector).norm());
+        }
+        if switch == Switch::WhenReady {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+    }
+    let walls_m = walls_m(&run.map, &run.corridor);
+    assert!(quantile(&walls_m, 0.99) < 0.1, "{switch:?}: walls off by {} m", quantile(&walls_m, 0.99));
+    (poses, changes, worst_m, longest_ms)
+}
+
+#[test]
+fn a_loop_is_closed_beside_the_robot() {
+    let at_once = switched(Switch::AtOnce);
+    for switch in [Switch::After(30), Switch::WhenReady] {
+        let (poses, changes, worst_m, longest_ms) = switched(switch);
+        println!(
+            "{switch:?}: {changes:?}, {worst_m:.2} m, {longest_ms:.0} ms; at once: {:?}, {:.0} ms",
+            at_once.1, at_once.3
+        );
+        let [(reading, read_again)] = changes[..] else { panic!("{switch:?}: {changes:?}") };
+        // Until it changes the map, the robot goes on in the old one.
+        let (begun, _) = at_once.1[0];
+        assert!(reading > begun && poses[..begun - 1] == at_once.0[..begun - 1]);
+        assert_eq!(reading, read_again, "the number of the reading is recorded");
+        assert!(worst_m < at_once.2 + 0.05, "{worst_m} m, {} m at once", at_once.2);
+        if switch == Switch::After(30) {
+            assert_eq!(reading, begun + 30);
+            assert!(switched(switch).0 == poses, "the same readings give other bits");
+        }
+    }
+}
+
+#[test]
+fn what_is_learned_again_can_be_awaited() {
+    let mut run = Run::new(narrow(101), 101);
+    run.localizer = run.localizer.switching(Switch::After(10_000));
+    while run.localizer.is_settled() {
+        run.step();
+    }
+    (0..25).for_each(|_| drop(run.step()));
+    let before = walls_m(&run.map, &run.corridor);
+    run.localizer.settle(&mut run.map);
+    assert!(run.localizer.is_settled());
+    let after = walls_m(&run.map, &run.corridor);
+    assert!(quantile(&after, 0.99) < 0.1 && quantile(&after, 0.99) < quantile(&before, 0.99));
+    let mut resumed = run.resumed();
+    assert_ne!(resumed.step().localized.estimate.state, PoseState::Lost);
 }
 
 #[test]
