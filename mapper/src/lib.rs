@@ -309,6 +309,12 @@ impl Mapper {
         self.cells.statistics(index)
     }
 
+    /// How often the known state of a cell changed in the map: the changes in its [statistics](Self::statistics), and the
+    /// correction of a wrong first observation, which the statistics do not count.
+    pub fn map_changes(&self, index: usize) -> u32 {
+        self.cells.map_changes(index)
+    }
+
     /// Whether a reading ever observed the cell.
     pub fn was_ever_seen(&self, index: usize) -> bool {
         self.cells.was_ever_seen(index)
