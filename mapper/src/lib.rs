@@ -24,7 +24,8 @@ pub use change::{
 };
 pub use growth::Growth;
 pub use occupancy::{
-    BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,
+    BeamReturn, CloneModel, NoReturn, NoReturnEvidence, NoReturns, OccupancyChoice, OccupancyModel,
+    ProjectedScan, SurfaceGridSettings,
 };
 
 use derived::ExpectedChanges;
