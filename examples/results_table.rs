@@ -25,7 +25,7 @@ use Worst::{Largest, Smallest};
 /// A row: its title, where the value is in `summary.json`, a factor, the number of decimals, the unit.
 type Row = (&'static str, &'static str, f64, usize, &'static str, Worst);
 
-const ROWS: [Row; 28] = [
+const ROWS: [Row; 29] = [
     ("seen, of the cells in sight of reachable places", "/coverage_reachable", 100.0, 1, " %", Smallest),
     ("seen, of all free cells and their borders", "/coverage", 100.0, 1, " %", Smallest),
     ("map right, of the cells in sight of reachable places", QUALITY_REACHABLE, 100.0, 1, " %", Smallest),
@@ -38,6 +38,7 @@ const ROWS: [Row; 28] = [
     ("Brier score out of view, share of time blocked", "/predicted/brier_mean", 1.0, 3, "", Largest),
     ("Brier score out of view, true chains", "/predicted/brier_true_chains", 1.0, 3, "", Largest),
     ("false change events on static cells", "/false_change_events", 1.0, 0, "", Largest),
+    ("false map changes on static cells", "/false_map_changes", 1.0, 0, "", Largest),
     ("rate error, cells in view for 3 cycles or more", "/rate_error", 1.0, 2, "", Largest),
     ("rate error, all changing cells", "/rate_error_all", 1.0, 2, "", Largest),
     ("log error of the rates", "/log_error", 1.0, 2, "", Largest),

@@ -152,9 +152,10 @@ fn learned(
 fn print(what: &str, scores: &RateScores) {
     let text = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"));
     println!(
-        "{what}: log error {}, AUC {}, false changes {}",
+        "{what}: log error {}, AUC {}, false changes {} ({} in the map)",
         text(scores.log_error),
         text(scores.rate_auc),
-        scores.false_change_events
+        scores.false_change_events,
+        scores.false_map_changes
     );
 }

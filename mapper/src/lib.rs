@@ -24,7 +24,8 @@ pub use change::{
 };
 pub use growth::Growth;
 pub use occupancy::{
-    BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,
+    BeamReturn, CloneModel, NoReturn, NoReturnEvidence, NoReturns, OccupancyChoice, OccupancyModel,
+    ProjectedScan, SurfaceGridSettings,
 };
 
 use derived::ExpectedChanges;
@@ -307,6 +308,12 @@ impl Mapper {
     #[inline]
     pub fn statistics(&self, index: usize) -> CellStatistics {
         self.cells.statistics(index)
+    }
+
+    /// How often the known state of a cell changed in the map: the changes in its [statistics](Self::statistics), and the
+    /// correction of a wrong first observation, which the statistics do not count.
+    pub fn map_changes(&self, index: usize) -> u32 {
+        self.cells.map_changes(index)
     }
 
     /// Whether a reading ever observed the cell.

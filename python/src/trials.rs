@@ -180,8 +180,8 @@ fn length(unit: (&str, Option<u64>), other: (&str, Option<u64>), kind: &str, def
 /// `Mapper.estimators()`.
 ///
 /// Returns a dict: the last value of every metric, `samples` (a dict of lists over the time), `strategy_share`,
-/// `collisions` (None in a grid world), `false_change_events`, `map_hash`. Times are in s, or in steps. The same arguments
-/// give the same result, also in `house_trials` and `grid_world`. An exception of the strategy ends the trial.
+/// `collisions` (None in a grid world), `false_change_events`, `false_map_changes`, `map_hash`. Times are in s, or in
+/// steps. The same arguments give the same result, also in `house_trials` and `grid_world`. An exception of the strategy ends the trial.
 #[pyfunction]
 #[pyo3(signature = (world, strategy = None, *, seed = 0, seconds = None, steps = None, estimator = None, robot = None))]
 #[allow(clippy::too_many_arguments)]
@@ -234,6 +234,7 @@ pub(crate) fn trial<'py>(
     dict.set_item("strategy_share", trial.strategy_share.into_iter().collect::<BTreeMap<_, _>>())?;
     dict.set_item("collisions", trial.collisions)?;
     dict.set_item("false_change_events", trial.false_change_events)?;
+    dict.set_item("false_map_changes", trial.false_map_changes)?;
     dict.set_item("map_hash", trial.map_hash)?;
     Ok(dict)
 }

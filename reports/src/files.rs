@@ -57,6 +57,7 @@ impl Serialize for StrategyResult {
             object.serialize_entry(&measure, &self.value(measure))?;
         }
         object.serialize_entry("false_change_events", &self.false_change_events)?;
+        object.serialize_entry("false_map_changes", &self.false_map_changes)?;
         if let Some(collisions) = self.collisions {
             object.serialize_entry("collisions", &collisions)?;
         }

@@ -15,6 +15,8 @@ pub struct StrategyResult {
     pub strategy_share: Vec<(String, f64)>,
     /// The number of change events on static cells, in all trials.
     pub false_change_events: u64,
+    /// The number of changes of static cells in the map, in all trials.
+    pub false_map_changes: u64,
     /// The number of collisions while the robot moved, in all trials; `None` in grid worlds.
     pub collisions: Option<u64>,
     /// The times of the samples: steps, or s in physics worlds.
@@ -69,6 +71,7 @@ pub(super) struct StrategySums {
     trials: usize,
     shares: MeanShares,
     false_change_events: u64,
+    false_map_changes: u64,
     collisions: Option<u64>,
     units: Vec<Unit>,
     /// One per metric and sample.
@@ -86,6 +89,7 @@ impl StrategySums {
             trials: 0,
             shares: MeanShares::default(),
             false_change_events: 0,
+            false_map_changes: 0,
             collisions: Some(0),
             units: Vec::new(),
             curves: vec![vec![Moments::default(); times.len()]; Metric::ALL.len()],
@@ -105,7 +109,7 @@ impl StrategySums {
         self.add_unit(trial.seed, &curves, &areas);
         self.trials += 1;
         self.shares.add(&trial.strategy_share);
-        self.add_counts(trial.false_change_events, trial.collisions);
+        self.add_counts(trial.false_change_events, trial.false_map_changes, trial.collisions);
     }
 
     /// Adds the result in the world with a number.
@@ -115,11 +119,12 @@ impl StrategySums {
         self.add_unit(number, &curves, &world.areas);
         self.trials += world.trials;
         self.shares.add(&world.strategy_share);
-        self.add_counts(world.false_change_events, world.collisions);
+        self.add_counts(world.false_change_events, world.false_map_changes, world.collisions);
     }
 
-    fn add_counts(&mut self, false_change_events: u64, collisions: Option<u64>) {
+    fn add_counts(&mut self, false_change_events: u64, false_map_changes: u64, collisions: Option<u64>) {
         self.false_change_events += false_change_events;
+        self.false_map_changes += false_map_changes;
         self.collisions = self.collisions.zip(collisions).map(|(sum, count)| sum + count);
     }
 
@@ -145,6 +150,7 @@ impl StrategySums {
             trials: self.trials,
             strategy_share: self.shares.means,
             false_change_events: self.false_change_events,
+            false_map_changes: self.false_map_changes,
             collisions: self.collisions,
             curves: Metric::ALL.map(curve).into(),
             areas: self.areas.iter().map(Moments::mean).collect(),

@@ -65,6 +65,7 @@ pub(crate) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
         samples: samples.collect(),
         strategy_share: vec![("recency".into(), 0.4), ("poisson".into(), 0.6)],
         false_change_events: 0,
+        false_map_changes: 0,
         collisions: None,
         map_hash: format!("{seed:032x}"),
     }

@@ -184,8 +184,12 @@ fn differences(run: &Run) -> Option<String> {
 
 /// The false changes, if there are any.
 fn false_events(run: &Run) -> Option<String> {
-    let counts = counts(run, |strategy| strategy.false_change_events)?;
-    Some(format!("False change events on cells that never change: {counts}."))
+    let recorded = counts(run, |strategy| strategy.false_change_events)
+        .map(|counts| format!("False change events on cells that never change: {counts}."));
+    let of_map = counts(run, |strategy| strategy.false_map_changes)
+        .map(|counts| format!("False changes of the map on these cells, with corrections: {counts}."));
+    let lines: Vec<String> = recorded.into_iter().chain(of_map).collect();
+    (!lines.is_empty()).then(|| lines.join("\n"))
 }
 
 /// The collisions, if there are any.

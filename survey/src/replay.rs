@@ -4,7 +4,7 @@ use crate::settings::SurveySettings;
 use interfaces::{LaserReading, ValueError, World};
 use localizer::{GivenPoses, PoseEstimate, PoseState, TrajectoryPose};
 use logs::LogError;
-use mapper::Mapper;
+use mapper::{Mapper, NoReturn, NoReturns};
 use nalgebra::Matrix3;
 use robot::{Belief, Localization, Permission, Pilot, Posed, Session};
 
@@ -13,6 +13,7 @@ pub struct Replay<I> {
     readings: I,
     settings: SurveySettings,
     session: Session,
+    no_returns: NoReturns,
     now: LaserReading,
     next: Option<LaserReading>,
     problem: Option<LogError>,
@@ -27,10 +28,27 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
     pub fn new(mut readings: I, settings: &SurveySettings, offset_s: f64) -> Result<Option<Self>, LogError> {
         let Some(now) = readings.next().transpose()? else { return Ok(None) };
         let session = Session::with_offset(offset_s);
-        let mut replay =
-            Self { readings, settings: settings.clone(), session, now, next: None, problem: None };
+        let mut replay = Self {
+            readings,
+            settings: settings.clone(),
+            session,
+            no_returns: NoReturns::new(NoReturn::Free),
+            now,
+            next: None,
+            problem: None,
+        };
         replay.read();
         Ok(Some(replay))
+    }
+
+    /// Leaves out the beams without a return that are not trusted; before, all are.
+    pub(crate) fn judge(&mut self, no_returns: NoReturns) {
+        self.no_returns = no_returns;
+    }
+
+    /// What was learned about beams without a return.
+    pub fn no_returns(&self) -> &NoReturns {
+        &self.no_returns
     }
 
     /// The time of the present reading, s.
@@ -62,7 +80,9 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> World for Replay<I> {
     type Command = ();
 
     fn sense(&mut self) -> LaserReading {
-        self.session.shifted(self.settings.filtered(self.now.clone()))
+        let mut reading = self.now.clone();
+        self.no_returns.apply(&mut reading); // before ranges that are too long become free ones
+        self.session.shifted(self.settings.filtered(reading))
     }
 
     fn poses_are_exact(&self) -> bool {
@@ -93,7 +113,7 @@ impl FoundPoses {
 
 impl FoundPoses {
     /// Gives a reading its pose, without a map.
-    fn posed(&mut self, mut reading: LaserReading) -> (LaserReading, PoseState) {
+    pub(crate) fn posed(&mut self, mut reading: LaserReading) -> (LaserReading, PoseState) {
         let state = self.poses.next().map_or_else(Default::default, |found| {
             reading.pose = found.pose;
             found.state

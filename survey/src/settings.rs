@@ -1,5 +1,5 @@
 use interfaces::{GridFrame, LaserReading, SettingsCheck, SettingsError};
-use mapper::{Mapper, MapperSettings};
+use mapper::{Mapper, MapperSettings, NoReturn};
 use nalgebra::Point2;
 
 /// How the poses of a log are used.
@@ -38,6 +38,10 @@ pub struct SurveySettings {
     /// The smallest angle between a beam and the line to the next hit, rad. Below it, the hit is taken as a point
     /// between two surfaces, see [`remove_shadows`](crate::remove_shadows). 0 keeps every hit.
     pub min_shadow_angle_rad: f64,
+    /// What beams without a return mean. What was learned from earlier logs does not depend on it: it is no part of what a
+    /// state is compared by.
+    #[serde(skip)]
+    pub no_return: NoReturn,
     /// The settings of the mapper. The noise of ranges stands for the errors of ranges and poses together.
     pub mapper: MapperSettings,
 }
@@ -59,6 +63,7 @@ impl SurveySettings {
             resolution_m: 0.05,
             max_range_m: 20.0,
             min_shadow_angle_rad: 10_f64.to_radians(),
+            no_return: NoReturn::default(),
             mapper,
         }
     }

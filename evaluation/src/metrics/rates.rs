@@ -29,8 +29,11 @@ pub struct RateScores {
     pub rate_auc: Option<f64>,
     /// The number of static cells that were observed. No moving thing ever touched a static cell.
     pub static_cells: usize,
-    /// The number of false change events: changes of static cells in the map.
+    /// The number of false change events: changes of static cells in the statistics.
     pub false_change_events: u64,
+    /// The number of false map changes: all changes of static cells in the map. The correction of a wrong first
+    /// observation is one, but no event of the statistics.
+    pub false_map_changes: u64,
     /// The mean estimated cycle rate of static cells, per unit of time (Hz in a physics world).
     pub false_rate_hz: f64,
 }
@@ -54,7 +57,7 @@ impl From<&RateScores> for RateErrors {
 /// Compares the rates of `mapper` with the true rates so far.
 pub fn rate_scores(mapper: &Mapper, truth: &impl GroundTruth) -> RateScores {
     let (mut in_view, mut all, mut false_rate) = (Mean::default(), Mean::default(), Mean::default());
-    let mut false_change_events = 0;
+    let (mut false_change_events, mut false_map_changes) = (0, 0);
     for index in 0..truth.frame().len() {
         let true_rate = truth.cycle_rate(index);
         if truth.is_swept(index) && true_rate > 0.0 {
@@ -66,6 +69,7 @@ pub fn rate_scores(mapper: &Mapper, truth: &impl GroundTruth) -> RateScores {
         } else if !truth.is_swept(index) && mapper.was_ever_seen(index) {
             false_rate.add(mapper.rate(index));
             false_change_events += u64::from(mapper.statistics(index).events());
+            false_map_changes += u64::from(mapper.map_changes(index));
         }
     }
     RateScores {
@@ -77,6 +81,7 @@ pub fn rate_scores(mapper: &Mapper, truth: &impl GroundTruth) -> RateScores {
         rate_auc: rate_auc(mapper, truth),
         static_cells: false_rate.count,
         false_change_events,
+        false_map_changes,
         false_rate_hz: false_rate.get().unwrap_or(0.0),
     }
 }

@@ -34,10 +34,17 @@ impl fmt::Display for RunResults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { map, rates, goals, .. } = self;
         let correct = percent(map.map_quality);
-        let (events, cells) = (rates.false_change_events, rates.static_cells);
+        let RateScores {
+            false_change_events: events, false_map_changes: changes, static_cells: cells, ..
+        } = rates;
         let mut lines = vec![
             ("seen", self.seen()),
-            ("map", format!("{correct} correct now; {events} false changes on {cells} static cells")),
+            (
+                "map",
+                format!(
+                    "{correct} correct now; {events} false changes recorded, {changes} in the map, on {cells} static cells"
+                ),
+            ),
             ("changes", self.liveliest.as_ref().map_or("none seen".into(), Liveliest::to_string)),
         ];
         lines.extend(self.rates());
@@ -235,7 +242,7 @@ mod tests {
         };
         insta::assert_snapshot!(RunResults { predicted, ..results(0.99999, age, rates) }, @"
           seen      >99.9 % of the cells in sight of reachable places, >99.9 % of free cells and their borders; 2 cells were never seen
-          map       >99.9 % correct now; 0 false changes on 50000 static cells
+          map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 50000 static cells
           changes   none seen
           rates     mean error 251.0 % over all changing cells, 29.0 % over the 43 in view for 3 cycles or more
                     log error 0.91, mean over moving things: 0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate
@@ -252,7 +259,7 @@ mod tests {
         let age = Age { mean_s: 60.0, max_s: 431.0, never_seen: 0 };
         insta::assert_snapshot!(results(1.0, age, RateScores::default()), @"
           seen      100.0 % of the cells in sight of reachable places, 100.0 % of free cells and their borders; every cell was seen in the last 431 s
-          map       >99.9 % correct now; 0 false changes on 0 static cells
+          map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 0 static cells
           changes   none seen
           stood     longest time without moving 0.1 m: cat 312 s
           contacts  1 by its own motion, 2 in which something ran into it

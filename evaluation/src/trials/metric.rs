@@ -100,6 +100,8 @@ pub struct Trial {
     pub strategy_share: Vec<(String, f64)>,
     /// The number of change events on static cells.
     pub false_change_events: u64,
+    /// The number of changes of static cells in the map, with corrections of wrong first observations.
+    pub false_map_changes: u64,
     /// The number of contacts of the robot that began while it moved; `None` in a grid world.
     pub collisions: Option<u64>,
     /// The hash of everything that was learned, see [`crate::map_hash`].

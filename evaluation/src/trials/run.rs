@@ -81,7 +81,7 @@ fn run<W: TrialWorld, G: GoalSelector>(
         MapperSettings { estimator: trial.estimator.clone(), ..trial.world.mapper(&trial.experiment.robot)? };
     let mut mapper = Mapper::new(&settings, *interfaces::GroundTruth::frame(W::truth(&world)))?;
     let mut sampler = Sampler::new(trial.experiment.length);
-    let (mut collisions, mut false_change_events) = (None, None);
+    let (mut collisions, mut rates) = (None, None);
     let mut step = |world: &W::World,
                     reading: &<W::World as World>::Reading,
                     belief: &Belief,
@@ -94,7 +94,7 @@ fn run<W: TrialWorld, G: GoalSelector>(
         let is_complete = sampler.is_complete(belief.mapper.time());
         let sample = sampler.update::<W>(belief.mapper, truth);
         if is_complete {
-            false_change_events = Some(rate_scores(belief.mapper, truth).false_change_events);
+            rates = Some(rate_scores(belief.mapper, truth));
         }
         let goes_on = observe(TrialStep { world, reading, belief, pilot, sample, is_complete });
         pilot.take_messages(); // messages that `observe` has not taken must not accumulate
@@ -113,7 +113,7 @@ fn run<W: TrialWorld, G: GoalSelector>(
         let mut poses = trial.world.localization(&trial.experiment.robot, &mut world)?;
         explore(&mut world, poses.as_mut(), &mut mapper, &mut pilot, step)?;
     }
-    Ok(false_change_events.map(|false_change_events| Trial {
+    Ok(rates.map(|rates| Trial {
         world: trial.world.name().to_owned(),
         estimator: trial.estimator.name().to_owned(),
         strategy: trial.strategy.name().to_owned(),
@@ -124,7 +124,8 @@ fn run<W: TrialWorld, G: GoalSelector>(
             .into_iter()
             .map(|strategy| (strategy.name, strategy.share))
             .collect(),
-        false_change_events,
+        false_change_events: rates.false_change_events,
+        false_map_changes: rates.false_map_changes,
         collisions,
         map_hash: map_hash(&mapper),
     }))

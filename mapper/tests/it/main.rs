@@ -8,6 +8,7 @@ mod bodies;
 mod bookkeeping;
 mod chains;
 mod estimators;
+mod fast;
 mod observed;
 mod prior;
 mod saved;

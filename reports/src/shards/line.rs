@@ -35,6 +35,7 @@ pub(super) struct Head {
     /// The shares as text: reading a JSON number need not give every bit again.
     strategy_share: Vec<(String, String)>,
     false_change_events: u64,
+    false_map_changes: u64,
     collisions: Option<u64>,
     map_hash: String,
 }
@@ -64,6 +65,7 @@ pub(super) fn write(job: u64, cost: Cost, trial: &Trial, key: u64) -> serde_json
         seed: trial.seed,
         strategy_share: trial.strategy_share.iter().map(share).collect(),
         false_change_events: trial.false_change_events,
+        false_map_changes: trial.false_map_changes,
         collisions: trial.collisions,
         map_hash: trial.map_hash.clone(),
     };
@@ -112,6 +114,7 @@ pub(super) fn read(text: &str) -> Option<(u64, Trial)> {
         samples: samples.split("],[").map(sample).collect::<Option<_>>()?,
         strategy_share: head.strategy_share.into_iter().map(share).collect::<Option<_>>()?,
         false_change_events: head.false_change_events,
+        false_map_changes: head.false_map_changes,
         collisions: head.collisions,
         map_hash: head.map_hash,
     };

@@ -154,9 +154,12 @@ fn the_table_fits_a_terminal() {
 fn the_oracle_cannot_win_and_false_changes_are_reported() {
     let (settings, mut trials) = experiment(1, &["paper"], &["recency", "oracle"], 3);
     trials[0].false_change_events = 7;
+    trials[0].false_map_changes = 9;
     let table = Report::new(settings, trials).table();
     assert!(!table.contains("learns rates fastest"), "{table}");
     assert!(table.contains("False change events on cells that never change: recency 7.\n"), "{table}");
+    let of_map = "False changes of the map on these cells, with corrections: recency 9.\n";
+    assert!(table.contains(of_map), "{table}");
     let line = table.lines().find(|line| line.starts_with("oracle")).unwrap();
     assert!(!line.contains('*'), "{line}");
 }

@@ -29,6 +29,7 @@ fn flat(world: &str, strategy: &str, seed: u64, value: f64) -> Trial {
         samples: vec![sample(1), sample(100)],
         strategy_share: vec![(strategy.into(), 1.0)],
         false_change_events: 1,
+        false_map_changes: 2,
         collisions: Some(2),
         map_hash: String::new(),
     }
@@ -91,6 +92,7 @@ fn a_curve_is_the_mean_of_its_trials_with_what_is_undefined_left_out() {
     close(curve[1].high, 3.0 + 4.302_65 * (7.0_f64 / 3.0).sqrt(), 1e-4);
     assert_eq!(strategy.value(Measure::Final(Metric::RateError)), 3.0);
     assert_eq!((strategy.trials, strategy.false_change_events, strategy.collisions), (3, 3, Some(6)));
+    assert_eq!(strategy.false_map_changes, 6);
 }
 
 #[test]

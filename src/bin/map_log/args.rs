@@ -5,7 +5,7 @@ use anyhow::ensure;
 use clap::{Parser, ValueEnum};
 use curious::program::{duration_s, one_of};
 use logs::TopicChoice;
-use mapper::EstimatorChoice;
+use mapper::{EstimatorChoice, NoReturn};
 use std::path::PathBuf;
 use survey::{LogEntry, PoseMode, SavedLogs, SurveySettings};
 
@@ -90,6 +90,10 @@ pub(crate) struct Args {
         help_heading = "Map"
     )]
     pub(crate) shadow_angle: f64,
+
+    /// What beams without a return mean: free space if the scanner has proven trustworthy, always free space, or nothing
+    #[arg(long, default_value = "learn", value_parser = one_of(NoReturn::all(), NoReturn::name), help_heading = "Map")]
+    pub(crate) no_return: NoReturn,
 
     /// The estimator of the rates of change
     #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Map")]
@@ -179,6 +183,7 @@ impl Args {
         );
         settings.resolution_m = self.resolution;
         settings.max_range_m = self.max_range;
+        settings.no_return = self.no_return;
         settings.min_shadow_angle_rad = self.shadow_angle.to_radians();
         settings.mapper.estimator = self.estimator.clone();
         if let Some(noise_m) = self.noise {

@@ -118,6 +118,9 @@ impl Learned {
             Some(bag) => Box::new(bag.recorded(Box::new(found))),
             None => Box::new(found),
         };
+        for e in replay.no_returns().evidence() {
+            eprintln!("NORETURN {e:?} p {}", e.swallowed());
+        }
         let progress = Progress::of_scans(source.log.summary().scans.saturating_sub(used), job.args.quiet);
         let Self { show, is_interrupted, is_shown } = self;
         let mut is_over = false;

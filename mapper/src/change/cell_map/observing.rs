@@ -165,6 +165,6 @@ impl CellMap {
             record.first = now;
         }
         record.since = now;
-        record.is_whole = false;
+        record.set_whole(false);
     }
 }

@@ -81,6 +81,11 @@ impl CellMap {
         }
     }
 
+    /// How often the state of the cell changed in the map: its changes, and the correction of a wrong first observation.
+    pub(crate) fn map_changes(&self, index: usize) -> u32 {
+        self.statistics(index).events() + u32::from(self.records[index].was_corrected())
+    }
+
     /// Whether the cell ever changed. Most cells did not: their rates need no statistics.
     #[inline]
     pub(crate) fn has_changed(&self, index: usize) -> bool {

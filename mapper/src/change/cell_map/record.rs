@@ -21,8 +21,16 @@ pub(super) struct Record {
     pub(super) gaps: [u32; 2],
     /// The index among the cells that ever changed, plus one.
     slot: Option<NonZeroU32>,
-    /// Whether the present state began with an event in view, and the cell has been in view since.
-    pub(super) is_whole: bool,
+    marks: Marks,
+}
+
+/// Two marks of a cell in one byte of a state file: the first alone is the byte of earlier versions.
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+struct Marks(u8);
+
+impl Marks {
+    const WHOLE: u8 = 1;
+    const CORRECTED: u8 = 2;
 }
 
 /// What every observation of a cell asks: many cells are in one line of the processor's cache, of whole records only one.
@@ -46,6 +54,25 @@ impl Record {
     /// The record of a cell that first became known in a reading.
     pub(super) fn since(first: ReadingIndex) -> Self {
         Self { first, since: first, ..Self::default() }
+    }
+
+    /// The record of a cell whose first observation was wrong.
+    pub(super) fn corrected(first: ReadingIndex) -> Self {
+        Self { marks: Marks(Marks::CORRECTED), ..Self::since(first) }
+    }
+
+    /// Whether a wrong first observation was corrected.
+    pub(super) fn was_corrected(&self) -> bool {
+        self.marks.0 & Marks::CORRECTED != 0
+    }
+
+    /// Whether the present state began with an event in view, and the cell has been in view since.
+    pub(super) fn is_whole(&self) -> bool {
+        self.marks.0 & Marks::WHOLE != 0
+    }
+
+    pub(super) fn set_whole(&mut self, is_whole: bool) {
+        self.marks = Marks(self.marks.0 & !Marks::WHOLE | u8::from(is_whole) * Marks::WHOLE);
     }
 
     /// Whether the state of the cell is known.

@@ -55,27 +55,28 @@ impl CellMap {
         let event = state_index(before); // free → blocked is a block event, blocked → free a free event
         record.watched[event] += stayed;
         if let Some(gaps) = self.gaps.get_mut(index)
-            && (in_view && record.is_whole && period > 0.0)
+            && (in_view && record.is_whole() && period > 0.0)
         {
             gaps.add_stay(event, stayed / period, &mut self.regularity);
         }
-        record.is_whole = in_view;
+        record.set_whole(in_view);
         record.since = until;
         if in_view { record.in_view[event] += 1 } else { record.after_gap[event] += 1 }
     }
 
     /// Whether the cell still has the state of its first observation (not the state of a prior map) and was in view
-    /// for less than `confirm` (in the time unit of the readings).
+    /// for less than `confirm` (in the time unit of the readings). A corrected state counts as confirmed: otherwise
+    /// every change of a cell that changes faster than `confirm` would be a correction.
     pub fn is_unconfirmed(&self, index: usize, confirm: f64) -> bool {
-        let seen = self.statistics(index);
-        self.records[index].first > PRIOR && seen.events() == 0 && seen.observed() < confirm
+        let (record, seen) = (&self.records[index], self.statistics(index));
+        record.first > PRIOR && !record.was_corrected() && seen.events() == 0 && seen.observed() < confirm
     }
 
     /// Corrects a wrong first observation: nothing changed; the state of the cell was `after` from the start.
     pub fn correct(&mut self, index: usize, after: CellState) {
         let now = self.reading();
         self.observe(index);
-        self.records[index] = Record::since(now);
+        self.records[index] = Record::corrected(now);
         if let Some(gaps) = self.gaps.get_mut(index) {
             *gaps = CellGaps::default();
         }

@@ -1,0 +1,214 @@
+//! What a beam without a return means. Glass, mirrors and black surfaces swallow beams: a scanner whose beams without a
+//! return often pass through surfaces that its other beams hit does not say that the space is free.
+
+use interfaces::LaserReading;
+use nalgebra::{Point2, Vector2};
+use std::collections::BTreeMap;
+
+/// The side of a cell in which hits are counted, m.
+const CELL_M: f64 = 0.2;
+/// A beam meets a surface if it comes this near to the mean of the hits in a cell, m.
+const NEAR_M: f64 = 0.1;
+/// The number of scans that must hit a cell before beams are judged by it.
+const CONFIDENT: u32 = 5;
+/// The largest number of hits whose mean is the place of a surface.
+const MEMORY: u32 = 32;
+/// Surfaces beyond this share of the maximum range judge nothing: beams along a wall leave the range beside it.
+const JUDGED_SHARE: f64 = 0.75;
+/// One of this many beams is judged.
+const STRIDE: usize = 4;
+/// A scan that turns by more than this while it is measured is not judged, rad.
+const MAX_TURN_RAD: f64 = 0.02;
+/// The fixed prior: beams without a return at surfaces that were hit, and beams with one.
+const PRIOR: [f64; 2] = [1.0, 20.0];
+
+/// What beams without a return mean for the map.
+#[derive(Clone, Copy, Default)]
+pub enum NoReturn {
+    /// Free to the maximum range, if the scanner has proven trustworthy.
+    #[default]
+    Learn,
+    /// Always free to the maximum range.
+    Free,
+    /// Nothing.
+    Ignore,
+}
+
+interfaces::chosen_by_name!(NoReturn, "meaning of a beam without a return", NoReturn::all());
+
+impl NoReturn {
+    /// All meanings.
+    pub fn all() -> Vec<Self> {
+        vec![Self::Learn, Self::Free, Self::Ignore]
+    }
+
+    /// The name on the command line and in files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Learn => "learn",
+            Self::Free => "free",
+            Self::Ignore => "ignore",
+        }
+    }
+}
+
+/// The hits in a cell.
+#[derive(Clone, Copy, Debug)]
+struct Surface {
+    mean: Point2<f64>,
+    /// The number of scans that hit the cell, and the time of the last of them, s.
+    scans: u32,
+    last_s: f64,
+    /// For each scanner the beams without a return that have passed since the last hit.
+    passed: [u32; MOST],
+}
+
+/// A surface that is hit again after at most this time was there in between, s. Longer, and it can have been another person.
+const GAP_S: f64 = 2.0;
+/// More scanners than these are not told apart.
+const MOST: usize = 4;
+
+/// The evidence about the beams of one scanner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct NoReturnEvidence {
+    /// Beams without a return that passed through a surface that was hit before and after.
+    pub passing: u64,
+    /// Beams with a return that ended at such a surface.
+    pub ending: u64,
+    /// All beams without a return, and all beams with one.
+    pub silent: u64,
+    /// See `silent`.
+    pub returned: u64,
+}
+
+/// The scanners of a robot, and how far their beams without a return are trusted.
+#[derive(Clone, Debug, Default)]
+pub struct NoReturns {
+    meaning: NoReturn,
+    surfaces: BTreeMap<[i32; 2], Surface>,
+    /// The scanners by their mount and beams.
+    scanners: Vec<([u64; 5], NoReturnEvidence)>,
+}
+
+impl NoReturnEvidence {
+    /// The probability that a surface gives no return: the mean of the Beta posterior.
+    pub fn swallowed(&self) -> f64 {
+        let [passing, ending] = [PRIOR[0] + self.passing as f64, PRIOR[1] + self.ending as f64];
+        passing / (passing + ending)
+    }
+
+    fn is_trusted(&self) -> bool {
+        self.swallowed() < 0.04
+    }
+}
+
+impl NoReturns {
+    /// Nothing is known about any scanner.
+    pub fn new(meaning: NoReturn) -> Self {
+        Self { meaning, ..Self::default() }
+    }
+
+    /// The evidence about each scanner.
+    pub fn evidence(&self) -> impl Iterator<Item = NoReturnEvidence> {
+        self.scanners.iter().map(|(_, evidence)| *evidence)
+    }
+
+    /// Learns from a reading whose pose is certain.
+    pub fn learn(&mut self, reading: &LaserReading) {
+        let scan = &reading.scan;
+        let turn_rad = scan.sweep_s * reading.twist.angular_radps.abs();
+        if self.meaning != NoReturn::Learn || scan.check().is_err() || turn_rad > MAX_TURN_RAD {
+            return;
+        }
+        let scanner = self.scanner(reading);
+        let laser = reading.pose * reading.mount;
+        let origin = Point2::from(laser.translation.vector);
+        let judged_m = JUDGED_SHARE * scan.range_max_m;
+        for (beam, &range_m) in scan.ranges_m.iter().enumerate().step_by(STRIDE) {
+            let along = laser.rotation * (interfaces::rotation(scan.angle_rad(beam)) * Vector2::x());
+            let range_m = f64::from(range_m);
+            let evidence = &mut self.scanners[scanner].1;
+            if range_m == f64::INFINITY {
+                evidence.silent += 1;
+                self.pass(scanner, &origin, &along, judged_m);
+            } else if (scan.range_min_m..=scan.range_max_m).contains(&range_m) {
+                evidence.returned += 1;
+                self.hit(scanner, &(origin + along * range_m), reading.time_s, range_m <= judged_m);
+            }
+        }
+    }
+
+    /// Whether beams without a return of the scanner of a reading mean free space.
+    pub fn is_trusted(&self, reading: &LaserReading) -> bool {
+        match self.meaning {
+            NoReturn::Free => true,
+            NoReturn::Ignore => false,
+            NoReturn::Learn => {
+                let known = self.scanners.iter().find(|(scanner, _)| *scanner == key(reading));
+                known.is_some_and(|(_, evidence)| evidence.is_trusted())
+            }
+        }
+    }
+
+    /// Turns beams without a return that are not trusted into invalid ones, which say nothing.
+    pub fn apply(&self, reading: &mut LaserReading) {
+        if !self.is_trusted(reading) {
+            let silent = reading.scan.ranges_m.iter_mut().filter(|range_m| **range_m == f32::INFINITY);
+            silent.for_each(|range_m| *range_m = f32::NAN);
+        }
+    }
+
+    fn hit(&mut self, scanner: usize, end: &Point2<f64>, time_s: f64, is_judged: bool) {
+        let new = Surface { mean: *end, scans: 0, last_s: f64::NEG_INFINITY, passed: [0; MOST] };
+        let surface = self.surfaces.entry(cell(end)).or_insert(new);
+        let is_near = (end - surface.mean).norm() <= NEAR_M;
+        if is_near && surface.scans >= CONFIDENT && is_judged {
+            self.scanners[scanner].1.ending += 1;
+        }
+        if is_near {
+            for ((_, evidence), passed) in self.scanners.iter_mut().zip(&mut surface.passed) {
+                let passing = u64::from(std::mem::take(passed));
+                evidence.passing += if time_s - surface.last_s <= GAP_S { passing } else { 0 };
+            }
+        }
+        if surface.last_s != time_s {
+            (surface.last_s, surface.scans) = (time_s, surface.scans + 1);
+            surface.mean += (end - surface.mean) / f64::from(surface.scans.min(MEMORY));
+        }
+    }
+
+    /// The first surface that a beam without a return passes through.
+    fn pass(&mut self, scanner: usize, origin: &Point2<f64>, along: &Vector2<f64>, judged_m: f64) {
+        let steps = (judged_m / (CELL_M / 2.0)) as u32;
+        for step in 1..=steps {
+            let at = origin + along * (f64::from(step) * CELL_M / 2.0);
+            let Some(surface) = self.surfaces.get_mut(&cell(&at)) else { continue };
+            let off_m = (surface.mean - origin).perp(along).abs();
+            if surface.scans >= CONFIDENT && off_m <= NEAR_M {
+                surface.passed[scanner] += 1;
+                return;
+            }
+        }
+    }
+
+    fn scanner(&mut self, reading: &LaserReading) -> usize {
+        let key = key(reading);
+        let known = self.scanners.iter().position(|(scanner, _)| *scanner == key);
+        known.unwrap_or_else(|| {
+            if self.scanners.len() < MOST {
+                self.scanners.push((key, NoReturnEvidence::default()));
+            }
+            self.scanners.len() - 1
+        })
+    }
+}
+
+/// The place and the first beam of a scanner.
+fn key(reading: &LaserReading) -> [u64; 5] {
+    let (at, turn) = (&reading.mount.translation, &reading.mount.rotation);
+    [at.x, at.y, turn.re, turn.im, reading.scan.angle_min_rad].map(f64::to_bits)
+}
+
+fn cell(at: &Point2<f64>) -> [i32; 2] {
+    [at.x, at.y].map(|m| (m / CELL_M).floor() as i32)
+}
