@@ -213,5 +213,8 @@ fn a_compressed_log_grows_by_a_hundred_at_most() {
     (0..90).for_each(|_| encoder.write_all("#\n".repeat(1 << 19).as_bytes()).unwrap());
     let error = open("a.log.gz", &encoder.finish().unwrap()).unwrap_err().to_string();
     assert!(error.starts_with("a.log.gz: the "), "{error}");
-    assert!(error.contains("unpack to more than") && error.ends_with("unpack it first: gzip -d FILE"), "{error}");
+    assert!(
+        error.contains("unpack to more than") && error.ends_with("unpack it first: gzip -d FILE"),
+        "{error}"
+    );
 }

@@ -24,6 +24,9 @@ pub(crate) struct Edge {
     pub(crate) moves: bool,
 }
 
+/// A frame beside another one, and the edge to it: its number, and whether it is taken from the parent to the child.
+type Neighbour<'a> = (&'a str, (usize, bool));
+
 /// A chain of transforms: the edges, and whether each is taken from the parent to the child.
 pub type Chain = Vec<(usize, bool)>;
 
@@ -112,13 +115,13 @@ impl Frames {
     /// The shortest chain from one frame to another that does not contain the frames of the world.
     pub fn chain(&self, from: &str, to: &str, world: &[&str]) -> Option<Chain> {
         let (from, to) = (bare(from), bare(to));
-        let mut neighbours: BTreeMap<&str, Vec<(&str, (usize, bool))>> = BTreeMap::new();
+        let mut neighbours: BTreeMap<&str, Vec<Neighbour>> = BTreeMap::new();
         for (index, Edge { parent, child, .. }) in self.edges.iter().enumerate() {
             neighbours.entry(parent).or_default().push((child, (index, true)));
             neighbours.entry(child).or_default().push((parent, (index, false)));
         }
         // How each frame was reached: from which one, by which edge.
-        let mut reached: BTreeMap<&str, (&str, (usize, bool))> = BTreeMap::new();
+        let mut reached: BTreeMap<&str, Neighbour> = BTreeMap::new();
         let mut open = VecDeque::from([from]);
         while let Some(mut at) = open.pop_front() {
             if at == to {
