@@ -1,6 +1,6 @@
 //! Code that the programs of trials share: options, and the way from trials to results.
 
-use crate::program::{Failure, INTERRUPTED, input, results_folder, strategy_of};
+use crate::program::{Failure, INTERRUPTED, input, output_file, results_folder, strategy_of, value_of};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
 use agent::Reward;
@@ -31,11 +31,11 @@ const EXECUTION: &str = "Execution";
 #[derive(Clone, Debug, Args)]
 pub struct TrialArgs {
     /// Generate N random worlds, from --seed on
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000), help_heading = "World")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000), allow_negative_numbers = true, help_heading = "World")]
     pub generate: Option<u64>,
 
     /// The seed of all random streams: equal seeds give equal results, on any number of threads
-    #[arg(long, default_value_t = 0, help_heading = "Comparison")]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, help_heading = "Comparison")]
     pub seed: u64,
 
     /// The reward of the learner
@@ -43,7 +43,7 @@ pub struct TrialArgs {
     pub reward: RewardChoice,
 
     /// The number of threads [default: the number of cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = EXECUTION)]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true, help_heading = EXECUTION)]
     pub threads: Option<u16>,
 
     /// Run shard I of N: every N-th trial, into a file of its own in --out. Run shards 1/N to N/N on any machines, then
@@ -56,7 +56,7 @@ pub struct TrialArgs {
     pub allow_other_build: bool,
 
     /// Record the first trial, at most 20,000 readings; open the recording with `rerun FILE`
-    #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE", value_parser = output_file(), help_heading = OUTPUT)]
     pub rrd: Option<PathBuf>,
 
     /// Save the generated worlds as TOML files in the output folder
@@ -144,7 +144,7 @@ pub fn worlds<W: TrialWorld, E: Into<anyhow::Error>>(
         names.extend(default);
     }
     let worlds: Result<Vec<W>, E> = distinct(names).into_iter().map(load).collect();
-    let mut worlds = worlds.map_err(Into::into)?;
+    let mut worlds = worlds.map_err(|error| value_of("--world", error))?;
     let generated = 0..args.generate.unwrap_or(0);
     worlds.extend(generated.map(|number| generate(args.seed.wrapping_add(number))));
     let mut names = BTreeSet::new();

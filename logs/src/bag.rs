@@ -18,6 +18,7 @@ mod tests;
 
 pub(crate) use files::{BagFile, in_folder};
 
+use crate::bounds;
 use crate::choice::TopicChoice;
 use crate::content;
 use crate::error::LogError;
@@ -58,9 +59,9 @@ impl Bag {
         let mut plan = Arc::new(Plan::new(&inventory, choice, &mut notes).map_err(unusable)?);
         let (stamp_ns, log_ns) = inventory.begin_ns.unwrap_or_default();
         let mut clock = Clock::Stamps(stamp_ns);
-        let mut survey = Survey::of(&files, &plan, clock)?;
+        let mut survey = Survey::of(&files, &plan, clock, unusable)?;
         if !survey.times.has_times {
-            let by_recording = Survey::of(&files, &plan, Clock::Recording(log_ns))?;
+            let by_recording = Survey::of(&files, &plan, Clock::Recording(log_ns), unusable)?;
             if by_recording.times.has_times {
                 notes.push(
                     "the stamps of the scans are unusable: the times of the recording count".to_owned(),
@@ -135,10 +136,16 @@ struct Survey {
 }
 
 impl Survey {
-    fn of(files: &[BagFile], plan: &Arc<Plan>, clock: Clock) -> Result<Self, LogError> {
+    fn of(
+        files: &[BagFile],
+        plan: &Arc<Plan>,
+        clock: Clock,
+        unusable: impl Fn(String) -> LogError,
+    ) -> Result<Self, LogError> {
         let mut raw = raw_readings(files, plan, clock);
         let (mut raw_s, mut standing) = (Vec::new(), Standing::default());
         while let Some(reading) = raw.next_reading()? {
+            bounds::one_more(raw_s.len()).map_err(&unusable)?;
             raw_s.push(reading.time_s);
             standing.add(&reading.mount, &reading.scan);
         }

@@ -6,6 +6,7 @@
 //! This crate knows the formats of files and the values of `interfaces`. It must not know maps, localizers or programs.
 
 mod bag;
+mod bounds;
 mod bytes;
 mod carmen;
 mod cdr;

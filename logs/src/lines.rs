@@ -1,9 +1,10 @@
 //! A file as lines of text, plain or compressed.
 
+use crate::bounds::Unpacked;
 use crate::bytes::Bytes;
 use crate::error::LogError;
 use flate2::bufread::MultiGzDecoder;
-use std::io::{self, BufRead, BufReader, Error, ErrorKind, Read};
+use std::io::{self, BufRead, BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
 
 /// The longest line, in bytes: a file that never ends a line must not fill the memory.
 const LONGEST: u64 = 1 << 20;
@@ -12,11 +13,13 @@ const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// The text of a log; its compression is undone.
 pub(crate) fn text(bytes: &Bytes) -> io::Result<Box<dyn BufRead + Send>> {
-    let mut reader: Box<dyn BufRead + Send> = Box::new(BufReader::new(bytes.open()?));
-    if reader.fill_buf()?.starts_with(&GZIP) {
-        reader = Box::new(BufReader::new(MultiGzDecoder::new(reader)));
+    let mut reader = BufReader::new(bytes.open()?);
+    if !reader.fill_buf()?.starts_with(&GZIP) {
+        return Ok(Box::new(reader));
     }
-    Ok(reader)
+    let packed = reader.seek(SeekFrom::End(0))?;
+    reader.rewind()?;
+    Ok(Box::new(BufReader::new(Unpacked::new(MultiGzDecoder::new(reader), packed, "gzip -d FILE"))))
 }
 
 /// The lines of a log, one after the other.

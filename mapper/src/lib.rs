@@ -35,9 +35,6 @@ use interfaces::{
 };
 use nalgebra::{Isometry2, Point2};
 
-/// The maximum of [`Mapper::bytes`].
-const MAX_BYTES: usize = 2 << 30;
-
 /// Settings of a [`Mapper`].
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
@@ -103,6 +100,9 @@ pub struct Mapper {
 }
 
 impl Mapper {
+    /// The maximum of [`Mapper::bytes`].
+    pub const MAX_BYTES: usize = 2 << 30;
+
     /// The memory that a mapper takes when every cell was seen, bytes; known before anything is allocated. Cells that
     /// change take some hundred bytes more. An occupancy model of another crate counts as much as the largest built-in
     /// model.
@@ -112,7 +112,7 @@ impl Mapper {
 
     fn check_bytes(frame: &GridFrame) -> Result<(), SettingsError> {
         let bytes = Self::bytes(frame);
-        if bytes <= MAX_BYTES {
+        if bytes <= Self::MAX_BYTES {
             return Ok(());
         }
         let (width, height, gib) = (frame.width(), frame.height(), bytes as f64 / f64::from(1 << 30));

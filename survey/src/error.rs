@@ -11,8 +11,8 @@ pub enum SurveyError {
     NoPlace,
     /// The place is too large for one map.
     #[error(
-        "the place is too large for a map: {width_m:.0} × {height_m:.0} m in cells of {resolution_m} m; a map has 67 million \
-         cells at most, larger cells (--resolution) cover more"
+        "the place is too large for a map: at least {width_m:.0} × {height_m:.0} m in cells of {resolution_m} m need more \
+         than 2 GiB; larger cells need less (--resolution {enough_m}), and so do shorter ranges (--max-range)"
     )]
     TooLarge {
         /// The size of the place, m.
@@ -21,6 +21,8 @@ pub enum SurveyError {
         height_m: f64,
         /// The side of a cell, m.
         resolution_m: f64,
+        /// A side of the cells with which it is small enough, m.
+        enough_m: f64,
     },
     /// The place of a log is not that of the first one.
     #[error(

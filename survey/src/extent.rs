@@ -1,5 +1,6 @@
 use crate::error::SurveyError;
 use interfaces::{GridFrame, LaserReading};
+use mapper::Mapper;
 use nalgebra::{Isometry2, Point2, Vector2};
 
 /// The number of directions in which the reach of a reading is kept. In another direction it is too short by at most
@@ -31,7 +32,7 @@ impl Reach {
         Self(farthest.map(|(_, hit)| [hit.x as f32, hit.y as f32]))
     }
 
-    fn hits(&self) -> impl Iterator<Item = Point2<f64>> {
+    pub(crate) fn hits(&self) -> impl Iterator<Item = Point2<f64>> {
         self.0.iter().map(|[x, y]| Point2::new(f64::from(*x), f64::from(*y)))
     }
 }
@@ -51,13 +52,22 @@ pub(crate) fn union<'a>(frames: impl Iterator<Item = &'a GridFrame>) -> Result<G
 /// The frame of the cells with these numbers from the origin on.
 fn of_cells(low: Point2<f64>, high: Point2<f64>, resolution_m: f64) -> Result<GridFrame, SurveyError> {
     let cells = high - low;
-    let too_large = || SurveyError::TooLarge {
-        width_m: cells.x * resolution_m,
-        height_m: cells.y * resolution_m,
-        resolution_m,
+    let too_large = || {
+        let (width_m, height_m) = (cells.x * resolution_m, cells.y * resolution_m);
+        // With the space that rounding takes, in two digits.
+        let enough_m = resolution_m * (1.1 * cells.x * cells.y / most_cells()).sqrt().max(1.0);
+        let digit = 10_f64.powf(enough_m.log10().floor() - 1.0);
+        SurveyError::TooLarge { width_m, height_m, resolution_m, enough_m: (enough_m / digit).ceil() * digit }
     };
     // Numbers that are too large become the largest ones.
-    GridFrame::new(low * resolution_m, resolution_m, cells.x as usize, cells.y as usize).ok_or_else(too_large)
+    let frame = GridFrame::new(low * resolution_m, resolution_m, cells.x as usize, cells.y as usize);
+    frame.filter(|frame| Mapper::bytes(frame) <= Mapper::MAX_BYTES).ok_or_else(too_large)
+}
+
+/// The number of cells that a mapper can have.
+fn most_cells() -> f64 {
+    let one = GridFrame::new(Point2::origin(), 1.0, 1, 1);
+    one.map_or(1.0, |one| Mapper::MAX_BYTES as f64 / Mapper::bytes(&one) as f64)
 }
 
 /// The cells that cover what was hit from these poses. The cells lie on multiples of their side, so that two surveys of
@@ -70,6 +80,15 @@ pub(crate) fn frame<'a>(
     let spans = points.map(|point| (point, point));
     let low_and_high = spans.reduce(|(low, high), (point, _)| (low.inf(&point), high.sup(&point)));
     let (low, high) = low_and_high.ok_or(SurveyError::NoPlace)?;
+    around(low, high, resolution_m)
+}
+
+/// The cells that cover a rectangle and its margin.
+pub(crate) fn around(
+    low: Point2<f64>,
+    high: Point2<f64>,
+    resolution_m: f64,
+) -> Result<GridFrame, SurveyError> {
     let low = low.map(|m| ((m - MARGIN_M) / resolution_m).floor());
     let high = high.map(|m| ((m + MARGIN_M) / resolution_m).ceil());
     of_cells(low, high, resolution_m)

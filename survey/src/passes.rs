@@ -112,10 +112,14 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
     ///
     /// # Errors
     ///
-    /// When a setting is out of range, when the log cannot be read, and when the pass is interrupted.
+    /// When a setting is out of range, when the log cannot be read, when the place is too large for a map, and when the pass
+    /// is interrupted.
     pub fn route(&mut self) -> Result<Route, PassError> {
         let mut pass = FirstPass::new(self.settings)?;
-        self.each_reading(Stage::Trajectory, |_, reading| pass.add(reading))?;
+        self.each_reading(Stage::Trajectory, |_, reading| {
+            pass.add(reading);
+            pass.check_size()
+        })?;
         if self.settings.pose != PoseMode::Localized {
             return Ok(pass.finish());
         }
@@ -139,6 +143,7 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
             if let Some(found) = route.poses.get(index) {
                 search.add(reading, found);
             }
+            Ok(())
         })?;
         let log = self.number;
         Ok(route.moved(&search.finish().map_err(|why| PassError::Alignment { log, why })?))
@@ -155,6 +160,7 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
             if let Some(found) = route.poses.get(index) {
                 place.add(reading, found);
             }
+            Ok(())
         })?;
         Ok(place)
     }
@@ -163,11 +169,11 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
     fn each_reading(
         &mut self,
         stage: Stage,
-        mut add: impl FnMut(usize, LaserReading),
+        mut add: impl FnMut(usize, LaserReading) -> Result<(), SurveyError>,
     ) -> Result<(), PassError> {
         self.report(stage, 0)?;
         for (index, reading) in self.log.readings()?.enumerate() {
-            add(index, reading?);
+            add(index, reading?)?;
             self.report(stage, index + 1)?;
         }
         Ok(())

@@ -6,7 +6,7 @@ use crate::range_noise::RangeNoise;
 use crate::settings::{PoseMode, SurveySettings};
 use interfaces::{GridFrame, LaserReading};
 use localizer::{PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
 use std::ops::Add;
 
 /// A log along its trajectory.
@@ -64,7 +64,12 @@ pub struct FirstPass {
     given: Vec<TrajectoryPose>,
     range_noise: RangeNoise,
     reaches: Vec<Reach>,
+    /// The corners of the rectangle that was seen so far.
+    seen: Option<(Point2<f64>, Point2<f64>)>,
 }
+
+/// Before its loops are closed, a trajectory can be longer than the place: this share of its sides counts.
+const SURE_SHARE: f64 = 0.8;
 
 impl FirstPass {
     /// A pass without a reading.
@@ -84,20 +89,42 @@ impl FirstPass {
             given: Vec::new(),
             range_noise: RangeNoise::default(),
             reaches: Vec::new(),
+            seen: None,
         })
     }
 
     /// Adds the next reading.
     pub fn add(&mut self, reading: LaserReading) {
-        self.reaches.push(Reach::of(&self.settings.filtered(reading.clone())));
-        match &mut self.finder {
-            Some(finder) => finder.add(reading),
+        let reach = Reach::of(&self.settings.filtered(reading.clone()));
+        self.reaches.push(reach);
+        let found = match &mut self.finder {
+            Some(finder) => {
+                finder.add(reading);
+                finder.newest()
+            }
             None => {
                 self.range_noise.add(&reading);
                 let (time_s, pose, state) = (reading.time_s, reading.pose, PoseState::Tracking);
                 self.given.push(TrajectoryPose { time_s, pose, state });
+                self.given.last().copied()
             }
+        };
+        let certain = found.filter(|found| found.state == PoseState::Tracking);
+        for hit in certain.iter().flat_map(|found| reach.hits().map(|hit| found.pose * hit)) {
+            let (low, high) = self.seen.unwrap_or((hit, hit));
+            self.seen = Some((low.inf(&hit), high.sup(&hit)));
         }
+    }
+
+    /// Checks what was seen so far: a place that is too large for a map need not be seen to its end.
+    ///
+    /// # Errors
+    ///
+    /// When the place is too large for a map.
+    pub fn check_size(&self) -> Result<(), SurveyError> {
+        let Some((low, high)) = self.seen else { return Ok(()) };
+        let share = if self.finder.is_some() { SURE_SHARE } else { 1.0 };
+        extent::around(low, low + (high - low) * share, self.settings.resolution_m).map(drop)
     }
 
     /// The log along its trajectory, in the frame of its first pose.

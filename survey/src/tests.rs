@@ -261,9 +261,20 @@ fn a_place_too_large_for_a_map_is_named() {
     readings[1].pose = interfaces::pose(100.0, 100.0, 0.0);
     let mut pass = FirstPass::new(&settings).unwrap();
     readings.drain(..2).for_each(|reading| pass.add(reading));
+    // Known before the pass is over.
+    assert!(matches!(pass.check_size(), Err(SurveyError::TooLarge { .. })));
     let error = frame(&[pass.finish()], &settings).unwrap_err();
     assert!(matches!(error, SurveyError::TooLarge { .. }), "{error}");
-    assert!(error.to_string().starts_with("the place is too large for a map: 1"), "{error}");
+    let says = ["the place is too large for a map: at least 1", "--resolution 0.0", "--max-range"];
+    assert!(says.iter().all(|says| error.to_string().contains(says)), "{error}");
+    // What the error advises is enough.
+    let SurveyError::TooLarge { enough_m, .. } = error else { return };
+    let settings = SurveySettings { resolution_m: enough_m, ..settings };
+    let (mut readings, _) = drive(2, 0.2);
+    readings[1].pose = interfaces::pose(100.0, 100.0, 0.0);
+    let mut pass = FirstPass::new(&settings).unwrap();
+    readings.drain(..2).for_each(|reading| pass.add(reading));
+    assert!(frame(&[pass.finish()], &settings).is_ok());
 }
 
 #[test]

@@ -39,6 +39,13 @@ impl TrajectoryFinder {
         self.poses(&self.optimized()).iter().map(|found| found.pose).collect()
     }
 
+    /// The pose of the last reading, before the loops that are found later; `None` before the first one.
+    pub fn newest(&self) -> Option<super::TrajectoryPose> {
+        let last = self.readings.last()?;
+        let pose = self.graph.poses[last.keyframe] * last.offset;
+        Some(super::TrajectoryPose { time_s: last.time_s, pose, state: last.state })
+    }
+
     /// The motion since reading number `from` by matching with local submaps alone, and its covariance, in the frame of the
     /// robot at that reading. `None` if a scan since then did not agree with its submap.
     pub(crate) fn motion_since(&self, from: usize) -> Option<(Isometry2<f64>, Matrix3<f64>)> {

@@ -15,7 +15,7 @@ const BEFORE_NAME: usize = 28;
 pub(super) struct Chunk {
     records: Box<dyn BufRead + Send>,
     /// The bytes that are still to come.
-    remaining: u64,
+    pub(super) remaining: u64,
     /// The checksum so far, if it is compared, and the one that is expected.
     crc: Option<Crc>,
     expected_crc: u32,
@@ -34,17 +34,16 @@ impl Chunk {
         if len.min(available) > MOST_PACKED {
             return Err(format!("a chunk of {len} bytes; at most {MOST_PACKED} are read"));
         }
-        let mut bytes = Vec::new();
+        let mut bytes = Vec::with_capacity(len.min(available) as usize);
         let read = input.take(len).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
         let is_cut = (read as u64) < len;
         let mut fields = Fields::new(&bytes);
-        let header = (|| {
+        let mut header = || {
             fields.skip(16)?; // the times of the first and the last message
-            Some((fields.u64()?, fields.u32()?, fields.text()?, fields.u64()?))
-        })();
-        let Some((unpacked, expected_crc, compression, packed)) = header else {
-            return Err(format!("a chunk of {len} bytes ends within its header"));
+            Ok((fields.u64()?, fields.u32()?, fields.name()?, fields.u64()?))
         };
+        let (unpacked, expected_crc, compression, packed) =
+            header().map_err(|why: String| format!("the header of a chunk of {len} bytes {why}"))?;
         if unpacked > MOST_UNPACKED {
             return Err(format!("a chunk of {unpacked} bytes, unpacked; at most {MOST_UNPACKED} are read"));
         }

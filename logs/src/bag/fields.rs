@@ -1,6 +1,8 @@
-//! The fields of MCAP's records: little-endian numbers, and text after its length.
+//! The fields of MCAP's records: little-endian numbers, and names after their length.
 
-/// The fields that were not read yet. `None` where the bytes end too early, or are no text.
+use crate::bounds::MOST_NAME;
+
+/// The fields that were not read yet. Errors are the rest of a sentence about the record.
 pub(super) struct Fields<'a> {
     bytes: &'a [u8],
 }
@@ -10,31 +12,34 @@ impl<'a> Fields<'a> {
         Self { bytes }
     }
 
-    pub(super) fn skip(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (skipped, rest) = self.bytes.split_at_checked(count)?;
+    pub(super) fn skip(&mut self, count: usize) -> Result<&'a [u8], String> {
+        let (skipped, rest) = self.bytes.split_at_checked(count).ok_or("ends too early")?;
         self.bytes = rest;
-        Some(skipped)
+        Ok(skipped)
     }
 
-    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
-        self.skip(N)?.try_into().ok()
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], String> {
+        self.skip(N)?.try_into().map_err(|_| "ends too early".to_owned())
     }
 
-    pub(super) fn u16(&mut self) -> Option<u16> {
+    pub(super) fn u16(&mut self) -> Result<u16, String> {
         self.array().map(u16::from_le_bytes)
     }
 
-    pub(super) fn u32(&mut self) -> Option<u32> {
+    pub(super) fn u32(&mut self) -> Result<u32, String> {
         self.array().map(u32::from_le_bytes)
     }
 
-    pub(super) fn u64(&mut self) -> Option<u64> {
+    pub(super) fn u64(&mut self) -> Result<u64, String> {
         self.array().map(u64::from_le_bytes)
     }
 
-    pub(super) fn text(&mut self) -> Option<String> {
-        let length = self.u32()?;
-        let bytes = self.skip(length as usize)?;
-        String::from_utf8(bytes.to_vec()).ok()
+    pub(super) fn name(&mut self) -> Result<String, String> {
+        let length = self.u32()? as usize;
+        if length > MOST_NAME {
+            return Err(format!("has a name of {length} bytes; at most {MOST_NAME} are read"));
+        }
+        let bytes = self.skip(length)?;
+        String::from_utf8(bytes.to_vec()).map_err(|_| "has a name that is no text".to_owned())
     }
 }

@@ -3,6 +3,7 @@
 use super::files::BagFile;
 use super::message::{Message, Selection, Topic};
 use super::messages::Messages;
+use crate::bounds;
 use crate::cdr;
 use crate::choice::bare;
 use crate::error::LogError;
@@ -98,8 +99,6 @@ impl Inventory {
             inventory.frames.rewind(index, pose);
         }
         inventory.topics = messages.topics;
-        inventory.topics.sort();
-        inventory.topics.dedup();
         inventory.notes = messages.notes;
         Ok(inventory)
     }
@@ -107,7 +106,7 @@ impl Inventory {
     fn count_scan(&mut self, message: &Message) -> Result<(), String> {
         let Stamped { header } = cdr::decoded(&message.data)?;
         self.begin_ns.get_or_insert((header.stamp.ns(), message.log_ns));
-        let (topic, frame) = (&message.topic.name, bare(&header.frame_id));
+        let (topic, frame) = (&message.topic.name, bounds::name("a frame", bare(&header.frame_id))?);
         let is_full = self.lasers.len() == MOST_SOURCES;
         match self.lasers.iter_mut().find(|laser| laser.topic == *topic && laser.frame == frame) {
             Some(laser) => laser.scans += 1,
@@ -126,8 +125,8 @@ impl Inventory {
             None if is_full => return Err(format!("more than {MOST_SOURCES} topics of odometry")),
             None => self.odometry.push(OdometryTopic {
                 topic: topic.clone(),
-                odom_frame: bare(&header.frame_id).to_owned(),
-                child_frame: bare(&child_frame_id).to_owned(),
+                odom_frame: bounds::name("a frame", bare(&header.frame_id))?.to_owned(),
+                child_frame: bounds::name("a frame", bare(&child_frame_id))?.to_owned(),
                 poses: 1,
             }),
         }

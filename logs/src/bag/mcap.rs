@@ -6,6 +6,7 @@
 use super::chunk::Chunk;
 use super::fields::Fields;
 use super::message::{Message, MessageSource, Selection, Topic};
+use crate::bounds::{MOST_CHUNK_GROWTH, MOST_NAME, most_unpacked};
 use crate::bytes::{Bytes, Input};
 use crate::error::LogError;
 use std::collections::BTreeMap;
@@ -25,6 +26,8 @@ const DATA_END: u8 = 15;
 const MESSAGE_HEADER: usize = 22;
 /// The most bytes of a record that is read as a whole.
 const MOST_RECORD: u64 = 64 << 20;
+/// The bytes of a schema or a channel that are read: its numbers and names. The rest describes messages that we know.
+const MOST_DEFINITION: u64 = 2 * MOST_NAME as u64 + 16;
 /// A record that claims more bytes is no record that was cut off, but nonsense.
 const MOST_CLAIMED: u64 = 1 << 40;
 
@@ -44,6 +47,8 @@ pub(super) struct McapFile {
     record: u64,
     next: u64,
     chunk: Option<Chunk>,
+    /// The bytes of all chunks so far, unpacked.
+    unpacked: u64,
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
     selection: Selection,
@@ -85,6 +90,7 @@ impl McapFile {
             record: start,
             next: start,
             chunk: None,
+            unpacked: 0,
             schemas: BTreeMap::new(),
             channels: BTreeMap::new(),
             selection,
@@ -123,17 +129,27 @@ impl McapFile {
             CHUNK => {
                 let available = self.size - (self.record + 9).min(self.size);
                 let chunk = Chunk::read(&mut self.input, length, available, self.selection.checks_sums);
-                self.chunk = Some(chunk.map_err(|what| match length > available {
+                let chunk = chunk.map_err(|what| match length > available {
                     true => Stop::Cut,
                     false => Stop::Invalid(what),
-                })?);
+                })?;
+                self.unpacked = self.unpacked.saturating_add(chunk.remaining);
+                let most = most_unpacked(self.size, MOST_CHUNK_GROWTH);
+                if self.unpacked > most {
+                    let (unpacked, size) = (self.unpacked, self.size);
+                    let what = format!(
+                        "the chunks so far unpack to {unpacked} bytes; at most {most} are read of a file of {size}"
+                    );
+                    return Err(Stop::Invalid(what));
+                }
+                self.chunk = Some(chunk);
                 Ok(None)
             }
             _ if self.next > self.size => Err(Stop::Cut),
             SCHEMA | CHANNEL => {
-                let bytes = self.whole(length)?;
+                let bytes = self.whole(length.min(MOST_DEFINITION))?;
                 self.define(code, &bytes)?;
-                Ok(None)
+                self.skip(length - bytes.len() as u64)
             }
             MESSAGE => {
                 let mut header = [0; MESSAGE_HEADER];
@@ -160,9 +176,10 @@ impl McapFile {
         let mut found = None;
         match code {
             SCHEMA | CHANNEL => {
-                let mut bytes = vec![0; checked(length)?];
+                let mut bytes = vec![0; length.min(MOST_DEFINITION) as usize];
                 chunk.read_exact(&mut bytes)?;
                 self.define(code, &bytes)?;
+                chunk.skip(length - bytes.len() as u64)?;
             }
             MESSAGE => {
                 let mut header = [0; MESSAGE_HEADER];
@@ -203,28 +220,28 @@ impl McapFile {
         let mut read = || {
             let id = fields.u16()?;
             if code == SCHEMA {
-                self.schemas.insert(id, fields.text()?);
-                return Some(());
+                self.schemas.insert(id, fields.name()?);
+                return Ok(());
             }
             // A channel without a schema has no type.
             let type_name = self.schemas.get(&fields.u16()?).cloned().unwrap_or_default();
-            let topic = Topic { name: fields.text()?, type_name, encoding: fields.text()? };
+            let topic = Topic { name: fields.name()?, type_name, encoding: fields.name()? };
             // Channels are defined again in later chunks.
             if self.channels.get(&id).is_none_or(|known| *known.topic != topic) {
                 let is_wanted = (self.selection.is_wanted)(&topic);
                 self.channels.insert(id, Channel { topic: Arc::new(topic), is_wanted, messages: 0 });
             }
-            Some(())
+            Ok(())
         };
         let what = if code == SCHEMA { "a schema" } else { "a channel" };
-        read().ok_or_else(|| Stop::Invalid(format!("{what} ends too early, or its name is no text")))
+        read().map_err(|why: String| Stop::Invalid(format!("{what} {why}")))
     }
 
     /// The message that begins with this header, if it is wanted; its data is to be read.
     fn message(&mut self, header: &[u8]) -> Result<Option<Message>, Stop> {
         let mut fields = Fields::new(header);
         let id = fields.u16().unwrap_or_default();
-        fields.skip(4); // the sequence number
+        let _ = fields.skip(4); // the sequence number
         let log_ns = fields.u64().unwrap_or_default();
         let Some(channel) = self.channels.get_mut(&id) else {
             return Err(Stop::Invalid(format!("a message of channel {id}, which is not defined")));

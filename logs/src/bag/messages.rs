@@ -9,8 +9,9 @@ use std::io::Read;
 use std::sync::Arc;
 use std::vec::IntoIter;
 
-/// The most bytes of a message, unpacked.
+/// The most bytes of a message, unpacked, and the most topics that are listed.
 const MOST_BYTES: u64 = 64 << 20;
+const MOST_TOPICS: usize = 1 << 16;
 
 /// The messages of a bag, in the order of its files.
 pub(crate) struct Messages {
@@ -47,6 +48,9 @@ impl Messages {
             }
             let (topics, note) = current.report();
             self.topics.extend(topics);
+            self.topics.sort();
+            self.topics.dedup();
+            self.topics.truncate(MOST_TOPICS);
             self.notes.extend(note);
             self.current = None;
         }
@@ -57,8 +61,15 @@ impl Messages {
 fn unpacked(message: &Message) -> Result<Vec<u8>, LogError> {
     let mut data = Vec::new();
     let mut unpack = || {
-        zstd::stream::read::Decoder::with_buffer(&message.data[..])?.take(MOST_BYTES).read_to_end(&mut data)
+        zstd::stream::read::Decoder::with_buffer(&message.data[..])?
+            .take(MOST_BYTES + 1)
+            .read_to_end(&mut data)
     };
-    unpack().map_err(|error| message.error(error.to_string()))?;
+    let count = unpack().map_err(|error| message.error(error.to_string()))?;
+    if count as u64 > MOST_BYTES {
+        return Err(
+            message.error(format!("it unpacks to more than {MOST_BYTES} bytes; at most these are read"))
+        );
+    }
     Ok(data)
 }

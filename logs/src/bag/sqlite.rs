@@ -1,6 +1,7 @@
 //! SQLite databases of rosbag2: the tables `topics` and `messages`.
 
 use super::message::{Message, MessageSource, Selection, Topic};
+use crate::bounds::MOST_NAME;
 use crate::bytes::Bytes;
 use crate::error::LogError;
 use rusqlite::{Connection, ErrorCode, OpenFlags, Row};
@@ -21,7 +22,9 @@ const MOST_BYTES: i64 = 64 << 20;
 /// A table that is a table: a view of a hostile file can have rows without end.
 const IS_TABLE: &str =
     "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = ?1 AND rootpage > 0";
-const TOPICS: &str = "SELECT id, name, type, serialization_format FROM topics LIMIT 65536";
+/// With the bytes of the longest of the names: SQLite knows them without reading it.
+const TOPICS: &str = "SELECT id, max(octet_length(name), octet_length(type), octet_length(serialization_format)), name, \
+                      type, serialization_format FROM topics LIMIT 65536";
 const MESSAGES: &str = "SELECT rowid, topic_id, timestamp, CASE WHEN length(data) <= ?3 THEN data END FROM messages \
                         WHERE rowid > ?1 ORDER BY rowid LIMIT ?2";
 
@@ -60,6 +63,12 @@ impl SqliteFile {
             let mut statement = database.prepare(TOPICS).map_err(failed)?;
             let mut rows = statement.query([]).map_err(failed)?;
             while let Some(row) = rows.next().map_err(failed)? {
+                let longest: i64 = row.get(1).map_err(failed)?;
+                if longest > MOST_NAME as i64 {
+                    let what =
+                        format!("a name in `topics` has {longest} bytes; at most {MOST_NAME} are read");
+                    return Err(damaged(file, &what));
+                }
                 let (id, topic) = topic(row).map_err(failed)?;
                 let is_wanted = (selection.is_wanted)(&topic);
                 found.insert(id, (Arc::new(topic), is_wanted, 0));
@@ -112,7 +121,7 @@ impl SqliteFile {
 }
 
 fn topic(row: &Row<'_>) -> rusqlite::Result<(i64, Topic)> {
-    Ok((row.get(0)?, Topic { name: row.get(1)?, type_name: row.get(2)?, encoding: row.get(3)? }))
+    Ok((row.get(0)?, Topic { name: row.get(2)?, type_name: row.get(3)?, encoding: row.get(4)? }))
 }
 
 fn database_error(file: &Arc<str>, error: &rusqlite::Error) -> LogError {

@@ -1,3 +1,4 @@
+mod bounds;
 mod builder;
 mod choices;
 mod faults;

@@ -1,6 +1,7 @@
 //! The first reading of a log: what it contains, and what makes no sense.
 
 use super::line::{self, Geometry, Line};
+use crate::bounds;
 use crate::error::LogError;
 use crate::lines::Lines;
 use crate::odometry::Odometry;
@@ -46,6 +47,7 @@ impl Survey {
                     }
                 }
                 Line::Scan(scan) => {
+                    bounds::one_more(times_s.len()).map_err(|what| lines.error(what))?;
                     times_s.push(scan.time_s);
                     standing.add(&Isometry2::identity(), &scan.scan);
                 }

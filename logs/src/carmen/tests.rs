@@ -205,3 +205,16 @@ fn a_robot_stands_if_neither_odometry_nor_scans_move() {
     let poses = readings(&log(1e-4, 0.0));
     assert!(poses.iter().all(|reading| reading.pose == nalgebra::Isometry2::identity()));
 }
+
+#[test]
+fn a_compressed_log_grows_by_a_hundred_at_most() {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(flaser(1.0, "0 0 0").as_bytes()).unwrap();
+    (0..90).for_each(|_| encoder.write_all("#\n".repeat(1 << 19).as_bytes()).unwrap());
+    let error = open("a.log.gz", &encoder.finish().unwrap()).unwrap_err().to_string();
+    assert!(error.starts_with("a.log.gz: the "), "{error}");
+    assert!(
+        error.contains("unpack to more than") && error.ends_with("unpack it first: gzip -d FILE"),
+        "{error}"
+    );
+}

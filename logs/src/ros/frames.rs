@@ -1,11 +1,12 @@
 //! Frames and the transforms between them (tf).
 
+use crate::bounds;
 use crate::choice::bare;
 use nalgebra::{Isometry2, Isometry3, UnitComplex, Vector3};
 use std::collections::{BTreeMap, VecDeque};
 
 /// The most frames of a robot.
-const MOST_FRAMES: usize = 1_000;
+const MOST_FRAMES: usize = 10_000;
 /// A laser that is tilted by more than this does not measure a plane: the cosine of 15°.
 const LEAST_UPRIGHT: f64 = 0.9659;
 /// Frames that move against each other are the robot and the world.
@@ -23,6 +24,9 @@ pub(crate) struct Edge {
     pub(crate) moves: bool,
 }
 
+/// A frame beside another one, and the edge to it: its number, and whether it is taken from the parent to the child.
+type Neighbour<'a> = (&'a str, (usize, bool));
+
 /// A chain of transforms: the edges, and whether each is taken from the parent to the child.
 pub type Chain = Vec<(usize, bool)>;
 
@@ -39,9 +43,10 @@ impl Frames {
     ///
     /// # Errors
     ///
-    /// When there are too many frames.
+    /// When there are too many frames, or the name of one is too long.
     pub fn set(&mut self, parent: &str, child: &str, pose: Isometry3<f64>) -> Result<usize, String> {
-        let key = (bare(child).to_owned(), bare(parent).to_owned());
+        let name = |name| bounds::name("a frame", bare(name)).map(str::to_owned);
+        let key = (name(child)?, name(parent)?);
         if let Some(index) = self.known.get(&key) {
             let edge = &mut self.edges[*index];
             let step = edge.pose.inv_mul(&pose);
@@ -90,8 +95,10 @@ impl Frames {
     pub(crate) fn above(&self, frame: &str) -> Result<Vec<usize>, String> {
         let (mut above, mut at) = (Vec::new(), bare(frame));
         loop {
-            let to = |index: &usize| self.edges[*index].child == at;
-            let Some(edge) = (0..self.edges.len()).filter(to).max_by_key(|index| {
+            let from = (at.to_owned(), String::new());
+            let to =
+                self.known.range(from..).take_while(|((child, _), _)| child == at).map(|(_, index)| *index);
+            let Some(edge) = to.max_by_key(|index| {
                 let edge = &self.edges[*index];
                 (is_odom(&edge.parent), !is_world(&edge.parent), usize::MAX - index)
             }) else {
@@ -108,22 +115,28 @@ impl Frames {
     /// The shortest chain from one frame to another that does not contain the frames of the world.
     pub fn chain(&self, from: &str, to: &str, world: &[&str]) -> Option<Chain> {
         let (from, to) = (bare(from), bare(to));
-        let mut chains: BTreeMap<&str, Chain> = BTreeMap::from([(from, Chain::new())]);
+        let mut neighbours: BTreeMap<&str, Vec<Neighbour>> = BTreeMap::new();
+        for (index, Edge { parent, child, .. }) in self.edges.iter().enumerate() {
+            neighbours.entry(parent).or_default().push((child, (index, true)));
+            neighbours.entry(child).or_default().push((parent, (index, false)));
+        }
+        // How each frame was reached: from which one, by which edge.
+        let mut reached: BTreeMap<&str, Neighbour> = BTreeMap::new();
         let mut open = VecDeque::from([from]);
-        while let Some(at) = open.pop_front() {
+        while let Some(mut at) = open.pop_front() {
             if at == to {
-                return chains.remove(at);
+                let mut chain = Chain::new();
+                while at != from {
+                    let (before, edge) = reached[at];
+                    chain.push(edge);
+                    at = before;
+                }
+                chain.reverse();
+                return Some(chain);
             }
-            for (index, edge) in self.edges.iter().enumerate() {
-                let (next, is_down) = match () {
-                    () if edge.parent == at => (&edge.child[..], true),
-                    () if edge.child == at => (&edge.parent[..], false),
-                    () => continue,
-                };
-                if !chains.contains_key(next) && !world.contains(&next) {
-                    let mut chain = chains[at].clone();
-                    chain.push((index, is_down));
-                    chains.insert(next, chain);
+            for (next, edge) in neighbours.get(at).into_iter().flatten() {
+                if *next != from && !reached.contains_key(next) && !world.contains(next) {
+                    reached.insert(next, (at, *edge));
                     open.push_back(next);
                 }
             }

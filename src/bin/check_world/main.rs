@@ -5,7 +5,7 @@ mod simulation;
 
 use anyhow::bail;
 use clap::Parser;
-use curious::program::{Failure, duration_s, start};
+use curious::program::{Failure, duration_s, folder, start};
 use curious::terminal::{print, say};
 use inspection::{Content, Inspection, as_world_file, inspect};
 use interfaces::printable;
@@ -59,7 +59,7 @@ struct Args {
     seed: u64,
 
     /// The folder for the written files; created if it does not exist
-    #[arg(long, value_name = "DIR", default_value = ".")]
+    #[arg(long, value_name = "DIR", default_value = ".", value_parser = folder())]
     out: PathBuf,
 }
 

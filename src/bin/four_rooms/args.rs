@@ -3,7 +3,7 @@
 use agent::Policy;
 use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
-use curious::program::{duration_s, one_of, strategy_of};
+use curious::program::{duration_s, input_file, one_of, output_file, strategy_of};
 use curious::worlds::PoseArg;
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
@@ -40,7 +40,7 @@ pub(crate) struct Args {
     pub(crate) list_worlds: bool,
 
     /// Start from a known map: a ROS map.yaml with its image
-    #[arg(long, value_name = "MAP.YAML", help_heading = "World")]
+    #[arg(long, value_name = "MAP.YAML", value_parser = input_file(), help_heading = "World")]
     pub(crate) map: Option<PathBuf>,
 
     /// The seed of all random streams: equal seeds give equal runs, bit for bit
@@ -56,7 +56,7 @@ pub(crate) struct Args {
     pub(crate) drive: DriveChoice,
 
     /// The waypoints for --drive tour, a TOML file [default: the shipped tour of the four rooms]
-    #[arg(long, value_name = "FILE", help_heading = "Pilot")]
+    #[arg(long, value_name = "FILE", value_parser = input_file(), help_heading = "Pilot")]
     pub(crate) tour: Option<PathBuf>,
 
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
@@ -89,7 +89,7 @@ pub(crate) struct Args {
     pub(crate) out: PathBuf,
 
     /// The file of the recording [default: named after the world, in the output folder]
-    #[arg(long, value_name = "FILE", conflicts_with = "no_rrd", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", value_parser = output_file(), conflicts_with = "no_rrd", help_heading = "Output")]
     pub(crate) rrd: Option<PathBuf>,
 
     /// Do not record: the run is about twice as fast
@@ -99,7 +99,7 @@ pub(crate) struct Args {
     /// Save the state of the run in a file, at the end and every minute. If the file exists, the run goes on from there,
     /// bit for bit as if it had never ended: give the same world, seed and settings. --duration is the simulated time
     /// in all; the recording, the moving picture and the trajectories cover what is run now
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", value_parser = output_file(), help_heading = "Output")]
     pub(crate) state: Option<PathBuf>,
 
     /// The wall time between two savings of the state
@@ -123,7 +123,7 @@ pub(crate) struct Args {
     pub(crate) connect: Option<Live>,
 
     /// Write the run as a bag of ROS 2 too, an MCAP file that Foxglove opens: scans, odometry, tf, maps, changes, goals
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", value_parser = output_file(), help_heading = "Output")]
     pub(crate) mcap: Option<PathBuf>,
 
     /// Print only errors

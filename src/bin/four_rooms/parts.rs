@@ -6,7 +6,7 @@ use agent::Agent;
 use anyhow::{Context, anyhow};
 use controller::DiffDrive;
 use curious::keyboard::Keyboard;
-use curious::program::{Failure, input};
+use curious::program::{Failure, input, value_of};
 use curious::reachability;
 use curious::terminal::say;
 use curious::worlds::{self, Loaded};
@@ -36,7 +36,8 @@ impl Parts {
         if args.strategy.is_some() && args.drive != DriveChoice::Agent {
             return Err(input(anyhow!("--strategy is for the agent: leave out --drive, or --strategy")));
         }
-        let Loaded { spec, warnings } = worlds::load(&args.world).map_err(input)?;
+        let Loaded { spec, warnings } =
+            worlds::load(&args.world).map_err(|error| input(value_of("--world", error)))?;
         warnings.iter().for_each(warn);
         reachability::warnings(spec.fleet()).iter().for_each(warn);
         let settings = PhysicsSettings::of(&spec).with_context(|| format!("cannot run `{}`", args.world));

@@ -49,7 +49,7 @@ pub(crate) struct Args {
     pub(crate) list_worlds: bool,
 
     /// The range of the sensor, in cells, instead of the range in the world file
-    #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=100), help_heading = "World")]
+    #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=100), allow_negative_numbers = true, help_heading = "World")]
     pub(crate) sensor_radius: Option<u32>,
 
     /// The probability of every move of a block and of the robot, instead of the probabilities in the world
@@ -66,15 +66,21 @@ pub(crate) struct Args {
     pub(crate) estimator: Vec<EstimatorChoice>,
 
     /// Trials of each combination, with seeds that count up from --seed
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000), help_heading = "Comparison")]
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000), allow_negative_numbers = true, help_heading = "Comparison")]
     pub(crate) trials: u64,
 
     /// Steps of each trial
-    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000), help_heading = "Comparison")]
+    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000), allow_negative_numbers = true, help_heading = "Comparison")]
     pub(crate) steps: u64,
 
     /// The maximum number of steps of local exploration at a goal; 42 in the paper
-    #[arg(long, value_name = "STEPS", default_value_t = 42, help_heading = "Comparison")]
+    #[arg(
+        long,
+        value_name = "STEPS",
+        default_value_t = 42,
+        allow_negative_numbers = true,
+        help_heading = "Comparison"
+    )]
     pub(crate) max_steps: u32,
 
     /// The folder for all results

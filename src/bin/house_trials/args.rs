@@ -60,7 +60,7 @@ pub(crate) struct Args {
     pub(crate) estimator: Vec<EstimatorChoice>,
 
     /// Trials of each combination, with seeds that count up from --seed
-    #[arg(long, visible_alias = "seeds", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000), help_heading = "Comparison")]
+    #[arg(long, visible_alias = "seeds", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000), allow_negative_numbers = true, help_heading = "Comparison")]
     pub(crate) trials: u64,
 
     /// The simulated time of each trial: whole seconds, or with a unit as in 90s, 20m, 1h
@@ -68,7 +68,13 @@ pub(crate) struct Args {
     pub(crate) duration: u64,
 
     /// The maximum number of steps of local exploration at a goal
-    #[arg(long, value_name = "STEPS", default_value_t = 15, help_heading = "Comparison")]
+    #[arg(
+        long,
+        value_name = "STEPS",
+        default_value_t = 15,
+        allow_negative_numbers = true,
+        help_heading = "Comparison"
+    )]
     pub(crate) max_steps: u32,
 
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]

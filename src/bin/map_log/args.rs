@@ -3,7 +3,7 @@
 use crate::logs_in_order::Source;
 use anyhow::ensure;
 use clap::{Parser, ValueEnum};
-use curious::program::{duration_s, one_of};
+use curious::program::{duration_s, number, one_of, output_file};
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};
 use std::path::PathBuf;
@@ -60,6 +60,7 @@ pub(crate) struct Args {
         long,
         value_name = "METRES",
         default_value_t = 0.05,
+        value_parser = number(0.005..=10.0),
         allow_negative_numbers = true,
         help_heading = "Map"
     )]
@@ -70,6 +71,7 @@ pub(crate) struct Args {
         long,
         value_name = "METRES",
         default_value_t = 20.0,
+        value_parser = number(0.1..=1000.0),
         allow_negative_numbers = true,
         help_heading = "Map"
     )]
@@ -77,7 +79,7 @@ pub(crate) struct Args {
 
     /// The errors of ranges and poses together: what a change must stand out from, m [default: 5 times the distance of scans
     /// from the surfaces of other passes, from 0.02 to 0.1; 0.06 if no place was passed twice; with exact poses 0.03]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, help_heading = "Map")]
+    #[arg(long, value_name = "METRES", value_parser = number(0.0..=0.5), allow_negative_numbers = true, help_heading = "Map")]
     pub(crate) noise: Option<f64>,
 
     /// Hits whose line to the next hit has a smaller angle to the beam lie between two surfaces and are left out; 0 keeps
@@ -86,6 +88,7 @@ pub(crate) struct Args {
         long,
         value_name = "DEGREES",
         default_value_t = 10.0,
+        value_parser = number(0.0..=85.0),
         allow_negative_numbers = true,
         help_heading = "Map"
     )]
@@ -108,12 +111,12 @@ pub(crate) struct Args {
     pub(crate) no_rrd: bool,
 
     /// Write the run as a bag of ROS 2 too, an MCAP file that Foxglove opens: scans, odometry, tf, maps, changes
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", value_parser = output_file(), help_heading = "Output")]
     pub(crate) mcap: Option<PathBuf>,
 
     /// Keep what is learned in a file. If it exists, the logs add to it: logs of the same place, later than those before. It is
     /// saved at the end and every minute; a run that was interrupted or killed goes on with the same command
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", value_parser = output_file(), help_heading = "Output")]
     pub(crate) state: Option<PathBuf>,
 
     /// The wall time between two savings of the state

@@ -17,9 +17,9 @@ pub(crate) struct Source {
     pub(crate) entry: LogEntry,
 }
 
-/// Opens all logs, and puts them in the order of their times. Notes go to the error output. `is_hashed`: whether a log must
+/// Opens all logs, and puts them in the order of their times. Notes go to the error output. `is_kept`: whether a log must
 /// be recognised in a later run.
-pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice, is_hashed: bool) -> anyhow::Result<Vec<Source>> {
+pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice, is_kept: bool) -> anyhow::Result<Vec<Source>> {
     let open = |file: &PathBuf| {
         let log = Log::open(file, choice)?;
         log.summary()
@@ -27,17 +27,39 @@ pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice, is_hashed: bool) -> 
             .iter()
             .for_each(|note| say(stderr(), format_args!("note: {}: {note}", file.display())));
         let mut entry = LogEntry::of(short_name(file), &log, choice)?;
-        if is_hashed {
+        if is_kept || files.len() > 1 {
             entry.content = log.content_hash()?;
         }
         Ok(Source { log, entry })
     };
     let mut sources = files.iter().map(open).collect::<anyhow::Result<Vec<_>>>()?;
+    check_choice(&sources, choice)?;
     if sources.iter().all(|source| source.entry.begin_s.is_some()) {
         let begin_s = |source: &Source| source.entry.begin_s.unwrap_or_default();
         sources.sort_by(|a, b| begin_s(a).total_cmp(&begin_s(b)));
     }
     Ok(sources)
+}
+
+/// Topics and frames are those of bags: for CARMEN logs alone, such a choice is an error.
+fn check_choice(sources: &[Source], choice: &TopicChoice) -> anyhow::Result<()> {
+    let flags = [
+        ("--scan-topic", !choice.scan_topics.is_empty()),
+        ("--odom-topic", choice.odom_topic.is_some()),
+        ("--base-frame", choice.base_frame.is_some()),
+    ];
+    let given = flags.iter().find(|(_, is_given)| *is_given);
+    for Source { entry, .. } in sources.iter().filter(|source| source.log.summary().scan_topics.is_empty()) {
+        let Some((flag, _)) = given else { continue };
+        let what =
+            format!("{flag} is for bags, but {} is a CARMEN log, which has no topics and frames", entry.name);
+        ensure!(
+            sources.iter().any(|other| !other.log.summary().scan_topics.is_empty()),
+            "{what}: leave it out"
+        );
+        say(stderr(), format_args!("note: {what}"));
+    }
+    Ok(())
 }
 
 /// The time of the first reading, in seconds since the epoch; `None` unless every log says when it was recorded.

@@ -77,6 +77,16 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let bag = bag(&job, &survey, &mut folder)?;
     if !first_pass::routes(&job, &mut survey, &mut saves)? {
         saves.finish(&survey);
+        let kept = match &args.state {
+            Some(state) if saves.is_written => {
+                format!(
+                    "; {} keeps the logs that are finished, and the same command goes on",
+                    state.display()
+                )
+            }
+            _ => String::new(),
+        };
+        job.say(format_args!("interrupted in the first pass: no results are written{kept}"));
         return Ok(ExitCode::from(INTERRUPTED));
     }
     let learned = second_pass::learn(&job, &mut survey, &mut saves, bag, folder.unfinished())?;
