@@ -29,8 +29,8 @@ pub enum LoadError {
 #[derive(Debug)]
 pub struct StateFile {
     /// Its name as given, and the file that it leads to: a link stays one, and all names of a file have one lock.
-    name: PathBuf,
     path: PathBuf,
+    target: PathBuf,
     every: Duration,
     last: Instant,
     writing: Option<JoinHandle<io::Result<()>>>,
@@ -45,14 +45,20 @@ impl StateFile {
     /// When another run uses it, when it is no file that can be replaced (a folder, a pipe, a device), and when its folder
     /// cannot be written.
     pub fn open(path: &Path) -> io::Result<Self> {
-        let name = path.to_owned();
-        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        match fs::metadata(&path) {
+        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        match fs::metadata(&target) {
             Ok(known) if !known.is_file() => return Err(io::Error::other(NO_FILE)),
             _ => {}
         }
-        let lock = FileLock::new(&with_ending(&path, "lock"))?;
-        Ok(Self { name, path, every: EVERY, last: Instant::now(), writing: None, _lock: lock })
+        let lock = FileLock::new(&with_ending(&target, "lock"))?;
+        Ok(Self {
+            path: path.to_owned(),
+            target,
+            every: EVERY,
+            last: Instant::now(),
+            writing: None,
+            _lock: lock,
+        })
     }
 
     /// The same, written once in this time.
@@ -63,7 +69,7 @@ impl StateFile {
 
     /// The name of the file, as given.
     pub fn path(&self) -> &Path {
-        &self.name
+        &self.path
     }
 
     /// The state in the file; `None` if there is no such file.
@@ -72,7 +78,7 @@ impl StateFile {
     ///
     /// When the file cannot be read, or is not a state.
     pub fn load(&self) -> Result<Option<State>, LoadError> {
-        match read_state(&self.path) {
+        match read_state(&self.target) {
             Err(LoadError::Read(missing)) if missing.kind() == io::ErrorKind::NotFound => Ok(None),
             state => state.map(Some),
         }
@@ -84,9 +90,9 @@ impl StateFile {
     ///
     /// When it cannot be kept.
     pub fn keep_earlier(&self) -> io::Result<()> {
-        let unfinished = with_ending(&self.path, "unfinished");
-        fs::copy(&self.path, &unfinished)?;
-        fs::rename(unfinished, earlier_name(&self.path))
+        let unfinished = with_ending(&self.target, "unfinished");
+        fs::copy(&self.target, &unfinished)?;
+        fs::rename(unfinished, earlier_name(&self.target))
     }
 
     /// Goes back to the file that was [kept](Self::keep_earlier); there is none then.
@@ -95,7 +101,7 @@ impl StateFile {
     ///
     /// When no file was kept.
     pub fn restore_earlier(&self) -> io::Result<()> {
-        fs::rename(earlier_name(&self.path), &self.path)
+        fs::rename(earlier_name(&self.target), &self.target)
     }
 
     /// Whether it is time to [`save`](Self::save).
@@ -115,9 +121,9 @@ impl StateFile {
     /// When the writing before has failed. The new one has begun nevertheless.
     pub fn save(&mut self, state: impl FnOnce() -> State + Send + 'static) -> io::Result<()> {
         let before = self.wait();
-        let path = self.path.clone();
+        let target = self.target.clone();
         self.last = Instant::now();
-        self.writing = Some(std::thread::spawn(move || write(&path, &state())));
+        self.writing = Some(std::thread::spawn(move || write(&target, &state())));
         before
     }
 
