@@ -235,7 +235,14 @@ fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
 /// readings after which the robot changed, and those that were read again; the largest error on the second round, m, and the
 /// longest time for a reading, ms.
 fn switched(switch: Switch) -> (Vec<(PoseState, Isometry2<f64>)>, Vec<(usize, usize)>, f64, f64) {
-    let mut run = Run::new(narrow(101), 101);
+    switched_in(narrow(101), switch)
+}
+
+fn switched_in(
+    corridor: Corridor,
+    switch: Switch,
+) -> (Vec<(PoseState, Isometry2<f64>)>, Vec<(usize, usize)>, f64, f64) {
+    let mut run = Run::new(corridor, 101);
     run.localizer = run.localizer.switching(switch);
     let (mut poses, mut changes, mut worst_m, mut longest_ms) = (Vec::new(), Vec::new(), 0.0_f64, 0.0_f64);
     for _ in 0..run.scans(1.5) {
@@ -365,4 +372,19 @@ fn long_loops_are_closed() {
         }
     }
     assert!(worst_m[0] < 0.5 && worst_m[1] < 0.2, "{worst_m:?} m");
+}
+
+/// The longest time for a reading where thousands are read again, in a thread and at once. On a machine without other work:
+///
+/// ```text
+/// cargo test -p localizer --test it loops::online::thousands -- --ignored --nocapture
+/// ```
+#[test]
+#[ignore = "takes minutes"]
+fn thousands_of_readings_are_read_again_beside_the_robot() {
+    for switch in [Switch::WhenReady, Switch::AtOnce] {
+        let (_, changes, worst_m, longest_ms) =
+            switched_in(ahead(Corridor::new([62.0, 41.0], Plan::Varied, 101)), switch);
+        println!("{switch:?}: {changes:?}, {worst_m:.2} m, at most {longest_ms:.0} ms for a reading");
+    }
 }
