@@ -182,12 +182,17 @@ impl LoopClosingLocalizer {
 
     /// Reads all readings so far again, or lets a thread do it. `None` if the map stays as it is for now.
     fn read_again(&mut self, map: &mut Mapper) -> Option<LoopClosed> {
-        let localizer = Localizer::from_nothing(&self.settings, &self.frame, self.start).ok()?;
-        let (first, again) = (self.first.take()?, Replay { localizer, map: map.emptied(), last: None });
+        let (settings, frame, start) = (self.settings.clone(), self.frame, self.start);
+        let (emptied, first) = (map.emptied(), self.first.take()?);
+        // To make a large map takes time as well.
+        let read = move || match Localizer::from_nothing(&settings, &frame, start) {
+            Ok(localizer) => Replay { localizer, map: emptied(), last: None }.all(first),
+            Err(_) => (first, None), // the settings were valid before
+        };
         if self.switch == Switch::AtOnce {
-            return self.take_over(again.all(first), &[], map);
+            return self.take_over(read(), &[], map);
         }
-        let thread = std::thread::Builder::new().spawn(move || again.all(first));
+        let thread = std::thread::Builder::new().spawn(read);
         self.background = thread.ok().map(|thread| Background { thread, since: Vec::new() });
         None
     }

@@ -153,9 +153,11 @@ impl Mapper {
         Self { settings, cells, occupancy, expected_changes, scan, points: Vec::new() }
     }
 
-    /// A mapper with the same settings and the same frame, whose cells are all unknown.
-    pub fn emptied(&self) -> Self {
-        Self::build(self.settings.clone(), Grid::filled(*self.frame(), CellState::Unknown))
+    /// Makes a mapper with the same settings and the same frame, whose cells are all unknown: when it is called, perhaps in
+    /// another thread.
+    pub fn emptied(&self) -> impl FnOnce() -> Self + Send + use<> {
+        let (settings, frame) = (self.settings.clone(), *self.frame());
+        move || Self::build(settings, Grid::filled(frame, CellState::Unknown))
     }
 
     /// Goes on in a larger map, with the range noise of `settings`; its other settings are those of this mapper. The new

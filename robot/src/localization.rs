@@ -22,6 +22,14 @@ pub trait Localization<R> {
 
     /// Begins another session in the place that was learned, at a pose that is not known.
     fn begin_session(&mut self);
+
+    /// Whether nothing is being learned again in another thread.
+    fn is_settled(&self) -> bool {
+        true
+    }
+
+    /// Waits for what is being learned again, and takes it over: before a snapshot, and before another session.
+    fn settle(&mut self, _: &mut Mapper) {}
 }
 
 /// A reading with its pose.
@@ -129,6 +137,14 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
 
     fn begin_session(&mut self) {
         LoopClosingLocalizer::begin_session(self);
+    }
+
+    fn is_settled(&self) -> bool {
+        LoopClosingLocalizer::is_settled(self)
+    }
+
+    fn settle(&mut self, mapper: &mut Mapper) {
+        LoopClosingLocalizer::settle(self, mapper);
     }
 }
 

@@ -18,7 +18,7 @@ use crate::saves::Saves;
 use crate::source::{FrameNames, LiveReading, ScanCount, Source};
 use anyhow::anyhow;
 use interfaces::{LaserReading, World};
-use localizer::{GivenPoses, LocalizerSettings, LoopClosingLocalizer, PoseState};
+use localizer::{GivenPoses, LocalizerSettings, LoopClosingLocalizer, PoseState, Switch};
 use mapper::{Mapper, ReadingError};
 use nalgebra::Isometry2;
 use outputs::Markers;
@@ -42,6 +42,8 @@ const LONGEST_GAP_S: f64 = 2.0;
 /// The time between two sessions whose clocks cannot be compared, s.
 const RESTART_GAP_S: f64 = 1.0;
 
+/// With a simulated clock, the map that a closed loop has corrected replaces the old one after this number of readings.
+const SWITCH_READINGS: usize = 50;
 /// A longer time between two sessions is that between a simulated clock and one that counts from 1970, s: ten years.
 const OTHER_CLOCK_S: f64 = 3.2e8;
 
@@ -122,7 +124,11 @@ impl<L: Link> CuriousNode<L> {
         };
         let is_localized = parameters.pose == PoseSource::Localized;
         let mut localization: Box<dyn Localization<LaserReading> + Send> = match is_localized {
-            true => Box::new(LoopClosingLocalizer::from_nothing(&localizer, &frame, Isometry2::identity())?),
+            true => {
+                let loops = LoopClosingLocalizer::from_nothing(&localizer, &frame, Isometry2::identity())?;
+                let by_count = Switch::After(SWITCH_READINGS);
+                Box::new(loops.switching(if parameters.use_sim_time { by_count } else { Switch::WhenReady }))
+            }
             false => Box::new(GivenPoses::default()),
         };
         let mut pilot = LivePilot::new(parameters)?;
@@ -300,6 +306,7 @@ impl<L: Link> CuriousNode<L> {
             None => is_restart.then_some(RESTART_GAP_S),
         };
         if gap_s.is_some() {
+            self.settle();
             let localization = self.localization.as_mut();
             self.session = Session::next(localization, &mut self.mapper, reading.time_s, gap_s);
         }
@@ -322,6 +329,15 @@ impl<L: Link> CuriousNode<L> {
         gap_s.max(RESTART_GAP_S)
     }
 
+    /// Waits for the map that is being learned again.
+    fn settle(&mut self) {
+        if !self.localization.is_settled() {
+            self.localization.settle(&mut self.mapper);
+            self.maps.repeat();
+            self.pilot.forget_map();
+        }
+    }
+
     fn tick(&mut self, now: Instant) {
         let period_s = self.parameters.transform_publish_period_s;
         if period_s > 0.0 && now >= self.next_transform {
@@ -338,7 +354,10 @@ impl<L: Link> CuriousNode<L> {
         }
         self.answer_askers();
         let is_due = self.saves.as_ref().is_some_and(Saves::is_due) && self.report.readings > 0;
-        if is_due && let Some(Err(why)) = self.save() {
+        if is_due
+            && self.localization.is_settled()
+            && let Some(Err(why)) = self.save()
+        {
             self.notes.note(&format!("the state cannot be saved: {why}"), now);
         }
     }

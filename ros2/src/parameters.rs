@@ -106,7 +106,8 @@ pub struct Parameters {
     pub strategy: String,
     /// `seed` of the random decisions.
     pub seed: i64,
-    /// `use_sim_time`: without effect, since all times are those of the messages.
+    /// `use_sim_time`: whether the clock is simulated: then a corrected map replaces the old one after a fixed number of
+    /// readings, and not when it is ready. All times are those of the messages.
     pub use_sim_time: bool,
     /// `qos_overrides./scan.subscription.reliability`: `best_effort` or `reliable`.
     pub scan_reliability: String,

@@ -76,6 +76,13 @@ impl LivePilot {
         }
     }
 
+    /// Plans anew in a map that was replaced.
+    pub(crate) fn forget_map(&mut self) {
+        if let Self::Driving { pilot, .. } = self {
+            pilot.forget_map();
+        }
+    }
+
     /// Takes the new state of the goal that Nav2 has.
     pub(crate) fn navigated(&mut self, navigation: Navigation) {
         if let Self::Navigating(pilot) = self {

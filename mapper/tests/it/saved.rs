@@ -78,7 +78,7 @@ fn a_pause_is_a_gap_and_no_time_between_readings() {
 #[test]
 fn an_emptied_mapper_is_a_new_one() {
     let settings = MapperSettings { max_gap: 0.3, ..MapperSettings::default() };
-    let mut emptied = mapper(&settings, 100).emptied();
+    let mut emptied = mapper(&settings, 100).emptied()();
     assert!(emptied.snapshot() == mapper(&settings, 0).snapshot());
     (0..100).for_each(|step| emptied.update(&reading(step)).unwrap());
     assert!(emptied.snapshot() == mapper(&settings, 100).snapshot());

@@ -77,7 +77,8 @@ PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
   strategy, seed          how goals are selected [curious, 1]
   qos_overrides./scan.subscription.reliability
                           best_effort | reliable [best_effort]
-  use_sim_time            without effect: all times are those of the messages
+  use_sim_time            a corrected map replaces the old one after 50 scans, so that a run repeats, and not when
+                          it is ready [false]; all times are those of the messages
 
 ENVIRONMENT
   ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_LOCALHOST_ONLY

@@ -14,6 +14,7 @@ pub(super) enum Asker {
 impl<L: Link> CuriousNode<L> {
     /// Begins to save the state; `None` without a file, or before the first reading.
     pub(super) fn save(&mut self) -> Option<std::io::Result<()>> {
+        self.settle();
         let Self { mapper, localization, pilot, last, .. } = self;
         let (stamp, _) = (*last)?;
         let saves = self.saves.as_mut()?;

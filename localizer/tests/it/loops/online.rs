@@ -231,11 +231,18 @@ fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
     assert!(parts.map.snapshot() == whole.map.snapshot());
 }
 
-/// A trip of 1.5 rounds of a robot that changes to a new map as given: the states and poses of all readings; the numbers of
-/// readings after which the robot changed, and those that were read again; the largest error on the second round, m, and the
-/// longest time for a reading, ms.
-fn switched(switch: Switch) -> (Vec<(PoseState, Isometry2<f64>)>, Vec<(usize, usize)>, f64, f64) {
-    let mut run = Run::new(narrow(101), 101);
+/// The states and poses of all readings; the numbers of readings after which the robot changed its map, and those that were read
+/// again; the largest error on the second round, m, and the longest time for a reading, ms.
+type Switched = (Vec<(PoseState, Isometry2<f64>)>, Vec<(usize, usize)>, f64, f64);
+
+/// A trip of 1.5 rounds of a robot that changes to a new map as given.
+fn switched(switch: Switch) -> Switched {
+    switched_in(narrow(101), switch, 0.1)
+}
+
+/// The same in another corridor; `most_m`: the largest error of 99 % of its walls, m.
+fn switched_in(corridor: Corridor, switch: Switch, most_m: f64) -> Switched {
+    let mut run = Run::new(corridor, 101);
     run.localizer = run.localizer.switching(switch);
     let (mut poses, mut changes, mut worst_m, mut longest_ms) = (Vec::new(), Vec::new(), 0.0_f64, 0.0_f64);
     for _ in 0..run.scans(1.5) {
@@ -251,12 +258,13 @@ fn switched(switch: Switch) -> (Vec<(PoseState, Isometry2<f64>)>, Vec<(usize, us
         if is_second && estimate.state == PoseState::Tracking {
             worst_m = worst_m.max((estimate.pose.translation.vector - truth.translation.vector).norm());
         }
-        if switch == Switch::WhenReady {
-            std::thread::sleep(std::time::Duration::from_millis(1));
+        if switch == Switch::WhenReady && !run.localizer.is_settled() {
+            // As fast as a robot.
+            std::thread::sleep(std::time::Duration::from_millis(100));
         }
     }
     let walls_m = walls_m(&run.map, &run.corridor);
-    assert!(quantile(&walls_m, 0.99) < 0.1, "{switch:?}: walls off by {} m", quantile(&walls_m, 0.99));
+    assert!(quantile(&walls_m, 0.99) < most_m, "{switch:?}: walls off by {} m", quantile(&walls_m, 0.99));
     (poses, changes, worst_m, longest_ms)
 }
 
@@ -365,4 +373,19 @@ fn long_loops_are_closed() {
         }
     }
     assert!(worst_m[0] < 0.5 && worst_m[1] < 0.2, "{worst_m:?} m");
+}
+
+/// The longest time for a reading where thousands are read again, in a thread and at once. On a machine without other work:
+///
+/// ```text
+/// cargo test -p localizer --test it loops::online::thousands -- --ignored --nocapture
+/// ```
+#[test]
+#[ignore = "takes minutes"]
+fn thousands_of_readings_are_read_again_beside_the_robot() {
+    for switch in [Switch::WhenReady, Switch::AtOnce] {
+        let (_, changes, worst_m, longest_ms) =
+            switched_in(ahead(Corridor::new([62.0, 41.0], Plan::Varied, 101)), switch, 0.5);
+        println!("{switch:?}: {changes:?}, {worst_m:.2} m, at most {longest_ms:.0} ms for a reading");
+    }
 }
