@@ -20,7 +20,13 @@ const STRIDE: usize = 4;
 /// A scan that turns by more than this while it is measured is not judged, rad.
 const MAX_TURN_RAD: f64 = 0.02;
 /// The fixed prior: beams without a return at surfaces that were hit, and beams with one.
-const PRIOR: [f64; 2] = [1.0, 20.0];
+const PRIOR: [f64; 2] = [10.0, 40.0];
+/// The largest probability that a surface gives no return, for a scanner that is trusted.
+const MAX_SWALLOWED: f64 = 0.04;
+/// Where beams with a return pass more often than this share of the scans that hit, something comes and goes.
+const MAX_CROSSED: f64 = 0.1;
+/// Beams with a return pass up to this distance before their end, m.
+const MARGIN_M: f64 = 0.3;
 
 /// What beams without a return mean for the map.
 #[derive(Clone, Copy, Default)]
@@ -59,12 +65,29 @@ struct Surface {
     /// The number of scans that hit the cell, and the time of the last of them, s.
     scans: u32,
     last_s: f64,
+    /// Where the laser was in that scan.
+    seen_from: Point2<f64>,
+    /// The beams that hit, those that ended behind it, and those without a return from where it was hit last.
+    hits: u32,
+    crossed: u32,
+    silent: u32,
     /// For each scanner the beams without a return that have passed since the last hit.
     passed: [u32; MOST],
 }
 
 /// A surface that is hit again after at most this time was there in between, s. Longer, and it can have been another person.
-const GAP_S: f64 = 2.0;
+const GAP_S: f64 = 60.0;
+/// A laser that has moved by at most this has the same view, m: ...
+const SAME_VIEW_M: f64 = 0.3;
+const MAX_SILENT: f64 = 0.5;
+impl Surface {
+    /// Whether a surface stands here: hit often, and not passed.
+    fn stands(&self) -> bool {
+        let [hits, crossed, silent] = [self.hits, self.crossed, self.silent].map(f64::from);
+        self.scans >= CONFIDENT && crossed <= MAX_CROSSED * hits && silent <= MAX_SILENT * hits
+    }
+}
+
 /// More scanners than these are not told apart.
 const MOST: usize = 4;
 
@@ -97,8 +120,9 @@ impl NoReturnEvidence {
         passing / (passing + ending)
     }
 
-    fn is_trusted(&self) -> bool {
-        self.swallowed() < 0.04
+    /// Whether beams without a return of this scanner mean free space.
+    pub fn is_trusted(&self) -> bool {
+        self.swallowed() < MAX_SWALLOWED
     }
 }
 
@@ -130,10 +154,20 @@ impl NoReturns {
             let evidence = &mut self.scanners[scanner].1;
             if range_m == f64::INFINITY {
                 evidence.silent += 1;
-                self.pass(scanner, &origin, &along, judged_m);
+                self.along(&origin, &along, judged_m, |surface| {
+                    let is_same_view = (origin - surface.seen_from).norm() <= SAME_VIEW_M;
+                    surface.silent += u32::from(is_same_view);
+                    surface.passed[scanner] += u32::from(surface.stands());
+                    surface.stands()
+                });
             } else if (scan.range_min_m..=scan.range_max_m).contains(&range_m) {
                 evidence.returned += 1;
-                self.hit(scanner, &(origin + along * range_m), reading.time_s, range_m <= judged_m);
+                let passed_m = (range_m - MARGIN_M).min(judged_m);
+                self.along(&origin, &along, passed_m, |surface| {
+                    surface.crossed += 1;
+                    false
+                });
+                self.hit(scanner, &origin, &(origin + along * range_m), reading.time_s, range_m <= judged_m);
             }
         }
     }
@@ -158,11 +192,20 @@ impl NoReturns {
         }
     }
 
-    fn hit(&mut self, scanner: usize, end: &Point2<f64>, time_s: f64, is_judged: bool) {
-        let new = Surface { mean: *end, scans: 0, last_s: f64::NEG_INFINITY, passed: [0; MOST] };
+    fn hit(&mut self, scanner: usize, origin: &Point2<f64>, end: &Point2<f64>, time_s: f64, is_judged: bool) {
+        let new = Surface {
+            mean: *end,
+            scans: 0,
+            last_s: f64::NEG_INFINITY,
+            seen_from: *origin,
+            hits: 0,
+            crossed: 0,
+            silent: 0,
+            passed: [0; MOST],
+        };
         let surface = self.surfaces.entry(cell(end)).or_insert(new);
         let is_near = (end - surface.mean).norm() <= NEAR_M;
-        if is_near && surface.scans >= CONFIDENT && is_judged {
+        if is_near && is_judged && surface.stands() {
             self.scanners[scanner].1.ending += 1;
         }
         if is_near {
@@ -171,23 +214,33 @@ impl NoReturns {
                 evidence.passing += if time_s - surface.last_s <= GAP_S { passing } else { 0 };
             }
         }
+        surface.seen_from = *origin;
+        surface.hits += 1;
         if surface.last_s != time_s {
             (surface.last_s, surface.scans) = (time_s, surface.scans + 1);
             surface.mean += (end - surface.mean) / f64::from(surface.scans.min(MEMORY));
         }
     }
 
-    /// The first surface that a beam without a return passes through.
-    fn pass(&mut self, scanner: usize, origin: &Point2<f64>, along: &Vector2<f64>, judged_m: f64) {
-        let steps = (judged_m / (CELL_M / 2.0)) as u32;
-        for step in 1..=steps {
-            let at = origin + along * (f64::from(step) * CELL_M / 2.0);
-            let Some(surface) = self.surfaces.get_mut(&cell(&at)) else { continue };
-            let off_m = (surface.mean - origin).perp(along).abs();
-            if surface.scans >= CONFIDENT && off_m <= NEAR_M {
-                surface.passed[scanner] += 1;
+    /// Calls `visit` with the surfaces that a beam meets up to a range, until it returns true.
+    fn along(
+        &mut self,
+        origin: &Point2<f64>,
+        along: &Vector2<f64>,
+        range_m: f64,
+        mut visit: impl FnMut(&mut Surface) -> bool,
+    ) {
+        let mut last = cell(origin);
+        for step in 1..=(range_m / (CELL_M / 2.0)) as u32 {
+            let at = cell(&(origin + along * (f64::from(step) * CELL_M / 2.0)));
+            if at != last
+                && let Some(surface) = self.surfaces.get_mut(&at)
+                && (surface.mean - origin).perp(along).abs() <= NEAR_M
+                && visit(surface)
+            {
                 return;
             }
+            last = at;
         }
     }
 
