@@ -14,7 +14,7 @@ const CONFIDENT: u32 = 5;
 /// The largest number of hits whose mean is the place of a surface.
 const MEMORY: u32 = 32;
 /// Surfaces beyond this share of the maximum range judge nothing: beams along a wall leave the range beside it.
-const JUDGED_SHARE: f64 = 0.75;
+const JUDGED_SHARE: f64 = 0.9;
 /// One of this many beams is judged.
 const STRIDE: usize = 4;
 /// A scan that turns by more than this while it is measured is not judged, rad.
@@ -22,11 +22,11 @@ const MAX_TURN_RAD: f64 = 0.02;
 /// The fixed prior: beams without a return at surfaces that were hit, and beams with one.
 const PRIOR: [f64; 2] = [10.0, 40.0];
 /// The largest probability that a surface gives no return, for a scanner that is trusted.
-const MAX_SWALLOWED: f64 = 0.04;
-/// Where beams with a return pass more often than this share of the scans that hit, something comes and goes.
-const MAX_CROSSED: f64 = 0.1;
-/// Beams with a return pass up to this distance before their end, m.
-const MARGIN_M: f64 = 0.3;
+const MAX_SWALLOWED: f64 = 0.06;
+/// A scanner is not trusted before it was seen for this time, s: a robot must drive past glass to notice it.
+const LEARNS_S: f64 = 30.0;
+/// A longer time between two scans counts as this, s.
+const MAX_STEP_S: f64 = 1.0;
 
 /// What beams without a return mean for the map.
 #[derive(Clone, Copy, Default)]
@@ -67,9 +67,8 @@ struct Surface {
     last_s: f64,
     /// Where the laser was in that scan.
     seen_from: Point2<f64>,
-    /// The beams that hit, those that ended behind it, and those without a return from where it was hit last.
+    /// The beams that hit, and those without a return that passed where the laser had the same view.
     hits: u32,
-    crossed: u32,
     silent: u32,
     /// For each scanner the beams without a return that have passed since the last hit.
     passed: [u32; MOST],
@@ -83,8 +82,8 @@ const MAX_SILENT: f64 = 0.5;
 impl Surface {
     /// Whether a surface stands here: hit often, and not passed.
     fn stands(&self) -> bool {
-        let [hits, crossed, silent] = [self.hits, self.crossed, self.silent].map(f64::from);
-        self.scans >= CONFIDENT && crossed <= MAX_CROSSED * hits && silent <= MAX_SILENT * hits
+        let [hits, silent] = [self.hits, self.silent].map(f64::from);
+        self.scans >= CONFIDENT && silent <= MAX_SILENT * hits
     }
 }
 
@@ -102,6 +101,8 @@ pub struct NoReturnEvidence {
     pub silent: u64,
     /// See `silent`.
     pub returned: u64,
+    /// The time for which it was seen, s.
+    pub learned_s: f64,
 }
 
 /// The scanners of a robot, and how far their beams without a return are trusted.
@@ -111,6 +112,8 @@ pub struct NoReturns {
     surfaces: BTreeMap<[i32; 2], Surface>,
     /// The scanners by their mount and beams.
     scanners: Vec<([u64; 5], NoReturnEvidence)>,
+    /// The time of the last scan, s.
+    last_s: f64,
 }
 
 impl NoReturnEvidence {
@@ -122,7 +125,7 @@ impl NoReturnEvidence {
 
     /// Whether beams without a return of this scanner mean free space.
     pub fn is_trusted(&self) -> bool {
-        self.swallowed() < MAX_SWALLOWED
+        self.swallowed() < MAX_SWALLOWED && self.learned_s >= LEARNS_S
     }
 }
 
@@ -145,6 +148,10 @@ impl NoReturns {
             return;
         }
         let scanner = self.scanner(reading);
+        if !self.surfaces.is_empty() {
+            self.scanners[scanner].1.learned_s += (reading.time_s - self.last_s).clamp(0.0, MAX_STEP_S);
+        }
+        self.last_s = reading.time_s;
         let laser = reading.pose * reading.mount;
         let origin = Point2::from(laser.translation.vector);
         let judged_m = JUDGED_SHARE * scan.range_max_m;
@@ -162,11 +169,6 @@ impl NoReturns {
                 });
             } else if (scan.range_min_m..=scan.range_max_m).contains(&range_m) {
                 evidence.returned += 1;
-                let passed_m = (range_m - MARGIN_M).min(judged_m);
-                self.along(&origin, &along, passed_m, |surface| {
-                    surface.crossed += 1;
-                    false
-                });
                 self.hit(scanner, &origin, &(origin + along * range_m), reading.time_s, range_m <= judged_m);
             }
         }
@@ -199,7 +201,6 @@ impl NoReturns {
             last_s: f64::NEG_INFINITY,
             seen_from: *origin,
             hits: 0,
-            crossed: 0,
             silent: 0,
             passed: [0; MOST],
         };
