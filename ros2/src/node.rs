@@ -19,7 +19,7 @@ use crate::source::{FrameNames, LiveReading, ScanCount, Source};
 use anyhow::anyhow;
 use interfaces::{LaserReading, World};
 use localizer::{GivenPoses, LocalizerSettings, LoopClosingLocalizer, PoseState, Switch};
-use mapper::{Mapper, ReadingError};
+use mapper::{Mapper, NoReturns, ReadingError};
 use nalgebra::Isometry2;
 use outputs::Markers;
 use robot::{Localization, Session, explore};
@@ -78,6 +78,7 @@ pub struct CuriousNode<L: Link> {
     settings: SurveySettings,
     source: Source,
     mapper: Mapper,
+    no_returns: NoReturns,
     localization: Box<dyn Localization<LaserReading> + Send>,
     pilot: LivePilot,
     maps: PublishedMaps,
@@ -160,6 +161,7 @@ impl<L: Link> CuriousNode<L> {
                 parameters.transform_publish_period_s > 0.0,
             ),
             mapper,
+            no_returns: NoReturns::new(parameters.no_return),
             localization,
             pilot,
             maps,
@@ -251,6 +253,8 @@ impl<L: Link> CuriousNode<L> {
         if self.parameters.pose != PoseSource::Localized {
             reading.pose = in_odom;
         }
+        let mut seen = reading.clone();
+        self.no_returns.apply(&mut reading);
         let reading = self.in_session(self.settings.filtered(reading), stamp, is_restart);
         if reading.time_s - self.mapper.time() > LONGEST_GAP_S && self.mapper.readings() > 0 {
             self.mapper.pause(reading.time_s);
@@ -290,6 +294,10 @@ impl<L: Link> CuriousNode<L> {
             });
         }
         self.state = state;
+        if state == PoseState::Tracking {
+            seen.pose = pose;
+            self.no_returns.learn(&seen);
+        }
         if state != PoseState::Lost {
             self.map_to_odom = Some(pose * in_odom.inverse());
         }

@@ -8,6 +8,7 @@ pub use choices::{Mode, Navigator, PoseSource};
 use crate::value::Value;
 use choices::Choice;
 use interfaces::{SettingsCheck, SettingsError};
+use mapper::NoReturn;
 
 /// The error for a parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -80,6 +81,8 @@ pub struct Parameters {
     pub map_size_m: f64,
     /// `max_laser_range`: longer ranges are not used, m.
     pub max_laser_range_m: f64,
+    /// `no_return`: what beams without a return mean.
+    pub no_return: NoReturn,
     /// `range_noise`: the standard deviation of ranges, m.
     pub range_noise_m: f64,
     /// `map_update_interval`: the time between two maps, s.
@@ -128,6 +131,7 @@ impl Default for Parameters {
             resolution_m: 0.05,
             map_size_m: 40.0,
             max_laser_range_m: 20.0,
+            no_return: NoReturn::default(),
             range_noise_m: 0.02,
             map_update_interval_s: 5.0,
             transform_publish_period_s: 0.02,
@@ -152,6 +156,7 @@ enum Slot<'a> {
     Mode(&'a mut Mode),
     Navigator(&'a mut Navigator),
     Pose(&'a mut PoseSource),
+    NoReturn(&'a mut NoReturn),
     Text(&'a mut String),
     Float(&'a mut f64),
     Integer(&'a mut i64),
@@ -171,6 +176,7 @@ const NAMES: [&str; 26] = [
     "resolution",
     "map_size",
     "max_laser_range",
+    "no_return",
     "range_noise",
     "map_update_interval",
     "transform_publish_period",
@@ -202,6 +208,7 @@ impl Parameters {
             Slot::Mode(mode) => choose(mode, value),
             Slot::Navigator(navigator) => choose(navigator, value),
             Slot::Pose(pose) => choose(pose, value),
+            Slot::NoReturn(meaning) => choose(meaning, value),
             Slot::Text(to) => match value {
                 Value::Text(text) => assign(to, text.clone()),
                 _ => Err("a text"),
@@ -234,6 +241,7 @@ impl Parameters {
             Slot::Mode(mode) => Value::Text(mode.name().to_owned()),
             Slot::Navigator(navigator) => Value::Text(navigator.name().to_owned()),
             Slot::Pose(pose) => Value::Text(pose.name().to_owned()),
+            Slot::NoReturn(meaning) => Value::Text(meaning.name().to_owned()),
             Slot::Text(text) => Value::Text(text.clone()),
             Slot::Float(number) => Value::Float(*number),
             Slot::Integer(number) => Value::Integer(*number),
@@ -295,6 +303,7 @@ impl Parameters {
             "resolution" => Slot::Float(&mut self.resolution_m),
             "map_size" => Slot::Float(&mut self.map_size_m),
             "max_laser_range" => Slot::Float(&mut self.max_laser_range_m),
+            "no_return" => Slot::NoReturn(&mut self.no_return),
             "range_noise" => Slot::Float(&mut self.range_noise_m),
             "map_update_interval" => Slot::Float(&mut self.map_update_interval_s),
             "transform_publish_period" => Slot::Float(&mut self.transform_publish_period_s),

@@ -22,6 +22,7 @@
 //!     step_s: 0.05,
 //!     contacts: ContactModel::default(),
 //!     walls: vec![Rectangle::around(Point2::new(5.0, 2.0), Vector2::new(0.1, 4.0), 0.0)],
+//!     glass: Vec::new(),
 //!     obstacles: Vec::new(),
 //!     robots: vec![robot],
 //! };

@@ -118,6 +118,7 @@ pub(crate) fn block(sides_m: [f64; 2], laser: Laser, seed: u64) -> Option<WorldS
         step_s: house.fleet().step_s,
         contacts: house.fleet().contacts,
         walls,
+        glass: Vec::new(),
         obstacles: Vec::new(),
         robots: vec![robot],
     };

@@ -46,6 +46,7 @@ pub(crate) fn room(seed: u64) -> Option<WorldSpec> {
         step_s: house.fleet().step_s,
         contacts: house.fleet().contacts,
         walls,
+        glass: Vec::new(),
         obstacles,
         robots: vec![robot],
     };

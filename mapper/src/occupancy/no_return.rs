@@ -14,13 +14,19 @@ const CONFIDENT: u32 = 5;
 /// The largest number of hits whose mean is the place of a surface.
 const MEMORY: u32 = 32;
 /// Surfaces beyond this share of the maximum range judge nothing: beams along a wall leave the range beside it.
-const JUDGED_SHARE: f64 = 0.75;
+const JUDGED_SHARE: f64 = 0.9;
 /// One of this many beams is judged.
 const STRIDE: usize = 4;
 /// A scan that turns by more than this while it is measured is not judged, rad.
 const MAX_TURN_RAD: f64 = 0.02;
 /// The fixed prior: beams without a return at surfaces that were hit, and beams with one.
-const PRIOR: [f64; 2] = [1.0, 20.0];
+const PRIOR: [f64; 2] = [10.0, 40.0];
+/// The largest probability that a surface gives no return, for a scanner that is trusted.
+const MAX_SWALLOWED: f64 = 0.06;
+/// A scanner is not trusted before it was seen for this time, s: a robot must drive past glass to notice it.
+const LEARNS_S: f64 = 30.0;
+/// A longer time between two scans counts as this, s.
+const MAX_STEP_S: f64 = 1.0;
 
 /// What beams without a return mean for the map.
 #[derive(Clone, Copy, Default)]
@@ -59,12 +65,28 @@ struct Surface {
     /// The number of scans that hit the cell, and the time of the last of them, s.
     scans: u32,
     last_s: f64,
+    /// Where the laser was in that scan.
+    seen_from: Point2<f64>,
+    /// The beams that hit, and those without a return that passed where the laser had the same view.
+    hits: u32,
+    silent: u32,
     /// For each scanner the beams without a return that have passed since the last hit.
     passed: [u32; MOST],
 }
 
 /// A surface that is hit again after at most this time was there in between, s. Longer, and it can have been another person.
-const GAP_S: f64 = 2.0;
+const GAP_S: f64 = 60.0;
+/// A laser that has moved by at most this has the same view, m: ...
+const SAME_VIEW_M: f64 = 0.3;
+const MAX_SILENT: f64 = 0.5;
+impl Surface {
+    /// Whether a surface stands here: hit often, and not passed.
+    fn stands(&self) -> bool {
+        let [hits, silent] = [self.hits, self.silent].map(f64::from);
+        self.scans >= CONFIDENT && silent <= MAX_SILENT * hits
+    }
+}
+
 /// More scanners than these are not told apart.
 const MOST: usize = 4;
 
@@ -79,6 +101,8 @@ pub struct NoReturnEvidence {
     pub silent: u64,
     /// See `silent`.
     pub returned: u64,
+    /// The time for which it was seen, s.
+    pub learned_s: f64,
 }
 
 /// The scanners of a robot, and how far their beams without a return are trusted.
@@ -88,6 +112,8 @@ pub struct NoReturns {
     surfaces: BTreeMap<[i32; 2], Surface>,
     /// The scanners by their mount and beams.
     scanners: Vec<([u64; 5], NoReturnEvidence)>,
+    /// The time of the last scan, s.
+    last_s: f64,
 }
 
 impl NoReturnEvidence {
@@ -97,8 +123,9 @@ impl NoReturnEvidence {
         passing / (passing + ending)
     }
 
-    fn is_trusted(&self) -> bool {
-        self.swallowed() < 0.04
+    /// Whether beams without a return of this scanner mean free space.
+    pub fn is_trusted(&self) -> bool {
+        self.swallowed() < MAX_SWALLOWED && self.learned_s >= LEARNS_S
     }
 }
 
@@ -121,6 +148,10 @@ impl NoReturns {
             return;
         }
         let scanner = self.scanner(reading);
+        if !self.surfaces.is_empty() {
+            self.scanners[scanner].1.learned_s += (reading.time_s - self.last_s).clamp(0.0, MAX_STEP_S);
+        }
+        self.last_s = reading.time_s;
         let laser = reading.pose * reading.mount;
         let origin = Point2::from(laser.translation.vector);
         let judged_m = JUDGED_SHARE * scan.range_max_m;
@@ -130,10 +161,15 @@ impl NoReturns {
             let evidence = &mut self.scanners[scanner].1;
             if range_m == f64::INFINITY {
                 evidence.silent += 1;
-                self.pass(scanner, &origin, &along, judged_m);
+                self.along(&origin, &along, judged_m, |surface| {
+                    let is_same_view = (origin - surface.seen_from).norm() <= SAME_VIEW_M;
+                    surface.silent += u32::from(is_same_view);
+                    surface.passed[scanner] += u32::from(surface.stands());
+                    surface.stands()
+                });
             } else if (scan.range_min_m..=scan.range_max_m).contains(&range_m) {
                 evidence.returned += 1;
-                self.hit(scanner, &(origin + along * range_m), reading.time_s, range_m <= judged_m);
+                self.hit(scanner, &origin, &(origin + along * range_m), reading.time_s, range_m <= judged_m);
             }
         }
     }
@@ -158,11 +194,19 @@ impl NoReturns {
         }
     }
 
-    fn hit(&mut self, scanner: usize, end: &Point2<f64>, time_s: f64, is_judged: bool) {
-        let new = Surface { mean: *end, scans: 0, last_s: f64::NEG_INFINITY, passed: [0; MOST] };
+    fn hit(&mut self, scanner: usize, origin: &Point2<f64>, end: &Point2<f64>, time_s: f64, is_judged: bool) {
+        let new = Surface {
+            mean: *end,
+            scans: 0,
+            last_s: f64::NEG_INFINITY,
+            seen_from: *origin,
+            hits: 0,
+            silent: 0,
+            passed: [0; MOST],
+        };
         let surface = self.surfaces.entry(cell(end)).or_insert(new);
         let is_near = (end - surface.mean).norm() <= NEAR_M;
-        if is_near && surface.scans >= CONFIDENT && is_judged {
+        if is_near && is_judged && surface.stands() {
             self.scanners[scanner].1.ending += 1;
         }
         if is_near {
@@ -171,23 +215,33 @@ impl NoReturns {
                 evidence.passing += if time_s - surface.last_s <= GAP_S { passing } else { 0 };
             }
         }
+        surface.seen_from = *origin;
+        surface.hits += 1;
         if surface.last_s != time_s {
             (surface.last_s, surface.scans) = (time_s, surface.scans + 1);
             surface.mean += (end - surface.mean) / f64::from(surface.scans.min(MEMORY));
         }
     }
 
-    /// The first surface that a beam without a return passes through.
-    fn pass(&mut self, scanner: usize, origin: &Point2<f64>, along: &Vector2<f64>, judged_m: f64) {
-        let steps = (judged_m / (CELL_M / 2.0)) as u32;
-        for step in 1..=steps {
-            let at = origin + along * (f64::from(step) * CELL_M / 2.0);
-            let Some(surface) = self.surfaces.get_mut(&cell(&at)) else { continue };
-            let off_m = (surface.mean - origin).perp(along).abs();
-            if surface.scans >= CONFIDENT && off_m <= NEAR_M {
-                surface.passed[scanner] += 1;
+    /// Calls `visit` with the surfaces that a beam meets up to a range, until it returns true.
+    fn along(
+        &mut self,
+        origin: &Point2<f64>,
+        along: &Vector2<f64>,
+        range_m: f64,
+        mut visit: impl FnMut(&mut Surface) -> bool,
+    ) {
+        let mut last = cell(origin);
+        for step in 1..=(range_m / (CELL_M / 2.0)) as u32 {
+            let at = cell(&(origin + along * (f64::from(step) * CELL_M / 2.0)));
+            if at != last
+                && let Some(surface) = self.surfaces.get_mut(&at)
+                && (surface.mean - origin).perp(along).abs() <= NEAR_M
+                && visit(surface)
+            {
                 return;
             }
+            last = at;
         }
     }
 

@@ -1,5 +1,7 @@
 //! Parameters that are one of a few names.
 
+use mapper::NoReturn;
+
 /// What the node does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
@@ -32,6 +34,12 @@ pub enum PoseSource {
     /// The pose that fits the scan to the map.
     #[default]
     Localized,
+}
+
+impl Choice for NoReturn {
+    const EXPECTED: &'static str = "learn, free or ignore";
+    const ALL: &'static [(Self, &'static [&'static str])] =
+        &[(Self::Learn, &["learn"]), (Self::Free, &["free"]), (Self::Ignore, &["ignore"])];
 }
 
 /// A value with a name.

@@ -47,7 +47,8 @@ pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
     BehaviorSpec, BumperSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits,
-    DrivenError, FiducialSpec, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening,
-    PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
+    DrivenError, FiducialSpec, FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError,
+    Opening, PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec,
+    WorldSpec,
 };
 pub use world::{PhysicsWorld, WorldSnapshot};

@@ -10,6 +10,8 @@ use curious::progress::Progress;
 use curious::terminal::say;
 use interfaces::LaserReading;
 use logs::Readings;
+use mapper::NoReturnEvidence;
+use results::numbers::percent;
 use results::output::TrajectoryFile;
 use robot::{Belief, Localization};
 use std::io::stderr;
@@ -27,6 +29,8 @@ const RECORDING: &str = "map_log.rrd";
 /// How the second pass has ended.
 pub(crate) struct Learned {
     pub(crate) show: Show,
+    /// The evidence about beams without a return, for each scanner of each log that has such beams.
+    pub(crate) no_return: Vec<NoReturnEvidence>,
     /// Whether the pass was interrupted.
     pub(crate) is_interrupted: bool,
     /// Whether the recording and the trajectory are complete.
@@ -48,8 +52,12 @@ pub(crate) fn learn(
     let scene = Scene::of_log(&job.title(survey), frame, &job.settings.filtered(first));
     let is_recorded = !job.args.no_rrd && !job.sources.is_empty();
     let recorder = if is_recorded { recorder(&folder.join(RECORDING), &scene)? } else { None };
-    let mut learned =
-        Learned { show: Show::new(scene, recorder, None), is_interrupted: false, is_shown: true };
+    let mut learned = Learned {
+        show: Show::new(scene, recorder, None),
+        no_return: Vec::new(),
+        is_interrupted: false,
+        is_shown: true,
+    };
     let mut trajectory = TrajectoryFile::create(&folder.join("trajectory.tum"));
     // Where an interrupted run has been before.
     for at in survey.logs().iter().flat_map(|log| log.poses()) {
@@ -118,11 +126,17 @@ impl Learned {
             Some(bag) => Box::new(bag.recorded(Box::new(found))),
             None => Box::new(found),
         };
-        for e in replay.no_returns().evidence() {
-            eprintln!("NORETURN {e:?} p {}", e.swallowed());
+        for scanner in replay.no_returns().evidence().filter(|scanner| scanner.silent > 0) {
+            if !scanner.is_trusted() {
+                let swallowed = percent(scanner.swallowed());
+                job.say(format_args!(
+                    "{name}: beams without a return are ignored: surfaces swallow {swallowed} of the beams (--no-return)"
+                ));
+            }
+            self.no_return.push(scanner);
         }
         let progress = Progress::of_scans(source.log.summary().scans.saturating_sub(used), job.args.quiet);
-        let Self { show, is_interrupted, is_shown } = self;
+        let Self { show, is_interrupted, is_shown, .. } = self;
         let mut is_over = false;
         while !is_over && !*is_interrupted {
             let observe = |replay: &Replay<Readings>, reading: &LaserReading, belief: &Belief| {

@@ -6,6 +6,7 @@ use anyhow::Context;
 use build_id::BUILD;
 use curious::words::{how_often, list};
 use interfaces::CellState;
+use mapper::{NoReturn, NoReturnEvidence};
 use results::numbers::percent;
 use serde::Serialize;
 use std::fmt;
@@ -42,6 +43,10 @@ pub(crate) struct Summary {
     /// The time of the first scan in seconds since the epoch (1970-01-01 UTC); `null` unless every log says when it was
     /// recorded. Times of changes are relative to this.
     pub(crate) begin_s: Option<f64>,
+    /// What beams without a return mean: `learn`, `free` or `ignore`.
+    pub(crate) no_return: NoReturn,
+    /// The evidence about them, for each scanner of each log that has such beams; empty unless it was learned.
+    pub(crate) no_return_evidence: Vec<NoReturnEvidence>,
     /// The number of scans that did not enter the map, because their pose is not certain.
     pub(crate) scans_left_out: usize,
     /// The area that was seen, m².
@@ -91,6 +96,8 @@ impl Summary {
             trajectory_m: logs.iter().map(|log| log.travelled.length_m).sum(),
             loops: logs.iter().map(|log| log.loops).sum(),
             begin_s: begin_s(entries()),
+            no_return: survey.settings_of(logs.len()).no_return,
+            no_return_evidence: learned.no_return.clone(),
             scans_left_out: logs.iter().map(|log| log.travelled.uncertain).sum(),
             seen_m2: seen as f64 * cell_m2,
             changed_share: mapper.changed().count() as f64 / seen.max(1) as f64,

@@ -11,7 +11,7 @@ use interfaces::GridFrame;
 use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{
-    BoxTree, ContactModel, DrivenError, FleetSpec, Form, Motion, ObstacleSpec, Rectangle, RobotSpec,
+    BoxTree, ContactModel, DrivenError, FleetSpec, Form, Glass, Motion, ObstacleSpec, Rectangle, RobotSpec,
     WorldSpec,
 };
 
@@ -45,9 +45,14 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         movers: Solids::default(),
         is_whole: false,
     };
-    let mut walls = Vec::new();
-    for table in root.tables("wall", "from_m, to_m, thickness_m, min_m, max_m") {
+    let (mut walls, mut glass) = (Vec::new(), Vec::new());
+    for table in root.tables("wall", "from_m, to_m, thickness_m, min_m, max_m, returns_within_deg") {
         let shape = wall(&table, &space.size);
+        let within_deg = table.number_or("returns_within_deg", 90.0, 0.0..=90.0);
+        let within_rad = within_deg.filter(|deg| *deg < 90.0).map(f64::to_radians);
+        let pane =
+            shape.zip(within_rad).map(|(shape, returns_within_rad)| Glass { shape, returns_within_rad });
+        glass.extend(pane);
         walls.extend(shape.map(|shape| Solid { shape, span: table.span.clone() }));
     }
     let mut plans = FloorPlans::new(files);
@@ -85,6 +90,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         step_s: space.step_s,
         contacts: contacts?,
         walls: space.walls.shapes().collect(),
+        glass,
         obstacles: obstacles.into_iter().map(|(_, obstacle)| obstacle).collect(),
         robots: robots.into_iter().map(|(_, robot)| robot).collect(),
     };

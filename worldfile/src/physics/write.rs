@@ -19,8 +19,9 @@ type Keys = Vec<(&'static str, Value)>;
 /// driven, walk along waypoints or wander.
 pub fn to_toml(spec: &FleetSpec) -> Option<String> {
     let (frame, mut text) = (&spec.frame, String::new());
-    if frame.center(interfaces::Cell::new(0, 0)).coords
-        != nalgebra::Vector2::from([frame.resolution_m() / 2.0; 2])
+    if !spec.glass.is_empty()
+        || frame.center(interfaces::Cell::new(0, 0)).coords
+            != nalgebra::Vector2::from([frame.resolution_m() / 2.0; 2])
     {
         return None; // a world that was turned
     }

@@ -77,7 +77,8 @@ impl Fleet {
         let obstacles = obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose));
         let recent =
             if sweeps { self.past.recent(self.spec(), robots, obstacles) } else { Recent::default() };
-        Arc::new(Surroundings { step: self.step, time_s: self.time_s(), scene, tagged, recent })
+        let (time_s, glass) = (self.time_s(), self.spec().glass.clone());
+        Arc::new(Surroundings { step: self.step, time_s, scene, glass, tagged, recent })
     }
 
     /// Moves robots and obstacles by one physics step.

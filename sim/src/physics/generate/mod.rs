@@ -71,8 +71,8 @@ fn draw_house(ranges: &HouseRanges, seed: u64, rng: &mut RandomStream) -> Option
     );
     let name = format!("house-{seed}");
     let contacts = ContactModel::RigidBodies;
-    let fleet =
-        FleetSpec { name, description, frame: frame?, step_s: STEP_S, contacts, walls, obstacles, robots };
+    let (frame, step_s, glass) = (frame?, STEP_S, Vec::new());
+    let fleet = FleetSpec { name, description, frame, step_s, contacts, walls, glass, obstacles, robots };
     WorldSpec::new(fleet).ok()
 }
 

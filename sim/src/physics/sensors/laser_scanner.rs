@@ -3,7 +3,7 @@ use super::{SharedBeams, reported};
 use crate::physics::rays::{Beams, Ray};
 use crate::physics::spec::LaserSpec;
 use interfaces::{LaserReading, RandomStream, Scan};
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 
 /// A planar laser scanner.
@@ -66,11 +66,16 @@ impl Device for LaserScanner {
         };
         let rays = if sweep_s > 0.0 { self.rays(look, &reading.scan) } else { Vec::new() };
         let reported = move |measured_m: f64| reported(measured_m, range_min_m, range_max_m);
+        let (glass, mut exact) = (&surroundings.glass, Vec::new());
         let ranges_m = &mut reading.scan.ranges_m;
         let (scene, noise) = (&surroundings.scene, &mut streams.noise);
         // By value: the limits cannot be among the ranges that are written, so that the loops below need not read them
         // again for every beam.
+        let kept = &mut exact;
         let report = move |inverses: &[f64]| {
+            if !glass.is_empty() {
+                kept.extend_from_slice(inverses);
+            }
             ranges_m.resize(inverses.len(), 0.0);
             let beams = ranges_m.iter_mut().zip(inverses);
             if noise_std_m > 0.0 {
@@ -90,6 +95,17 @@ impl Device for LaserScanner {
             scene.cast(&self.beams, &(platform.pose * mount), platform.robot, report);
         } else {
             scene.sweep(&rays, &surroundings.recent.bodies, range_max_m, platform.robot, report);
+        }
+        let laser = platform.pose * mount;
+        for (beam, (inverse, (x, y))) in exact.iter().zip(self.beams.directions()).enumerate() {
+            let (from, along) = rays.get(beam).map_or_else(
+                || (laser.translation.vector.into(), laser.rotation * Vector2::new(x, y)),
+                |ray| (ray.from, ray.along),
+            );
+            let end: Point2<f64> = from + along / *inverse;
+            if *inverse > 0.0 && glass.iter().any(|glass| glass.swallows(&end, &along)) {
+                reading.scan.ranges_m[beam] = f32::INFINITY;
+            }
         }
         if dropout > 0.0 {
             for range_m in &mut reading.scan.ranges_m {

@@ -26,7 +26,7 @@ pub use sonar::SonarReading;
 use super::past::Recent;
 use super::rays::{Ring, Scene};
 use super::snapshot::{Values, value};
-use super::spec::{LaserSpec, RobotSpec};
+use super::spec::{Glass, LaserSpec, RobotSpec};
 use interfaces::{LaserReading, Purpose, RandomStream, Twist};
 use nalgebra::Isometry2;
 use std::sync::Arc;
@@ -199,6 +199,7 @@ pub(super) struct Surroundings {
     pub(super) step: u64,
     pub(super) time_s: f64,
     pub(super) scene: Scene,
+    pub(super) glass: Vec<Glass>,
     pub(super) tagged: Vec<Tagged>,
     /// For lasers that sweep.
     pub(super) recent: Recent,

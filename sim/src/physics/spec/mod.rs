@@ -15,9 +15,9 @@ pub use odometry::{DisplacementSpec, OdometryError};
 pub use robot::{DriveKind, DriveLimits, LaserSpec, RobotSpec};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
-use super::shape::{Rectangle, turned};
+use super::shape::{Rectangle, TOUCH_M, turned};
 use interfaces::{GridFrame, rotation};
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 /// The specification of a world with any number of robots.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,10 +34,35 @@ pub struct FleetSpec {
     pub contacts: ContactModel,
     /// The walls.
     pub walls: Vec<Rectangle>,
+    /// The walls of glass, or of another material that swallows beams of lasers; each is also in `walls`.
+    pub glass: Vec<Glass>,
     /// The obstacles: boxes, moving blocks and doors.
     pub obstacles: Vec<ObstacleSpec>,
     /// The robots. At the start no robot overlaps another robot, a wall or an obstacle.
     pub robots: Vec<RobotSpec>,
+}
+
+/// A wall that returns a beam of a laser only if the beam comes nearly along the normal of its surface: glass, or
+/// something black. Another beam has no return.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glass {
+    /// The wall.
+    pub shape: Rectangle,
+    /// The largest angle between a beam that is returned and the normal, rad; 0: no beam is returned.
+    pub returns_within_rad: f64,
+}
+
+impl Glass {
+    /// Whether a beam along the unit vector `along` that ends at `end` (m) is swallowed.
+    pub(in crate::physics) fn swallows(&self, end: &Point2<f64>, along: &Vector2<f64>) -> bool {
+        let local = self.shape.pose.inverse_transform_point(end).coords.abs() - self.shape.half_m;
+        if local.max().abs() > TOUCH_M {
+            return false;
+        }
+        let along = self.shape.pose.inverse_transform_vector(along);
+        let cosine = along[local.imax()].abs();
+        self.returns_within_rad <= 0.0 || cosine < libm::cos(self.returns_within_rad)
+    }
 }
 
 impl FleetSpec {
@@ -47,7 +72,7 @@ impl FleetSpec {
             return;
         }
         let by = rotation(turn_rad);
-        for wall in &mut self.walls {
+        for wall in self.walls.iter_mut().chain(self.glass.iter_mut().map(|glass| &mut glass.shape)) {
             *wall = wall.turned(&by, center);
         }
         for obstacle in &mut self.obstacles {

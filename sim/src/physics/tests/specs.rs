@@ -43,6 +43,7 @@ fn house(robots: Vec<RobotSpec>, obstacles: Vec<ObstacleSpec>) -> FleetSpec {
         step_s: 0.05,
         contacts: ContactModel::default(),
         walls,
+        glass: Vec::new(),
         obstacles,
         robots,
     }
