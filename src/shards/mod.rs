@@ -2,6 +2,7 @@
 
 mod status;
 
+use crate::flags::folder;
 use crate::program::{Failure, INTERRUPTED, input, interrupt_flag};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
@@ -46,7 +47,7 @@ pub enum ShardCommand {
         dir: PathBuf,
 
         /// The folder for the results [default: the folder of the shards]
-        #[arg(long, value_name = "DIR")]
+        #[arg(long, value_name = "DIR", value_parser = folder())]
         out: Option<PathBuf>,
 
         /// Print only errors

@@ -12,7 +12,7 @@ pub enum SurveyError {
     /// The place is too large for one map.
     #[error(
         "the place is too large for a map: at least {width_m:.0} × {height_m:.0} m in cells of {resolution_m} m need more \
-         than 2 GiB; larger cells need less (--resolution {enough_m}), and so do shorter ranges (--max-range)"
+         than 2 GiB; larger cells (--resolution, at least {enough_m}) or shorter ranges (--max-range) need less"
     )]
     TooLarge {
         /// The size of the place, m.

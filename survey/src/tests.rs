@@ -265,7 +265,8 @@ fn a_place_too_large_for_a_map_is_named() {
     assert!(matches!(pass.check_size(), Err(SurveyError::TooLarge { .. })));
     let error = frame(&[pass.finish()], &settings).unwrap_err();
     assert!(matches!(error, SurveyError::TooLarge { .. }), "{error}");
-    let says = ["the place is too large for a map: at least 1", "--resolution 0.0", "--max-range"];
+    let says =
+        ["the place is too large for a map: at least 1", "(--resolution, at least 0.0", "(--max-range)"];
     assert!(says.iter().all(|says| error.to_string().contains(says)), "{error}");
     // What the error advises is enough.
     let SurveyError::TooLarge { enough_m, .. } = error else { return };

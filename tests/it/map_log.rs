@@ -77,7 +77,12 @@ fn two_logs_of_one_place_add_up() {
     run.goes_well("a.mcap --quiet --no-rrd");
     let once = run.summary();
     fs::copy(run.path("a.mcap"), run.path("b.mcap")).unwrap();
-    // The time between them is not known: both begin at 0.
+    // The same log under another name would count twice.
+    let ended = run.ends("a.mcap b.mcap --quiet --no-rrd");
+    let twice = "error: b.mcap is given twice: it has the content of a.mcap\n";
+    assert_eq!((ended.code, &ended.stderr[..]), (Some(2), twice));
+    // The same readings in other bytes. The time between the logs is not known: both begin at 0.
+    run.goes_well("a.mcap --quiet --no-rrd --mcap b.mcap");
     let ended = run.ends("a.mcap b.mcap --quiet --no-rrd");
     assert_eq!(ended.code, Some(0), "{ended:?}");
     let both = run.summary();
@@ -185,11 +190,13 @@ fn what_is_no_log_is_refused_and_nothing_is_written() {
     insta::assert_snapshot!(refused("a.mcap", b"\x89MCAP0\r\n", "a.mcap"), @"error: a.mcap: no message: the bag is empty");
     let scans = "FLASER 3 1.0 1.0 1.0 0 0 0 0 0 0 1.0 host 1.0\n";
     insta::assert_snapshot!(refused("a.log", scans.as_bytes(), "a.log --resolution 0"), @"
-    note: a.log: no ODOM line: the odometry stands still
-    error: survey setting `resolution_m` must be from 0.005 to 10, not 0
+    error: invalid value '0' for '--resolution <METRES>': must be a number from 0.005 to 10
+
+    For more information, try '--help'.
     ");
     insta::assert_snapshot!(refused("a.log", scans.as_bytes(), "a.log --noise -1"), @"
-    note: a.log: no ODOM line: the odometry stands still
-    error: mapper setting `steady.range_noise_std_m` must be from 0 to 0.5 m, not -1
+    error: invalid value '-1' for '--noise <METRES>': must be a number from 0 to 0.5
+
+    For more information, try '--help'.
     ");
 }
