@@ -83,6 +83,9 @@ pub(crate) struct OdometryTimes {
 impl OdometryTimes {
     pub(crate) fn add(&mut self, time_s: f64, pose: &Isometry2<f64>) {
         let x = pose.translation.x;
+        if x == 0.0 {
+            return; // Corrected logs have lines without a time.
+        }
         if let Some((last_s, last_x)) = self.last.replace((time_s, x)) {
             self.steps += 1;
             self.times_back += usize::from(time_s < last_s);
