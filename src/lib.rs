@@ -2,6 +2,7 @@
 //! user, the keyboard pilot, trials, and experiments in shards.
 
 pub mod bag;
+pub mod flags;
 pub mod keyboard;
 pub mod program;
 pub mod progress;

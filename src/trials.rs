@@ -1,6 +1,7 @@
 //! Code that the programs of trials share: options, and the way from trials to results.
 
-use crate::program::{Failure, INTERRUPTED, input, output_file, results_folder, strategy_of, value_of};
+use crate::flags::{output_file, value_of};
+use crate::program::{Failure, INTERRUPTED, input, results_folder, strategy_of};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
 use agent::Reward;

@@ -94,6 +94,7 @@ impl Bag {
             odom_origin,
             scan_topics,
             notes,
+            impossible: counts.doubts.impossible(counts.invalid_scans),
         };
         if stands {
             Arc::make_mut(&mut plan).motion = Motion::Standing;

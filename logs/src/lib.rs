@@ -12,6 +12,7 @@ mod carmen;
 mod cdr;
 mod choice;
 mod content;
+mod doubts;
 mod error;
 mod lines;
 mod log;

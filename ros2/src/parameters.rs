@@ -164,7 +164,7 @@ enum Slot<'a> {
 }
 
 /// The names of all parameters.
-const NAMES: [&str; 26] = [
+const NAMES: [&str; 27] = [
     "mode",
     "navigator",
     "pose",

@@ -2,6 +2,7 @@
 
 mod status;
 
+use crate::flags::folder;
 use crate::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder};
 use crate::progress::Progress;
 use crate::terminal::{print, say};
@@ -45,7 +46,7 @@ pub enum ShardCommand {
         dir: PathBuf,
 
         /// The folder for the results [default: the folder of the shards]
-        #[arg(long, value_name = "DIR")]
+        #[arg(long, value_name = "DIR", value_parser = folder())]
         out: Option<PathBuf>,
 
         /// Merge shards of other builds of this program; the results are those of no build

@@ -12,7 +12,7 @@ pub enum SurveyError {
     /// The place is too large for one map.
     #[error(
         "the place is too large for a map: at least {width_m:.0} × {height_m:.0} m in cells of {resolution_m} m need more \
-         than 2 GiB; larger cells need less (--resolution {enough_m}), and so do shorter ranges (--max-range)"
+         than 2 GiB; larger cells (--resolution, at least {enough_m}) or shorter ranges (--max-range) need less"
     )]
     TooLarge {
         /// The size of the place, m.
@@ -23,6 +23,28 @@ pub enum SurveyError {
         resolution_m: f64,
         /// A side of the cells with which it is small enough, m.
         enough_m: f64,
+    },
+    /// The scans turn against the poses.
+    #[error(
+        "the beams look mirrored: in {against} turns the scans fit when they turn against the poses of the log, in {with} when \
+         they turn with them; check the sign of the angles, whether the laser hangs upside down (tf), or the order of the ranges"
+    )]
+    Mirrored {
+        /// The number of turns in which scans turn against the poses.
+        against: usize,
+        /// The number of turns in which they turn with the poses.
+        with: usize,
+    },
+    /// The trajectory contains few scans.
+    #[error(
+        "{left_out} of {scans} scans have no certain pose: neither do they fit to each other, nor to the odometry; no map is \
+         made of the rest"
+    )]
+    MostLeftOut {
+        /// The number of scans without a certain pose.
+        left_out: usize,
+        /// The number of scans.
+        scans: usize,
     },
     /// The place of a log is not that of the first one.
     #[error(

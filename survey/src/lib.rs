@@ -35,6 +35,7 @@ mod survey;
 mod surveyed_log;
 #[cfg(test)]
 mod tests;
+mod turns;
 
 pub use change_log::ChangeLog;
 pub use error::SurveyError;

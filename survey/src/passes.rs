@@ -3,7 +3,7 @@
 use crate::error::SurveyError;
 use crate::known_place::KnownPlace;
 use crate::replay::{NoPilot, Replay};
-use crate::route::{FirstPass, Route};
+use crate::route::{FirstPass, Route, uncertain};
 use crate::search::Search;
 use crate::settings::{PoseMode, SurveySettings};
 use interfaces::{LaserReading, World};
@@ -112,13 +112,13 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
     ///
     /// # Errors
     ///
-    /// When a setting is out of range, when the log cannot be read, when the place is too large for a map, and when the pass
-    /// is interrupted.
+    /// When a setting is out of range, when the log cannot be read, when its scans turn against its poses, when most of them
+    /// have no certain pose, when the place is too large for a map, and when the pass is interrupted.
     pub fn route(&mut self) -> Result<Route, PassError> {
         let mut pass = FirstPass::new(self.settings)?;
         self.each_reading(Stage::Trajectory, |_, reading| {
             pass.add(reading);
-            pass.check_size()
+            pass.check()
         })?;
         if self.settings.pose != PoseMode::Localized {
             return Ok(pass.finish());
@@ -126,6 +126,10 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
         self.report(Stage::Loops, 0)?;
         let route = pass.finish();
         self.report(Stage::Loops, route.poses.len())?;
+        let (left_out, scans) = (uncertain(&route.poses), route.poses.len());
+        if left_out * 2 > scans {
+            return Err(SurveyError::MostLeftOut { left_out, scans }.into());
+        }
         Ok(route)
     }
 

@@ -4,6 +4,7 @@ use crate::error::SurveyError;
 use crate::extent::{self, Reach};
 use crate::range_noise::RangeNoise;
 use crate::settings::{PoseMode, SurveySettings};
+use crate::turns::Turns;
 use interfaces::{GridFrame, LaserReading};
 use localizer::{PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
 use nalgebra::{Isometry2, Point2};
@@ -66,6 +67,7 @@ pub struct FirstPass {
     reaches: Vec<Reach>,
     /// The corners of the rectangle that was seen so far.
     seen: Option<(Point2<f64>, Point2<f64>)>,
+    turns: Turns,
 }
 
 /// Before its loops are closed, a trajectory can be longer than the place: this share of its sides counts.
@@ -90,6 +92,7 @@ impl FirstPass {
             range_noise: RangeNoise::default(),
             reaches: Vec::new(),
             seen: None,
+            turns: Turns::default(),
         })
     }
 
@@ -97,6 +100,7 @@ impl FirstPass {
     pub fn add(&mut self, reading: LaserReading) {
         let reach = Reach::of(&self.settings.filtered(reading.clone()));
         self.reaches.push(reach);
+        self.turns.add(&reading);
         let found = match &mut self.finder {
             Some(finder) => {
                 finder.add(reading);
@@ -116,12 +120,14 @@ impl FirstPass {
         }
     }
 
-    /// Checks what was seen so far: a place that is too large for a map need not be seen to its end.
+    /// Checks what was seen so far: beams that are mirrored, and a place that is too large for a map, need not be seen to their
+    /// end.
     ///
     /// # Errors
     ///
-    /// When the place is too large for a map.
-    pub fn check_size(&self) -> Result<(), SurveyError> {
+    /// When the scans turn against the poses, and when the place is too large for a map.
+    pub fn check(&self) -> Result<(), SurveyError> {
+        self.turns.check()?;
         let Some((low, high)) = self.seen else { return Ok(()) };
         let share = if self.finder.is_some() { SURE_SHARE } else { 1.0 };
         extent::around(low, low + (high - low) * share, self.settings.resolution_m).map(drop)

@@ -262,10 +262,11 @@ fn a_place_too_large_for_a_map_is_named() {
     let mut pass = FirstPass::new(&settings).unwrap();
     readings.drain(..2).for_each(|reading| pass.add(reading));
     // Known before the pass is over.
-    assert!(matches!(pass.check_size(), Err(SurveyError::TooLarge { .. })));
+    assert!(matches!(pass.check(), Err(SurveyError::TooLarge { .. })));
     let error = frame(&[pass.finish()], &settings).unwrap_err();
     assert!(matches!(error, SurveyError::TooLarge { .. }), "{error}");
-    let says = ["the place is too large for a map: at least 1", "--resolution 0.0", "--max-range"];
+    let says =
+        ["the place is too large for a map: at least 1", "(--resolution, at least 0.0", "(--max-range)"];
     assert!(says.iter().all(|says| error.to_string().contains(says)), "{error}");
     // What the error advises is enough.
     let SurveyError::TooLarge { enough_m, .. } = error else { return };
@@ -326,4 +327,28 @@ fn settings_are_checked() {
     }
     let empty = FirstPass::new(&SurveySettings::default()).unwrap().finish();
     assert_eq!(frame(&[empty], &SurveySettings::default()), Err(SurveyError::NoPlace));
+}
+
+#[test]
+fn mirrored_beams_are_refused_before_the_pass_is_over() {
+    for (is_mirrored, mode) in
+        [(false, PoseMode::Localized), (true, PoseMode::Localized), (true, PoseMode::Odometry)]
+    {
+        let mut pass = FirstPass::new(&SurveySettings::of(mode)).unwrap();
+        let (mut readings, _) = drive(2, 120.0);
+        let refused = readings.iter_mut().enumerate().find_map(|(index, reading)| {
+            if is_mirrored {
+                reading.scan.ranges_m.reverse();
+            }
+            pass.add(reading.clone());
+            pass.check().err().map(|error| (index, error))
+        });
+        match refused {
+            None => assert!(!is_mirrored),
+            Some((index, error)) => {
+                assert!(is_mirrored && index < 1000, "{index}: {error}");
+                assert!(error.to_string().starts_with("the beams look mirrored: in "), "{error}");
+            }
+        }
+    }
 }

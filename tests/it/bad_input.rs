@@ -44,7 +44,7 @@ fn refused_world(right: &str, wrong: &str) -> String {
 
 #[test]
 fn worlds() {
-    insta::assert_snapshot!(refused("--world nowhere"), @"error: there is no world `nowhere`: it is neither a file nor one of those that ship (four_rooms, toy_on_the_floor, turned_house, house, drifting_house, office, warehouse, cave, yard)");
+    insta::assert_snapshot!(refused("--world nowhere"), @"error: --world: there is no world `nowhere`: it is neither a file nor one of those that ship (four_rooms, toy_on_the_floor, turned_house, house, drifting_house, office, warehouse, cave, yard)");
     insta::assert_snapshot!(refused_world("cell_m = 0.05", "cell_m = = 0.05"), @"
     error: one `=` too many
      --> house.toml:9:10
@@ -91,7 +91,7 @@ fn worlds() {
     }
     let folder = Run::new();
     std::fs::create_dir(folder.path("attic")).unwrap();
-    insta::assert_snapshot!(refuses(&folder, "--world attic", &["attic"]), @"error: cannot read the world file `attic`: it is not a regular file");
+    insta::assert_snapshot!(refuses(&folder, "--world attic", &["attic"]), @"error: --world: cannot read the world file `attic`: it is not a regular file");
 }
 
 /// A pipe would let a reader wait for ever, a device would fill the memory.
@@ -130,8 +130,9 @@ fn names_and_values_that_are_not_printable() {
 #[test]
 fn maps() {
     insta::assert_snapshot!(refused("--map no.yaml"), @"
-    error: no.yaml: cannot read this file: No such file or directory (os error 2)
-      = help: a map has e.g. `image: map.pgm`, `resolution: 0.05`, `origin: [-6.0, -6.0, 0.0]`, `negate: 0`, `occupied_thresh: 0.65`, `free_thresh: 0.196`
+    error: invalid value 'no.yaml' for '--map <MAP.YAML>': cannot read this file: No such file or directory (os error 2)
+
+    For more information, try '--help'.
     ");
     insta::assert_snapshot!(refused_file("m.yaml", MAP, "--map m.yaml"), @"
     error: cannot read the picture gone.pgm: No such file or directory (os error 2)
@@ -192,7 +193,11 @@ fn drives_without_a_controller() {
 
 #[test]
 fn tours() {
-    insta::assert_snapshot!(refused("--drive tour --tour no.toml"), @"error: cannot read the tour `no.toml`: No such file or directory (os error 2)");
+    insta::assert_snapshot!(refused("--drive tour --tour no.toml"), @"
+    error: invalid value 'no.toml' for '--tour <FILE>': cannot read this file: No such file or directory (os error 2)
+
+    For more information, try '--help'.
+    ");
     insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [\n  [1, 2],\n  [3]\n]", "--drive tour --tour t.toml"), @"
     error: `waypoints_m` has the wrong type
      --> t.toml:3:3

@@ -12,6 +12,7 @@ mod contract;
 mod disk;
 mod dummy;
 mod ending;
+mod flags;
 mod flicker;
 mod folder;
 mod grid;

@@ -78,7 +78,12 @@ fn two_logs_of_one_place_add_up() {
     run.goes_well("a.mcap --quiet --no-rrd");
     let once = run.summary();
     fs::copy(run.path("a.mcap"), run.path("b.mcap")).unwrap();
-    // The time between them is not known: both begin at 0.
+    // The same log under another name would count twice.
+    let ended = run.ends("a.mcap b.mcap --quiet --no-rrd");
+    let twice = "error: b.mcap is given twice: it has the content of a.mcap\n";
+    assert_eq!((ended.code, &ended.stderr[..]), (Some(2), twice));
+    // The same readings in other bytes. The time between the logs is not known: both begin at 0.
+    run.goes_well("a.mcap --quiet --no-rrd --mcap b.mcap");
     let ended = run.ends("a.mcap b.mcap --quiet --no-rrd");
     assert_eq!(ended.code, Some(0), "{ended:?}");
     let both = run.summary();
@@ -172,6 +177,55 @@ fn an_invalid_path_of_the_bag_is_found_at_once() {
     insta::assert_snapshot!(refused("out/map.pgm"), @"error: cannot write out/map.pgm: in the folder of the results its name must end in .mcap");
 }
 
+/// The log of a laser that stands, with other ranges.
+fn scaled_log(factor: f64) -> String {
+    let scaled = |line: &str| match line.strip_prefix("FLASER 180 ") {
+        None => format!("{line}\n"),
+        Some(rest) => {
+            let words = rest.split(' ').enumerate().map(|(index, word)| match word.parse::<f64>() {
+                Ok(range_m) if index < 180 => (range_m * factor).to_string(),
+                _ => word.to_owned(),
+            });
+            format!("FLASER 180 {}\n", words.collect::<Vec<_>>().join(" "))
+        }
+    };
+    standing_log(1.7e9, 40).lines().map(scaled).collect()
+}
+
+#[test]
+fn logs_that_cannot_be_true_are_refused_before_anything_is_written() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &scaled_log(1000.0));
+    let message = refuses(&run, "a.log", &["a.log"]);
+    assert!(
+        message.contains("error: a.log: the ranges look like millimetres: in 40 of 40 scans"),
+        "{message}"
+    );
+    run.write("a.log", &standing_log(1.7e9, 1));
+    let message = refuses(&run, "a.log", &["a.log"]);
+    assert!(message.contains("error: a.log: one scan: "), "{message}");
+    run.write("a.log", &scaled_log(1.0));
+    run.goes_well("a.log --quiet --no-rrd");
+}
+
+#[test]
+fn topics_are_for_bags() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(1.7e9, 40));
+    insta::assert_snapshot!(refuses(&run, "a.log --odom-topic /odom", &["a.log"]), @"error: --odom-topic is for bags, but a.log is a CARMEN log, which has no topics and frames: leave it out");
+}
+
+/// Beyond 2 GiB: a room of 6 m in cells of 5 mm fits, and one that is seen 100 m away does not.
+#[test]
+fn a_place_that_is_too_large_names_ways_out() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &scaled_log(10.0));
+    let message = refuses(&run, "a.log --resolution 0.005 --max-range 70", &["a.log"]);
+    let says =
+        ["error: the place is too large for a map: at least ", "--resolution, at least 0.0", "--max-range"];
+    assert!(says.iter().all(|says| message.contains(says)), "{message}");
+}
+
 #[test]
 fn what_is_no_log_is_refused_and_nothing_is_written() {
     let run = || Run::new().with_map_log();
@@ -186,11 +240,37 @@ fn what_is_no_log_is_refused_and_nothing_is_written() {
     insta::assert_snapshot!(refused("a.mcap", b"\x89MCAP0\r\n", "a.mcap"), @"error: a.mcap: no message: the bag is empty");
     let scans = "FLASER 3 1.0 1.0 1.0 0 0 0 0 0 0 1.0 host 1.0\n";
     insta::assert_snapshot!(refused("a.log", scans.as_bytes(), "a.log --resolution 0"), @"
-    note: a.log: no ODOM line: the odometry stands still
-    error: survey setting `resolution_m` must be from 0.005 to 10, not 0
+    error: invalid value '0' for '--resolution <METRES>': must be a number from 0.005 to 10
+
+    For more information, try '--help'.
     ");
     insta::assert_snapshot!(refused("a.log", scans.as_bytes(), "a.log --noise -1"), @"
-    note: a.log: no ODOM line: the odometry stands still
-    error: mapper setting `steady.range_noise_std_m` must be from 0 to 0.5 m, not -1
+    error: invalid value '-1' for '--noise <METRES>': must be a number from 0 to 0.5
+
+    For more information, try '--help'.
     ");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_in_the_first_pass_says_what_happened() {
+    use std::io::{BufRead, BufReader, Read};
+    for (state, kept) in
+        [("", ""), (" --state s", "; s keeps the logs that are finished, and the same command goes on")]
+    {
+        let run = with_bag(120);
+        let mut child = run.starts(&format!("a.mcap{state}"));
+        let mut stderr = BufReader::new(child.stderr.take().unwrap());
+        let mut line = String::new();
+        while !line.contains("first pass") {
+            line.clear();
+            assert!(stderr.read_line(&mut line).unwrap() > 0, "the first pass did not begin");
+        }
+        crate::ending::send(nix::sys::signal::Signal::SIGINT, &child);
+        let mut rest = String::new();
+        stderr.read_to_string(&mut rest).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{rest}");
+        let says = format!("interrupted in the first pass: no results are written{kept}\n");
+        assert!(rest.ends_with(&says), "{rest}");
+    }
 }

@@ -6,6 +6,7 @@ use super::messages::Messages;
 use super::plan::{Laser, Motion, Plan};
 use crate::cdr;
 use crate::choice::bare;
+use crate::doubts::{self, Doubts};
 use crate::error::LogError;
 use crate::odometry::Odometry;
 use crate::ros::{self, Frames, Header, LaserScan, Transforms, flat, mounted, scan_of};
@@ -50,6 +51,7 @@ pub(super) struct Counts {
     pub(super) first_invalid: Option<String>,
     pub(super) poses: usize,
     pub(super) invalid_poses: usize,
+    pub(super) doubts: Doubts,
 }
 
 /// A scan that waits.
@@ -167,6 +169,7 @@ impl RawReadings {
         let Some(laser) = self.plan.lasers.iter().position(is_this) else { return Ok(()) };
         let begin_s = self.clock.time_s(&found.header, message);
         let mounted = mounted(&self.frames.along(&self.plan.lasers[laser].chain));
+        let typical = doubts::typical(found.ranges.iter().copied());
         let scan = mounted.and_then(|(mount, is_upside_down)| Ok((mount, scan_of(found, is_upside_down)?)));
         let (mount, scan) = match scan {
             Ok(scan) => scan,
@@ -176,6 +179,7 @@ impl RawReadings {
                 return Ok(());
             }
         };
+        self.counts.doubts.add(typical, &scan.ranges_m);
         // The stamp of a scan is the time of its first beam.
         let time_s = begin_s + scan.sweep_s;
         if self.waiting.back().is_some_and(|last| (last.time_s - time_s).abs() > JUMP_S) {

@@ -1,5 +1,6 @@
 //! One line of a log.
 
+use crate::doubts;
 use crate::error::LogError;
 use crate::lines::Lines;
 use interfaces::{Scan, is_valid_pose};
@@ -48,6 +49,8 @@ pub(super) enum Line {
 pub(super) struct ScanLine {
     pub(super) time_s: f64,
     pub(super) scan: Scan,
+    /// The typical range as written.
+    pub(super) typical: Option<f32>,
     /// The pose of the laser in the line: the result of an earlier estimation in corrected logs.
     pub(super) reference: Option<Isometry2<f64>>,
 }
@@ -93,7 +96,7 @@ fn param(mut words: SplitAsciiWhitespace) -> Line {
 
 fn flaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
     let count = words.count()?;
-    let ranges_m = words.ranges(count, geometry.range_max_m)?;
+    let (ranges_m, typical) = words.ranges(count, geometry.range_max_m)?;
     let reference = words.pose("the pose of the laser")?;
     words.skip(3, "the pose of the robot")?;
     let steps = if count.is_multiple_of(2) { count } else { count - 1 };
@@ -105,7 +108,7 @@ fn flaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
         sweep_s: 0.0,
         ranges_m,
     };
-    Ok(ScanLine { time_s: words.time()?, scan, reference: Some(reference) })
+    Ok(ScanLine { time_s: words.time()?, scan, typical, reference: Some(reference) })
 }
 
 fn robotlaser(mut words: Words) -> Result<ScanLine, String> {
@@ -116,7 +119,7 @@ fn robotlaser(mut words: Words) -> Result<ScanLine, String> {
     words.skip(2, "accuracy and remission mode")?;
     let count = words.count()?;
     let range_max_m = if max_m > 0.1 { max_m } else { MAX_RANGE_M };
-    let ranges_m = words.ranges(count, range_max_m)?;
+    let (ranges_m, typical) = words.ranges(count, range_max_m)?;
     let remissions = words.number("the number of remissions")?;
     if !(0.0..=MOST_READINGS as f64).contains(&remissions) {
         return Err(words.invalid("the number of remissions", &remissions.to_string()));
@@ -128,7 +131,7 @@ fn robotlaser(mut words: Words) -> Result<ScanLine, String> {
     let scan =
         Scan { angle_min_rad, angle_increment_rad, range_min_m: 0.0, range_max_m, sweep_s: 0.0, ranges_m };
     scan.check().map_err(|error| format!("ROBOTLASER1: {error}"))?;
-    Ok(ScanLine { time_s: words.time()?, scan, reference: None })
+    Ok(ScanLine { time_s: words.time()?, scan, typical, reference: None })
 }
 
 /// The words after the name of a message.
@@ -173,9 +176,10 @@ impl Words<'_> {
         is_valid_pose(&pose).then_some(pose).ok_or_else(|| format!("{}: the pose is too far", self.message))
     }
 
-    /// Ranges; what is no measurement becomes NaN: a laser that sees nothing in a dark or shining surface reports the
+    /// Ranges, and the typical one as written; what is no measurement becomes NaN: a laser that sees nothing in a dark or shining surface reports the
     /// same number as in the open.
-    fn ranges(&mut self, count: usize, max_m: f64) -> Result<Vec<f32>, String> {
+    fn ranges(&mut self, count: usize, max_m: f64) -> Result<(Vec<f32>, Option<f32>), String> {
+        let mut written = Vec::with_capacity(count);
         let mut ranges_m = Vec::with_capacity(count);
         for _ in 0..count {
             let word = self.next("its last reading")?;
@@ -183,9 +187,10 @@ impl Words<'_> {
                 let word = word.to_owned();
                 return Err(self.invalid("a range", &word));
             };
+            written.push(range_m);
             let is_measured = range_m > 0.0 && f64::from(range_m) < max_m;
             ranges_m.push(if is_measured { range_m } else { f32::NAN });
         }
-        Ok(ranges_m)
+        Ok((ranges_m, doubts::typical(written.into_iter())))
     }
 }

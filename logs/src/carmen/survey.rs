@@ -2,6 +2,7 @@
 
 use super::line::{self, Geometry, Line};
 use crate::bounds;
+use crate::doubts::{Doubts, OdometryTimes};
 use crate::error::LogError;
 use crate::lines::Lines;
 use crate::odometry::Odometry;
@@ -33,6 +34,7 @@ impl Survey {
         // With and without the lines that have no time: whether these are origins is known at the end.
         let (mut timed, mut untimed) = (Odometry::default(), Odometry::default());
         let mut standing = Standing::default();
+        let (mut doubts, mut odometry_times) = (Doubts::default(), OdometryTimes::default());
         while let Some(line) = line::next(lines, &geometry)? {
             match line {
                 Line::Odometry { time_s, pose } => {
@@ -44,11 +46,13 @@ impl Survey {
                     } else {
                         with_time += 1;
                         timed.add(time_s, pose);
+                        odometry_times.add(time_s, &pose);
                     }
                 }
                 Line::Scan(scan) => {
                     bounds::one_more(times_s.len()).map_err(|what| lines.error(what))?;
                     times_s.push(scan.time_s);
+                    doubts.add(scan.typical, &scan.scan.ranges_m);
                     standing.add(&Isometry2::identity(), &scan.scan);
                 }
                 Line::LaserOffset(offset_m) => geometry.offset_m = offset_m,
@@ -71,6 +75,7 @@ impl Survey {
         let odometry = if has_origins { timed } else { untimed };
         let begin_s = times_s.first().copied().and_then(since_epoch);
         let pose_source = if odometry_poses > 0 { PoseSource::OdometryLines } else { PoseSource::Standing };
+        let impossible = odometry_times.impossible(&times_s).or_else(|| doubts.impossible(0));
         let Times { times_s, has_times, note } = times::repaired(&times_s);
         notes.extend(note);
         let duration_s = times_s.last().copied().unwrap_or_default();
@@ -85,6 +90,7 @@ impl Survey {
             odom_origin: odom_origin.unwrap_or_default(),
             scan_topics: Vec::new(),
             notes,
+            impossible,
         };
         Ok(Self { summary, geometry, times_s: times_s.into(), has_times, has_origins })
     }

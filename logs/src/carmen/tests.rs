@@ -218,3 +218,50 @@ fn a_compressed_log_grows_by_a_hundred_at_most() {
         "{error}"
     );
 }
+
+/// 40 scans of a robot that drives ahead in a room, with a range of this factor; `odometry` writes its lines.
+fn room(factor: f64, odometry: impl Fn(f64) -> String) -> String {
+    let line = |step: u32| {
+        let time_s = 100.0 + f64::from(step);
+        let ranges: String =
+            (0..180).map(|beam| format!("{:.3} ", factor * (2.0 + f64::from(beam % 60) * 0.02))).collect();
+        odometry(time_s) + &format!("FLASER 180 {ranges}0 0 0 0 0 0 {time_s} host {time_s}\n")
+    };
+    (0..40).map(line).collect()
+}
+
+fn impossible(text: &str) -> Option<String> {
+    open("test.log", text.as_bytes()).unwrap().summary().impossible.clone()
+}
+
+#[test]
+fn logs_that_cannot_be_true_are_named() {
+    let right = |time_s: f64| format!("ODOM {} 0 0 0 0 0 {time_s} host {time_s}\n", (time_s * 0.3).sin());
+    assert_eq!(impossible(&room(1.0, right)), None);
+    let expected = "the ranges look like millimetres: in 40 of 40 scans, their median is beyond 200 m (the first: 2580, which \
+                    would be 2.58 m); ranges are in metres: divide them by 1000";
+    assert_eq!(impossible(&room(1000.0, right)).unwrap(), expected);
+    let swapped =
+        |time_s: f64| format!("ODOM {time_s} 0 0 0 0 0 {} host {time_s}\n", 5.0 + (time_s * 0.3).sin());
+    let why = impossible(&room(1.0, swapped)).unwrap();
+    assert!(
+        why.starts_with("x and the time look exchanged in the ODOM lines: their times go back in "),
+        "{why}"
+    );
+    assert!(why.contains(" of 39 steps, while x goes from 100 to 139 as"), "{why}");
+    // A robot that drives ahead at 1 m/s has an x like a time, but its times are right.
+    let ahead = |time_s: f64| format!("ODOM {time_s} 0 0 0 0 0 {time_s} host {time_s}\n");
+    assert_eq!(impossible(&room(1.0, ahead)), None);
+    // Many lasers write one number where nothing comes back.
+    let open =
+        room(1.0, right).replace("2.0", "655.35 2.0").replace("FLASER 180", "FLASER 180 655.35 655.35");
+    let open = open.lines().map(|line| match line.split_once("FLASER 180 ") {
+        Some((_, rest)) => format!("FLASER {} {rest}\n", rest.split(' ').count() - 9),
+        None => format!("{line}\n"),
+    });
+    assert_eq!(impossible(&open.collect::<String>()), None);
+    let nothing = "none of 40 scans has a range between the limits of the laser: nothing is seen";
+    assert_eq!(impossible(&room(0.0, right)).unwrap(), nothing);
+    let one = "one scan: what changes is found by comparing scans, at least 2";
+    assert_eq!(impossible(&flaser(1.0, "0 0 0")).unwrap(), one);
+}

@@ -1,6 +1,7 @@
 //! Maps what a live robot sees, and where the place changes; can explore.
 
 use anyhow::Context;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use ros2::program::{Failure, input, note_unused_files, output, say, start};
 use ros2::{CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, Signals, Value, curious_wiring};
@@ -21,7 +22,7 @@ struct Args {
     mode: Option<ModeArg>,
     /// Goes on from this file if it exists, and saves to it: every minute, at the end, at the signal USR1, and when the
     /// service `~/save_state` is called
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(no_folder))]
     state: Option<PathBuf>,
 }
 
@@ -31,6 +32,10 @@ enum ModeArg {
     Map,
     /// Drives to where looking is worth most
     Explore,
+}
+
+fn no_folder(path: PathBuf) -> Result<PathBuf, &'static str> {
+    if path.is_dir() { Err("it is a folder, not a file") } else { Ok(path) }
 }
 
 const MANUAL: &str = "\
@@ -138,4 +143,24 @@ fn signals() -> anyhow::Result<Arc<Signals>> {
     signal_hook::flag::register(signal_hook::consts::SIGUSR1, signals.save.clone())
         .context("cannot listen for SIGUSR1")?;
     Ok(signals)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn every_flag_refuses_a_wrong_value_by_its_name() {
+        let wrong = [("mode", "sleep"), ("state", "/")];
+        for argument in
+            Args::command().get_arguments().filter(|argument| argument.get_action().takes_values())
+        {
+            let Some(flag) = argument.get_long() else { continue };
+            let (_, value) =
+                wrong.iter().find(|(known, _)| *known == flag).unwrap_or_else(|| panic!("--{flag}"));
+            let error = Args::try_parse_from(["curious_node", &format!("--{flag}"), value]).unwrap_err();
+            assert!(error.exit_code() == 2 && error.to_string().contains(&format!("--{flag} ")), "{error}");
+        }
+    }
 }

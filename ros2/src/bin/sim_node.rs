@@ -22,13 +22,13 @@ struct Args {
     #[arg(value_name = "WORLD", default_value = "four_rooms")]
     world: String,
     /// The seed of everything random
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     seed: u64,
     /// The simulated time per real time
-    #[arg(long, default_value_t = 1.0, value_parser = speed)]
+    #[arg(long, default_value_t = 1.0, value_parser = speed, allow_negative_numbers = true)]
     speed: f64,
     /// Ends after this simulated time, s
-    #[arg(long, value_name = "SECONDS", default_value_t = f64::INFINITY)]
+    #[arg(long, value_name = "SECONDS", default_value_t = f64::INFINITY, value_parser = duration, allow_negative_numbers = true)]
     duration: f64,
     /// Times are those of the wall clock at the start, and not from 0: for nodes without use_sim_time; for speed 1
     #[arg(long)]
@@ -62,6 +62,11 @@ fn speed(text: &str) -> Result<f64, String> {
     if (0.01..=1000.0).contains(&speed) { Ok(speed) } else { Err("must be from 0.01 to 1000".to_owned()) }
 }
 
+fn duration(text: &str) -> Result<f64, String> {
+    let time_s = text.parse::<f64>().ok().filter(|time_s| *time_s > 0.0);
+    time_s.ok_or_else(|| "must be a time above 0, s".to_owned())
+}
+
 fn main() -> ExitCode {
     start(run)
 }
@@ -89,4 +94,24 @@ fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
     let scans = robot.run(&stop, args.duration);
     say(&format!("[{}] {scans} scans in {:.1} s", names.node(), robot.time_s()));
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn every_flag_refuses_a_wrong_value_by_its_name() {
+        let wrong = [("seed", "-1"), ("speed", "0"), ("duration", "-1")];
+        for argument in
+            Args::command().get_arguments().filter(|argument| argument.get_action().takes_values())
+        {
+            let Some(flag) = argument.get_long() else { continue };
+            let (_, value) =
+                wrong.iter().find(|(known, _)| *known == flag).unwrap_or_else(|| panic!("--{flag}"));
+            let error = Args::try_parse_from(["sim_node", &format!("--{flag}"), value]).unwrap_err();
+            assert!(error.exit_code() == 2 && error.to_string().contains(&format!("--{flag} ")), "{error}");
+        }
+    }
 }

@@ -5,7 +5,8 @@ mod simulation;
 
 use anyhow::bail;
 use clap::Parser;
-use curious::program::{Failure, duration_s, folder, start};
+use curious::flags::folder;
+use curious::program::{Failure, duration_s, start};
 use curious::terminal::{print, say};
 use inspection::{Content, Inspection, as_world_file, inspect};
 use interfaces::printable;

@@ -3,7 +3,8 @@
 use agent::Policy;
 use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
-use curious::program::{duration_s, input_file, one_of, output_file, strategy_of};
+use curious::flags::{input_file, output_file};
+use curious::program::{duration_s, one_of, strategy_of};
 use curious::worlds::PoseArg;
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;

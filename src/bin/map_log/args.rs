@@ -3,7 +3,8 @@
 use crate::logs_in_order::Source;
 use anyhow::ensure;
 use clap::{Parser, ValueEnum};
-use curious::program::{duration_s, number, one_of, output_file};
+use curious::flags::{number, output_file};
+use curious::program::{duration_s, one_of};
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};
 use std::path::PathBuf;

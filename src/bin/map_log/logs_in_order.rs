@@ -26,6 +26,9 @@ pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice, is_kept: bool) -> an
             .notes
             .iter()
             .for_each(|note| say(stderr(), format_args!("note: {}: {note}", file.display())));
+        if let Some(why) = &log.summary().impossible {
+            bail!("{}: {why}", file.display());
+        }
         let mut entry = LogEntry::of(short_name(file), &log, choice)?;
         if is_kept || files.len() > 1 {
             entry.content = log.content_hash()?;

@@ -22,7 +22,7 @@ fn refused_world(right: &str, wrong: &str) -> String {
 
 #[test]
 fn worlds() {
-    insta::assert_snapshot!(refused("--world nowhere"), @"error: there is no world `nowhere`: it is neither a file nor one of those that ship (two_blocks, open_hall, corridor_with_doors, many_slow_blocks, one_fast_block)");
+    insta::assert_snapshot!(refused("--world nowhere"), @"error: --world: there is no world `nowhere`: it is neither a file nor one of those that ship (two_blocks, open_hall, corridor_with_doors, many_slow_blocks, one_fast_block)");
     insta::assert_snapshot!(refused_world("sensor_radius", "sensor_radios"), @"
     error: unknown key `sensor_radios`
       --> grid.toml:10:1
@@ -48,14 +48,14 @@ fn worlds() {
     insta::assert_snapshot!(refused_world("name = \"two blocks\"", "name = \"two blocks\""), @"error: two worlds have the name `two blocks`: results are listed by name, so give each world its own name");
     let folder = Run::grid();
     std::fs::create_dir(folder.path("grid")).unwrap();
-    insta::assert_snapshot!(refuses(&folder, "--world grid", &["grid"]), @"error: cannot read the world file `grid`: it is not a regular file");
+    insta::assert_snapshot!(refuses(&folder, "--world grid", &["grid"]), @"error: --world: cannot read the world file `grid`: it is not a regular file");
 }
 
 /// Files of results contain the names of worlds.
 #[test]
 fn names_that_are_no_names_of_files() {
     let named = |name: &str| refused_world("name = \"two blocks\"", &format!("name = \"{name}\""));
-    insta::assert_snapshot!(named("a/b"), @"error: the world `a/b` in `grid.toml` needs another name, since files of results contain it: it has the character `/`; `a_b` would be valid");
+    insta::assert_snapshot!(named("a/b"), @"error: --world: the world `a/b` in `grid.toml` needs another name, since files of results contain it: it has the character `/`; `a_b` would be valid");
     for (name, why) in [
         ("..", "it begins with a dot"),
         (".hidden", "it begins with a dot"),

@@ -25,32 +25,38 @@ use std::time::{Duration, Instant};
 #[derive(Parser)]
 struct Args {
     /// The number of robots
-    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000), allow_negative_numbers = true)]
     robots: u32,
     /// The simulated time, s
-    #[arg(long, default_value_t = 60.0)]
+    #[arg(long, default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
     seconds: f64,
     /// The number of beams of each laser
-    #[arg(long, default_value_t = 360, value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    #[arg(long, default_value_t = 360, value_parser = clap::value_parser!(u32).range(2..=10_000), allow_negative_numbers = true)]
     rays: u32,
     /// The number of sonars of each robot, which then drives by them; 0: by the laser
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=64))]
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=64), allow_negative_numbers = true)]
     sonars: u32,
     /// The number of corners of each robot; 0: round
-    #[arg(long, default_value_t = 0, value_parser = corners)]
+    #[arg(long, default_value_t = 0, value_parser = corners, allow_negative_numbers = true)]
     corners: u32,
     /// The number of houses along each side
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16), allow_negative_numbers = true)]
     tiles: u32,
     /// The seed of all random streams
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
     /// The number of threads that simulate lasers
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256), allow_negative_numbers = true)]
     threads: u32,
     /// Print one line of JSON
     #[arg(long)]
     json: bool,
+}
+
+/// A simulated time, s.
+fn seconds(text: &str) -> Result<f64, String> {
+    let time_s = text.parse::<f64>().ok().filter(|time_s| *time_s > 0.0 && time_s.is_finite());
+    time_s.ok_or_else(|| "must be a time above 0, s".to_owned())
 }
 
 /// A number of corners.
@@ -149,6 +155,25 @@ fn run(fleet: &mut Fleet, seconds: f64, controller: &mut impl Controller) {
         if printed.elapsed() > SILENCE {
             eprintln!("{:.2} of {seconds} s", fleet.time_s());
             printed = Instant::now();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn every_flag_refuses_a_wrong_value_by_its_name() {
+        for argument in
+            Args::command().get_arguments().filter(|argument| argument.get_action().takes_values())
+        {
+            let Some(flag) = argument.get_long() else { continue };
+            let Err(error) = Args::try_parse_from(["fleet", &format!("--{flag}"), "-1"]) else {
+                panic!("--{flag}")
+            };
+            assert!(error.exit_code() == 2 && error.to_string().contains(&format!("--{flag} ")), "{error}");
         }
     }
 }

@@ -187,3 +187,35 @@ fn other_databases_are_refused() {
     let expected = "test: the database is damaged: row 1 of `messages`: topic 7 is not in `topics`";
     assert_eq!(database(unknown), expected);
 }
+
+#[test]
+fn bags_that_cannot_be_true_are_named() {
+    let bag = |ranges: Vec<f32>, range_max: f32| {
+        let mut bag = Builder::default();
+        for step in 0..20 {
+            let time_s = f64::from(step) * 0.1;
+            bag.scan(
+                "/scan",
+                time_s,
+                &LaserScan { ranges: ranges.clone(), range_max, ..scan(time_s, "laser") },
+            );
+        }
+        bag
+    };
+    let impossible = |bag: &Builder| bag.open(&TopicChoice::default()).unwrap().summary().impossible.clone();
+    let ranges: Vec<f32> = (0..60).map(|beam| 2.0 + 0.01 * beam as f32).collect();
+    assert_eq!(impossible(&bag(ranges.clone(), 10.0)), None);
+    for range_max in [10.0, 10_000.0] {
+        let millimetres = ranges.iter().map(|range_m| 1000.0 * range_m).collect();
+        let why = impossible(&bag(millimetres, range_max)).unwrap();
+        assert!(why.starts_with("the ranges look like millimetres: in 20 of 20 scans"), "{why}");
+    }
+    let why = impossible(&bag(vec![f32::INFINITY; 60], 10.0)).unwrap();
+    assert!(why.starts_with("none of 20 scans has a range"), "{why}");
+    let mut mostly = bag(ranges, 10.0);
+    for step in 20..60 {
+        let time_s = f64::from(step) * 0.1;
+        mostly.scan("/scan", time_s, &LaserScan { range_min: 20.0, ..scan(time_s, "laser") });
+    }
+    assert_eq!(impossible(&mostly).unwrap(), "40 of 60 scans are invalid: what is left is no log of a place");
+}

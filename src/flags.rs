@@ -1,0 +1,44 @@
+//! Parsers of the values of flags: an invalid value is refused before anything is read or written, and its flag is named.
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+/// An invalid value of a flag, which is named unless the message points at a place in a file.
+pub fn value_of(flag: &'static str, error: impl Into<anyhow::Error>) -> anyhow::Error {
+    let error = error.into();
+    if format!("{error:#}").contains("--> ") { error } else { error.context(flag) }
+}
+
+/// A parser of a number in a range.
+pub fn number(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+    move |text| {
+        let number = text.parse::<f64>().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| format!("must be a number from {} to {}", range.start(), range.end()))
+    }
+}
+
+/// A parser of the path of a file that is read: it must be a regular one.
+pub fn input_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path.metadata() {
+        Ok(found) if found.is_file() => Ok(path),
+        Ok(_) => Err("it is not a regular file".to_owned()),
+        Err(why) => Err(format!("cannot read this file: {why}")),
+    })
+}
+
+/// A parser of the path of a file that is written.
+pub fn output_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path.is_dir() {
+        true => Err("it is a folder, not a file"),
+        false => Ok(path),
+    })
+}
+
+/// A parser of the path of a folder, which may be missing.
+pub fn folder() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path.exists() && !path.is_dir() {
+        true => Err("it is a file, not a folder"),
+        false => Ok(path),
+    })
+}
