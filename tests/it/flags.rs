@@ -131,7 +131,8 @@ fn every_flag_refuses_a_wrong_value_by_its_name() {
     for program in &PROGRAMS {
         let mut known: Vec<&str> = program.wrong.iter().map(|(flag, _)| *flag).collect();
         let mut found = flags(program);
-        (known.sort_unstable(), found.sort_unstable());
+        known.sort_unstable();
+        found.sort_unstable();
         assert_eq!(found, known, "{}: each flag needs a wrong value here", program.path);
         for (flag, value) in program.wrong {
             let folder = tempfile::tempdir().unwrap();
