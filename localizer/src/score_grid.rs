@@ -65,7 +65,8 @@ impl ScoreGrid {
         Self { free: Some(free_cells(&self.frame, states)), ..self }
     }
 
-    fn of_frame(surfels: &SurfelMap, frame: GridFrame) -> Self {
+    /// The same, in cells of any size.
+    pub(crate) fn of_frame(surfels: &SurfelMap, frame: GridFrame) -> Self {
         let margin = 1_usize << TOP;
         let (width, height) = (frame.width() + margin, frame.height() + margin);
         let mut grid =

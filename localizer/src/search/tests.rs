@@ -4,6 +4,12 @@ use interfaces::{CellState, Grid, Purpose, RandomStream};
 
 /// A map of random walls, and the points that a scan at a pose has of it.
 fn random_room(seed: u64) -> (ScoreGrid, Vec<ScanPoint>) {
+    let (surfels, grid, _, points) = room(seed);
+    (ScoreGrid::new(&surfels, &grid), points)
+}
+
+/// The surfels, the states, the pose, and the points that a scan has there.
+fn room(seed: u64) -> (SurfelMap, Grid<CellState>, Isometry2<f64>, Vec<ScanPoint>) {
     let mut random = RandomStream::new(seed, Purpose::WorldGenerator);
     let frame = GridFrame::covering(Point2::origin(), 4.0, 3.0, 0.1).unwrap();
     let mut grid = Grid::filled(frame, CellState::Free);
@@ -26,7 +32,19 @@ fn random_room(seed: u64) -> (ScoreGrid, Vec<ScanPoint>) {
         passed: 1.0,
     };
     let points = surfels.usable().map(|surfel| point(&surfel.at)).collect();
-    (ScoreGrid::new(&surfels, &grid), points)
+    (surfels, grid, pose, points)
+}
+
+#[test]
+fn a_search_finds_the_pose_in_cells_of_any_size() {
+    for (seed, cell_m) in (200..206).flat_map(|seed| [0.05, 0.07, 0.1].map(move |cell_m| (seed, cell_m))) {
+        let (surfels, _, pose, points) = room(seed);
+        let frame = GridFrame::covering(surfels.frame().origin(), 4.2, 3.2, cell_m).unwrap();
+        let found = search(&ScoreGrid::of_frame(&surfels, frame), &points, None, 0.5, 1.0)[0];
+        let off = pose.inv_mul(&found.pose);
+        let is_right = off.translation.vector.norm() < 2.0 * cell_m && heading_rad(&off).abs() < cell_m;
+        assert!(is_right, "seed {seed}, {cell_m} m: {off}");
+    }
 }
 
 #[test]
