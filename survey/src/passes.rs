@@ -6,6 +6,7 @@ use crate::replay::{NoPilot, Replay};
 use crate::route::{FirstPass, Route};
 use crate::search::Search;
 use crate::settings::{PoseMode, SurveySettings};
+use crate::survey::judged;
 use interfaces::{LaserReading, World};
 use localizer::Start;
 use logs::{Log, LogError};
@@ -151,7 +152,9 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
     /// As for [`RoutePass::route`], and when the place is too large for a map.
     pub fn place(&mut self, route: &Route) -> Result<KnownPlace, PassError> {
         let mut place = KnownPlace::new(self.settings, route)?;
-        self.each_reading(Stage::Map, |index, reading| {
+        let no_returns = judged(self.log, &route.poses, self.settings)?;
+        self.each_reading(Stage::Map, |index, mut reading| {
+            no_returns.apply(&mut reading);
             if let Some(found) = route.poses.get(index) {
                 place.add(reading, found);
             }

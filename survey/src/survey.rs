@@ -16,7 +16,7 @@ use crate::route::frame;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::{LogEntry, SurveyedLog};
 use interfaces::{GridFrame, LaserReading, World};
-use localizer::PoseState;
+use localizer::{PoseState, TrajectoryPose};
 use logs::{Log, Readings};
 use mapper::{Mapper, NoReturn, NoReturns};
 use robot::{Belief, Localization};
@@ -145,7 +145,7 @@ impl Survey {
         for _ in 0..before {
             readings.next().transpose()?;
         }
-        let no_returns = judged(log, surveyed, settings)?;
+        let no_returns = judged(log, &surveyed.poses, settings)?;
         let Some(mut replay) = Replay::new(readings, settings, offset_s)? else { return Ok(None) };
         replay.judge(no_returns);
         let mut poses = FoundPoses::new(surveyed.poses.get(before..).unwrap_or_default().to_vec());
@@ -205,10 +205,14 @@ impl Survey {
 }
 
 /// Judges the beams without a return of a log along its trajectory, in one more pass over the log.
-fn judged(log: &Log, surveyed: &SurveyedLog, settings: &SurveySettings) -> Result<NoReturns, PassError> {
+pub(crate) fn judged(
+    log: &Log,
+    poses: &[TrajectoryPose],
+    settings: &SurveySettings,
+) -> Result<NoReturns, PassError> {
     let mut no_returns = NoReturns::new(settings.no_return);
     if settings.no_return == NoReturn::Learn {
-        let mut poses = FoundPoses::new(surveyed.poses.to_vec());
+        let mut poses = FoundPoses::new(poses.to_vec());
         for reading in log.readings()? {
             let (reading, state) = poses.posed(reading?);
             if state == PoseState::Tracking {

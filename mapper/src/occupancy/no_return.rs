@@ -25,6 +25,14 @@ const PRIOR: [f64; 2] = [10.0, 40.0];
 const MAX_SWALLOWED: f64 = 0.06;
 /// A scanner is not trusted before it was seen for this time, s: a robot must drive past glass to notice it.
 const LEARNS_S: f64 = 30.0;
+/// A surface that is hit again after at most this time was there in between, s.
+const GAP_S: f64 = 60.0;
+/// A laser that has moved by at most this since the last hit has the same view, m.
+const SAME_VIEW_M: f64 = 0.3;
+/// The largest number of beams without a return in the same view, per hit: more, and something comes and goes.
+const MAX_SILENT: f64 = 0.5;
+/// More scanners than these are not told apart.
+const MOST: usize = 4;
 /// A longer time between two scans counts as this, s.
 const MAX_STEP_S: f64 = 1.0;
 
@@ -74,21 +82,13 @@ struct Surface {
     passed: [u32; MOST],
 }
 
-/// A surface that is hit again after at most this time was there in between, s. Longer, and it can have been another person.
-const GAP_S: f64 = 60.0;
-/// A laser that has moved by at most this has the same view, m: ...
-const SAME_VIEW_M: f64 = 0.3;
-const MAX_SILENT: f64 = 0.5;
 impl Surface {
-    /// Whether a surface stands here: hit often, and not passed.
+    /// Whether a surface stands here, and nobody who comes and goes: hit often, and seldom silent in the same view.
     fn stands(&self) -> bool {
         let [hits, silent] = [self.hits, self.silent].map(f64::from);
         self.scans >= CONFIDENT && silent <= MAX_SILENT * hits
     }
 }
-
-/// More scanners than these are not told apart.
-const MOST: usize = 4;
 
 /// The evidence about the beams of one scanner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
