@@ -2,11 +2,10 @@
 
 use crate::error::SurveyError;
 use crate::known_place::KnownPlace;
-use crate::replay::{NoPilot, Replay};
+use crate::replay::{NoPilot, Replay, judged};
 use crate::route::{FirstPass, Route};
 use crate::search::Search;
 use crate::settings::{PoseMode, SurveySettings};
-use crate::survey::judged;
 use interfaces::{LaserReading, World};
 use localizer::Start;
 use logs::{Log, LogError};
