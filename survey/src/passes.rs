@@ -2,7 +2,7 @@
 
 use crate::error::SurveyError;
 use crate::known_place::KnownPlace;
-use crate::replay::{NoPilot, Replay};
+use crate::replay::{NoPilot, Replay, judged};
 use crate::route::{FirstPass, Route, uncertain};
 use crate::search::Search;
 use crate::settings::{PoseMode, SurveySettings};
@@ -160,7 +160,9 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
     /// As for [`RoutePass::route`], and when the place is too large for a map.
     pub fn place(&mut self, route: &Route) -> Result<KnownPlace, PassError> {
         let mut place = KnownPlace::new(self.settings, route)?;
-        self.each_reading(Stage::Map, |index, reading| {
+        let no_returns = judged(self.log, &route.poses, self.settings)?;
+        self.each_reading(Stage::Map, |index, mut reading| {
+            no_returns.apply(&mut reading);
             if let Some(found) = route.poses.get(index) {
                 place.add(reading, found);
             }

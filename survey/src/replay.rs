@@ -3,7 +3,7 @@
 use crate::settings::SurveySettings;
 use interfaces::{LaserReading, ValueError, World};
 use localizer::{GivenPoses, PoseEstimate, PoseState, TrajectoryPose};
-use logs::LogError;
+use logs::{Log, LogError};
 use mapper::{Mapper, NoReturn, NoReturns};
 use nalgebra::Matrix3;
 use robot::{Belief, Localization, Permission, Pilot, Posed, Session};
@@ -147,6 +147,25 @@ impl Localization<LaserReading> for FoundPoses {
     fn begin_session(&mut self) {
         self.given = GivenPoses::default();
     }
+}
+
+/// Judges the beams without a return of a log along its trajectory, in one more pass over the log.
+pub(crate) fn judged(
+    log: &Log,
+    poses: &[TrajectoryPose],
+    settings: &SurveySettings,
+) -> Result<NoReturns, LogError> {
+    let mut no_returns = NoReturns::new(settings.no_return);
+    if settings.no_return == NoReturn::Learn {
+        let mut poses = FoundPoses::new(poses.to_vec());
+        for reading in log.readings()? {
+            let (reading, state) = poses.posed(reading?);
+            if state == PoseState::Tracking {
+                no_returns.learn(&reading);
+            }
+        }
+    }
+    Ok(no_returns)
 }
 
 /// A pilot that gives no command.

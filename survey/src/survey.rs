@@ -11,14 +11,13 @@ use crate::error::SurveyError;
 use crate::extent::union;
 use crate::known_place::KnownPlace;
 use crate::passes::{PassError, RoutePass, RouteProgress, learn_on};
-use crate::replay::{FoundPoses, Replay};
+use crate::replay::{FoundPoses, Replay, judged};
 use crate::route::frame;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::{LogEntry, SurveyedLog};
 use interfaces::{GridFrame, LaserReading, World};
-use localizer::PoseState;
 use logs::{Log, Readings};
-use mapper::{Mapper, NoReturn, NoReturns};
+use mapper::Mapper;
 use robot::{Belief, Localization};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -145,7 +144,7 @@ impl Survey {
         for _ in 0..before {
             readings.next().transpose()?;
         }
-        let no_returns = judged(log, surveyed, settings)?;
+        let no_returns = judged(log, &surveyed.poses, settings)?;
         let Some(mut replay) = Replay::new(readings, settings, offset_s)? else { return Ok(None) };
         replay.judge(no_returns);
         let mut poses = FoundPoses::new(surveyed.poses.get(before..).unwrap_or_default().to_vec());
@@ -202,19 +201,4 @@ impl Survey {
         log.measure();
         learned.map(|()| is_over)
     }
-}
-
-/// Judges the beams without a return of a log along its trajectory, in one more pass over the log.
-fn judged(log: &Log, surveyed: &SurveyedLog, settings: &SurveySettings) -> Result<NoReturns, PassError> {
-    let mut no_returns = NoReturns::new(settings.no_return);
-    if settings.no_return == NoReturn::Learn {
-        let mut poses = FoundPoses::new(surveyed.poses.to_vec());
-        for reading in log.readings()? {
-            let (reading, state) = poses.posed(reading?);
-            if state == PoseState::Tracking {
-                no_returns.learn(&reading);
-            }
-        }
-    }
-    Ok(no_returns)
 }

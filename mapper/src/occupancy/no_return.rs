@@ -15,6 +15,10 @@ const CONFIDENT: u32 = 5;
 const MEMORY: u32 = 32;
 /// Surfaces beyond this share of the maximum range judge nothing: beams along a wall leave the range beside it.
 const JUDGED_SHARE: f64 = 0.9;
+/// Surfaces farther away judge nothing, m: the work per beam is bounded.
+const FARTHEST_M: f64 = 30.0;
+/// The largest number of cells with hits; about 100 bytes each.
+const MAX_SURFACES: usize = 1 << 20;
 /// One of this many beams is judged.
 const STRIDE: usize = 4;
 /// A scan that turns by more than this while it is measured is not judged, rad.
@@ -25,6 +29,14 @@ const PRIOR: [f64; 2] = [10.0, 40.0];
 const MAX_SWALLOWED: f64 = 0.06;
 /// A scanner is not trusted before it was seen for this time, s: a robot must drive past glass to notice it.
 const LEARNS_S: f64 = 30.0;
+/// A surface that is hit again after at most this time was there in between, s.
+const GAP_S: f64 = 60.0;
+/// A laser that has moved by at most this since the last hit has the same view, m.
+const SAME_VIEW_M: f64 = 0.3;
+/// The largest number of beams without a return in the same view, per hit: more, and something comes and goes.
+const MAX_SILENT: f64 = 0.5;
+/// More scanners than these are not told apart.
+const MOST: usize = 4;
 /// A longer time between two scans counts as this, s.
 const MAX_STEP_S: f64 = 1.0;
 
@@ -74,21 +86,13 @@ struct Surface {
     passed: [u32; MOST],
 }
 
-/// A surface that is hit again after at most this time was there in between, s. Longer, and it can have been another person.
-const GAP_S: f64 = 60.0;
-/// A laser that has moved by at most this has the same view, m: ...
-const SAME_VIEW_M: f64 = 0.3;
-const MAX_SILENT: f64 = 0.5;
 impl Surface {
-    /// Whether a surface stands here: hit often, and not passed.
+    /// Whether a surface stands here, and nobody who comes and goes: hit often, and seldom silent in the same view.
     fn stands(&self) -> bool {
         let [hits, silent] = [self.hits, self.silent].map(f64::from);
         self.scans >= CONFIDENT && silent <= MAX_SILENT * hits
     }
 }
-
-/// More scanners than these are not told apart.
-const MOST: usize = 4;
 
 /// The evidence about the beams of one scanner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -97,10 +101,8 @@ pub struct NoReturnEvidence {
     pub passing: u64,
     /// Beams with a return that ended at such a surface.
     pub ending: u64,
-    /// All beams without a return, and all beams with one.
+    /// All beams without a return that were looked at.
     pub silent: u64,
-    /// See `silent`.
-    pub returned: u64,
     /// The time for which it was seen, s.
     pub learned_s: f64,
 }
@@ -154,7 +156,7 @@ impl NoReturns {
         self.last_s = reading.time_s;
         let laser = reading.pose * reading.mount;
         let origin = Point2::from(laser.translation.vector);
-        let judged_m = JUDGED_SHARE * scan.range_max_m;
+        let judged_m = (JUDGED_SHARE * scan.range_max_m).min(FARTHEST_M);
         for (beam, &range_m) in scan.ranges_m.iter().enumerate().step_by(STRIDE) {
             let along = laser.rotation * (interfaces::rotation(scan.angle_rad(beam)) * Vector2::x());
             let range_m = f64::from(range_m);
@@ -167,9 +169,8 @@ impl NoReturns {
                     surface.passed[scanner] += u32::from(surface.stands());
                     surface.stands()
                 });
-            } else if (scan.range_min_m..=scan.range_max_m).contains(&range_m) {
-                evidence.returned += 1;
-                self.hit(scanner, &origin, &(origin + along * range_m), reading.time_s, range_m <= judged_m);
+            } else if (scan.range_min_m..=judged_m).contains(&range_m) {
+                self.hit(scanner, &origin, &(origin + along * range_m), reading.time_s);
             }
         }
     }
@@ -194,7 +195,7 @@ impl NoReturns {
         }
     }
 
-    fn hit(&mut self, scanner: usize, origin: &Point2<f64>, end: &Point2<f64>, time_s: f64, is_judged: bool) {
+    fn hit(&mut self, scanner: usize, origin: &Point2<f64>, end: &Point2<f64>, time_s: f64) {
         let new = Surface {
             mean: *end,
             scans: 0,
@@ -204,9 +205,13 @@ impl NoReturns {
             silent: 0,
             passed: [0; MOST],
         };
-        let surface = self.surfaces.entry(cell(end)).or_insert(new);
+        let at = cell(end);
+        if self.surfaces.len() >= MAX_SURFACES && !self.surfaces.contains_key(&at) {
+            return;
+        }
+        let surface = self.surfaces.entry(at).or_insert(new);
         let is_near = (end - surface.mean).norm() <= NEAR_M;
-        if is_near && is_judged && surface.stands() {
+        if is_near && surface.stands() {
             self.scanners[scanner].1.ending += 1;
         }
         if is_near {

@@ -72,7 +72,7 @@ impl Record {
     }
 
     pub(super) fn set_whole(&mut self, is_whole: bool) {
-        self.marks = Marks((self.marks.0 & !Marks::WHOLE) | (u8::from(is_whole) * Marks::WHOLE));
+        self.marks = Marks((self.marks.0 & !Marks::WHOLE) | u8::from(is_whole));
     }
 
     /// Whether the state of the cell is known.

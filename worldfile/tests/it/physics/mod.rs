@@ -8,6 +8,7 @@ mod extreme;
 mod fleet;
 mod floor_plan;
 mod footprint;
+mod glass;
 mod houses;
 mod jams;
 mod keys;
