@@ -37,8 +37,9 @@ pub fn output_file() -> impl TypedValueParser<Value = PathBuf> {
 
 /// A parser of the path of a folder, which may be missing.
 pub fn folder() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path| match path.exists() && !path.is_dir() {
-        true => Err("it is a file, not a folder"),
-        false => Ok(path),
+    PathBufValueParser::new().try_map(|path| {
+        let file = path.ancestors().find(|path| path.exists()).filter(|found| !found.is_dir());
+        file.map_or(Ok(()), |file| Err(format!("{} is a file, not a folder", file.display())))
+            .map(|()| path.clone())
     })
 }

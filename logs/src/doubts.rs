@@ -6,9 +6,9 @@ use nalgebra::Isometry2;
 const FARTHEST_M: f32 = 200.0;
 /// A scan with fewer ranges says nothing about their unit.
 const LEAST_RANGES: usize = 10;
-/// Times of the odometry that go back in this share of the steps are no times; numbers that do so in less are.
+/// Times of the odometry that go back in this share of the steps are no times; they are near those of the scans, s.
 const MOST_BACK: f64 = 0.1;
-const RARELY_BACK: f64 = 0.01;
+const NEAR_S: f64 = 10.0;
 /// At least this number of ODOM lines is compared.
 const LEAST_LINES: usize = 20;
 
@@ -69,52 +69,44 @@ pub(crate) fn typical(ranges: impl Iterator<Item = f32>) -> Option<f32> {
     (ranges.len() >= LEAST_RANGES).then(|| *ranges.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
 
-/// Compares the times of ODOM lines with their x.
+/// Compares the times of ODOM lines, and their x, with the times of the scans.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct OdometryTimes {
-    last: Option<(f64, f64)>,
-    steps: usize,
-    times_back: usize,
-    x_back: usize,
-    /// The least and the largest x.
-    x: (f64, f64),
+    last_s: Option<f64>,
+    /// The lines that were compared, those whose time goes back, and those whose time and whose x is near that of a scan.
+    lines: usize,
+    back: usize,
+    times_near: usize,
+    x_near: usize,
 }
 
 impl OdometryTimes {
-    pub(crate) fn add(&mut self, time_s: f64, pose: &Isometry2<f64>) {
+    /// Adds a line after the scan of this time.
+    pub(crate) fn add(&mut self, time_s: f64, pose: &Isometry2<f64>, scan_s: f64) {
         let x = pose.translation.x;
         if x == 0.0 {
             return; // Corrected logs have lines without a time.
         }
-        if let Some((last_s, last_x)) = self.last.replace((time_s, x)) {
-            self.steps += 1;
-            self.times_back += usize::from(time_s < last_s);
-            self.x_back += usize::from(x <= last_x);
-            self.x = (self.x.0.min(x), self.x.1.max(x));
-        } else {
-            self.x = (x, x);
-        }
+        self.lines += 1;
+        self.back += usize::from(self.last_s.replace(time_s).is_some_and(|last_s| time_s < last_s));
+        self.times_near += usize::from((time_s - scan_s).abs() < NEAR_S);
+        self.x_near += usize::from((x - scan_s).abs() < NEAR_S);
     }
 
     /// Why these are no times, if it is sure: they go back, and x goes ahead as the times of the scans do.
     pub(crate) fn impossible(&self, scans_s: &[f64]) -> Option<String> {
-        let Self { steps, times_back, x_back, x, .. } = *self;
-        let ends_s = scans_s.first().copied().zip(scans_s.last().copied());
-        let margin_s = |begin_s: f64, end_s: f64| 0.1 * (end_s - begin_s) + 1.0;
-        let is_time = |(begin_s, end_s): (f64, f64)| {
-            x.0 > begin_s - margin_s(begin_s, end_s)
-                && x.1 < end_s + margin_s(begin_s, end_s)
-                && x.1 - x.0 > 0.5 * (end_s - begin_s)
-        };
-        let is_swapped = steps >= LEAST_LINES
-            && times_back as f64 > MOST_BACK * steps as f64
-            && (x_back as f64) < RARELY_BACK * steps as f64
-            && ends_s.is_some_and(is_time);
+        let Self { lines, back, times_near, x_near, .. } = *self;
+        let span_s = scans_s.first().zip(scans_s.last()).map_or(0.0, |(begin_s, end_s)| end_s - begin_s);
+        let share = |count: usize| count as f64 / lines as f64;
+        let is_swapped = lines >= LEAST_LINES
+            && span_s > 2.0 * NEAR_S
+            && share(back) > MOST_BACK
+            && share(x_near) > 1.0 - MOST_BACK
+            && share(times_near) < 0.5;
         is_swapped.then(|| {
             format!(
-                "x and the time look exchanged in the ODOM lines: their times go back in {times_back} of {steps} steps, while x \
-                 goes from {} to {} as the times of the scans do; a line is `ODOM x y theta tv rv accel time host logger_time`",
-                x.0, x.1
+                "x and the time look exchanged in the ODOM lines: in {back} of {lines}, the time goes back, while in {x_near} x is \
+                 within {NEAR_S} s of the time of the scan before; a line is `ODOM x y theta tv rv accel time host logger_time`"
             )
         })
     }

@@ -46,7 +46,7 @@ impl Survey {
                     } else {
                         with_time += 1;
                         timed.add(time_s, pose);
-                        odometry_times.add(time_s, &pose);
+                        times_s.last().iter().for_each(|scan_s| odometry_times.add(time_s, &pose, **scan_s));
                     }
                 }
                 Line::Scan(scan) => {

@@ -244,11 +244,8 @@ fn logs_that_cannot_be_true_are_named() {
     let swapped =
         |time_s: f64| format!("ODOM {time_s} 0 0 0 0 0 {} host {time_s}\n", 5.0 + (time_s * 0.3).sin());
     let why = impossible(&room(1.0, swapped)).unwrap();
-    assert!(
-        why.starts_with("x and the time look exchanged in the ODOM lines: their times go back in "),
-        "{why}"
-    );
-    assert!(why.contains(" of 39 steps, while x goes from 100 to 139 as"), "{why}");
+    assert!(why.starts_with("x and the time look exchanged in the ODOM lines: in "), "{why}");
+    assert!(why.contains(" of 39, the time goes back, while in 39 x is within 10 s"), "{why}");
     // A robot that drives ahead at 1 m/s has an x like a time, but its times are right.
     let ahead = |time_s: f64| format!("ODOM {time_s} 0 0 0 0 0 {time_s} host {time_s}\n");
     assert_eq!(impossible(&room(1.0, ahead)), None);

@@ -3,7 +3,7 @@
 use agent::Policy;
 use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
-use curious::flags::{input_file, output_file};
+use curious::flags::{folder, input_file, output_file};
 use curious::program::{duration_s, one_of, strategy_of};
 use curious::worlds::PoseArg;
 use mapper::{EstimatorChoice, OccupancyChoice};
@@ -86,7 +86,7 @@ pub(crate) struct Args {
     pub(crate) occupancy: OccupancyChoice,
 
     /// The folder for all results
-    #[arg(long, value_name = "DIR", default_value = "four_rooms_out", help_heading = "Output")]
+    #[arg(long, value_name = "DIR", default_value = "four_rooms_out", value_parser = folder(), help_heading = "Output")]
     pub(crate) out: PathBuf,
 
     /// The file of the recording [default: named after the world, in the output folder]

@@ -1,6 +1,7 @@
 //! The command line.
 
 use clap::Parser;
+use curious::flags::folder;
 use curious::program::one_of;
 use curious::shards::ShardCommand;
 use curious::trials::{TrialArgs, strategies};
@@ -84,7 +85,7 @@ pub(crate) struct Args {
     pub(crate) max_steps: u32,
 
     /// The folder for all results
-    #[arg(long, value_name = "DIR", default_value = "grid_world_out", help_heading = "Output")]
+    #[arg(long, value_name = "DIR", default_value = "grid_world_out", value_parser = folder(), help_heading = "Output")]
     pub(crate) out: PathBuf,
 
     #[command(flatten)]

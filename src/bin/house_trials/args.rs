@@ -1,6 +1,7 @@
 //! The command line.
 
 use clap::Parser;
+use curious::flags::folder;
 use curious::program::{duration_s, one_of};
 use curious::shards::ShardCommand;
 use curious::trials::{TrialArgs, strategies};
@@ -82,7 +83,7 @@ pub(crate) struct Args {
     pub(crate) pose: Option<PoseArg>,
 
     /// The folder for all results
-    #[arg(long, value_name = "DIR", default_value = "house_trials_out", help_heading = "Output")]
+    #[arg(long, value_name = "DIR", default_value = "house_trials_out", value_parser = folder(), help_heading = "Output")]
     pub(crate) out: PathBuf,
 
     #[command(flatten)]

@@ -3,7 +3,7 @@
 use crate::logs_in_order::Source;
 use anyhow::ensure;
 use clap::{Parser, ValueEnum};
-use curious::flags::{number, output_file};
+use curious::flags::{folder, number, output_file};
 use curious::program::{duration_s, one_of};
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};
@@ -104,7 +104,7 @@ pub(crate) struct Args {
     pub(crate) estimator: EstimatorChoice,
 
     /// The folder for all results
-    #[arg(long, value_name = "DIR", default_value = "map_log_out", help_heading = "Output")]
+    #[arg(long, value_name = "DIR", default_value = "map_log_out", value_parser = folder(), help_heading = "Output")]
     pub(crate) out: PathBuf,
 
     /// Do not record

@@ -136,12 +136,12 @@ fn worlds_of_the_other_kind() {
     let message = refused(&format!("--world {}", file("four_rooms")));
     assert!(message.starts_with("error: this is a physics world, not a grid world\n"), "{message}");
     assert!(message.contains("a grid world draws its `map` as text"), "{message}");
-    insta::assert_snapshot!(refused("--world four_rooms"), @"error: `four_rooms` is a physics world: it is for the program four_rooms");
+    insta::assert_snapshot!(refused("--world four_rooms"), @"error: --world: `four_rooms` is a physics world: it is for the program four_rooms");
 
     let message = refuses(&Run::new(), &format!("--world {}", file("two_blocks")), &[]);
     assert!(message.starts_with("error: this is a grid world, not a physics world\n"), "{message}");
     assert!(message.contains("a physics world has a table `[map]`"), "{message}");
-    insta::assert_snapshot!(refuses(&Run::new(), "--world two_blocks", &[]), @"error: `two_blocks` is a grid world: it is for the program grid_world");
+    insta::assert_snapshot!(refuses(&Run::new(), "--world two_blocks", &[]), @"error: --world: `two_blocks` is a grid world: it is for the program grid_world");
 }
 
 #[test]
