@@ -26,6 +26,7 @@ mod passes;
 mod permanent;
 mod places;
 mod range_noise;
+mod repeated;
 mod replay;
 mod route;
 mod search;

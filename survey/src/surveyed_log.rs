@@ -1,6 +1,7 @@
 //! What a survey keeps of a log.
 
 use crate::noise::noise_m;
+use crate::repeated::{repeats, sketch};
 use crate::route::{Route, length_m, uncertain};
 use interfaces::GridFrame;
 use localizer::TrajectoryPose;
@@ -15,6 +16,8 @@ pub struct LogEntry {
     pub name: String,
     /// The [hash](Log::content_hash) of its content; 0 where it is not needed.
     pub content: u128,
+    /// Hashes of some of its scans, by which a part of it is recognised.
+    pub(crate) scans: Vec<u64>,
     /// What was used of it: the topics of scans and of odometry, and the frame of the robot.
     pub choice: (Vec<String>, Option<String>, Option<String>),
     /// The time of its first reading, s after that of the first log.
@@ -51,6 +54,7 @@ impl LogEntry {
         Ok(Self {
             name,
             content: 0,
+            scans: Vec::new(),
             choice: (scan_topics, odom_topic, base_frame),
             offset_s: 0.0,
             begin_s: summary.begin_s,
@@ -60,6 +64,24 @@ impl LogEntry {
             laser,
             notes: summary.notes.clone(),
         })
+    }
+
+    /// Reads the log once more, so that it is recognised in other logs, and they in it.
+    ///
+    /// # Errors
+    ///
+    /// When the log can no longer be read.
+    pub fn recognise(&mut self, log: &Log) -> Result<(), LogError> {
+        self.content = log.content_hash()?;
+        if !self.stands {
+            self.scans = sketch(log)?; // a laser that stands can see the same every day
+        }
+        Ok(())
+    }
+
+    /// Whether this log and another one have scans in common.
+    pub fn repeats(&self, other: &Self) -> bool {
+        repeats(&self.scans, &other.scans)
     }
 
     /// The time of its last reading, s after the first reading of the first log.

@@ -295,3 +295,22 @@ fn the_last_log_can_be_removed_and_another_one_cannot() {
     run.goes_well(&format!("b.log {SAVED}"));
     assert_eq!(run.summary().number("/scans"), 210.0);
 }
+
+/// A log and its own halves would count twice.
+#[test]
+fn a_log_of_which_the_halves_are_learned_is_refused() {
+    let run = Run::new();
+    let run = run.with_map_log();
+    let log = crate::map_log::scaled_log(1.0);
+    let lines: Vec<&str> = log.lines().collect();
+    let half = lines.len() / 4 * 2; // lines of odometry and of scans alternate
+    run.write("a.log", &lines[..half].join("\n"));
+    run.write("b.log", &lines[half..].join("\n"));
+    run.write("whole.log", &log);
+    run.goes_well(&format!("a.log {SAVED}"));
+    run.goes_well(&format!("b.log {SAVED}"));
+    fs::remove_dir_all(run.path("out")).unwrap();
+    let files = ["a.log", "a.state", "a.state.earlier", "b.log", "whole.log"];
+    insta::assert_snapshot!(refuses(&run, &format!("whole.log {SAVED}"), &files), @"error: whole.log and a.log have the same scans, which would count twice: leave one of them out");
+    insta::assert_snapshot!(refuses(&run, &format!("b.log whole.log {QUIET}"), &files), @"");
+}

@@ -81,7 +81,11 @@ fn a_damaged_state_is_refused_and_stays() {
 fn a_state_that_cannot_be_written_ends_before_the_run() {
     let run = Run::new();
     insta::assert_snapshot!(refuses(&run, "--state missing/a.state", &[]), @"error: missing/a.state: cannot use it: No such file or directory (os error 2)");
-    insta::assert_snapshot!(refuses(&run, "--state .", &[]), @"error: .: cannot use it: it is not a file (but a folder, a pipe or a device)");
+    insta::assert_snapshot!(refuses(&run, "--state .", &[]), @"
+    error: invalid value '.' for '--state <FILE>': it is a folder, not a file
+
+    For more information, try '--help'.
+    ");
     let ended = run.ends("--state-every 5");
     assert_eq!(ended.code, Some(2), "{ended:?}");
 }
@@ -91,7 +95,11 @@ fn a_bag_that_cannot_be_written_ends_before_the_run() {
     let run = Run::new();
     let refused = |path: &str| refuses(&run, &format!("--mcap {path}"), &[]);
     insta::assert_snapshot!(refused("no/such/run.mcap"), @"error: cannot write the bag of --mcap: cannot write no/such/run.mcap: No such file or directory (os error 2)");
-    insta::assert_snapshot!(refused("."), @"error: cannot write the bag of --mcap: cannot write .: is a directory");
+    insta::assert_snapshot!(refused("."), @"
+    error: invalid value '.' for '--mcap <FILE>': it is a folder, not a file
+
+    For more information, try '--help'.
+    ");
 }
 
 /// Killed again and again at any point, even while it saves: the file is complete, and the run comes to its end.

@@ -31,7 +31,7 @@ pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice, is_kept: bool) -> an
         }
         let mut entry = LogEntry::of(short_name(file), &log, choice)?;
         if is_kept || files.len() > 1 {
-            entry.content = log.content_hash()?;
+            entry.recognise(&log)?;
         }
         Ok(Source { log, entry })
     };
@@ -144,6 +144,13 @@ pub(crate) fn continued(
 /// Gives a log its place in time after other logs.
 fn place(entry: &mut LogEntry, before: &[LogEntry]) -> anyhow::Result<()> {
     let (Some(first), Some(last)) = (before.first(), before.last()) else { return Ok(()) };
+    let repeated = before.iter().find(|other| entry.repeats(other)).map(|other| &other.name);
+    if let Some(repeated) = repeated {
+        bail!(
+            "{} and {repeated} have the same scans, which would count twice: leave one of them out",
+            entry.name
+        );
+    }
     let known = entry.begin_s.zip(first.begin_s).map(|(begin_s, first_s)| begin_s - first_s);
     entry.offset_s = match known {
         Some(offset_s) if offset_s >= last.end_s() => offset_s,
