@@ -10,6 +10,7 @@ use state::{Facts, LearnedFacts, LearnedSnapshot, State, StateError};
 use xxhash_rust::xxh3::xxh3_64;
 
 const WORLD: &str = "world";
+const CONTENT: &str = "content";
 const PILOT: &str = "pilot";
 const MEASUREMENTS: &str = "measurements";
 
@@ -18,6 +19,8 @@ const MEASUREMENTS: &str = "measurements";
 pub struct TrialFacts {
     learned: LearnedFacts,
     world: Facts,
+    /// What another build prints otherwise, though the world is the same.
+    content: Facts,
     pilot: Facts,
     allows_other_build: bool,
 }
@@ -28,16 +31,14 @@ impl TrialFacts {
         let PhysicsSettings { mapper, agent, controller, drive, pose, localizer } = settings;
         let localizer = (*pose == PoseChoice::Localized).then_some(localizer);
         let content = xxh3_64(format!("{spec:?}").as_bytes());
-        let world = Facts::default()
-            .with("world", &spec.name)
-            .with("content of the world", format!("{content:016x}"))
-            .with("seed", seed);
+        let world = Facts::default().with("world", &spec.name).with("seed", seed);
+        let content = Facts::default().with("content of the world", format!("{content:016x}"));
         let pilot = pilot
             .with_settings("agent", agent)
             .with_settings("controller", controller)
             .with_settings("drive", drive);
         let learned = LearnedFacts::new(mapper, &spec.frame, pose.name(), localizer);
-        Self { learned, world, pilot, allows_other_build: false }
+        Self { learned, world, content, pilot, allows_other_build: false }
     }
 
     /// The same; with `allows`, a run can go on that another build has begun: its bits are those of neither build.
@@ -63,6 +64,7 @@ impl TrialSnapshot {
         let Self { facts, learned, world, pilot, mut observer } = self;
         let state = State::default()
             .with(WORLD, facts.world.clone(), world.into_bytes())
+            .with(CONTENT, facts.content, Vec::new())
             .with(PILOT, facts.pilot, pilot)
             .with(MEASUREMENTS, facts.world, interfaces::snapshot(vec![value(&mut observer)]));
         learned.added_to(state).with_build()
@@ -91,8 +93,10 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         let world = state.section(WORLD, &facts.world)?;
         let (pilot, observer) =
             (state.section(PILOT, &facts.pilot)?, state.section(MEASUREMENTS, &facts.world)?);
-        if !facts.allows_other_build {
-            state.check_build()?; // after what differs by a choice
+        match state.check_build() {
+            Err(other) if !facts.allows_other_build => return Err(other), // after what differs by a choice
+            Err(_) => {}
+            Ok(()) => drop(state.section(CONTENT, &facts.content)?),
         }
         facts.learned.restore(state, &mut self.mapper, self.localization.as_mut())?;
         self.world.restore(world).map_err(|_| misfit(WORLD))?;

@@ -231,7 +231,8 @@ where
         return Err(input(anyhow!("the experiment of {shown} cannot be repeated: {why}")));
     }
     let settings = report_settings(&experiment, found.arguments.clone());
-    let results = Results { folder: results_folder(out)?, out, world_names: args.world_names(), quiet };
+    let folder = results_folder(out).map_err(|(Failure::Run(why) | Failure::Input(why))| input(why))?;
+    let results = Results { folder, out, world_names: args.world_names(), quiet };
     let trials = shards.trials().map_err(input)?.map(|trial| trial.map_err(Into::into));
     results.write(settings, trials, &experiment.worlds)?;
     Ok(ExitCode::SUCCESS)

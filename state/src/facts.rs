@@ -72,11 +72,6 @@ impl Facts {
         self.0.iter().map(|fact| (fact.name.as_str(), fact.value.as_str()))
     }
 
-    /// The facts of version 4, which did not say what is a default.
-    pub(crate) fn chosen(facts: Vec<(String, String)>) -> Self {
-        Self(facts.into_iter().map(|(name, value)| Fact { name, value, is_default: false }).collect())
-    }
-
     /// The first fact in which `self`, as saved, differs from what is expected, other than by a changed default.
     pub(crate) fn difference(&self, expected: &Self) -> Option<Difference> {
         let find = |facts: &Self, name: &str| facts.0.iter().find(|fact| fact.name == name).cloned();

@@ -17,8 +17,6 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 /// Count up when the body, or a snapshot in it, changes; `tests/states` of the workspace holds examples of every version
 /// that is read.
 const VERSION: u32 = 5;
-/// The earlier version that is read: its facts did not say what is a default, and its builds are not known.
-const EARLIER_VERSION: u32 = 4;
 /// The part with the build.
 const BUILD_PART: &str = "build";
 /// The largest body, bytes: what a mapper with the largest map can take.
@@ -143,15 +141,6 @@ impl State {
             .map(|section| (section.name.as_str(), &section.facts, section.snapshot.as_slice()))
     }
 
-    /// The state in a body of the earlier version.
-    fn earlier(body: &[u8]) -> postcard::Result<Self> {
-        type Facts4 = Vec<(String, String)>;
-        let sections: Vec<(String, Facts4, Vec<u8>)> = postcard::from_bytes(body)?;
-        Ok(sections.into_iter().fold(Self::default(), |state, (name, facts, snapshot)| {
-            state.with(&name, Facts::chosen(facts), snapshot)
-        }))
-    }
-
     /// The state as the bytes of a file.
     ///
     /// # Errors
@@ -180,14 +169,13 @@ impl State {
         if u64::from_le_bytes(*checksum) != xxh3_64_with_seed(packed, found.into()) {
             return Err(StateError::Damaged);
         }
-        if ![VERSION, EARLIER_VERSION].contains(&found) {
+        if found != VERSION {
             return Err(StateError::OtherVersion { found });
         }
         let length = packed.first_chunk().ok_or(StateError::Damaged)?;
         check_length(u32::from_le_bytes(*length) as usize)?;
         let body = lz4_flex::decompress_size_prepended(packed).map_err(|_| StateError::Damaged)?;
-        let state = if found == VERSION { postcard::from_bytes(&body) } else { Self::earlier(&body) };
-        state.map_err(|_| StateError::Damaged)
+        postcard::from_bytes(&body).map_err(|_| StateError::Damaged)
     }
 }
 

@@ -47,11 +47,10 @@ fn a_file_that_cannot_be_replaced() {
         let run = (program.run)();
         let file = program.file;
         std::fs::create_dir_all(run.out(file).join("taken")).unwrap();
-        let error = error(&run, program.arguments);
-        assert!(error.starts_with(&format!("error: cannot write out/{file}: ")), "{error}");
-        assert_eq!(names(&run.path("out")), [file, "unfinished_run"]);
-        assert!(error.ends_with("; the results are in out/unfinished_run"), "{error}");
-        assert!(run.path("out/unfinished_run").join(file).exists());
+        let error = crate::bad_input::refuses(&run, program.arguments, &["out"]);
+        let says = format!("error: cannot write out/{file}: the results would replace it");
+        assert!(error.starts_with(&says), "{error}");
+        assert_eq!(names(&run.path("out")), [file], "known before the run");
     }
 }
 

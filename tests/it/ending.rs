@@ -104,8 +104,9 @@ fn a_killed_run_leaves_all_but_the_last_seconds() {
     assert!(recording.curve("/curves/scores/coverage").len() as f64 > 0.9 * simulated_s);
     assert_eq!(crate::run::names(&run.path("out")), ["unfinished_run"]);
 
-    // The next run removes it.
+    // The next run keeps it.
     run.goes_well("--quiet --no-rrd --duration 1");
     assert!(!run.path("out/unfinished_run").exists());
-    assert_eq!(crate::run::names(&run.path("out")).len(), 13);
+    assert_eq!(crate::run::names(&run.path("out/unfinished_run_1")).len(), 1);
+    assert_eq!(crate::run::names(&run.path("out")).len(), 14);
 }

@@ -21,6 +21,7 @@ const PROGRAMS: [Program; 7] = [
             ("--map", "gone.yaml"),
             ("--seed", "-1"),
             ("--duration", "0"),
+            ("--lost-after", "0"),
             ("--drive", "train"),
             ("--tour", "gone.toml"),
             ("--strategy", "clever"),

@@ -32,7 +32,8 @@ fn the_report_has_every_key_and_every_trial() {
     assert!(table.clone().all(|line| line.chars().count() <= 80), "{}", ended.stdout);
 
     let report = report(&run);
-    let keys = ["version", "arguments", "duration_s", "trials", "interrupted", "runs", "files"];
+    let keys =
+        ["schema", "build", "version", "arguments", "duration_s", "trials", "interrupted", "runs", "files"];
     assert_eq!(report.as_object().unwrap().len(), keys.len());
     assert!(keys.iter().all(|key| report.get(key).is_some()), "{report}");
     assert_eq!([&report["duration_s"], &report["trials"]], [60, 1]);
