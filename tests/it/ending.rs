@@ -107,6 +107,6 @@ fn a_killed_run_leaves_all_but_the_last_seconds() {
     // The next run keeps it.
     run.goes_well("--quiet --no-rrd --duration 1");
     assert!(!run.path("out/unfinished_run").exists());
-    assert_eq!(crate::run::names(&run.path("out/unfinished_run_1")).len(), 1);
+    assert_eq!(crate::run::names(&run.path("out/unfinished_run_1")).len(), 3);
     assert_eq!(crate::run::names(&run.path("out")).len(), 14);
 }

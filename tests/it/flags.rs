@@ -60,6 +60,7 @@ const PROGRAMS: [Program; 7] = [
             ("--pose", "guessed"),
             ("--resolution", "0"),
             ("--max-range", "nan"),
+            ("--no-return", "perhaps"),
             ("--noise", "10"),
             ("--shadow-angle", "90"),
             ("--estimator", "guess"),

@@ -178,7 +178,7 @@ fn an_invalid_path_of_the_bag_is_found_at_once() {
 }
 
 /// The log of a laser that stands, with other ranges.
-pub(crate) fn scaled_log(factor: f64) -> String {
+fn scaled_log(factor: f64) -> String {
     let scaled = |line: &str| match line.strip_prefix("FLASER 180 ") {
         None => format!("{line}\n"),
         Some(rest) => {
