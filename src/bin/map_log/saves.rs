@@ -39,8 +39,9 @@ impl Saves {
         let file = file.every(Duration::from_secs_f64(args.state_every));
         let loaded = file.load().map_err(|why| failed(&why))?.map(Loaded::of).transpose();
         let loaded = loaded.map_err(|why| failed(&why))?;
-        if let Some(why) = loaded.as_ref().and_then(|loaded| loaded.state.check_build().err()) {
-            say(stderr(), format_args!("note: {}: {why}", path.display()))
+        if loaded.as_ref().is_some_and(|loaded| loaded.state.check_build().is_err()) {
+            let note = "another build of this program has written it, whose results can differ in details";
+            say(stderr(), format_args!("note: {}: {note}", path.display()));
         }
         let logs = loaded.as_ref().map(|loaded| loaded.logs.logs());
         saves.learned = logs.filter(|logs| logs.iter().all(SurveyedLog::is_finished)).map(<[_]>::len);
