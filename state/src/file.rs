@@ -63,8 +63,9 @@ impl StateFile {
 
     /// The same, written once in this time.
     #[must_use]
-    pub fn every(self, every: Duration) -> Self {
-        Self { every, ..self }
+    pub fn every(mut self, every: Duration) -> Self {
+        self.every = every;
+        self
     }
 
     /// The name of the file, as given.
@@ -135,6 +136,12 @@ impl StateFile {
     pub fn wait(&mut self) -> io::Result<()> {
         let Some(writing) = self.writing.take() else { return Ok(()) };
         writing.join().unwrap_or_else(|_| Err(io::Error::other("the thread that writes has ended")))
+    }
+}
+
+impl Drop for StateFile {
+    fn drop(&mut self) {
+        self.wait().ok(); // the lock lasts until the last writing has ended
     }
 }
 

@@ -152,6 +152,13 @@ fn what_was_learned_survives_a_restart() {
     let (request, saved) = answer(&pair);
     assert_eq!((request, saved.is_done), (Request(8), true), "{}", saved.text);
     let learned = pair.node.mapper().clone();
+    let refused = |parameters: &Parameters| {
+        let node = CuriousNode::new(FakeLink::default(), parameters, Some(&path), Box::new(|_| ()));
+        format!("{:#}", node.err().unwrap())
+    };
+    let error = refused(&map);
+    assert!(error.ends_with("house.state: cannot use it: another run uses it; wait for its end, or give another file by --state"), "{error}");
+    drop(pair);
 
     // An hour later, at the same place.
     let mut again = Pair::new(&map, 1_700_003_600, Some(&path));
@@ -164,8 +171,8 @@ fn what_was_learned_survives_a_restart() {
     assert!(again.node.report().mapped > 30, "{:?}", again.node.report());
 
     let coarse = Parameters { resolution_m: 0.1, ..map };
-    let refused = CuriousNode::new(FakeLink::default(), &coarse, Some(&path), Box::new(|_| ()));
-    let error = format!("{:#}", refused.err().unwrap());
+    drop(again);
+    let error = refused(&coarse);
     assert!(error.contains("`map.resolution_m` is `0.05` there, and `0.1` here"), "{error}");
 }
 
@@ -245,6 +252,7 @@ fn a_state_of_simulated_time_goes_on_in_the_time_of_a_robot() {
     let mut simulated = Pair::new(&parameters(Mode::Map), 0, Some(&path));
     simulated.run(3.0);
     simulated.node.run(&Signals { stop: AtomicBool::new(true), ..Signals::default() }).unwrap();
+    drop(simulated);
     let mut real = Pair::new(&parameters(Mode::Map), 1_700_000_000, Some(&path));
     real.run(3.0);
     let time_s = real.node.mapper().time();
