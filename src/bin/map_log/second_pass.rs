@@ -127,11 +127,8 @@ impl Learned {
             None => Box::new(found),
         };
         for scanner in replay.no_returns().evidence().filter(|scanner| scanner.silent > 0) {
-            if !scanner.is_trusted() {
-                let swallowed = percent(scanner.swallowed());
-                job.say(format_args!(
-                    "{name}: beams without a return are ignored: surfaces swallow {swallowed} of the beams (--no-return)"
-                ));
+            if let Some(ignored) = ignored(&scanner) {
+                job.say(format_args!("{name}: {ignored}"));
             }
             self.no_return.push(scanner);
         }
@@ -164,4 +161,11 @@ impl Learned {
         progress.finish();
         Ok(())
     }
+}
+
+/// What the user should know of a scanner that is not trusted.
+pub(crate) fn ignored(scanner: &NoReturnEvidence) -> Option<String> {
+    let swallowed = percent(scanner.swallowed());
+    let why = format!("surfaces swallow {swallowed} of the beams (--no-return)");
+    (!scanner.is_trusted()).then(|| format!("beams without a return are ignored: {why}"))
 }

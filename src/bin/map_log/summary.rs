@@ -1,7 +1,7 @@
 //! The results of a survey: `summary.json`, and a few lines for the terminal.
 
 use crate::logs_in_order::begin_s;
-use crate::second_pass::Learned;
+use crate::second_pass::{Learned, ignored};
 use anyhow::Context;
 use build_id::BUILD;
 use curious::words::{how_often, list};
@@ -92,7 +92,10 @@ impl Summary {
             logs: entries().map(|entry| entry.name.clone()).collect(),
             scans: logs.iter().map(|log| log.used).sum(),
             duration_s: has_times.then(|| logs.iter().map(|log| log.travelled.duration_s).sum()),
-            notes: entries().flat_map(|entry| &entry.notes).cloned().collect(),
+            notes: entries()
+                .flat_map(|entry| entry.notes.clone())
+                .chain(learned.no_return.iter().filter_map(ignored))
+                .collect(),
             trajectory_m: logs.iter().map(|log| log.travelled.length_m).sum(),
             loops: logs.iter().map(|log| log.loops).sum(),
             begin_s: begin_s(entries()),
