@@ -25,10 +25,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-const MOST_TIME: Duration = Duration::from_secs(10);
-const MOST_MEMORY: u64 = 1 << 30;
+const MAX_TIME: Duration = Duration::from_secs(10);
+const MAX_MEMORY_BYTES: u64 = 1 << 30;
 /// The longest input, bytes.
-const MOST_BYTES: usize = 50_000;
+const MAX_INPUT_BYTES: usize = 50_000;
 /// Numbers that programs do not expect.
 const NUMBERS: [&str; 16] = [
     "nan",
@@ -246,7 +246,7 @@ impl Random {
                 _ => (0..length).for_each(|_| bytes.push(self.below(256) as u8)),
             }
         }
-        bytes.truncate(MOST_BYTES);
+        bytes.truncate(MAX_INPUT_BYTES);
         bytes
     }
 
@@ -267,7 +267,7 @@ impl Random {
             let end = text[*start..].find(|c| !is_of_number(c)).map_or(text.len(), |length| start + length);
             text.replace_range(*start..end, NUMBERS[self.below(NUMBERS.len())]);
         }
-        text.truncate(MOST_BYTES);
+        text.truncate(MAX_INPUT_BYTES);
         text.into_bytes()
     }
 
@@ -330,8 +330,8 @@ fn no_input_panics_or_takes_long_or_takes_much_memory() {
         let (time, memory) = (start.elapsed(), peak_memory().unwrap_or_default());
         let again = format!("FIRST={number} CASES=1 repeats it");
         assert!(ran.is_ok(), "input {number} panicked; {again}");
-        assert!(time < MOST_TIME, "input {number} took {time:?}; {again}");
-        assert!(memory < MOST_MEMORY, "input {number} took {} MiB; {again}", memory >> 20);
+        assert!(time < MAX_TIME, "input {number} took {time:?}; {again}");
+        assert!(memory < MAX_MEMORY_BYTES, "input {number} took {} MiB; {again}", memory >> 20);
         (slowest, largest) = (slowest.max(time), largest.max(memory));
     }
     println!("{cases} inputs: at most {slowest:?} and {} MiB", largest >> 20);

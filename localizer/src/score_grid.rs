@@ -9,7 +9,7 @@ use nalgebra::{Point2, Vector2};
 /// The side of the cells, m; larger where a frame cannot have so many.
 pub(crate) const CELL_M: f64 = 0.05;
 /// The largest sides of a grid that is made for one scan, m: two million cells, which with their search take about 50 ms.
-pub(crate) const MOST_M: f64 = 76.8;
+pub(crate) const MAX_SIDE_M: f64 = 76.8;
 /// The largest squares have sides of 2 to this power, in cells.
 pub(crate) const TOP: usize = 6;
 /// A point scores up to this far from a surfel, m.
@@ -45,7 +45,7 @@ impl ScoreGrid {
         middle: &Point2<f64>,
         reach_m: f64,
     ) -> Self {
-        let reach = Vector2::repeat(reach_m.min(MOST_M / 2.0));
+        let reach = Vector2::repeat(reach_m.min(MAX_SIDE_M / 2.0));
         let whole = surfels.frame();
         let end = Vector2::new(whole.width() as f64, whole.height() as f64) * whole.resolution_m();
         let (low, high) = ((middle - reach - whole.origin()), (middle + reach - whole.origin()));

@@ -5,12 +5,12 @@ use nalgebra::Isometry2;
 /// Ranges whose median is beyond this are no metres: no laser of a robot sees so far.
 const FARTHEST_M: f32 = 200.0;
 /// A scan with fewer ranges says nothing about their unit.
-const LEAST_RANGES: usize = 10;
+const MIN_RANGES: usize = 10;
 /// Times of the odometry that go back in this share of the steps are no times; they are near those of the scans, s.
-const MOST_BACK: f64 = 0.1;
+const MAX_BACKWARD_SHARE: f64 = 0.1;
 const NEAR_S: f64 = 10.0;
 /// At least this number of ODOM lines is compared.
-const LEAST_LINES: usize = 20;
+const MIN_LINES: usize = 20;
 
 /// What the scans of a log say about each other.
 #[derive(Clone, Debug, Default)]
@@ -66,7 +66,7 @@ pub(crate) fn typical(ranges: impl Iterator<Item = f32>) -> Option<f32> {
     let largest = ranges.iter().copied().fold(0.0, f32::max);
     ranges.retain(|range| *range < largest);
     let middle = ranges.len() / 2;
-    (ranges.len() >= LEAST_RANGES).then(|| *ranges.select_nth_unstable_by(middle, f32::total_cmp).1)
+    (ranges.len() >= MIN_RANGES).then(|| *ranges.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
 
 /// Compares the times of ODOM lines, and their x, with the times of the scans.
@@ -98,10 +98,10 @@ impl OdometryTimes {
         let Self { lines, back, times_near, x_near, .. } = *self;
         let span_s = scans_s.first().zip(scans_s.last()).map_or(0.0, |(begin_s, end_s)| end_s - begin_s);
         let share = |count: usize| count as f64 / lines as f64;
-        let is_swapped = lines >= LEAST_LINES
+        let is_swapped = lines >= MIN_LINES
             && span_s > 2.0 * NEAR_S
-            && share(back) > MOST_BACK
-            && share(x_near) > 1.0 - MOST_BACK
+            && share(back) > MAX_BACKWARD_SHARE
+            && share(x_near) > 1.0 - MAX_BACKWARD_SHARE
             && share(times_near) < 0.5;
         is_swapped.then(|| {
             format!(

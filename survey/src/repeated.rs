@@ -9,8 +9,8 @@ use xxhash_rust::xxh3::xxh3_64;
 /// sketch, Broder 1997).
 const KEPT: usize = 64;
 /// With fewer hashes in common, or a smaller share of those that are comparable, nothing is said.
-const LEAST: usize = 6;
-const LEAST_SHARE: f64 = 0.2;
+const MIN_COMMON: usize = 6;
+const MIN_SHARE: f64 = 0.2;
 
 /// The hashes of scans of a log that are kept. A scan counts with the time since the one before, so that a place where nothing
 /// moves does not look like another log.
@@ -41,7 +41,7 @@ pub(crate) fn repeats(one: &[u64], other: &[u64]) -> bool {
     let bound = bound(one).min(bound(other));
     let comparable = |kept: &[u64]| kept.iter().filter(|hash| **hash <= bound).count();
     let common = one.iter().filter(|hash| **hash <= bound && other.binary_search(hash).is_ok()).count();
-    common >= LEAST && common as f64 >= LEAST_SHARE * comparable(one).min(comparable(other)) as f64
+    common >= MIN_COMMON && common as f64 >= MIN_SHARE * comparable(one).min(comparable(other)) as f64
 }
 
 #[cfg(test)]

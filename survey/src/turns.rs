@@ -6,18 +6,18 @@ use nalgebra::Isometry2;
 
 /// Scans are compared over turns from and to this angle, rad: a smaller one is within the errors of the odometry, over a
 /// larger one little is seen twice.
-const LEAST_RAD: f64 = 0.1;
-const MOST_RAD: f64 = 0.8;
+const MIN_TURN_RAD: f64 = 0.1;
+const MAX_TURN_RAD: f64 = 0.8;
 /// On which the robot moves less than this, m.
-const MOST_M: f64 = 0.3;
+const MAX_TRANSLATION_M: f64 = 0.3;
 /// At least this number of beams must have a range in both scans.
-const LEAST_BEAMS: usize = 40;
+const MIN_BEAMS: usize = 40;
 /// Differences of ranges count up to this one, m.
-const MOST_DIFFERENCE_M: f64 = 1.0;
+const MAX_DIFFERENCE_M: f64 = 1.0;
 /// Scans fit one way if their mean difference there is below this share of the other one.
 const FITS_SHARE: f64 = 0.6;
 /// Beams are mirrored if this number of turns says so, and at least this number of times as many as say the contrary.
-const LEAST_TURNS: usize = 8;
+const MIN_TURNS: usize = 8;
 const TIMES_MORE: usize = 5;
 
 /// Compares scans over turns of the robot.
@@ -40,11 +40,11 @@ impl Turns {
         };
         let motion = known.0.inv_mul(&reading.pose);
         let turn_rad = heading_rad(&motion);
-        let is_near = motion.translation.vector.norm() < MOST_M;
-        if is_near && turn_rad.abs() < LEAST_RAD {
+        let is_near = motion.translation.vector.norm() < MAX_TRANSLATION_M;
+        if is_near && turn_rad.abs() < MIN_TURN_RAD {
             return;
         }
-        if is_near && turn_rad.abs() < MOST_RAD {
+        if is_near && turn_rad.abs() < MAX_TURN_RAD {
             let way = |turn_rad: f64| difference_m(&known.2, &reading.scan, turn_rad);
             if let Some((with_m, against_m)) = way(turn_rad).zip(way(-turn_rad)) {
                 self.with += usize::from(with_m < FITS_SHARE * against_m);
@@ -57,7 +57,7 @@ impl Turns {
     /// Checks that the beams are not mirrored.
     pub(crate) fn check(&self) -> Result<(), SurveyError> {
         let Self { with, against, .. } = *self;
-        let is_mirrored = against >= LEAST_TURNS && against >= TIMES_MORE * with;
+        let is_mirrored = against >= MIN_TURNS && against >= TIMES_MORE * with;
         if is_mirrored { Err(SurveyError::Mirrored { against, with }) } else { Ok(()) }
     }
 }
@@ -75,9 +75,9 @@ fn difference_m(before: &Scan, after: &Scan, turn_rad: f64) -> Option<f64> {
         let Some(other_m) = before.ranges_m.get(same as usize) else { continue };
         let difference_m = f64::from(range_m - other_m).abs();
         if difference_m.is_finite() {
-            sum_m += difference_m.min(MOST_DIFFERENCE_M);
+            sum_m += difference_m.min(MAX_DIFFERENCE_M);
             count += 1;
         }
     }
-    (count >= LEAST_BEAMS).then(|| sum_m / f64::from(count as u32))
+    (count >= MIN_BEAMS).then(|| sum_m / f64::from(count as u32))
 }

@@ -1,12 +1,12 @@
 //! The search for the pose in the whole map. Of a map that is too large for one scan, one part is searched per scan.
 
 use super::Localizer;
-use super::relocalizing::{LEAST_FOUND, LEAST_SCORE};
+use super::relocalizing::{LEAST_FOUND, MIN_SCORE};
 use crate::changing_map::ChangingMap;
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
-use crate::score_grid::{MOST_M, ScoreGrid};
+use crate::score_grid::{MAX_SIDE_M, ScoreGrid};
 use crate::search::{Candidate, Window, search};
 use crate::surfel_map::SurfelMap;
 use interfaces::{GridFrame, LaserReading};
@@ -15,9 +15,9 @@ use std::f64::consts::PI;
 
 /// In a large map, surfaces that are farther away than this are not looked for, m: the part of the map around a place is as
 /// small as they are near.
-const MOST_REACH_M: f64 = 28.8;
+const MAX_REACH_M: f64 = 28.8;
 /// The number of parts without a surface that are left out in one scan.
-const MOST_EMPTY: usize = 32;
+const MAX_EMPTY_PARTS: usize = 32;
 
 /// A search that goes on in the next scan.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -36,7 +36,7 @@ impl WideSearch {
 
     /// The next part with a surface; `None` after the last one.
     fn next_with_surfaces(&mut self, surfels: &SurfelMap) -> Option<Window> {
-        for _ in 0..MOST_EMPTY {
+        for _ in 0..MAX_EMPTY_PARTS {
             let part = self.next(surfels.frame())?;
             let (middle, reach_m) = (part.pose.translation.vector, part.reach_m + self.reach_m);
             if surfels.usable().any(|surfel| (surfel.at.coords - middle).amax() <= reach_m) {
@@ -48,7 +48,7 @@ impl WideSearch {
 
     /// The next part of a map; `None` after the last one.
     fn next(&mut self, frame: &GridFrame) -> Option<Window> {
-        let side_m = MOST_M - 2.0 * self.reach_m;
+        let side_m = MAX_SIDE_M - 2.0 * self.reach_m;
         let parts = |cells: usize| (cells as f64 * frame.resolution_m() / side_m).ceil() as usize;
         let (columns, rows) = (parts(frame.width()), parts(frame.height()));
         let (column, row) = (self.next % columns, self.next / columns);
@@ -62,7 +62,7 @@ impl WideSearch {
 /// How far the points of a scan are from the robot, at most as far as is looked for, m.
 fn reach_m(points: &[ScanPoint]) -> f64 {
     let farthest_m = points.iter().map(|point| point.at.coords.norm()).fold(0.0, f64::max);
-    farthest_m.min(MOST_REACH_M)
+    farthest_m.min(MAX_REACH_M)
 }
 
 impl Localizer {
@@ -71,7 +71,7 @@ impl Localizer {
         let (ratio, points) = (self.settings.ambiguity_ratio, self.points.points());
         match window {
             Some(window) if self.is_large() => {
-                let reach_m = reach_m(points).min(MOST_M / 2.0 - window.reach_m);
+                let reach_m = reach_m(points).min(MAX_SIDE_M / 2.0 - window.reach_m);
                 let near = |point: &&ScanPoint| point.at.coords.norm() <= reach_m;
                 let near: Vec<ScanPoint> = points.iter().filter(near).copied().collect();
                 let middle = Point2::from(window.pose.translation.vector);
@@ -96,7 +96,7 @@ impl Localizer {
     fn is_large(&self) -> bool {
         let frame = self.surfels.frame();
         let cells_m2 = frame.len() as f64 * frame.resolution_m() * frame.resolution_m();
-        cells_m2 > MOST_M * MOST_M
+        cells_m2 > MAX_SIDE_M * MAX_SIDE_M
     }
 
     /// The poses in the whole map. `None` if the search goes on in the next scan.
@@ -109,16 +109,16 @@ impl Localizer {
         let ratio = self.settings.ambiguity_ratio;
         if !self.is_large() {
             let candidates = self.candidates(map, None);
-            return Some(Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio));
+            return Some(Hypotheses::start(&self.scene(reading, map), &candidates, MIN_SCORE, ratio));
         }
         let is_first = self.wide.is_none();
         let mut wide = self.wide.take().unwrap_or_else(|| WideSearch::new(self.points.points()));
         if !is_first {
-            wide.found.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
+            wide.found.advance(&self.scene(reading, map), motion, MIN_SCORE, ratio);
         }
         let part = wide.next_with_surfaces(&self.surfels);
         let candidates = part.map_or(Vec::new(), |window| self.candidates(map, Some(&window)));
-        let new = Hypotheses::start(&self.scene(reading, map), &candidates, LEAST_SCORE, ratio);
+        let new = Hypotheses::start(&self.scene(reading, map), &candidates, MIN_SCORE, ratio);
         wide.found = wide.found.restarted().or(new, ratio);
         if part.is_none() {
             return Some(wide.found);

@@ -19,8 +19,8 @@ const WINDOW_RAD: f64 = 1.2;
 /// The least score of a pose in a search.
 pub(super) const LEAST_FOUND: f64 = 0.55;
 /// The least score of a refined pose: around the predicted pose, and anywhere.
-const LEAST_SCORE_NEAR: f64 = 0.5;
-pub(super) const LEAST_SCORE: f64 = 0.65;
+const MIN_SCORE_NEAR: f64 = 0.5;
+pub(super) const MIN_SCORE: f64 = 0.65;
 /// A pose near the predicted pose with this score makes a search in the whole map needless.
 const CLEAR_SCORE: f64 = 0.85;
 /// By this much the support of another pose is clearly better than that of a pose which a guide allows.
@@ -71,7 +71,7 @@ impl Localizer {
         let is_near = self.state != PoseState::Lost;
         let mut found = Hypotheses::default();
         if is_near {
-            found = self.search_around(reading, map, LEAST_SCORE_NEAR);
+            found = self.search_around(reading, map, MIN_SCORE_NEAR);
         }
         let is_clear = found.best().is_some_and(|best| best.support.score() >= CLEAR_SCORE);
         // Where most of the scan fits, the map is not finished or the view has changed: far away, something in an
@@ -110,7 +110,7 @@ impl Localizer {
     ) -> Support {
         let mut hypotheses = std::mem::take(&mut self.hypotheses);
         let ratio = self.settings.ambiguity_ratio;
-        hypotheses.advance(&self.scene(reading, map), motion, LEAST_SCORE, ratio);
+        hypotheses.advance(&self.scene(reading, map), motion, MIN_SCORE, ratio);
         if self.certain_s > f64::NEG_INFINITY {
             hypotheses.prefer(self.settings.scans_to_confirm, |pose| self.is_where_odometry_says(pose));
         }

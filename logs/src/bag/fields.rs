@@ -1,6 +1,6 @@
 //! The fields of MCAP's records: little-endian numbers, and names after their length.
 
-use crate::bounds::MOST_NAME;
+use crate::bounds::MAX_NAME_BYTES;
 
 /// The fields that were not read yet. Errors are the rest of a sentence about the record.
 pub(super) struct Fields<'a> {
@@ -36,8 +36,8 @@ impl<'a> Fields<'a> {
 
     pub(super) fn name(&mut self) -> Result<String, String> {
         let length = self.u32()? as usize;
-        if length > MOST_NAME {
-            return Err(format!("has a name of {length} bytes; at most {MOST_NAME} are read"));
+        if length > MAX_NAME_BYTES {
+            return Err(format!("has a name of {length} bytes; at most {MAX_NAME_BYTES} are read"));
         }
         let bytes = self.skip(length)?;
         String::from_utf8(bytes.to_vec()).map_err(|_| "has a name that is no text".to_owned())

@@ -6,7 +6,7 @@
 use super::chunk::Chunk;
 use super::fields::Fields;
 use super::message::{Message, MessageSource, Selection, Topic};
-use crate::bounds::{MOST_CHUNK_GROWTH, MOST_NAME, most_unpacked};
+use crate::bounds::{MAX_CHUNK_GROWTH, MAX_NAME_BYTES, max_unpacked_bytes};
 use crate::bytes::{Bytes, Input};
 use crate::error::LogError;
 use std::collections::BTreeMap;
@@ -27,7 +27,7 @@ const MESSAGE_HEADER: usize = 22;
 /// The most bytes of a record that is read as a whole.
 const MOST_RECORD: u64 = 64 << 20;
 /// The bytes of a schema or a channel that are read: its numbers and names. The rest describes messages that we know.
-const MOST_DEFINITION: u64 = 2 * MOST_NAME as u64 + 16;
+const MAX_DEFINITION_BYTES: u64 = 2 * MAX_NAME_BYTES as u64 + 16;
 /// A record that claims more bytes is no record that was cut off, but nonsense.
 const MOST_CLAIMED: u64 = 1 << 40;
 
@@ -134,7 +134,7 @@ impl McapFile {
                     false => Stop::Invalid(what),
                 })?;
                 self.unpacked = self.unpacked.saturating_add(chunk.remaining);
-                let most = most_unpacked(self.size, MOST_CHUNK_GROWTH);
+                let most = max_unpacked_bytes(self.size, MAX_CHUNK_GROWTH);
                 if self.unpacked > most {
                     let (unpacked, size) = (self.unpacked, self.size);
                     let what = format!(
@@ -147,7 +147,7 @@ impl McapFile {
             }
             _ if self.next > self.size => Err(Stop::Cut),
             SCHEMA | CHANNEL => {
-                let bytes = self.whole(length.min(MOST_DEFINITION))?;
+                let bytes = self.whole(length.min(MAX_DEFINITION_BYTES))?;
                 self.define(code, &bytes)?;
                 self.skip(length - bytes.len() as u64)
             }
@@ -176,7 +176,7 @@ impl McapFile {
         let mut found = None;
         match code {
             SCHEMA | CHANNEL => {
-                let mut bytes = vec![0; length.min(MOST_DEFINITION) as usize];
+                let mut bytes = vec![0; length.min(MAX_DEFINITION_BYTES) as usize];
                 chunk.read_exact(&mut bytes)?;
                 self.define(code, &bytes)?;
                 chunk.skip(length - bytes.len() as u64)?;

@@ -10,8 +10,8 @@ use std::sync::Arc;
 use std::vec::IntoIter;
 
 /// The most bytes of a message, unpacked, and the most topics that are listed.
-const MOST_BYTES: u64 = 64 << 20;
-const MOST_TOPICS: usize = 1 << 16;
+const MAX_MESSAGE_BYTES: u64 = 64 << 20;
+const MAX_TOPICS: usize = 1 << 16;
 
 /// The messages of a bag, in the order of its files.
 pub(crate) struct Messages {
@@ -50,7 +50,7 @@ impl Messages {
             self.topics.extend(topics);
             self.topics.sort();
             self.topics.dedup();
-            self.topics.truncate(MOST_TOPICS);
+            self.topics.truncate(MAX_TOPICS);
             self.notes.extend(note);
             self.current = None;
         }
@@ -62,14 +62,13 @@ fn unpacked(message: &Message) -> Result<Vec<u8>, LogError> {
     let mut data = Vec::new();
     let mut unpack = || {
         zstd::stream::read::Decoder::with_buffer(&message.data[..])?
-            .take(MOST_BYTES + 1)
+            .take(MAX_MESSAGE_BYTES + 1)
             .read_to_end(&mut data)
     };
     let count = unpack().map_err(|error| message.error(error.to_string()))?;
-    if count as u64 > MOST_BYTES {
-        return Err(
-            message.error(format!("it unpacks to more than {MOST_BYTES} bytes; at most these are read"))
-        );
+    if count as u64 > MAX_MESSAGE_BYTES {
+        return Err(message
+            .error(format!("it unpacks to more than {MAX_MESSAGE_BYTES} bytes; at most these are read")));
     }
     Ok(data)
 }

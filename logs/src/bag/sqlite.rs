@@ -1,7 +1,7 @@
 //! SQLite databases of rosbag2: the tables `topics` and `messages`.
 
 use super::message::{Message, MessageSource, Selection, Topic};
-use crate::bounds::MOST_NAME;
+use crate::bounds::MAX_NAME_BYTES;
 use crate::bytes::Bytes;
 use crate::error::LogError;
 use rusqlite::{Connection, ErrorCode, OpenFlags, Row};
@@ -64,9 +64,9 @@ impl SqliteFile {
             let mut rows = statement.query([]).map_err(failed)?;
             while let Some(row) = rows.next().map_err(failed)? {
                 let longest: i64 = row.get(1).map_err(failed)?;
-                if longest > MOST_NAME as i64 {
+                if longest > MAX_NAME_BYTES as i64 {
                     let what =
-                        format!("a name in `topics` has {longest} bytes; at most {MOST_NAME} are read");
+                        format!("a name in `topics` has {longest} bytes; at most {MAX_NAME_BYTES} are read");
                     return Err(damaged(file, &what));
                 }
                 let (id, topic) = topic(row).map_err(failed)?;
