@@ -5,8 +5,8 @@
 //! `CASES=1000000 cargo test -p evaluation --test fuzz -- --nocapture`; `FIRST=4711 CASES=1` repeats one.
 
 use agent::{Agent, Policy};
-use controller::DiffDrive;
-use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
+use controller::{Controller, DiffDrive};
+use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::trial_state::TrialFacts;
 use interfaces::{GridFrame, LaserReading, Twist, World};
 use localizer::{Localizer, LocalizerSettings};
@@ -49,7 +49,7 @@ const NUMBERS: [&str; 16] = [
     "x",
 ];
 
-type Trial = PhysicsTrial<Autonomous<Agent, DiffDrive>>;
+type Trial = PhysicsTrial<Autonomous<Agent, Controller<DiffDrive>>>;
 
 /// The inputs as they should be, and what reads them.
 struct Targets {
@@ -72,7 +72,7 @@ impl Targets {
         let text = std::str::from_utf8(&worlds[0].1).unwrap();
         let spec = worldfile::physics::parse_world("four_rooms", text).unwrap();
         let readings = readings(&spec);
-        let settings = PhysicsSettings::of(&spec).unwrap();
+        let settings = physics_trial::settings(&spec).unwrap();
         let agent = settings.agent(&"curious".parse::<Policy>().unwrap(), 1).unwrap();
         let pilot = settings.pilot(agent, 1).unwrap();
         let mut trial: Trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap();

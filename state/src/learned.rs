@@ -5,7 +5,7 @@ use crate::format::{State, StateError};
 use interfaces::{GridFrame, LaserReading};
 use localizer::LocalizerSettings;
 use mapper::{Mapper, MapperSettings};
-use robot::Localization;
+use robot::{Pilot, Robot};
 
 const MAPPER: &str = "mapper";
 const LOCALIZATION: &str = "localization";
@@ -43,36 +43,29 @@ impl LearnedFacts {
     }
 
     /// Copies what was learned. This is short; to turn the copy into bytes takes longer.
-    pub fn snapshot<L>(&self, mapper: &Mapper, localization: &mut L) -> LearnedSnapshot
-    where
-        L: Localization<LaserReading> + ?Sized,
-    {
-        let (mapper, localization) = (mapper.clone(), localization.snapshot());
+    pub fn snapshot<P: Pilot>(&self, robot: &mut Robot<LaserReading, P>) -> LearnedSnapshot {
+        let (mapper, localization) = (robot.mapper.clone(), robot.localization_mut().snapshot());
         LearnedSnapshot { facts: self.clone(), mapper, localization }
     }
 
-    /// Goes on with what was learned. The mapper and the localization were made with the settings of these facts.
+    /// Lets a robot that was made with the settings of these facts go on with what was learned.
     ///
     /// # Errors
     ///
-    /// When the state does not hold what was learned, or holds it with other settings. The mapper and the localization
-    /// must not be used then.
-    pub fn restore<L>(
+    /// When the state does not hold what was learned, or holds it with other settings. The robot must not
+    /// be used then.
+    pub fn restore<P: Pilot>(
         &self,
         state: &State,
-        mapper: &mut Mapper,
-        localization: &mut L,
-    ) -> Result<(), StateError>
-    where
-        L: Localization<LaserReading> + ?Sized,
-    {
+        robot: &mut Robot<LaserReading, P>,
+    ) -> Result<(), StateError> {
         let misfit = |part: &str| StateError::OtherContent(part.to_owned());
         let learned = [
             state.section(MAPPER, &self.mapper)?, //
             state.section(LOCALIZATION, &self.localization)?,
         ];
-        mapper.restore(learned[0]).map_err(|_| misfit(MAPPER))?;
-        localization.restore(learned[1]).map_err(|_| misfit(LOCALIZATION))
+        robot.mapper.restore(learned[0]).map_err(|_| misfit(MAPPER))?;
+        robot.localization_mut().restore(learned[1]).map_err(|_| misfit(LOCALIZATION))
     }
 }
 

@@ -3,12 +3,11 @@
 use crate::error::SurveyError;
 use crate::extent::{self, Reach};
 use crate::range_noise::RangeNoise;
-use crate::settings::{PoseMode, SurveySettings};
+use crate::settings::SurveySettings;
 use crate::turns::Turns;
-use interfaces::{GridFrame, LaserReading};
+use interfaces::{GridFrame, LaserReading, PoseMode};
 use localizer::{PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
 use nalgebra::{Isometry2, Point2};
-use std::ops::Add;
 
 /// A log along its trajectory.
 #[derive(Clone, Debug)]
@@ -33,14 +32,13 @@ impl Route {
     }
 }
 
-/// The length of a part of a route, m.
-pub fn length_m(poses: &[TrajectoryPose]) -> f64 {
-    let position = |at: &TrajectoryPose| at.pose.translation.vector;
-    poses.windows(2).map(|pair| (position(&pair[1]) - position(&pair[0])).norm()).fold(0.0, Add::add)
+/// The distance between two poses, m.
+pub(crate) fn distance_m(from: &TrajectoryPose, to: &TrajectoryPose) -> f64 {
+    (to.pose.translation.vector - from.pose.translation.vector).norm()
 }
 
 /// The number of readings in a part of a route whose scan does not support their pose.
-pub fn uncertain(poses: &[TrajectoryPose]) -> usize {
+pub(crate) fn uncertain(poses: &[TrajectoryPose]) -> usize {
     poses.iter().filter(|pose| pose.state != PoseState::Tracking).count()
 }
 
@@ -98,7 +96,7 @@ impl FirstPass {
 
     /// Adds the next reading.
     pub fn add(&mut self, reading: LaserReading) {
-        let reach = Reach::of(&self.settings.filtered(reading.clone()));
+        let reach = Reach::of(&self.settings.filter.filtered(reading.clone()));
         self.reaches.push(reach);
         self.turns.add(&reading);
         let found = match &mut self.finder {

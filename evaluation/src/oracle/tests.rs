@@ -53,8 +53,7 @@ fn after(steps: usize) -> (GridWorld, Mapper, Oracle) {
 
 fn next_goal(world: &mut GridWorld, mapper: &Mapper, oracle: &mut Oracle) -> (usize, Stay) {
     let pose = world.sense().pose;
-    let belief = Belief::exact(&pose, Features::default(), mapper);
-    let visit = oracle.next_goal(&belief, &mut Straight).unwrap();
+    let visit = oracle.next_goal(&pose, mapper, &mut Straight).unwrap();
     let frame = mapper.frame();
     (frame.index(frame.cell_at(&visit.position)).unwrap(), visit.stay)
 }

@@ -2,11 +2,11 @@
 
 use clap::Parser;
 use curious::flags::folder;
-use curious::program::{duration_s, one_of};
+use curious::program::{duration_s, one_of, pose_in_world, pose_mode};
 use curious::shards::ShardCommand;
 use curious::trials::{TrialArgs, strategies};
-use curious::worlds::PoseArg;
 use evaluation::trials::TrialStrategy;
+use interfaces::PoseMode;
 use mapper::EstimatorChoice;
 use std::path::PathBuf;
 
@@ -79,8 +79,8 @@ pub(crate) struct Args {
     pub(crate) max_steps: u32,
 
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
-    #[arg(long, value_enum, help_heading = "Comparison")]
-    pub(crate) pose: Option<PoseArg>,
+    #[arg(long, value_parser = pose_mode(pose_in_world), help_heading = "Comparison")]
+    pub(crate) pose: Option<PoseMode>,
 
     /// The folder for all results
     #[arg(long, value_name = "DIR", default_value = "house_trials_out", value_parser = folder(), help_heading = "Output")]

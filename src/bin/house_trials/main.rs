@@ -9,7 +9,7 @@ use curious::shards;
 use curious::terminal::say;
 use curious::trials::{self, TrialArgs, TrialProgram, distinct};
 use curious::worlds;
-use evaluation::physics_trial::PhysicsSettings;
+use evaluation::physics_trial;
 use evaluation::trials::{Experiment, PhysicsRobot};
 use sim::physics::WorldSpec;
 use std::io::stderr;
@@ -55,7 +55,7 @@ impl TrialProgram for Args {
             robot: PhysicsRobot {
                 reward: self.shared.reward.into(),
                 max_steps: self.max_steps,
-                pose: self.pose.map(Into::into),
+                pose: self.pose,
             },
         })
     }
@@ -73,7 +73,7 @@ fn worlds(args: &Args) -> anyhow::Result<Vec<WorldSpec>> {
     }
     let load = |name: &str| -> anyhow::Result<WorldSpec> {
         let loaded = worlds::load(name)?;
-        PhysicsSettings::of(&loaded.spec).with_context(|| format!("cannot run `{name}`"))?;
+        physics_trial::source(&loaded.spec).with_context(|| format!("cannot run `{name}`"))?;
         for warning in loaded.warnings.iter().filter(|_| !shared.quiet) {
             say(stderr(), format_args!("{warning}\n"));
         }

@@ -5,12 +5,12 @@ use crate::second_pass::{Learned, ignored};
 use anyhow::Context;
 use build_id::BUILD;
 use curious::words::{how_often, list};
-use interfaces::CellState;
+use interfaces::{CellState, PoseMode};
 use mapper::{NoReturn, NoReturnEvidence};
 use results::numbers::percent;
 use serde::Serialize;
 use std::fmt;
-use survey::{Place, PoseMode, Survey, SurveySettings, places};
+use survey::{Place, Survey, SurveySettings, places};
 
 /// The number of places in the summary and in the report.
 const MOST_PLACES: usize = 20;
@@ -99,7 +99,7 @@ impl Summary {
             trajectory_m: logs.iter().map(|log| log.travelled.length_m).sum(),
             loops: logs.iter().map(|log| log.loops).sum(),
             begin_s: begin_s(entries()),
-            no_return: survey.settings_of(logs.len()).no_return,
+            no_return: survey.settings_of(logs.len()).filter.no_return,
             no_return_evidence: learned.no_return.clone(),
             scans_left_out: logs.iter().map(|log| log.travelled.uncertain).sum(),
             seen_m2: seen as f64 * cell_m2,
