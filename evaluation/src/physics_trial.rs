@@ -12,8 +12,10 @@ use localizer::{GivenPoses, Localizer, LocalizerSettings, LoopClosingLocalizer, 
 use mapper::{Mapper, MapperSettings, ReadingError};
 use robot::{Autonomous, Belief, GoalSelector, Localization, Pilot, explore};
 use serde::Serialize;
+use sim::physics::shape::Transform;
 use sim::physics::{BehaviorSpec, DriveKind, PhysicsWorld, WorldSpec};
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 /// The side of the patches over which goal weights are averaged, m.
@@ -132,6 +134,14 @@ impl PhysicsSettings {
         Ok(Self { mapper, agent, controller, drive, pose: PoseChoice::of(spec), localizer })
     }
 
+    /// The world in the frame of the map of a robot that is localized and knows no map, and the motion to it: the robot
+    /// starts at the origin, and its heading follows from the seed, so that no wall is aligned with the cells. `None` for
+    /// a robot that knows the frame of the world.
+    pub fn in_own_frame(&self, spec: &WorldSpec, seed: u64) -> Option<(WorldSpec, Transform)> {
+        let heading_rad = RandomStream::new(seed, Purpose::MapFrame).uniform(-PI..PI);
+        (self.pose == PoseChoice::Localized).then(|| spec.around_robot(heading_rad))?
+    }
+
     /// What gives the readings of a world their poses. `prior` is the map that the robot knows at the start.
     ///
     /// # Errors
@@ -214,6 +224,8 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         prior: Option<Grid<CellState>>,
         pilot: P,
     ) -> Result<Self, SettingsError> {
+        let own = if prior.is_none() { settings.in_own_frame(spec, seed) } else { None };
+        let spec = own.as_ref().map_or(spec, |(spec, _)| spec);
         let mut world = PhysicsWorld::new(spec, seed);
         let localization = settings.localization(&mut world, prior.as_ref())?;
         let mapper = match prior {

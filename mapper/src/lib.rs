@@ -7,6 +7,7 @@
 //! This crate knows readings and grids. It must not know worlds, simulators, goals, strategies, drives, recordings
 //! or files.
 //!
+//! - `scan_filter`: what must not enter a map is removed from scans, before a pose is searched for them.
 //! - `occupancy`: from scans to the states of cells. A new model implements [`OccupancyModel`].
 //! - `change`: the change statistics of cells, and the estimators of rates. A new estimator implements
 //!   [`Estimator`].
@@ -16,6 +17,7 @@ mod change;
 mod derived;
 mod growth;
 mod occupancy;
+mod scan_filter;
 
 pub use change::{
     CellMap, CellStatistics, ChoGarciaMolina, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
@@ -24,9 +26,9 @@ pub use change::{
 };
 pub use growth::Growth;
 pub use occupancy::{
-    BeamReturn, CloneModel, NoReturn, NoReturnEvidence, NoReturns, OccupancyChoice, OccupancyModel,
-    ProjectedScan, SurfaceGridSettings,
+    BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,
 };
+pub use scan_filter::{NoReturn, NoReturnEvidence, NoReturns, ScanFilter, ScanFilterSettings};
 
 use derived::ExpectedChanges;
 use interfaces::{

@@ -132,8 +132,8 @@ pub(crate) fn map_log(
             return Err(value_error(format!("`pose` is localized, odometry or exact, and not {other:?}")));
         }
     };
-    let mut settings =
-        SurveySettings { resolution_m: cell, max_range_m: max_range, ..SurveySettings::of(mode) };
+    let mut settings = SurveySettings { resolution_m: cell, ..SurveySettings::of(mode) };
+    settings.filter.max_range_m = max_range;
     settings.mapper = crate::mapper::settings_of(settings.mapper, estimator, None, None, range_noise)?;
     py.detach(|| learn(&log.log, settings, range_noise.is_none()))
 }

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             time_s if time_s > 2.0 * third_s => 1,
             _ => continue,
         };
-        let cells = reading.hits().filter(|at| at.coords.norm() < settings.max_range_m);
+        let cells = reading.hits().filter(|at| at.coords.norm() < settings.filter.max_range_m);
         hit[part]
             .extend(cells.filter_map(|at| mapper.frame().index(mapper.frame().cell_at(&(found.pose * at)))));
     }

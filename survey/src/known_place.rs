@@ -39,7 +39,7 @@ impl KnownPlace {
     /// Adds a reading of the first log, with the pose that was found for it; if the pose is not certain, it says nothing.
     pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) {
         if found.state == PoseState::Tracking {
-            self.lines.add(&LaserReading { pose: found.pose, ..self.settings.filtered(reading) });
+            self.lines.add(&LaserReading { pose: found.pose, ..self.settings.filter.filtered(reading) });
         }
     }
 

@@ -31,7 +31,6 @@ mod replay;
 mod route;
 mod search;
 mod settings;
-mod shadows;
 mod survey;
 mod surveyed_log;
 #[cfg(test)]
@@ -49,6 +48,5 @@ pub use replay::{FoundPoses, NoPilot, Replay};
 pub use route::{FirstPass, Route, frame, length_m, uncertain};
 pub use search::Search;
 pub use settings::{PoseMode, SurveySettings};
-pub use shadows::remove_shadows;
 pub use survey::{SavedLogs, Survey};
 pub use surveyed_log::{LogEntry, SurveyedLog, Travelled};

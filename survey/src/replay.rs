@@ -4,7 +4,7 @@ use crate::settings::SurveySettings;
 use interfaces::{LaserReading, ValueError, World};
 use localizer::{GivenPoses, PoseEstimate, PoseState, TrajectoryPose};
 use logs::{Log, LogError};
-use mapper::{Mapper, NoReturn, NoReturns};
+use mapper::{Mapper, NoReturn, NoReturns, ScanFilter};
 use nalgebra::Matrix3;
 use robot::{Belief, Localization, Permission, Pilot, Posed, Session};
 
@@ -13,7 +13,7 @@ pub struct Replay<I> {
     readings: I,
     settings: SurveySettings,
     session: Session,
-    no_returns: NoReturns,
+    filter: ScanFilter,
     now: LaserReading,
     next: Option<LaserReading>,
     problem: Option<LogError>,
@@ -32,7 +32,7 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
             readings,
             settings: settings.clone(),
             session,
-            no_returns: NoReturns::new(NoReturn::Free),
+            filter: ScanFilter::judged(&settings.filter, NoReturns::new(NoReturn::Free)),
             now,
             next: None,
             problem: None,
@@ -43,12 +43,12 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
 
     /// Leaves out the beams without a return that are not trusted; before, all are.
     pub(crate) fn judge(&mut self, no_returns: NoReturns) {
-        self.no_returns = no_returns;
+        self.filter = ScanFilter::judged(&self.settings.filter, no_returns);
     }
 
     /// What was learned about beams without a return.
     pub fn no_returns(&self) -> &NoReturns {
-        &self.no_returns
+        self.filter.no_returns()
     }
 
     /// The time of the present reading, s.
@@ -80,9 +80,7 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> World for Replay<I> {
     type Command = ();
 
     fn sense(&mut self) -> LaserReading {
-        let mut reading = self.now.clone();
-        self.no_returns.apply(&mut reading); // before ranges that are too long become free ones
-        self.session.shifted(self.settings.filtered(reading))
+        self.session.shifted(self.filter.filter(self.now.clone()))
     }
 
     fn poses_are_exact(&self) -> bool {
@@ -155,8 +153,8 @@ pub(crate) fn judged(
     poses: &[TrajectoryPose],
     settings: &SurveySettings,
 ) -> Result<NoReturns, LogError> {
-    let mut no_returns = NoReturns::new(settings.no_return);
-    if settings.no_return == NoReturn::Learn {
+    let mut no_returns = NoReturns::new(settings.filter.no_return);
+    if settings.filter.no_return == NoReturn::Learn {
         let mut poses = FoundPoses::new(poses.to_vec());
         for reading in log.readings()? {
             let (reading, state) = poses.posed(reading?);

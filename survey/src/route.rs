@@ -98,7 +98,7 @@ impl FirstPass {
 
     /// Adds the next reading.
     pub fn add(&mut self, reading: LaserReading) {
-        let reach = Reach::of(&self.settings.filtered(reading.clone()));
+        let reach = Reach::of(&self.settings.filter.filtered(reading.clone()));
         self.reaches.push(reach);
         self.turns.add(&reading);
         let found = match &mut self.finder {

@@ -64,7 +64,7 @@ impl<'a> Search<'a> {
 
     /// Adds the next reading of the log, with its pose on the route of this log.
     pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) {
-        let reading = LaserReading { pose: found.pose, ..self.place.settings.filtered(reading) };
+        let reading = LaserReading { pose: found.pose, ..self.place.settings.filter.filtered(reading) };
         // The motion within a scan follows from the pose before it.
         let mut reading = self.given.unswept(reading);
         // Else the sweep would be undone again where the scan is matched.

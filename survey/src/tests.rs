@@ -2,13 +2,12 @@
 
 use crate::{
     ChangeLog, FirstPass, FoundPoses, KnownPlace, PassError, PoseMode, Replay, Route, RouteProgress, Search,
-    Stage, SurveyError, SurveySettings, frame, keepout_mask, learn, permanent, places, remove_shadows,
-    routes, speed_mask,
+    Stage, SurveyError, SurveySettings, frame, keepout_mask, learn, permanent, places, routes, speed_mask,
 };
 use interfaces::{CellReading, CellState, Grid, GridFrame, LaserReading, Scan, Twist, World, heading_rad};
 use localizer::Start;
 use logs::{Log, LogError, McapWriter, TopicChoice};
-use mapper::{Mapper, MapperSettings};
+use mapper::{Mapper, MapperSettings, ScanFilterSettings};
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{OdometryError, PhysicsWorld, WorldSpec};
 use std::f64::consts::TAU;
@@ -25,31 +24,6 @@ fn scan(ranges_m: Vec<f32>) -> Scan {
         sweep_s: 0.0,
         ranges_m,
     }
-}
-
-#[test]
-fn points_between_two_surfaces_are_removed_and_walls_stay() {
-    let limit = 10_f64.to_radians();
-    // A wall 2 m ahead, seen up to 60° from its normal: the angle to the beam is at least 30°.
-    let wall: Vec<f32> = (0..60).map(|beam| (2.0 / f64::from(beam).to_radians().cos()) as f32).collect();
-    let mut straight = scan(wall.clone());
-    remove_shadows(&mut straight, limit);
-    assert_eq!(straight.ranges_m, wall);
-    // A post 1 m away before a wall: one beam meets both.
-    let mut ranges = vec![3.0; 40];
-    ranges[10..20].fill(1.0);
-    ranges[20] = 2.0;
-    let mut jump = scan(ranges.clone());
-    remove_shadows(&mut jump, limit);
-    let removed: Vec<usize> = (0..40).filter(|beam| jump.ranges_m[*beam].is_nan()).collect();
-    assert_eq!(removed, [9, 10, 19, 20, 21]);
-    // Nothing is removed beside a beam without a hit, and with a limit of 0.
-    let mut open = scan(vec![1.0, f32::INFINITY, 3.0, f32::NAN, 1.0]);
-    remove_shadows(&mut open, limit);
-    assert_eq!(open.ranges_m[..3], [1.0, f32::INFINITY, 3.0]);
-    let mut kept = scan(ranges.clone());
-    remove_shadows(&mut kept, 0.0);
-    assert_eq!(kept.ranges_m, ranges);
 }
 
 /// A map of 10 × 1 cells in which the cells from 2 to 4 are blocked for `blocked` of 10 readings, 100 times.
@@ -320,8 +294,14 @@ fn the_second_pass_draws_the_house_without_changes() {
 fn settings_are_checked() {
     for settings in [
         SurveySettings { resolution_m: 0.0, ..SurveySettings::default() },
-        SurveySettings { max_range_m: f64::NAN, ..SurveySettings::default() },
-        SurveySettings { min_shadow_angle_rad: -1.0, ..SurveySettings::default() },
+        SurveySettings {
+            filter: ScanFilterSettings { max_range_m: f64::NAN, ..Default::default() },
+            ..Default::default()
+        },
+        SurveySettings {
+            filter: ScanFilterSettings { min_shadow_angle_rad: -1.0, ..Default::default() },
+            ..Default::default()
+        },
     ] {
         assert!(matches!(FirstPass::new(&settings), Err(SurveyError::Settings(_))));
     }

@@ -56,6 +56,10 @@ impl TrialWorld for WorldSpec {
         None
     }
 
+    fn in_own_frame(&self, robot: &PhysicsRobot, seed: u64) -> Option<Self> {
+        Some(robot.settings(self).ok()?.in_own_frame(self, seed)?.0)
+    }
+
     fn start(&self, seed: u64) -> PhysicsWorld {
         PhysicsWorld::new(self, seed)
     }

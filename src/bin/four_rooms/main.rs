@@ -78,7 +78,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     args.mcap.iter().try_for_each(|path| folder.adopt(path, "mcap")).map_err(input)?;
     let bag = args.mcap.as_deref().map(|path| RunBag::create(path, 0.0)).transpose();
     let bag = bag.context("cannot write the bag of --mcap").map_err(input)?;
-    let mut show = show(args, Scene::from(spec.fleet()), &mut folder)?;
+    let mut show = show(args, Scene::from(trial.world.spec().fleet()), &mut folder)?;
     if let Some(bag) = &bag {
         let inner = std::mem::replace(&mut trial.localization, Box::new(ExactPoses));
         trial.localization = Box::new(bag.recorded(inner));

@@ -79,8 +79,12 @@ impl Parts {
                 )));
             }
         };
-        let TourSpec { waypoints, repeat } = tour.map_err(input)?;
+        let TourSpec { mut waypoints, repeat } = tour.map_err(input)?;
         combination::waypoints(&self.spec, &waypoints).iter().for_each(warn);
+        let own = self.prior.is_none().then(|| self.settings.in_own_frame(&self.spec, args.seed)).flatten();
+        if let Some((_, to_own)) = own {
+            waypoints.iter_mut().for_each(|at| *at = to_own.point(at));
+        }
         self.settings.pilot(Tour::new(waypoints, repeat), args.seed).map_err(input)
     }
 

@@ -186,9 +186,9 @@ impl Args {
             "the poses of each log begin at its own origin: several logs of a robot that moves need --pose localized"
         );
         settings.resolution_m = self.resolution;
-        settings.max_range_m = self.max_range;
-        settings.no_return = self.no_return;
-        settings.min_shadow_angle_rad = self.shadow_angle.to_radians();
+        settings.filter.max_range_m = self.max_range;
+        settings.filter.no_return = self.no_return;
+        settings.filter.min_shadow_angle_rad = self.shadow_angle.to_radians();
         settings.mapper.estimator = self.estimator.clone();
         if let Some(noise_m) = self.noise {
             settings.mapper.steady.range_noise_std_m = noise_m;

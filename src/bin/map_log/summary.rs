@@ -99,7 +99,7 @@ impl Summary {
             trajectory_m: logs.iter().map(|log| log.travelled.length_m).sum(),
             loops: logs.iter().map(|log| log.loops).sum(),
             begin_s: begin_s(entries()),
-            no_return: survey.settings_of(logs.len()).no_return,
+            no_return: survey.settings_of(logs.len()).filter.no_return,
             no_return_evidence: learned.no_return.clone(),
             scans_left_out: logs.iter().map(|log| log.travelled.uncertain).sum(),
             seen_m2: seen as f64 * cell_m2,

@@ -1,7 +1,7 @@
 //! What a beam without a return means. Glass, mirrors and black surfaces swallow beams: a scanner whose beams without a
 //! return often pass through surfaces that its other beams hit does not say that the space is free.
 
-use interfaces::LaserReading;
+use interfaces::{LaserReading, Values, value};
 use nalgebra::{Point2, Vector2};
 use std::collections::BTreeMap;
 
@@ -71,7 +71,7 @@ impl NoReturn {
 }
 
 /// The hits in a cell.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct Surface {
     mean: Point2<f64>,
     /// The number of scans that hit the cell, and the time of the last of them, s.
@@ -95,7 +95,7 @@ impl Surface {
 }
 
 /// The evidence about the beams of one scanner.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct NoReturnEvidence {
     /// Beams without a return that passed through a surface that was hit before and after.
     pub passing: u64,
@@ -140,6 +140,11 @@ impl NoReturns {
     /// The evidence about each scanner.
     pub fn evidence(&self) -> impl Iterator<Item = NoReturnEvidence> {
         self.scanners.iter().map(|(_, evidence)| *evidence)
+    }
+
+    /// What was learned: what a state file holds.
+    pub(crate) fn values(&mut self) -> Values<'_> {
+        vec![value(&mut self.surfaces), value(&mut self.scanners), value(&mut self.last_s)]
     }
 
     /// Learns from a reading whose pose is certain.
