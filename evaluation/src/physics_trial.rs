@@ -6,11 +6,15 @@ use crate::observer::Observer;
 use crate::summary::{Contacts, Liveliest, RunResults};
 use agent::Features;
 use controller::DiffDriveSettings;
-use interfaces::{CellState, Grid, LaserReading, PoseMode, SettingsError, Twist, World};
+use interfaces::{
+    CellState, Grid, LaserReading, PoseMode, Purpose, RandomStream, SettingsError, Twist, World,
+};
 use mapper::{NoReturn, ReadingError};
 use robot::{Pilot, Robot, Settings, Source, Turn};
+use sim::physics::shape::Transform;
 use sim::physics::{BehaviorSpec, DriveKind, PhysicsWorld, WorldSpec};
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 /// The error for a driven robot that the controller cannot drive.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -67,6 +71,14 @@ pub fn settings(spec: &WorldSpec) -> Result<Settings, UnsupportedDrive> {
     source(spec).map(|source| Settings::of(&source))
 }
 
+/// The world in the frame of the map of a robot that is localized and knows no map, and the motion to it: the robot starts
+/// at the origin, and its heading follows from the seed, so that no wall is aligned with the cells. `None` for a robot that
+/// knows the frame of the world.
+pub fn in_own_frame(settings: &Settings, spec: &WorldSpec, seed: u64) -> Option<(WorldSpec, Transform)> {
+    let heading_rad = RandomStream::new(seed, Purpose::MapFrame).uniform(-PI..PI);
+    (settings.pose == PoseMode::Localized).then(|| spec.around_robot(heading_rad))?
+}
+
 /// The driven robot of a world at its start. `prior` is the map that it knows.
 ///
 /// # Errors
@@ -111,7 +123,8 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         prior: Option<Grid<CellState>>,
         pilot: P,
     ) -> Result<Self, SettingsError> {
-        let mut world = PhysicsWorld::new(spec, seed);
+        let own = if prior.is_none() { in_own_frame(settings, spec, seed) } else { None };
+        let mut world = PhysicsWorld::new(own.as_ref().map_or(spec, |(spec, _)| spec), seed);
         let robot = robot(settings, &mut world, prior, pilot)?;
         Ok(Self { world, pose: settings.pose, robot, observer: Observer::default(), command: None })
     }

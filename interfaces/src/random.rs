@@ -48,6 +48,8 @@ pub enum Purpose {
     HouseGenerator,
     /// Learning tasks: worlds, start poses and goals. Stream `4 << 48`.
     Task,
+    /// The heading at the start of a robot whose map has a frame of its own. Stream `5 << 48`.
+    MapFrame,
 }
 
 impl Purpose {
@@ -71,6 +73,7 @@ impl Purpose {
             Self::WorldGenerator => 0,
             Self::HouseGenerator => 3 << 48,
             Self::Task => 4 << 48,
+            Self::MapFrame => 5 << 48,
         }
     }
 }

@@ -252,7 +252,7 @@ impl<L: Link> CuriousNode<L> {
         }
         let mut seen = reading.clone();
         self.no_returns.apply(&mut reading);
-        let reading = self.in_session(self.settings.filtered(reading), stamp, is_restart);
+        let reading = self.in_session(self.settings.filter.filtered(reading), stamp, is_restart);
         if reading.time_s - self.mapper.time() > LONGEST_GAP_S && self.mapper.readings() > 0 {
             self.mapper.pause(reading.time_s);
         }

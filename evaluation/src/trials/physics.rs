@@ -57,6 +57,10 @@ impl TrialWorld for WorldSpec {
         None
     }
 
+    fn in_own_frame(&self, robot: &PhysicsRobot, seed: u64) -> Option<Self> {
+        Some(physics_trial::in_own_frame(&robot.settings(self).ok()?, self, seed)?.0)
+    }
+
     fn start(&self, seed: u64) -> PhysicsWorld {
         PhysicsWorld::new(self, seed)
     }

@@ -54,7 +54,10 @@ pub fn run_trial<W: TrialWorld>(
     trial: &TrialSettings<W>,
     observe: impl FnMut(TrialStep<W>) -> bool,
 ) -> Result<Option<Trial>, TrialError> {
-    let (world, seed, robot) = (trial.world, trial.seed, &trial.experiment.robot);
+    let (seed, robot) = (trial.seed, &trial.experiment.robot);
+    let own = trial.world.in_own_frame(robot, seed);
+    let world = own.as_ref().unwrap_or(trial.world);
+    let trial = &TrialSettings { world, ..*trial };
     match trial.strategy {
         TrialStrategy::Agent(policy) => {
             let agent = world.agent(robot, policy, seed)?;

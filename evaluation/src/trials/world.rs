@@ -32,6 +32,11 @@ pub trait TrialWorld: Sized + Sync {
     /// The range of the sensor of a grid world, in cells.
     fn sensor_radius(&self) -> Option<u32>;
 
+    /// The world in the frame of the robot's own map; `None` if the robot knows the frame of the world.
+    fn in_own_frame(&self, _: &Self::Robot, _seed: u64) -> Option<Self> {
+        None
+    }
+
     /// The world at its start.
     fn start(&self, seed: u64) -> Self::World;
 

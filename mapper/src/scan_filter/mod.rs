@@ -25,11 +25,7 @@ pub struct ScanFilterSettings {
 
 impl Default for ScanFilterSettings {
     fn default() -> Self {
-        Self {
-            max_range_m: 20.0,
-            min_shadow_angle_rad: 10_f64.to_radians(),
-            no_return: NoReturn::default(),
-        }
+        Self { max_range_m: 20.0, min_shadow_angle_rad: 10_f64.to_radians(), no_return: NoReturn::default() }
     }
 }
 

@@ -13,11 +13,9 @@ pub(super) fn settings(parameters: &Parameters) -> SurveySettings {
         PoseSource::Odometry => PoseMode::Odometry,
         PoseSource::Localized => PoseMode::Localized,
     };
-    let mut settings = SurveySettings {
-        resolution_m: parameters.resolution_m,
-        max_range_m: parameters.max_laser_range_m,
-        ..SurveySettings::of(mode)
-    };
+    let mut settings = SurveySettings { resolution_m: parameters.resolution_m, ..SurveySettings::of(mode) };
+    settings.filter.max_range_m = parameters.max_laser_range_m;
+    settings.filter.no_return = parameters.no_return;
     settings.mapper.steady.range_noise_std_m = parameters.range_noise_m;
     settings
 }

@@ -53,7 +53,7 @@ fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Re
     let mut trial = trial.context("cannot make the mapper").map_err(input)?;
     let saves = Saves::open(args, parts, &mut trial)?;
     let is_interrupted = interrupt_flag()?; // before any file is made
-    let mut outputs = Outputs::open(args, &parts.spec, saves, trial.robot.mapper.time())?;
+    let mut outputs = Outputs::open(args, trial.world.spec(), saves, trial.robot.mapper.time())?;
     let start = Instant::now();
     let mut ended = end(args, &trial, false);
     while ended.is_none() {
