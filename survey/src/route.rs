@@ -47,7 +47,7 @@ pub(crate) fn uncertain(poses: &[TrajectoryPose]) -> usize {
 /// # Errors
 ///
 /// When no reading has a certain pose, or when the place is too large for a map.
-pub fn frame(routes: &[Route], settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
+pub(crate) fn frame(routes: &[Route], settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
     let readings = routes.iter().flat_map(|route| route.poses.iter().zip(&route.reaches));
     let used = readings.filter(|(pose, _)| pose.state == PoseState::Tracking);
     let placed = used.map(|(pose, reach)| (&pose.pose, reach));

@@ -1,6 +1,5 @@
 use super::*;
 use crate::trials::{Experiment, GridRobot, TrialStrategy};
-use agent::Features;
 use interfaces::{Cell, Step, World};
 use mapper::{EstimatorChoice, MapperSettings};
 use nalgebra::Isometry2;

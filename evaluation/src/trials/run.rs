@@ -121,7 +121,7 @@ impl<V, O> Measured<V, O> {
         V: Fn(&mut G, &W::Truth),
         O: FnMut(TrialStep<W>) -> bool,
     {
-        let (truth, Robot { mapper, pilot, .. }) = (W::truth(world), robot);
+        let (truth, Robot { mapper, pilot, .. }) = (W::truth(world), &mut *robot);
         (self.reveal)(pilot.selector_mut(), truth);
         if let Some(count) = W::collisions(world) {
             *self.collisions.get_or_insert(0) += count;
