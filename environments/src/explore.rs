@@ -100,7 +100,8 @@ impl Explore {
             Ok(turn) => self.reading = turn.reading,
             Err(why) => debug_assert!(false, "a simulated reading is valid: {why}"),
         }
-        let updates = self.robot.mapper.transitions().iter().filter(|transition| transition.event().is_some());
+        let updates =
+            self.robot.mapper.transitions().iter().filter(|transition| transition.event().is_some());
         self.episode.last_updates = updates.count() as u32;
         self.episode.map_updates += u64::from(self.episode.last_updates);
     }

@@ -20,12 +20,12 @@ use localizer::{GivenPoses, TrajectoryPose};
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{Mapper, NoReturn, ScanFilter, ScanFilterSettings};
 use nalgebra::{Isometry2, Vector2};
+use robot::{NoPilot, Robot};
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use robot::{NoPilot, Robot};
 use survey::{FoundPoses, LogEntry, Survey, SurveySettings};
 
 /// The poses of a bag.
@@ -136,7 +136,8 @@ fn learned(
     let begin_s = |log: &Log| log.summary().begin_s.unwrap_or_default();
     for (log, route) in logs.iter().zip(routes) {
         let poses = FoundPoses::new(route.clone());
-        let filter = ScanFilter::new(&ScanFilterSettings { no_return: NoReturn::Free, ..settings.filter.clone() })?;
+        let filter =
+            ScanFilter::new(&ScanFilterSettings { no_return: NoReturn::Free, ..settings.filter.clone() })?;
         let mut robot = Robot::new(Box::new(poses), mapper, NoPilot).with_filter(filter);
         robot.begin_session(0.0, Some(begin_s(log) - begin_s(&logs[0]) - robot.mapper.time()));
         for reading in log.readings()? {

@@ -115,9 +115,8 @@ fn two_sessions_add_up_with_the_time_between_as_a_gap() {
         assert!((-0.01..0.06).contains(&(found / sum - 1.0)), "{found} instead of {sum}");
     }
     // The pause is a gap, and no time between readings.
-    let seen_twice = |&index: &usize| {
-        first.statistics(index).watched_free > 5.0 && alone.was_ever_seen(index)
-    };
+    let seen_twice =
+        |&index: &usize| first.statistics(index).watched_free > 5.0 && alone.was_ever_seen(index);
     let cells: Vec<usize> = (0..here.frame.len()).filter(seen_twice).collect();
     assert!(cells.len() > 1000, "{}", cells.len());
     for index in cells {

@@ -1,8 +1,6 @@
 use crate::belief::{Belief, Permission};
 use interfaces::{LaserReading, Reading, ValueError};
-use localizer::{
-    Correction, GivenPoses, Localized, Localizer, LoopClosed, LoopClosingLocalizer, PoseState,
-};
+use localizer::{Correction, GivenPoses, Localized, Localizer, LoopClosed, LoopClosingLocalizer, PoseState};
 use mapper::Mapper;
 
 /// Gives every reading its pose: the part between the filter and the mapper.

@@ -4,9 +4,7 @@ use crate::pilot::Pilot;
 use crate::robot::Robot;
 use agent::{Agent, AgentSettings, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
-use interfaces::{
-    CellState, Grid, GridFrame, LaserReading, PoseMode, Purpose, RandomStream, SettingsError,
-};
+use interfaces::{CellState, Grid, GridFrame, LaserReading, PoseMode, Purpose, RandomStream, SettingsError};
 use localizer::{GivenPoses, Localizer, LocalizerSettings, LoopClosingLocalizer, Start, Switch};
 use mapper::{Mapper, MapperSettings, NoReturn, ScanFilter, ScanFilterSettings};
 use nalgebra::Isometry2;

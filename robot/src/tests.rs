@@ -41,8 +41,7 @@ impl Localization<LaserReading> for Scripted {
         );
         reading.pose = interfaces::pose(5.0, 5.0, 0.0);
         let state = self.states.remove(0);
-        let estimate =
-            PoseEstimate { pose: reading.pose, covariance: Matrix3::zeros(), support: 1.0, state };
+        let estimate = PoseEstimate { pose: reading.pose, covariance: Matrix3::zeros(), support: 1.0, state };
         let correction =
             self.states.is_empty().then_some(Correction { places: 1, readings: 1, largest_m: 1.0 });
         let permission = if state == PoseState::Lost { Permission::LookAround } else { Permission::Drive };

@@ -186,7 +186,9 @@ impl Survey {
     /// When the log cannot be read to its end, and when the mapper refuses a reading.
     pub fn turn(&mut self, replay: &mut Replay) -> Result<Option<Turn<LaserReading, ()>>, PassError> {
         let Self { robot: Some(robot), changes, logs, .. } = self else { return Ok(None) };
-        let (Some(reading), Some(log)) = (replay.next()?, logs.get_mut(replay.number)) else { return Ok(None) };
+        let (Some(reading), Some(log)) = (replay.next()?, logs.get_mut(replay.number)) else {
+            return Ok(None);
+        };
         let turn = robot.step(reading)?;
         log.pass();
         changes.note(&robot.mapper);

@@ -197,10 +197,10 @@ impl FakeRun {
         let seen =
             (0..self.mapper.frame().len()).step_by(7).filter(|&cell| self.mapper.was_ever_seen(cell)).count();
         let coverage = 7.0 * seen as f64 / self.mapper.frame().len() as f64;
-        let belief = self.estimate.clone().map(|estimate| Belief {
-            estimate: Some(estimate.clone()),
-            ..Belief::exact(estimate.pose)
-        });
+        let belief = self
+            .estimate
+            .clone()
+            .map(|estimate| Belief { estimate: Some(estimate.clone()), ..Belief::exact(estimate.pose) });
         use_view(&View {
             time: self.time_s(),
             step: self.step,

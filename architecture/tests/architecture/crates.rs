@@ -15,7 +15,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("agent", &["interfaces", "mapper"]),
     ("controller", &["interfaces"]),
     ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
-    ("survey", &["interfaces", "mapper", "localizer", "logs", "agent", "robot"]),
+    ("survey", &["interfaces", "mapper", "localizer", "logs", "robot"]),
     ("state", &["interfaces", "build_id", "mapper", "localizer", "robot"]),
     ("results", &["interfaces", "mapper"]),
     ("drawing", &["results"]),
@@ -35,7 +35,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("reports", &["interfaces", "build_id", "sim", "results", "drawing", "evaluation"]),
-    ("environments", &["interfaces", "sim", "worldfile", "mapper", "localizer", "evaluation"]),
+    ("environments", &["interfaces", "sim", "worldfile", "mapper", "robot", "evaluation"]),
     (
         "curious-robot",
         &[
@@ -63,8 +63,6 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "agent",
             "controller",
             "robot",
-            "logs",
-            "survey",
             "results",
             "drawing",
             "evaluation",

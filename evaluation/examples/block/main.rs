@@ -71,8 +71,9 @@ fn run(
     while trial.robot.mapper.time() < end_s {
         let turn = trial.turn()?;
         slowest_s = slowest_s.max(last.elapsed().as_secs_f64());
-        corrections
-            .extend(turn.belief.correction.map(|correction| (turn.reading.time_s, correction, last.elapsed())));
+        corrections.extend(
+            turn.belief.correction.map(|correction| (turn.reading.time_s, correction, last.elapsed())),
+        );
         last = Instant::now();
         if turn.belief.is_certain() {
             let off = turn.belief.pose.translation.vector - trial.world.true_pose().translation.vector;

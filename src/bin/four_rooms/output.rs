@@ -135,7 +135,9 @@ impl<'a> Outputs<'a> {
         wall_s: f64,
     ) -> anyhow::Result<bool> {
         self.progress.finish();
-        if let Some(problem) = self.show.live_problem().filter(|problem| Some(problem) != self.reported.as_ref()) {
+        if let Some(problem) =
+            self.show.live_problem().filter(|problem| Some(problem) != self.reported.as_ref())
+        {
             say(stderr(), format_args!("note: {problem}"));
         }
         let mut failures = Vec::new();
@@ -150,7 +152,8 @@ impl<'a> Outputs<'a> {
         }
         failures.iter().for_each(|failure| say(stderr(), format_args!("error: {failure}")));
 
-        let (args, mut summary) = (self.args, summary(self.args, settings, &trial, ended, self.began_s, wall_s));
+        let (args, mut summary) =
+            (self.args, summary(self.args, settings, &trial, ended, self.began_s, wall_s));
         let PhysicsTrial { robot: Robot { mapper, pilot, .. }, observer, .. } = trial;
         drop(pilot); // restores the terminal before anything is printed
         write(&self.folder, &mapper, &self.show, &observer.goals, &mut summary)?;

@@ -81,7 +81,8 @@ impl Parts {
         };
         let TourSpec { mut waypoints, repeat } = tour.map_err(input)?;
         combination::waypoints(&self.spec, &waypoints).iter().for_each(warn);
-        let own = self.prior.is_none().then(|| physics_trial::in_own_frame(&self.settings, &self.spec, args.seed));
+        let own =
+            self.prior.is_none().then(|| physics_trial::in_own_frame(&self.settings, &self.spec, args.seed));
         if let Some((_, to_own)) = own.flatten() {
             waypoints.iter_mut().for_each(|at| *at = to_own.point(at));
         }

@@ -2,13 +2,14 @@
 
 use crate::logs_in_order::Source;
 use anyhow::ensure;
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use curious::flags::{folder, number, output_file};
-use curious::program::{duration_s, one_of};
+use curious::program::{duration_s, one_of, pose_mode};
+use interfaces::PoseMode;
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};
 use std::path::PathBuf;
-use survey::{LogEntry, PoseMode, SavedLogs, SurveySettings};
+use survey::{LogEntry, SavedLogs, SurveySettings};
 
 /// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
@@ -53,7 +54,7 @@ pub(crate) struct Args {
     pub(crate) base_frame: Option<String>,
 
     /// How the poses are known [default: exact for a laser that stands, otherwise localized]
-    #[arg(long, value_enum, help_heading = "Poses")]
+    #[arg(long, value_parser = pose_mode(pose_in_log), help_heading = "Poses")]
     pub(crate) pose: Option<PoseMode>,
 
     /// The side of a cell, m

@@ -5,8 +5,8 @@ use crate::saves::Saves;
 use anyhow::Error;
 use curious::program::{Failure, input};
 use curious::progress::Progress;
-use std::ops::ControlFlow;
 use interfaces::PoseMode;
+use std::ops::ControlFlow;
 use survey::{PassError, RouteProgress, Stage, Survey};
 
 /// Finds the routes of all logs of which the survey has none. Returns whether it was not interrupted.

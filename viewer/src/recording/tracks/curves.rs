@@ -57,9 +57,7 @@ pub(in crate::recording) fn plots(scene: &Scene, view: &View) -> Vec<Plot> {
         plot("Map: coverage and quality", "/curves/scores", SHARE, vec![coverage, quality]);
     }
     if let Some(belief) = view.belief {
-        let error = curve("error", "true error", palette::GOAL, |view| {
-            Some(1000.0 * view.error_m()?)
-        });
+        let error = curve("error", "true error", palette::GOAL, |view| Some(1000.0 * view.error_m()?));
         let mut curves = vec![error];
         if belief.estimate.is_some() {
             curves.push(curve("deviation", "standard deviation", palette::SENSOR, |view| {
