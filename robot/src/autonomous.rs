@@ -1,9 +1,8 @@
 use crate::belief::{Belief, Permission};
-use crate::driver::Driver;
 use crate::messages::{Level, Message};
 use crate::pilot::{GoalCount, Pilot, StrategyState};
 use agent::{Agent, Features, Goal, Stay, Travel};
-use controller::{Outcome, Situation, Status};
+use controller::{Driver, Outcome, Situation, Status};
 use interfaces::{Values, value};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
@@ -97,7 +96,13 @@ impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
             self.is_done = true;
             return;
         };
-        self.driver.set_goal(position, stay);
+        self.driver.set_goal(
+            position,
+            match stay {
+                Stay::Explore => None,
+                Stay::Watch(duration) => Some(duration),
+            },
+        );
         let reason = self.selector.reason();
         self.log(Level::Decision, format!("{reason}: to ({:.2}, {:.2})", position.x, position.y));
     }

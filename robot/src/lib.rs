@@ -11,7 +11,6 @@
 
 mod autonomous;
 mod belief;
-mod driver;
 mod localization;
 mod messages;
 mod pilot;
@@ -24,7 +23,6 @@ mod tour;
 
 pub use autonomous::{Autonomous, Destination, GoalSelector};
 pub use belief::{Belief, Permission};
-pub use driver::Driver;
 pub use localization::{ExactPoses, Localization};
 pub use messages::{Level, Message};
 pub use pilot::{GoalCount, NoPilot, Pilot, StrategyState};

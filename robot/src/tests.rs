@@ -1,10 +1,8 @@
 //! The robot in a tiny world, and with parts that only write down what they are asked.
 
-use crate::{
-    Autonomous, Belief, Driver, ExactPoses, GoalSelector, Localization, Permission, Pilot, Robot, explore,
-};
+use crate::{Autonomous, Belief, ExactPoses, GoalSelector, Localization, Permission, Pilot, Robot, explore};
 use agent::{Agent, AgentSettings, Features, Policy};
-use controller::{CellDrive, Controller};
+use controller::{CellDrive, Controller, Driver};
 use interfaces::{
     Cell, CellReading, GridFrame, LaserReading, Purpose, RandomStream, Scan, Step, Twist, ValueError, World,
 };
@@ -254,7 +252,7 @@ struct Jumping {
 impl Driver for Jumping {
     type Command = ();
 
-    fn set_goal(&mut self, goal: Point2<f64>, _: agent::Stay) {
+    fn set_goal(&mut self, goal: Point2<f64>, _: Option<f64>) {
         self.goal = Some(goal);
         self.asked.push("goal");
     }
@@ -286,6 +284,10 @@ impl Driver for Jumping {
 
     fn forget_map(&mut self) {
         self.asked.push("forget map");
+    }
+
+    fn path(&self) -> &[Point2<f64>] {
+        &[]
     }
 
     fn values(&mut self, _: &interfaces::Grid<interfaces::CellState>) -> interfaces::Values<'_> {

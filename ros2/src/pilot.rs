@@ -5,14 +5,14 @@ mod navigation;
 use crate::link;
 use crate::order::Order;
 use crate::parameters::{Mode, Navigator, Parameters};
-use agent::{Agent, Features, Policy, Stay};
+use agent::{Agent, Features, Policy};
 use anyhow::{Context, anyhow};
-use controller::{Controller, DiffDrive, Situation, Status};
+use controller::{Controller, DiffDrive, Driver, Situation, Status};
 use interfaces::{CellState, Grid, Values};
 use mapper::Mapper;
 use nalgebra::Point2;
 use navigation::Navigation;
-use robot::{Autonomous, Belief, Driver, GoalCount, Message, Pilot, Settings, StrategyState};
+use robot::{Autonomous, Belief, GoalCount, Message, Pilot, Settings, StrategyState};
 
 /// Decides what the robot is asked to do.
 pub(crate) struct LivePilot {
@@ -120,10 +120,10 @@ struct LiveDriver {
 impl Driver for LiveDriver {
     type Command = Order;
 
-    fn set_goal(&mut self, goal: Point2<f64>, stay: Stay) {
+    fn set_goal(&mut self, goal: Point2<f64>, watch: Option<f64>) {
         match &mut self.navigation {
-            None => Driver::set_goal(&mut self.controller, goal, stay),
-            Some(navigation) => navigation.set_goal(goal, stay),
+            None => self.controller.set_goal(goal, watch),
+            Some(navigation) => navigation.set_goal(goal, watch),
         }
     }
 
@@ -135,7 +135,7 @@ impl Driver for LiveDriver {
     }
 
     fn goal(&self) -> Option<Point2<f64>> {
-        self.navigation.as_ref().map_or_else(|| self.controller.goal().copied(), Navigation::goal)
+        self.navigation.as_ref().map_or_else(|| self.controller.goal(), Navigation::goal)
     }
 
     fn drive(&mut self, situation: &Situation) -> Order {
@@ -161,7 +161,7 @@ impl Driver for LiveDriver {
     }
 
     fn trouble(&self) -> &'static str {
-        self.navigation.as_ref().map_or_else(|| Driver::trouble(&self.controller), Navigation::trouble)
+        self.navigation.as_ref().map_or_else(|| self.controller.trouble(), Navigation::trouble)
     }
 
     fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>) {

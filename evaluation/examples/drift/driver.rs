@@ -1,4 +1,4 @@
-use controller::{Controller, DiffDrive, Situation, Status};
+use controller::{Controller, DiffDrive, Driver, Situation, Status};
 use interfaces::{Purpose, RandomStream, SettingsError, Twist};
 use mapper::Mapper;
 use nalgebra::Isometry2;
@@ -31,7 +31,7 @@ impl Driver {
             let cells = map.states().cells().len() as f64;
             let mut draws = (0..1000).map(|_| self.random.uniform(0.0..cells) as usize);
             if let Some(index) = draws.find(|&index| map.is_candidate(index)) {
-                self.controller.go_to(map.frame().center(map.frame().cell(index)));
+                self.controller.set_goal(map.frame().center(map.frame().cell(index)), Some(0.0));
             }
         }
         if permission == Permission::Rest { Twist::STOP } else { command }

@@ -2,7 +2,6 @@
 
 use crate::link;
 use crate::order::Order;
-use agent::Stay;
 use controller::{Outcome, Situation, Status};
 use interfaces::heading_rad;
 use nalgebra::Point2;
@@ -65,12 +64,9 @@ impl Navigation {
         self.news = Some(news);
     }
 
-    pub(super) fn set_goal(&mut self, at: Point2<f64>, stay: Stay) {
+    pub(super) fn set_goal(&mut self, at: Point2<f64>, watch_s: Option<f64>) {
         self.cancel();
-        let stay_s = match stay {
-            Stay::Explore => 0.0,
-            Stay::Watch(duration_s) => duration_s,
-        };
+        let stay_s = watch_s.unwrap_or(0.0);
         let [nearest_m, nearest_s] = [f64::INFINITY, f64::NEG_INFINITY];
         let (is_sent, reached_s, outcome) = (false, None, None);
         self.target = Some(Target { at, stay_s, is_sent, nearest_m, nearest_s, reached_s, outcome });
@@ -134,10 +130,10 @@ impl Navigation {
         let trouble = match news {
             Some(link::Navigation::Refused) => {
                 self.not_before_s = time_s + RETRY_S;
-                Some("Nav2 has refused it, or is not there")
+                Some("Nav2 has refused the goal, or is not there")
             }
-            Some(link::Navigation::GivenUp) => Some("Nav2 has given it up"),
-            _ if is_stuck => Some("the robot comes no nearer to it"),
+            Some(link::Navigation::GivenUp) => Some("Nav2 has given the goal up"),
+            _ if is_stuck => Some("the robot comes no nearer to the goal"),
             _ => None,
         };
         if target.reached_s.is_some_and(|reached_s| time_s >= reached_s + target.stay_s) {

@@ -4,6 +4,7 @@ use super::*;
 use crate::parameters::{Mode, Navigator, Parameters};
 use crate::pilot::LivePilot;
 use agent::{Features, Policy};
+use controller::Driver;
 use interfaces::{PoseMode, World};
 use mapper::Mapper;
 use nalgebra::Isometry2;
