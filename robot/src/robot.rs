@@ -110,6 +110,11 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
         self.filter.as_ref()
     }
 
+    /// What is removed from scans; `None` if nothing is.
+    pub fn filter_mut(&mut self) -> Option<&mut ScanFilter> {
+        self.filter.as_mut()
+    }
+
     /// What gives the readings their poses.
     pub fn localization_mut(&mut self) -> &mut (dyn Localization<R> + Send) {
         self.localization.as_mut()

@@ -9,12 +9,15 @@ use robot::{Pilot, Robot};
 
 const MAPPER: &str = "mapper";
 const LOCALIZATION: &str = "localization";
+/// Missing where the filter of scans learns nothing.
+const FILTER: &str = "filter";
 
 /// The settings that what was learned belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LearnedFacts {
     mapper: Facts,
     localization: Facts,
+    filter: Facts,
 }
 
 impl LearnedFacts {
@@ -38,14 +41,16 @@ impl LearnedFacts {
             }
             None => poses,
         };
+        let filter = map.clone();
         let mapper = map.with_learned_settings("mapper", mapper, Some(&MapperSettings::default()));
-        Self { mapper, localization }
+        Self { mapper, localization, filter }
     }
 
     /// Copies what was learned. This is short; to turn the copy into bytes takes longer.
     pub fn snapshot<P: Pilot>(&self, robot: &mut Robot<LaserReading, P>) -> LearnedSnapshot {
         let (mapper, localization) = (robot.mapper.clone(), robot.localization_mut().snapshot());
-        LearnedSnapshot { facts: self.clone(), mapper, localization }
+        let filter = robot.filter_mut().map(|filter| interfaces::snapshot(filter.values()));
+        LearnedSnapshot { facts: self.clone(), mapper, localization, filter: filter.unwrap_or_default() }
     }
 
     /// Lets a robot that was made with the settings of these facts go on with what was learned.
@@ -65,7 +70,13 @@ impl LearnedFacts {
             state.section(LOCALIZATION, &self.localization)?,
         ];
         robot.mapper.restore(learned[0]).map_err(|_| misfit(MAPPER))?;
-        robot.localization_mut().restore(learned[1]).map_err(|_| misfit(LOCALIZATION))
+        robot.localization_mut().restore(learned[1]).map_err(|_| misfit(LOCALIZATION))?;
+        match (robot.filter_mut(), state.section(FILTER, &self.filter)) {
+            (Some(filter), Ok(learned)) => {
+                interfaces::restore(filter.values(), learned).map_err(|_| misfit(FILTER))
+            }
+            _ => Ok(()), // an earlier version has not saved it
+        }
     }
 }
 
@@ -75,16 +86,15 @@ pub struct LearnedSnapshot {
     facts: LearnedFacts,
     mapper: Mapper,
     localization: Vec<u8>,
+    filter: Vec<u8>,
 }
 
 impl LearnedSnapshot {
     /// Adds what was learned to a state.
     pub fn added_to(self, state: State) -> State {
-        let Self { facts, mut mapper, localization } = self;
-        state.with(MAPPER, facts.mapper, mapper.snapshot()).with(
-            LOCALIZATION,
-            facts.localization,
-            localization,
-        )
+        let Self { facts, mut mapper, localization, filter } = self;
+        let state = state.with(MAPPER, facts.mapper, mapper.snapshot());
+        let state = state.with(LOCALIZATION, facts.localization, localization);
+        if filter.is_empty() { state } else { state.with(FILTER, facts.filter, filter) }
     }
 }

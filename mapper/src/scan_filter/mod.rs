@@ -93,8 +93,7 @@ impl ScanFilter {
 
     /// Removes from the next reading what must not enter a map.
     pub fn apply(&mut self, reading: &mut LaserReading) {
-        let learns = self.learns && self.settings.no_return == NoReturn::Learn;
-        self.last = learns.then(|| reading.clone());
+        self.last = self.learns().then(|| reading.clone());
         self.no_returns.apply(reading); // before ranges that are too long become free ones
         self.settings.apply(reading);
     }
@@ -106,8 +105,12 @@ impl ScanFilter {
         }
     }
 
-    /// What readings have changed: what a state file holds of the filter.
+    /// What readings have changed: what a state file holds of the filter. Empty if it learns nothing.
     pub fn values(&mut self) -> Values<'_> {
-        self.no_returns.values()
+        if self.learns() { self.no_returns.values() } else { Vec::new() }
+    }
+
+    fn learns(&self) -> bool {
+        self.learns && self.settings.no_return == NoReturn::Learn
     }
 }
