@@ -116,6 +116,11 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
     }
 
     /// What gives the readings their poses.
+    pub fn localization(&self) -> &(dyn Localization<R> + Send) {
+        self.localization.as_ref()
+    }
+
+    /// What gives the readings their poses.
     pub fn localization_mut(&mut self) -> &mut (dyn Localization<R> + Send) {
         self.localization.as_mut()
     }

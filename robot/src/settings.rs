@@ -174,7 +174,7 @@ impl Settings {
             }
             (PoseMode::Localized, None) => {
                 let localizer = LoopClosingLocalizer::from_nothing(&self.localizer, &frame, start)?;
-                Box::new(localizer.switching(self.switch))
+                Box::new(localizer.switching(self.switch.clone()))
             }
         };
         let mapper = match prior {
