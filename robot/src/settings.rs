@@ -108,7 +108,7 @@ impl Settings {
         let tolerance_m = source.drive.tolerance_m.min(source.drive.radius_m / 2.0);
         Self {
             filter: ScanFilterSettings {
-                max_range_m: source.range_max_m,
+                max_range_m: source.range_max_m.clamp(0.1, 1000.0),
                 no_return: source.no_return,
                 ..ScanFilterSettings::default()
             },
