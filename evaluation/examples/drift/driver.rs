@@ -1,4 +1,4 @@
-use controller::{Controller, DiffDrive, Driver, Situation, Status};
+use controller::{Controller, DiffDrive, Driver as _, Situation, Status};
 use interfaces::{Purpose, RandomStream, SettingsError, Twist};
 use mapper::Mapper;
 use nalgebra::Isometry2;
