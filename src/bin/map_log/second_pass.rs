@@ -1,7 +1,6 @@
 //! The second pass: the map and its changes along the trajectories.
 
 use crate::Job;
-use crate::logs_in_order::Source;
 use crate::saves::Saves;
 use anyhow::{Context, anyhow};
 use curious::bag::RunBag;
@@ -61,16 +60,8 @@ pub(crate) fn learn(
         trajectory.add(at.time_s, &at.pose);
         learned.show.pass(&at.pose);
     }
-    let last = job.sources.len().saturating_sub(1);
-    for (number, source) in job.sources.iter().enumerate() {
-        learned.replay(
-            job,
-            number,
-            source,
-            survey,
-            (saves, &mut trajectory, bag.as_mut()),
-            number == last,
-        )?;
+    for number in 0..job.sources.len() {
+        learned.replay(job, number, survey, (saves, &mut trajectory, bag.as_mut()))?;
         if learned.is_interrupted {
             break;
         }
@@ -104,11 +95,10 @@ impl Learned {
         &mut self,
         job: &Job,
         number: usize,
-        source: &Source,
         survey: &mut Survey,
         (saves, trajectory, mut bag): (&mut Saves, &mut TrajectoryFile, Option<&mut RunBag>),
-        is_last_log: bool,
     ) -> Result<(), Failure> {
+        let (source, is_last_log) = (&job.sources[number], number + 1 == job.sources.len());
         let (name, log) = (&source.entry.name, job.first_log + number);
         let used = survey.logs().get(log).map_or(0, |log| log.used);
         match used {
