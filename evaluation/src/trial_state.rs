@@ -5,8 +5,8 @@ use crate::observer::Observer;
 use crate::physics_trial::{PhysicsSettings, PhysicsTrial, PoseChoice};
 use interfaces::{Twist, Values, value};
 use robot::Pilot;
+use robot::state::{Facts, LearnedFacts, LearnedSnapshot, State, StateError};
 use sim::physics::{WorldSnapshot, WorldSpec};
-use state::{Facts, LearnedFacts, LearnedSnapshot, State, StateError};
 use xxhash_rust::xxh3::xxh3_64;
 
 const WORLD: &str = "world";

@@ -7,9 +7,9 @@ use evaluation::trial_state::TrialFacts;
 use interfaces::{LaserReading, Twist, World, heading_rad, pose};
 use localizer::PoseState;
 use mapper::{Mapper, ReadingError};
+use robot::state::{Facts, LearnedFacts, State};
 use robot::{Autonomous, Belief, Session, explore};
 use sim::physics::{PhysicsWorld, WorldSpec};
-use state::{Facts, LearnedFacts, State};
 use std::ops::ControlFlow;
 
 type Trial = PhysicsTrial<Autonomous<Agent, DiffDrive>>;

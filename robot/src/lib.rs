@@ -1,21 +1,25 @@
-//! The loop of the robot, and the pilots that decide in it.
+//! The loop of the robot, the pilots that decide in it, and the files of what it has learned. It must not
+//! know any world, log, metric, screen or recording: users see the loop from outside, through a callback.
 //!
 //! ```text
 //! source ──reading──▶ localizer ──posed reading──▶ mapper ──maps, changes──▶ agent ──goal──▶ controller ──command──▶ source
 //! ```
 //!
-//! [`explore`] is this loop. It is the same for every [`World`] and for every [`Pilot`]. This crate does not
-//! know any world, metric, file, screen or recording: users see the loop from outside, through a callback.
+//! [`explore`] is this loop. It is the same for every [`World`] and for every [`Pilot`]. [`state`] saves what was learned
+//! and where a run stopped, so that another run goes on from there.
 
 mod autonomous;
+mod build;
 mod localization;
 mod messages;
 mod pilot;
 mod session;
+pub mod state;
 mod tapped;
 mod tour;
 
 pub use autonomous::{Autonomous, Destination, GoalSelector};
+pub use build::{BUILD, other_build};
 pub use localization::{ExactPoses, Localization, Permission, Posed};
 pub use messages::{Level, Message};
 pub use pilot::{Belief, GoalCount, Pilot, StrategyState};

@@ -5,8 +5,8 @@ use anyhow::{Context, anyhow};
 use interfaces::{GridFrame, LaserReading};
 use localizer::LocalizerSettings;
 use mapper::{Mapper, MapperSettings};
+use robot::state::{Facts, LearnedFacts, State, StateFile};
 use robot::{Localization, Pilot};
-use state::{Facts, LearnedFacts, State, StateFile};
 use std::path::Path;
 
 /// The names of the sections of the node, beside those of every robot.

@@ -1,4 +1,5 @@
-//! A survey of a place from the logs of a robot: where the place changes, and how often.
+//! A survey of a place from the logs of a robot: where the place changes, and how often. It must not know
+//! files, pictures or programs.
 //!
 //! A log is read twice:
 //!
@@ -12,8 +13,6 @@
 //! all logs alone, and [`learn()`] the second pass over one. The second pass is the loop of every robot, [`robot::explore`],
 //! with a source that ignores commands and a pilot that gives none. From its map follow the [places](places()) where
 //! something changes, and the [map](permanent()) of what is permanent.
-//!
-//! This crate knows logs, trajectories and maps. It must not know files, pictures or programs.
 
 mod change_log;
 mod error;

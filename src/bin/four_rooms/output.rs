@@ -2,7 +2,6 @@
 
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
-use build_id::BUILD;
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::summary::{SCHEMA, Summary};
 use interfaces::Twist;
@@ -11,6 +10,7 @@ use results::cell_statistics;
 use results::output::{RunFolder, write_file};
 use results::ros_map;
 use results::thinned::Goals;
+use robot::BUILD;
 use robot::Pilot;
 use viewer::layers::Layer;
 use viewer::show::Show;
