@@ -1,5 +1,6 @@
-//! Code that the programs share: arguments and exit codes, worlds and warnings about them, progress, lines for the
-//! user, the keyboard pilot, trials, and experiments in shards.
+//! The programs, and the code that they share: arguments and exit codes, worlds and warnings about them,
+//! progress, lines for the user, the keyboard pilot, and trials. It must not know how a robot maps, decides
+//! or is measured: the other crates do.
 
 pub mod bag;
 pub mod flags;
@@ -8,8 +9,6 @@ pub mod program;
 pub mod progress;
 #[cfg(feature = "simulation")]
 pub mod reachability;
-#[cfg(feature = "recording")]
-pub mod shards;
 pub mod terminal;
 #[cfg(feature = "recording")]
 pub mod trials;

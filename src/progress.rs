@@ -3,7 +3,7 @@
 use crate::terminal::say;
 use crossterm::terminal;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use results::numbers::percent;
+use results::numbers::{duration, percent};
 use std::fmt::{self, Display, Formatter};
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
@@ -206,15 +206,6 @@ fn time_left(done: u64, all: Option<u64>, elapsed: Duration) -> String {
     }
     let left_s = elapsed.as_secs_f64() * (all.unwrap_or(0) as f64 / done as f64 - 1.0).max(0.0);
     format!("{} left", duration(left_s))
-}
-
-/// A time with a unit that suits it, as in `12 min`.
-pub fn duration(time_s: f64) -> String {
-    match time_s {
-        time_s if time_s < 100.0 => format!("{time_s:.0} s"),
-        time_s if time_s < 6000.0 => format!("{:.0} min", time_s / 60.0),
-        time_s => format!("{:.0} h", time_s / 3600.0),
-    }
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
-//! Features → choice of a strategy → a goal → reward (paper, section 4).
+//! Features → choice of a strategy → a goal → reward (paper, section 4). It must not know a simulator, a
+//! controller or the true rates of change.
 //!
 //! A [`Strategy`] gives each cell a weight: how much a visit of the cell is worth. A [`Chooser`] selects the
 //! strategy for the next goal. The [`Agent`] combines both: it processes every reading, and when the controller has
 //! finished a goal, the agent learns from the trajectory and samples the next goal. If the settings say so, the agent
-//! looks into unseen space before its strategies decide. This crate knows the map; it
-//! must not know a simulator, a controller or the true rates of change.
+//! looks into unseen space before its strategies decide.
 //!
 //! A [`Policy`] names strategies and a chooser. A new policy in this crate is one file under `strategies` or
 //! `choosers`, and one line in the list of [`Policy::built_in`]. A policy of another crate is made with

@@ -1,13 +1,13 @@
-//! Drives the robot to a goal and explores around it (paper, section 2).
+//! Drives the robot to a goal and explores around it (paper, section 2). It must not know how the map is
+//! learned, who selects the goals, or which world the robot is in.
 //!
 //! ```text
 //! map ─▶ Inflation ─▶ Costmap ─▶ Wavefront ─▶ Path ─▶ Drive ─▶ command
 //! ```
 //!
-//! A loop needs only the [`Controller`]: set a goal, and pass a [`Situation`] at every tick. This crate must not
-//! know how the map is learned, who selects the goals, or which world the robot is in. A [`Drive`] describes the
-//! robot and converts paths into commands: [`DiffDrive`] for a differential drive robot, [`CellDrive`] for a robot
-//! in a grid world.
+//! A loop needs only the [`Controller`]: set a goal, and pass a [`Situation`] at every tick. A [`Drive`]
+//! describes the robot and converts paths into commands: [`DiffDrive`] for a differential drive robot, [`CellDrive`] for
+//! a robot in a grid world.
 
 mod controller;
 mod driver;

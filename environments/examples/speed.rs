@@ -1,7 +1,7 @@
 //! How fast fleets and tasks are in Rust alone, per second of CPU time: what `python/examples/speed.py --rust` compares with.
 //!
 //! ```sh
-//! cargo build --release -p environments --example speed
+//! cargo build --release -p curious-environments --example speed
 //! target/release/examples/speed fleet WORLD.toml SECONDS
 //! target/release/examples/speed drive|explore WORLDS THREADS STEPS
 //! ```

@@ -1,8 +1,9 @@
-//! Tasks for learners: driving to goals among moving things, and exploring a place that changes.
+//! Tasks for learners: driving to goals among moving things, and exploring a place that changes. It must not
+//! know the interfaces of Gymnasium or PettingZoo, which the Python package adds.
 //!
 //! A [`Task`] is one world with its rewards. A [`Batch`] steps many tasks with one call, on several threads; a task
 //! that is over is reset in the same call. The same seeds and actions give the same bits, alone or in a batch, on any
-//! number of threads. The Python package gives these tasks the interfaces of Gymnasium and PettingZoo.
+//! number of threads.
 //!
 //! ```
 //! use environments::{Batch, Drive, DrivePlace, DriveSettings};

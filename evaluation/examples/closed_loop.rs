@@ -9,7 +9,7 @@
 //! pose is turned.
 //!
 //! ```text
-//! cargo run -p evaluation --example closed_loop -- [WORLD [SEED [MINUTES [SESSIONS [NOISE_M]]]]]
+//! cargo run -p curious-evaluation --example closed_loop -- [WORLD [SEED [MINUTES [SESSIONS [NOISE_M]]]]]
 //! ```
 
 use agent::Policy;

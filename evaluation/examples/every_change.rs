@@ -6,7 +6,7 @@
 //! the log error of both, and the quotient of the areas.
 //!
 //! ```text
-//! cargo run -p evaluation --example every_change -- worlds/office.toml [SEED [MINUTES]]
+//! cargo run -p curious-evaluation --example every_change -- worlds/office.toml [SEED [MINUTES]]
 //! ```
 
 use agent::Policy;

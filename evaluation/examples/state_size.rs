@@ -1,4 +1,4 @@
-//! What it costs to save the state of a run: `cargo run -p evaluation --example state_size -- WORLD.toml MINUTES…`
+//! What it costs to save the state of a run: `cargo run -p curious-evaluation --example state_size -- WORLD.toml MINUTES…`
 //!
 //! For each number of simulated minutes: how long the loop stops to copy the state (the shortest of many copies, which no
 //! other program has interrupted, and the median), how long a thread takes to turn the copy into bytes, and the size per
@@ -8,7 +8,7 @@ use agent::Policy;
 use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::trial_state::TrialFacts;
 use interfaces::CellState;
-use state::Facts;
+use robot::state::Facts;
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;

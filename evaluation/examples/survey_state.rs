@@ -1,4 +1,4 @@
-//! What it costs to save what was learned from a log: `cargo run -p evaluation --example survey_state -- LOG`
+//! What it costs to save what was learned from a log: `cargo run -p curious-evaluation --example survey_state -- LOG`
 //!
 //! How long the loop of `map_log` stops to copy the state (the shortest of many copies, which no other program has
 //! interrupted, and the median), how long a thread takes to turn the copy into bytes, and the size per known cell: with the
@@ -6,7 +6,7 @@
 
 use interfaces::{CellState, PoseMode};
 use logs::{Log, TopicChoice};
-use state::{Facts, State};
+use robot::state::{Facts, State};
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;

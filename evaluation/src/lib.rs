@@ -1,6 +1,5 @@
-//! The quality of a robot: metrics over the ground truth of a simulated world, and trials.
-//!
-//! This crate must not know the command line, recordings or screens.
+//! The quality of a robot: metrics over the ground truth of a simulated world, and trials. It must not know
+//! the command line, recordings or screens.
 
 pub mod map_hash;
 pub mod metrics;

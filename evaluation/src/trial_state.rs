@@ -4,9 +4,9 @@
 use crate::observer::Observer;
 use crate::physics_trial::PhysicsTrial;
 use interfaces::{PoseMode, Twist, Values, value};
+use robot::state::{Facts, LearnedFacts, LearnedSnapshot, State, StateError};
 use robot::{Pilot, Settings};
 use sim::physics::{WorldSnapshot, WorldSpec};
-use state::{Facts, LearnedFacts, LearnedSnapshot, State, StateError};
 use xxhash_rust::xxh3::xxh3_64;
 
 const WORLD: &str = "world";

@@ -2,7 +2,7 @@
 //! 10 s, or takes more than 1 GiB.
 //!
 //! 10,000 inputs by default. More, and where to begin:
-//! `CASES=1000000 cargo test -p evaluation --test fuzz -- --nocapture`; `FIRST=4711 CASES=1` repeats one.
+//! `CASES=1000000 cargo test -p curious-evaluation --test fuzz -- --nocapture`; `FIRST=4711 CASES=1` repeats one.
 
 use agent::{Agent, Policy};
 use controller::{Controller, DiffDrive};
@@ -17,8 +17,8 @@ use nalgebra::{Isometry2, Point2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use robot::Autonomous;
+use robot::state::{Facts, State};
 use sim::physics::{PhysicsWorld, WorldSpec};
-use state::{Facts, State};
 use std::collections::BTreeMap;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};

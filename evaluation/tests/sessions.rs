@@ -6,9 +6,9 @@ use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::trial_state::TrialFacts;
 use interfaces::{PoseMode, World, heading_rad, pose};
 use mapper::Mapper;
+use robot::state::{Facts, LearnedFacts, State};
 use robot::{Autonomous, Settings};
 use sim::physics::WorldSpec;
-use state::{Facts, LearnedFacts, State};
 
 type Trial = PhysicsTrial<Autonomous<Agent, Controller<DiffDrive>>>;
 

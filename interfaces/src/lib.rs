@@ -1,8 +1,7 @@
-//! The values and traits that the crates exchange: cells and grids, scans and readings, commands, the
-//! traits [`World`] and [`GroundTruth`], parts chosen by name, the changing values of a part as bytes, checks of settings, text that is safe to print, and
-//! seeded random streams.
-//!
-//! This crate depends on no other crate of the workspace. It has no clock and no input or output.
+//! The values and traits that the crates exchange: cells and grids, scans and readings, commands, the traits
+//! [`World`] and [`GroundTruth`], parts chosen by name, the changing values of a part as bytes, checks of
+//! settings, text that is safe to print, and seeded random streams. It must not know any other crate of the
+//! workspace, a clock, or a file.
 //!
 //! Units are SI; the name of a scalar carries its unit. Frames follow REP-103 (x forward, y left,
 //! counter-clockwise radians). Grids are row-major with row 0 at the lowest y.

@@ -1,4 +1,5 @@
 //! Odometry + scan + line map → pose, with its uncertainty: the part between the source of readings and the mapper.
+//! Of a map it knows states and rates; it must not know worlds, simulators, goals, drives, recordings or files.
 //!
 //! ```text
 //! reading ─▶ undo the sweep ─▶ predict by odometry ─▶ match with the line map ─▶ pose ─▶ learn the line map
@@ -28,9 +29,6 @@
 //!
 //! [`TrajectoryFinder`] finds the trajectory of a whole log: with submaps that move along with the robot, loops, and a pose
 //! graph. [`LoopClosingLocalizer`] closes loops while the robot maps a place for the first time.
-//!
-//! This crate knows readings, and of the map its states and rates. It must not know worlds, simulators, goals, drives,
-//! recordings or files.
 
 mod beams;
 mod calibration;

@@ -1,7 +1,7 @@
 //! A short bag with messages of every kind, for a look in Foxglove and for tests with other readers.
 //!
 //! ```text
-//! cargo run -p logs --example mcap_sample -- sample.mcap
+//! cargo run -p curious-logs --example mcap_sample -- sample.mcap
 //! ```
 //!
 //! A robot drives around in a square room, and a door in the right wall opens and closes.

@@ -1,7 +1,7 @@
 //! What a log contains, and its readings as lines of text.
 //!
 //! ```text
-//! cargo run -p logs --example print_log -- LOG [readings]
+//! cargo run -p curious-logs --example print_log -- LOG [readings]
 //! ```
 //!
 //! With `readings`, a line per reading: time, pose and mount (x, y, heading), linear and angular velocity,

@@ -1,9 +1,8 @@
-//! Logs as sources of readings: a recorded robot is read like a world that ignores commands.
+//! Logs as sources of readings: a recorded robot is read like a world that ignores commands. It must not know
+//! maps, localizers or programs.
 //!
 //! [`Log`] reads CARMEN logs, plain or compressed with gzip, and bags of ROS 2: MCAP files, SQLite databases, and folders of
 //! them. A log is surveyed when it is opened; after this it can be read any number of times, reading by reading.
-//!
-//! This crate knows the formats of files and the values of `interfaces`. It must not know maps, localizers or programs.
 
 mod bag;
 mod bounds;

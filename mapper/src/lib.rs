@@ -1,11 +1,9 @@
 //! Scan → projected scan → occupancy grid → change statistics per cell → maps of rate, cycle time, change
-//! probability and recency (paper, section 3).
+//! probability and recency (paper, section 3). It must not know worlds, simulators, goals, strategies,
+//! drives, recordings or files.
 //!
 //! [`Mapper::update`] processes one reading; all other methods return results. The work per reading is proportional
 //! to the number of cells that the reading observes and of cells that ever changed, not to the size of the map.
-//!
-//! This crate knows readings and grids. It must not know worlds, simulators, goals, strategies, drives, recordings
-//! or files.
 //!
 //! - `scan_filter`: what must not enter a map is removed from scans, before a pose is searched for them.
 //! - `occupancy`: from scans to the states of cells. A new model implements [`OccupancyModel`].

@@ -2,7 +2,7 @@
 
 One thread for fleets; the environments use `--threads` (0: all). With `--ir-sim`, the simulator ir-sim (`pip install ir-sim`)
 drives one robot with the same laser through the same walls in the same run. With `--rust PROGRAM`, the example `speed` of the
-crate `environments` (`cargo build --release -p environments --example speed`) does the same without Python, in turns.
+crate `environments` (`cargo build --release -p curious-environments --example speed`) does the same without Python, in turns.
 """
 
 import argparse

@@ -1,7 +1,7 @@
-//! `curious._native`: the worlds, the mapper and the learning tasks as classes of Python.
+//! `curious._native`: the worlds, the mapper and the learning tasks as classes of Python. It converts values
+//! and errors; it must not know a rule of the domain, which are in the other crates.
 //!
-//! Every file has one class. Arrays go in and out as NumPy arrays; long calls release the interpreter (`detach`). All
-//! rules of the domain are in the other crates: this one converts values and errors.
+//! Every file has one class. Arrays go in and out as NumPy arrays; long calls release the interpreter (`detach`).
 
 mod convert;
 mod fleet;

@@ -4,9 +4,9 @@
 //! changed byte, a later call could fail.
 
 use crate::convert::SnapshotError;
-use build_id::BUILD;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
+use robot::BUILD;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// The version of the format; count up when the layout of a state changes.

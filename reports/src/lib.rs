@@ -1,5 +1,6 @@
-//! The report of an experiment: from trials to curves with confidence bands, paired comparisons,
-//! the verdict on the paper's claim, files and a table.
+//! The report of an experiment: from trials to curves with confidence bands, paired comparisons, the verdict
+//! on the paper's claim, files and a table; and experiments in shards. It must not know the command line,
+//! recordings or screens.
 //!
 //! ```text
 //! trials ──▶ runs: curves, areas, comparisons ──▶ report.json, figures, table, claim
@@ -30,8 +31,8 @@ pub use statistics::Estimate;
 pub use strategy::StrategyResult;
 pub use trial_files::collect;
 
-use drawing::PictureError;
 use evaluation::trials::{Experiment, Length, Trial, TrialError, TrialWorld};
+use results::drawing::PictureError;
 use results::output::{RunFolder, write_file};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;

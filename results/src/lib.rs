@@ -1,9 +1,11 @@
-//! What a run leaves behind: files that are either complete or absent, the folder of a run, and what the mapper has
-//! learned as a table, as an array, and as maps for ROS.
-//!
-//! This crate must not know where readings come from: the results of a simulated robot and of a log have the same files.
+//! What a run leaves behind: files that are either complete or absent, the folder of a run, what the mapper
+//! has learned as a table, as an array, and as maps for ROS, and the canvas on which figures and pictures are
+//! drawn. It must not know where readings come from: the results of a simulated robot and of a log have the
+//! same files.
 
 pub mod cell_statistics;
+#[cfg(feature = "drawing")]
+pub mod drawing;
 pub mod file_name;
 pub mod numbers;
 pub mod output;

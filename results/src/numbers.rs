@@ -18,6 +18,15 @@ pub fn thousands(number: u64) -> String {
     groups.join(",")
 }
 
+/// A time with a unit that suits it, as in `12 min`.
+pub fn duration(time_s: f64) -> String {
+    match time_s {
+        time_s if time_s < 100.0 => format!("{time_s:.0} s"),
+        time_s if time_s < 6000.0 => format!("{:.0} min", time_s / 60.0),
+        time_s => format!("{:.0} h", time_s / 3600.0),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::percent;

@@ -1,28 +1,31 @@
-//! The robot: from a reading of its sensors to the next command.
+//! The robot: from a reading of its sensors to the next command, and the files of what it has learned. It must not know any
+//! world, log, metric, screen or recording.
 //!
 //! ```text
 //! reading ─▶ filter ─▶ session ─▶ localization ─▶ mapper ─▶ pilot ─▶ command
 //! ```
 //!
 //! [`Robot::step`] is this line, and there is no other one: simulators, grid worlds, logs, live robots, Gymnasium and Python
-//! give readings and take commands. [`explore`] is the loop around it for a [`World`].
-//!
-//! This crate must not know any world, metric, file, screen or recording.
+//! give readings and take commands. [`explore`] is the loop around it for a [`World`]. [`state`] saves what was learned and
+//! where a run stopped, so that another run goes on from there.
 
 mod autonomous;
 mod belief;
+mod build;
 mod localization;
 mod messages;
 mod pilot;
 mod robot;
 mod session;
 mod settings;
+pub mod state;
 #[cfg(test)]
 mod tests;
 mod tour;
 
 pub use autonomous::{Autonomous, Destination, GoalSelector};
 pub use belief::{Belief, Permission};
+pub use build::{BUILD, other_build};
 pub use localization::{ExactPoses, Localization};
 pub use messages::{Level, Message};
 pub use pilot::{GoalCount, NoPilot, Pilot, StrategyState};

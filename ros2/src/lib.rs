@@ -1,4 +1,5 @@
-//! Live nodes for ROS 2, without an installation of ROS.
+//! Live nodes for ROS 2, without an installation of ROS. It must not know metrics, trials or reports, and
+//! nothing depends on it.
 //!
 //! ```text
 //! network ─Event─▶ Link ─▶ Source ─reading─▶ Robot::step ─order─▶ Link ─Message─▶ network
@@ -9,8 +10,6 @@
 //! - [`SimulatedRobot`]: a simulated world as a robot of ROS, as `stage_ros2` is for Stage.
 //! - [`Link`]: what both need of a network. [`DdsLink`] is the only implementation that knows the client library; the tests
 //!   have one without a network.
-//!
-//! Nothing depends on this crate.
 
 mod dds;
 mod environment;

@@ -6,8 +6,8 @@ use crate::parameters::{Navigator, Parameters};
 use crate::pilot::LivePilot;
 use anyhow::{Context, anyhow};
 use interfaces::{GridFrame, LaserReading, PoseMode};
+use robot::state::{Facts, LearnedFacts, State, StateFile};
 use robot::{Pilot, Robot, Settings};
-use state::{Facts, LearnedFacts, State, StateFile};
 use std::path::Path;
 
 /// The names of the sections of the node, beside those of every robot.

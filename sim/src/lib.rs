@@ -1,4 +1,6 @@
-//! Simulated worlds for a robot, with their ground truth.
+//! Simulated worlds for a robot, with their ground truth. This is the only crate that knows the physics
+//! engine; it must not know files, maps or how a robot decides: a world is a plain struct, which the crates
+//! `worldfile` and `stage` make from files.
 //!
 //! [`physics`] is the two-dimensional world of the paper's section 5 and figures 4 and 5: walls,
 //! robots with real contacts, lasers.
@@ -6,8 +8,7 @@
 //! [`grid`] is the world of the paper's figure 3: cells that are blocked or free, blocks that move from cell to
 //! cell, a robot that moves one cell per step and has an exact sensor.
 //!
-//! Both implement [`interfaces::World`], and keep the ground truth for metrics. This crate is the only one that knows the physics engine. It reads no file and parses no text: a world is
-//! a plain struct, which the crates `worldfile` and `stage` can make from files.
+//! Both implement [`interfaces::World`], and keep the ground truth for metrics.
 //!
 //! ```
 //! use interfaces::{GridFrame, Twist, World};

@@ -1,4 +1,5 @@
-//! World files of the simulator Stage.
+//! World files of the simulator Stage, as fleets of the crate `sim` and as world files of this project. It
+//! must not know how a world is simulated, or how robots learn.
 //!
 //! [`read`] reads a `.world` file with all included files, expands its definitions, and returns a [`StageWorld`]:
 //! the walls, the floor plans and the robots, in meters and radians, in the coordinates of the Stage file. [`load`]

@@ -7,7 +7,7 @@
 //! occupied, counted by hand from the raw scans.
 //!
 //! ```text
-//! cargo run -p survey --example people_tracks -- LOG TRACKS.csv [COUNTS.csv]
+//! cargo run -p curious-survey --example people_tracks -- LOG TRACKS.csv [COUNTS.csv]
 //! ```
 
 use interfaces::PoseMode;

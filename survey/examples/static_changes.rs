@@ -4,7 +4,7 @@
 //! is an upper bound of the false changes.
 //!
 //! ```text
-//! cargo run -p survey --example static_changes -- LOG
+//! cargo run -p curious-survey --example static_changes -- LOG
 //! ```
 
 use interfaces::PoseMode;

@@ -1,4 +1,5 @@
-//! A survey of a place from the logs of a robot: where the place changes, and how often.
+//! A survey of a place from the logs of a robot: where the place changes, and how often. It must not know
+//! files, pictures or programs.
 //!
 //! A log is read twice:
 //!
@@ -11,8 +12,6 @@
 //! [`Survey`] does both, log after log; it can be saved, and go on with another log later. In the second pass, a robot without a
 //! pilot reads the log: each reading is one [`robot::Robot::step`]. From its map follow the [places](places()) where something
 //! changes, and the [map](permanent()) of what is permanent.
-//!
-//! This crate knows logs, trajectories and maps. It must not know files, pictures or programs.
 
 mod change_log;
 mod error;

@@ -196,7 +196,7 @@ fn invalid_input_is_refused_and_nothing_is_overwritten() {
     ];
     insta::assert_snapshot!(refusals.join("\n"), @"
     error: shards/shard-1-of-3.jsonl: this shard is one of 3 shards, not of 4; give another folder by --out
-    error: shards/shard-1-of-3.jsonl: this shard is of the experiment `--strategy curious --strategy recency --strategy poisson --trials 2 --steps 300 --generate 2 --seed 100`, not `--strategy curious --strategy recency --strategy poisson --trials 2 --steps 300 --max-steps 7 --generate 2 --seed 100`; give another folder by --out
+    error: shards/shard-1-of-3.jsonl: this shard is of the experiment `--generate 2 --strategy curious --strategy recency --strategy poisson --trials 2 --steps 300 --seed 100`, not `--generate 2 --strategy curious --strategy recency --strategy poisson --trials 2 --steps 300 --max-steps 7 --seed 100`; give another folder by --out
     error: cannot read nowhere: No such file or directory (os error 2)
     error: cannot read nowhere: No such file or directory (os error 2)
     error: .: this folder has no shard with a finished line

@@ -6,7 +6,7 @@
 
 use crate::map_log::standing_log;
 use crate::run::Run;
-use state::{State, read_state};
+use robot::state::{State, read_state};
 use std::fs;
 use std::path::PathBuf;
 

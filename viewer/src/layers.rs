@@ -2,9 +2,9 @@
 //! recording and the pictures use the same layers, so that a color has the same meaning in both.
 
 use crate::scene::TimeUnit;
-use drawing::palette::{self, Rgb};
 use interfaces::CellState;
 use mapper::Mapper;
+use results::drawing::palette::{self, Rgb};
 
 /// A layer of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use crate::scene::Scene;
 use crate::view::View;
-use drawing::palette::{self, Rgb};
+use results::drawing::palette::{self, Rgb};
 
 /// How an entry of a legend is drawn.
 #[derive(Clone, Copy)]

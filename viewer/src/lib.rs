@@ -1,8 +1,8 @@
 //! The display of a run: the scene of a world, the layers of a map, pictures, a moving picture, and the Rerun
-//! recording.
+//! recording. This is the only crate that knows Rerun, and only with the feature `recording`; it must not
+//! know command lines, world files, or how a run is made.
 //!
-//! This is the only crate that knows Rerun, and only with the feature `recording`. It reads the state of a run and changes
-//! nothing: no result depends on the display. The crate must not know command lines, world files, or how a run is made.
+//! It reads the state of a run and changes nothing: no result depends on the display.
 
 pub mod layers;
 mod legend;

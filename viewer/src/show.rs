@@ -5,10 +5,10 @@ use crate::pictures::{self, Film, Trails};
 use crate::recording::{Recorder, RecordingError};
 use crate::scene::Scene;
 use crate::view::{Trail, View};
-use drawing::PictureError;
 use interfaces::GridFrame;
 use mapper::Mapper;
 use nalgebra::Isometry2;
+use results::drawing::PictureError;
 use results::thinned::Goals;
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! A world, two robots, a controller: `cargo run -p worldfile --example hello`. `worldfile/hello.md` explains it
+//! A world, two robots, a controller: `cargo run -p curious-worldfile --example hello`. `worldfile/hello.md` explains it
 //! line by line.
 
 use interfaces::{LaserReading, Twist};

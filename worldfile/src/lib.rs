@@ -1,10 +1,9 @@
-//! World files: from texts and pictures to the specs of the crate `sim`.
+//! World files: from texts and pictures to the specs of the crate `sim`. It must not know how a world is
+//! simulated, or how robots learn.
 //!
 //! [`physics`] and [`grid`] read the two kinds of world files (TOML), [`floor_plan`] converts pictures and ROS maps
 //! to walls, and [`shipped`] has the worlds that are part of the program. All errors of a file are reported at
 //! once, with the line and a valid value.
-//!
-//! This crate must not know how a world is simulated, or how robots learn.
 //!
 //! ```
 //! use interfaces::{Twist, World};

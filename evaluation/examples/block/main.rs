@@ -5,7 +5,7 @@
 //! the map of a robot with exact poses.
 //!
 //! ```text
-//! cargo run -p evaluation --example block -- LENGTH DEPTH [SEED [TRIALS [MINUTES [BEAMS [VIEW_DEG [SWEEP_S]]]]]]
+//! cargo run -p curious-evaluation --example block -- LENGTH DEPTH [SEED [TRIALS [MINUTES [BEAMS [VIEW_DEG [SWEEP_S]]]]]]
 //! ```
 
 mod world;

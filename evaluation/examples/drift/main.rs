@@ -7,10 +7,10 @@
 //! estimates put fixed corners.
 //!
 //! ```text
-//! cargo run -p evaluation --example drift -- generate=1000 seed=1000 minutes=20 beams=360 noise=0.01
-//! cargo run -p evaluation --example drift -- world=worlds/house.toml closed=1
-//! cargo run -p evaluation --example drift -- carried_m=3 carried_deg=180
-//! cargo run -p evaluation --example drift -- shelves=1
+//! cargo run -p curious-evaluation --example drift -- generate=1000 seed=1000 minutes=20 beams=360 noise=0.01
+//! cargo run -p curious-evaluation --example drift -- world=worlds/house.toml closed=1
+//! cargo run -p curious-evaluation --example drift -- carried_m=3 carried_deg=180
+//! cargo run -p curious-evaluation --example drift -- shelves=1
 //! ```
 
 mod corners;

@@ -6,7 +6,7 @@
 //! both maps. The estimation never sees these poses.
 //!
 //! ```text
-//! cargo run -p evaluation --example log_trajectory -- LOG [FOLDER] [no-loops]
+//! cargo run -p curious-evaluation --example log_trajectory -- LOG [FOLDER] [no-loops]
 //! ```
 
 mod comparison;

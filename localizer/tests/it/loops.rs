@@ -222,7 +222,7 @@ fn no_reading_has_no_trajectory() {
 }
 
 /// ```text
-/// cargo test -p localizer --test it loops::long -- --ignored --nocapture
+/// cargo test -p curious-localizer --test it loops::long -- --ignored --nocapture
 /// ```
 #[test]
 #[ignore = "takes minutes"]

@@ -4,8 +4,6 @@ use super::pen::{Pen, Sheet};
 use crate::is_reference;
 use crate::statistics::Estimate;
 use crate::strategy::StrategyResult;
-use drawing::palette;
-use drawing::{INK, ink, why};
 use evaluation::trials::Length;
 use evaluation::trials::Metric;
 use plotters::chart::ChartContext;
@@ -14,6 +12,8 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
+use results::drawing::palette;
+use results::drawing::{INK, ink, why};
 use results::numbers::thousands;
 use std::ops::Range;
 

@@ -7,13 +7,13 @@ mod plan;
 
 use super::run::{Run, conditions};
 use super::{ONE_BY_ONE, Report};
-use drawing::palette;
-use drawing::{Canvas, PictureError, ink, why};
 use evaluation::trials::Metric;
 use pen::{Pen, Sheet, svg};
 pub use plan::Plan;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
+use results::drawing::palette;
+use results::drawing::{Canvas, PictureError, ink, why};
 use results::output::write_file;
 use std::collections::BTreeSet;
 use std::path::Path;

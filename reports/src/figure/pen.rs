@@ -1,11 +1,11 @@
 //! Lengths, lines and text for PNG and SVG figures.
 
-use drawing::{FONT, INK, px, register_fonts, why};
 use interfaces::printable;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::TextStyle;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use results::drawing::{FONT, INK, px, register_fonts, why};
 
 /// A part of a figure to draw on.
 pub(super) type Sheet<DB> = DrawingArea<DB, Shift>;

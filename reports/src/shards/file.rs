@@ -16,6 +16,7 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Debug)]
 pub struct ShardFile {
     path: PathBuf,
+    shard: Shard,
     key: u64,
     finished: BTreeSet<u64>,
     file: Mutex<Appended>,
@@ -57,6 +58,7 @@ impl ShardFile {
             scan.intact = line.len() as u64;
         }
         Ok(Self {
+            shard,
             key: header.key(),
             finished: scan.lines.into_keys().collect(),
             file: Mutex::new(Appended { file, intact: scan.intact, failure: None }),
@@ -67,6 +69,11 @@ impl ShardFile {
     /// The file.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The shard.
+    pub(super) fn shard(&self) -> Shard {
+        self.shard
     }
 
     /// The numbers of the trials that were finished when the file was opened.

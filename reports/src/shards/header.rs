@@ -1,6 +1,6 @@
 use super::Shard;
 use super::line::{seal, unseal};
-use build_id::{BUILD, other_build};
+use robot::{BUILD, other_build};
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Debug, Write};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};

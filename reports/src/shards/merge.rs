@@ -1,9 +1,9 @@
 //! All shards of a folder, and their trials in the order of the experiment.
 
-use super::file::shards_in;
+use super::file::{check_builds, shards_in};
 use super::line::{read, unseal};
 use super::scan::Scan;
-use super::{Header, Shard, ShardError};
+use super::{Header, Shard, ShardError, array};
 use evaluation::trials::Trial;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -77,6 +77,34 @@ impl Shards {
             scan.map_or(0, Scan::finished) < shard.trials(self.header.trials)
         };
         self.shards().filter(is_missing).map(|(shard, _)| shard.number()).collect()
+    }
+
+    /// Checks that this program can merge the shards: that they are its own, of its version and, unless it allows another
+    /// one, of its build, and that no trial is missing.
+    ///
+    /// # Errors
+    ///
+    /// When they are not.
+    pub fn check(&self, program: &str, version: &str, allows_other_build: bool) -> Result<(), ShardError> {
+        let refuse = |why: String| Err(ShardError::Merge { folder: self.folder.clone(), why });
+        let shown = self.folder.display();
+        let Header { program: found, version: found_version, .. } = &self.header;
+        if found != program {
+            return refuse(format!("has shards of {found}: merge them with `{found} merge {shown}`"));
+        }
+        if found_version != version {
+            return refuse(format!("has shards of version {found_version}: merge them with that version"));
+        }
+        if !allows_other_build {
+            check_builds(&self.folder)?;
+        }
+        let missing = self.missing();
+        let Some((first, count)) = missing.first().zip(self.header.shard().map(Shard::count)) else {
+            return Ok(());
+        };
+        let file = Shard::new(*first, count).map(Shard::file_name).unwrap_or_default();
+        let which = format!("the shards {} of {count} lack trials, the first is {file}", array(&missing));
+        refuse(format!("is not complete: {which}; run those shards again"))
     }
 
     /// All trials in the order of the experiment. They are read a few hundred at a time, and parsed on all threads.

@@ -15,8 +15,10 @@ mod file;
 mod header;
 mod line;
 mod merge;
+mod run;
 mod scan;
 mod shard;
+mod status;
 #[cfg(test)]
 mod tests;
 
@@ -27,6 +29,7 @@ pub use merge::{Shards, Trials};
 pub use scan::Scan;
 pub use shard::{InvalidShard, Shard, array};
 
+use evaluation::trials::TrialError;
 use results::output::OutputError;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -53,6 +56,20 @@ pub enum ShardError {
         /// What is invalid, with the number of the line, and what to do.
         why: String,
     },
+    /// The shards of a folder cannot be merged.
+    #[error("{} {why}", folder.display())]
+    Merge {
+        /// The folder.
+        folder: PathBuf,
+        /// The reason, and what to do.
+        why: String,
+    },
+    /// A finished trial cannot be written.
+    #[error("{0}; free space, and start the shard again: the trials before are kept")]
+    Append(OutputError),
+    /// A trial cannot run.
+    #[error(transparent)]
+    Trial(#[from] TrialError),
 }
 
 impl ShardError {

@@ -8,7 +8,7 @@ use evaluation::physics_trial::PhysicsTrial;
 use evaluation::trial_state::TrialFacts;
 use interfaces::Twist;
 use robot::Pilot;
-use state::StateFile;
+use robot::state::StateFile;
 use std::fmt::Display;
 use std::io;
 use std::time::Duration;

@@ -4,7 +4,7 @@ use crate::args::Args;
 use anyhow::anyhow;
 use curious::program::{Failure, input};
 use curious::terminal::say;
-use state::{Facts, State, StateError, StateFile};
+use robot::state::{Facts, State, StateError, StateFile};
 use std::fmt::Display;
 use std::io::stderr;
 use std::time::Duration;

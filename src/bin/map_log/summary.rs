@@ -3,11 +3,11 @@
 use crate::logs_in_order::begin_s;
 use crate::second_pass::{Learned, ignored};
 use anyhow::Context;
-use build_id::BUILD;
 use curious::words::{how_often, list};
 use interfaces::{CellState, PoseMode};
 use mapper::{NoReturn, NoReturnEvidence};
 use results::numbers::percent;
+use robot::BUILD;
 use serde::Serialize;
 use std::fmt;
 use survey::{Place, Survey, SurveySettings, places};

@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand};
 use curious::program::{Failure, input, start};
 use curious::terminal::print;
 use curious::words::{date, length_of, list};
-use state::{Facts, State, StateFile, earlier_name, read_state};
+use robot::state::{Facts, State, StateFile, earlier_name, read_state};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use survey::{SavedLogs, SurveyedLog};

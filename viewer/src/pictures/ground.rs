@@ -3,10 +3,10 @@
 use super::panel::{Chart, pair};
 use crate::legend::{self, Legend, Mark};
 use crate::scene::Scene;
-use drawing::palette::{self, Rgb};
-use drawing::{ink, why};
 use nalgebra::Point2;
 use plotters::prelude::*;
+use results::drawing::palette::{self, Rgb};
+use results::drawing::{ink, why};
 
 /// Draws everything except the robots.
 pub(super) fn draw(chart: &Chart, scene: &Scene) -> Result<(), String> {

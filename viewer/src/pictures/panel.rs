@@ -3,8 +3,6 @@
 use crate::layers::Layer;
 use crate::legend::Mark;
 use crate::scene::{TimeUnit, extent};
-use drawing::palette::Rgb;
-use drawing::{Area, INK, ink, px, text, why};
 use interfaces::GridFrame;
 use mapper::Mapper;
 use nalgebra::Point2;
@@ -12,6 +10,8 @@ use plotters::chart::ChartContext;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use results::drawing::palette::Rgb;
+use results::drawing::{Area, INK, ink, px, text, why};
 
 /// A point as plotters has points.
 pub(super) fn pair(point: &Point2<f64>) -> (f64, f64) {

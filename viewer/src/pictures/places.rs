@@ -4,12 +4,12 @@ use super::panel::{Panel, pair};
 use crate::layers::Layer;
 use crate::legend::{Legend, Mark};
 use crate::scene::TimeUnit;
-use drawing::palette;
-use drawing::{Area, ink, why};
 use mapper::Mapper;
 use nalgebra::Point2;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
+use results::drawing::palette;
+use results::drawing::{Area, ink, why};
 
 /// Draws the map, the cells that changed, and the number of each place at its corner. A place is a rectangle, m.
 pub(super) fn draw(

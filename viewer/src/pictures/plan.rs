@@ -5,11 +5,11 @@ use super::panel::{Chart, Panel, pair};
 use super::plate::Plate;
 use crate::legend::{self, Legend, Mark};
 use crate::scene::{Robot, Scene, Sector, span};
-use drawing::palette;
-use drawing::{Area, why};
 use nalgebra::{Isometry2, Point2};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
+use results::drawing::palette;
+use results::drawing::{Area, why};
 use std::f64::consts::TAU;
 
 /// The corners of the polygon that a circle is drawn as.

@@ -2,10 +2,10 @@ use super::*;
 use crate::legend::Mark;
 use crate::scene::Robot;
 use crate::tests::FakeRun;
-use drawing::palette::{self, Rgb};
 use image::RgbImage;
 use interfaces::CellState;
 use nalgebra::Point2;
+use results::drawing::palette::{self, Rgb};
 use results::output::UnfinishedFile;
 
 struct Drawn {

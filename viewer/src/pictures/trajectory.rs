@@ -7,11 +7,11 @@ use crate::layers::Layer;
 use crate::legend::{Legend, Mark};
 use crate::scene::{Robot, Scene, extent};
 use crate::view::Trail;
-use drawing::palette::{self, Rgb};
-use drawing::{Area, ink, why};
 use mapper::Mapper;
 use nalgebra::Point2;
 use plotters::prelude::*;
+use results::drawing::palette::{self, Rgb};
+use results::drawing::{Area, ink, why};
 use results::thinned::Goals;
 
 /// Draws the scene, every trail with its start, and the goals. Below the scene is the map, where there is one.

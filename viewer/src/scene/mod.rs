@@ -7,9 +7,9 @@ mod log;
 #[cfg(feature = "simulation")]
 mod physics;
 
-use drawing::palette::{self, Rgb};
 use interfaces::{CellReading, GridFrame, LaserReading, World};
 use nalgebra::{Isometry2, Point2, Vector2};
+use results::drawing::palette::{self, Rgb};
 
 /// The corners of a polygon, m; the last corner is joined to the first.
 pub type Outline = Vec<Point2<f64>>;

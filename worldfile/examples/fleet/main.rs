@@ -1,7 +1,7 @@
 //! The speed of the simulator with many robots.
 //!
 //! ```text
-//! cargo run --release -p worldfile --example fleet -- --robots 10 --seconds 60
+//! cargo run --release -p curious-worldfile --example fleet -- --robots 10 --seconds 60
 //! ```
 //!
 //! Four rooms of 12 × 12 m (`--tiles 4`: 4 × 4 of these), walls of 0.05 m. Robot 1 drives in a circle, the others

@@ -344,7 +344,7 @@ fn a_session_ends_the_first_map() {
 }
 
 /// ```text
-/// cargo test -p localizer --test it loops::online::long -- --ignored --nocapture
+/// cargo test -p curious-localizer --test it loops::online::long -- --ignored --nocapture
 /// ```
 #[test]
 #[ignore = "takes minutes"]
@@ -379,7 +379,7 @@ fn long_loops_are_closed() {
 /// The longest time for a reading where thousands are read again, in a thread and at once. On a machine without other work:
 ///
 /// ```text
-/// cargo test -p localizer --test it loops::online::thousands -- --ignored --nocapture
+/// cargo test -p curious-localizer --test it loops::online::thousands -- --ignored --nocapture
 /// ```
 #[test]
 #[ignore = "takes minutes"]

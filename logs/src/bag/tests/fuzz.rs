@@ -1,7 +1,7 @@
 //! Damaged bags are read or refused: no panic, no hang, no memory without bounds. More inputs by
 //!
 //! ```text
-//! FUZZ_INPUTS=1000000 cargo test -p logs damaged_bags
+//! FUZZ_INPUTS=1000000 cargo test -p curious-logs damaged_bags
 //! ```
 
 use super::builder::*;

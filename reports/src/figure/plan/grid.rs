@@ -2,10 +2,10 @@
 
 use super::{Entry, Mark, dot};
 use crate::figure::pen::{Pen, Sheet};
-use drawing::palette::{self, CURIOUS};
-use drawing::{INK, ink, why};
 use interfaces::Cell;
 use plotters::prelude::*;
+use results::drawing::palette::{self, CURIOUS};
+use results::drawing::{INK, ink, why};
 use sim::grid::GridSpec;
 use std::f64::consts::TAU;
 use std::ops::Range;

@@ -4,10 +4,10 @@ mod grid;
 mod physics;
 
 use super::pen::{Pen, Sheet};
-use drawing::palette::CURIOUS;
-use drawing::{ink, why};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
+use results::drawing::palette::CURIOUS;
+use results::drawing::{ink, why};
 use sim::grid::GridSpec;
 use sim::physics::WorldSpec;
 

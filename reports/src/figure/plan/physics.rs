@@ -2,10 +2,10 @@
 
 use super::{Entry, Mark, dot};
 use crate::figure::pen::{Pen, Sheet};
-use drawing::palette;
-use drawing::{INK, ink, why};
 use nalgebra::Point2;
 use plotters::prelude::*;
+use results::drawing::palette;
+use results::drawing::{INK, ink, why};
 use sim::physics::{BehaviorSpec, Repeat, WorldSpec};
 
 const FURNITURE: RGBColor = ink(palette::FURNITURE);

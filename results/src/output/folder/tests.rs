@@ -281,7 +281,7 @@ fn events() -> impl Strategy<Value = Vec<Event>> {
     collection::vec(event, 1..9)
 }
 
-/// `FOLDERS=20000 cargo test -p results random_folders` tries more folders.
+/// `FOLDERS=20000 cargo test -p curious-results random_folders` tries more folders.
 #[test]
 fn random_folders_lose_nothing() {
     let cases = std::env::var("FOLDERS").map_or(500, |count| count.parse().unwrap());

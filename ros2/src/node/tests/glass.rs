@@ -58,5 +58,7 @@ fn nothing_is_cleared_through_glass() {
     let [late, all, none] = [&mut learned, &mut free, &mut ignored].map(|pair| pair.free_at(2.5 * LEARNS_S));
     assert!(late == none && none + 1000 < all, "{late} {none} {all}");
     assert!(!learned.is_said("count as free"));
-    assert!(learned.node.robot.filter().unwrap().no_returns().evidence().all(|scanner| scanner.swallowed() > 0.1));
+    assert!(
+        learned.node.robot.filter().unwrap().no_returns().evidence().all(|scanner| scanner.swallowed() > 0.1)
+    );
 }

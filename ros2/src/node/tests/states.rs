@@ -3,7 +3,7 @@
 //! `cargo test -p ros2 write_the_state -- --ignored`
 
 use super::*;
-use state::{State, read_state};
+use robot::state::{State, read_state};
 use std::path::PathBuf;
 
 /// The version of the format that this program writes.

@@ -3,9 +3,9 @@
 use super::{Kind, ON_CHANGE, Tracks, color, escape};
 use crate::scene::Scene;
 use crate::view::View;
-use drawing::palette::{self, Rgb};
 use localizer::PoseState;
 use rerun::{RecordingStreamResult, Scalars, SeriesLines, StateChange, StateConfiguration};
+use results::drawing::palette::{self, Rgb};
 
 /// The strategy that chose the goal.
 pub(in crate::recording) const STRATEGY: &str = "/curves/strategy";

@@ -3,9 +3,9 @@
 use super::{Tracks, WORLD, color, labels, position};
 use crate::legend::{self, Mark};
 use crate::scene::extent;
-use drawing::palette;
 use nalgebra::Vector2;
 use rerun::{LineStrips2D, Radius, RecordingStreamResult};
+use results::drawing::palette;
 
 /// The height of the strip below the map that holds the legend, as a share of the height of the map.
 pub(in crate::recording) const SHARE: f64 = 0.16;

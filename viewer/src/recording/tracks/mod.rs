@@ -20,12 +20,12 @@ pub(super) use robots::robot;
 use super::entity::{Entity, Kind, Track};
 use crate::scene::Scene;
 use crate::view::View;
-use drawing::palette::Rgb;
 use interfaces::GridFrame;
 use nalgebra::Point2;
 use rerun::external::re_sdk_types::datatypes::AnnotationInfo;
 use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult};
 use rerun::{EntityPathPart, TextLog, TextLogLevel};
+use results::drawing::palette::Rgb;
 use robot::Level;
 
 /// The entity above everything that has a position.

@@ -5,9 +5,9 @@ use super::{
 };
 use crate::scene::{Outline, span};
 use crate::view::View;
-use drawing::palette;
 use nalgebra::Point2;
 use rerun::RecordingStreamResult;
+use results::drawing::palette;
 
 /// More names than this would hide the map; a viewer still shows them one by one.
 const MAX_LABELS: usize = 4;

@@ -4,10 +4,10 @@ use super::{EVENTS, LABEL, ON_CHANGE, Strip, Tracks, WORLD, color, escape, label
 use super::{position, strips};
 use crate::scene::TimeUnit;
 use crate::view::{View, is_next_point};
-use drawing::palette;
 use interfaces::rotation;
 use nalgebra::{Isometry2, Vector2};
 use rerun::{Arrows2D, AsComponents, Points2D, Radius, RecordingStreamResult, Transform3D};
+use results::drawing::palette;
 
 /// A part of a robot.
 pub(in crate::recording) fn robot(name: &str, part: &str) -> String {

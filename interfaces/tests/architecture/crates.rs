@@ -1,0 +1,159 @@
+//! Which crate may depend on which.
+
+use crate::workspace::{needs, needs_without_features, packages};
+
+/// Every crate, and the crates of the workspace that it may depend on.
+const ALLOWED: &[(&str, &[&str])] = &[
+    ("interfaces", &[]),
+    ("sim", &["interfaces"]),
+    ("worldfile", &["interfaces", "sim"]),
+    ("stage", &["interfaces", "sim", "worldfile"]),
+    ("mapper", &["interfaces"]),
+    ("localizer", &["interfaces", "mapper"]),
+    ("logs", &["interfaces"]),
+    ("agent", &["interfaces", "mapper"]),
+    ("controller", &["interfaces"]),
+    ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
+    ("survey", &["interfaces", "mapper", "localizer", "logs", "robot"]),
+    ("results", &["interfaces", "mapper"]),
+    ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "results"]),
+    ("reports", &["interfaces", "sim", "robot", "results", "evaluation"]),
+    ("environments", &["interfaces", "sim", "worldfile", "mapper", "robot", "evaluation"]),
+    (
+        "python",
+        &[
+            "interfaces",
+            "sim",
+            "worldfile",
+            "stage",
+            "mapper",
+            "localizer",
+            "logs",
+            "agent",
+            "robot",
+            "survey",
+            "evaluation",
+            "environments",
+        ],
+    ),
+    (
+        "viewer",
+        &[
+            "interfaces",
+            "sim",
+            "mapper",
+            "localizer",
+            "agent",
+            "controller",
+            "robot",
+            "results",
+            "evaluation",
+        ],
+    ),
+    (
+        "curious",
+        &[
+            "interfaces",
+            "sim",
+            "worldfile",
+            "stage",
+            "mapper",
+            "localizer",
+            "logs",
+            "agent",
+            "controller",
+            "robot",
+            "survey",
+            "results",
+            "evaluation",
+            "reports",
+            "viewer",
+        ],
+    ),
+    (
+        "ros2",
+        &[
+            "interfaces",
+            "sim",
+            "worldfile",
+            "mapper",
+            "localizer",
+            "logs",
+            "agent",
+            "controller",
+            "robot",
+            "survey",
+        ],
+    ),
+];
+
+/// Packages that only these crates may have as a dependency.
+const RESERVED: &[(&str, &[&str])] =
+    &[("rerun", &["viewer", "curious"]), ("rapier2d", &["sim"]), ("ros2-client", &["ros2"])];
+
+/// The crates that must build without Rerun.
+const WITHOUT_RERUN: &[&str] = &[
+    "interfaces",
+    "sim",
+    "worldfile",
+    "stage",
+    "mapper",
+    "localizer",
+    "logs",
+    "agent",
+    "controller",
+    "robot",
+    "survey",
+    "results",
+    "evaluation",
+    "reports",
+    "ros2",
+    "environments",
+    "python",
+];
+
+#[test]
+fn every_crate_uses_only_what_it_may() {
+    let packages = packages();
+    let is_ours = |name: &String| packages.iter().any(|package| package.name == *name);
+    let mut errors = Vec::new();
+    for package in &packages {
+        let Some((_, allowed)) = ALLOWED.iter().find(|(name, _)| *name == package.name) else {
+            errors.push(format!("{} is not in the list of crates", package.name));
+            continue;
+        };
+        let ours = package.dependencies.iter().filter(|name| is_ours(name));
+        let forbidden = ours.filter(|name| !allowed.contains(&name.as_str()));
+        errors.extend(forbidden.map(|name| format!("{} must not use {name}", package.name)));
+        for (name, users) in RESERVED {
+            if package.dependencies.iter().any(|other| other == name)
+                && !users.contains(&package.name.as_str())
+            {
+                errors.push(format!("{} must not use {name}: only {} may", package.name, users.join(", ")));
+            }
+        }
+    }
+    assert!(errors.is_empty(), "{}", errors.join("\n"));
+}
+
+#[test]
+fn only_the_viewer_and_the_programs_need_rerun() {
+    for name in WITHOUT_RERUN {
+        let needs = needs(name);
+        assert_eq!(needs[0], *name);
+        let rerun: Vec<&String> =
+            needs.iter().filter(|name| *name == "rerun" || name.starts_with("re_")).collect();
+        assert!(rerun.is_empty(), "{name} needs {rerun:?}");
+    }
+    assert!(needs("curious").iter().any(|name| name == "rerun"), "the test sees no rerun anywhere");
+}
+
+#[test]
+fn a_robot_owner_builds_no_simulator() {
+    let simulation = ["rerun", "sim", "rapier2d", "evaluation", "reports", "parquet"];
+    let all = needs("curious");
+    assert!(simulation.iter().all(|name| all.iter().any(|needed| needed == name)), "{all:?}");
+    let alone = needs_without_features("curious");
+    let found: Vec<_> = simulation.iter().filter(|name| alone.iter().any(|needed| needed == *name)).collect();
+    assert!(found.is_empty(), "map_log alone needs {found:?}");
+}

@@ -1,0 +1,256 @@
+//! The file of a state, and the thread that writes it.
+
+use super::format::{State, StateError};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// The time between two writings: what a run loses at most.
+const EVERY: Duration = Duration::from_secs(60);
+
+/// The error for a file that holds no state of this run.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// The file cannot be read.
+    #[error("cannot read it: {0}")]
+    Read(#[from] io::Error),
+    /// The file is read, but cannot be used.
+    #[error(transparent)]
+    State(#[from] StateError),
+}
+
+/// A file that is replaced by the present state now and then.
+///
+/// From [`open`](Self::open) on it is locked: what another run saved between the reading and the writing of this one would
+/// be lost. It is written in a thread of its own. A run that is killed leaves the last complete file, and at most an
+/// unfinished one and a lock with other names, which the next run uses again.
+#[derive(Debug)]
+pub struct StateFile {
+    /// Its name as given, and the file that it leads to: a link stays one, and all names of a file have one lock.
+    path: PathBuf,
+    target: PathBuf,
+    every: Duration,
+    last: Instant,
+    writing: Option<JoinHandle<io::Result<()>>>,
+    _lock: FileLock,
+}
+
+impl StateFile {
+    /// Locks the file with this name, before it is read, until the value is dropped. Nothing is written yet.
+    ///
+    /// # Errors
+    ///
+    /// When another run uses it, when it is no file that can be replaced (a folder, a pipe, a device), and when its folder
+    /// cannot be written.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        match fs::metadata(&target) {
+            Ok(known) if !known.is_file() => return Err(io::Error::other(NO_FILE)),
+            _ => {}
+        }
+        let lock = FileLock::new(&with_ending(&target, "lock"))?;
+        Ok(Self {
+            path: path.to_owned(),
+            target,
+            every: EVERY,
+            last: Instant::now(),
+            writing: None,
+            _lock: lock,
+        })
+    }
+
+    /// The same, written once in this time.
+    #[must_use]
+    pub fn every(mut self, every: Duration) -> Self {
+        self.every = every;
+        self
+    }
+
+    /// The name of the file, as given.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The state in the file; `None` if there is no such file.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be read, or is not a state.
+    pub fn load(&self) -> Result<Option<State>, LoadError> {
+        match read_state(&self.target) {
+            Err(LoadError::Read(missing)) if missing.kind() == io::ErrorKind::NotFound => Ok(None),
+            state => state.map(Some),
+        }
+    }
+
+    /// Keeps the file as it is now beside it, with the ending `.earlier`, so that what is saved next can be undone.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be kept.
+    pub fn keep_earlier(&self) -> io::Result<()> {
+        let unfinished = with_ending(&self.target, "unfinished");
+        fs::copy(&self.target, &unfinished)?;
+        fs::rename(unfinished, earlier_name(&self.target))
+    }
+
+    /// Goes back to the file that was [kept](Self::keep_earlier); there is none then.
+    ///
+    /// # Errors
+    ///
+    /// When no file was kept.
+    pub fn restore_earlier(&self) -> io::Result<()> {
+        fs::rename(earlier_name(&self.target), &self.target)
+    }
+
+    /// Whether it is time to [`save`](Self::save).
+    pub fn is_due(&self) -> bool {
+        self.last.elapsed() >= self.every && self.writing.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// Whether a state is being written now.
+    pub fn is_writing(&self) -> bool {
+        self.writing.as_ref().is_some_and(|writing| !writing.is_finished())
+    }
+
+    /// Begins to write a state. `state` is called in the thread that writes: what takes long belongs there.
+    ///
+    /// # Errors
+    ///
+    /// When the writing before has failed. The new one has begun nevertheless.
+    pub fn save(&mut self, state: impl FnOnce() -> State + Send + 'static) -> io::Result<()> {
+        let before = self.wait();
+        let target = self.target.clone();
+        self.last = Instant::now();
+        self.writing = Some(std::thread::spawn(move || write(&target, &state())));
+        before
+    }
+
+    /// Waits until the last state is on the disk.
+    ///
+    /// # Errors
+    ///
+    /// When it could not be written. The file is as it was then.
+    pub fn wait(&mut self) -> io::Result<()> {
+        let Some(writing) = self.writing.take() else { return Ok(()) };
+        writing.join().unwrap_or_else(|_| Err(io::Error::other("the thread that writes has ended")))
+    }
+}
+
+impl Drop for StateFile {
+    fn drop(&mut self) {
+        self.wait().ok(); // the lock lasts until the last writing has ended
+    }
+}
+
+/// How often a lock is tried, in steps of 10 ms.
+const LOCK_TRIES: u32 = 20;
+/// Why something is no state file.
+const NO_FILE: &str = "it is not a file (but a folder, a pipe or a device)";
+
+/// The state in a file, whoever uses it: it is complete at any time.
+///
+/// # Errors
+///
+/// When there is none, or it cannot be read.
+pub fn read_state(path: &Path) -> Result<State, LoadError> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::other(NO_FILE).into()); // a pipe would wait for ever
+    }
+    let mut file = File::open(path)?;
+    // Another kind of file can be very long.
+    let mut bytes = vec![0; State::MAGIC.len()];
+    match file.read_exact(&mut bytes) {
+        Ok(()) if bytes == State::MAGIC => {}
+        Err(other) if other.kind() != io::ErrorKind::UnexpectedEof => return Err(other.into()),
+        _ => return Err(StateError::OtherKind.into()),
+    }
+    file.read_to_end(&mut bytes)?;
+    Ok(State::from_bytes(&bytes)?)
+}
+
+/// The name of the file that [`StateFile::keep_earlier`] keeps: `house.state.earlier` for `house.state`.
+pub fn earlier_name(path: &Path) -> PathBuf {
+    with_ending(path, "earlier")
+}
+
+/// A file that one process has, while it is open.
+#[derive(Debug)]
+struct FileLock {
+    path: PathBuf,
+    file: Option<File>,
+}
+
+impl FileLock {
+    fn new(path: &Path) -> io::Result<Self> {
+        for _ in 0..LOCK_TRIES {
+            let file = File::options().write(true).create(true).truncate(false).open(path)?;
+            match file.try_lock() {
+                // A program that is being started holds the locks of the one that starts it for a moment.
+                Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
+                // Not every file system has locks. Another run can have removed the file after it was opened here.
+                Ok(()) | Err(TryLockError::Error(_)) if is_file_at(&file, path) => {
+                    return Ok(Self { path: path.to_owned(), file: Some(file) });
+                }
+                Ok(()) | Err(TryLockError::Error(_)) => {}
+            }
+        }
+        let why = "another run uses it; wait for its end, or give another file by --state";
+        Err(io::Error::new(io::ErrorKind::ResourceBusy, why))
+    }
+}
+
+impl Drop for FileLock {
+    fn drop(&mut self) {
+        fs::remove_file(&self.path).ok(); // while it is locked: whoever has opened it looks again
+        self.file.take();
+    }
+}
+
+/// Whether an open file still has this name.
+#[cfg(unix)]
+fn is_file_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let id = |known: fs::Metadata| (known.dev(), known.ino());
+    file.metadata().is_ok_and(|open| fs::metadata(path).is_ok_and(|named| id(open) == id(named)))
+}
+
+/// An open file cannot be removed on this system.
+#[cfg(not(unix))]
+fn is_file_at(_file: &File, _path: &Path) -> bool {
+    true
+}
+
+/// Replaces the file at once and completely, or not at all.
+fn write(path: &Path, state: &State) -> io::Result<()> {
+    let bytes = state.to_bytes().map_err(io::Error::other)?;
+    let unfinished = with_ending(path, "unfinished");
+    let mut file = File::create(&unfinished)?;
+    let written = file.write_all(&bytes).and_then(|()| file.sync_all());
+    let renamed = written.and_then(|()| fs::rename(&unfinished, path));
+    if renamed.is_err() {
+        fs::remove_file(&unfinished).ok(); // the reason for the end is reported
+        return renamed;
+    }
+    sync_folder(path);
+    Ok(())
+}
+
+/// Brings the new name to the disk as well. Not every file system can do it; the file is complete under one of its names.
+fn sync_folder(path: &Path) {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    File::open(folder).and_then(|folder| folder.sync_all()).ok();
+}
+
+/// The name of a file beside the state: `house.state.unfinished` while it is incomplete.
+fn with_ending(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".");
+    name.push(ending);
+    path.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,180 @@
+use super::*;
+use crate::state::Facts;
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+
+fn state() -> State {
+    let facts =
+        Facts::default().with("world", "house").with_settings("mapper", &BTreeMap::from([("max_gap", 8.0)]));
+    State::default().with("mapper", facts, vec![1, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 4])
+}
+
+#[test]
+fn a_file_appears_when_it_is_complete_and_is_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.state");
+    fs::write(with_ending(&path, "unfinished"), "of a killed run").unwrap();
+    fs::write(with_ending(&path, "lock"), "").unwrap();
+    let mut file = StateFile::open(&path).unwrap();
+    assert!(file.load().unwrap().is_none() && !file.is_due());
+    file.save(State::default).unwrap();
+    file.save(state).unwrap();
+    file.wait().unwrap();
+    assert_eq!(file.load().unwrap(), Some(state()));
+    let file = file.every(Duration::ZERO);
+    assert!(file.is_due());
+    drop(file);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    fs::write(&path, "[world]").unwrap();
+    assert_eq!(read_state(&path).unwrap_err().to_string(), "this is not a state file");
+}
+
+#[test]
+fn a_file_that_cannot_be_written_is_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let missing = folder.path().join("missing");
+    assert_eq!(StateFile::open(&missing.join("house.state")).unwrap_err().kind(), io::ErrorKind::NotFound);
+    fs::create_dir(&missing).unwrap();
+    let mut file = StateFile::open(&missing.join("house.state")).unwrap();
+    fs::remove_dir_all(&missing).unwrap();
+    file.save(state).unwrap();
+    assert_eq!(file.wait().unwrap_err().kind(), io::ErrorKind::NotFound);
+}
+
+/// The lock lasts from before the reading to after the last writing, under any name of the file.
+#[test]
+fn a_second_user_is_refused_until_the_first_has_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.state");
+    let mut file = StateFile::open(&path).unwrap();
+    let refused = |path: &Path| StateFile::open(path).unwrap_err().to_string();
+    let why = "another run uses it; wait for its end, or give another file by --state";
+    assert_eq!(refused(&path), why);
+    file.save(state).unwrap();
+    file.wait().unwrap();
+    assert_eq!(refused(&path), why);
+    #[cfg(unix)]
+    {
+        let link = folder.path().join("link.state");
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        assert_eq!(refused(&link), why);
+    }
+    assert_eq!(read_state(&path).unwrap(), state(), "whoever only reads is not refused");
+    drop(file);
+    assert_eq!(StateFile::open(&path).unwrap().load().unwrap(), Some(state()));
+}
+
+/// Many threads add one to a number in a file: no addition is lost, though the lock file comes and goes.
+#[test]
+fn whoever_has_the_lock_is_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.state");
+    let count = || match read_state(&path) {
+        Ok(state) => state.section("count", &Facts::default()).unwrap()[0],
+        Err(_) => 0,
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                for _ in 0..25 {
+                    let mut file = loop {
+                        match StateFile::open(&path) {
+                            Ok(file) => break file,
+                            Err(_) => std::thread::yield_now(),
+                        }
+                    };
+                    let next = count() + 1;
+                    file.save(move || State::default().with("count", Facts::default(), vec![next])).unwrap();
+                    file.wait().unwrap();
+                }
+            });
+        }
+    });
+    assert_eq!(count(), 100);
+}
+
+#[test]
+fn what_is_no_file_is_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let expected = "it is not a file (but a folder, a pipe or a device)";
+    assert_eq!(StateFile::open(folder.path()).unwrap_err().to_string(), expected);
+    assert_eq!(read_state(folder.path()).unwrap_err().to_string(), format!("cannot read it: {expected}"));
+}
+
+#[test]
+fn what_was_kept_comes_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.state");
+    let mut file = StateFile::open(&path).unwrap();
+    file.keep_earlier().unwrap_err();
+    file.save(state).unwrap();
+    file.wait().unwrap();
+    file.keep_earlier().unwrap();
+    file.save(State::default).unwrap();
+    file.wait().unwrap();
+    assert_eq!(read_state(&earlier_name(&path)).unwrap(), state());
+    file.restore_earlier().unwrap();
+    assert_eq!(file.load().unwrap(), Some(state()));
+    file.restore_earlier().unwrap_err();
+}
+
+#[test]
+fn other_facts_and_files_are_refused_with_a_sentence() {
+    let refused = |name: &str, facts| state().section(name, &facts).unwrap_err().to_string();
+    let house = Facts::default().with("world", "house");
+    insta::assert_snapshot!(refused("mapper", Facts::default().with("world", "office")), @"the state is of another run: `world` is `house` there, and `office` here");
+    insta::assert_snapshot!(refused("mapper", house.clone()), @"the state is of another run: `mapper.max_gap` is `8.0` there, and not set here");
+    insta::assert_snapshot!(refused("pilot", house), @"the state was saved by another program: it has no part `pilot`");
+    let read = |bytes: &[u8]| State::from_bytes(bytes).unwrap_err().to_string();
+    insta::assert_snapshot!(read(b"[world]\nname = \"house\""), @"this is not a state file");
+    insta::assert_snapshot!(read(b""), @"this is not a state file");
+    insta::assert_snapshot!(read(&state().to_bytes().unwrap()[..20]), @"the state file is damaged: its checksum does not fit");
+    // A later version of the format, with a checksum as this version has it.
+    let mut later = state().to_bytes().unwrap();
+    later[8] = 6;
+    let checksum = xxhash_rust::xxh3::xxh3_64_with_seed(&later[20..], 6);
+    later[12..20].copy_from_slice(&checksum.to_le_bytes());
+    insta::assert_snapshot!(read(&later), @"this state file has version 6 of the format, and this program reads version 5");
+}
+
+proptest! {
+    #[test]
+    fn any_flipped_bit_and_any_cut_is_refused(
+        snapshot in prop::collection::vec(0..4_u8, 0..300),
+        place in any::<prop::sample::Index>(),
+        bit in 0..8_u8,
+    ) {
+        let facts = Facts::default().with("world", "house");
+        let state = State::default().with("mapper", facts, snapshot);
+        let whole = state.to_bytes().unwrap();
+        prop_assert_eq!(State::from_bytes(&whole), Ok(state));
+        let mut flipped = whole.clone();
+        flipped[place.index(whole.len())] ^= 1 << bit;
+        prop_assert!(State::from_bytes(&flipped).is_err());
+        prop_assert!(State::from_bytes(&whole[..place.index(whole.len())]).is_err());
+    }
+}
+
+/// What was learned outlives a default: it is refused only where a person has chosen another setting.
+#[test]
+fn a_changed_default_is_accepted_and_another_choice_is_not() {
+    let settings = |gap: f64| BTreeMap::from([("max_gap", gap)]);
+    let facts = |gap: f64, default: f64| {
+        Facts::default().with_learned_settings("mapper", &settings(gap), Some(&settings(default)))
+    };
+    let is_read = |saved: Facts, now: &Facts| {
+        State::default().with("mapper", saved, vec![]).section("mapper", now).is_ok()
+    };
+    assert!(is_read(facts(8.0, 8.0), &facts(9.0, 9.0)), "the default of a later version");
+    assert!(is_read(facts(8.0, 7.0), &facts(8.0, 8.0)), "the choice became the default");
+    assert!(!is_read(facts(8.0, 7.0), &facts(9.0, 9.0)), "chosen, and now left out");
+    assert!(!is_read(facts(8.0, 8.0), &facts(9.0, 8.0)), "chosen now");
+    let more = facts(9.0, 9.0).with_learned_settings(
+        "new",
+        &BTreeMap::from([("a", 1)]),
+        Some(&BTreeMap::from([("a", 1)])),
+    );
+    assert!(is_read(facts(8.0, 8.0), &more), "a setting that did not exist");
+    assert!(is_read(more.clone(), &facts(8.0, 8.0)), "a setting that exists no more");
+    assert!(!is_read(facts(8.0, 8.0), &more.with("world", "house")));
+}

@@ -1,0 +1,107 @@
+//! Trials in houses and other physics worlds: `house_trials`.
+
+use super::TrialKind;
+use crate::program::{duration_s, pose_in_world, pose_mode};
+use crate::worlds::{Loaded, list_physics_worlds, load};
+use agent::Reward;
+use anyhow::Context;
+use clap::Args;
+use evaluation::physics_trial;
+use evaluation::trials::PhysicsRobot;
+use interfaces::PoseMode;
+use sim::physics::WorldSpec;
+
+/// Compares exploration strategies in houses with doors, people and furniture: physics worlds, with statistics.
+///
+/// Without options, five strategies are compared in eight generated houses, for 20 simulated minutes each: about four
+/// minutes on two cores. The folder house_trials_out contains the results: the curves (curves.svg, curves.png, and with
+/// several worlds curves-all-worlds.svg and .png), every number (report.json), and every trial (trials.csv, trials.parquet). The table
+/// at the end shows which strategy learned the rates of change best, and whether the difference is significant.
+///
+/// Two references show how far a strategy can get: oracle knows the true rates, and full-observation sees every cell
+/// all the time.
+///
+/// Options that can be repeated multiply: 2 worlds, 2 estimators, 3 strategies and 10 trials are 120 trials in
+/// total.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:\n  \
+        house_trials --generate 20 --strategy curious --strategy information-gain\n  \
+        house_trials --world house --world office --trials 3 --duration 1h\n  \
+        house_trials --generate 2 --seed 7 --duration 60s --save-worlds\n\n\
+        Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
+        house_trials --trials 1000 --shard 1/3 --out big     # and 2/3 and 3/3, anywhere, at any time\n  \
+        house_trials status big\n  \
+        house_trials merge big                               # the same files as without shards\n\n\
+        Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; the \
+        finished trials are reported).")]
+pub struct Houses {
+    /// The simulated time of each trial: whole seconds, or with a unit as in 90s, 20m, 1h
+    #[arg(long, value_name = "TIME", default_value = "20m", value_parser = whole_s, allow_negative_numbers = true, help_heading = "Comparison")]
+    duration: u64,
+
+    /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
+    #[arg(long, value_parser = pose_mode(pose_in_world), help_heading = "Comparison")]
+    pose: Option<PoseMode>,
+}
+
+impl TrialKind for Houses {
+    type Spec = WorldSpec;
+
+    const NAME: &str = "house_trials";
+    const OUT: &str = "house_trials_out";
+    const WORLD: &str = "A world: the name of a shipped world (see --list-worlds), a TOML file, or a Stage file \
+                         (.world). Can be repeated [default: eight generated houses, unless --generate is given]";
+    const NAMED: &[&str] = &[];
+    const GENERATED: u64 = 8;
+    const STRATEGIES: [&str; 5] = ["curious", "recency", "poisson", "random", "information-gain"];
+    const ESTIMATORS: &[&str] = &["two-state-gaps"];
+    const TRIALS: &str = "1";
+    const MAX_STEPS: &str = "15";
+
+    fn list_worlds() -> anyhow::Result<()> {
+        list_physics_worlds()
+    }
+
+    fn load(&self, name: &str) -> anyhow::Result<(WorldSpec, Vec<String>)> {
+        let Loaded { spec, warnings } = load(name)?;
+        physics_trial::source(&spec).with_context(|| format!("cannot run `{name}`"))?;
+        Ok((spec, warnings.into_iter().map(|warning| warning + "\n").collect()))
+    }
+
+    fn generate(&self, seed: u64) -> WorldSpec {
+        WorldSpec::generate_house(seed)
+    }
+
+    fn length(&self) -> u64 {
+        self.duration
+    }
+
+    fn robot(&self, reward: Reward, max_steps: u32) -> PhysicsRobot {
+        PhysicsRobot { reward, max_steps, pose: self.pose }
+    }
+
+    fn to_toml(world: &WorldSpec) -> Option<String> {
+        worldfile::physics::to_toml(world.fleet())
+    }
+}
+
+/// A time in whole seconds.
+fn whole_s(text: &str) -> Result<u64, String> {
+    let time_s = duration_s(text)?;
+    if time_s >= 1.0 && time_s.fract() == 0.0 {
+        Ok(time_s as u64)
+    } else {
+        Err("must be whole seconds".into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_whole_seconds() {
+        assert_eq!([whole_s("20m"), whole_s("1"), whole_s("0.5h")], [Ok(1200), Ok(1), Ok(1800)]);
+        assert!(["0.5", "1.25s", "-1", "nan", "x"].iter().all(|wrong| whole_s(wrong).is_err()));
+    }
+}
