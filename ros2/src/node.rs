@@ -20,7 +20,7 @@ use crate::source::{FrameNames, LiveReading, ScanCount, Source};
 use anyhow::anyhow;
 use interfaces::{LaserReading, World};
 use localizer::{GivenPoses, LocalizerSettings, LoopClosingLocalizer, PoseState, Switch};
-use mapper::{Mapper, NoReturns, ReadingError};
+use mapper::{Mapper, ReadingError, ScanFilter};
 use nalgebra::Isometry2;
 use outputs::Markers;
 use robot::{Localization, Session, explore};
@@ -30,7 +30,6 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use survey::SurveySettings;
 
 /// The longest wait for an event.
 const NAP: Duration = Duration::from_millis(100);
@@ -72,10 +71,9 @@ pub struct NodeReport {
 pub struct CuriousNode<L: Link> {
     link: L,
     parameters: Parameters,
-    settings: SurveySettings,
+    filter: ScanFilter,
     source: Source,
     mapper: Mapper,
-    no_returns: NoReturns,
     localization: Box<dyn Localization<LaserReading> + Send>,
     pilot: LivePilot,
     maps: PublishedMaps,
@@ -152,13 +150,12 @@ impl<L: Link> CuriousNode<L> {
         Ok(Self {
             link,
             parameters: parameters.clone(),
-            settings,
+            filter: ScanFilter::new(&settings.filter)?,
             source: Source::new(
                 FrameNames { map: map_frame, odom: odom_frame, base: base_frame },
                 parameters.transform_publish_period_s > 0.0,
             ),
             mapper,
-            no_returns: NoReturns::new(parameters.no_return),
             localization,
             pilot,
             maps,
@@ -250,9 +247,8 @@ impl<L: Link> CuriousNode<L> {
         if self.parameters.pose != PoseSource::Localized {
             reading.pose = in_odom;
         }
-        let mut seen = reading.clone();
-        self.no_returns.apply(&mut reading);
-        let reading = self.in_session(self.settings.filter.filtered(reading), stamp, is_restart);
+        let reading = self.filter.filter(reading);
+        let reading = self.in_session(reading, stamp, is_restart);
         if reading.time_s - self.mapper.time() > LONGEST_GAP_S && self.mapper.readings() > 0 {
             self.mapper.pause(reading.time_s);
         }
@@ -292,8 +288,7 @@ impl<L: Link> CuriousNode<L> {
         }
         self.state = state;
         if state == PoseState::Tracking {
-            seen.pose = pose;
-            self.no_returns.learn(&seen);
+            self.filter.learn(&pose);
         }
         if state != PoseState::Lost {
             self.map_to_odom = Some(pose * in_odom.inverse());

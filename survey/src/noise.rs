@@ -19,7 +19,7 @@ impl SurveySettings {
 
     pub(crate) fn learn_noise_from(&mut self, noises_m: impl Iterator<Item = f64>) {
         if let Some(largest_m) = noises_m.reduce(f64::max) {
-            self.mapper.steady.range_noise_std_m = largest_m;
+            self.set_noise(largest_m);
         }
     }
 }

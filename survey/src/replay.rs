@@ -32,13 +32,19 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
             readings,
             settings: settings.clone(),
             session,
-            filter: ScanFilter::judged(&settings.filter, NoReturns::new(NoReturn::Free)),
+            filter: settings.scan_filter(),
             now,
             next: None,
             problem: None,
         };
         replay.read();
         Ok(Some(replay))
+    }
+
+    /// Passes a reading of the log that was learned before.
+    pub(crate) fn pass(&mut self) {
+        self.sense();
+        self.act(&());
     }
 
     /// Leaves out the beams without a return that are not trusted; before, all are.

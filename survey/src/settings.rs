@@ -1,5 +1,5 @@
 use interfaces::{GridFrame, SettingsCheck, SettingsError};
-use mapper::{Mapper, MapperSettings, ScanFilterSettings};
+use mapper::{Mapper, MapperSettings, NoReturn, NoReturns, ScanFilter, ScanFilterSettings};
 use nalgebra::Point2;
 
 /// How the poses of a log are used.
@@ -41,16 +41,33 @@ pub struct SurveySettings {
 
 /// The time for which something that passes can hide a cell without an interruption of its observation, s.
 const HIDING_S: f64 = 8.0;
+/// The errors of ranges and poses together before they are learned, m: of exact poses, and of others.
+const EXACT_NOISE_M: f64 = 0.03;
+const FOUND_NOISE_M: f64 = 0.06;
 
 impl SurveySettings {
     /// The default settings for a use of poses. Poses that were found from scans have errors of some centimetres.
     pub fn of(pose: PoseMode) -> Self {
         let mut mapper = MapperSettings { max_gap: HIDING_S, ..MapperSettings::default() };
-        mapper.steady.range_noise_std_m = match pose {
-            PoseMode::Exact => 0.03,
-            PoseMode::Odometry | PoseMode::Localized => 0.06,
-        };
-        Self { pose, resolution_m: 0.05, filter: ScanFilterSettings::default(), mapper }
+        mapper.steady.range_noise_std_m = EXACT_NOISE_M;
+        let mut settings = Self { pose, resolution_m: 0.05, filter: ScanFilterSettings::default(), mapper };
+        if pose != PoseMode::Exact {
+            settings.set_noise(FOUND_NOISE_M);
+        }
+        settings
+    }
+
+    /// Sets the errors of ranges and poses together, m.
+    pub fn set_noise(&mut self, noise_m: f64) {
+        self.mapper.steady.range_noise_std_m = noise_m;
+        if self.pose != PoseMode::Exact {
+            self.filter = self.filter.clone().for_noise(noise_m);
+        }
+    }
+
+    /// The filter of scans, in which beams without a return are free.
+    pub fn scan_filter(&self) -> ScanFilter {
+        ScanFilter::judged(&self.filter, NoReturns::new(NoReturn::Free))
     }
 
     /// Checks all settings.

@@ -137,16 +137,13 @@ impl Survey {
         log: &Log,
     ) -> Result<Option<(Replay<Readings>, FoundPoses)>, PassError> {
         let Some(surveyed) = self.logs.get(number) else { return Ok(None) };
-        let (settings, offset_s, used) = (&self.settings, surveyed.entry.offset_s, surveyed.used);
-        let mut readings = log.readings()?;
+        let (settings, offset_s, used) = (self.settings_of(number), surveyed.entry.offset_s, surveyed.used);
+        let no_returns = judged(log, &surveyed.poses, &settings)?;
+        let Some(mut replay) = Replay::new(log.readings()?, &settings, offset_s)? else { return Ok(None) };
+        replay.judge(no_returns);
         // The reading before: a scan that sweeps is undone from there on.
         let before = used.saturating_sub(1);
-        for _ in 0..before {
-            readings.next().transpose()?;
-        }
-        let no_returns = judged(log, &surveyed.poses, settings)?;
-        let Some(mut replay) = Replay::new(readings, settings, offset_s)? else { return Ok(None) };
-        replay.judge(no_returns);
+        (0..before).for_each(|_| replay.pass());
         let mut poses = FoundPoses::new(surveyed.poses.get(before..).unwrap_or_default().to_vec());
         if used > 0 {
             poses.pass(replay.sense());

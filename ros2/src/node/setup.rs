@@ -16,7 +16,7 @@ pub(super) fn settings(parameters: &Parameters) -> SurveySettings {
     let mut settings = SurveySettings { resolution_m: parameters.resolution_m, ..SurveySettings::of(mode) };
     settings.filter.max_range_m = parameters.max_laser_range_m;
     settings.filter.no_return = parameters.no_return;
-    settings.mapper.steady.range_noise_std_m = parameters.range_noise_m;
+    settings.set_noise(parameters.range_noise_m);
     settings
 }
 
