@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let mut settings = survey.settings_of(logs.len());
     if let Some(noise_m) = arguments.get(4) {
-        settings.mapper.steady.range_noise_std_m = noise_m.parse()?;
+        settings.set_noise(noise_m.parse()?);
     }
     let mut routes: Vec<Route> = survey.logs().iter().map(|log| log.route().to_vec()).collect();
     let to_world = alignment(&routes, &truth);

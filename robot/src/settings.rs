@@ -105,13 +105,14 @@ impl Settings {
         agent.curious.temperature *= (2.0 * source.drive.radius_m / source.cell_m).max(1.0);
         let mut controller = controller::Settings::default();
         controller.exploration.max_steps = LOCAL_STEPS;
+        let filter = ScanFilterSettings {
+            max_range_m: source.range_max_m.clamp(0.1, 1000.0),
+            no_return: source.no_return,
+            ..ScanFilterSettings::default()
+        };
         let tolerance_m = source.drive.tolerance_m.min(source.drive.radius_m / 2.0);
         Self {
-            filter: ScanFilterSettings {
-                max_range_m: source.range_max_m.clamp(0.1, 1000.0),
-                no_return: source.no_return,
-                ..ScanFilterSettings::default()
-            },
+            filter: if source.pose == PoseMode::Exact { filter } else { filter.for_noise(noise_m) },
             mapper,
             agent,
             controller,

@@ -7,6 +7,7 @@ use crate::settings::SurveySettings;
 use crate::turns::Turns;
 use interfaces::{GridFrame, LaserReading, PoseMode};
 use localizer::{PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
+use mapper::ScanFilter;
 use nalgebra::{Isometry2, Point2};
 
 /// A log along its trajectory.
@@ -58,6 +59,7 @@ pub(crate) fn frame(routes: &[Route], settings: &SurveySettings) -> Result<GridF
 #[derive(Debug)]
 pub struct FirstPass {
     settings: SurveySettings,
+    filter: ScanFilter,
     /// Finds the trajectory; `None` where the poses of the log are used.
     finder: Option<TrajectoryFinder>,
     given: Vec<TrajectoryPose>,
@@ -85,6 +87,7 @@ impl FirstPass {
         };
         Ok(Self {
             settings: settings.clone(),
+            filter: settings.scan_filter(),
             finder,
             given: Vec::new(),
             range_noise: RangeNoise::default(),
@@ -96,7 +99,7 @@ impl FirstPass {
 
     /// Adds the next reading.
     pub fn add(&mut self, reading: LaserReading) {
-        let reach = Reach::of(&self.settings.filter.filtered(reading.clone()));
+        let reach = Reach::of(&self.filter.filter(reading.clone()));
         self.reaches.push(reach);
         self.turns.add(&reading);
         let found = match &mut self.finder {

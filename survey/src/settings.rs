@@ -1,5 +1,5 @@
 use interfaces::{GridFrame, PoseMode, SettingsCheck, SettingsError};
-use mapper::{Mapper, MapperSettings, ScanFilterSettings};
+use mapper::{Mapper, MapperSettings, NoReturn, NoReturns, ScanFilter, ScanFilterSettings};
 use nalgebra::Point2;
 use robot::{Settings, Source};
 
@@ -23,6 +23,19 @@ impl SurveySettings {
         let source = Source { pose, ..Source::default() };
         let Settings { filter, mapper, .. } = Settings::of(&source);
         Self { pose, resolution_m: source.cell_m, filter, mapper }
+    }
+
+    /// Sets the errors of ranges and poses together, m.
+    pub fn set_noise(&mut self, noise_m: f64) {
+        self.mapper.steady.range_noise_std_m = noise_m;
+        if self.pose != PoseMode::Exact {
+            self.filter = self.filter.clone().for_noise(noise_m);
+        }
+    }
+
+    /// The filter of scans, in which beams without a return are free.
+    pub fn scan_filter(&self) -> ScanFilter {
+        ScanFilter::judged(&self.filter, NoReturns::new(NoReturn::Free))
     }
 
     /// Checks all settings.

@@ -73,8 +73,9 @@ impl Survey {
         let mut settings = self.settings.clone();
         if self.learns_noise {
             let noises_m = self.logs.iter().take(log + 1).filter_map(|log| log.noise_m);
-            let noise_m = &mut settings.mapper.steady.range_noise_std_m;
-            *noise_m = noises_m.reduce(f64::max).unwrap_or(*noise_m);
+            if let Some(noise_m) = noises_m.reduce(f64::max) {
+                settings.set_noise(noise_m);
+            }
         }
         settings
     }
@@ -147,19 +148,21 @@ impl Survey {
     /// than in the first pass.
     pub fn replay(&mut self, number: usize, log: &Log) -> Result<Option<Replay>, PassError> {
         let Some(surveyed) = self.logs.get(number) else { return Ok(None) };
-        let (route, used) = (surveyed.route(), surveyed.used);
-        let no_returns = judged(log, route, &self.settings.filter)?;
+        let (settings, route, used) = (self.settings_of(number), surveyed.route(), surveyed.used);
+        let mut filter = ScanFilter::judged(&settings.filter, judged(log, route, &settings.filter)?);
         let mut replay = Replay::new(number, log, surveyed.entry.offset_s)?;
         // The reading before: a scan that sweeps is undone from there on.
         let before = used.saturating_sub(1);
         let mut poses = FoundPoses::new(route.get(before..).unwrap_or_default().to_vec());
         for passed in 0..used {
-            let reading = replay.next()?;
-            reading.filter(|_| passed == before).map(|reading| poses.posed(reading));
+            let Some(mut reading) = replay.next()? else { break };
+            filter.apply(&mut reading);
+            if passed == before {
+                poses.posed(reading);
+            }
         }
         let Some(begin_s) = replay.next_s() else { return Ok(None) };
         let mapper = self.mapper_for(number, begin_s)?;
-        let filter = ScanFilter::judged(&self.settings.filter, no_returns);
         self.robot = Some(Robot::new(Box::new(poses), mapper, NoPilot).with_filter(filter));
         Ok(Some(replay))
     }

@@ -180,7 +180,7 @@ impl Args {
         settings.filter.min_shadow_angle_rad = self.shadow_angle.to_radians();
         settings.mapper.estimator = self.estimator.clone();
         if let Some(noise_m) = self.noise {
-            settings.mapper.steady.range_noise_std_m = noise_m;
+            settings.set_noise(noise_m);
         }
         Ok(settings)
     }

@@ -45,7 +45,7 @@ pub(crate) fn learn(
     let frame = survey.frame_of(survey.logs().len() - 1).map_err(input)?;
     let first = job.first.log.readings().map_err(input)?.next();
     let first = first.context("the log has no reading").map_err(input)?.map_err(input)?;
-    let scene = Scene::of_log(&job.title(survey), frame, &job.settings.filter.filtered(first));
+    let scene = Scene::of_log(&job.title(survey), frame, &job.settings.scan_filter().filter(first));
     let is_recorded = !job.args.no_rrd && !job.sources.is_empty();
     let recorder = if is_recorded { recorder(&folder.join(RECORDING), &scene)? } else { None };
     let mut learned = Learned {
