@@ -30,6 +30,11 @@ pub trait Localization<R> {
 
     /// Waits for what is being learned again, and takes it over: before a snapshot, and before another session.
     fn settle(&mut self, _: &mut Mapper) {}
+
+    /// See [`LoopClosingLocalizer::switches`].
+    fn switches(&self) -> &[usize] {
+        &[]
+    }
 }
 
 /// A reading with its pose.
@@ -145,6 +150,10 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
 
     fn settle(&mut self, mapper: &mut Mapper) {
         LoopClosingLocalizer::settle(self, mapper);
+    }
+
+    fn switches(&self) -> &[usize] {
+        LoopClosingLocalizer::switches(self)
     }
 }
 

@@ -44,7 +44,7 @@ pub use message::{
 pub use names::{NameError, Names};
 pub use node::{CuriousNode, NodeReport, Signals};
 pub use notes::Output;
-pub use parameters::{Mode, Navigator, ParameterError, Parameters, PoseSource};
+pub use parameters::{Mode, Navigator, ParameterError, Parameters};
 pub use params_file::ParamsFileError;
 pub use ros_args::{Given, RosArgs, RosArgsError};
 pub use simulated::{SimulatedRobot, SimulationSettings};

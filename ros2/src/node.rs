@@ -13,13 +13,13 @@ use crate::maps::PublishedMaps;
 use crate::message::{Message, Time, Topic};
 use crate::notes::{Notes, Output};
 use crate::order::Order;
-use crate::parameters::{Parameters, PoseSource};
+use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
 use crate::saves::Saves;
 use crate::source::{FrameNames, LiveReading, ScanCount, Source};
 use anyhow::anyhow;
 use interfaces::{LaserReading, World};
-use localizer::{GivenPoses, LocalizerSettings, LoopClosingLocalizer, PoseState, Switch};
+use localizer::{GivenPoses, LocalizerSettings, LoopClosingLocalizer, PoseState};
 use mapper::{Mapper, NoReturns, ReadingError};
 use nalgebra::Isometry2;
 use outputs::Markers;
@@ -30,7 +30,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use survey::SurveySettings;
+use survey::{PoseMode, SurveySettings};
 
 /// The longest wait for an event.
 const NAP: Duration = Duration::from_millis(100);
@@ -40,9 +40,6 @@ const BLIND: Duration = Duration::from_millis(500);
 const SILENCE: Duration = Duration::from_secs(5);
 /// Between readings that are farther apart, nothing was in view, s.
 const LONGEST_GAP_S: f64 = 2.0;
-
-/// With a simulated clock, the map that a closed loop has corrected replaces the old one after this number of readings.
-const SWITCH_READINGS: usize = 50;
 
 /// What signals ask for.
 #[derive(Debug, Default)]
@@ -81,12 +78,15 @@ pub struct CuriousNode<L: Link> {
     maps: PublishedMaps,
     markers: Markers,
     saves: Option<Saves>,
-    /// Those who wait until the state is saved.
+    /// Those who wait until the state is saved, and whether that has not begun.
     askers: Vec<Asker>,
+    must_save: bool,
     notes: Notes,
     /// The time of the first reading by its clock, s.
     first_s: Option<f64>,
     session: Session,
+    /// The number of maps that were learned again.
+    switches: usize,
     /// The time of the last reading of the state that was loaded.
     continued: Option<Time>,
     /// The pose of the frame of the odometry in the frame of the map.
@@ -120,12 +120,11 @@ impl<L: Link> CuriousNode<L> {
             lost_after_s: parameters.lost_after_s,
             ..LocalizerSettings::default()
         };
-        let is_localized = parameters.pose == PoseSource::Localized;
+        let is_localized = parameters.pose == PoseMode::Localized;
         let mut localization: Box<dyn Localization<LaserReading> + Send> = match is_localized {
             true => {
                 let loops = LoopClosingLocalizer::from_nothing(&localizer, &frame, Isometry2::identity())?;
-                let by_count = Switch::After(SWITCH_READINGS);
-                Box::new(loops.switching(if parameters.use_sim_time { by_count } else { Switch::WhenReady }))
+                Box::new(loops.switching(setup::switch(parameters)))
             }
             false => Box::new(GivenPoses::default()),
         };
@@ -165,9 +164,11 @@ impl<L: Link> CuriousNode<L> {
             markers: Markers::default(),
             saves,
             askers: Vec::new(),
+            must_save: false,
             notes,
             first_s: None,
             session: Session::default(),
+            switches: 0,
             continued,
             map_to_odom: None,
             last: None,
@@ -247,7 +248,7 @@ impl<L: Link> CuriousNode<L> {
     /// One turn of the loop of every robot.
     fn learn(&mut self, live: LiveReading, now: Instant) {
         let LiveReading { mut reading, in_odom, stamp, is_restart } = live;
-        if self.parameters.pose != PoseSource::Localized {
+        if self.parameters.pose != PoseMode::Localized {
             reading.pose = in_odom;
         }
         let mut seen = reading.clone();
@@ -257,6 +258,7 @@ impl<L: Link> CuriousNode<L> {
             self.mapper.pause(reading.time_s);
         }
         let Self { mapper, localization, pilot, .. } = self;
+        let was_settled = localization.is_settled();
         let mut moment = Moment(reading);
         let (mut pose, mut state) = (Isometry2::identity(), PoseState::Tracking);
         let mut correction = None;
@@ -276,10 +278,15 @@ impl<L: Link> CuriousNode<L> {
                 return;
             }
         };
+        if was_settled && !self.localization.is_settled() {
+            self.notes
+                .say("a loop is found: a thread learns the map again, and the robot goes on in the old one");
+        }
         if let Some(correction) = correction {
             self.notes.say(&correction.to_string());
             self.maps.repeat();
         }
+        self.say_switches();
         self.report.readings += 1;
         self.report.mapped += u64::from(state == PoseState::Tracking);
         if state != self.state && (state == PoseState::Lost || self.state == PoseState::Lost) {
@@ -293,12 +300,23 @@ impl<L: Link> CuriousNode<L> {
         self.state = state;
         if state == PoseState::Tracking {
             seen.pose = pose;
-            self.no_returns.learn(&seen);
+            self.learn_no_returns(&seen);
         }
         if state != PoseState::Lost {
             self.map_to_odom = Some(pose * in_odom.inverse());
         }
         self.publish_reading(stamp, order, now);
+    }
+
+    /// Learns what beams without a return mean, and says when that changes.
+    fn learn_no_returns(&mut self, seen: &LaserReading) {
+        let before = self.no_returns.is_trusted(seen);
+        self.no_returns.learn(seen);
+        if self.no_returns.is_trusted(seen) != before {
+            let what = if before { "say nothing" } else { "count as free" };
+            self.notes
+                .say(&format!("beams without a return {what} from now on: see the parameter `no_return`"));
+        }
     }
 
     fn tick(&mut self, now: Instant) {
@@ -317,7 +335,7 @@ impl<L: Link> CuriousNode<L> {
         }
         self.answer_askers();
         let is_due = self.saves.as_ref().is_some_and(Saves::is_due) && self.report.readings > 0;
-        if is_due
+        if (is_due || self.must_save)
             && self.localization.is_settled()
             && let Some(Err(why)) = self.save()
         {

@@ -15,6 +15,7 @@ impl<L: Link> CuriousNode<L> {
     /// Begins to save the state; `None` without a file, or before the first reading.
     pub(super) fn save(&mut self) -> Option<std::io::Result<()>> {
         self.settle();
+        self.must_save = false;
         let Self { mapper, localization, pilot, last, .. } = self;
         let (stamp, _) = (*last)?;
         let saves = self.saves.as_mut()?;
@@ -28,17 +29,18 @@ impl<L: Link> CuriousNode<L> {
             self.answer(asker, refused("there is no state file: start the node with --state FILE"));
             return;
         }
-        // What could not be written before is in this state as well.
-        if self.save().is_none() {
+        if self.last.is_none() {
             self.answer(asker, refused("there is nothing to save before the first reading"));
             return;
         }
+        // While a map is being learned again, the state waits for it, and the robot does not.
+        self.must_save = true;
         self.askers.push(asker);
     }
 
     /// Answers those who wait for the file, when it is written.
     pub(super) fn answer_askers(&mut self) {
-        if self.askers.is_empty() || self.saves.as_ref().is_some_and(Saves::is_writing) {
+        if self.askers.is_empty() || self.must_save || self.saves.as_ref().is_some_and(Saves::is_writing) {
             return;
         }
         let answer = self.written();

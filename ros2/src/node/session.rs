@@ -53,9 +53,23 @@ impl<L: Link> CuriousNode<L> {
     /// Waits for the map that is being learned again.
     pub(super) fn settle(&mut self) {
         if !self.localization.is_settled() {
+            self.notes.say("waiting for the map that a closed loop has corrected");
             self.localization.settle(&mut self.mapper);
             self.maps.repeat();
             self.pilot.forget_map();
+            self.say_switches();
+        }
+    }
+
+    /// Says with which readings corrected maps have replaced the old ones.
+    pub(super) fn say_switches(&mut self) {
+        let switches = self.localization.switches();
+        if switches.len() > self.switches {
+            self.switches = switches.len();
+            let readings: Vec<String> = switches.iter().map(usize::to_string).collect();
+            let readings = readings.join(",");
+            self.notes
+                .say(&format!("the same readings with `--switch-at {readings}` repeat this run so far"));
         }
     }
 }

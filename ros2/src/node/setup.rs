@@ -1,22 +1,30 @@
 //! The parameters as the settings of the parts of a robot.
 
-use crate::parameters::{Parameters, PoseSource};
+use crate::parameters::Parameters;
 use anyhow::Context;
 use interfaces::GridFrame;
+use localizer::Switch;
 use nalgebra::Point2;
-use survey::{PoseMode, SurveySettings};
+use survey::SurveySettings;
+
+/// With a simulated clock, the map that a closed loop has corrected replaces the old one after this number of readings.
+const SWITCH_READINGS: usize = 50;
+
+/// When a corrected map replaces the old one.
+pub(super) fn switch(parameters: &Parameters) -> Switch {
+    match &parameters.switch_at {
+        readings if !readings.is_empty() => Switch::At(readings.clone()),
+        _ if parameters.use_sim_time => Switch::After(SWITCH_READINGS),
+        _ => Switch::WhenReady,
+    }
+}
 
 /// The settings of the mapper, and what is left out of scans.
 pub(super) fn settings(parameters: &Parameters) -> SurveySettings {
-    let mode = match parameters.pose {
-        PoseSource::Exact => PoseMode::Exact,
-        PoseSource::Odometry => PoseMode::Odometry,
-        PoseSource::Localized => PoseMode::Localized,
-    };
     let mut settings = SurveySettings {
         resolution_m: parameters.resolution_m,
         max_range_m: parameters.max_laser_range_m,
-        ..SurveySettings::of(mode)
+        ..SurveySettings::of(parameters.pose)
     };
     settings.mapper.steady.range_noise_std_m = parameters.range_noise_m;
     settings
