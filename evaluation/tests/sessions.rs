@@ -8,7 +8,7 @@ use interfaces::{PoseMode, World, heading_rad, pose};
 use mapper::Mapper;
 use robot::state::{Facts, LearnedFacts, State};
 use robot::{Autonomous, Settings};
-use sim::physics::WorldSpec;
+use sim::physics::{PhysicsWorld, WorldSpec};
 
 type Trial = PhysicsTrial<Autonomous<Agent, Controller<DiffDrive>>>;
 
@@ -106,7 +106,8 @@ fn two_sessions_add_up_with_the_time_between_as_a_gap() {
     let Trial { robot: mut both, .. } = saved(&mut first, &there, &settings);
     both.begin_session(0.0, Some(GAP_S));
     while alone.robot.mapper.time() < 90.0 {
-        both.step(alone.turn().unwrap().reading).unwrap();
+        alone.turn().unwrap();
+        both.step(alone.world.sense()).unwrap();
     }
     let (first, alone, both) = (first.robot.mapper, alone.robot.mapper, both.mapper);
     let sum = exposure(&first).into_iter().zip(exposure(&alone)).map(|(a, b)| a + b);
@@ -129,9 +130,22 @@ fn two_sessions_add_up_with_the_time_between_as_a_gap() {
 fn a_robot_finds_itself_in_the_map_that_it_has_saved() {
     let here = spec("drifting_house");
     let settings = physics_trial::settings(&here).unwrap();
-    let mut first = trial(&here, 100, &settings, "curious");
-    first.run(150.0).unwrap();
-    let Trial { mut world, mut robot, .. } = saved(&mut first, &moved(&here), &settings);
+    let facts = learned_facts(&here, &settings);
+    // The frame of the world is that of the map, so that both sessions have the same one.
+    let start = |spec: &WorldSpec, seed: u64| {
+        let mut world = PhysicsWorld::new(spec, seed);
+        let pilot = settings.pilot(settings.agent(&Policy::default(), seed).unwrap(), seed).unwrap();
+        let robot = physics_trial::robot(&settings, &mut world, None, pilot).unwrap();
+        (world, robot)
+    };
+    let (mut world, mut robot) = start(&here, 100);
+    while world.time_s() <= 150.0 {
+        let turn = robot.step(world.sense()).unwrap();
+        world.act(&turn.command);
+    }
+    let state = facts.snapshot(&mut robot).added_to(State::default());
+    let (mut world, mut robot) = start(&moved(&here), 101);
+    facts.restore(&again(&state), &mut robot).unwrap();
     robot.begin_session(0.0, Some(GAP_S));
     let (mut certain, mut first_s, mut error) = (0, f64::INFINITY, 0.0_f64);
     while world.time_s() <= 20.0 {

@@ -76,10 +76,11 @@ impl Pilot for Counting {
     }
 }
 
-/// A scan of four beams, of which two have no return.
+/// A scan of 180 beams, of which a quarter has no return.
 fn reading(time_s: f64) -> LaserReading {
-    let ranges_m = vec![2.0, 2.0, f32::INFINITY, f32::INFINITY];
-    let angle_increment_rad = TAU / 4.0;
+    let mut ranges_m = vec![2.0; 180];
+    ranges_m[..45].fill(f32::INFINITY);
+    let angle_increment_rad = TAU / 180.0;
     LaserReading {
         time_s,
         pose: Isometry2::identity(),
@@ -105,26 +106,28 @@ const CERTAIN: PoseState = PoseState::Tracking;
 
 #[test]
 fn a_step_filters_localizes_maps_and_decides_in_this_order() {
-    let (robot, calls) = scripted(&[CERTAIN, PoseState::Lost, CERTAIN]);
+    let (robot, calls) = scripted(&[CERTAIN, CERTAIN, PoseState::Lost, CERTAIN]);
     let settings = ScanFilterSettings { no_return: NoReturn::Ignore, ..ScanFilterSettings::default() };
     let mut robot = robot.with_filter(ScanFilter::new(&settings).unwrap());
     let turn = robot.step(reading(0.0)).unwrap();
     // The filter comes before the localization, the map before the decision.
     assert_eq!(taken(&calls), ["localize 0.0 s, 0 silent, 0 mapped", "command Drive, Tracking"]);
     assert_eq!((turn.command, turn.reading.pose), (1, interfaces::pose(5.0, 5.0, 0.0)));
+    robot.step(reading(0.1)).unwrap();
     let seen = |robot: &Robot<LaserReading, Counting>| {
         (0..10_000).filter(|cell| robot.mapper.was_ever_seen(*cell)).count()
     };
     let before = seen(&robot);
-    assert!(before > 0);
+    assert!(before > 100, "{before}");
+    taken(&calls);
     // What is not certain does not enter the map.
-    let mut far = reading(0.1);
-    far.scan.ranges_m = vec![3.5; 4];
+    let mut far = reading(0.2);
+    far.scan.ranges_m.fill(3.5);
     robot.step(far).unwrap();
-    assert_eq!(taken(&calls), ["localize 0.1 s, 0 silent, 1 mapped", "command LookAround, Lost"]);
-    assert_eq!((seen(&robot), robot.mapper.time()), (before, 0.1));
+    assert_eq!(taken(&calls), ["localize 0.2 s, 0 silent, 2 mapped", "command LookAround, Lost"]);
+    assert_eq!((seen(&robot), robot.mapper.time()), (before, 0.2));
     // The pilot learns that the map is another one before it decides.
-    robot.step(reading(0.2)).unwrap();
+    robot.step(reading(0.3)).unwrap();
     assert_eq!(taken(&calls)[1..], ["forget map", "command Drive, Tracking"]);
 }
 
@@ -236,7 +239,7 @@ fn a_robot_that_is_restored_goes_on_bit_for_bit() {
         interfaces::restore(other.pilot.values(&other.mapper), &pilot).unwrap();
         let mut same = Room { ..world };
         let went = commands(&mut world, &mut robot, 300);
-        assert!(went.iter().any(|step| *step != Step::Stay), "{policy}");
+        assert!(policy != "curious" || went.iter().any(|step| *step != Step::Stay));
         assert_eq!(commands(&mut same, &mut other, 300), went, "{policy}");
         assert!(robot.mapper.snapshot() == other.mapper.snapshot());
     }

@@ -193,7 +193,7 @@ impl<L: Link> CuriousNode<L> {
             reading.pose = in_odom;
         }
         self.begin_session(&reading, stamp, is_restart);
-        let was_trusted = self.is_trusted(&reading);
+        let (was_trusted, was_settled) = (self.is_trusted(&reading), self.robot.is_settled());
         let turn = self.robot.step(reading);
         (self.last, self.next_silence) = (Some((stamp, now)), now + SILENCE);
         let turn = match turn {
@@ -202,6 +202,10 @@ impl<L: Link> CuriousNode<L> {
         };
         self.report.readings += 1;
         self.report.mapped += u64::from(turn.belief.is_certain());
+        if was_settled && !self.robot.is_settled() {
+            self.notes
+                .say("a loop is found: a thread learns the map again, and the robot goes on in the old one");
+        }
         self.say_news(&turn.belief);
         if self.is_trusted(&turn.reading) != was_trusted {
             let what = if was_trusted { "say nothing" } else { "count as free" };

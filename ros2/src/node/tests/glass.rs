@@ -21,7 +21,8 @@ fn hall(upper_wall: &str, no_return: NoReturn) -> Pair {
          [robot.behaviour]\nkind = \"driven\"\n"
     );
     let world = worldfile::physics::parse_world("hall.toml", &text).unwrap();
-    Pair::in_world(&world, &Parameters { no_return, ..parameters(Mode::Map) }, 0, None)
+    // The ends of the hall are out of range at times: its odometry knows where the robot is.
+    Pair::in_world(&world, &Parameters { no_return, pose: PoseMode::Exact, ..parameters(Mode::Map) }, 0, None)
 }
 
 impl Pair {
@@ -46,7 +47,6 @@ fn a_scanner_is_trusted_once_the_node_has_learned() {
     assert!(early == none && none + 1000 < all, "{early} {none} {all}");
     assert!(!learned.is_said("count as free"));
     let [late, all, none] = [&mut learned, &mut free, &mut ignored].map(|pair| pair.free_at(2.5 * LEARNS_S));
-    eprintln!("{:?}", learned.node.robot.filter().unwrap().no_returns().evidence().collect::<Vec<_>>());
     assert!(none + 1000 < late && late * 100 > all * 98, "{late} {none} {all}");
     assert!(learned.is_said("beams without a return count as free from now on"));
 }
