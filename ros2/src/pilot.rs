@@ -86,7 +86,7 @@ impl Pilot for LivePilot {
     }
 
     fn path(&self) -> &[Point2<f64>] {
-        self.explorer.as_ref().map_or(&[], Pilot::path)
+        self.explorer.as_ref().map_or(Default::default(), Pilot::path)
     }
 
     fn goal(&self) -> Option<Point2<f64>> {
