@@ -42,14 +42,15 @@ impl StateFile {
     ///
     /// # Errors
     ///
-    /// When another run uses it, when it is no file that can be replaced (a folder, a pipe, a device), and when its folder
-    /// cannot be written.
+    /// When another run uses it, when it is no file that can be replaced (a folder, a pipe, a device), when its folder cannot
+    /// be written, and when a file beside it, which the run would replace, is of somebody else (`house.state.lock`).
     pub fn open(path: &Path) -> io::Result<Self> {
         let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         match fs::metadata(&target) {
             Ok(known) if !known.is_file() => return Err(io::Error::other(NO_FILE)),
             _ => {}
         }
+        ["lock", "unfinished", "earlier"].iter().try_for_each(|ending| check_own(&with_ending(&target, ending)))?;
         let lock = FileLock::new(&with_ending(&target, "lock"))?;
         Ok(Self {
             path: path.to_owned(),
@@ -242,6 +243,20 @@ fn write(path: &Path, state: &State) -> io::Result<()> {
 fn sync_folder(path: &Path) {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     File::open(folder).and_then(|folder| folder.sync_all()).ok();
+}
+
+/// Checks that nothing is lost when a run writes this file beside the state: there is none, it is empty, or one of a state.
+fn check_own(path: &Path) -> io::Result<()> {
+    let mut start = Vec::new();
+    let is_own = match path.symlink_metadata() {
+        Ok(known) if known.is_file() => {
+            File::open(path)?.take(State::MAGIC.len() as u64).read_to_end(&mut start)?;
+            State::MAGIC.starts_with(&start)
+        }
+        known => known.is_err(),
+    };
+    let why = "no run has written it, and this one would replace it; move it, or give another file by --state";
+    if is_own { Ok(()) } else { Err(io::Error::other(format!("{}: {why}", path.display()))) }
 }
 
 /// The name of a file beside the state: `house.state.unfinished` while it is incomplete.

@@ -209,6 +209,50 @@ fn logs_that_cannot_be_true_are_refused_before_anything_is_written() {
 }
 
 #[test]
+fn a_file_has_one_purpose() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(1.7e9, 40));
+    run.write("thesis.tex", "of the user");
+    let files = ["a.log", "thesis.tex"];
+    insta::assert_snapshot!(refuses(&run, "a.log --no-rrd --mcap thesis.tex", &files), @"error: cannot write the bag of --mcap: there is a file thesis.tex that is not an MCAP file; choose another name");
+    insta::assert_snapshot!(refuses(&run, "a.log --no-rrd --mcap b --state ./b", &files), @"error: --mcap and --state name the same file ./b: give each its own");
+    insta::assert_snapshot!(refuses(&run, "a.log --no-rrd --state out", &files), @"error: --out and --state name the same file out: give each its own");
+    let run = run.with_four_rooms();
+    insta::assert_snapshot!(refuses(&run, "--duration 1 --rrd b --gif b", &files), @"error: --rrd and --gif name the same file b: give each its own");
+    assert_eq!(fs::read_to_string(run.path("thesis.tex")).unwrap(), "of the user");
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_are_no_logs_and_no_lists_of_results() {
+    let run = Run::new().with_map_log();
+    let pipe = |name: &str| nix::unistd::mkfifo(&run.path(name), nix::sys::stat::Mode::S_IRWXU).unwrap();
+    pipe("pipe");
+    insta::assert_snapshot!(refuses(&run, "pipe", &["pipe"]), @"error: pipe: it is not a regular file, and a log is read several times: write it into a file");
+    run.write("a.log", &standing_log(1.7e9, 40));
+    fs::create_dir(run.path("out")).unwrap();
+    pipe("out/.curious_run.json");
+    insta::assert_snapshot!(refuses(&run, "a.log", &["a.log", "out", "pipe"]), @"error: cannot write out/.curious_run.json: it is not a regular file; move the folder, or give another one by --out");
+}
+
+/// Names of files need not be text.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_that_are_no_text() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let run = Run::new().with_map_log();
+    for name in [&b"a\xff.log"[..], b"a b\n.log"] {
+        let name = OsStr::from_bytes(name);
+        fs::write(run.path("x").with_file_name(name), standing_log(1.7e9, 40)).unwrap();
+        let ended = run.command("--no-rrd --state s").arg(name).output().unwrap();
+        assert_eq!(ended.status.code(), Some(0), "{ended:?}");
+        fs::remove_file(run.path("s")).unwrap();
+    }
+    assert_eq!(run.summary().at("/logs"), &serde_json::json!(["a b\n.log"]));
+}
+
+#[test]
 fn topics_are_for_bags() {
     let run = Run::new().with_map_log();
     run.write("a.log", &standing_log(1.7e9, 40));

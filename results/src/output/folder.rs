@@ -89,14 +89,14 @@ impl RunFolder {
         let mut earlier = Marker::read(path)?;
         check_unfinished(&unfinished)?;
         let failed = |why| OutputError::new(path, why);
-        let begun = Exchange::begun(&unfinished).map_err(failed)?;
+        let begun = Exchange::begun(&unfinished)?;
         if begun.is_none() {
             check_names(path, &earlier)?; // before anything is made
         }
         let locked = lock_folder(path, &unfinished)?;
         let mut notes = Vec::new();
         // Again: another run may have ended it.
-        if let Some(exchange) = Exchange::begun(&unfinished).map_err(failed)? {
+        if let Some(exchange) = Exchange::begun(&unfinished)? {
             exchange.carry_out(path, &unfinished, &mut Moves::default())?;
             Exchange::clean_up(&unfinished)?;
             notes.push(format!("the results of a run that was killed are now in {}", path.display()));
@@ -183,7 +183,8 @@ impl RunFolder {
     fn written(&self) -> Result<BTreeSet<String>, OutputError> {
         let mut names = BTreeSet::new();
         for entry in fs::read_dir(&self.unfinished).map_err(|why| self.failed(why))? {
-            names.extend(entry.map_err(|why| self.failed(why))?.file_name().into_string().ok());
+            let entry = entry.map_err(|why| self.failed(why))?;
+            names.extend(entry.file_name().into_string().ok().filter(|_| !entry.path().is_dir()));
         }
         names.remove(LOCK);
         Ok(names)
@@ -252,7 +253,8 @@ fn check_unfinished(unfinished: &Path) -> Result<(), OutputError> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         entries => entries.map_err(|why| OutputError::new(unfinished, why))?,
     };
-    let lock = fs::read(unfinished.join(LOCK)).unwrap_or_default();
+    let lock = disk::read(&unfinished.join(LOCK)).map(Option::unwrap_or_default);
+    let lock = lock.unwrap_or_else(|_| b"not a file".into());
     let is_alone = lock.is_empty() && entries.flatten().all(|entry| entry.file_name() == LOCK);
     let is_link = unfinished.symlink_metadata().is_ok_and(|known| known.is_symlink());
     if !is_link && (lock == LOCK_CONTENT || is_alone) {

@@ -10,6 +10,7 @@ use agent::Policy;
 use anyhow::{Context, anyhow};
 use args::{Args, DriveChoice};
 use curious::bag::RunBag;
+use curious::flags::check_distinct;
 use curious::program::{
     BEST_STRATEGY_GAIN, Failure, INTERRUPTED, input, interrupt_flag, results_folder, start,
 };
@@ -58,6 +59,10 @@ enum Ended {
 }
 
 fn run(args: &Args) -> Result<ExitCode, Failure> {
+    let Args { rrd, gif, mcap, state, .. } = args;
+    let files = [("--rrd", rrd), ("--gif", gif), ("--mcap", mcap), ("--state", state)];
+    let files = files.map(|(flag, file)| (flag, file.as_deref()));
+    check_distinct(&[&files[..], &[("--out", Some(args.out.as_path()))]].concat()).map_err(input)?;
     let parts = Parts::new(args)?;
     match args.drive {
         DriveChoice::Agent => explore(args, &parts, parts.agent(args)?),

@@ -3,6 +3,7 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use build_id::BUILD;
+use curious::program::arguments;
 use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
 use evaluation::summary::{SCHEMA, Summary};
 use interfaces::Twist;
@@ -51,7 +52,7 @@ pub(crate) fn summary(
         schema: SCHEMA,
         build: BUILD,
         version: env!("CARGO_PKG_VERSION"),
-        arguments: std::env::args().skip(1).collect(),
+        arguments: arguments(),
         settings: serde_json::to_value(settings).unwrap_or_default(),
         world: trial.world.spec().name.clone(),
         seed: args.seed,
