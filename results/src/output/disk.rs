@@ -53,8 +53,9 @@ pub(super) fn remove_run(folder: &Path, last: &str) -> Result<(), OutputError> {
 pub(super) fn read(path: &Path) -> io::Result<Option<Vec<u8>>> {
     match path.symlink_metadata() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        known if known?.is_file() => fs::read(path).map(Some),
-        _ => Err(io::Error::other("it is not a regular file")),
+        Err(error) => Err(error),
+        Ok(known) if known.is_file() => fs::read(path).map(Some),
+        Ok(_) => Err(io::Error::other("it is not a regular file")),
     }
 }
 
