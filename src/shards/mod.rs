@@ -11,8 +11,8 @@ use anyhow::{Context, anyhow};
 use clap::Subcommand;
 use evaluation::trials::{Experiment, TrialSettings, TrialWorld, run_trial};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use reports::Plan;
-use reports::shards::{Cost, Header, Shard, ShardFile, Shards, array, check_builds};
+use reports::{Plan, ReportSettings};
+use reports::shards::{Cost, Header, SEVERAL_BUILDS, Shard, ShardFile, Shards, array, check_builds};
 use std::io::stderr;
 use std::iter::once;
 use std::path::{Path, PathBuf};
@@ -211,9 +211,10 @@ where
         let version = &found.version;
         return Err(input(anyhow!("{shown} has shards of version {version}: merge them with that version")));
     }
-    if !allows_other_build {
-        check_builds(dir).map_err(input)?;
-    }
+    let other_build = match check_builds(dir) {
+        Err(_) if allows_other_build => Some(SEVERAL_BUILDS),
+        checked => checked.map(|()| None).map_err(input)?,
+    };
     let missing = shards.missing();
     if let [first, ..] = missing[..] {
         let count = found.shard().map_or(0, Shard::count);
@@ -230,7 +231,8 @@ where
         let why = "a world file was changed after the shards ran, or the program is another one";
         return Err(input(anyhow!("the experiment of {shown} cannot be repeated: {why}")));
     }
-    let settings = report_settings(&experiment, found.arguments.clone());
+    let arguments = found.arguments.clone();
+    let settings = ReportSettings { other_build, ..report_settings(&experiment, arguments) };
     let folder = results_folder(out).map_err(|(Failure::Run(why) | Failure::Input(why))| input(why))?;
     let results = Results { folder, out, world_names: args.world_names(), quiet };
     let trials = shards.trials().map_err(input)?.map(|trial| trial.map_err(Into::into));

@@ -45,7 +45,7 @@ impl StateFile {
     /// When another run uses it, when it is no file that can be replaced (a folder, a pipe, a device), when its folder cannot
     /// be written, and when a file beside it, which the run would replace, is of somebody else (`house.state.lock`).
     pub fn open(path: &Path) -> io::Result<Self> {
-        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let target = target_of(path);
         match fs::metadata(&target) {
             Ok(known) if !known.is_file() => return Err(io::Error::other(NO_FILE)),
             _ => {}
@@ -94,7 +94,7 @@ impl StateFile {
     pub fn keep_earlier(&self) -> io::Result<()> {
         let unfinished = with_ending(&self.target, "unfinished");
         fs::copy(&self.target, &unfinished)?;
-        fs::rename(unfinished, earlier_name(&self.target))
+        fs::rename(unfinished, with_ending(&self.target, "earlier"))
     }
 
     /// Goes back to the file that was [kept](Self::keep_earlier); there is none then.
@@ -103,7 +103,7 @@ impl StateFile {
     ///
     /// When no file was kept.
     pub fn restore_earlier(&self) -> io::Result<()> {
-        fs::rename(earlier_name(&self.target), &self.target)
+        fs::rename(with_ending(&self.target, "earlier"), &self.target)
     }
 
     /// Whether it is time to [`save`](Self::save).
@@ -174,7 +174,12 @@ pub fn read_state(path: &Path) -> Result<State, LoadError> {
 
 /// The name of the file that [`StateFile::keep_earlier`] keeps: `house.state.earlier` for `house.state`.
 pub fn earlier_name(path: &Path) -> PathBuf {
-    with_ending(path, "earlier")
+    with_ending(&target_of(path), "earlier")
+}
+
+/// The file to which a name leads.
+fn target_of(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
 /// A file that one process has, while it is open.
@@ -187,7 +192,11 @@ struct FileLock {
 impl FileLock {
     fn new(path: &Path) -> io::Result<Self> {
         for _ in 0..LOCK_TRIES {
-            let file = File::options().write(true).create(true).truncate(false).open(path)?;
+            let file = File::options().write(true).create(true).truncate(false).open(path);
+            let file = file.map_err(|why| match why.kind() {
+                io::ErrorKind::NotFound => why, // the folder
+                kind => io::Error::new(kind, format!("its lock {} cannot be written: {why}", path.display())),
+            })?;
             match file.try_lock() {
                 // A program that is being started holds the locks of the one that starts it for a moment.
                 Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),

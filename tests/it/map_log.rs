@@ -1,6 +1,7 @@
 //! `map_log`: logs and bags become maps of what changes.
 
 use crate::bad_input::refuses;
+use crate::map_log_state::moving_log;
 use crate::run::{Run, names};
 use std::fs;
 
@@ -201,6 +202,17 @@ fn logs_that_cannot_be_true_are_refused_before_anything_is_written() {
         message.contains("error: a.log: the ranges look like millimetres: in 40 of 40 scans"),
         "{message}"
     );
+    run.write("a.log", &scaled_log(100.0));
+    let message = refuses(&run, "a.log", &["a.log"]);
+    assert!(message.contains("(the first: 300, which would be 3 m); ranges are in metres: divide them by 100"), "{message}");
+    run.write("a.log", &scaled_log(0.001));
+    let message = refuses(&run, "a.log", &["a.log"]);
+    assert!(message.contains("error: a.log: the ranges look like kilometres: in 40 of 40 scans"), "{message}");
+    run.write("a.log", &moving_log(120).repeat(2));
+    insta::assert_snapshot!(refuses(&run, "a.log", &["a.log"]), @"
+    note: a.log: a jump of the clock counts as 0.100 s
+    error: a.log: 119 of 240 scans are in the log twice, after the same scan as the first time: they would count twice; leave them out
+    ");
     run.write("a.log", &standing_log(1.7e9, 1));
     let message = refuses(&run, "a.log", &["a.log"]);
     assert!(message.contains("error: a.log: one scan: "), "{message}");

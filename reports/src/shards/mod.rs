@@ -21,7 +21,7 @@ mod shard;
 mod tests;
 
 pub use file::{ShardFile, check_builds};
-pub use header::Header;
+pub use header::{Header, SEVERAL_BUILDS};
 pub use line::Cost;
 pub use merge::{Shards, Trials};
 pub use scan::Scan;

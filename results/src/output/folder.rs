@@ -84,6 +84,10 @@ impl RunFolder {
     /// When the folder cannot be written, when another run is writing to it, or when results would replace a file that
     /// no run wrote, or that was changed since ([`OutputError::is_refusal`]).
     pub fn open(path: &Path) -> Result<Self, OutputError> {
+        if disk::read(&path.join(LOCK)).is_ok_and(|lock| lock.as_deref() == Some(LOCK_CONTENT)) {
+            let why = "a run writes there, or has left it when it was killed; give another folder by --out";
+            return Err(OutputError::refused(path, why.into()));
+        }
         let is_new = !path.exists();
         let unfinished = path.join(UNFINISHED);
         let mut earlier = Marker::read(path)?;
