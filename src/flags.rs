@@ -59,7 +59,8 @@ pub fn check_distinct(files: &[(&str, Option<&Path>)]) -> anyhow::Result<()> {
 /// A parser of the path of a folder, which may be missing.
 pub fn folder() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| {
-        let file = path.ancestors().find(|path| path.symlink_metadata().is_ok()).filter(|found| !found.is_dir());
+        let file =
+            path.ancestors().find(|path| path.symlink_metadata().is_ok()).filter(|found| !found.is_dir());
         file.map_or(Ok(()), |file| Err(format!("{} is a file, not a folder", file.display())))
             .map(|()| path.clone())
     })

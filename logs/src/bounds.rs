@@ -107,7 +107,8 @@ mod tests {
         assert_eq!(unpack(free_bytes(&folder)), Ok(2000));
         assert_eq!(unpack(Some(KEPT_FREE_BYTES + 2000)), Ok(2000));
         let error = unpack(Some(KEPT_FREE_BYTES + 1999)).unwrap_err();
-        let expected = format!("it unpacks to more than the 1999 bytes that can be used in {}", folder.display());
+        let expected =
+            format!("it unpacks to more than the 1999 bytes that can be used in {}", folder.display());
         assert!(error.starts_with(&expected), "{error}");
     }
 }

@@ -50,7 +50,9 @@ impl Doubts {
             }
             self.beyond += 1;
         }
-        self.compare(xxh3_64(&ranges_m.iter().flat_map(|range_m| range_m.to_le_bytes()).collect::<Vec<u8>>()));
+        self.compare(xxh3_64(
+            &ranges_m.iter().flat_map(|range_m| range_m.to_le_bytes()).collect::<Vec<u8>>(),
+        ));
     }
 
     fn compare(&mut self, scan: u64) {
@@ -97,7 +99,9 @@ impl Doubts {
         let Self { scans, beyond, first_beyond: first, .. } = *self;
         let (unit, median, in_metres, what) = match first {
             _ if first < NEAREST_M => ("kilometres", "below 0.05 m", first * 1000.0, "multiply them by 1000"),
-            _ if first < MIN_MILLIMETRES => ("centimetres", "beyond 100 m", first / 100.0, "divide them by 100"),
+            _ if first < MIN_MILLIMETRES => {
+                ("centimetres", "beyond 100 m", first / 100.0, "divide them by 100")
+            }
             _ => ("millimetres", "beyond 100 m", first / 1000.0, "divide them by 1000"),
         };
         format!(

@@ -45,7 +45,8 @@ impl Log {
         }
         if path.metadata().is_ok_and(|known| !known.is_file()) {
             // A pipe would wait for ever.
-            let why = "it is not a regular file, and a log is read several times: write it into a file".to_owned();
+            let why =
+                "it is not a regular file, and a log is read several times: write it into a file".to_owned();
             return Err(LogError::Unusable { file: name, why });
         }
         match BagFile::open(path)? {

@@ -50,7 +50,9 @@ impl StateFile {
             Ok(known) if !known.is_file() => return Err(io::Error::other(NO_FILE)),
             _ => {}
         }
-        ["lock", "unfinished", "earlier"].iter().try_for_each(|ending| check_own(&with_ending(&target, ending)))?;
+        ["lock", "unfinished", "earlier"]
+            .iter()
+            .try_for_each(|ending| check_own(&with_ending(&target, ending)))?;
         let lock = FileLock::new(&with_ending(&target, "lock"))?;
         Ok(Self {
             path: path.to_owned(),
@@ -264,7 +266,8 @@ fn check_own(path: &Path) -> io::Result<()> {
         }
         known => known.is_err(),
     };
-    let why = "no run has written it, and this one would replace it; move it, or give another file by --state";
+    let why =
+        "no run has written it, and this one would replace it; move it, or give another file by --state";
     if is_own { Ok(()) } else { Err(io::Error::other(format!("{}: {why}", path.display()))) }
 }
 

@@ -373,7 +373,10 @@ fn refused(mut change: impl FnMut(usize, &mut LaserReading)) -> Option<String> {
 fn logs_whose_scans_are_not_from_one_place_are_refused() {
     // As a log whose ranges were sorted, or whose beams have another order.
     let error = refused(|index, reading| reading.scan.ranges_m.rotate_left(index * 7919 % 360)).unwrap();
-    let parts = [" of 1201 scans have no certain pose: neither do they fit to each other, nor to the odometry; no map", "units"];
+    let parts = [
+        " of 1201 scans have no certain pose: neither do they fit to each other, nor to the odometry; no map",
+        "units",
+    ];
     assert!(parts.iter().all(|part| error.contains(part)), "{error}");
 }
 
@@ -382,7 +385,8 @@ fn an_odometry_of_something_else_is_refused() {
     assert_eq!(refused(|_, _| {}), None);
     // Beside none, and one that stands.
     assert_eq!(refused(|_, reading| reading.pose = Isometry2::identity()), None);
-    let lengths = refused(|_, reading| reading.scan.ranges_m.iter_mut().for_each(|range_m| *range_m *= 0.3)).unwrap();
+    let lengths =
+        refused(|_, reading| reading.scan.ranges_m.iter_mut().for_each(|range_m| *range_m *= 0.3)).unwrap();
     assert!(lengths.contains("(the scans move 0.3"), "{lengths}");
     let exchanged = refused(|_, reading| {
         let at = &mut reading.pose.translation;

@@ -204,10 +204,16 @@ fn logs_that_cannot_be_true_are_refused_before_anything_is_written() {
     );
     run.write("a.log", &scaled_log(100.0));
     let message = refuses(&run, "a.log", &["a.log"]);
-    assert!(message.contains("(the first: 300, which would be 3 m); ranges are in metres: divide them by 100"), "{message}");
+    assert!(
+        message.contains("(the first: 300, which would be 3 m); ranges are in metres: divide them by 100"),
+        "{message}"
+    );
     run.write("a.log", &scaled_log(0.001));
     let message = refuses(&run, "a.log", &["a.log"]);
-    assert!(message.contains("error: a.log: the ranges look like kilometres: in 40 of 40 scans"), "{message}");
+    assert!(
+        message.contains("error: a.log: the ranges look like kilometres: in 40 of 40 scans"),
+        "{message}"
+    );
     run.write("a.log", &moving_log(120).repeat(2));
     insta::assert_snapshot!(refuses(&run, "a.log", &["a.log"]), @"
     note: a.log: a jump of the clock counts as 0.100 s

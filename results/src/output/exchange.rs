@@ -33,7 +33,9 @@ impl Exchange {
     /// When the journal cannot be read.
     pub(super) fn begun(unfinished: &Path) -> Result<Option<Self>, OutputError> {
         let path = unfinished.join(JOURNAL);
-        let Some(text) = disk::read(&path).map_err(|why| OutputError::new(&path, why))? else { return Ok(None) };
+        let Some(text) = disk::read(&path).map_err(|why| OutputError::new(&path, why))? else {
+            return Ok(None);
+        };
         let begun = serde_json::from_slice(&text).ok();
         let begun = begun.filter(|begun: &Self| begun.earlier.is_valid() && begun.new.is_valid());
         let why = "no run of this version has left it; move its folder, or give another one by --out";

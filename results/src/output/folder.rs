@@ -17,39 +17,12 @@ const LOCK_CONTENT: &[u8] =
     b"A run of curious writes here. What a killed run leaves is kept by the next one.\n";
 /// Results of the programs whose names do not depend on the world: a folder that has other files with these names is
 /// refused before the run. Other names are checked at the end.
-const RESULTS: [&str; 31] = [
-    "map_log.rrd",
-    "summary.json",
-    "report.json",
-    "report.html",
-    "trials.csv",
-    "trials.parquet",
-    "map.pgm",
-    "map.yaml",
-    "permanent.pgm",
-    "permanent.yaml",
-    "speed_mask.pgm",
-    "speed_mask.yaml",
-    "keepout_mask.pgm",
-    "keepout_mask.yaml",
-    "cell_statistics.csv",
-    "layers.npy",
-    "layers.json",
-    "places.png",
-    "trajectory.tum",
-    "trajectory_true.tum",
-    "trajectory.png",
-    "figure3.png",
-    "figure3.svg",
-    "curves.png",
-    "curves.svg",
-    "figure5.png",
-    "occupancy.png",
-    "interval.png",
-    "change_probability.png",
-    "recency.png",
-    "predicted.png",
-];
+const RESULTS: &str = "\
+    map_log.rrd summary.json report.json report.html trials.csv trials.parquet map.pgm map.yaml \
+    permanent.pgm permanent.yaml speed_mask.pgm speed_mask.yaml keepout_mask.pgm keepout_mask.yaml \
+    cell_statistics.csv layers.npy layers.json places.png trajectory.tum trajectory_true.tum \
+    trajectory.png figure3.png figure3.svg curves.png curves.svg figure5.png occupancy.png \
+    interval.png change_probability.png recency.png predicted.png";
 
 /// The folder of the results of one run.
 ///
@@ -271,7 +244,7 @@ fn check_unfinished(unfinished: &Path) -> Result<(), OutputError> {
 
 /// Checks that the results of no run would replace a file that no run wrote.
 fn check_names(path: &Path, earlier: &Marker) -> Result<(), OutputError> {
-    RESULTS.iter().try_for_each(|name| check_replaceable(earlier, path, name))
+    RESULTS.split(' ').try_for_each(|name| check_replaceable(earlier, path, name))
 }
 
 /// Makes both folders, and locks the inner one.

@@ -102,7 +102,8 @@ fn files_of_others_beside_the_state_stay() {
         let other = with_ending(&path, ending);
         fs::write(&other, "of the user").unwrap();
         let error = StateFile::open(&path).unwrap_err().to_string();
-        let why = "no run has written it, and this one would replace it; move it, or give another file by --state";
+        let why =
+            "no run has written it, and this one would replace it; move it, or give another file by --state";
         assert_eq!(error, format!("{}: {why}", other.display()));
         assert_eq!(fs::read_to_string(&other).unwrap(), "of the user");
         fs::remove_file(other).unwrap();

@@ -189,7 +189,10 @@ fn a_journal_from_elsewhere_moves_nothing() {
     for text in [&outside[..], "", "{}"] {
         fs::write(&journal, text).unwrap();
         let error = RunFolder::open(&path).unwrap_err();
-        assert!(error.is_refusal() && error.to_string().contains(".exchange.json: no run of this"), "{error}");
+        assert!(
+            error.is_refusal() && error.to_string().contains(".exchange.json: no run of this"),
+            "{error}"
+        );
         assert_eq!(names(&path), ["thesis.tex", UNFINISHED]);
         assert_eq!(names(folder.path()), ["out"]);
     }
@@ -203,7 +206,11 @@ fn a_folder_of_the_user_in_that_of_a_run_stays() {
         fs::write(run.unfinished().join("map.pgm"), "new").unwrap();
         fs::create_dir(run.unfinished().join("mine")).unwrap();
         fs::write(run.unfinished().join("mine/notes.txt"), "of the user").unwrap();
-        if fails { drop(run) } else { run.finish(&[]).unwrap() }
+        if fails {
+            drop(run)
+        } else {
+            run.finish(&[]).unwrap()
+        }
         assert_eq!(folder.path().join("map.pgm").exists(), !fails);
         drop(RunFolder::open(folder.path()).unwrap());
     }
